@@ -1,0 +1,303 @@
+"""Logical lines to rows of items, each with its Span: the only module that uses lark.
+
+The parser's callbacks only put tokens into postfix order; spans are added afterwards in plain loops.  So no
+step calls itself, however long or deep a card is, and the one Lark object serves every file.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any, Final
+
+from lark import Lark, Token, Transformer, UnexpectedCharacters, UnexpectedInput
+from lark.lark import PostLex
+
+from pound_deck.diagnostics import Diagnostic, Mistake, mistake
+from pound_deck.expressions import Expression, Range, Step
+from pound_deck.model import Span
+from pound_deck.source import Line
+
+MAX_NESTING: Final = 50
+
+Part = Expression | Range
+
+_TIGHT: Final = frozenset({"EQUAL", "TO", "BY"})  #: tokens that may have blanks around them
+_SIGNS: Final = frozenset({"PLUS", "MINUS", "STAR", "SLASH", "POWER"})
+# a keyword, and no named item; what follows TITLE is free
+_FIRST_WORD: Final = re.compile(r"\s*(TITLE(?![\w.])|[A-Za-z_][\w.]*(?![\w.]|\s*=))", re.IGNORECASE)
+_BRACKET: Final = re.compile(r""""[^"\n]*"|'[^'\n]*'|([()])""")
+_LOOKALIKES: Final = {
+    "−": "-",
+    "–": "-",
+    "—": "-",
+    "“": '"',
+    "”": '"',
+    "„": '"',
+    "‘": "'",
+    "’": "'",
+    "×": "*",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """One item of a row: its upper-case name (empty by position) and the parts of its comma list."""
+
+    name: str
+    parts: tuple[Part, ...]
+    span: Span
+    name_span: Span
+
+    @property
+    def word(self) -> str:
+        """The word in upper case, where the item is nothing but an unquoted word; else empty."""
+        part = self.parts[0]
+        return (
+            part.lone_word
+            if len(self.parts) == 1 and isinstance(part, Expression) and not self.name
+            else ""
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A parsed line: first word in upper case, items (None where it could not be parsed), place."""
+
+    word: str
+    items: tuple[Item, ...] | None
+    line: Line
+    span: Span
+
+
+def parse(lines: Iterable[Line], report: list[Diagnostic]) -> Iterator[Row]:
+    """Parse line by line; a line that cannot be parsed adds a diagnostic and comes without items."""
+    for line in lines:
+        first = _FIRST_WORD.match(line.text)
+        word = first[1].upper() if first else ""
+        items: tuple[Item, ...] | None = None
+        if word == "TITLE":
+            items = ()  # the rest of a title is free text
+        else:
+            try:
+                items = parse_items(line)
+            except Mistake as error:
+                if error.diagnostic:
+                    report.append(error.diagnostic)
+        yield Row(word, items, line, line.span)
+
+
+def parse_items(line: Line) -> tuple[Item, ...]:
+    """Items of one logical line.
+
+    Raises
+    ------
+    Mistake
+        The line does not follow the grammar.
+    """
+    _check_nesting(line)
+    try:
+        return tuple(_item(raw, line) for raw in _lark().parse(line.text))  # type: ignore[attr-defined]
+    except UnexpectedInput as error:
+        raise _explain(error, line) from None
+
+
+class _Blanks(PostLex):
+    """Drops the blanks that separate no items."""
+
+    always_accept = ("_WS",)
+
+    def process(self, stream: Iterator[Token]) -> Iterator[Token]:
+        held, last, depth = None, "EQUAL", 0
+        for token in stream:
+            if token.type == "_WS":
+                held = token
+                continue
+            if held and not depth and last not in _TIGHT and token.type not in _TIGHT:
+                yield held
+            held, last = None, token.type
+            depth += (last == "LPAR") - (last == "RPAR")
+            yield token
+
+
+class _Postfix(Transformer):
+    """Puts tokens into postfix order: a list of (kind, token, number of values), extended in place."""
+
+    def number(self, children: list[Any]) -> list[Any]:
+        return [("number", children[0], 0)]
+
+    def word(self, children: list[Any]) -> list[Any]:
+        return [("word", children[0], 0)]
+
+    def text(self, children: list[Any]) -> list[Any]:
+        return [("text", children[0], 0)]
+
+    def bracket(self, children: list[Any]) -> list[Any]:
+        return children[0]
+
+    def unary(self, children: list[Any]) -> list[Any]:
+        sign, steps = children
+        steps.append(("operator", sign, 1))
+        return steps
+
+    def binary(self, children: list[Any]) -> list[Any]:
+        left, sign, right = children
+        left += right
+        left.append(("operator", sign, 2))
+        return left
+
+    def call(self, children: list[Any]) -> list[Any]:
+        name, *rest = children
+        arguments = [c for c in rest if not isinstance(c, Token)]
+        return [step for argument in arguments for step in argument] + [("call", name, len(arguments))]
+
+    def expression(self, children: list[Any]) -> tuple[Any, ...]:
+        return ("expression", children[0])
+
+    def range(self, children: list[Any]) -> tuple[Any, ...]:
+        return ("range", *(c for c in children if isinstance(c, tuple)))
+
+    def plain(self, children: list[Any]) -> tuple[Any, list[Any]]:
+        return None, [c for c in children if isinstance(c, tuple)]
+
+    def named(self, children: list[Any]) -> tuple[Any, list[Any]]:
+        return children[0], [c for c in children if isinstance(c, tuple)]
+
+    def start(self, children: list[Any]) -> list[Any]:
+        return [c for c in children if c is not None]
+
+
+@cache
+def _lark() -> Lark:
+    # the basic lexer looks at no parser state, so _Blanks may read one token ahead
+    grammar = files("pound_deck").joinpath("deck.lark").read_text("utf-8")
+    return Lark(grammar, parser="lalr", lexer="basic", postlex=_Blanks(), transformer=_Postfix())
+
+
+def _span(token: Token, line: Line) -> Span:
+    number = line.number + (token.line or 1) - 1
+    column = token.column or 1
+    return Span(line.file, number, column, column + max(1, len(token.rstrip())))
+
+
+def _join(first: Span, last: Span) -> Span:
+    """From the start of one to the end of the other, within the first one's line."""
+    return Span(first.file, first.line, first.column, last.end if last.line == first.line else first.end)
+
+
+def _expression(raw: list[tuple[str, Token, int]], line: Line) -> Expression:
+    steps = tuple(
+        Step(kind, token[1:-1] if kind == "text" else str(token), _span(token, line), arity)
+        for kind, token, arity in raw
+    )
+    if len(steps) == 1:
+        return Expression(steps, steps[0].span)
+    places = [step.span for step in steps]
+    first = min(places, key=lambda s: (s.line, s.column))
+    return Expression(steps, _join(first, max(places, key=lambda s: (s.line, s.end))))
+
+
+def _part(raw: tuple[Any, ...], line: Line) -> Part:
+    kind, *rest = raw
+    if kind == "expression":
+        return _expression(rest[0], line)
+    first, last, *step = (_expression(r[1], line) for r in rest)
+    return Range(first, last, step[0] if step else None, _join(first.span, (step or [last])[0].span))
+
+
+def _item(raw: tuple[Token | None, list[Any]], line: Line) -> Item:
+    name, values = raw
+    parts = tuple(_part(value, line) for value in values)
+    span = _join(parts[0].span, parts[-1].span)
+    return Item(name.upper(), parts, span, _span(name, line)) if name else Item("", parts, span, span)
+
+
+def _check_nesting(line: Line) -> None:
+    if line.text.count("(") <= MAX_NESTING:
+        return
+    depth = 0
+    for mark in _BRACKET.finditer(line.text):
+        depth += {"(": 1, ")": -1}.get(mark[1] or "", 0)
+        if depth > MAX_NESTING:
+            message = f"brackets are nested more than {MAX_NESTING} deep"
+            raise mistake("P204", message, _place(line, mark.start()), "use PARAM for the parts")
+
+
+def _place(line: Line, at: int, length: int = 1) -> Span:
+    """Span of `length` characters of the line's text."""
+    before = line.text[:at]
+    column = at - before.rfind("\n")
+    return Span(line.file, line.number + before.count("\n"), column, column + max(1, length))
+
+
+def _explain(error: UnexpectedInput, line: Line) -> Mistake:
+    text = line.text
+    at = min(error.pos_in_stream if error.pos_in_stream is not None else len(text), len(text))
+    if isinstance(error, UnexpectedCharacters):
+        return _strange(text[at], _place(line, at))
+    token: Token = getattr(error, "token", Token("$END", ""))
+    if token.type == "$END":
+        at = len(text.rstrip())
+    before = text[:at].rstrip()
+    last = before[-1:]
+    place = _place(line, at, len(token.rstrip()))
+    hint = "write 1-2 or (1 - 2) for a difference, 1 -2 for two items"
+    if (token.type == "_WS" and last == ",") or (token.type == "COMMA" and text[at - 1 : at].isspace()):
+        return mistake(
+            "P206",
+            "a list holds no blanks",
+            _place(line, len(before) - 1 if last == "," else at),
+            "write 1,3,5",
+        )
+    if text[:at].count("(") > text[:at].count(")") and token.type in ("$END", "EQUAL", "TO", "BY"):
+        if token.type == "$END":
+            opening = _unclosed(text)
+            return mistake("P203", "this bracket is not closed", _place(line, opening), "add )")
+        message = f"{token} cannot stand in brackets"
+        return mistake("P209", message, place, "close the bracket before it")
+    if token.type == "RPAR" and _unclosed(text[:at]) < 0:
+        return mistake("P203", "this bracket was not opened", place, "take it out, or add (")
+    if token.type == "_WS" and last in tuple("+-*/^"):
+        return mistake("P205", f"a blank after {last}", _place(line, len(before) - 1), hint)
+    if token.type in _SIGNS and text[at - 1 : at].isspace():
+        return mistake("P205", f"a blank before {token}", place, hint)
+    if token.type in ("WORD", "NUMBER") and last and (last.isalnum() or last == "."):
+        start = max(before.rfind(c) for c in " \t\n,=()+-*/^") + 1
+        shown = before[start:] + str(token)
+        message = f"{shown[:60]} is neither a number nor a word"
+        return mistake("P207", message, _place(line, start, len(shown)), "a word starts with a letter")
+    if token.type in ("TO", "BY") or re.search(r"\b(TO|BY)$", before, re.IGNORECASE):
+        return mistake("P208", "this range is not complete", place, "write 1 TO 9, or 1 TO 9 BY 2")
+    if token.type == "$END":
+        return mistake(
+            "P209", "the card ends too early", _place(line, max(at - 1, 0)), f"something must follow {last}"
+        )
+    shown = str(token).strip() or "a blank"
+    return mistake(
+        "P209", f"{shown[:60]} does not belong here", place, "items are separated by blanks: 1 2 NAME=3"
+    )
+
+
+def _unclosed(text: str) -> int:
+    """Index of the last bracket that is open at the end of the text, or -1."""
+    opened: list[int] = []
+    for mark in _BRACKET.finditer(text):
+        if mark[1] == "(":
+            opened.append(mark.start())
+        elif mark[1] and opened:
+            opened.pop()
+    return opened[-1] if opened else -1
+
+
+def _strange(character: str, place: Span) -> Mistake:
+    if character in "\"'":
+        return mistake(
+            "P202", "this quote is not closed", place, f"end the text with {character} on the same line"
+        )
+    plain = _LOOKALIKES.get(character, "")
+    hint = f"write a plain {plain}" if plain else "put texts in quotes; a comment starts with !"
+    shown = character if character.isprintable() else f"the character U+{ord(character):04X}"
+    return mistake("P201", f"{shown} has no meaning here", place, hint)

@@ -1,0 +1,187 @@
+"""Checks of the whole Model: a list of small functions, each with its own messages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, Final
+
+from pound_deck.diagnostics import Diagnostic, suggest
+from pound_deck.model import Card, Model, Span
+from pound_deck.schema import Kind
+
+Found = Iterator[Diagnostic]
+#: where the kinds that name something are defined: nodes, elements, property sets
+_TABLE: Final = {Kind.NODE: 0, Kind.NODES: 0, Kind.ELEMENTS: 1, Kind.PROP: 2, Kind.PROPS: 2}
+
+
+def run_checks(
+    model: Model, cards: Iterable[Card], broken: frozenset[str] = frozenset()
+) -> list[Diagnostic]:
+    """Run every check.
+
+    Parameters
+    ----------
+    model : Model
+        All that could be read.
+    cards : iterable of Card
+        Every card of the deck; those of NODES and ELEMENTS know the places of single items.
+    broken : frozenset of str
+        Sections that lost lines to mistakes; checks that count on them are left out.
+    """
+    found = [d for check, needs in CHECKS if not broken & needs for d in check(model)]
+    return found + list(_references(model, cards, broken))
+
+
+def _references(model: Model, cards: Iterable[Card], broken: frozenset[str]) -> Found:
+    """Nodes, elements and property sets that are named but not defined."""
+    tables: tuple[tuple[str, str, str, Any], ...] = (
+        ("P305", "node", "NODES", model.nodes),
+        ("P306", "element", "ELEMENTS", model.elements),
+        ("P307", "property set", "PROPS", model.props),
+    )
+    told: set[Span] = set()  # the first miss of an item tells enough: a range may have a hundred
+    for value, kind, span in _named(cards):
+        code, what, section, known = tables[_TABLE[kind]]
+        if section not in broken and value not in known and span not in told:
+            told.add(span)
+            near = suggest(value, known) if isinstance(value, str) else ""
+            ground = "leave J out for the ground" if value == 0 else ""
+            hint = near or ground or f"define it under {section}"
+            yield Diagnostic(code, f"there is no {what} {value}", span, hint)
+
+
+def _named(cards: Iterable[Card]) -> Iterator[tuple[Any, Kind, Span]]:
+    """What the cards say of nodes, elements and property sets, with the places."""
+    for card in cards:
+        for spec in (card.spec, *(s for specs in card.laws.values() for s in specs)):
+            for f in spec.fields:
+                value = card.values.get(f.name) if f.kind in _TABLE else None
+                if value is not None:
+                    for v in value if isinstance(value, tuple) else (value,):
+                        yield v, f.kind, card.place(f.name)
+
+
+def _slaving(model: Model) -> Found:
+    for node in model.nodes.values():
+        for letter, number in node.slaved.items():
+            master = model.nodes.get(number)
+            if number == node.id:
+                yield Diagnostic(
+                    "P309", f"node {node.id} is slaved to itself", node.span, "name another MASTER"
+                )
+                break
+            if letter in node.fixed:
+                message = f"direction {letter} of node {node.id} is both fixed and slaved"
+                yield Diagnostic("P311", message, node.span, f"take {letter} out of FIX or SLAVED")
+            if master and letter in master.slaved and master.slaved[letter] != number:
+                last = master.slaved[letter]
+                message = f"the master {number} of node {node.id} follows node {last} in {letter} itself"
+                yield Diagnostic("P310", message, node.span, f"name the master {last}")
+
+
+def _zero_length(model: Model) -> Found:
+    for element in model.elements.values():
+        i, j = model.nodes.get(element.i), model.nodes.get(-1 if element.j is None else element.j)
+        prop = model.props.get(element.prop)
+        if i is None or j is None:
+            continue
+        if i is j:
+            message = f"both ends of element {element.id} are node {i.id}"
+            yield Diagnostic("P321", message, element.span, "name two nodes, or leave J out for the ground")
+        elif prop and prop.spec.name == "FRAME" and (i.x, i.y) == (j.x, j.y):
+            message = f"member {element.id} has no length: nodes {i.id} and {j.id} are at the same place"
+            yield Diagnostic("P312", message, element.span, "a FRAME needs a length; use a SPRING")
+
+
+def _unused_props(model: Model) -> Found:
+    used = {e.prop for e in model.elements.values()}
+    for label, card in model.props.items():
+        if label not in used:
+            message = f"no element has the property set {label}"
+            yield Diagnostic(
+                "P313", message, card.span, "take it out, or name it under ELEMENTS", "warning"
+            )
+
+
+def _loose_nodes(model: Model) -> Found:
+    tied = {n for e in model.elements.values() for n in (e.i, e.j)}
+    tied |= {n for node in model.nodes.values() if node.slaved for n in (node.id, *node.slaved.values())}
+    told: set[Span] = set()
+    for node in model.nodes.values():
+        if model.elements and node.id not in tied and node.span not in told:
+            told.add(node.span)
+            message = f"node {node.id} is connected to nothing"
+            yield Diagnostic("P314", message, node.span, "join it by an element, or take it out", "warning")
+
+
+def _something(model: Model) -> Found:
+    for what, section, example in (
+        (model.nodes, "NODES", "1 0 0 FIX=XYR"),
+        (model.elements, "ELEMENTS", "1 COL 1 2"),
+    ):
+        if not what:
+            yield Diagnostic(
+                "P315",
+                f"the deck has no {section.lower()}",
+                None,
+                f"write {section} and lines like: {example}",
+            )
+
+
+def _analysis(model: Model) -> Found:
+    if not model.analyses:
+        hint = "write ANALYSIS and below it STATIC, MODAL 4 or HISTORY T=10"
+        yield Diagnostic("P316", "the deck asks for no analysis", None, hint)
+
+
+def _excitation(model: Model) -> Found:
+    if model.equake or model.initial or model.loads or model.member_loads:
+        return
+    for card in model.analyses:
+        if card.spec.name == "HISTORY":
+            hint = "add EQUAKE, INITIAL or LOADS"
+            yield Diagnostic("P317", "nothing sets this history in motion", card.span, hint, "warning")
+
+
+def _drift_names(model: Model) -> Found:
+    first: dict[str, Span] = {}
+    for card in model.drifts:
+        if card.label in first:
+            message = f'drift "{card.label}" is already given in line {first[card.label].line}'
+            yield Diagnostic("P304", message, card.place("NAME"), "choose another name")
+        first.setdefault(card.label, card.span)
+
+
+def _drift_heights(model: Model) -> Found:
+    for card in model.drifts:
+        i, j = model.nodes.get(card["I"]), model.nodes.get(card["J"])
+        if i and j and i.y == j.y and card["HEIGHT"] is None:
+            message = f"nodes {i.id} and {j.id} are at the same height, so this drift has no ratio"
+            yield Diagnostic("P318", message, card.span, "add HEIGHT=value", "warning")
+
+
+def _node_like_weights(model: Model) -> Found:
+    for card in model.weights:
+        wx, wy = card["WX"], card["WY"]
+        if wy is not None and wx != wy and wx in model.nodes and not {"WX", "WY"} - card.spans.keys():
+            message = f"WX is {wx:g}, which is the number of a node, and WY differs from it"
+            hint = "a list of nodes has commas and no blanks: 1,2"
+            yield Diagnostic("P320", message, card.place("WX"), hint, "warning")
+
+
+_NODES: Final = frozenset({"NODES"})
+_MEMBERS: Final = frozenset({"ELEMENTS"})
+_PROPS: Final = frozenset({"PROPS"})
+#: every check, with the sections that must be whole for its answer to be right
+CHECKS: Final[tuple[tuple[Callable[[Model], Found], frozenset[str]], ...]] = (
+    (_something, _NODES | _MEMBERS),
+    (_analysis, frozenset({"ANALYSIS"})),
+    (_slaving, frozenset()),
+    (_zero_length, frozenset()),
+    (_unused_props, _MEMBERS | _PROPS),
+    (_loose_nodes, _NODES | _MEMBERS),
+    (_excitation, frozenset({"EQUAKE", "INITIAL", "LOADS", "MEMBER_LOADS"})),
+    (_drift_names, frozenset()),
+    (_drift_heights, frozenset()),
+    (_node_like_weights, frozenset()),
+)

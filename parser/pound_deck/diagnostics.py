@@ -1,0 +1,395 @@
+"""Diagnostics: what is wrong, where, and what would be right; the numbered table of all messages.
+
+Codes: P1xx source text, P2xx cards and values, P3xx the model, R4xx records, A5xx stops of an analysis.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Final, Literal
+
+from pound_deck.model import Span
+
+_WIDTH: Final = 160  #: longest piece of a source line that is printed
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One message to the user: its code in `MESSAGES`, its text, its place (None: the whole deck)."""
+
+    code: str
+    message: str
+    span: Span | None
+    hint: str = ""
+    severity: Literal["error", "warning"] = "error"
+
+
+class Mistake(Exception):
+    """Ends the reading of one item; holds its Diagnostic, or None where the cause is already reported."""
+
+    def __init__(self, diagnostic: Diagnostic | None = None) -> None:
+        super().__init__(diagnostic.message if diagnostic else "already reported")
+        self.diagnostic = diagnostic
+
+
+def mistake(code: str, message: str, span: Span, hint: str = "") -> Mistake:
+    """Mistake with a new Diagnostic."""
+    return Mistake(Diagnostic(code, message, span, hint))
+
+
+def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
+    """Whether any of them is an error."""
+    return any(d.severity == "error" for d in diagnostics)
+
+
+def closest(word: str, choices: Iterable[str]) -> str:
+    """The choice that is most like a misspelt word, in any case; empty where none is near."""
+    known = {choice.upper(): choice for choice in choices}
+    close = get_close_matches(word.upper()[:100], known, n=1, cutoff=0.6)
+    return known[close[0]] if close else ""
+
+
+def suggest(word: str, choices: Iterable[str]) -> str:
+    """``did you mean X?`` for the closest choice, or an empty text."""
+    near = closest(word, choices)
+    return f"did you mean {near}?" if near else ""
+
+
+def hints(*parts: str) -> str:
+    """Join the parts that are not empty."""
+    return "; ".join(part for part in parts if part).replace("?; ", "? ")
+
+
+def caret(diagnostic: Diagnostic, files: Mapping[str, str]) -> str:
+    """Print a diagnostic with its source line, its place underlined.
+
+    Parameters
+    ----------
+    diagnostic : Diagnostic
+    files : mapping of str to str
+        Text of each file by its name in spans.
+
+    Returns
+    -------
+    str
+        One to four lines without a final line end.
+    """
+    span = diagnostic.span
+    place = f"{span}: " if span else ""
+    out = [f"{place}{diagnostic.severity} {diagnostic.code}: {diagnostic.message}"]
+    if span and span.file in files:
+        lines = files[span.file].split("\n")
+        if span.line <= len(lines):
+            out += _underlined(lines[span.line - 1], span)
+    if diagnostic.hint:
+        out.append(f"  hint: {diagnostic.hint}")
+    return "\n".join(out)
+
+
+def _underlined(line: str, span: Span) -> list[str]:
+    start = max(0, span.column - 1 - _WIDTH // 2) if len(line) > _WIDTH else 0
+    column = span.column - 1 - start
+    # control characters could move the cursor, and then the caret would point elsewhere
+    shown = "".join(c if c.isprintable() or c == "\t" else "?" for c in line[start : start + _WIDTH])
+    blanks = "".join("\t" if c == "\t" else " " for c in shown[:column]).ljust(column)
+    length = max(1, min(span.end - span.column, len(shown) - column))
+    return [shown, blanks + "^" + "~" * (length - 1)] if shown.strip() else []
+
+
+def render(diagnostics: Sequence[Diagnostic], files: Mapping[str, str], limit: int = 50) -> str:
+    """Print up to `limit` diagnostics, errors before warnings, and how many more there are."""
+    ordered = sorted(
+        diagnostics, key=lambda d: d.severity != "error"
+    )  # stable: the deck's order within each
+    blocks = [caret(d, files) for d in ordered[:limit]]
+    if len(ordered) > limit:
+        blocks.append(f"and {len(ordered) - limit} more")
+    return "\n".join(blocks)
+
+
+def messages_page() -> str:
+    """Text of ``manual/messages.md``: every code with its meaning and cure."""
+    heads = {
+        "P1": "Source text",
+        "P2": "Cards and values",
+        "P3": "The model",
+        "R4": "Records",
+        "A5": "Stops of an analysis",
+    }
+    out = [
+        "# Messages",
+        "",
+        "Every message names its place as `file:line:column` and shows the line with the place underlined.",
+        "An error stops the run before it starts; a warning (marked below) does not.",
+        "This page is written from `MESSAGES` in `pound_deck/diagnostics.py`.",
+    ]
+    for prefix, head in heads.items():
+        out += ["", f"## {head}", "", "| Code | Title | Meaning and cure |", "|---|---|---|"]
+        out += [f"| {c} | {t} | {m} |" for c, (t, m) in MESSAGES.items() if c.startswith(prefix)]
+    return "\n".join(out) + "\n"
+
+
+MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
+    "P101": (
+        "not UTF-8 (warning)",
+        "The file holds bytes that are not UTF-8 text and is read as Latin-1. Save it as UTF-8.",
+    ),
+    "P102": (
+        "not a text file",
+        "The file holds zero bytes, as programs, pictures and UTF-16 text do. Save the deck as UTF-8 text.",
+    ),
+    "P103": (
+        "a web page",
+        "The file starts as an HTML or XML page, so a download saved the page and not the deck. "
+        "Download the raw file.",
+    ),
+    "P104": (
+        "deck too large",
+        "Deck and included files together exceed 8 MB. Put records into files of their own and name"
+        " them under EQUAKE.",
+    ),
+    "P105": (
+        "INCLUDE file not readable",
+        "The included file is missing or may not be read. Its name counts from the folder of the "
+        "file that includes it.",
+    ),
+    "P106": ("INCLUDE loop", "A file includes itself, directly or through others. Take one INCLUDE out."),
+    "P107": (
+        "too many INCLUDEs",
+        "INCLUDE goes more than 20 files deep, or stands more than 1000 times. Join some files.",
+    ),
+    "P108": ("INCLUDE without a file name", "INCLUDE takes one file name in quotes and nothing else."),
+    "P109": ("nothing after &", "A line ends in & but no line follows to go on with. Remove the &."),
+    "P110": (
+        "line too long",
+        "A line with its continuations exceeds 100 000 characters. Split it into several cards, or "
+        "use a range.",
+    ),
+    "P201": (
+        "character without meaning",
+        "The character has no meaning outside quotes. Minus signs and quotes pasted from a text "
+        "processor are the usual cause.",
+    ),
+    "P202": ("quote not closed", "A text starts with a quote that has no partner on the same line."),
+    "P203": ("brackets do not match", "A bracket has no partner in the same card."),
+    "P204": ("brackets too deep", "Brackets are nested more than 50 deep. Use PARAM for the parts."),
+    "P205": (
+        "blank inside an expression",
+        "Blanks separate items. Write 1-2 or (1 - 2) for a difference, and 1 -2 for two items.",
+    ),
+    "P206": ("blank inside a list", "A comma list holds no blanks: write 1,3,5 or 1,4 TO 8."),
+    "P207": (
+        "neither number nor word",
+        "A word starts with a letter; a number is followed by a blank, a comma or an operator.",
+    ),
+    "P208": (
+        "range not understood",
+        "A range is written first TO last, or first TO last BY step. TO and BY are no names.",
+    ),
+    "P209": (
+        "not understood",
+        "The card does not go on like this. An item is a number, an expression, a word, a text, a "
+        "list or NAME=value.",
+    ),
+    "P210": (
+        "unknown word",
+        "The word is none of the choices that this place allows. The message lists them.",
+    ),
+    "P211": ("unknown item name", "The card takes no item of that name. The message lists what it takes."),
+    "P212": ("item given twice", "An item stands twice in one card, by name or by position. Remove one."),
+    "P213": (
+        "item missing",
+        "The card needs an item that has no default. The message gives its meaning and unit.",
+    ),
+    "P214": (
+        "too many items",
+        "The card has more items by position than it reads so. Write further items as NAME=value, "
+        "lists with commas.",
+    ),
+    "P215": (
+        "item after a named one",
+        "Items by position stand before the named ones. Values of one item are joined by commas "
+        "without blanks.",
+    ),
+    "P216": (
+        "wrong kind of value",
+        "The place holds another kind of value: a number, a whole number, a text or a word. Texts "
+        "stand in quotes.",
+    ),
+    "P217": (
+        "value out of limits",
+        "The number lies outside what is possible for this item. The message gives the limits.",
+    ),
+    "P218": (
+        "wrong number of values",
+        "The item takes another number of values, joined by commas without blanks.",
+    ),
+    "P219": (
+        "range not allowed",
+        "The item takes no range, or the first item of the card is no range. Ranges generate nodes "
+        "and elements, and stand in lists of nodes and elements.",
+    ),
+    "P220": (
+        "range does not fit",
+        "The range descends, misses its end, or cannot be stepped evenly along with the card's "
+        "first range.",
+    ),
+    "P221": (
+        "too much generated",
+        "Ranges of the deck generate more than 200 000 numbers. Check their ends.",
+    ),
+    "P222": (
+        "unknown name",
+        "The name is no PARAM of the deck. Define it with PARAM, or put a text in quotes.",
+    ),
+    "P223": ("division by zero", "The expression divides by zero, or takes zero to a negative power."),
+    "P224": ("number too large", "The number or the value of the expression is beyond 1.8e308."),
+    "P225": (
+        "no real value",
+        "The function or the power has no real value there, such as the root of a negative number.",
+    ),
+    "P226": (
+        "function not known",
+        "The function does not exist or takes another number of values. The message lists the functions.",
+    ),
+    "P227": ("text in arithmetic", "A text cannot be added, multiplied or given to a function."),
+    "P228": (
+        "PARAM in a circle",
+        "The value of a PARAM depends on itself. Give one of the names a number.",
+    ),
+    "P229": (
+        "PARAM given twice",
+        "A PARAM has two values in the deck. Remove one, or override it with --set.",
+    ),
+    "P230": ("PARAM name reserved", "Names of functions, PI, TO, BY, NAN and INF cannot be PARAM names."),
+    "P231": (
+        "PARAM not understood",
+        "Write PARAM name = value, one value each; several may stand on one line.",
+    ),
+    "P232": (
+        "--set of an unknown PARAM",
+        "Only names that the deck defines with PARAM can be set from the command line.",
+    ),
+    "P233": (
+        "--set value not understood",
+        "A PARAM that holds a number is set to a number or an expression.",
+    ),
+    "P234": (
+        "line outside any section",
+        "The line stands before the first section. Write the section's name (NODES, ELEMENTS, ...) "
+        "on a line above it.",
+    ),
+    "P235": (
+        "unknown section",
+        "The word alone on its line is no section of a deck, and no line of the section above.",
+    ),
+    "P236": (
+        "words after a section's name",
+        "A section's name stands alone on its line. Put column heads behind an exclamation mark.",
+    ),
+    "P237": ("card given twice", "TITLE, UNITS, GRAVITY and MASS stand once in a deck."),
+    "P238": ("UNITS not understood", "Write UNITS force length time, for example UNITS kN m s."),
+    "P301": ("node given twice", "Two cards define the same node number. Ranges generate numbers too."),
+    "P302": (
+        "element given twice",
+        "Two cards define the same element number. Ranges generate numbers too.",
+    ),
+    "P303": (
+        "property set given twice",
+        "Two lines under PROPS have the same label; upper and lower case are the same.",
+    ),
+    "P304": ("drift given twice", "Two lines under DRIFT have the same name."),
+    "P305": (
+        "unknown node",
+        "The node is not defined under NODES. To join an element to the ground leave J out.",
+    ),
+    "P306": ("unknown element", "The element is not defined under ELEMENTS."),
+    "P307": ("unknown property set", "The label is not defined under PROPS."),
+    "P308": (
+        "SLAVED and MASTER go together",
+        "A node with SLAVED needs a MASTER, and MASTER needs the directions in SLAVED.",
+    ),
+    "P309": ("node slaved to itself", "MASTER is the node itself. Name another node."),
+    "P310": (
+        "master is slaved",
+        "The master follows another node in the same direction. Name the last master of the chain.",
+    ),
+    "P311": (
+        "fixed and slaved",
+        "A direction is both fixed and slaved. Take the letter out of FIX or SLAVED.",
+    ),
+    "P312": ("member without length", "Both ends of a FRAME member stand at the same place."),
+    "P313": ("property set not used (warning)", "No element has this property set."),
+    "P314": ("loose node (warning)", "No element ends at the node, and no slaving ties it to another."),
+    "P315": ("nothing to analyse", "The deck has no nodes or no elements."),
+    "P316": ("no analysis", "The deck does not say what to do. Add a section ANALYSIS."),
+    "P317": (
+        "nothing moves the model (warning)",
+        "A HISTORY has no EQUAKE, no INITIAL motion and no loads, so all results are zero.",
+    ),
+    "P318": (
+        "drift without height (warning)",
+        "The nodes of a drift are at the same height and no HEIGHT is given, so no drift ratio is printed.",
+    ),
+    "P319": (
+        "gravity not known",
+        "There are weights, but no value of gravity is known for these units. Add GRAVITY with its value.",
+    ),
+    "P320": (
+        "weight looks like a node (warning)",
+        "WX is the number of a node and WY differs from it. Node lists have commas: 1,2 and not 1 2.",
+    ),
+    "P321": ("element ends at one node", "Both ends of the element are the same node."),
+    "R401": (
+        "record not found",
+        "The record stands neither in the deck's folder nor in the record folders. Check its name, "
+        "or add --records DIR.",
+    ),
+    "R402": (
+        "record not readable",
+        "The file does not hold what its FORMAT says. Check the FORMAT and the place named in the message.",
+    ),
+    "R403": (
+        "record count differs",
+        "The record holds another number of values than its head declares. The file may be cut short.",
+    ),
+    "R404": (
+        "record value out of range",
+        "A value of the record is not a finite number, or far beyond any earthquake. Check the "
+        "units and the columns.",
+    ),
+    "R405": (
+        "motion option missing or contradictory",
+        "The motion needs an option that is not given, or two options exclude each other.",
+    ),
+    "A501": (
+        "unstable structure",
+        "The stiffness matrix is singular: some node can move without resistance. The message names"
+        " it; add a support or a member.",
+    ),
+    "A502": (
+        "step above the stability limit",
+        "The time step of an explicit method exceeds its limit. Use a smaller DT or another METHOD.",
+    ),
+    "A503": (
+        "no progress",
+        "Too many events happen at one instant, or the step falls below its least size. Check "
+        "stiffness and restitution of the contacts.",
+    ),
+    "A504": (
+        "runaway or not a number",
+        "Displacements grew without bound. Check DT, damping and strengths.",
+    ),
+    "A505": (
+        "method does not suit the scene",
+        "The chosen METHOD cannot treat this model. The message says why and which can.",
+    ),
+    "A506": ("interrupted", "The run was stopped by the user. Results up to that time are kept."),
+    "A507": (
+        "static analysis does not converge",
+        "No equilibrium was found. Loads may exceed the strength, or a contact may be all that "
+        "supports a part.",
+    ),
+}

@@ -1,0 +1,261 @@
+"""Arithmetic of the deck: expressions as postfix steps, PARAM values, no ``eval``.
+
+An expression is kept as the list of steps of a pocket calculator (`1 + 2*n` becomes ``1 2 n * +``), so that
+nothing here calls itself however long a line of a deck is.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import ChainMap
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from pound_deck.diagnostics import Diagnostic, Mistake, mistake, suggest
+from pound_deck.model import Span
+
+Value = float | str
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A ``number``, ``word`` or ``text``, or a ``call`` or ``operator`` that takes `arity` values."""
+
+    kind: str
+    text: str
+    span: Span
+    arity: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Expression:
+    """A number, word, text or formula of the deck."""
+
+    steps: tuple[Step, ...]
+    span: Span
+
+    @property
+    def lone(self) -> Step | None:
+        """The only step, where there is just one."""
+        return self.steps[0] if len(self.steps) == 1 else None
+
+    @property
+    def lone_word(self) -> str:
+        """The word in upper case, where the expression is just an unquoted word; else empty."""
+        return self.steps[0].text.upper() if len(self.steps) == 1 and self.steps[0].kind == "word" else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """``first TO last BY step``."""
+
+    first: Expression
+    last: Expression
+    step: Expression | None
+    span: Span
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """A PARAM of the deck: its name as written and its value."""
+
+    name: str
+    value: Expression
+    span: Span
+
+
+def _round(x: float) -> float:
+    """Nearest whole number, halves away from zero as Fortran's NINT."""
+    return math.copysign(math.floor(abs(x) + 0.5), x)
+
+
+_MANY: Final = 1000
+#: name: least and most number of values, function
+FUNCTIONS: Final[Mapping[str, tuple[int, int, Callable[..., float]]]] = {
+    "SQRT": (1, 1, math.sqrt),
+    "SIN": (1, 1, math.sin),
+    "COS": (1, 1, math.cos),
+    "TAN": (1, 1, math.tan),
+    "ASIN": (1, 1, math.asin),
+    "ACOS": (1, 1, math.acos),
+    "ATAN": (1, 1, math.atan),
+    "EXP": (1, 1, math.exp),
+    "LOG": (1, 1, math.log),
+    "LOG10": (1, 1, math.log10),
+    "ABS": (1, 1, abs),
+    "MIN": (1, _MANY, min),
+    "MAX": (1, _MANY, max),
+    "FLOOR": (1, 1, math.floor),
+    "CEIL": (1, 1, math.ceil),
+    "ROUND": (1, 1, _round),
+    "INT": (1, 1, math.trunc),
+}
+#: names that no PARAM can have
+RESERVED: Final = frozenset(FUNCTIONS) | {"PI", "TO", "BY", "NAN", "INF", "INFINITY"}
+_CALLS: Final = "functions are " + ", ".join(name.lower() for name in FUNCTIONS)
+
+
+def evaluate(expression: Expression, params: Mapping[str, Value | None]) -> Value:
+    """Value of an expression.
+
+    Parameters
+    ----------
+    expression : Expression
+    params : mapping of str to float, str or None
+        Values by upper-case name; None for one whose own mistake is already reported.
+
+    Returns
+    -------
+    float or str
+        Finite number; a text only where the expression is nothing but a text or the name of one.
+
+    Raises
+    ------
+    Mistake
+        With a diagnostic, unless it only repeats one.
+    """
+    stack: list[Value] = []
+    for step in expression.steps:
+        if step.arity:
+            values = stack[-step.arity :]
+            del stack[-step.arity :]
+            stack.append(_apply(step, values))
+        else:
+            stack.append(_leaf(step, params))
+    return stack[0]
+
+
+def _leaf(step: Step, params: Mapping[str, Value | None]) -> Value:
+    if step.kind == "text":
+        return step.text
+    if step.kind == "number":
+        return _finite(float(step.text.upper().replace("D", "E")), step)
+    name = step.text.upper()
+    if name == "PI":
+        return math.pi
+    if name in params:
+        value = params[name]
+        if value is None:
+            raise Mistake
+        return value
+    if name in FUNCTIONS:
+        message = f"{step.text} is a function"
+        raise mistake(
+            "P222", message, step.span, f"write {step.text}(...) with no blank before the bracket"
+        )
+    hint = suggest(name, [*params, "PI"]) or "define it with PARAM, or put a text in quotes"
+    raise mistake("P222", f"{step.text} is no number and no PARAM of this deck", step.span, hint)
+
+
+def _apply(step: Step, values: list[Value]) -> float:
+    numbers = [v for v in values if not isinstance(v, str)]
+    if len(numbers) < len(values):
+        text = next(v for v in values if isinstance(v, str))
+        raise mistake("P227", f'the text "{text[:60]}" cannot be reckoned with', step.span, "use a number")
+    try:
+        return _finite(_call(step, numbers) if step.kind == "call" else _operate(step.text, numbers), step)
+    except ZeroDivisionError:
+        raise mistake("P223", "division by zero", step.span, "the part after / or ^ makes it so") from None
+    except OverflowError:
+        raise mistake("P224", "the value is too large", step.span, "the limit is 1.8e308") from None
+    except ValueError:
+        shown = ", ".join(f"{x:g}" for x in numbers)
+        message = f"{step.text} has no real value for {shown}"
+        raise mistake("P225", message, step.span, "the arguments must be in its range") from None
+
+
+def _call(step: Step, numbers: list[float]) -> float:
+    name = step.text.upper()
+    if name not in FUNCTIONS:
+        raise mistake(
+            "P226", f"there is no function {step.text}", step.span, suggest(name, FUNCTIONS) or _CALLS
+        )
+    least, most, function = FUNCTIONS[name]
+    if not least <= len(numbers) <= most:
+        takes = "one value" if most == 1 else "one or more values"
+        raise mistake("P226", f"{step.text} takes {takes}, not {len(numbers)}", step.span, _CALLS)
+    return float(function(*numbers) if most == 1 else function(numbers))
+
+
+def _operate(sign: str, numbers: list[float]) -> float:
+    if len(numbers) == 1:
+        return -numbers[0] if sign == "-" else numbers[0]
+    a, b = numbers
+    match sign:
+        case "+":
+            return a + b
+        case "-":
+            return a - b
+        case "*":
+            return a * b
+        case "/":
+            return a / b
+    if a == 0 and b < 0:
+        raise ZeroDivisionError
+    return math.pow(a, b)
+
+
+def _finite(value: float, step: Step) -> float:
+    if not math.isfinite(value):
+        raise mistake(
+            "P224", f"{step.text} gives a number that is too large", step.span, "the limit is 1.8e308"
+        )
+    return value
+
+
+def resolve(
+    definitions: Mapping[str, Definition], report: list[Diagnostic], lost: Iterable[str] = ()
+) -> dict[str, Value | None]:
+    """Values of all PARAMs by upper-case name; None, with a diagnostic, for those that have none.
+
+    Forward references are fine.  Names are followed with a list of their own, not by recursion.
+
+    Parameters
+    ----------
+    definitions : mapping of str to Definition
+    report : list of Diagnostic
+        Receives the mistakes.
+    lost : iterable of str
+        Names whose definition could not be read, which is reported already.
+    """
+    values: dict[str, Value | None] = dict.fromkeys(lost)
+    known = ChainMap(values, dict.fromkeys(definitions))
+    for root in definitions:
+        path = {root: None}
+        while path:
+            name = next(reversed(path))
+            definition = definitions[name]
+            waits = next(
+                (n for n in _names(definition.value) if n in definitions and n not in values), None
+            )
+            if name in values or waits is None:
+                del path[name]
+                if name not in values:
+                    values[name] = _value(definition, known, report)
+            elif waits in path:
+                circle = [*list(path)[list(path).index(waits) :], waits]
+                shown = " -> ".join(circle[:8] + ["..."] * (len(circle) > 8))
+                message = f"PARAM {waits} depends on itself: {shown}"
+                report.append(
+                    Diagnostic("P228", message, definitions[waits].span, "give one of them a number")
+                )
+                values.update(dict.fromkeys(circle))
+            else:
+                path[waits] = None
+    return values
+
+
+def _names(expression: Expression) -> list[str]:
+    return [step.text.upper() for step in expression.steps if step.kind == "word"]
+
+
+def _value(
+    definition: Definition, known: Mapping[str, Value | None], report: list[Diagnostic]
+) -> Value | None:
+    try:
+        return evaluate(definition.value, known)
+    except Mistake as error:
+        if error.diagnostic:
+            report.append(error.diagnostic)
+        return None

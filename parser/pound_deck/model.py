@@ -1,0 +1,151 @@
+"""The Model: what a deck says, typed and checked, each part with the place where it stands.
+
+Nothing here knows numerics.  A :class:`Card` carries the bound values of one Spec; the few parts that every
+later stage needs by name (nodes, elements) have fields of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from pound_deck.schema import Spec
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A place in a deck: file name as the user gave it, 1-based line and column, column after the end."""
+
+    file: str
+    line: int
+    column: int
+    end: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+@dataclass(frozen=True, slots=True)
+class Card:
+    """One card: its Spec, its bound values and where each stands.
+
+    Attributes
+    ----------
+    spec : Spec
+        The main Spec (for a property set: the element's).
+    values : mapping of str to object
+        Bound value of every field, defaults filled in; FAMILY fields bind to the chosen Spec's name.
+    span : Span
+        The whole card.
+    label : str
+        Name in the deck (property sets, drifts), else empty.
+    laws : mapping of str to tuple of Spec
+        For each FAMILY field the Specs chosen (their fields are part of `values`).
+    spans : mapping of str to Span
+        Place of each item that the deck gives; a field without one was left to its default.
+    """
+
+    spec: Spec
+    values: Mapping[str, Any]
+    span: Span
+    label: str = ""
+    laws: Mapping[str, tuple[Spec, ...]] = field(default_factory=dict)
+    spans: Mapping[str, Span] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> Any:
+        return self.values[name]
+
+    def place(self, name: str) -> Span:
+        """Span of an item, or of the card where the item was left to its default."""
+        return self.spans.get(name, self.span)
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A node: number, coordinates [L], fixed directions (letters of XYR), masters of slaved directions."""
+
+    id: int
+    x: float
+    y: float
+    fixed: str
+    span: Span
+    slaved: Mapping[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """A member, spring, dashpot or contact: number, property label, end nodes.
+
+    `j` is None for an element that ends at the ground or at a wall; `name` is a text from the deck or empty.
+    """
+
+    id: int
+    prop: str
+    i: int
+    j: int | None
+    span: Span
+    name: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Units:
+    """Names of the deck's units; nothing is converted."""
+
+    force: str = "kN"
+    length: str = "m"
+    time: str = "s"
+    given: bool = False
+
+    def text(self, dimension: str) -> str:
+        """Dimension (``F/L`` ...) in the deck's units (``kN/m`` ...)."""
+        out = ""
+        for ch in dimension:
+            out += {"F": self.force, "L": self.length, "T": self.time}.get(ch, ch)
+        return out
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """Everything that a deck says.
+
+    Attributes
+    ----------
+    title : str
+    units : Units
+    gravity : float
+        Acceleration of gravity [L/T^2]; weights are divided by it.
+    mass : str
+        ``LUMPED`` or ``CONSISTENT`` mass of FRAME members.
+    params : mapping of str to float or str
+        Values of all PARAM names, after ``--set``.
+    nodes, elements, props : mappings by number or label
+        `props` are Cards of the family ``element``.
+    weights, loads, member_loads, initial, drifts, damping, equake, analyses : tuples of Card
+    output : Card
+        The OUTPUT card, all defaults where the deck has none.
+    files : mapping of str to str
+        Text of the deck and of every included file, by the name in its Spans.
+    defaults : frozenset of str
+        Which of ``units``, ``gravity``, ``mass`` were left to their defaults.
+    """
+
+    title: str
+    units: Units
+    gravity: float
+    mass: str
+    params: Mapping[str, float | str]
+    nodes: Mapping[int, Node]
+    elements: Mapping[int, Element]
+    props: Mapping[str, Card]
+    weights: tuple[Card, ...]
+    loads: tuple[Card, ...]
+    member_loads: tuple[Card, ...]
+    initial: tuple[Card, ...]
+    drifts: tuple[Card, ...]
+    damping: tuple[Card, ...]
+    equake: tuple[Card, ...]
+    analyses: tuple[Card, ...]
+    output: Card
+    files: Mapping[str, str]
+    defaults: frozenset[str] = frozenset()

@@ -1,0 +1,1 @@
+"""Analyses that a deck may ask for, one a file."""

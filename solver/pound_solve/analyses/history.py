@@ -1,0 +1,254 @@
+"""HISTORY: the motion under the ground motions, from the static state.
+
+Chooses nothing and integrates nothing itself: it prepares the scene's start, hands it to the method, and turns
+the samples that come back into histories, envelopes and tables.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pound_deck.model import Model
+from pound_deck.schema import Field, Kind, Spec
+
+from pound_solve.assemble import Structure
+from pound_solve.integrate.base import ENERGIES, Extreme, Start, Watch
+from pound_solve.laws import State, follow
+from pound_solve.scene import Scene
+
+Array = NDArray[np.float64]
+Append = Callable[[Mapping[str, Array]], None]
+
+BLOCK = 256  #: samples kept before they are written
+
+SPEC = Spec(
+    "analysis",
+    "HISTORY",
+    "motion in time",
+    (
+        Field("T", Kind.REAL, "T", doc="length of the history", above=0, positional=True),
+        Field("METHOD", Kind.FAMILY, default="AUTO", family="method", doc="integrator"),
+        Field(
+            "FROM",
+            Kind.WORD,
+            default="STATIC",
+            words=("STATIC", "REST"),
+            doc="start from the static state under the loads, or unloaded at rest with the loads put on at t = 0",
+        ),
+    ),
+)
+
+
+def initial(structure: Structure) -> tuple[Array, Array]:
+    """Displacement and velocity of the unknowns from the INITIAL cards, shape (n_free,) each."""
+    n = structure.n_free
+    column = {f: i for i, f in enumerate(structure.freedoms.free)}
+    u, v = np.zeros(n), np.zeros(n)
+    for card in structure.model.initial:
+        for node in card["NODES"]:
+            for d, letter in enumerate("XYR"):
+                i = column.get((node, d))
+                if i is not None:
+                    u[i] += card["U" + letter]
+                    v[i] += card["V" + letter]
+    return u, v
+
+
+def begin(structure: Structure, scene: Scene, u: Array, v: Array, states: Sequence[State], u_static: Array, times: Array) -> Start:
+    """State at t = 0: the static one, plus INITIAL, the laws led along from the one to the other."""
+    index = {f: i for i, f in enumerate(structure.freedoms.free)}
+    keep = [index[f] for f in scene.freedoms]
+    u0, v0 = u[keep], v[keep]
+    before = structure.law_rows[:, : structure.n_free] @ u_static
+    after = scene.law_rows @ u0 + scene.law_inputs @ scene.excitation.value(0.0)
+    led = tuple(
+        s.law.branch(x) and (follow(s.law, x, float(b), float(a)) if a != b else x)
+        for s, x, b, a in zip(structure.laws, states, before, after)
+    )
+    return Start(u0, v0, led, times)
+
+
+def watch(structure: Structure, scene: Scene) -> Watch:
+    """Rows of the DRIFT cards over the scene's unknowns."""
+    cards = structure.model.drifts
+    n = structure.n_free
+    rows = np.array(
+        [structure.freedoms.row([(c["J"], "XY".index(c["DIRECTION"])), (c["I"], "XY".index(c["DIRECTION"]))], [1.0, -1.0]) for c in cards]
+    ).reshape(len(cards), structure.freedoms.size)
+    return Watch(
+        [c["NAME"] for c in cards],
+        rows[:, :n] @ scene.expand,
+        rows[:, :n] @ scene.expand_inputs + rows[:, n:] @ scene.support_inputs,
+        rows[:, :n] @ scene.expand_constant,
+    )
+
+
+def heights(model: Model) -> list[float]:
+    """Storey height of every drift; NaN where none follows from the deck."""
+    out = []
+    for c in model.drifts:
+        i, j = model.nodes[c["I"]], model.nodes[c["J"]]
+        across = abs(j.y - i.y) if c["DIRECTION"] == "X" else abs(j.x - i.x)
+        out.append(c["HEIGHT"] if c["HEIGHT"] is not None else (across or float("nan")))
+    return out
+
+
+class Recorder:
+    """Takes the method's samples, writes histories in blocks and keeps envelopes.
+
+    Parameters
+    ----------
+    scene : Scene
+    drifts : Watch
+    append : callable
+        Takes a block of histories, see `results.Writer.append`.
+    progress : callable
+        Told the time of every sample.
+    """
+
+    def __init__(self, scene: Scene, drifts: Watch, append: Append, progress: Callable[[float], None]) -> None:
+        structure = scene.structure
+        model, freedoms = structure.model, structure.freedoms
+        self.scene, self.drifts, self._append, self._progress = scene, drifts, append, progress
+        chosen = model.output["NODES"]
+        self.nodes = tuple(model.nodes) if chosen is None else tuple(dict.fromkeys(chosen))
+        self.node_rows = freedoms.matrix([(n, d) for n in self.nodes for d in range(3)])
+        elements = model.output["MEMBERS"]
+        self.outputs = [o for o in structure.outputs if elements is None or o.element in elements]
+        size = freedoms.size
+        self.out_u = np.array([freedoms.row(o.freedoms, o.u_row) for o in self.outputs]).reshape(-1, size)
+        self.out_v = np.array(
+            [np.zeros(size) if o.v_row is None else freedoms.row(o.freedoms, o.v_row) for o in self.outputs]
+        ).reshape(-1, size)
+        self.constants = np.array([o.constant for o in self.outputs])
+        self.springs = [i for i, s in enumerate(structure.laws) if not s.is_contact]
+        self.contacts = [i for i, s in enumerate(structure.laws) if s.is_contact]
+        self.node_extremes = {q: [Extreme() for _ in range(3 * len(self.nodes))] for q in "uva"}
+        self.output_extremes = [Extreme() for _ in self.outputs]
+        self.last_energy: dict[str, float] = dict.fromkeys(ENERGIES, 0.0)
+        self.first_energy: dict[str, float] | None = None
+        self.residual_peak = 0.0
+        self.reached = 0.0
+        self._last: tuple[Array, Sequence[State]] | None = None
+        self._rows: list[tuple[Any, ...]] = []
+
+    def law_losses(self) -> list[float]:
+        """Energy lost so far in every law by slip and release, dashpots apart [F L]."""
+        if self._last is None:
+            return [0.0] * len(self.scene.structure.laws)
+        d, states = self._last
+        return [s.law.dissipated(x, float(at)) for s, x, at in zip(self.scene.structure.laws, states, d)]
+
+    def layout(self) -> dict[str, tuple[tuple[int, ...], dict[str, Any]]]:
+        """What `results.Writer.start_history` needs."""
+        laws = self.scene.structure.laws
+        model = self.scene.structure.model
+        three = {"nodes": self.nodes, "labels": ["X", "Y", "R"]}
+
+        def springs(unit_of: Callable[[str], str]) -> dict[str, Any]:
+            chosen = [laws[i] for i in self.springs]
+            return {"labels": [f"{s.element} {s.component}" for s in chosen], "unit": [unit_of(s.component) for s in chosen]}
+
+        names = [contact_name(model, laws[i].element) for i in self.contacts]
+        return {
+            "node/u": ((len(self.nodes), 3), {**three, "unit": ["L", "L", ""]}),
+            "node/v": ((len(self.nodes), 3), {**three, "unit": ["L/T", "L/T", "1/T"]}),
+            "node/a": ((len(self.nodes), 3), {**three, "unit": ["L/T^2", "L/T^2", "1/T^2"]}),
+            "member/force": (
+                (len(self.outputs),),
+                {
+                    "element": [o.element for o in self.outputs],
+                    "quantity": [o.quantity for o in self.outputs],
+                    "unit": [o.unit for o in self.outputs],
+                },
+            ),
+            "contact/gap": ((len(names),), {"labels": names, "unit": "L"}),
+            "contact/force": ((len(names),), {"labels": names, "unit": "F"}),
+            "spring/force": ((len(self.springs),), springs(lambda c: "F*L" if c == "R" else "F")),
+            "spring/deformation": ((len(self.springs),), springs(lambda c: "" if c == "R" else "L")),
+            "drift": ((len(self.drifts.names),), {"labels": list(self.drifts.names), "unit": "L"}),
+            "ground": (
+                (len(self.scene.motions),),
+                {"labels": [f"{i + 1} {m.direction}" for i, m in enumerate(self.scene.motions)], "unit": "L/T^2"},
+            ),
+            "energy": ((7,), {"labels": [*ENERGIES, "residual"], "unit": "F*L"}),
+        }
+
+    def sample(self, t: float, u: Array, v: Array, a: Array, states: Sequence[State], energy: Mapping[str, float]) -> None:
+        """Take one sample (see `integrate.base.Sink`)."""
+        laws = self.scene.structure.laws
+        s, rate = self.scene.excitation.value(t), self.scene.excitation.value(t, 1)
+        d = self.scene.law_rows @ u + self.scene.law_inputs @ s
+        ddot = self.scene.law_rows @ v + self.scene.law_inputs @ rate
+        force = [x.law.branch(state).force(float(p), float(q)) for x, state, p, q in zip(laws, states, d, ddot)]
+        if self.first_energy is None:
+            self.first_energy = dict(energy)
+        self.last_energy = dict(energy)
+        residual = self.residual(energy)
+        self.residual_peak = max(self.residual_peak, abs(residual))
+        self._rows.append((t, u, v, a, s, d, np.array(force), [*(energy[k] for k in ENERGIES), residual]))
+        self.reached, self._last = t, (d, tuple(states))
+        self._progress(t)
+        if len(self._rows) >= BLOCK:
+            self.flush()
+
+    def residual(self, energy: Mapping[str, float]) -> float:
+        """Input less what it became, against the start [F L]."""
+        start = self.first_energy or energy
+        spent = sum(energy[k] - start[k] for k in ENERGIES if k != "input")
+        return energy["input"] - start["input"] - spent
+
+    def flush(self) -> None:
+        """Write the samples that are held."""
+        if not self._rows:
+            return
+        scene, laws = self.scene, self.scene.structure.laws
+        t, u, v, a, s, d, force, energy = (np.array(x) for x in zip(*self._rows))
+        rows, self._rows = self._rows, []
+        full_u = np.array([scene.all_freedoms(r[1], r[0]) for r in rows])
+        full_v = np.array([scene.all_freedoms(r[2], r[0], 1) for r in rows])
+        full_a = np.array([scene.all_freedoms(r[3], r[0], 2) for r in rows])
+        shape = (len(t), len(self.nodes), 3)
+        node = {q: (full @ self.node_rows.T).reshape(shape) for q, full in (("u", full_u), ("v", full_v), ("a", full_a))}
+        ground = s @ scene.acceleration_inputs.T  # (nt, 2): accelerations of nodes are total
+        node["a"][:, :, 0] += ground[:, :1]
+        node["a"][:, :, 1] += ground[:, 1:]
+        out = full_u @ self.out_u.T + full_v @ self.out_v.T + self.constants
+        gaps = np.array([laws[i].facts["gap"] for i in self.contacts])
+        for q, values in node.items():
+            _widen(self.node_extremes[q], values.reshape(len(t), -1), t)
+        _widen(self.output_extremes, out, t)
+        self._append(
+            {
+                "time": t,
+                "node/u": node["u"],
+                "node/v": node["v"],
+                "node/a": node["a"],
+                "member/force": out,
+                "contact/gap": gaps - d[:, self.contacts] if self.contacts else np.zeros((len(t), 0)),
+                "contact/force": force[:, self.contacts] if self.contacts else np.zeros((len(t), 0)),
+                "spring/force": force[:, self.springs] if self.springs else np.zeros((len(t), 0)),
+                "spring/deformation": d[:, self.springs] if self.springs else np.zeros((len(t), 0)),
+                "drift": u @ self.drifts.rows.T + s @ self.drifts.input_rows.T + self.drifts.constants,
+                "ground": np.array([[float(m.acceleration.value(x)) for m in scene.motions] for x in t]).reshape(len(t), -1),
+                "energy": energy,
+            }
+        )
+
+
+def _widen(extremes: Sequence[Extreme], values: Array, t: Array) -> None:
+    """Count a block of samples, shape (nt, n), into n extremes."""
+    if not len(extremes):
+        return
+    high, low = values.argmax(axis=0), values.argmin(axis=0)
+    for i, e in enumerate(extremes):
+        e.take(float(values[high[i], i]), float(t[high[i]]))
+        e.take(float(values[low[i], i]), float(t[low[i]]))
+
+
+def contact_name(model: Model, element: int) -> str:
+    """Name of a contact in the report: its own, or its number."""
+    return model.elements[element].name or str(element)

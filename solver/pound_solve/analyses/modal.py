@@ -1,0 +1,73 @@
+r"""MODAL: natural modes with participation, effective mass and damping ratio.
+
+For a ground direction with influence vector r:
+
+.. math:: \Gamma_n = \phi_n^T M r, \qquad m_n^* = \Gamma_n^2, \qquad \xi_n = \frac{\phi_n^T C\,\phi_n}{2\omega_n}
+
+for mass-normalised shapes; the effective masses of all modes add up to the mass that the direction can move.
+
+References
+----------
+Chopra AK (2012), Dynamics of Structures, 4th edn, sections 13.1 and 13.2.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from pound_deck.schema import Field, Kind, Spec
+
+from pound_solve.assemble import Structure
+from pound_solve.dofs import Freedom
+
+SPEC = Spec(
+    "analysis",
+    "MODAL",
+    "natural modes of the initial structure",
+    (
+        Field("MODES", Kind.INT, default=None, lo=1, doc="number of modes; left out: all, at most 12", positional=True),
+        Field("SHAPES", Kind.WORD, default="YES", words=("YES", "NO"), doc="print the mode shapes"),
+    ),
+)
+
+
+def rows(structure: Structure, wanted: int | None) -> list[tuple[float, ...]]:
+    """Rows of the table ``modes``.
+
+    Parameters
+    ----------
+    structure : Structure
+    wanted : int or None
+        Number of modes.
+    """
+    n, modes = structure.n_free, structure.free_vibration
+    count = min(len(modes.omega), 12 if wanted is None else wanted)
+    out: list[tuple[float, ...]] = []
+    # mass that a direction can move at all: what rides on fixed freedoms only is no part of any mode
+    held = np.any(structure.initial_stiffness[:n, :n] != 0, axis=1)
+    r = [np.array([1.0 if f[1] == d and ok else 0.0 for f, ok in zip(structure.freedoms.free, held)]) for d in range(2)]
+    m, c = structure.mass[:n, :n], structure.damping[:n, :n]
+    for i in range(count):
+        w, shape = float(modes.omega[i]), modes.shapes[:, i]
+        damping = float(shape @ c @ shape) / (2 * w) if w > 0 else float("nan")
+        row = [i + 1, w, w / (2 * np.pi), 2 * np.pi / w if w > 0 else float("inf"), 100 * damping]
+        for d in range(2):
+            gamma = float(shape @ structure.ground[d, :n])
+            total = float(r[d] @ m @ r[d])
+            row += [gamma, gamma**2, 100 * gamma**2 / total if total > 0 else 0.0]
+        out.append(tuple(row))
+    return out
+
+
+def shape_rows(structure: Structure, count: int) -> list[tuple[float, ...]]:
+    """Rows of the table ``mode_shapes``: every node, largest component 1."""
+    shapes = structure.free_vibration.shapes
+    freedoms: list[list[Freedom]] = [[(node, d) for d in range(3)] for node in structure.model.nodes]
+    pad = len(structure.freedoms.moved)
+    out: list[tuple[float, ...]] = []
+    for i in range(count):
+        full = np.concatenate([shapes[:, i], np.zeros(pad)])
+        scale = np.abs(shapes[:, i]).max()
+        for at in freedoms:
+            x = structure.freedoms.matrix(at) @ full / scale
+            out.append((i + 1, at[0][0], *map(float, x)))
+    return out

@@ -1,0 +1,186 @@
+"""The command line: ``pound-solve model.inp`` and its verbs."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from pound_solve import __version__
+
+VERBS = ("run", "check", "report", "export", "list")
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the argument parser; ``run`` is the verb where none is given."""
+    out = argparse.ArgumentParser(
+        prog="pound-solve", description="Earthquake pounding of 2-D frames: a text deck in, a report and an HDF5 file out."
+    )
+    out.add_argument("--version", action="version", version=f"pound-solve {__version__}")
+    verbs = out.add_subparsers(dest="verb", required=True, metavar="VERB")
+
+    def deck(name: str, text: str) -> argparse.ArgumentParser:
+        p = verbs.add_parser(name, help=text, description=text)
+        p.add_argument("deck", help="input deck")
+        p.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="replace a PARAM of the deck")
+        p.add_argument("--records", action="append", default=[], type=Path, metavar="DIR", help="folder with records")
+        p.add_argument("--method", help="replace METHOD of HISTORY")
+        p.add_argument("--dt", type=float, help="replace DT of HISTORY")
+        return p
+
+    run = deck("run", "run a deck (the verb may be left out)")
+    run.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder of report and results (default: the deck's)")
+    run.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    deck("check", "report all mistakes of a deck without running it")
+    report = verbs.add_parser("report", help="print the report of a results file")
+    report.add_argument("results", help="results file (.h5)")
+    report.add_argument("--all", action="store_true", help="cut no long table short")
+    export = verbs.add_parser("export", help="write the tables and histories of a results file as CSV")
+    export.add_argument("results", help="results file (.h5)")
+    export.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: beside the file)")
+    listing = verbs.add_parser("list", help="list what a deck may use")
+    listing.add_argument("family", nargs="?", help="section, element, hysteresis, contact, damping, motion, record, analysis or method")
+    listing.add_argument("name", nargs="?", help="one member: its items")
+    return out
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line and return the exit status (0 done, 1 stopped, 2 mistakes, 3 files)."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    if words and words[0] not in VERBS and not words[0].startswith("-"):
+        words.insert(0, "run")
+    elif words and words[0].startswith("-") and words[0] not in ("-h", "--help", "--version"):
+        words.insert(0, "run")
+    args = parser().parse_args(words)
+    try:
+        return {"run": _run, "check": _check, "report": _report, "export": _export, "list": _list}[args.verb](args)
+    except BrokenPipeError:  # the reader of our output has gone: not our mistake
+        sys.stderr.close()
+        return 0
+    except OSError as err:
+        return _complain(f"{err.filename or ''}: {err.strerror or err}".lstrip(": "))
+    except KeyboardInterrupt:
+        return _complain("interrupted") and 1
+
+
+def _complain(text: str) -> int:
+    print(f"pound-solve: {text}", file=sys.stderr)
+    return 3
+
+
+def _request(args: argparse.Namespace) -> object:
+    from pound_solve.app import Request
+
+    params = {}
+    for item in args.set:
+        name, equals, value = item.partition("=")
+        if not equals or not name.strip():
+            raise SystemExit(_complain(f"--set {item}: write NAME=VALUE") and 2)
+        params[name.strip()] = value.strip()
+    return Request(args.deck, params, getattr(args, "out", None), tuple(args.records), args.method, args.dt)
+
+
+def _run(args: argparse.Namespace) -> int:
+    from pound_deck.diagnostics import render
+
+    from pound_solve import app
+    from pound_solve.results import ResultsError
+
+    request = _request(args)
+    assert isinstance(request, app.Request)
+    progress = None if args.quiet else _Progress()
+    try:
+        status, results, ready = app.execute(request, progress)
+    except app.DeckError as err:
+        print(err, file=sys.stderr)
+        return app.MISTAKES
+    except ResultsError as err:
+        return _complain(str(err))
+    if progress is not None:
+        progress.end()
+    if ready.warnings and not args.quiet:
+        print(render(ready.warnings, ready.files), file=sys.stderr)
+    with results:
+        if status == app.STOPPED:
+            print(f"pound-solve: stopped: {results.message}", file=sys.stderr)
+        if not args.quiet:
+            print(f"{request.path('.rpt')}\n{request.path('.h5')}")
+    return status
+
+
+class _Progress:
+    """One line on a terminal, rewritten at most ten times a second; silent in a pipe."""
+
+    def __init__(self) -> None:
+        self.live = sys.stderr.isatty()
+        self.began = self.told = time.monotonic()
+
+    def __call__(self, t: float, end: float) -> None:
+        now = time.monotonic()
+        if not self.live or now - self.told < 0.1:
+            return
+        self.told = now
+        left = (now - self.began) * (end / t - 1.0) if t > 0 else 0.0
+        print(f"\r t = {t:10.4f} of {end:g}   {100 * t / end:5.1f} %   {left:6.0f} s to go ", end="", file=sys.stderr, flush=True)
+
+    def end(self) -> None:
+        """Clear the line."""
+        if self.live:
+            print("\r" + " " * 70 + "\r", end="", file=sys.stderr, flush=True)
+
+
+def _check(args: argparse.Namespace) -> int:
+    from pound_deck.diagnostics import render
+
+    from pound_solve import app
+
+    request = _request(args)
+    assert isinstance(request, app.Request)
+    try:
+        ready = app.prepare(request)
+    except app.DeckError as err:
+        print(err, file=sys.stderr)
+        return app.MISTAKES
+    if ready.warnings:
+        print(render(ready.warnings, ready.files), file=sys.stderr)
+    m = ready.model
+    print(f"{args.deck}: no mistakes; {len(m.nodes)} nodes, {len(m.elements)} elements, {ready.structure.n_free} unknowns")
+    return app.DONE
+
+
+def _report(args: argparse.Namespace) -> int:
+    from pound_solve.report import render
+    from pound_solve.results import Results, ResultsError
+
+    try:
+        with Results.open(args.results) as results:
+            sys.stdout.write(render(results, limit=0 if args.all else None))
+    except ResultsError as err:
+        return _complain(str(err))
+    return 0
+
+
+def _export(args: argparse.Namespace) -> int:
+    from pound_solve.export import export_csv
+    from pound_solve.results import Results, ResultsError
+
+    folder = args.out or Path(args.results).with_suffix("")
+    try:
+        with Results.open(args.results) as results:
+            for path in export_csv(results, folder):
+                print(path)
+    except ResultsError as err:
+        return _complain(str(err))
+    return 0
+
+
+def _list(args: argparse.Namespace) -> int:
+    from pound_solve.reference import listing
+
+    try:
+        print(listing(args.family, args.name))
+    except KeyError as err:
+        return _complain(str(err.args[0])) and 2
+    return 0

@@ -1,0 +1,1 @@
+"""Contact laws, one law a file."""

@@ -1,0 +1,1 @@
+"""Damping models, one a file."""

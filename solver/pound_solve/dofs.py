@@ -1,0 +1,84 @@
+"""Freedoms: which displacements are unknown, which follow a master, which are prescribed.
+
+Every node has ``ux``, ``uy`` and ``rz``.  A fixed one is zero, a slaved one follows its master with the rigid
+arm between them, one at a moved support is prescribed; the rest are the unknowns.  Columns of every
+assembled matrix are the unknowns first, then the prescribed freedoms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from pound_deck.model import Node
+
+DIRECTIONS = "XYR"
+NAMES = ("ux", "uy", "rz")
+
+Freedom = tuple[int, int]  #: node number and direction (0 x, 1 y, 2 rotation)
+
+
+@dataclass(frozen=True)
+class Freedoms:
+    """Numbering of the freedoms.
+
+    Attributes
+    ----------
+    free : tuple of Freedom
+        The unknowns, in the order of the nodes.
+    moved : tuple of Freedom
+        Freedoms at moved supports, whose motion is prescribed.
+    terms : mapping of Freedom to tuple of (int, float)
+        Each freedom as a sum of columns; empty for a fixed one.
+    """
+
+    free: tuple[Freedom, ...]
+    moved: tuple[Freedom, ...]
+    terms: Mapping[Freedom, tuple[tuple[int, float], ...]]
+
+    @property
+    def size(self) -> int:
+        """Number of columns."""
+        return len(self.free) + len(self.moved)
+
+    def row(self, freedoms: Collection[Freedom], values: Collection[float]) -> NDArray[np.float64]:
+        """Sum of `values` times `freedoms` as a row over the columns, shape (size,)."""
+        out = np.zeros(self.size)
+        for freedom, value in zip(freedoms, values):
+            for column, factor in self.terms[freedom]:
+                out[column] += value * factor
+        return out
+
+    def matrix(self, freedoms: Collection[Freedom]) -> NDArray[np.float64]:
+        """Rows of several freedoms, shape (len(freedoms), size)."""
+        return np.array([self.row([f], [1.0]) for f in freedoms]).reshape(len(freedoms), self.size)
+
+
+def number(nodes: Mapping[int, Node], moved: Collection[Freedom] = ()) -> Freedoms:
+    """Number the freedoms of `nodes`; those in `moved` (fixed ones) get prescribed columns."""
+    moved = tuple(sorted(moved))
+    free = tuple(
+        (n.id, d)
+        for n in nodes.values()
+        for d in range(3)
+        if DIRECTIONS[d] not in n.fixed and DIRECTIONS[d] not in n.slaved and (n.id, d) not in moved
+    )
+    column = {f: i for i, f in enumerate(free + moved)}
+    terms: dict[Freedom, tuple[tuple[int, float], ...]] = {}
+    for n in nodes.values():
+        for d in range(3):
+            if DIRECTIONS[d] in n.slaved:
+                continue  # below, once all masters are known
+            terms[n.id, d] = ((column[n.id, d], 1.0),) if (n.id, d) in column else ()
+    for n in nodes.values():
+        for d in range(3):
+            if DIRECTIONS[d] not in n.slaved:
+                continue
+            master = nodes[n.slaved[DIRECTIONS[d]]]
+            arm = (-(n.y - master.y), n.x - master.x, 0.0)[d]
+            own = terms[master.id, d]
+            turn = tuple((c, f * arm) for c, f in terms[master.id, 2]) if arm else ()
+            terms[n.id, d] = own + turn
+    return Freedoms(free, moved, terms)

@@ -1,0 +1,1 @@
+"""Elements: frame members, springs, dashpots and contacts, one kind a file."""

@@ -1,0 +1,20 @@
+"""Elastic, perfectly plastic: the bilinear rule without hardening (see `bilinear`)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Spec
+
+from pound_solve.hysteresis.bilinear import Bilinear
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Bilinear:
+    """Rule from a stiffness and the two yield forces."""
+    return Bilinear(k, fy_plus, fy_minus)
+
+
+SPEC = Spec(
+    "hysteresis", "ELASTO_PLASTIC", "elastic, perfectly plastic", code=1, reference="Prandtl; Ruaumoko rule 1", impl=build
+)

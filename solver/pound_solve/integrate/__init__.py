@@ -1,0 +1,1 @@
+"""Time integration: the exact event-driven method and step-by-step methods, one a file."""

@@ -1,0 +1,179 @@
+"""What every integrator is given, tells and may raise."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.laws import State
+from pound_solve.scene import Scene
+
+Array = NDArray[np.float64]
+
+ENERGIES = ("input", "kinetic", "strain", "damping", "hysteretic", "contact")
+
+
+@dataclass(frozen=True)
+class Watch:
+    """Quantities whose peaks an integrator finds, linear in u: drifts.
+
+    Attributes
+    ----------
+    names : sequence of str
+    rows : ndarray, shape (n_watch, n)
+    input_rows : ndarray, shape (n_watch, n_inputs)
+    constants : ndarray, shape (n_watch,)
+    """
+
+    names: Sequence[str]
+    rows: Array
+    input_rows: Array
+    constants: Array
+
+
+@dataclass(frozen=True)
+class Start:
+    """State at t = 0: displacement and velocity (n,), laws' states, output times (ascending, from 0)."""
+
+    u: Array
+    v: Array
+    states: tuple[State, ...]
+    times: Array
+
+
+@dataclass
+class Extreme:
+    """Largest and smallest value of a quantity and their times."""
+
+    high: float = -np.inf
+    t_high: float = 0.0
+    low: float = np.inf
+    t_low: float = 0.0
+
+    def take(self, value: float, t: float) -> None:
+        """Count a value in."""
+        if value > self.high:
+            self.high, self.t_high = value, t
+        if value < self.low:
+            self.low, self.t_low = value, t
+
+
+@dataclass
+class Collision:
+    """One closure of a contact."""
+
+    law: int
+    t_start: float
+    approach: float
+    t_end: float = np.nan
+    separation: float = np.nan
+    peak: float = 0.0
+    t_peak: float = 0.0
+    impulse: float = 0.0
+
+
+@dataclass
+class Peaks:
+    """What an integrator gathers on its way, beyond the samples it hands out.
+
+    Attributes
+    ----------
+    watch : list of Extreme
+        Of the Watch.
+    deformation, force : list of Extreme
+        Of every law; for contacts the closure and the force (compression positive).
+    collisions : list of Collision
+        Ended ones in order of their end, those still closed last.
+    open_gap : list of float
+        Largest closure while open, per law (contacts).
+    yields : list of int
+        Yield events per law.
+    """
+
+    watch: list[Extreme]
+    deformation: list[Extreme]
+    force: list[Extreme]
+    yields: list[int]
+    collisions: list[Collision] = field(default_factory=list)
+
+
+class Sink(Protocol):
+    """Takes the samples of a history."""
+
+    def sample(self, t: float, u: Array, v: Array, a: Array, states: Sequence[State], energy: Mapping[str, float]) -> None:
+        """Take the motion, the laws' states and the energies at an output time."""
+        ...
+
+
+@dataclass
+class Outcome:
+    """How an integration went: figures for the report, self-checks, and its peaks."""
+
+    peaks: Peaks
+    figures: dict[str, Any]
+    checks: list[tuple[str, str, str]] = field(default_factory=list)
+
+
+class Stop(Exception):
+    """The integration cannot go on; says when, where and why.
+
+    Attributes
+    ----------
+    code : str
+        Message number.
+    t : float
+        Time reached [T].
+    outcome : Outcome
+        What was gathered up to then.
+    """
+
+    def __init__(self, code: str, t: float, why: str, outcome: Outcome | None = None) -> None:
+        super().__init__(why)
+        self.code, self.t, self.outcome = code, t, outcome
+
+
+class Method(Protocol):
+    """An integrator, as a Spec's `impl`."""
+
+    def __call__(self, scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
+        """Integrate over `start.times` and hand a sample to `sink` at each of them."""
+        ...
+
+
+class Ledger:
+    """Collisions, yield events and extremes of the laws while a run goes on; shared by all methods."""
+
+    def __init__(self, scene: Scene, n_watch: int) -> None:
+        self.laws = scene.structure.laws
+        n = len(self.laws)
+        self.peaks = Peaks([Extreme() for _ in range(n_watch)], [Extreme() for _ in range(n)], [Extreme() for _ in range(n)], [0] * n)
+        self.open: dict[int, Collision] = {}
+
+    def switched(self, law: int, before: str, after: str, t: float, d: float, v: float, force_after: float) -> None:
+        """Note that a law went from branch `before` to `after` at deformation `d`, rate `v`."""
+        if not self.laws[law].is_contact:
+            if after.startswith("yielding"):
+                self.peaks.yields[law] += 1
+            return
+        if after == "pressed" and law not in self.open:
+            self.open[law] = Collision(law, t, v, peak=force_after, t_peak=t)
+        elif before == "pressed" and law in self.open:
+            done = self.open.pop(law)
+            done.t_end, done.separation = t, -v
+            self.peaks.collisions.append(done)
+
+    def force(self, law: int, value: float, t: float) -> None:
+        """Count a contact force into its collision."""
+        collision = self.open.get(law)
+        if collision is not None and value > collision.peak:
+            collision.peak, collision.t_peak = value, t
+
+    def close(self) -> Peaks:
+        """Return all peaks; contacts still closed come last."""
+        self.peaks.collisions += [self.open[i] for i in sorted(self.open)]
+        self.open = {}
+        return self.peaks

@@ -1,0 +1,453 @@
+r"""Exact solution of a linear block between events.
+
+.. math:: M\ddot u + C\dot u + K u = p(t) = F s(t) + f, \qquad s(t)\ \text{polynomial in } t
+
+The massive freedoms are written in the undamped modes, :math:`u = \Phi\eta`, with the state
+:math:`z = (\omega\eta, \dot\eta)`, which balances displacement against velocity and leaves a nearly normal matrix.
+Its complex modes :math:`q` are uncoupled, :math:`\dot q_i = \lambda_i q_i + \sum_k g_{ik} t^k`, hence
+
+.. math:: q_i(t) = e^{\lambda_i t} q_i(0) + \sum_k g_{ik}\, t^{k+1} K_k(\lambda_i t)
+
+(:mod:`~pound_solve.integrate.phi`).  Undamped rigid-body modes are polynomials and are kept apart, so that the
+double eigenvalue zero of a plastic storey needs no special care.  Massless freedoms are eliminated: those that
+a dashpot moves keep a first-order state, the others follow statically.
+
+Where the modes do not span the space (critical damping, repeated defective eigenvalues) `SeriesFlow` takes over:
+the exponential series of the same matrix, exact to rounding as well, only slower.
+
+References
+----------
+Nigam NC, Jennings PC (1969), Bull. Seism. Soc. Am. 59: 909-922 (exact integration for straight-line
+accelerograms); Foss KA (1958), J. Appl. Mech. 25: 361-364 (complex modes of damped systems).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.integrate import phi
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+MOST_CONDITION = 1e7  #: of the mode matrix; beyond it the series is used
+RIGID = 1e-14  #: omega^2 below this share of the largest (times the size) is a rigid-body mode
+
+
+class Mechanism(Exception):
+    """Massless freedoms that nothing holds; `shape` is their motion over the block's freedoms."""
+
+    def __init__(self, shape: Array) -> None:
+        super().__init__("massless freedoms without stiffness")
+        self.shape = shape
+
+
+@dataclass(frozen=True)
+class StateSpace:
+    """First-order form of a block: ``z' = a z + b p``, ``u = u_z z + u_p p``, ``v = v_z z + v_p p + u_p p'``.
+
+    `enter` maps (u, v) to z: ``z = z_u u + z_v v``.  `rigid` lists pairs (displacement, velocity) of states
+    that are undamped rigid-body modes.
+    """
+
+    a: Array
+    b: Array
+    u_z: Array
+    v_z: Array
+    z_u: Array
+    z_v: Array
+    u_p: Array | None
+    v_p: Array | None
+    rigid: tuple[tuple[int, int], ...]
+
+
+def state_space(m: Array, c: Array, k: Array) -> StateSpace:
+    """Return the balanced first-order form of a block, massless freedoms eliminated.
+
+    Parameters
+    ----------
+    m, c, k : ndarray, shape (n, n)
+        Mass, damping and stiffness, symmetric.
+
+    Raises
+    ------
+    Mechanism
+        Massless freedoms with neither stiffness nor dashpot.
+    """
+    n = len(m)
+    heavy = np.any(m != 0.0, axis=1)
+    if heavy.all():
+        return _second_order(m, c, k)
+    z = np.flatnonzero(~heavy)
+    h = np.flatnonzero(heavy)
+    # split the massless freedoms into what dashpots move (range of C) and what follows statically (its kernel)
+    values, vectors = np.linalg.eigh(c[np.ix_(z, z)])
+    damped = values > 1e-12 * max(np.abs(c).max(), 1e-300)
+    basis = np.zeros((n, n))
+    basis[h, np.arange(len(h))] = 1.0
+    basis[np.ix_(z, len(h) + np.arange(len(z)))] = np.hstack([vectors[:, damped], vectors[:, ~damped]])
+    n1 = len(h) + int(damped.sum())  # states' displacements: heavy, then damped massless
+    kb = basis.T @ k @ basis
+    knn = kb[n1:, n1:]
+    if n1 < n:
+        low, shapes = np.linalg.eigh(knn)
+        if low[0] <= 1e-13 * max(np.abs(np.diag(kb)).max(), 1e-300):
+            raise Mechanism(basis[:, n1:] @ shapes[:, 0])
+        flex = np.linalg.inv(knn)
+        keep = basis[:, :n1] - basis[:, n1:] @ flex @ kb[n1:, :n1]  # u = keep x + u_p p
+        u_p = basis[:, n1:] @ flex @ basis[:, n1:].T
+    else:
+        keep, u_p = basis, np.zeros((n, n))
+    k1, c1, m1 = keep.T @ k @ keep, keep.T @ c @ keep, keep.T @ m @ keep
+    nh, nd = len(h), n1 - len(h)
+    rate = np.linalg.inv(c1[nh:, nh:]) if nd else np.zeros((0, 0))
+    # d' = rate (p_d - c_dh v - k_dh u - k_dd d); put into the heavy equations
+    to_h = c1[:nh, nh:] @ rate
+    c_h = c1[:nh, :nh] - to_h @ c1[nh:, :nh]
+    k_h = k1[:nh, :nh] - to_h @ k1[nh:, :nh]
+    k_hd = k1[:nh, nh:] - to_h @ k1[nh:, nh:]
+    low_half = 0.5 * (k_h + k_h.T)
+    omega2, phi_h = _undamped(m1[:nh, :nh], low_half)
+    scale = np.sqrt(np.maximum(omega2, omega2.max(initial=0.0) * 1e-12 + 1e-300))
+    size = 2 * nh + nd
+    a = np.zeros((size, size))
+    u, v, d = slice(0, nh), slice(nh, 2 * nh), slice(2 * nh, size)
+    a[u, v] = np.diag(scale)
+    a[v, u] = -(phi_h.T @ k_h @ phi_h) / scale
+    a[v, v] = -phi_h.T @ c_h @ phi_h
+    a[v, d] = -phi_h.T @ k_hd
+    a[d, u] = -rate @ k1[nh:, :nh] @ phi_h / scale
+    a[d, v] = -rate @ c1[nh:, :nh] @ phi_h
+    a[d, d] = -rate @ k1[nh:, nh:]
+    b = np.zeros((size, n))
+    b[v] = phi_h.T @ (keep[:, :nh].T - to_h @ keep[:, nh:].T)
+    b[d] = rate @ keep[:, nh:].T
+    x_z = np.zeros((n1, size))
+    x_z[:nh, u] = phi_h / scale
+    x_z[nh:, d] = np.eye(nd)
+    xdot_z = np.zeros((n1, size))
+    xdot_z[:nh, v] = phi_h
+    xdot_z[nh:] = a[d]
+    z_u, z_v = np.zeros((size, n)), np.zeros((size, n))
+    back = np.linalg.pinv(basis[:, :n1])  # the basis is orthonormal apart from the eliminated part
+    z_u[u] = (scale[:, None] * phi_h.T @ m1[:nh, :nh]) @ back[:nh]
+    z_v[v] = (phi_h.T @ m1[:nh, :nh]) @ back[:nh]
+    z_u[d] = back[nh:]
+    v_p = keep[:, nh:] @ b[d] if nd else np.zeros((n, n))
+    return StateSpace(a, b, keep @ x_z, keep @ xdot_z, z_u, z_v, u_p, v_p, ())
+
+
+def _undamped(m: Array, k: Array) -> tuple[Array, Array]:
+    """Squared frequencies and mass-normalised modes of K and a positive definite M."""
+    if not np.any(m - np.diag(np.diag(m))):
+        root = 1.0 / np.sqrt(np.diag(m))
+        values, vectors = np.linalg.eigh(root[:, None] * k * root)
+        return values, root[:, None] * vectors
+    lower = np.linalg.inv(np.linalg.cholesky(m))
+    values, vectors = np.linalg.eigh(lower @ k @ lower.T)
+    return values, lower.T @ vectors
+
+
+def _second_order(m: Array, c: Array, k: Array) -> StateSpace:
+    n = len(m)
+    omega2, phi_u = _undamped(m, k)
+    top = np.abs(omega2).max(initial=0.0)
+    omega2 = np.where(np.abs(omega2) < RIGID * n * top, 0.0, omega2)
+    # the scale of a rigid mode's displacement is free; that of a falling one (negative stiffness) is its rate
+    scale = np.sqrt(np.abs(omega2))
+    scale[scale == 0.0] = min(1.0, np.sqrt(top)) if top else 1.0
+    damping = phi_u.T @ c @ phi_u
+    a = np.zeros((2 * n, 2 * n))
+    a[:n, n:] = np.diag(scale)
+    a[n:, :n] = np.diag(-omega2 / scale)
+    a[n:, n:] = -damping
+    zero = np.zeros((n, n))
+    free = (omega2 == 0.0) & (np.abs(damping).max(axis=1, initial=0.0) <= 1e-14 * np.abs(damping).max(initial=0.0))
+    rigid = tuple((int(i), int(n + i)) for i in np.flatnonzero(free))
+    to_modes = phi_u.T @ m
+    return StateSpace(
+        a,
+        np.vstack([zero, phi_u.T]),
+        np.hstack([phi_u / scale, zero]),
+        np.hstack([zero, phi_u]),
+        np.vstack([scale[:, None] * to_modes, zero]),
+        np.vstack([zero, to_modes]),
+        None,
+        None,
+        rigid,
+    )
+
+
+class Flow:
+    """A block's exact motion; the base of `ModalFlow` and `SeriesFlow`.
+
+    Attributes
+    ----------
+    fastest : float
+        Largest |eigenvalue| [1/T]: what the sampling grid must resolve.
+    u_q, v_q : ndarray, shape (n, n_q)
+        ``u = Re(u_q q) + u_p p``, ``v = Re(v_q q) + v_p p + u_p p'``.
+    """
+
+    fastest: float
+    u_q: NDArray[np.generic]
+    v_q: NDArray[np.generic]
+
+    def __init__(self, space: StateSpace, inputs: Array) -> None:
+        self.space = space
+        self.inputs = inputs  # F, shape (n, n_inputs)
+
+    @property
+    def u_p(self) -> Array | None:
+        """Direct share of the forces in the displacements (massless freedoms), or None."""
+        return self.space.u_p
+
+    def enter(self, u: Array, v: Array) -> NDArray[np.generic]:
+        """Return q at a given displacement and velocity."""
+        raise NotImplementedError
+
+    def forcing(self, coefs: Array, constant: Array) -> NDArray[np.generic]:
+        """Return the forcing g of q, shape (degree + 1, n_q), from inputs' coefficients and a constant force."""
+        raise NotImplementedError
+
+    def push(self, p: Array) -> NDArray[np.generic]:
+        """Return the forcing of q from force polynomials, shape (degree + 1, n)."""
+        raise NotImplementedError
+
+    def integral(self, q: NDArray[np.generic], g: NDArray[np.generic], t: float) -> NDArray[np.generic]:
+        """Return the integral of q over (0, t)."""
+        raise NotImplementedError
+
+    def sample(self, q: NDArray[np.generic], g: NDArray[np.generic], h: float, count: int) -> NDArray[np.generic]:
+        """Return q at 0, h, ..., (count - 1) h, shape (n_q, count)."""
+        raise NotImplementedError
+
+    def at(self, q: NDArray[np.generic], g: NDArray[np.generic], t: float) -> NDArray[np.generic]:
+        """Return q at one time `t`."""
+        raise NotImplementedError
+
+    def rate(self, q: NDArray[np.generic], g: NDArray[np.generic], t: Array | float) -> NDArray[np.generic]:
+        """Return dq/dt of samples `q` at times `t`."""
+        raise NotImplementedError
+
+
+def powers(t: Array | float, degree: int) -> Array:
+    """Return t^0 .. t^degree, shape (degree + 1, ...)."""
+    return np.stack([np.asarray(t, float) ** k for k in range(degree + 1)])
+
+
+class ModalFlow(Flow):
+    """Motion in complex modes; of each conjugate pair one is kept, with double weight."""
+
+    def __init__(self, space: StateSpace, inputs: Array) -> None:
+        super().__init__(space, inputs)
+        rigid_u = [r[0] for r in space.rigid]
+        rigid_v = [r[1] for r in space.rigid]
+        rest = [i for i in range(len(space.a)) if i not in set(rigid_u) | set(rigid_v)]
+        if rest:
+            lam, x = np.linalg.eig(space.a[np.ix_(rest, rest)])
+            left = np.linalg.inv(x)
+        else:
+            lam, x, left = np.zeros(0, complex), np.zeros((0, 0), complex), np.zeros((0, 0), complex)
+        self.condition = float(np.linalg.norm(x, 2) * np.linalg.norm(left, 2)) if rest else 1.0
+        residual = np.abs(space.a[np.ix_(rest, rest)] @ x - x * lam).max(initial=0.0)
+        self.residual = float(residual / max(np.abs(lam).max(initial=0.0), 1e-300))
+        keep = lam.imag >= 0.0
+        lam, x, left = lam[keep], x[:, keep], left[keep]
+        weight = np.where(lam.imag > 0.0, 2.0, 1.0)
+        nr, ne = len(rigid_u), len(lam)
+        self.a_rows = np.arange(ne, ne + nr)  # displacements of rigid modes among q
+        self.b_rows = np.arange(ne + nr, ne + 2 * nr)  # their velocities
+        self.scale = np.array([space.a[i, j] for i, j in space.rigid])
+        self.lam = np.concatenate([lam, np.zeros(2 * nr)])
+        x_full = np.zeros((len(space.a), ne + 2 * nr), complex)
+        x_full[np.ix_(rest, range(ne))] = x * weight
+        x_full[rigid_u, self.a_rows] = 1.0
+        x_full[rigid_v, self.b_rows] = 1.0
+        left_full = np.zeros((ne + 2 * nr, len(space.a)), complex)
+        left_full[np.ix_(range(ne), rest)] = left
+        left_full[self.a_rows, rigid_u] = 1.0
+        left_full[self.b_rows, rigid_v] = 1.0
+        self.u_q, self.v_q = space.u_z @ x_full, space.v_z @ x_full
+        self._enter_u, self._enter_v = left_full @ space.z_u, left_full @ space.z_v
+        self._force = left_full @ space.b
+        self._input = self._force @ inputs
+        self.fastest = float(np.abs(lam).max(initial=0.0))
+        self._tables: dict[tuple[float, int], tuple[int, Complex, Complex]] = {}
+
+    def enter(self, u: Array, v: Array) -> Complex:  # noqa: D102
+        return self._enter_u @ u + self._enter_v @ v
+
+    def forcing(self, coefs: Array, constant: Array) -> Complex:  # noqa: D102
+        g = coefs @ self._input.T
+        g[0] += self._force @ constant
+        return g
+
+    def push(self, p: Array) -> Complex:  # noqa: D102
+        return p @ self._force.T
+
+    def integral(self, q: Complex, g: Complex, t: float) -> Complex:  # type: ignore[override]  # noqa: D102
+        kernels = phi.duhamel(self.lam * t, len(g))
+        out = t * kernels[0] * q
+        for k in range(len(g)):
+            out += g[k] * t ** (k + 2) * kernels[k + 1] / (k + 1)
+        if len(self.a_rows):
+            a, b, s = self.a_rows, self.b_rows, self.scale
+            out[a] += s * q[b] * t**2 / 2
+            for k in range(len(g)):
+                out[a] += s * g[k][b] * t ** (k + 3) / ((k + 1) * (k + 2) * (k + 3))
+        return out
+
+    def _responses(self, t: Array, degree: int) -> tuple[Complex, Complex]:
+        z = self.lam[:, None] * t
+        e = np.exp(z)
+        # t^(k+1) K_k(lam t), shape (degree + 1, n_q, n_t)
+        return e, phi.duhamel(z, degree, e) * powers(t, degree + 1)[1:, None, :]
+
+    def sample(self, q: Complex, g: Complex, h: float, count: int) -> Complex:  # type: ignore[override]  # noqa: D102
+        degree = len(g) - 1
+        n, e, tables = self._tables.get((h, degree), (0, None, None))
+        if n < count:
+            n = max(count, 16)
+            t = h * np.arange(n)
+            e, tables = self._responses(t, degree)
+            self._tables[h, degree] = (n, e, tables)
+        out = e[:, :count] * q[:, None]
+        for k in range(degree + 1):
+            out += tables[k, :, :count] * g[k][:, None]
+        self._drift(out, q, g, h * np.arange(count))
+        return out
+
+    def at(self, q: Complex, g: Complex, t: float) -> Complex:  # type: ignore[override]  # noqa: D102
+        e, table = self._responses(np.array([t]), len(g) - 1)
+        out = e[:, 0] * q + np.einsum("ki,ki->i", table[:, :, 0], g)
+        out = out[:, None]
+        self._drift(out, q, g, np.array([t]))
+        return out[:, 0]
+
+    def _drift(self, out: Complex, q: Complex, g: Complex, t: Array) -> None:
+        """Add what rigid-body velocities and forces do to rigid-body displacements."""
+        if len(self.a_rows):
+            a, b, s = self.a_rows, self.b_rows, self.scale[:, None]
+            out[a] += s * q[b][:, None] * t
+            for k in range(len(g)):
+                out[a] += s * g[k][b][:, None] * t ** (k + 2) / ((k + 1) * (k + 2))
+
+    def rate(self, q: Complex, g: Complex, t: Array | float) -> Complex:  # type: ignore[override]  # noqa: D102
+        t = np.atleast_1d(t)
+        samples = q if q.ndim == 2 else q[:, None]
+        out = self.lam[:, None] * samples
+        for k in range(len(g)):
+            out += g[k][:, None] * t**k
+        if len(self.a_rows):
+            out[self.a_rows] += self.scale[:, None] * samples[self.b_rows]
+        return out if q.ndim == 2 else out[:, 0]
+
+
+class SeriesFlow(Flow):
+    """Motion by the exponential series of the state matrix; q is the state itself."""
+
+    def __init__(self, space: StateSpace, inputs: Array) -> None:
+        super().__init__(space, inputs)
+        self.u_q, self.v_q = space.u_z, space.v_z
+        self._input = space.b @ inputs
+        self.norm = float(np.linalg.norm(space.a, 2))
+        self.fastest = self.norm
+        self.condition, self.residual = 1.0, 0.0
+        self._maps: dict[tuple[float, int], Array] = {}
+
+    def enter(self, u: Array, v: Array) -> Array:  # noqa: D102
+        return self.space.z_u @ u + self.space.z_v @ v
+
+    def forcing(self, coefs: Array, constant: Array) -> Array:  # noqa: D102
+        g = coefs @ self._input.T
+        g[0] += self.space.b @ constant
+        return g
+
+    def push(self, p: Array) -> Array:  # noqa: D102
+        return p @ self.space.b.T
+
+    def integral(self, q: Array, g: Array, t: float) -> Array:  # type: ignore[override]  # noqa: D102
+        w, points = gauss(t, self.fastest)
+        return np.stack([self.at(q, g, float(x)) for x in points], axis=1) @ w
+
+    def at(self, q: Array, g: Array, t: float) -> Array:  # type: ignore[override]  # noqa: D102
+        # Taylor series of the solution in substeps with |a| h <= 1: derivative by derivative
+        steps = max(1, int(np.ceil(abs(t) * self.norm)))
+        h = t / steps
+        for s in range(steps):
+            local = _shift(g, s * h)
+            term, total, j = q.copy(), q.copy(), 0
+            while True:
+                # q^(j+1) / (j+1)! h^(j+1) from q^(j) / j! h^j; the force adds its own Taylor coefficient
+                term = h / (j + 1) * (self.space.a @ term)
+                if j < len(local):
+                    term = term + local[j] * h ** (j + 1) / (j + 1)
+                total = total + term
+                j += 1
+                if j > len(local) and np.abs(term).max(initial=0.0) <= 1e-18 * np.abs(total).max(initial=0.0):
+                    break
+                if j > 80:
+                    break
+            q = total
+        return q
+
+    def sample(self, q: Array, g: Array, h: float, count: int) -> Array:  # type: ignore[override]  # noqa: D102
+        size, degree = len(q), len(g) - 1
+        key = (h, degree)
+        if key not in self._maps:
+            # the map of one step for (q, g_0, ..., g_degree), column by column
+            unit = np.zeros((degree + 1, size))
+            cols = [self.at(e, unit, h) for e in np.eye(size)]
+            for k in range(degree + 1):
+                for i in range(size):
+                    unit[k, i] = 1.0
+                    cols.append(self.at(np.zeros(size), unit, h))
+                    unit[k, i] = 0.0
+            self._maps[key] = np.array(cols).T
+        step = self._maps[key]
+        out = np.empty((size, count))
+        out[:, 0] = q
+        for i in range(1, count):
+            local = _shift(g, (i - 1) * h)
+            out[:, i] = step @ np.concatenate([out[:, i - 1], local.ravel()])
+        return out
+
+    def rate(self, q: Array, g: Array, t: Array | float) -> Array:  # type: ignore[override]  # noqa: D102
+        p = powers(t, len(g) - 1)
+        if q.ndim == 2:
+            return self.space.a @ q + np.einsum("ki,kt->it", g, p)
+        return self.space.a @ q + np.einsum("ki,k->i", g, p)
+
+
+_X, _W = np.polynomial.legendre.leggauss(8)
+_X, _W = 0.5 * (_X + 1.0), 0.5 * _W
+
+
+def gauss(t: float, fastest: float) -> tuple[Array, Array]:
+    """Weights and points on (0, t) for functions made of modes up to `fastest` and their products."""
+    cells = max(1, int(np.ceil(t * fastest / 4.0)))
+    width = t / cells
+    return np.tile(_W * width, cells), (np.arange(cells)[:, None] * width + _X * width).ravel()
+
+
+def _shift(coefs: Array, t: float) -> Array:
+    """Coefficients of the same polynomials about a later origin `t`, shape (degree + 1, ...)."""
+    out = coefs.copy()
+    for i in range(len(coefs) - 1):
+        for k in range(len(coefs) - 2, i - 1, -1):
+            out[k] = out[k] + t * out[k + 1]
+    return out
+
+
+def make_flow(m: Array, c: Array, k: Array, inputs: Array) -> ModalFlow | SeriesFlow:
+    """Return the exact motion of a block: in modes, or by series where the modes are defective."""
+    space = state_space(m, c, k)
+    try:
+        flow = ModalFlow(space, inputs)
+    except np.linalg.LinAlgError:
+        return SeriesFlow(space, inputs)
+    return flow if flow.condition < MOST_CONDITION else SeriesFlow(space, inputs)

@@ -1,0 +1,41 @@
+"""NEWMARK: average acceleration by default (beta 1/4, gamma 1/2), events located within the step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+
+from pound_solve.integrate.base import Outcome, Sink, Start, Stop, Watch
+from pound_solve.integrate.stepping import Stepper
+from pound_solve.scene import Scene
+
+
+def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
+    """Integrate a scene step by step.
+
+    Raises
+    ------
+    Stop
+        Parameters that are not stable, too many changes in a step, or numbers beyond all bounds.
+    """
+    beta, gamma = options.get("BETA", 0.25), options.get("GAMMA", 0.5)
+    if not 2 * beta >= gamma >= 0.5:
+        raise Stop("A505", 0.0, f"NEWMARK is stable for any step only with 2 BETA >= GAMMA >= 0.5, not {beta:g} and {gamma:g}; CENTRAL is the explicit method")
+    name = "NEWMARK, average acceleration" if (beta, gamma) == (0.25, 0.5) else f"NEWMARK, beta {beta:g}, gamma {gamma:g}"
+    return Stepper(scene, start, watch, sink, options["DT"], beta, gamma, name).run()
+
+
+SPEC = Spec(
+    "method",
+    "NEWMARK",
+    "implicit steps, average acceleration",
+    (
+        Field("DT", Kind.REAL, "T", above=0, doc="time step"),
+        Field("BETA", Kind.REAL, "-", default=0.25, above=0, doc="Newmark's beta"),
+        Field("GAMMA", Kind.REAL, "-", default=0.5, lo=0, doc="Newmark's gamma"),
+    ),
+    reference="Newmark 1959",
+    impl=integrate,
+)

@@ -1,0 +1,343 @@
+r"""Step-by-step integration with events located within the step: what NEWMARK and CENTRAL share.
+
+Newmark's family with parameters :math:`\beta, \gamma`:
+
+.. math::
+    u_1 = u_0 + h v_0 + h^2[(\tfrac12-\beta) a_0 + \beta a_1], \qquad v_1 = v_0 + h[(1-\gamma) a_0 + \gamma a_1]
+
+with equilibrium at the end of the step.  Between events the scene is linear, so a step needs no iteration.  When
+an exit of a law is passed within a step, the step is taken again, shorter, so that it ends on the exit (to 1e-12 of
+the step), the law changes branch, the acceleration is made consistent, and the rest of the step follows.
+
+Energies are integrated from velocities taken as straight lines over a step, not by the trapezoid rule of the
+method itself, which would balance for any step, right or wrong.
+
+References
+----------
+Newmark NM (1959), A method of computation for structural dynamics, J. Engng Mech. Div. ASCE 85(EM3): 67-94.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.integrate.base import Ledger, Outcome, Sink, Start, Stop, Watch
+from pound_solve.laws import Branch
+from pound_solve.modes import massless
+from pound_solve.scene import Scene
+
+Array = NDArray[np.float64]
+Motion = tuple[Array, Array, Array]  #: displacement, velocity, acceleration
+
+STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
+
+
+class Stepper:
+    """One run of a Newmark method; see the module's head.
+
+    Parameters
+    ----------
+    scene, start, watch, sink
+        See `integrate.base`.
+    dt : float
+        Longest step [T]; every interval between output times and record points is divided evenly.
+    beta, gamma : float
+    name : str
+        For the report.
+    """
+
+    def __init__(
+        self, scene: Scene, start: Start, watch: Watch, sink: Sink, dt: float, beta: float, gamma: float, name: str
+    ) -> None:
+        self.scene, self.watch, self.sink, self.dt, self.beta, self.gamma, self.name = scene, watch, sink, dt, beta, gamma, name
+        self.laws = scene.structure.laws
+        self.states = list(start.states)
+        self.branches: list[Branch] = [s.law.branch(x) for s, x in zip(self.laws, self.states)]
+        self.times = start.times
+        self.light = massless(scene.mass)
+        self.heavy = ~self.light
+        self.t, self.u, self.v = 0.0, start.u.copy(), start.v.copy()
+        self.a = np.zeros_like(self.u)
+        self.ledger = Ledger(scene, len(watch.names))
+        self.steps = self.events = self.same_instant = 0
+        self.work = {"input": 0.0, "damping": 0.0, "contact": 0.0}
+        self.largest = np.zeros((2, len(self.laws)))
+        self._maps: dict[tuple[Any, ...], Array] = {}
+        self._regime()
+
+    def _regime(self) -> None:
+        scene = self.scene
+        ks = np.array([b.stiffness for b in self.branches])
+        cs = np.array([b.damping for b in self.branches])
+        self.law_k, self.law_c, self.law_f0 = ks, cs, np.array([b.force0 for b in self.branches])
+        rows = scene.law_rows
+        self.k = scene.stiffness + (rows.T * ks) @ rows
+        self.c = scene.damping + (rows.T * cs) @ rows if cs.any() else scene.damping
+        self.key = (ks.tobytes(), cs.tobytes())
+        pairs = [(i, e) for i, b in enumerate(self.branches) for e in range(len(b.exits))]
+        self.exit_pairs = pairs
+        self.exit_law = np.array([i for i, _ in pairs], np.intp)
+        self.exit_factors = np.array([self.branches[i].exits[e] for i, e in pairs]).reshape(-1, 3)
+
+    def force(self, t: float) -> Array:
+        """Load on the unknowns in the present regime: inputs, constant loads, constants of the laws."""
+        scene = self.scene
+        p = scene.inputs @ scene.excitation.value(t) + scene.constant
+        if len(self.laws):
+            known = self.law_f0
+            if scene.total:
+                known = known + self.law_k * (scene.law_inputs @ scene.excitation.value(t))
+                known = known + self.law_c * (scene.law_inputs @ scene.excitation.value(t, 1))
+            p = p - scene.law_rows.T @ known
+        return p
+
+    def settle(self) -> None:
+        """Make the acceleration (and the velocity of damped massless freedoms) consistent with the present regime."""
+        h, z = self.heavy, self.light
+        force = self.force(self.t) - self.k @ self.u
+        if z.any():
+            czz = self.c[np.ix_(z, z)]
+            if czz.any():
+                back = np.linalg.pinv(czz, rcond=1e-12)
+                old = self.v[z]
+                self.v[z] = back @ (force[z] - self.c[np.ix_(z, h)] @ self.v[h]) + old - back @ (czz @ old)
+            self.a[z] = 0.0
+        force = force - self.c @ self.v
+        self.a[h] = np.linalg.solve(self.scene.mass[np.ix_(h, h)], force[h])
+
+    def step(self, h: float, keep: bool) -> Motion:
+        """Return the motion one step `h` on; `keep` the inverse for the next step of this length."""
+        u, v, a, b, g = self.u, self.v, self.a, self.beta, self.gamma
+        m, c, k = self.scene.mass, self.c, self.k
+        p = self.force(self.t + h)
+        inverse = self._maps.get((self.key, h)) if keep else None
+        if b == 0.0:
+            u1 = u + h * v + 0.5 * h * h * a
+            part = v + (1 - g) * h * a
+            rhs = p - k @ u1 - c @ part
+            a1 = inverse @ rhs if inverse is not None else self._solve(m + g * h * c, rhs, h, keep)
+            return u1, part + g * h * a1, a1
+        rhs = p + m @ (u / (b * h * h) + v / (b * h) + (0.5 / b - 1) * a)
+        rhs += c @ (g / (b * h) * u + (g / b - 1) * v + h * (0.5 * g / b - 1) * a)
+        u1 = inverse @ rhs if inverse is not None else self._solve(k + g / (b * h) * c + m / (b * h * h), rhs, h, keep)
+        a1 = (u1 - u) / (b * h * h) - v / (b * h) - (0.5 / b - 1) * a
+        return u1, v + h * ((1 - g) * a + g * a1), a1
+
+    def _solve(self, matrix: Array, rhs: Array, h: float, keep: bool) -> Array:
+        if not keep:
+            return np.linalg.solve(matrix, rhs)
+        self._maps[self.key, h] = np.linalg.inv(matrix)
+        return self._maps[self.key, h] @ rhs
+
+    def deformations(self, t: float, u: Array, v: Array) -> tuple[Array, Array]:
+        """Deformation and rate of every law."""
+        scene = self.scene
+        d, rate = scene.law_rows @ u, scene.law_rows @ v
+        if scene.total:
+            d = d + scene.law_inputs @ scene.excitation.value(t)
+            rate = rate + scene.law_inputs @ scene.excitation.value(t, 1)
+        return d, rate
+
+    def run(self) -> Outcome:
+        """Integrate to the last output time."""
+        breaks, end = self.scene.excitation.breaks, float(self.times[-1])
+        d, v = self.deformations(0.0, self.u, self.v)
+        for i, s in enumerate(self.laws):
+            if s.is_contact and self.branches[i].name == "pressed":
+                self.ledger.switched(i, "open", "pressed", 0.0, float(d[i]), float(v[i]), self.branches[i].force(float(d[i]), float(v[i])))
+        self.settle()
+        self._note()
+        self._sample(0.0)
+        next_out = 1
+        for goal in np.unique(np.concatenate([breaks[(breaks > 0) & (breaks < end)], self.times[1:]])):
+            n = max(1, int(np.ceil((goal - self.t) / self.dt * (1 - 1e-9))))
+            # twelve digits: steps of equal length share their inverse, whatever the rounding of the times
+            h = float(f"{(goal - self.t) / n:.12e}")
+            for i in range(n):
+                self._advance(h if i < n - 1 else float(goal) - self.t, h)
+            self.t = float(goal)
+            if not np.isfinite(self.u).all() or not np.isfinite(self.v).all():
+                raise self._stop("A504", "the motion grew beyond all numbers")
+            if goal >= self.times[next_out]:
+                self._sample(self.t)
+                next_out += 1
+        return self.outcome()
+
+    def _advance(self, length: float, nominal: float) -> None:
+        """Advance by one nominal step, in pieces where events cut it."""
+        left = length
+        whole = True
+        while left > 0.0:
+            h = nominal if whole else left
+            new = self.step(h, keep=whole)
+            event = self._event(h, new) if len(self.exit_pairs) else None
+            if event is None:
+                self._accept(h, new)
+                self.t += left
+                self.same_instant = 0
+                self._note()
+                return
+            tau, new, law, exit_index = event
+            self._accept(tau, new)
+            self.t += tau
+            left -= tau
+            whole = False
+            self._note()
+            self._switch(law, exit_index)
+
+    def _exits(self, t: float, motion: Motion) -> tuple[Array, Array]:
+        """Values and slopes of all exits."""
+        u, v, a = motion
+        d, rate = self.deformations(t, u, v)
+        second = self.scene.law_rows @ a
+        if self.scene.total:
+            second = second + self.scene.law_inputs @ self.scene.excitation.value(t, 2)
+        k = self.exit_law
+        fd, fv, c = self.exit_factors.T
+        return fd * d[k] + fv * rate[k] + c, fd * rate[k] + fv * second[k]
+
+    def _event(self, h: float, new: Motion) -> tuple[float, Motion, int, int] | None:
+        g0, s0 = self._exits(self.t, (self.u, self.v, self.a))
+        g1, s1 = self._exits(self.t + h, new)
+        fd, fv, c = np.abs(self.exit_factors).T
+        tol = STILL * np.maximum(fd * self.largest[0, self.exit_law] + fv * self.largest[1, self.exit_law] + c, np.abs(g1))
+        g0 = np.minimum(g0, 0.0)  # a branch holds when it is entered
+        crossed = g1 > tol
+        with np.errstate(divide="ignore", invalid="ignore"):
+            x = (g1 - g0 - s1 * h) / (s0 - s1)
+            turn = ~crossed & (s0 > 0) & (s1 < 0) & (g0 + s0 * x > tol)
+        best: tuple[float, Motion, int, int] | None = None
+        for n in np.flatnonzero(crossed | turn):
+            high = h
+            if not crossed[n]:
+                top = h * s0[n] / (s0[n] - s1[n])
+                if self._exits(self.t + top, self.step(top, keep=False))[0][n] <= tol[n]:
+                    continue
+                high = top
+            tau, motion = self._locate(int(n), high, float(g0[n]), float(s0[n]))
+            if best is None or tau < best[0]:
+                best = (tau, motion, *self.exit_pairs[n])
+        return best
+
+    def _locate(self, n: int, high: float, g_low: float, s_low: float) -> tuple[float, Motion]:
+        """Step length at which exit `n` is reached: Illinois regula falsi on the length of the step."""
+        low, span = 0.0, high
+        motion = self.step(high, keep=False)
+        g_high = float(self._exits(self.t + high, motion)[0][n])
+        if g_low == 0.0 and s_low < 0.0:  # it falls from zero first: find where it is below
+            x = high
+            for _ in range(50):
+                x *= 0.5
+                g = float(self._exits(self.t + x, self.step(x, keep=False))[0][n])
+                if g < 0.0:
+                    low, g_low = x, g
+                    break
+        side = 0
+        for _ in range(100):
+            if high - low <= 1e-12 * span:
+                break
+            x = (g_low * high - g_high * low) / (g_low - g_high) if g_low < 0.0 else 0.5 * (low + high)
+            if not low < x < high:
+                break
+            trial = self.step(x, keep=False)
+            g = float(self._exits(self.t + x, trial)[0][n])
+            if g >= 0.0:
+                high, g_high, motion = x, g, trial
+                if side == 1:
+                    g_low *= 0.5
+                side = 1
+            else:
+                low, g_low = x, g
+                if side == -1:
+                    g_high *= 0.5
+                side = -1
+            if abs(g) == 0.0:
+                break
+        return high, motion
+
+    def _switch(self, law: int, exit_index: int) -> None:
+        d, v = self.deformations(self.t, self.u, self.v)
+        before = self.branches[law].name
+        self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, float(d[law]))
+        after = self.branches[law] = self.laws[law].law.branch(self.states[law])
+        self.ledger.switched(law, before, after.name, self.t, float(d[law]), float(v[law]), after.force(float(d[law]), float(v[law])))
+        self.events += 1
+        self.same_instant += 1
+        if self.same_instant > 100 + 8 * len(self.laws):
+            s = self.laws[law]
+            raise self._stop("A503", f"{self.same_instant} changes within one step, the last in element {s.element} ({s.rule}): {before} to {after.name}")
+        self._regime()
+        self.settle()
+
+    def _accept(self, h: float, new: Motion) -> None:
+        u, v, a = new
+        s = self.scene
+        if h > 0.0:
+            p0 = s.inputs @ s.excitation.value(self.t) + s.constant
+            p1 = s.inputs @ s.excitation.value(self.t + h) + s.constant
+            self.work["input"] += h / 6 * float((2 * p0 + p1) @ self.v + (p0 + 2 * p1) @ v)
+            c0 = s.damping @ self.v
+            self.work["damping"] += h / 3 * float(c0 @ self.v + c0 @ v + v @ s.damping @ v)
+            rate0, rate1 = s.law_rows @ self.v, s.law_rows @ v
+            self.work["contact"] += h / 3 * float(self.law_c @ (rate0 * rate0 + rate0 * rate1 + rate1 * rate1))
+            if self.ledger.open:
+                f0 = self._law_forces(self.t, self.u, self.v)
+                f1 = self._law_forces(self.t + h, u, v)
+                for law, collision in self.ledger.open.items():
+                    collision.impulse += 0.5 * h * float(f0[law] + f1[law])
+        self.u, self.v, self.a = u, v, a
+        self.steps += 1
+
+    def _law_forces(self, t: float, u: Array, v: Array) -> Array:
+        d, rate = self.deformations(t, u, v)
+        return self.law_k * d + self.law_c * rate + self.law_f0
+
+    def _note(self) -> None:
+        """Count the present motion into the peaks."""
+        peaks, w = self.ledger.peaks, self.watch
+        if len(w.names):
+            now = w.rows @ self.u + w.constants
+            if self.scene.total:
+                now = now + w.input_rows @ self.scene.excitation.value(self.t)
+            for x, extreme in zip(now.tolist(), peaks.watch):
+                extreme.take(x, self.t)
+        if len(self.laws):
+            d, rate = self.deformations(self.t, self.u, self.v)
+            force = self.law_k * d + self.law_c * rate + self.law_f0
+            np.maximum(self.largest, np.abs([d, rate]), out=self.largest)
+            for i, (x, f) in enumerate(zip(d.tolist(), force.tolist())):
+                peaks.deformation[i].take(x, self.t)
+                peaks.force[i].take(f, self.t)
+                if i in self.ledger.open:
+                    self.ledger.force(i, f, self.t)
+
+    def _sample(self, t: float) -> None:
+        self.sink.sample(t, self.u.copy(), self.v.copy(), self.a.copy(), tuple(self.states), self.energies())
+
+    def energies(self) -> dict[str, float]:
+        """Energies at the present state, by name."""
+        s = self.scene
+        d, _ = self.deformations(self.t, self.u, self.v)
+        out = {
+            "input": self.work["input"],
+            "kinetic": 0.5 * float(self.v @ s.mass @ self.v),
+            "strain": 0.5 * float(self.u @ s.stiffness @ self.u),
+            "damping": self.work["damping"],
+            "hysteretic": 0.0,
+            "contact": self.work["contact"],
+        }
+        for spring, x, at in zip(self.laws, self.states, d.tolist()):
+            out["strain"] += spring.law.stored(x, at)
+            out["contact" if spring.is_contact else "hysteretic"] += spring.law.dissipated(x, at)
+        return out
+
+    def outcome(self) -> Outcome:
+        """What the run gathered."""
+        figures = {"method": self.name, "time step": f"{self.dt:.6g}", "steps": self.steps, "events": self.events}
+        return Outcome(self.ledger.close(), figures)
+
+    def _stop(self, code: str, why: str) -> Stop:
+        return Stop(code, self.t, why, self.outcome())

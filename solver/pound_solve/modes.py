@@ -1,0 +1,90 @@
+r"""Free vibration: :math:`(K - \omega^2 M)\,\phi = 0` on the freedoms that have stiffness.
+
+Massless freedoms are condensed first, which is exact for free vibration.  Modes are scaled to
+:math:`\phi^T M \phi = 1` with the largest component positive.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Natural modes.
+
+    Attributes
+    ----------
+    omega : ndarray, shape (n_modes,)
+        Circular frequencies [rad/T], ascending.
+    shapes : ndarray, shape (n, n_modes)
+        Mass-normalised shapes.
+    """
+
+    omega: Array
+    shapes: Array
+
+
+def massless(m: Array) -> NDArray[np.bool_]:
+    """Which freedoms have no mass at all, shape (n,)."""
+    return ~np.any(m != 0.0, axis=1)
+
+
+def condense(k: Array, out: NDArray[np.bool_]) -> Array:
+    """Map from the kept freedoms to all, with those of `out` following statically, shape (n, n_kept).
+
+    Freedoms of `out` without any stiffness stay at zero.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        The stiffness of `out` is singular: part of it is a mechanism.
+    """
+    n = len(k)
+    keep = np.flatnonzero(~out)
+    go = np.flatnonzero(out & np.any(k != 0.0, axis=1))
+    t = np.zeros((n, len(keep)))
+    t[keep, np.arange(len(keep))] = 1.0
+    if len(go):
+        t[go] = -np.linalg.solve(k[np.ix_(go, go)], k[np.ix_(go, keep)])
+    return t
+
+
+def solve(k: Array, m: Array) -> Modes:
+    """Return all modes of the freedoms that have mass and are tied to any stiffness.
+
+    Parameters
+    ----------
+    k, m : ndarray, shape (n, n)
+        Stiffness [F/L] and mass [F T^2/L].
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        A massless part is a mechanism, or the mass matrix is not positive definite.
+    """
+    active = np.any(k != 0.0, axis=1)
+    t = condense(k, massless(m) | ~active)
+    kk, mm = t.T @ k @ t, t.T @ m @ t
+    if not len(kk):
+        return Modes(np.zeros(0), np.zeros((len(k), 0)))
+    if not np.any(mm - np.diag(np.diag(mm))):
+        root = 1.0 / np.sqrt(np.diag(mm))
+        values, vectors = np.linalg.eigh(root[:, None] * kk * root)
+        shapes = root[:, None] * vectors
+    else:
+        lower = np.linalg.inv(np.linalg.cholesky(mm))
+        values, vectors = np.linalg.eigh(lower @ kk @ lower.T)
+        shapes = lower.T @ vectors
+    # rounding leaves rigid-body modes at +-1e-16 of the largest value
+    values = np.where(values < 1e-14 * len(values) * values[-1], 0.0, values)
+    full = t @ shapes
+    # signs free of rounding: the first component within a hair of the largest is positive
+    big = np.abs(full) > (1 - 1e-9) * np.abs(full).max(axis=0)
+    sign = np.sign(full[np.argmax(big, axis=0), np.arange(full.shape[1])])
+    return Modes(np.sqrt(values), full * sign)

@@ -1,0 +1,173 @@
+"""What every ground motion shares: common items of its card, its surroundings, the Motion made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+
+from pound_deck.schema import Field, Kind
+from pound_solve.motions.piecewise import Array, Piecewise, merged
+from pound_solve.records.base import RecordError
+
+__all__ = ["COMMON", "METRE", "Context", "Motion", "Piecewise", "RecordError", "common_breaks", "finish"]
+
+COMMON: Final = (
+    Field("DIRECTION", Kind.WORD, default="X", words=("X", "Y"), doc="direction of the ground motion"),
+    Field(
+        "SCALE",
+        Kind.REAL,
+        "-",
+        default=1.0,
+        doc="factor on the acceleration; a negative one turns it round",
+    ),
+    Field("SUPPORTS", Kind.NODES, default=None, doc="nodes moved by this motion; left out: the whole base"),
+)
+
+#: length of one metre in a deck's units of length
+METRE: Final[Mapping[str, float]] = MappingProxyType(
+    {"m": 1.0, "cm": 100.0, "mm": 1000.0, "ft": 1.0 / 0.3048, "in": 1.0 / 0.0254}
+)
+
+_STRONG, _WEAK = 3.0, 0.001  # [g]
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """What a motion needs to know of its deck.
+
+    Attributes
+    ----------
+    gravity : float, [L/T^2]
+        Acceleration of gravity in the deck's units.
+    metre : float, [L]
+        Length of one metre in the deck's units, see `METRE`.
+    search_path : tuple of Path
+        Folders where records are looked for.
+    duration : float, [T]
+        Length of the analysis; 0 when it is not known.
+    """
+
+    gravity: float
+    metre: float = 1.0
+    search_path: tuple[Path, ...] = ()
+    duration: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Motion:
+    """The motion of the ground, or of some supports, in one direction.
+
+    Attributes
+    ----------
+    direction : str
+        ``X`` or ``Y``.
+    supports : tuple of int, or None
+        Nodes that it moves; None for the whole base.
+    acceleration : Piecewise, [L/T^2]
+        Begins at t = 0; zero after its last break.
+    velocity0, displacement0 : float, [L/T], [L]
+        Of the ground at t = 0.
+    info : mapping
+        What the report tells: ``kind name file format component npts dt unit scale start duration pga t_pga
+        pgv pgd sha256 warnings`` and items of the kind's own.
+    closed : pair of Piecewise, or None
+        Velocity and displacement in closed form, where the kind has one.
+    """
+
+    direction: str
+    supports: tuple[int, ...] | None
+    acceleration: Piecewise
+    velocity0: float = 0.0
+    displacement0: float = 0.0
+    info: Mapping[str, Any] = field(default_factory=dict)
+    closed: tuple[Piecewise, Piecewise] | None = None
+
+    def velocity(self, t_end: float = 0.0) -> Piecewise:
+        """Ground velocity [L/T] up to `t_end` at least, constant where the acceleration has ended."""
+        if self.closed:
+            v = self.closed[0]
+            return v.extended(t_end, (v.value(v.end),))
+        return self.acceleration.extended(t_end).integral(self.velocity0)
+
+    def displacement(self, t_end: float = 0.0) -> Piecewise:
+        """Ground displacement [L] up to `t_end` at least."""
+        if self.closed:
+            v, d = self.closed
+            return d.extended(t_end, (d.value(d.end), v.value(v.end)))
+        return self.velocity(t_end).integral(self.displacement0)
+
+
+def finish(
+    card: Mapping[str, Any],
+    acceleration: Piecewise,
+    context: Context,
+    info: Mapping[str, Any],
+    velocity0: float = 0.0,
+    displacement0: float = 0.0,
+    closed: tuple[Piecewise, Piecewise] | None = None,
+) -> Motion:
+    """Motion with the common items of its card, its peaks and the warnings about them.
+
+    Parameters
+    ----------
+    card : mapping
+        Values of the card by field name.
+    acceleration : Piecewise, [L/T^2]
+        SCALE included.
+    context : Context
+    info : mapping
+        The kind's part of `Motion.info`.
+    velocity0, displacement0 : float, [L/T], [L]
+    closed : pair of Piecewise, optional
+        See `Motion`.
+    """
+    scale = float(card.get("SCALE", 1.0))
+    bare = Motion(
+        card.get("DIRECTION", "X"), card.get("SUPPORTS"), acceleration, velocity0, displacement0, {}, closed
+    )
+    t_pga, pga = acceleration.peak()
+    warnings = list(info.get("warnings", ()))
+    strength = abs(pga) / context.gravity
+    # a factor of zero is a motion switched off on purpose
+    if scale != 0 and not _WEAK <= strength <= _STRONG:
+        warnings.append(
+            f"peak ground acceleration is {strength:.3g} g; check the unit of the record and SCALE"
+        )
+    peaks = {
+        "scale": scale,
+        "duration": acceleration.end,
+        "pga": abs(pga),
+        "t_pga": t_pga,
+        "pgv": abs(bare.velocity().peak()[1]),
+        "pgd": abs(bare.displacement().peak()[1]),
+    }
+    whole = {**_BLANK, **peaks, **info, "warnings": tuple(warnings)}
+    return Motion(bare.direction, bare.supports, acceleration, velocity0, displacement0, whole, closed)
+
+
+_BLANK: Final[Mapping[str, Any]] = MappingProxyType(
+    dict.fromkeys(("kind", "name", "file", "format", "component", "npts", "dt", "unit", "start", "sha256"))
+)
+
+
+def common_breaks(motions: Iterable[Motion], t_end: float) -> Array:
+    """Times from 0 to `t_end` between which every motion is one polynomial.
+
+    Parameters
+    ----------
+    motions : iterable of Motion
+    t_end : float, [T]
+
+    Returns
+    -------
+    ndarray, shape (n,), [T]
+        Begins with 0 and ends with `t_end`; no two are closer than 1e-12 of `t_end`.
+    """
+    own = [m.acceleration.breaks for m in motions]
+    inside = np.concatenate([np.array([0.0, t_end]), *own])
+    return merged(inside[(inside >= 0) & (inside <= t_end)], 1e-12 * t_end)

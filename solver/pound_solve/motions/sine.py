@@ -1,0 +1,183 @@
+"""SINE: a(t) = A sin(w (t - START) + PHASE), from START on.
+
+Symbols: A amplitude, w circular frequency, T = 2 pi / w period.  Every interval of T/32 holds the Taylor
+polynomial of degree 10 about its beginning; the first term left out is (pi/16)^11 / 11! = 4e-16 of A.
+Velocity and displacement are written in the same way from their closed forms, since summing the
+accelerations over a hundred periods would lose three digits of the displacement.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, Final
+
+import numpy as np
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.motions.base import COMMON, Context, Motion, Piecewise, RecordError, finish
+from pound_solve.motions.piecewise import Array
+
+_PER_PERIOD: Final = 32
+_DEGREE: Final = 10
+_MOST_PIECES: Final = 2_000_000
+# 80-bit numbers where the machine has them: w t is hundreds of radians and must be right to 1e-16
+_Long = np.longdouble
+
+
+def build(card_values: Mapping[str, Any], context: Context) -> Motion:
+    """Motion of a SINE card.
+
+    Parameters
+    ----------
+    card_values : mapping
+        Bound values of the card's fields.
+    context : Context
+        Its `duration` ends a sine that is left without one.
+
+    Raises
+    ------
+    RecordError
+        R405 unless one of PERIOD and OMEGA is given, or where the sine has no end.
+    """
+    w = _omega(card_values.get("PERIOD"), card_values.get("OMEGA"))
+    scale = float(card_values.get("SCALE", 1.0))
+    a = float(card_values["AMPLITUDE"]) * scale
+    phase = float(card_values.get("PHASE", 0.0))
+    start = float(card_values.get("START", 0.0))
+    end = _end(start, card_values.get("DURATION"), context.duration)
+
+    steady_v, steady_d = -a / w * np.cos(_Long(phase)), -a / w**2 * np.sin(_Long(phase))
+    v0 = steady_v if card_values.get("VELOCITY0") is None else _Long(card_values["VELOCITY0"])
+    # the ground is on its steady path at START, having moved there at v0
+    d0 = (
+        steady_d - v0 * start
+        if card_values.get("DISPLACEMENT0") is None
+        else _Long(card_values["DISPLACEMENT0"])
+    )
+
+    if end > start:
+        pieces = math.ceil((end - start) * float(w) / (2 * math.pi) * _PER_PERIOD)
+        if pieces > _MOST_PIECES:
+            raise RecordError(
+                "R405", f"a sine of {pieces // _PER_PERIOD} periods is too long", "check PERIOD or OMEGA"
+            )
+        breaks = np.linspace(start, end, pieces + 1)
+        since = breaks[:-1].astype(_Long) - start
+        angle = w * since + _Long(phase)
+        quarter = np.arccos(_Long(-1)) / 2
+        drift, offset = v0 - steady_v, d0 + v0 * start - steady_d
+        acc = _taylor(a, w, angle)
+        vel = _taylor(-a / w, w, angle + quarter)
+        dis = _taylor(-a / w**2, w, angle)
+        vel[0] += drift
+        dis[0] += offset + drift * since
+        dis[1] += drift
+        parts = [Piecewise(breaks, np.asarray(c, dtype=np.float64)) for c in (acc, vel, dis)]
+    else:
+        parts = []
+    lead = _lead(min(start, end), float(v0), float(d0))
+    acceleration, velocity, displacement = (
+        _joined(p) for p in zip(*(group for group in (lead, parts) if group))
+    )
+    return finish(
+        card_values,
+        acceleration,
+        context,
+        {
+            "kind": SPEC.name,
+            "name": SPEC.name,
+            "unit": "DECK",
+            "start": start,
+            "amplitude": a,
+            "omega": float(w),
+            "period": float(2 * np.arccos(_Long(-1)) / w),
+            "phase": phase,
+        },
+        float(v0),
+        float(d0),
+        (velocity, displacement),
+    )
+
+
+def _omega(period: float | None, omega: float | None) -> np.longdouble:
+    """Circular frequency [rad/T]."""
+    if (period is None) == (omega is None):
+        raise RecordError("R405", "a SINE needs PERIOD or OMEGA, one of the two")
+    return 2 * np.arccos(_Long(-1)) / _Long(period) if omega is None else _Long(omega)
+
+
+def _end(start: float, duration: float | None, analysis: float) -> float:
+    """Time at which the sine ends [T]: with the analysis at the latest."""
+    end = min(math.inf if duration is None else start + duration, analysis or math.inf)
+    if end == math.inf:
+        raise RecordError("R405", "a SINE without an end", "give it a DURATION")
+    return end
+
+
+def _taylor(amplitude: Any, w: np.longdouble, angle: Any) -> Any:
+    """Taylor coefficients of ``amplitude sin(w s + angle)`` in s, shape (degree + 1, len(angle))."""
+    turns = (np.sin(angle), np.cos(angle), -np.sin(angle), -np.cos(angle))
+    return np.stack([amplitude * w**k / math.factorial(k) * turns[k % 4] for k in range(_DEGREE + 1)])
+
+
+def _lead(end: float, v0: float, d0: float) -> list[Piecewise]:
+    """Acceleration, velocity, displacement from t = 0 until the sine begins; empty if it begins at once."""
+    if end <= 0:
+        return []
+    breaks = np.array([0.0, end])
+    return [Piecewise(breaks, np.array(c)[:, None]) for c in ([0.0], [v0], [d0, v0])]
+
+
+def _joined(parts: tuple[Piecewise, ...]) -> Piecewise:
+    """Pieces that follow one another as one."""
+    rows = max(len(p.coefs) for p in parts)
+    coefs: list[Array] = [np.pad(p.coefs, ((0, rows - len(p.coefs)), (0, 0))) for p in parts]
+    return Piecewise(
+        np.concatenate([parts[0].breaks, *(p.breaks[1:] for p in parts[1:])]), np.hstack(coefs)
+    )
+
+
+SPEC: Final = Spec(
+    "motion",
+    "SINE",
+    "sinusoidal ground acceleration",
+    (
+        Field("AMPLITUDE", Kind.REAL, "L/T^2", doc="amplitude of the acceleration"),
+        Field("PERIOD", Kind.REAL, "T", default=None, above=0, doc="period; give this or OMEGA"),
+        Field(
+            "OMEGA",
+            Kind.REAL,
+            "1/T",
+            default=None,
+            above=0,
+            doc="circular frequency in radians; give this or PERIOD",
+        ),
+        Field("PHASE", Kind.REAL, "-", default=0.0, doc="angle at START in radians"),
+        Field("START", Kind.REAL, "T", default=0.0, lo=0, doc="time at which the sine begins"),
+        Field(
+            "DURATION",
+            Kind.REAL,
+            "T",
+            default=None,
+            above=0,
+            doc="how long it lasts; left out: to the end of the analysis",
+        ),
+        Field(
+            "VELOCITY0",
+            Kind.REAL,
+            "L/T",
+            default=None,
+            doc="ground velocity at t = 0; left out: the steady one",
+        ),
+        Field(
+            "DISPLACEMENT0",
+            Kind.REAL,
+            "L",
+            default=None,
+            doc="ground displacement at t = 0; left out: the steady one",
+        ),
+        *COMMON,
+    ),
+    impl=build,
+)

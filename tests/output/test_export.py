@@ -1,0 +1,54 @@
+"""CSV: every number comes back to its last bit."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from output import sample
+from pound_solve.export import export_csv
+from pound_solve.results import Results
+from pound_solve.tables import TABLES
+
+
+@pytest.fixture(scope="module")
+def files(done: Results, tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[list[str]]]:
+    paths = export_csv(done, tmp_path_factory.mktemp("csv") / "new" / "folder")
+    return {path.name: list(csv.reader(path.read_text("utf-8").splitlines())) for path in paths}
+
+
+def test_one_file_for_each(done: Results, files: dict[str, list[list[str]]]) -> None:
+    histories = [f"history_{n.replace('/', '_')}.csv" for n in done.histories if n != "time"]
+    assert list(files) == [*(f"{n}.csv" for n in TABLES), *histories]
+
+
+def test_heads(files: dict[str, list[list[str]]]) -> None:
+    assert files["loads.csv"][0] == ["node", "fx [kN]", "fy [kN]", "mz [kN*m]"]
+    assert files["history_node_v.csv"][0][:4] == ["time [s]", "1 ux [m/s]", "1 uy [m/s]", "1 rz [rad/s]"]
+    assert files["history_energy.csv"][0][1] == "input [kN*m]"
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_tables(files: dict[str, list[list[str]]], name: str) -> None:
+    lines, rows = files[f"{name}.csv"][1:], sample.rows()[name]
+    assert len(lines) == len(rows)
+    for line, row in zip(lines, rows):
+        for cell, value in zip(line, row, strict=True):
+            if isinstance(value, str):
+                assert cell == value
+            else:
+                np.testing.assert_equal(float(cell or "nan"), value)
+
+
+def test_histories(done: Results, files: dict[str, list[list[str]]]) -> None:
+    for name in done.histories[1:]:
+        numbers = np.array(files[f"history_{name.replace('/', '_')}.csv"][1:], dtype=float)
+        np.testing.assert_array_equal(numbers[:, 0], done.time)
+        np.testing.assert_array_equal(numbers[:, 1:], done.history(name).reshape(len(done.time), -1))
+
+
+def test_again(done: Results, tmp_path: Path) -> None:
+    assert export_csv(done, tmp_path) == export_csv(done, tmp_path)

@@ -1,0 +1,229 @@
+"""The report: what it promises about its form, and that it hides nothing."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from output import sample
+from pound_solve.report import WIDTH, render
+from pound_solve.results import Results, Writer
+from pound_solve.tables import SECTIONS, TABLES
+
+
+@pytest.fixture(scope="module")
+def report(done: Results) -> str:
+    return render(done)
+
+
+@pytest.fixture
+def only(tmp_path: Path) -> Callable[..., str]:
+    """Report of a finished run with the given tables only."""
+
+    def make(**tables: list[tuple[object, ...]]) -> str:
+        with Writer(tmp_path / "o.h5", title="t", units=sample.UNITS, program_version="0") as writer:
+            for name, rows in tables.items():
+                writer.table(name, rows)
+            writer.finish("done")
+        with Results.open(tmp_path / "o.h5") as results:
+            return render(results)
+
+    return make
+
+
+def body(report: str) -> list[str]:
+    """Lines between the first rule of dashes and the next blank line."""
+    lines = report.split("\n")
+    start = next(i for i, line in enumerate(lines) if re.fullmatch(r"  [- ]+", line)) + 1
+    return [line.strip() for line in lines[start : lines.index("", start)]]
+
+
+def test_plain_text(report: str) -> None:
+    assert report.isascii()
+    assert report.endswith("\n")
+    lines = report.split("\n")
+    assert max(map(len, lines)) == WIDTH == 132
+    assert all(line == line.rstrip() for line in lines)
+    assert "\t" not in report
+
+
+def test_sections_and_tables_in_order(report: str) -> None:
+    expected = []
+    for number, (heading, names) in enumerate(SECTIONS, 1):
+        expected.append(f"{number}  {heading.upper()}")
+        expected += [f"{number}.{i}  {TABLES[name].title.upper()}" for i, name in enumerate(names, 1)]
+    assert re.findall(r"^\d+(?:\.\d+)?  [A-Z].*$", report, re.MULTILINE) == expected
+
+
+def test_banner(report: str) -> None:
+    banner = report[: report.index("1  INPUT")]
+    assert "POUND-SOLVE 0.1.0" in banner
+    assert "diaphragm - gap 8 mm, xi = 5 %" in banner
+    assert "force kN, length m, time s" in banner
+    assert "DID NOT" not in banner
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_units_in_heads(report: str, name: str) -> None:
+    table = TABLES[name]
+    start = report.index(f"  {table.title.upper()}\n\n")
+    head = report[start : report.index("---", start)]
+    for column in table.columns:
+        if column.unit:
+            assert f"[{sample.UNITS.text(column.unit)}]" in head
+
+
+def test_the_same_bytes_again(tmp_path: Path, report: str) -> None:
+    with Results.open(sample.write(tmp_path / "again.h5")) as results:
+        assert render(results) == report
+    assert report.rindex("10  RUN FIGURES") > report.index("9.3  COURSE OF THE RUN")
+    last = report[report.index("10  RUN FIGURES") :]
+    assert "wall time" in last
+    assert "wall time" not in report[: -len(last)]
+    assert str(tmp_path) not in report
+
+
+def test_missing_and_empty_tables_are_left_out(only: Callable[..., str]) -> None:
+    text = only(modes=sample.rows()["modes"], reactions=[], checks=[("a", "b", "c")])
+    assert re.findall(r"^\d+(?:\.\d+)?  [A-Z].*$", text, re.MULTILINE) == [
+        "5  FREE VIBRATION",
+        "5.1  NATURAL MODES",
+        "9  ENERGY AND CHECKS",
+        "9.2  CHECKS OF THIS RUN",
+    ]
+    assert "Forces of the supports" not in text
+
+
+def test_empty_columns_are_left_out(only: Callable[..., str]) -> None:
+    nan = float("nan")
+    text = only(nodes=[(1, 0.0, 0.0, "XYR", "", 0)], drift_envelope=[("d", 0.1, 1.0, -0.1, 2.0, nan, nan)])
+    assert "fixed" in text
+    for head in ("slaved  ", "master", "height", "ratio"):
+        assert head not in text
+
+
+def test_a_table_without_content_is_left_out(only: Callable[..., str]) -> None:
+    assert "CHECKS" not in only(checks=[("", "", "")])
+
+
+def test_words_for_zero(report: str) -> None:
+    assert re.search(r"^ +12 .* ground +-$", report, re.MULTILINE)
+    assert re.search(r"^ +302 .* Y +X +301$", report, re.MULTILINE)
+
+
+def test_defaults_are_marked(report: str) -> None:
+    assert "A * marks what the deck leaves to its default." in report
+    assert re.search(r"gravity +9\.80665 m/s\^2 +\*  weights", report)
+    assert not re.search(r"duration .*\*", report)
+
+
+def test_a_checksum_is_cut(report: str) -> None:
+    assert " 9b0c5a1f3e77\n" in report
+
+
+def test_long_tables_are_cut(done: Results, report: str) -> None:
+    assert "... and 20 more rows: table 'collisions' of the results file" in report
+    assert len(re.findall(r"^ +90[12] +\d", report, re.MULTILINE)) == 100 + 2
+    short, whole = render(done, limit=3), render(done, limit=0)
+    assert "... and 117 more rows: table 'collisions'" in short
+    assert "more rows" not in whole
+    assert len(re.findall(r"^ +90[12] +\d", whole, re.MULTILINE)) == 120 + 2
+
+
+def test_groups_are_blocks(report: str) -> None:
+    """Displacements first, then velocities, each block with number formats of its own."""
+    envelope = report[report.index("6.2  NODE ENVELOPES") : report.index("7  MEMBERS")]
+    blocks = [re.findall(r"displacement|velocity|acceleration", b) for b in envelope.split("\n\n")]
+    assert [b[0] for b in blocks if b] == ["displacement", "velocity", "acceleration"]
+    assert all(len(set(b)) <= 1 for b in blocks)
+
+
+def test_notes(report: str) -> None:
+    assert "\n  Accelerations are absolute.\n" in report
+
+
+@pytest.mark.parametrize(
+    ("values", "printed"),
+    [
+        ((0.0, -0.0, 0.0), ["0.0", "0.0", "0.0"]),
+        ((0.0, 3.5, 7.0), ["0.0", "3.5", "7.0"]),
+        ((1e-3, 12000.0, 0.5), ["0.001", "12000.000", "0.500"]),
+        ((1.234567891, 0.01, -100.0), ["1.234568", "0.010000", "-100.000000"]),
+        ((1e-19, -2.5e-4, 0.0), ["1.0E-19", "-2.5E-04", "0"]),
+        ((2.5084e7, 1.0, float("nan")), ["2.5084E+07", "1.0000E+00", "-"]),
+        ((1e-310, float("inf"), 2.0), ["0.0", "inf", "2.0"]),
+        ((-0.0, -1e-310, 5.0), ["0.0", "0.0", "5.0"]),
+    ],
+)
+def test_numbers(only: Callable[..., str], values: tuple[float, ...], printed: list[str]) -> None:
+    text = only(loads=[(i, v, 1.0, 1.0) for i, v in enumerate(values)])
+    assert [line.split()[1] for line in body(text)] == printed
+
+
+def test_times_show_what_they_need(only: Callable[..., str]) -> None:
+    row = ("a", 1, 2.0, 10.123456, 0.1, 0.1, 0.1, 0.1, 0.1)
+    assert " 10.123456 " in only(contact_summary=[row])
+    assert " 14.180 " in only(contact_summary=[(*row[:3], 14.180000000000001, *row[4:])])
+
+
+def test_tags_that_look_like_numbers_stay(only: Callable[..., str]) -> None:
+    text = only(checks=[("1E5", "007", "0x10")])
+    assert body(text) == ["1E5    007    0x10"]
+
+
+def test_hostile_texts(only: Callable[..., str]) -> None:
+    text = only(
+        checks=[("a\nb\tc\x07", "Grüße – ω ≤ µ × 漢", "x" * 400)], scene=[("s" * 90, "d" * 90, "w" * 90)]
+    )
+    assert text.isascii()
+    assert max(map(len, text.split("\n"))) <= WIDTH
+    assert "a b c?" in text
+    assert "Grusse - omega <= mu x ?" in text
+    assert text.count("x") >= 400
+
+
+def test_very_wide_tables_are_split(only: Callable[..., str]) -> None:
+    wide = {str: lambda _: "x" * 60, float: lambda v: 1.23456789e5 * v, int: lambda v: v}
+    row = tuple(wide[type(v)](v) for v in sample.rows()["motions"][0])
+    text = only(motions=[row])
+    assert max(map(len, text.split("\n"))) <= WIDTH
+    assert len(re.findall(r"^  motion ", text, re.MULTILINE)) == 2
+
+
+def test_a_stopped_run_says_so_first(tmp_path: Path) -> None:
+    path = sample.write(tmp_path / "s.h5", status="stopped", message="No convergence at node 302 in X.")
+    with Results.open(path) as results:
+        text = render(results)
+    frame = text[: text.index("1  INPUT")]
+    assert "THE ANALYSIS DID NOT COME TO ITS END: TIME 2.990 s" in frame
+    assert "No convergence at node 302 in X." in frame
+    assert "holds up to 2.990 s only" in frame
+
+
+def test_a_killed_run_says_so_first(tmp_path: Path) -> None:
+    with Writer(tmp_path / "k.h5", title="", units=sample.UNITS, program_version="0") as writer:
+        writer.table("size", [("a", "b")])
+    with Results.open(tmp_path / "k.h5") as results:
+        text = render(results)
+    assert "THE ANALYSIS DID NOT COME TO ITS END" in text
+    assert "killed, or it is still running" in text
+    assert "no time history" in text
+
+
+def test_a_column_of_a_newer_version_may_be_missing(tmp_path: Path) -> None:
+    import h5py
+
+    path = sample.write(tmp_path / "m.h5")
+    with h5py.File(path, "r+") as file:
+        old = file["tables/reactions"]
+        attrs = dict(old.attrs)
+        data = np.array([(1, 2.0)], dtype=[("node", "i8"), ("fx", "f8")])
+        del file["tables/reactions"]
+        file["tables/reactions"] = data
+        file["tables/reactions"].attrs.update(attrs)
+    with Results.open(path) as results:
+        assert re.search(r"force X\n  node +\[kN\]", render(results))

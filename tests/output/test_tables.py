@@ -1,0 +1,40 @@
+"""The list of tables, and the manual's page that is made from it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from pound_solve.results import Results
+from pound_solve.tables import FORMATS, HISTORIES, SECTIONS, TABLES, results_page
+
+PAGE = Path(__file__).parents[2] / "manual" / "results.md"
+
+
+def test_every_table_stands_in_one_section() -> None:
+    assert [name for _, names in SECTIONS for name in names] == list(TABLES)
+    assert len({table.title for table in TABLES.values()}) == len(TABLES)
+    assert SECTIONS[-1] == ("Run figures", ("run_figures",))
+
+
+def test_columns_are_sound() -> None:
+    for table in TABLES.values():
+        names = [c.name for c in table.columns]
+        assert len(set(names)) == len(names)
+        assert not table.group or table.group in names
+        for column in table.columns:
+            assert column.fmt in FORMATS
+            assert column.title.isascii()
+            assert re.fullmatch(r"[-%FLT*/^\d1rad.]*", column.unit)
+
+
+def test_the_page_is_fresh() -> None:
+    """To renew it, replace all below its line `<!-- made by ... -->` by what `results_page` returns."""
+    assert PAGE.read_text(encoding="utf-8").endswith("\n" + results_page())
+
+
+def test_the_page_lists_what_a_file_holds(done: Results) -> None:
+    page = PAGE.read_text(encoding="utf-8")
+    assert all(f"`{name}`" in page for name in done.tables)
+    assert all(f"`/history/{name}`" in page for name in done.histories)
+    assert set(done.histories) <= HISTORIES.keys()

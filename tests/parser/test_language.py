@@ -1,0 +1,248 @@
+"""What the language means: items, ranges, options, defaults."""
+
+import math
+import time
+
+import pytest
+
+from pound_deck.diagnostics import render
+from pound_deck.model import Units
+from pound_deck.reader import read_deck, read_text
+
+HEAD = """NODES
+ 1 0 0 FIX=XYR
+ 2 0 3
+ 3 1 3
+ELEMENTS
+ 1 COL 1 2
+ 2 COL 2 3
+PROPS
+ COL SPRING KX=1
+ANALYSIS
+ STATIC
+"""
+
+
+@pytest.fixture
+def read(catalog):
+    def reader(text, **overrides):
+        model, found, files = read_text(text, catalog, overrides)
+        assert model is not None, render(found, files)
+        return model
+
+    return reader
+
+
+@pytest.fixture
+def codes(catalog):
+    return lambda text, **overrides: [d.code for d in read_text(text, catalog, overrides)[1]]
+
+
+def param(read, value):
+    return read(f"PARAM a = {value}\n{HEAD}").params["A"]
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("1.5D3", 1500),
+        (".5", 0.5),
+        ("5.", 5),
+        ("-2^2", -4),
+        ("2^3^2", 512),
+        ("2**-1", 0.5),
+        ("(1 - 2)*3", -3),
+        ("8/4/2", 1),
+        ("max(1, 2 , 3)", 3),
+        ("2*pi", 2 * math.pi),
+        ("round(2.5)", 3),
+        ("int(-2.5)", -2),
+        ("LOG10(1000)", 3),
+        ("--1", 1),
+        ("'it is!'", "it is!"),
+    ],
+)
+def test_expressions(read, text, value):
+    assert param(read, text) == (value if isinstance(value, str) else pytest.approx(value))
+
+
+def test_params_see_those_below_them_in_any_case(read):
+    assert read("PARAM a = 2*B  c = A\nPARAM b = 3\n" + HEAD).params == {"A": 6, "C": 6, "B": 3}
+
+
+def test_overrides_keep_the_kind_of_a_param(read):
+    deck = 'PARAM n = 2 m = n+1 rec = "a b.at2"\n' + HEAD
+    assert read(deck, N="2*5").params == {"N": 10, "M": 11, "REC": "a b.at2"}
+    assert read(deck, rec="../x y/el-centro.at2").params["REC"] == "../x y/el-centro.at2"
+    assert read(deck, rec='"n"').params["REC"] == "n"
+    assert read(deck, rec="5").params["REC"] == "5"
+
+
+def test_an_override_may_cure_the_deck(read):
+    assert read("PARAM n = 0 m = 1/n\n" + HEAD, n="4").params["M"] == 0.25
+
+
+def test_ranges_generate_evenly(read):
+    model = read(
+        "PARAM n = 4\nNODES\n 10 TO 10+n  0 TO 20  3.5 FIX=RY\n 1 0 0\nELEMENTS\n 5 TO 4+n COL 10 TO 9+n"
+        " 11 TO 10+n\n 99 COL 1 10\nPROPS\n COL SPRING\nANALYSIS\n STATIC\n"
+    )
+    assert [(n.id, n.x, n.y, n.fixed) for n in model.nodes.values()][:5] == [
+        (10, 0, 3.5, "YR"),
+        (11, 5, 3.5, "YR"),
+        (12, 10, 3.5, "YR"),
+        (13, 15, 3.5, "YR"),
+        (14, 20, 3.5, "YR"),
+    ]
+    assert [(e.id, e.i, e.j) for e in model.elements.values()][:2] == [(5, 10, 11), (6, 11, 12)]
+
+
+def test_generation_may_step_backwards_and_by_more_than_one(read):
+    model = read(HEAD.replace("PROPS", " 11 TO 13 BY 2 COL 3 TO 1 1 TO 2\nPROPS"))
+    assert [(e.id, e.i, e.j) for e in model.elements.values()][2:] == [(11, 3, 1), (13, 1, 2)]
+
+
+def test_a_range_of_one(read, codes):
+    one = HEAD.replace("PROPS", " 7 TO 7 COL 1 TO 1 2\nPROPS")
+    assert read(one).elements[7].i == 1
+    assert codes(HEAD.replace("PROPS", " 7 TO 7 COL 1 TO 2 3\nPROPS")) == ["P220"]
+
+
+def test_lists_of_nodes(read):
+    model = read(HEAD + "LOADS\n 1,2 TO 3 5\n 1 TO 3 BY 2 FY=-1\n")
+    assert [card["NODES"] for card in model.loads] == [(1, 2, 3), (1, 3)]
+    assert model.loads[0].values == {"NODES": (1, 2, 3), "FX": 5, "FY": 0, "MZ": 0}
+    assert set(model.loads[0].spans) == {"NODES", "FX"}
+
+
+def test_a_line_may_start_with_a_param(read):
+    assert read("PARAM node = 2\n" + HEAD + "WEIGHTS\n node 10\n").weights[0]["NODES"] == (2,)
+
+
+def test_families_join_their_fields(read):
+    model = read(
+        HEAD.replace("KX=1", "KX=1 FX=2,3 RULE=elastic,2 R=0.1").replace(
+            "STATIC", "HISTORY T=1 METHOD=NEWMARK DT=0.1"
+        )
+        + "INITIAL\n 2 UX=1\n"
+    )
+    card = model.props["COL"]
+    assert card["RULE"] == ("ELASTIC", "BILINEAR") and card["R"] == 0.1 and card["FX"] == (2, 3)
+    assert [s.name for s in card.laws["RULE"]] == ["ELASTIC", "BILINEAR"]
+    assert model.analyses[0].values == {"T": 1, "METHOD": "NEWMARK", "DT": 0.1}
+
+
+def test_words_and_their_old_codes(read):
+    for tension in ("YES", "yes", "1"):
+        deck = HEAD.replace("SPRING KX=1", f"CONTACT LAW=1 K=5 TENSION={tension}")
+        assert read(deck).props["COL"]["TENSION"] == "YES"
+    assert read(HEAD.replace("SPRING", "1")).props["COL"].spec.name == "SPRING"
+
+
+def test_params_stand_for_words_texts_and_codes(read):
+    deck = 'PARAM law = "kelvin_voigt" t = 1 rec = "x y.at2"\n' + HEAD.replace(
+        "SPRING KX=1", "CONTACT LAW=law K=5 TENSION=t"
+    )
+    model = read(deck + "EQUAKE\n RECORD FILE=rec\n RECORD FILE=plain.at2\n")
+    assert model.props["COL"]["LAW"] == "KELVIN_VOIGT" and model.props["COL"]["TENSION"] == "YES"
+    assert [c["FILE"] for c in model.equake] == ["x y.at2", "plain.at2"]
+
+
+def test_labels_and_choices_come_before_params(read):
+    assert read("PARAM col = 7 xyr = 3\n" + HEAD).elements[1].prop == "COL"
+
+
+def test_labels_may_be_numbers(read):
+    assert read(HEAD.replace("COL", "12")).props["12"].label == "12"
+
+
+@pytest.mark.parametrize(("flags", "fixed"), [("RYX", "XYR"), ("y", "Y"), ("NONE", ""), ("0", "")])
+def test_flags(read, flags, fixed):
+    assert read(HEAD.replace("XYR", flags)).nodes[1].fixed == fixed
+
+
+def test_slaving(read):
+    assert read(HEAD.replace(" 3 1 3", " 3 1 3 SLAVED=RX MASTER=2")).nodes[3].slaved == {"X": 2, "R": 2}
+
+
+def test_comments_continuations_and_quotes(read):
+    deck = (
+        HEAD.replace("KX=1", "KX = 1 & ! here\n\n ! a line between\n  KY=2") + 'DRIFT\n "a ! b" 1 2 ! c\n'
+    )
+    model = read(deck)
+    assert model.props["COL"]["KY"] == 2
+    assert model.props["COL"].spans["KY"].line == 12 and model.props["COL"].spans["KY"].column == 6
+    assert model.drifts[0].label == "a ! b"
+
+
+def test_single_cards(read):
+    model = read(
+        "title  Bob's two towers ! a comment\nUNITS N mm s\nMASS consistent\n" + HEAD + "END\n)))\n"
+    )
+    assert model.title == "Bob's two towers" and model.units == Units("N", "mm", "s", True)
+    assert model.gravity == 9810 and model.mass == "CONSISTENT" and model.defaults == {"gravity"}
+    assert read("GRAVITY 2*5\n" + HEAD).gravity == 10
+    assert read(HEAD).defaults == {"units", "gravity", "mass"}
+
+
+def test_sections_may_be_repeated_and_carry_a_number(read):
+    assert len(read("ELEMENTS 0\n 9 COL 1 3\n" + HEAD).elements) == 3
+
+
+def test_output_lines_are_one_card(read, codes):
+    model = read(HEAD + "OUTPUT\n EVERY=0.1\n NODES=1,2\n")
+    assert model.output["EVERY"] == 0.1 and model.output["NODES"] == (1, 2)
+    assert read(HEAD).output["COLLISIONS"] == 200
+    assert codes(HEAD + "OUTPUT\n EVERY=0.1\n EVERY=2\n") == ["P212"]
+
+
+def test_include(tmp_path, catalog):
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "props.inp").write_text(
+        'PROPS\n COL SPRING KX=-1\nINCLUDE "more.inp"\nEND\nrubbish\n'
+    )
+    (tmp_path / "sub" / "more.inp").write_text("WEIGHTS\n 2 5\n")
+    deck = tmp_path / "deck.inp"
+    deck.write_text(HEAD.replace("PROPS\n COL SPRING KX=1\n", "INCLUDE 'sub/props.inp' ! here\n"))
+    model, found, files = read_deck(str(deck), catalog)
+    assert model is None and [d.code for d in found] == ["P217"]
+    assert found[0].span.file == str(tmp_path / "sub/props.inp") and found[0].span.line == 2
+    assert len(files) == 3
+
+
+def test_a_mistake_does_not_bring_others(codes):
+    assert codes(HEAD.replace(" 2 0 3", " 2 0 (3") + "WEIGHTS\n 2 5\n") == ["P203"]
+    assert codes("PARAM n = 1+ m = 3\n" + HEAD + "WEIGHTS\n 2 n*m\n")[0] in ("P205", "P209")
+    assert codes("PARAM n = zz\n" + HEAD + "WEIGHTS\n n n*5\n") == ["P222"]
+    assert codes(HEAD.replace("KX=1", "KX=1 RULE=BILINER R=0.2")) == ["P210"]
+    assert codes('INCLUDE "none.inp"\n' + HEAD + "WEIGHTS\n n 5*n\n") == ["P105"]
+
+
+def test_bad_generated_cards_do_not_break_others(codes):
+    assert codes(HEAD.replace("PROPS", " 11 TO 13 COL 1 TO 2 3\nPROPS")) == ["P220"]
+
+
+def test_wrong_but_plausible_lines_are_refused(codes):
+    assert codes(HEAD + "WEIGHTS\n 1 2 10\n") == ["P320"]
+    assert codes(HEAD + "OUTPUT\n NODES=1 2\n") == ["P215"]
+    assert codes(HEAD + "OUTPUT\n NODES=1, 2\n") == ["P206"]
+    assert codes(HEAD.replace(" 2 0 3", " 2 0 3 XYR")) == ["P214"]
+    assert codes("UNITS kN,m,s\n" + HEAD) == ["P238"]
+    assert codes(HEAD.replace("1 COL 1 2", "1 COL 1 0")) == ["P305"]
+    assert "P213" in codes(HEAD.replace(" COL SPRING", " COL,B SPRING"))
+    assert codes(HEAD.replace("KX=1", "KX 1")) == ["P214"]
+    assert codes(HEAD + "SHAPE\n 1 2 3\n") == ["P235"]
+
+
+def test_twenty_thousand_lines(read):
+    nodes = "".join(f" {k} {k}*0.5 3.5 FIX=YR\n" for k in range(10, 10_010))
+    elements = "".join(f" {k} COL {k} {k}+1\n" for k in range(10, 10_009))
+    assert len(read("NODES\n" + nodes + "ELEMENTS\n" + elements + HEAD).nodes) == 10_003
+
+
+def test_a_hundred_lines_take_no_time(read):
+    deck = HEAD + "WEIGHTS\n" + " 2,3 1600/(2*4) WR=0.5 ! a weight\n" * 100
+    read(deck)
+    start = time.perf_counter()
+    read(deck)
+    assert time.perf_counter() - start < 0.1

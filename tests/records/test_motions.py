@@ -1,0 +1,260 @@
+"""Ground motions: records with their units and windows, sines, synthetic motions."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pound_solve.motions import record, sine, synthetic
+from pound_solve.motions.base import METRE, Context, Motion
+from pound_solve.records.base import RecordError
+
+
+def context(tmp_path: Path = Path(), length: str = "m", duration: float = 0.0) -> Context:
+    metre = METRE[length]
+    return Context(9.80665 * metre, metre, (tmp_path,), duration)
+
+
+class TestRecord:
+    TEXT = "0 0\n1 0.2\n2 -0.4\n4 0.1\n"  # uneven, peak 0.4
+
+    def build(self, tmp_path: Path, text: str = TEXT, length: str = "m", **card: Any) -> Motion:
+        (tmp_path / "made_up.txt").write_text(text)
+        return record.build({"FILE": "made_up.txt", "FORMAT": "AUTO", **card}, context(tmp_path, length))
+
+    def refused(self, code: str, tmp_path: Path, **card: Any) -> str:
+        with pytest.raises(RecordError) as caught:
+            self.build(tmp_path, **card)
+        assert caught.value.code == code
+        return str(caught.value)
+
+    def test_lines_between_samples_and_nothing_after(self, tmp_path: Path) -> None:
+        a = self.build(tmp_path, UNIT="DECK").acceleration
+        np.testing.assert_allclose(
+            a.value([0, 0.5, 1, 1.5, 3, 4, 4.001, 9]), [0, 0.1, 0.2, -0.1, -0.15, 0.1, 0, 0], atol=1e-15
+        )
+
+    @pytest.mark.parametrize("length", METRE)
+    @pytest.mark.parametrize(
+        ("unit", "in_metres"),
+        [("G", 9.80665), (None, 9.80665), ("M/S2", 1.0), ("CM/S2", 0.01), ("GAL", 0.01), ("MM/S2", 0.001)],
+    )
+    def test_units(self, tmp_path: Path, unit: str | None, in_metres: float, length: str) -> None:
+        motion = self.build(tmp_path, length=length, UNIT=unit)
+        assert motion.info["pga"] == pytest.approx(0.4 * in_metres * METRE[length], rel=1e-15)
+        assert motion.info["unit"] == (unit or "G")
+
+    def test_g_is_the_decks_gravity_exactly(self, tmp_path: Path) -> None:
+        (tmp_path / "r.txt").write_text("0 1\n1 1\n")
+        motion = record.build({"FILE": "r.txt"}, Context(9.81, search_path=(tmp_path,)))
+        assert motion.acceleration.value(0.5) == 9.81
+
+    def test_unit_of_the_file_and_a_deck_that_knows_better(self, tmp_path: Path) -> None:
+        text = (
+            "made up\na, b\nACCELERATION TIME SERIES IN UNITS OF CM/S2\nNPTS= 2, DT= 0.1 SEC\n 100. -50.\n"
+        )
+        assert self.build(tmp_path, text).info["pga"] == pytest.approx(1.0)
+        motion = self.build(tmp_path, text, UNIT="MM/S2")
+        assert motion.info["pga"] == pytest.approx(0.1)
+        assert any("CM/S2" in w for w in motion.info["warnings"])
+        assert self.build(tmp_path, text, UNIT="GAL").info["warnings"] == ()
+
+    def test_scale_and_sign(self, tmp_path: Path) -> None:
+        motion = self.build(tmp_path, UNIT="M/S2", SCALE=-2.0)
+        assert motion.acceleration.value(2.0) == pytest.approx(0.8)
+        assert motion.info["scale"] == -2.0 and motion.info["pga"] == pytest.approx(0.8)
+
+    def test_start_between_samples(self, tmp_path: Path) -> None:
+        a = self.build(tmp_path, UNIT="DECK", START=0.5).acceleration
+        assert a.start == 0
+        np.testing.assert_allclose(a.value([0, 0.5, 1.5, 3.5, 3.6]), [0.1, 0.2, -0.4, 0.1, 0.0], atol=1e-15)
+
+    def test_window(self, tmp_path: Path) -> None:
+        motion = self.build(tmp_path, UNIT="DECK", START=1.5, DURATION=1.5)
+        a = motion.acceleration
+        assert (a.start, a.end) == (0.0, 1.5)
+        np.testing.assert_allclose(a.value([0, 0.5, 1.5, 1.51]), [-0.1, -0.4, -0.15, 0], atol=1e-15)
+        assert motion.info["t_pga"] == 0.5
+
+    def test_start_on_a_sample_makes_no_sliver(self, tmp_path: Path) -> None:
+        text = "".join(f"{k % 7}\n" for k in range(200))
+        for k in range(1, 100):
+            a = self.build(tmp_path, text, UNIT="DECK", DT=0.01, START=k / 100, DURATION=0.5).acceleration
+            assert len(a.breaks) == 51 and np.diff(a.breaks).min() > 0.009
+
+    def test_delay_and_late_first_sample(self, tmp_path: Path) -> None:
+        a = self.build(tmp_path, UNIT="DECK", START=-2.0).acceleration
+        assert a.start == 0
+        np.testing.assert_allclose(a.value([0, 1, 2, 3, 6]), [0, 0, 0, 0.2, 0.1], atol=1e-15)
+        late = self.build(tmp_path, "0.5 1\n1 2\n", UNIT="DECK").acceleration
+        assert late.start == 0
+        np.testing.assert_allclose(late.value([0, 0.49, 0.5, 1]), [0, 0, 1, 2])
+
+    def test_time_scale_stretches_the_window(self, tmp_path: Path) -> None:
+        a = self.build(tmp_path, UNIT="DECK", START=1.0, DURATION=1.0, TSCALE=0.5).acceleration
+        assert a.end == 0.5
+        np.testing.assert_allclose(a.value([0, 0.25, 0.5]), [0.2, -0.1, -0.4], atol=1e-15)
+
+    def test_empty_window(self, tmp_path: Path) -> None:
+        assert "0 to 4 s" in self.refused("R405", tmp_path, START=4.0)
+        self.refused("R405", tmp_path, START=-5.0, DURATION=5.0)
+
+    def test_velocity_and_displacement_after_the_end(self, tmp_path: Path) -> None:
+        motion = self.build(tmp_path, "0 1\n2 1\n", UNIT="DECK")
+        np.testing.assert_allclose(motion.velocity(5.0).value([0, 1, 2, 3, 5]), [0, 1, 2, 2, 2])
+        np.testing.assert_allclose(motion.displacement(5.0).value([1, 2, 5]), [0.5, 2, 8])
+        assert (motion.info["pgv"], motion.info["pgd"]) == pytest.approx((2.0, 2.0))
+
+    def test_info(self, tmp_path: Path) -> None:
+        motion = self.build(tmp_path, "1\n2\n3\n", DT=0.25, DIRECTION="Y", SUPPORTS=(3, 7), UNIT="M/S2")
+        assert (motion.direction, motion.supports) == ("Y", (3, 7))
+        want = {
+            "kind": "RECORD",
+            "name": "made_up.txt",
+            "format": "COLUMNS",
+            "npts": 3,
+            "dt": 0.25,
+            "duration": 0.5,
+        }
+        assert {key: motion.info[key] for key in want} == want
+        assert len(motion.info["sha256"]) == 64 and Path(motion.info["file"]).is_file()
+        assert self.build(tmp_path).info["dt"] is None  # uneven
+
+    def test_errors_name_the_file(self, tmp_path: Path) -> None:
+        assert "made_up.txt" in self.refused("R402", tmp_path, text="0 1\n1 x\n", FORMAT="COLUMNS")
+        self.refused("R402", tmp_path, FORMAT="PEER")
+
+    def test_unit_slip(self, tmp_path: Path) -> None:
+        text = "1\n500\n-300\n"
+        assert any("500 g" in w for w in self.build(tmp_path, text, DT=0.01).info["warnings"])
+        assert self.build(tmp_path, text, DT=0.01, UNIT="GAL").info["warnings"] == ()
+
+
+class TestSine:
+    @pytest.mark.parametrize("period", [1.0, 0.37, 1 / 3])
+    @pytest.mark.parametrize("phase", [0.0, 0.7])
+    def test_closed_form_over_100_periods(self, period: float, phase: float) -> None:
+        a, w = 2.5, 2 * math.pi / period
+        motion = sine.build(
+            {"AMPLITUDE": a, "PERIOD": period, "PHASE": phase}, context(duration=100 * period)
+        )
+        t = np.linspace(0, 100 * period, 10007)
+        # fmod is exact: the angle keeps all its digits
+        angle = 2 * np.pi * np.array([math.fmod(x, period) for x in t]) / period + phase
+        parts = (motion.acceleration, motion.velocity(), motion.displacement())
+        exact = (a * np.sin(angle), -a / w * np.cos(angle), -a / w**2 * np.sin(angle))
+        for part, want, amplitude in zip(parts, exact, (a, a / w, a / w**2)):
+            np.testing.assert_allclose(part.value(t), want, rtol=0, atol=1e-13 * amplitude)
+        assert motion.velocity0 == pytest.approx(exact[1][0], rel=1e-15)
+        assert motion.info["pga"] == pytest.approx(a, rel=1e-12)
+        assert motion.info["pgv"] == pytest.approx(a / w, rel=1e-12)
+        # the plain integral of the acceleration is the same motion
+        plain = motion.acceleration.integral(motion.velocity0)
+        np.testing.assert_allclose(plain.value(t), exact[1], rtol=0, atol=1e-12 * a / w)
+
+    def test_omega_scale_and_given_start(self) -> None:
+        card = {"AMPLITUDE": 3.0, "OMEGA": 2.0, "SCALE": -0.5, "VELOCITY0": 0.0, "DISPLACEMENT0": 0.1}
+        motion = sine.build(card, context(duration=10.0))
+        t = np.linspace(0, 10, 101)
+        np.testing.assert_allclose(motion.acceleration.value(t), -1.5 * np.sin(2 * t), atol=1e-14)
+        np.testing.assert_allclose(motion.velocity().value(t), 0.75 * (np.cos(2 * t) - 1), atol=1e-13)
+        want = 0.1 + 0.375 * np.sin(2 * t) - 0.75 * t
+        np.testing.assert_allclose(motion.displacement().value(t), want, atol=1e-13)
+
+    def test_delay_end_and_rest(self) -> None:
+        card = {
+            "AMPLITUDE": 1.0,
+            "OMEGA": math.pi,
+            "START": 1.0,
+            "DURATION": 2.5,
+            "VELOCITY0": 0.0,
+            "DISPLACEMENT0": 0.0,
+        }
+        motion = sine.build(card, context(duration=6.0))
+        t = np.array([0.0, 0.5, 1.5, 3.0, 3.5, 4.0, 6.0])
+        s = np.clip(t - 1, 0, 2.5)
+        acting = (t >= 1) & (t <= 3.5)
+        np.testing.assert_allclose(motion.acceleration.value(t), acting * np.sin(math.pi * s), atol=1e-14)
+        v = (1 - np.cos(math.pi * s)) / math.pi
+        np.testing.assert_allclose(motion.velocity(6.0).value(t), v, atol=1e-14)
+        d = s / math.pi - np.sin(math.pi * s) / math.pi**2 + v * np.maximum(t - 3.5, 0)
+        np.testing.assert_allclose(motion.displacement(6.0).value(t), d, atol=1e-14)
+        integrated = motion.acceleration.extended(6.0).integral(0.0).integral(0.0)
+        np.testing.assert_allclose(integrated.value(t), d, atol=1e-14)
+
+    def test_sine_that_never_begins(self) -> None:
+        motion = sine.build({"AMPLITUDE": 1.0, "PERIOD": 1.0, "START": 9.0}, context(duration=5.0))
+        assert (motion.acceleration.start, motion.acceleration.end) == (0.0, 5.0)
+        assert motion.info["pga"] == 0
+
+    @pytest.mark.parametrize("card", [{}, {"PERIOD": 1.0, "OMEGA": 6.0}])
+    def test_period_or_omega(self, card: dict[str, float]) -> None:
+        with pytest.raises(RecordError, match="PERIOD or OMEGA"):
+            sine.build({"AMPLITUDE": 1.0, **card}, context(duration=1.0))
+
+    def test_without_end_or_too_long(self) -> None:
+        with pytest.raises(RecordError, match="without an end"):
+            sine.build({"AMPLITUDE": 1.0, "PERIOD": 1.0}, context())
+        with pytest.raises(RecordError, match="too long"):
+            sine.build({"AMPLITUDE": 1.0, "PERIOD": 1e-9}, context(duration=100.0))
+
+
+class TestSynthetic:
+    def card(self, **given: Any) -> dict[str, Any]:
+        defaults = {f.name: f.default for f in synthetic.SPEC.fields}
+        return {**defaults, "PGA": 3.0, **given}
+
+    def test_same_seed_same_motion(self) -> None:
+        one, two, other = (synthetic.build(self.card(SEED=s), context()) for s in (7, 7, 8))
+        assert np.array_equal(one.acceleration.coefs, two.acceleration.coefs)
+        assert not np.array_equal(one.acceleration.coefs, other.acceleration.coefs)
+
+    def test_peak_length_and_envelope(self) -> None:
+        motion = synthetic.build(self.card(SCALE=-2.0, DURATION=30.0, DT=0.005), context())
+        assert motion.info["pga"] == pytest.approx(6.0, rel=1e-14)
+        assert motion.info["npts"] == 6001 and motion.acceleration.end == pytest.approx(30.0)
+        assert motion.acceleration.value(0.0) == 0
+        t = np.array([0.0, 1.0, 2.0, 5.0, 10.0, 12.0])
+        np.testing.assert_allclose(
+            synthetic.envelope(t, 2.0, 8.0, 0.5), [0, 0.25, 1, 1, 1, math.exp(-1)], rtol=1e-15
+        )
+        assert synthetic.envelope(np.zeros(1), 0.0, 1.0, 1.0) == 1
+
+    def test_spectrum_peaks_near_wg(self) -> None:
+        wg = 20.0
+        power = 0.0
+        for seed in range(40):
+            motion = synthetic.build(
+                self.card(SEED=seed, WG=wg, ZG=0.2, DURATION=40.0, STRONG=38.0), context()
+            )
+            power = power + np.abs(np.fft.rfft(motion.acceleration.coefs[0])) ** 2
+        w = 2 * np.pi * np.fft.rfftfreq(motion.acceleration.coefs.shape[1], 0.01)
+        smooth = np.convolve(power, np.ones(9) / 9, "same")
+        assert w[smooth.argmax()] == pytest.approx(wg, rel=0.1)
+
+    def test_transfer_against_the_spectral_density(self) -> None:
+        w, wg, zg, wf, zf = np.linspace(0, 60, 61), 15.0, 0.6, 1.5, 0.5
+        soil = (wg**4 + 4 * zg**2 * wg**2 * w**2) / ((wg**2 - w**2) ** 2 + 4 * zg**2 * wg**2 * w**2)
+        slow = w**4 / ((wf**2 - w**2) ** 2 + 4 * zf**2 * wf**2 * w**2)
+        np.testing.assert_allclose(
+            np.abs(synthetic.transfer(w, wg, zg, wf, zf)) ** 2, soil * slow, rtol=1e-12
+        )
+        assert abs(synthetic.transfer(np.array([1e5]), wg, zg, wf, zf)[0]) < 1e-3
+
+    def test_too_short(self) -> None:
+        with pytest.raises(RecordError) as caught:
+            synthetic.build(self.card(DURATION=0.01), context())
+        assert caught.value.code == "R405"
+
+
+def test_specs_are_sound() -> None:
+    for module in (record, sine, synthetic):
+        names = [f.name for f in module.SPEC.fields]
+        assert len(names) == len(set(names))
+        assert {"DIRECTION", "SCALE", "SUPPORTS"} <= set(names)
+        assert module.SPEC.family == "motion" and module.SPEC.impl is module.build
+        assert all(f.doc and f.doc[-1] != "." for f in module.SPEC.fields)
