@@ -1,3 +1,61 @@
 """Solve a pound-solve model: from the checked Model to results, report and pictures."""
 
+from __future__ import annotations
+
 __version__ = "0.1.0"
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from pound_solve.results import Results
+
+
+def run(
+    deck: str | Path,
+    params: Mapping[str, object] | None = None,
+    *,
+    out: str | Path | None = None,
+    records: Sequence[str | Path] = (),
+    method: str | None = None,
+    dt: float | None = None,
+) -> Results:
+    """Run a deck and return its results.
+
+    Parameters
+    ----------
+    deck : str or Path
+        Input deck.
+    params : mapping, optional
+        PARAM values that replace the deck's, by name.
+    out : str or Path, optional
+        Folder of ``<deck>.rpt`` and ``<deck>.h5``; the deck's own if left out.
+    records : sequence of str or Path, optional
+        Folders where records are looked for, after the deck's.
+    method : str, optional
+        Replaces METHOD of HISTORY.
+    dt : float, optional
+        Replaces DT of HISTORY [T].
+
+    Returns
+    -------
+    Results
+        The results file, opened; ``results.status`` is ``done`` or ``stopped``.
+
+    Raises
+    ------
+    pound_solve.app.DeckError
+        The deck has mistakes; the text names file, line and column of each.
+    OSError
+        A file cannot be read or written.
+    """
+    # imported here: ``pound-solve --version`` must not wait for numpy
+    from pathlib import Path
+
+    from pound_solve.app import Request, execute
+
+    texts = {name: str(value) for name, value in (params or {}).items()}
+    folders = tuple(Path(r) for r in records)
+    return execute(Request(str(deck), texts, None if out is None else Path(out), folders, method, dt))[1]

@@ -68,6 +68,7 @@ class Writer:
         try:
             # Format 1.8 holds attributes above 64 kB (labels of large models); later formats mark a file as
             # open for writing, and a killed run would then leave one that no program opens.
+            Path(path).unlink(missing_ok=True)  # a reader that still holds the old file keeps it
             self._file = h5py.File(path, "w", libver=("v108", "v108"))
         except OSError as err:
             raise ResultsError(f"{path}: cannot be written: {_reason(err)}") from err

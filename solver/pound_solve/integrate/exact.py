@@ -68,6 +68,7 @@ class Exact:
         self.rows = np.vstack([scene.law_rows, watch.rows]) if self.n_laws else watch.rows
         self.row_inputs = np.vstack([scene.law_inputs, watch.input_rows]) if self.n_laws else watch.input_rows
         self.row_constants = np.concatenate([np.zeros(self.n_laws), watch.constants])
+        self.known = bool(np.any(self.row_inputs))
         self.base = self._base_parts()
         self.flows: dict[tuple[Any, ...], tuple[ModalFlow | SeriesFlow, Any]] = {}
         self.blocks: list[Block] = []
@@ -152,15 +153,16 @@ class Exact:
 
     def _functionals(self, t: Array, samples: Sequence[NDArray[Any]], coefs: Array) -> tuple[Array, Array, Array]:
         """Value, rate and second rate of all rows at local times `t` from the blocks' q samples."""
-        degree = len(coefs) - 1
-        offset = coefs @ self.row_inputs.T  # polynomials of what the inputs add, (degree + 1, n_rows)
-        p = powers(t, degree)
-        value = self.row_constants[:, None] + np.einsum("kr,kt->rt", offset, p)
+        value = np.repeat(self.row_constants[:, None], len(t), axis=1)
         rate, second = np.zeros_like(value), np.zeros_like(value)
-        for k in range(1, degree + 1):
-            rate += k * offset[k][:, None] * p[k - 1]
-            if k > 1:
-                second += k * (k - 1) * offset[k][:, None] * p[k - 2]
+        if self.known:
+            offset = coefs @ self.row_inputs.T  # polynomials of what the inputs add, (degree + 1, n_rows)
+            p = powers(t, len(coefs) - 1)
+            value += np.einsum("kr,kt->rt", offset, p)
+            for k in range(1, len(coefs)):
+                rate += k * offset[k][:, None] * p[k - 1]
+                if k > 1:
+                    second += k * (k - 1) * offset[k][:, None] * p[k - 2]
         for block, q in zip(self.blocks, samples):
             qdot = block.flow.rate(q, block.g, t)
             w = block.watched
@@ -258,7 +260,8 @@ class Exact:
     def _segment(self, goal: float) -> bool:
         """Advance to `goal` or to the first event before it; tell whether the goal was reached."""
         coefs = self._enter_piece()
-        length = goal - self.t
+        # twelve digits: segments of equal length share their exponentials, whatever the rounding of the times
+        length = float(f"{goal - self.t:.12e}")
         fastest = max(b.flow.fastest for b in self.blocks) if self.blocks else 0.0
         # grid steps are powers of two of a second, so that tables of exponentials are found again
         h = 2.0 ** np.floor(np.log2(GRID * self.refine / fastest)) if fastest > 0 else 2.0 ** np.ceil(np.log2(length))
@@ -476,27 +479,31 @@ class Exact:
         if not len(targets):
             return
         hi, lo = value.argmax(axis=1), value.argmin(axis=1)
-        for i, target in enumerate(targets):
-            target.take(float(value[i, hi[i]]), self.t + float(t[hi[i]]))
-            target.take(float(value[i, lo[i]]), self.t + float(t[lo[i]]))
-        dt = np.diff(t)
-        for sign in (1.0, -1.0):
-            f, s = sign * value, sign * rate
-            turn = (s[:, :-1] > 0) & (s[:, 1:] < 0)
-            if not turn.any():
+        every = np.arange(len(targets))
+        for target, x, j, y, k in zip(targets, value[every, hi].tolist(), hi, value[every, lo].tolist(), lo):
+            if x > target.high:
+                target.take(x, self.t + float(t[j]))
+            if y < target.low:
+                target.take(y, self.t + float(t[k]))
+        known = np.array([[target.high, target.low] for target in targets])[:, :, None]
+        dt, f0, s0, s1 = np.diff(t), value[:, :-1], rate[:, :-1], rate[:, 1:]
+        turn = s0 * s1 < 0
+        if not turn.any():
+            return
+        with np.errstate(divide="ignore", invalid="ignore"):
+            # where the end tangents meet bounds the turning point of a smooth arc
+            meet = f0 + s0 * (value[:, 1:] - f0 - s1 * dt) / (s0 - s1)
+        beyond = turn & (((s0 > 0) & (meet > known[:, 0])) | ((s0 < 0) & (meet < known[:, 1])))
+        for i, j in zip(*np.nonzero(beyond)):
+            sign = 1.0 if s0[i, j] > 0 else -1.0
+            best = targets[i].high if sign > 0 else -targets[i].low
+            ends = sign * np.array([f0[i, j], value[i, j + 1], s0[i, j], s1[i, j]])
+            # the cubic through both ends tells whether it can win; only then is it polished
+            top = _cubic_top(*ends, dt[j])
+            if top + 0.02 * abs(top - max(ends[0], ends[1])) <= best:
                 continue
-            known = np.array([target.high if sign > 0 else -target.low for target in targets])[:, None]
-            with np.errstate(divide="ignore", invalid="ignore"):
-                x = (f[:, 1:] - f[:, :-1] - s[:, 1:] * dt) / (s[:, :-1] - s[:, 1:])
-                bound = np.where(turn, f[:, :-1] + s[:, :-1] * x, -np.inf)
-            for i, j in zip(*np.nonzero(bound > known)):
-                if bound[i, j] <= (targets[i].high if sign > 0 else -targets[i].low):
-                    continue
-                # the cubic through both ends tells whether it can win; only then it is polished
-                if _cubic_top(f[i, j], f[i, j + 1], s[i, j], s[i, j + 1], dt[j]) * (1 + 1e-3) <= known[i, 0]:
-                    continue
-                tau = _turning(lambda x, i=i: sign * exact(i, x)[1], float(t[j]), float(t[j + 1]), s[i, j], s[i, j + 1])  # type: ignore[misc]
-                targets[i].take(float(exact(i, tau)[0]), self.t + tau)
+            tau = _turning(lambda x, i=i, sign=sign: sign * exact(i, x)[1], float(t[j]), float(t[j + 1]), ends[2], ends[3])  # type: ignore[misc]
+            targets[i].take(float(exact(i, tau)[0]), self.t + tau)
 
     # ------------------------------------------------------------------ samples, energies, end
 
@@ -568,15 +575,17 @@ def _cubic_top(f0: float, f1: float, s0: float, s1: float, h: float) -> float:
     """Largest value inside (0, h) of the cubic with these end values and slopes, which rises first and then falls."""
     a = 2 * (f0 - f1) / h**3 + (s0 + s1) / h**2
     b = 3 * (f1 - f0) / h**2 - (2 * s0 + s1) / h
-    roots = np.roots([3 * a, 2 * b, s0]) if a else np.array([-s0 / (2 * b)])
-    inside = [float(r.real) for r in roots if abs(r.imag) < 1e-9 * abs(r) + 1e-300 and 0 <= r.real <= h]
-    return max((((a * x + b) * x + s0) * x + f0 for x in inside), default=max(f0, f1))
+    root = b * b - 3 * a * s0
+    if root < 0:
+        return max(f0, f1)
+    x = -s0 / (b - np.sqrt(root)) if b < 0 else (-b - np.sqrt(root)) / (3 * a) if a else 0.0
+    return max(f0, f1, ((a * x + b) * x + s0) * x + f0) if 0 <= x <= h else max(f0, f1)
 
 
 def _turning(slope: Any, low: float, high: float, s_low: float, s_high: float) -> float:
     """Zero of a falling slope in (low, high) by the Illinois form of regula falsi; 1e-9 of the interval is plenty at a peak."""
     side = 0
-    x = low
+    x, steep = low, s_low - s_high  # a slope of 1e-8 of the ends' costs 1e-16 of the arc's height
     for _ in range(60):
         x = (s_low * high - s_high * low) / (s_low - s_high)
         s = slope(x)
@@ -590,7 +599,7 @@ def _turning(slope: Any, low: float, high: float, s_low: float, s_high: float) -
             if side == -1:
                 s_low *= 0.5
             side = -1
-        if s == 0.0 or high - low < 1e-9 * (high + 1e-300) or abs(s) < 1e-13 * (abs(s_low) + abs(s_high) + 1e-300):
+        if s == 0.0 or high - low < 1e-9 * (high + 1e-300) or abs(s) < 1e-8 * steep:
             break
     return x
 

@@ -34,6 +34,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 MOST_CONDITION = 1e7  #: of the mode matrix; beyond it the series is used
+RECURRING = 64  #: lengths of segments for which the response is kept
 RIGID = 1e-14  #: omega^2 below this share of the largest (times the size) is a rigid-body mode
 
 
@@ -277,6 +278,7 @@ class ModalFlow(Flow):
         self._input = self._force @ inputs
         self.fastest = float(np.abs(lam).max(initial=0.0))
         self._tables: dict[tuple[float, int], tuple[int, Complex, Complex]] = {}
+        self._single: dict[tuple[float, int], tuple[Complex, Complex]] = {}  # responses at a few times that recur
 
     def enter(self, u: Array, v: Array) -> Complex:  # noqa: D102
         return self._enter_u @ u + self._enter_v @ v
@@ -322,7 +324,13 @@ class ModalFlow(Flow):
         return out
 
     def at(self, q: Complex, g: Complex, t: float) -> Complex:  # type: ignore[override]  # noqa: D102
-        e, table = self._responses(np.array([t]), len(g) - 1)
+        key = (t, len(g) - 1)
+        found = self._single.get(key)
+        if found is None:
+            found = self._responses(np.array([t]), len(g) - 1)
+            if len(self._single) < RECURRING:
+                self._single[key] = found
+        e, table = found
         out = e[:, 0] * q + np.einsum("ki,ki->i", table[:, :, 0], g)
         out = out[:, None]
         self._drift(out, q, g, np.array([t]))

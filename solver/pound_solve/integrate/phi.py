@@ -9,32 +9,56 @@ against :math:`t^k`.  Both are summed as power series near zero and by their upw
 
 from __future__ import annotations
 
+from functools import cache
+from math import factorial
+
 import numpy as np
 from numpy.typing import NDArray
 
 Complex = NDArray[np.complex128]
 
 
-def _near(degree: int) -> float:
-    # the recurrence multiplies rounding by k!/|z|^k; the series loses e^|z| for a negative argument
-    return 1.0 if degree <= 1 else 4.0
+def _near(degree: int) -> tuple[float, int]:
+    """Return the radius within which the series is used, and its number of terms for 1e-17 there.
+
+    The recurrence multiplies rounding by k!/|z|^k; the series loses e^|z| for a negative argument.
+    """
+    return (0.3, 13) if degree <= 1 else (1.5, 25) if degree <= 3 else (4.0, 38)
+
+
+@cache
+def _series(degree: int, of_duhamel: bool) -> NDArray[np.float64]:
+    """Coefficients of the power series of all K_k or J_k, highest power first, shape (n_terms, degree + 1).
+
+    ``K_k = k! sum z^n / (n + k + 1)!`` and ``J_k = sum z^n / (n! (n + k + 1))``; see `_near`.
+    """
+    count = _near(degree)[1]
+    out = np.empty((count, degree + 1))
+    for k in range(degree + 1):
+        for n in range(count):
+            out[n, k] = factorial(k) / factorial(n + k + 1) if of_duhamel else 1.0 / (factorial(n) * (n + k + 1))
+    return out[::-1].copy()
+
+
+def _sum_series(z: Complex, degree: int, of_duhamel: bool) -> Complex:
+    coefs = _series(degree, of_duhamel)
+    total = np.zeros((degree + 1, *z.shape), complex)
+    for row in coefs:
+        total = total * z + row.reshape(-1, *([1] * z.ndim))
+    return total
 
 
 def duhamel(z: Complex, degree: int, exp_z: Complex | None = None) -> Complex:
     """Return ``K_0 .. K_degree``, shape ``(degree + 1, *z.shape)``; see the module's head."""
     z = np.asarray(z, complex)
     out = np.empty((degree + 1, *z.shape), complex)
-    small = np.abs(z) < _near(degree)
+    small = np.abs(z) < _near(degree)[0]
     safe = np.where(small, 1.0, z)
-    if exp_z is None:
-        exp_z = np.exp(z)
-    out[0] = (exp_z - 1.0) / safe
+    out[0] = np.expm1(z) / safe if exp_z is None else (exp_z - 1.0) / safe
     for k in range(1, degree + 1):
         out[k] = (k * out[k - 1] - 1.0) / safe
     if small.any():
-        zs = z[small]
-        for k in range(degree + 1):
-            out[k, small] = _series(zs, lambda n, k=k: 1.0 / (n + k + 1))  # type: ignore[misc]
+        out[:, small] = _sum_series(z[small], degree, True)
     return out
 
 
@@ -42,33 +66,12 @@ def moments(z: Complex, degree: int) -> Complex:
     """Return ``J_0 .. J_degree``, shape ``(degree + 1, *z.shape)``; see the module's head."""
     z = np.asarray(z, complex)
     out = np.empty((degree + 1, *z.shape), complex)
-    small = np.abs(z) < _near(degree)
+    small = np.abs(z) < _near(degree)[0]
     safe = np.where(small, 1.0, z)
-    exp_z = np.exp(np.where(small, 0.0, z))
+    exp_z = np.exp(z)
     out[0] = (exp_z - 1.0) / safe
     for k in range(1, degree + 1):
         out[k] = (exp_z - k * out[k - 1]) / safe
     if small.any():
-        zs = z[small]
-        for k in range(degree + 1):
-            total = np.zeros_like(zs)
-            term = np.ones_like(zs)
-            for n in range(60):
-                total += term / (n + k + 1)
-                term = term * zs / (n + 1)
-                if np.abs(term).max() < 1e-18:
-                    break
-            out[k, small] = total
+        out[:, small] = _sum_series(z[small], degree, False)
     return out
-
-
-def _series(z: Complex, ratio) -> Complex:  # type: ignore[no-untyped-def]
-    """Sum ``a_0 + a_1 + ...`` with ``a_0 = ratio(0)`` and ``a_n = a_(n-1) * z * ratio(n)``: k! sum z^n/(n+k+1)!."""
-    term = np.full_like(z, ratio(0))
-    total = term.copy()
-    for n in range(1, 80):
-        term = term * z * ratio(n)
-        total += term
-        if np.abs(term).max() < 1e-18:
-            break
-    return total

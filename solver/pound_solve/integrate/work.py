@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_solve.integrate import phi
-from pound_solve.integrate.flow import ModalFlow, SeriesFlow, gauss, powers
+from pound_solve.integrate.flow import RECURRING, ModalFlow, SeriesFlow, gauss, powers
 from pound_solve.scene import Scene
 
 Array = NDArray[np.float64]
@@ -64,7 +64,7 @@ class Meter:
         self.forms = [self._form(v, damping)] if self.damped else []
         self.contact_forms = [self._form(row[None, :] @ v, np.array([[c]])) for _, c, row in contacts]
         self.power_rows = inputs.T @ v
-        self._moments: dict[tuple[float, int], Complex] = {}
+        self._moments: dict[tuple[float, int], tuple[Complex, Complex]] = {}
 
     def _form(self, v: Complex, c: Array) -> tuple[Complex, Complex, Complex, Array]:
         """Return (V, R1, R2, C): the free-free quadratic forms already divided by their exponents."""
@@ -92,9 +92,15 @@ class Meter:
             p[0, b] = q[b]
             for k in range(degree + 1):
                 p[k + 1, b] = g[k, b] / (k + 1)
-        z = np.where(self.free, self.lam * tau, 0.0)
-        moments = phi.moments(z, degree + 2) * (tau ** np.arange(1, degree + 4))[:, None]
-        return c0, c0 * np.exp(z), p, moments
+        key = (tau, degree)
+        found = self._moments.get(key)
+        if found is None:
+            z = np.where(self.free, self.lam * tau, 0.0)
+            found = np.exp(z), phi.moments(z, degree + 2) * (tau ** np.arange(1, degree + 4))[:, None]
+            if len(self._moments) < RECURRING:
+                self._moments[key] = found
+        used = degree + 3 if len(flow.b_rows) else degree + 1  # rigid bodies integrate the forces once more
+        return c0, c0 * found[0], p[:used], found[1]
 
     def measure(
         self, q: NDArray[Any], g: NDArray[Any], tau: float, coefs: Array, constant: Array, p: Array | None = None
