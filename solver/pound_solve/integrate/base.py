@@ -177,3 +177,22 @@ class Ledger:
         self.peaks.collisions += [self.open[i] for i in sorted(self.open)]
         self.open = {}
         return self.peaks
+
+
+def stock(
+    scene: Scene, t: float, u: Array, v: Array, states: Sequence[State], input_work: float, damping_work: float, contact_work: float
+) -> dict[str, float]:
+    """Return all energies by name [F L]: the works so far, and what the present state holds and has lost."""
+    laws = scene.structure.laws
+    d = scene.law_rows @ u + scene.law_inputs @ scene.excitation.value(t) if laws else np.zeros(0)
+    if scene.total:  # moved supports have mass and stretch elements too
+        s = scene.structure
+        all_u, all_v = scene.all_freedoms(u, t), scene.all_freedoms(v, t, 1)
+        kinetic, strain = 0.5 * float(all_v @ s.mass @ all_v), 0.5 * float(all_u @ s.stiffness @ all_u)
+    else:
+        kinetic, strain = 0.5 * float(v @ scene.mass @ v), 0.5 * float(u @ scene.stiffness @ u)
+    out = dict(zip(ENERGIES, (input_work, kinetic, strain, damping_work, 0.0, contact_work)))
+    for s_, x, at in zip(laws, states, d.tolist()):
+        out["strain"] += s_.law.stored(x, at)
+        out["contact" if s_.is_contact else "hysteretic"] += s_.law.dissipated(x, at)
+    return out

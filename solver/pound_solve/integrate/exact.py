@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from pound_deck.schema import Field, Kind, Spec
 
 from pound_solve.integrate import work
-from pound_solve.integrate.base import Ledger, Outcome, Sink, Start, Stop, Watch
+from pound_solve.integrate.base import Ledger, Outcome, Sink, Start, Stop, Watch, stock
 from pound_solve.integrate.flow import Mechanism, ModalFlow, SeriesFlow, make_flow, powers
 from pound_solve.laws import Branch
 from pound_solve.scene import Scene
@@ -48,10 +48,10 @@ class Block:
     q: NDArray[Any]
     constant: Array
     watched: NDArray[np.intp]  # rows of all functionals that touch it
+    place: list[int]  # of every functional among them, or -1
     rows: Array  # their part on the block's unknowns
     g: NDArray[Any]
-    u_rows: NDArray[Any]  # rows @ u_q
-    v_rows: NDArray[Any]
+    uv_rows: NDArray[Any]  # rows @ u_q above rows @ v_q
     p: Array | None = None  # force polynomials, (degree + 1, n), where the inputs alone do not tell them
 
 
@@ -104,6 +104,7 @@ class Exact:
     def _regroup(self, fresh: bool = False) -> None:
         """Form the blocks that the present branches ask for; keep those that did not change."""
         scene = self.scene
+        self._list_exits()
         labels = self.base.copy()
         for i, (s, b) in enumerate(zip(self.laws, self.branches)):
             if s.is_contact and (b.stiffness or b.damping):
@@ -145,14 +146,20 @@ class Exact:
             rows = self.rows[np.ix_(watched, index)]
             contact_rows = [(int(i), self.branches[i].damping, scene.law_rows[i, index]) for i in laws if self.branches[i].damping]
             meter = work.Meter(flow, scene.damping[grid], scene.inputs[index], contact_rows)
-            self.flows[key] = (flow, (watched, rows, rows @ flow.u_q, rows @ flow.v_q, meter))
-        flow, (watched, rows, u_rows, v_rows, _) = self.flows[key]
-        return Block(key, index, laws, flow, np.zeros(0), np.zeros(0), watched, rows, np.zeros(0), u_rows, v_rows)
+            self.flows[key] = (flow, (watched, rows, np.vstack([rows @ flow.u_q, rows @ flow.v_q]), meter))
+        flow, (watched, rows, uv_rows, _) = self.flows[key]
+        place = [-1] * len(self.rows)
+        for i, row in enumerate(watched.tolist()):
+            place[row] = i
+        return Block(key, index, laws, flow, np.zeros(0), np.zeros(0), watched, place, rows, np.zeros(0), uv_rows)
 
     # ------------------------------------------------------------------ evaluation
 
     def _functionals(self, t: Array, samples: Sequence[NDArray[Any]], coefs: Array) -> tuple[Array, Array, Array]:
-        """Value, rate and second rate of all rows at local times `t` from the blocks' q samples."""
+        """Value, rate and second rate of all rows at local times `t` from the blocks' q samples.
+
+        The second rate is computed only where an exit or a dashpot of the present branches needs it.
+        """
         value = np.repeat(self.row_constants[:, None], len(t), axis=1)
         rate, second = np.zeros_like(value), np.zeros_like(value)
         if self.known:
@@ -164,11 +171,12 @@ class Exact:
                 if k > 1:
                     second += k * (k - 1) * offset[k][:, None] * p[k - 2]
         for block, q in zip(self.blocks, samples):
-            qdot = block.flow.rate(q, block.g, t)
-            w = block.watched
-            value[w] += (block.u_rows @ q).real
-            rate[w] += (block.v_rows @ q).real
-            second[w] += (block.v_rows @ qdot).real
+            w, n = block.watched, len(block.watched)
+            both = (block.uv_rows @ q).real
+            value[w] += both[:n]
+            rate[w] += both[n:]
+            if self.bending:
+                second[w] += (block.uv_rows[n:] @ block.flow.rate(q, block.g, t)).real
             if block.p is not None and block.flow.u_p is not None:
                 # forces move massless freedoms directly
                 u_p, v_p = block.rows @ block.flow.u_p, block.rows @ block.flow.space.v_p
@@ -178,10 +186,30 @@ class Exact:
                 second[w] += v_p @ slope + u_p @ bend
         return value, rate, second
 
-    def _at(self, tau: float, coefs: Array) -> tuple[Array, Array, Array]:
-        samples = [b.flow.at(b.q, b.g, tau)[:, None] for b in self.blocks]
-        value, rate, second = self._functionals(np.array([tau]), samples, coefs)
-        return value[:, 0], rate[:, 0], second[:, 0]
+    def _at(self, row: int, tau: float, coefs: Array) -> tuple[float, float, float]:
+        """Value, rate and second rate of one row at one time: what polishing asks for again and again."""
+        value, rate, second = float(self.row_constants[row]), 0.0, 0.0
+        if self.known:
+            offset = coefs @ self.row_inputs[row]
+            value += float(work.polynomial(offset, tau))
+            rate += float(work.polynomial(offset, tau, 1))
+            second += float(work.polynomial(offset, tau, 2))
+        for block in self.blocks:
+            i = block.place[row]
+            if i < 0:
+                continue
+            q = block.flow.at(block.q, block.g, tau)
+            n = len(block.watched)
+            value += (block.uv_rows[i] @ q).real
+            rate += (block.uv_rows[n + i] @ q).real
+            second += (block.uv_rows[n + i] @ block.flow.rate(q, block.g, tau)).real
+            if block.p is not None and block.flow.u_p is not None:
+                force, slope, bend = (work.polynomial(block.p, tau, order) for order in (0, 1, 2))
+                u_p, v_p = block.rows[i] @ block.flow.u_p, block.rows[i] @ block.flow.space.v_p
+                value += u_p @ force
+                rate += v_p @ force + u_p @ slope
+                second += v_p @ slope + u_p @ bend
+        return float(value), float(rate), float(second)
 
     def _motion(self, tau: float, coefs: Array, samples: Sequence[NDArray[Any]] | None = None) -> tuple[Array, Array, Array]:
         """Displacement, velocity and acceleration of the unknowns at local time `tau`."""
@@ -325,11 +353,17 @@ class Exact:
         if tau > 0.0:
             for block in self.blocks:
                 done = self._meter(block).measure(block.q, block.g, tau, coefs, self.scene.constant[block.index], block.p)
-                self.damping_work += done.damping
-                self.input_work += done.input
+                if not self.scene.total:
+                    self.damping_work += done.damping
+                    self.input_work += done.input
                 self.contact_work += sum(loss for _, loss in done.contacts)
             if self.scene.total:
-                self._total_work(tau, coefs)
+                fastest = max((b.flow.fastest for b in self.blocks), default=0.0)
+                input_, lost = work.total_work(
+                    self.scene, tau, fastest, lambda x: self._motion(x, coefs), lambda x: self._law_forces(x, coefs), self.t
+                )
+                self.input_work += input_
+                self.damping_work += lost
             for law, collision in self.ledger.open.items():
                 if self.branches[law].name == "pressed":
                     collision.impulse += self._impulse(law, tau, coefs)
@@ -337,7 +371,7 @@ class Exact:
             block.q = q
 
     def _meter(self, block: Block) -> work.Meter:
-        return self.flows[block.key][1][4]  # type: ignore[no-any-return]
+        return self.flows[block.key][1][3]  # type: ignore[no-any-return]
 
     def _impulse(self, law: int, tau: float, coefs: Array) -> float:
         """Integral of a contact force over (0, tau)."""
@@ -359,17 +393,23 @@ class Exact:
 
     # ------------------------------------------------------------------ events and peaks
 
-    def _exits(self) -> tuple[NDArray[np.intp], Array, list[tuple[int, int]]]:
-        pairs = [(i, e) for i, b in enumerate(self.branches) for e in range(len(b.exits))]
-        factors = np.array([self.branches[i].exits[e] for i, e in pairs]).reshape(-1, 3)
-        return np.array([i for i, _ in pairs], np.intp), factors, pairs
+    def _list_exits(self) -> None:
+        """Gather the exits of the present branches as arrays."""
+        self.exit_pairs = [(i, e) for i, b in enumerate(self.branches) for e in range(len(b.exits))]
+        self.exit_law = np.array([i for i, _ in self.exit_pairs], np.intp)
+        self.exit_factors = np.array([self.branches[i].exits[e] for i, e in self.exit_pairs]).reshape(-1, 3).T
+        # the second rate of a law matters where its rate decides
+        self.bending = bool(np.any(self.exit_factors[1])) or any(b.damping for b in self.branches)
 
     def _first_event(
         self, t: Array, value: Array, rate: Array, second: Array, coefs: Array
     ) -> tuple[float, int, int] | None:
-        law, (a, b, c), pairs = (lambda x, y, z: (x, y.T, z))(*self._exits())
-        g = a[:, None] * value[law] + b[:, None] * rate[law] + c[:, None]
-        slope = a[:, None] * rate[law] + b[:, None] * second[law]
+        law, (a, b, c), pairs = self.exit_law, self.exit_factors, self.exit_pairs
+        g = a[:, None] * value[law] + c[:, None]
+        slope = a[:, None] * rate[law]
+        if self.bending:
+            g += b[:, None] * rate[law]
+            slope += b[:, None] * second[law]
         scale = np.abs(a) * self.largest[0, law] + np.abs(b) * self.largest[1, law] + np.abs(c)
         tol = STILL * np.maximum(scale, np.abs(g).max(axis=1))[:, None]
         # a branch holds when it is entered: what stands above zero at the start is rounding
@@ -402,8 +442,8 @@ class Exact:
 
     def _exit_value(self, exit_: tuple[int, float, float, float], tau: float, coefs: Array) -> tuple[float, float]:
         law, a, b, c = exit_
-        value, rate, second = self._at(tau, coefs)
-        return float(a * value[law] + b * rate[law] + c), float(a * rate[law] + b * second[law])
+        value, rate, second = self._at(law, tau, coefs)
+        return a * value + b * rate + c, a * rate + b * second
 
     def _dip(self, exit_: tuple[int, float, float, float], high: float, coefs: Array) -> float:
         """A time in (0, high) where the exit is below zero, for one that starts at zero and falls first."""
@@ -446,7 +486,7 @@ class Exact:
         n = self.n_laws
         peaks = self.ledger.peaks
         targets = [*peaks.deformation, *peaks.watch]
-        self._extremes(t, value, rate, targets, lambda i, tau: tuple(x[i] for x in self._at(tau, coefs)[:2]))
+        self._extremes(t, value, rate, targets, lambda i, tau: self._at(i, tau, coefs)[:2])
         pressed = [i for i in range(n) if self.branches[i].damping]
         for i, b in enumerate(self.branches):
             if i not in pressed:  # without a dashpot the force peaks where the deformation does
@@ -465,7 +505,7 @@ class Exact:
             slope = k * rate[contacts] + c * second[contacts]
 
             def exact(i: int, tau: float) -> tuple[float, float]:
-                v, r, s = (x[contacts[i]] for x in self._at(tau, coefs))
+                v, r, s = self._at(contacts[i], tau, coefs)
                 return float(k[i, 0] * v + c[i, 0] * r + f0[i, 0]), float(k[i, 0] * r + c[i, 0] * s)
 
             targets = [_Top(self.ledger, i) for i in contacts]
@@ -513,25 +553,14 @@ class Exact:
         self.u, self.v = u, v
         self.sink.sample(t, u, v, a, self.states, self.energies(u, v))
 
-    def _total_work(self, tau: float, coefs: Array) -> None:
-        """Replace the structure's input and dashpot work by those of the total form."""
+    def _law_forces(self, tau: float, coefs: Array) -> Array:
+        """Forces of all laws at local time `tau`."""
+        return np.array([x.force(*self._at(i, tau, coefs)[:2]) for i, x in enumerate(self.branches)])
 
     def energies(self, u: Array, v: Array) -> dict[str, float]:
         """Energies at the present state, by name."""
         scene = self.scene
-        d = scene.law_rows @ u + scene.law_inputs @ scene.excitation.value(self.t) if self.n_laws else np.zeros(0)
-        out = {
-            "input": self.input_work,
-            "kinetic": 0.5 * float(v @ scene.mass @ v),
-            "strain": 0.5 * float(u @ scene.stiffness @ u),
-            "damping": self.damping_work,
-            "hysteretic": 0.0,
-            "contact": self.contact_work,
-        }
-        for i, (s, x) in enumerate(zip(self.laws, self.states)):
-            out["strain"] += s.law.stored(x, float(d[i]))
-            out["contact" if s.is_contact else "hysteretic"] += s.law.dissipated(x, float(d[i]))
-        return out
+        return stock(scene, self.t, u, v, self.states, self.input_work, self.damping_work, self.contact_work)
 
     def outcome(self) -> Outcome:
         """What the run gathered."""

@@ -253,7 +253,7 @@ class ModalFlow(Flow):
             left = np.linalg.inv(x)
         else:
             lam, x, left = np.zeros(0, complex), np.zeros((0, 0), complex), np.zeros((0, 0), complex)
-        self.condition = float(np.linalg.norm(x, 2) * np.linalg.norm(left, 2)) if rest else 1.0
+        self.condition = float(np.linalg.norm(x, 1) * np.linalg.norm(left, 1)) if rest else 1.0
         residual = np.abs(space.a[np.ix_(rest, rest)] @ x - x * lam).max(initial=0.0)
         self.residual = float(residual / max(np.abs(lam).max(initial=0.0), 1e-300))
         keep = lam.imag >= 0.0

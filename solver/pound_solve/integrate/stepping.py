@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.base import Ledger, Outcome, Sink, Start, Stop, Watch
+from pound_solve.integrate.base import Ledger, Outcome, Sink, Start, Stop, Watch, stock
 from pound_solve.laws import Branch
 from pound_solve.modes import massless
 from pound_solve.scene import Scene
@@ -276,11 +276,14 @@ class Stepper:
         u, v, a = new
         s = self.scene
         if h > 0.0:
-            p0 = s.inputs @ s.excitation.value(self.t) + s.constant
-            p1 = s.inputs @ s.excitation.value(self.t + h) + s.constant
-            self.work["input"] += h / 6 * float((2 * p0 + p1) @ self.v + (p0 + 2 * p1) @ v)
-            c0 = s.damping @ self.v
-            self.work["damping"] += h / 3 * float(c0 @ self.v + c0 @ v + v @ s.damping @ v)
+            if s.total:
+                self._total_work(h, new)
+            else:
+                p0 = s.inputs @ s.excitation.value(self.t) + s.constant
+                p1 = s.inputs @ s.excitation.value(self.t + h) + s.constant
+                self.work["input"] += h / 6 * float((2 * p0 + p1) @ self.v + (p0 + 2 * p1) @ v)
+                c0 = s.damping @ self.v
+                self.work["damping"] += h / 3 * float(c0 @ self.v + c0 @ v + v @ s.damping @ v)
             rate0, rate1 = s.law_rows @ self.v, s.law_rows @ v
             self.work["contact"] += h / 3 * float(self.law_c @ (rate0 * rate0 + rate0 * rate1 + rate1 * rate1))
             if self.ledger.open:
@@ -290,6 +293,16 @@ class Stepper:
                     collision.impulse += 0.5 * h * float(f0[law] + f1[law])
         self.u, self.v, self.a = u, v, a
         self.steps += 1
+
+    def _total_work(self, h: float, new: Motion) -> None:
+        """Input (power of the supports' reactions) and dashpot work of a step in the total form, by the trapezoid."""
+        scene, s = self.scene, self.scene.structure
+        n = s.n_free
+        for t, motion in ((self.t, (self.u, self.v, self.a)), (self.t + h, new)):
+            u, v, a = (scene.all_freedoms(x, t, order) for order, x in enumerate(motion))
+            force = s.stiffness @ u + s.damping @ v + s.mass @ a + s.law_rows.T @ self._law_forces(t, motion[0], motion[1])
+            self.work["input"] += 0.5 * h * float(force[n:] @ v[n:] + s.loads[:n] @ v[:n])
+            self.work["damping"] += 0.5 * h * float(v @ s.damping @ v)
 
     def _law_forces(self, t: float, u: Array, v: Array) -> Array:
         d, rate = self.deformations(t, u, v)
@@ -319,20 +332,8 @@ class Stepper:
 
     def energies(self) -> dict[str, float]:
         """Energies at the present state, by name."""
-        s = self.scene
-        d, _ = self.deformations(self.t, self.u, self.v)
-        out = {
-            "input": self.work["input"],
-            "kinetic": 0.5 * float(self.v @ s.mass @ self.v),
-            "strain": 0.5 * float(self.u @ s.stiffness @ self.u),
-            "damping": self.work["damping"],
-            "hysteretic": 0.0,
-            "contact": self.work["contact"],
-        }
-        for spring, x, at in zip(self.laws, self.states, d.tolist()):
-            out["strain"] += spring.law.stored(x, at)
-            out["contact" if spring.is_contact else "hysteretic"] += spring.law.dissipated(x, at)
-        return out
+        w = self.work
+        return stock(self.scene, self.t, self.u, self.v, self.states, w["input"], w["damping"], w["contact"])
 
     def outcome(self) -> Outcome:
         """What the run gathered."""
