@@ -125,9 +125,9 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
         inverse = 0.0
         for d, component in enumerate(normal):
             own = model.nodes[node]
-            if component == 0.0 or DIRECTIONS[d] in own.fixed:
-                continue
             at = (own.slaved.get(DIRECTIONS[d], node), d)
+            if component == 0.0 or DIRECTIONS[d] in own.fixed or DIRECTIONS[d] in model.nodes[at[0]].fixed:
+                continue
             if nodal_mass.get(at, 0.0) == 0.0:
                 return 0.0
             inverse += component**2 / nodal_mass[at]
@@ -238,8 +238,12 @@ def _add_damping(
             return structure.mass
         out, chosen = np.zeros_like(structure.mass), frozenset(nodes)
         for where, at, matrix in mass_terms:
-            if where <= chosen:
-                _scatter(out, freedoms, at, matrix)
+            inside = np.array([f[0] in chosen for f in at])
+            if not matrix[np.ix_(inside, ~inside)].any():  # lumped: each node takes its own
+                _scatter(out, freedoms, at, np.where(inside[:, None] & inside, matrix, 0.0))
+            else:  # a consistent matrix is shared evenly by the nodes that can move
+                loose = {k for k in where if len(set(model.nodes[k].fixed)) < 3}
+                _scatter(out, freedoms, at, matrix * (len(loose & chosen) / max(len(loose), 1)))
         return out
 
     def stiffness_of(labels: Collection[str] | None) -> Array:

@@ -72,8 +72,8 @@ def number(nodes: Mapping[int, Node], moved: Collection[Freedom] = ()) -> Freedo
             if DIRECTIONS[d] in n.slaved:
                 continue  # below, once all masters are known
             terms[n.id, d] = ((column[n.id, d], 1.0),) if (n.id, d) in column else ()
-    for n in nodes.values():
-        for d in range(3):
+    for d in (2, 0, 1):  # rotations first: an arm turns with its master, which may itself follow another there
+        for n in nodes.values():
             if DIRECTIONS[d] not in n.slaved:
                 continue
             master = nodes[n.slaved[DIRECTIONS[d]]]

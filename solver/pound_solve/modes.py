@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve, eigh
+from scipy.linalg.lapack import dpstrf
 
 Array = NDArray[np.float64]
 
@@ -73,18 +75,46 @@ def solve(k: Array, m: Array) -> Modes:
     kk, mm = t.T @ k @ t, t.T @ m @ t
     if not len(kk):
         return Modes(np.zeros(0), np.zeros((len(k), 0)))
-    if not np.any(mm - np.diag(np.diag(mm))):
+    if np.any(mm - np.diag(np.diag(mm))):
+        # a mass on a slaved node is felt along fewer directions than its master has: the rest is massless too
         root = 1.0 / np.sqrt(np.diag(mm))
-        values, vectors = np.linalg.eigh(root[:, None] * kk * root)
-        shapes = root[:, None] * vectors
-    else:
-        lower = np.linalg.inv(np.linalg.cholesky(mm))
-        values, vectors = np.linalg.eigh(lower @ kk @ lower.T)
-        shapes = lower.T @ vectors
-    # rounding leaves rigid-body modes at +-1e-16 of the largest value
-    values = np.where(values < 1e-14 * len(values) * values[-1], 0.0, values)
+        share, basis = np.linalg.eigh(root[:, None] * mm * root)
+        if share[0] < 1e-13 * len(share):
+            turned = root[:, None] * basis
+            t = t @ turned @ condense(turned.T @ kk @ turned, share < 1e-13 * len(share))
+            kk, mm = t.T @ k @ t, t.T @ m @ t
+    values, shapes = _eigen(kk, mm)
     full = t @ shapes
     # signs free of rounding: the first component within a hair of the largest is positive
     big = np.abs(full) > (1 - 1e-9) * np.abs(full).max(axis=0)
     sign = np.sign(full[np.argmax(big, axis=0), np.arange(full.shape[1])])
     return Modes(np.sqrt(values), full * sign)
+
+
+def _eigen(k: Array, m: Array) -> tuple[Array, Array]:
+    """Squared frequencies and mass-normalised shapes of K and a positive definite M."""
+    if not np.any(m - np.diag(np.diag(m))):
+        root = 1.0 / np.sqrt(np.diag(m))
+        values, vectors = np.linalg.eigh(root[:, None] * k * root)
+        shapes = root[:, None] * vectors
+    else:
+        lower = np.linalg.inv(np.linalg.cholesky(m))
+        values, vectors = np.linalg.eigh(lower @ k @ lower.T)
+        shapes = lower.T @ vectors
+    size = 1.0 / np.sqrt(np.where(np.diag(k) > 0.0, np.diag(k), 1.0))
+    scaled = size[:, None] * k * size
+    rank = dpstrf(scaled, tol=1e-15 * max(len(k), 10))[2]
+    rigid = np.arange(len(k)) < len(k) - rank  # rounding leaves them at +-1e-16 of the largest value
+    values = np.where(rigid, 0.0, np.maximum(values, 0.0))
+    low = values < 1e-5 * values[-1]
+    if low.any() and not rigid.any():
+        # values far below the largest have lost digits to it: sharpen them by one step of inverse iteration
+        push = m @ shapes[:, low]
+        x = size[:, None] * cho_solve(cho_factor(scaled), size[:, None] * push)
+        scale = 1.0 / np.linalg.norm(x, axis=0)
+        x, push = x * scale, push * scale
+        work, energy = push.T @ x, x.T @ m @ x
+        squares, y = eigh(energy, 0.5 * (work + work.T))  # of 1 / omega^2
+        squares, y = squares[::-1], y[:, ::-1]
+        values[low], shapes[:, low] = 1.0 / squares, x @ (y / np.sqrt(squares))
+    return values, shapes

@@ -194,7 +194,7 @@ def build(structure: Structure, motions: Sequence[Motion], t_end: float, start: 
     # massless freedoms on linear elements follow the others exactly, if what damps them is proportional to
     # what holds them (C_ca + C_cc G = 0) or they are not damped at all
     light = live & massless(m) & ~np.any(rows != 0.0, axis=0)
-    slave = _condensable(k, c, light, live)
+    slave = _condensable(structure.stiffness, structure.damping, light, live)
     if slave.any():
         decisions.append(
             Decision(f"{int(slave.sum())} massless freedoms", "condensed", "they follow the others statically, no error is made")
@@ -303,11 +303,12 @@ def _can_move(structure: Structure, inputs: Array, excitation: Excitation, start
 
 def _condensable(k: Array, c: Array, light: NDArray[np.bool_], live: NDArray[np.bool_]) -> NDArray[np.bool_]:
     none = np.zeros_like(light)
-    for candidates in (light, light & ~np.any(c != 0.0, axis=1)):
+    for candidates in (light, light & ~np.any(c[: len(light)] != 0.0, axis=1)):
         s = np.flatnonzero(candidates)
         if not len(s):
             continue
-        rest = np.flatnonzero(live & ~candidates)
+        # prescribed freedoms are among the others that they follow
+        rest = np.concatenate([np.flatnonzero(live & ~candidates), np.arange(len(live), len(k))])
         values = np.linalg.eigvalsh(k[np.ix_(s, s)])
         if values[0] <= 1e-13 * max(values[-1], 0.0):
             continue  # a mechanism among them: leave it to the integrator, which can name it

@@ -42,18 +42,16 @@ def rows(structure: Structure, wanted: int | None) -> list[tuple[float, ...]]:
     n, modes = structure.n_free, structure.free_vibration
     count = min(len(modes.omega), 12 if wanted is None else wanted)
     out: list[tuple[float, ...]] = []
-    # mass that a direction can move at all: what rides on fixed freedoms only is no part of any mode
-    held = np.any(structure.initial_stiffness[:n, :n] != 0, axis=1)
-    r = [np.array([1.0 if f[1] == d and ok else 0.0 for f, ok in zip(structure.freedoms.free, held)]) for d in range(2)]
-    m, c = structure.mass[:n, :n], structure.damping[:n, :n]
+    # what rides on fixed freedoms only is no part of any mode: the sum over all modes is the mass that can move
+    total = ((structure.ground[:, :n] @ modes.shapes) ** 2).sum(axis=1)
+    c = structure.damping[:n, :n]
     for i in range(count):
         w, shape = float(modes.omega[i]), modes.shapes[:, i]
         damping = float(shape @ c @ shape) / (2 * w) if w > 0 else float("nan")
         row = [i + 1, w, w / (2 * np.pi), 2 * np.pi / w if w > 0 else float("inf"), 100 * damping]
         for d in range(2):
             gamma = float(shape @ structure.ground[d, :n])
-            total = float(r[d] @ m @ r[d])
-            row += [gamma, gamma**2, 100 * gamma**2 / total if total > 0 else 0.0]
+            row += [gamma, gamma**2, 100 * gamma**2 / float(total[d]) if total[d] > 0 else 0.0]
         out.append(tuple(row))
     return out
 

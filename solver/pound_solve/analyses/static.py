@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from pound_deck.schema import Field, Kind, Spec
+from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg.lapack import dpstrf
 
 from pound_solve.assemble import Structure
 from pound_solve.dofs import NAMES
@@ -106,9 +108,17 @@ def _solve(structure: Structure, k: Array, load: Array) -> Array:
     if not len(at):
         return u
     root = 1.0 / np.sqrt(np.where(scale[at] > 0, scale[at], 1.0))
-    values, vectors = np.linalg.eigh(root[:, None] * k[np.ix_(at, at)] * root)
-    weak = values < 1e-13 * len(at)
-    along = vectors.T @ (root * load[at])
+    scaled, push = root[:, None] * k[np.ix_(at, at)] * root, root * load[at]
+    # pivots, not eigenvalues, tell a mechanism from a slender mesh: those of a cantilever of n members fall as n^-3
+    # only (its eigenvalues as n^-4); those of a mechanism are rounding
+    rank = dpstrf(scaled, tol=1e-15 * max(len(at), 10))[2]
+    if rank == len(at):
+        # factored again in the order of the nodes: along a chain that loses fewer digits
+        u[at] = root * cho_solve(cho_factor(scaled), push)
+        return u
+    values, vectors = np.linalg.eigh(scaled)
+    weak = np.arange(len(at)) < len(at) - rank
+    along = vectors.T @ push
     if np.any(values < -1e-10):
         worst = at[int(np.argmax(np.abs(vectors[:, 0])))]
         raise Unstable(f"the stiffness is negative: the structure has collapsed, worst at {_name(structure, int(worst))}")

@@ -76,7 +76,7 @@ def release(k: Array, pins: list[int]) -> tuple[Array, Array]:
     """
     keep = [i for i in range(6) if i not in pins]
     shape, flexibility = np.eye(6), np.zeros((6, 6))
-    if pins and np.any(k[np.ix_(pins, pins)]):
+    if pins and np.any(k[np.ix_(pins, pins)]):  # an axial bar has no bending stiffness to condense
         inverse = np.linalg.inv(k[np.ix_(pins, pins)])
         shape[np.ix_(pins, pins)] = 0.0
         shape[np.ix_(pins, keep)] = -inverse @ k[np.ix_(pins, keep)]
@@ -110,8 +110,10 @@ def build(site: Site) -> Parts:
             raise ElementError("AS (shear deformation) needs G", "AS")
         phi = 12 * ei / (p["G"] * p["AS"] * length**2)
     k = stiffness(p["E"] * p["A"], ei, length, phi)
-    pins = {"NONE": [], "I": [2], "J": [5], "BOTH": [2, 5]}[p["PIN"]]
+    pins = {"NONE": [], "I": [2], "J": [5], "BOTH": [2, 5]}[p["PIN"] if ei > 0.0 else "BOTH"]
     shape, flexibility = release(k, pins)
+    if ei == 0.0:  # an axial bar stays straight: it hands its loads and mass on as a beam on two pins does
+        shape, _ = release(stiffness(0.0, 1.0, length, 0.0), pins)
     ends = end_blocks(p["END1"], p["END2"])
     from_nodes = shape @ ends @ to_local  # global nodal displacements -> local ends of the flexible part
     freedoms = tuple((n.id, d) for n in (site.i, site.j) for d in range(3))

@@ -88,16 +88,17 @@ class Peaks:
         Of every law; for contacts the closure and the force (compression positive).
     collisions : list of Collision
         Ended ones in order of their end, those still closed last.
-    open_gap : list of float
-        Largest closure while open, per law (contacts).
     yields : list of int
         Yield events per law.
+    dashpot_losses : list of float
+        Energy lost in the dashpot of every law (contacts) [F L].
     """
 
     watch: list[Extreme]
     deformation: list[Extreme]
     force: list[Extreme]
     yields: list[int]
+    dashpot_losses: list[float]
     collisions: list[Collision] = field(default_factory=list)
 
 
@@ -150,7 +151,7 @@ class Ledger:
     def __init__(self, scene: Scene, n_watch: int) -> None:
         self.laws = scene.structure.laws
         n = len(self.laws)
-        self.peaks = Peaks([Extreme() for _ in range(n_watch)], [Extreme() for _ in range(n)], [Extreme() for _ in range(n)], [0] * n)
+        self.peaks = Peaks([Extreme() for _ in range(n_watch)], [Extreme() for _ in range(n)], [Extreme() for _ in range(n)], [0] * n, [0.0] * n)
         self.open: dict[int, Collision] = {}
 
     def switched(self, law: int, before: str, after: str, t: float, d: float, v: float, force_after: float) -> None:
@@ -177,6 +178,19 @@ class Ledger:
         self.peaks.collisions += [self.open[i] for i in sorted(self.open)]
         self.open = {}
         return self.peaks
+
+
+def cubic_top(f0: float, f1: float, s0: float, s1: float, h: float) -> tuple[float, float]:
+    """Place in (0, h) and value of the maximum of the cubic with these end values and slopes, rising, then falling."""
+    a = 2 * (f0 - f1) / h**3 + (s0 + s1) / h**2
+    b = 3 * (f1 - f0) / h**2 - (2 * s0 + s1) / h
+    root = b * b - 3 * a * s0
+    if root >= 0:
+        # of the two forms of the root the one without cancellation
+        x = s0 / (np.sqrt(root) - b) if b < 0 else -(b + np.sqrt(root)) / (3 * a) if a else -1.0
+        if 0 <= x <= h:
+            return float(x), float(((a * x + b) * x + s0) * x + f0)
+    return (0.0, f0) if f0 > f1 else (h, f1)
 
 
 def stock(

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from pound_deck.schema import Field, Kind, Spec
 
 from pound_solve.integrate import work
-from pound_solve.integrate.base import Ledger, Outcome, Sink, Start, Stop, Watch, stock
+from pound_solve.integrate.base import Ledger, Outcome, Sink, Start, Stop, Watch, cubic_top, stock
 from pound_solve.integrate.flow import Mechanism, ModalFlow, SeriesFlow, make_flow, powers
 from pound_solve.laws import Branch
 from pound_solve.scene import Scene
@@ -356,7 +356,9 @@ class Exact:
                 if not self.scene.total:
                     self.damping_work += done.damping
                     self.input_work += done.input
-                self.contact_work += sum(loss for _, loss in done.contacts)
+                for law, loss in done.contacts:
+                    self.contact_work += loss
+                    self.ledger.peaks.dashpot_losses[law] += loss
             if self.scene.total:
                 fastest = max((b.flow.fastest for b in self.blocks), default=0.0)
                 input_, lost = work.total_work(
@@ -433,7 +435,9 @@ class Exact:
                     high = top
                 elif j == 0 and g[n, 0] == 0.0 and slope[n, 0] < 0.0:
                     low = self._dip(exit_, high, coefs)
-                tau = self._root(exit_, low, high, coefs)
+                elif j == 0 and g[n, 0] == 0.0 and slope[n, 0] > 0.0:
+                    high = 0.0  # it leaves at once
+                tau = self._root(exit_, low, high, coefs) if high > low else low
                 if best is None or tau < best[0]:
                     best = (tau, *pairs[n])
             if best is not None:
@@ -539,7 +543,7 @@ class Exact:
             best = targets[i].high if sign > 0 else -targets[i].low
             ends = sign * np.array([f0[i, j], value[i, j + 1], s0[i, j], s1[i, j]])
             # the cubic through both ends tells whether it can win; only then is it polished
-            top = _cubic_top(*ends, dt[j])
+            top = cubic_top(*ends, dt[j])[1]
             if top + 0.02 * abs(top - max(ends[0], ends[1])) <= best:
                 continue
             tau = _turning(lambda x, i=i, sign=sign: sign * exact(i, x)[1], float(t[j]), float(t[j + 1]), ends[2], ends[3])  # type: ignore[misc]
@@ -598,17 +602,6 @@ class _Top:
 
     def take(self, value: float, t: float) -> None:
         self.ledger.force(self.law, value, t)
-
-
-def _cubic_top(f0: float, f1: float, s0: float, s1: float, h: float) -> float:
-    """Largest value inside (0, h) of the cubic with these end values and slopes, which rises first and then falls."""
-    a = 2 * (f0 - f1) / h**3 + (s0 + s1) / h**2
-    b = 3 * (f1 - f0) / h**2 - (2 * s0 + s1) / h
-    root = b * b - 3 * a * s0
-    if root < 0:
-        return max(f0, f1)
-    x = -s0 / (b - np.sqrt(root)) if b < 0 else (-b - np.sqrt(root)) / (3 * a) if a else 0.0
-    return max(f0, f1, ((a * x + b) * x + s0) * x + f0) if 0 <= x <= h else max(f0, f1)
 
 
 def _turning(slope: Any, low: float, high: float, s_low: float, s_high: float) -> float:

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.base import Ledger, Outcome, Sink, Start, Stop, Watch, stock
+from pound_solve.integrate.base import Ledger, Outcome, Sink, Start, Stop, Watch, cubic_top, stock
 from pound_solve.laws import Branch
 from pound_solve.modes import massless
 from pound_solve.scene import Scene
@@ -66,6 +66,7 @@ class Stepper:
         self.work = {"input": 0.0, "damping": 0.0, "contact": 0.0}
         self.largest = np.zeros((2, len(self.laws)))
         self._maps: dict[tuple[Any, ...], Array] = {}
+        self._noted: tuple[Array, Array] = (np.zeros(0), np.zeros(0))
         self._regime()
 
     def _regime(self) -> None:
@@ -178,14 +179,14 @@ class Stepper:
                 self._accept(h, new)
                 self.t += left
                 self.same_instant = 0
-                self._note()
+                self._note(h)
                 return
             tau, new, law, exit_index = event
             self._accept(tau, new)
             self.t += tau
             left -= tau
             whole = False
-            self._note()
+            self._note(tau)
             self._switch(law, exit_index)
 
     def _exits(self, t: float, motion: Motion) -> tuple[Array, Array]:
@@ -271,6 +272,7 @@ class Stepper:
             raise self._stop("A503", f"{self.same_instant} changes within one step, the last in element {s.element} ({s.rule}): {before} to {after.name}")
         self._regime()
         self.settle()
+        self._note()
 
     def _accept(self, h: float, new: Motion) -> None:
         u, v, a = new
@@ -285,7 +287,11 @@ class Stepper:
                 c0 = s.damping @ self.v
                 self.work["damping"] += h / 3 * float(c0 @ self.v + c0 @ v + v @ s.damping @ v)
             rate0, rate1 = s.law_rows @ self.v, s.law_rows @ v
-            self.work["contact"] += h / 3 * float(self.law_c @ (rate0 * rate0 + rate0 * rate1 + rate1 * rate1))
+            if self.law_c.any():
+                loss = h / 3 * self.law_c * (rate0 * rate0 + rate0 * rate1 + rate1 * rate1)
+                self.work["contact"] += float(loss.sum())
+                for law in np.flatnonzero(loss):
+                    self.ledger.peaks.dashpot_losses[law] += float(loss[law])
             if self.ledger.open:
                 f0 = self._law_forces(self.t, self.u, self.v)
                 f1 = self._law_forces(self.t + h, u, v)
@@ -308,24 +314,47 @@ class Stepper:
         d, rate = self.deformations(t, u, v)
         return self.law_k * d + self.law_c * rate + self.law_f0
 
-    def _note(self) -> None:
-        """Count the present motion into the peaks."""
-        peaks, w = self.ledger.peaks, self.watch
-        if len(w.names):
-            now = w.rows @ self.u + w.constants
-            if self.scene.total:
-                now = now + w.input_rows @ self.scene.excitation.value(self.t)
-            for x, extreme in zip(now.tolist(), peaks.watch):
-                extreme.take(x, self.t)
-        if len(self.laws):
-            d, rate = self.deformations(self.t, self.u, self.v)
-            force = self.law_k * d + self.law_c * rate + self.law_f0
-            np.maximum(self.largest, np.abs([d, rate]), out=self.largest)
-            for i, (x, f) in enumerate(zip(d.tolist(), force.tolist())):
-                peaks.deformation[i].take(x, self.t)
-                peaks.force[i].take(f, self.t)
-                if i in self.ledger.open:
-                    self.ledger.force(i, f, self.t)
+    def _watched(self) -> tuple[Array, Array, Array]:
+        """Values and slopes of all quantities whose peaks are kept: drifts, deformations, contact forces; law rates."""
+        w, s = self.watch, self.scene
+        value, slope = w.rows @ self.u + w.constants, w.rows @ self.v
+        if s.total:
+            value = value + w.input_rows @ s.excitation.value(self.t)
+            slope = slope + w.input_rows @ s.excitation.value(self.t, 1)
+        d, rate = self.deformations(self.t, self.u, self.v)
+        force, change = self.law_k * d + self.law_c * rate + self.law_f0, self.law_k * rate
+        if self.law_c.any():
+            second = s.law_rows @ self.a
+            if s.total:
+                second = second + s.law_inputs @ s.excitation.value(self.t, 2)
+            change = change + self.law_c * second
+        np.maximum(self.largest, np.abs([d, rate]), out=self.largest)
+        return np.concatenate([value, d, force]), np.concatenate([slope, rate, change]), rate
+
+    def _note(self, since: float = 0.0) -> None:
+        """Count the present motion into the peaks; `since` the last note on the same branches, turning points too."""
+        value, slope, _ = self._watched()
+        for i, x in enumerate(value.tolist()):
+            self._take(i, x, self.t)
+        if since > 0.0:
+            f0, s0 = self._noted
+            for i in np.flatnonzero(s0 * slope < 0):
+                sign = 1.0 if s0[i] > 0 else -1.0
+                x, top = cubic_top(sign * f0[i], sign * value[i], sign * s0[i], sign * slope[i], since)
+                self._take(int(i), sign * top, self.t - since + x)
+        self._noted = value, slope
+
+    def _take(self, i: int, value: float, t: float) -> None:
+        peaks, n_watch, n = self.ledger.peaks, len(self.watch.names), len(self.laws)
+        if i < n_watch:
+            peaks.watch[i].take(value, t)
+        elif i < n_watch + n:
+            peaks.deformation[i - n_watch].take(value, t)
+        else:
+            law = i - n_watch - n
+            peaks.force[law].take(value, t)
+            if law in self.ledger.open:
+                self.ledger.force(law, value, t)
 
     def _sample(self, t: float) -> None:
         self.sink.sample(t, self.u.copy(), self.v.copy(), self.a.copy(), tuple(self.states), self.energies())

@@ -14,7 +14,7 @@ from pound_deck.schema import Field, Kind
 from pound_solve.motions.piecewise import Array, Piecewise, merged
 from pound_solve.records.base import RecordError
 
-__all__ = ["COMMON", "METRE", "Context", "Motion", "Piecewise", "RecordError", "common_breaks", "finish"]
+__all__ = ("COMMON", "METRE", "Context", "Motion", "Piecewise", "RecordError", "common_breaks", "finish")
 
 COMMON: Final = (
     Field("DIRECTION", Kind.WORD, default="X", words=("X", "Y"), doc="direction of the ground motion"),

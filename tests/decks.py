@@ -1,0 +1,111 @@
+"""Decks in tests: from a text to a model, a structure, a static result or a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from pound_deck.diagnostics import has_errors, render
+from pound_deck.model import Model
+from pound_deck.reader import read_text
+
+from pound_solve import scene
+from pound_solve.analyses import history, static
+from pound_solve.assemble import Structure, assemble
+from pound_solve.catalog import catalog
+from pound_solve.dofs import Freedom
+from pound_solve.motions.base import Context
+
+Array = NDArray[np.float64]
+
+
+def model_of(text: str, params: Mapping[str, object] | None = None) -> Model:
+    """The model of a deck; ANALYSIS is added where the deck has none.  A mistake fails the test."""
+    if "ANALYSIS" not in text:
+        text += "\nANALYSIS\n STATIC\n"
+    given = {name: repr(value) for name, value in (params or {}).items()}
+    model, found, files = read_text(text, catalog(), given)
+    assert model is not None and not has_errors(found), render(found, files)
+    return model
+
+
+def structure_of(
+    text: str,
+    params: Mapping[str, object] | None = None,
+    moved: Collection[Freedom] = (),
+    self_weight: bool = True,
+) -> Structure:
+    """The assembled structure of a deck."""
+    return assemble(model_of(text, params), moved, self_weight)
+
+
+def scene_of(text: str, params: Mapping[str, object] | None = None) -> scene.Scene:
+    """The scene of a deck with EQUAKE and HISTORY cards, started from its static state and INITIAL cards."""
+    model = model_of(text, params)
+    end = max(c["T"] for c in model.analyses if c.spec.name == "HISTORY")
+    motions = [c.spec.impl(c.values, Context(model.gravity, 1.0, (), end)) for c in model.equake]
+    fixed = [(n.id, d) for n in model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed]
+    structure = assemble(model, scene.moved_supports(motions, fixed))
+    u0, v0 = history.initial(structure)
+    return scene.build(structure, motions, end, static.solve(structure).u + u0, v0)
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A static result by names.
+
+    Attributes
+    ----------
+    u : mapping of node to ndarray, shape (3,)
+        Displacements ux, uy, rz of every node, slaved and fixed ones included.
+    force : mapping of (element, quantity) to float
+        Everything that elements put out; laws as ``force X`` or ``contact``.
+    reaction : mapping of node to ndarray, shape (3,)
+        Forces of the ground on the nodes that have a fixed direction.
+    """
+
+    structure: Structure
+    state: static.StaticState
+    u: dict[int, Array]
+    force: dict[tuple[int, str], float]
+    reaction: dict[int, Array]
+
+    def total(self) -> Array:
+        """Resultant of the reactions about the origin: x, y, moment."""
+        out = np.zeros(3)
+        for node, (x, y, m) in self.reaction.items():
+            n = self.structure.model.nodes[node]
+            out += (x, y, m + n.x * y - n.y * x)
+        return out
+
+
+def solved(text: str, params: Mapping[str, object] | None = None, self_weight: bool = True) -> Solved:
+    """Static result of a deck."""
+    return solve(model_of(text, params), self_weight)
+
+
+def solve(model: Model, self_weight: bool = True) -> Solved:
+    """Static result of a model."""
+    s = assemble(model, self_weight=self_weight)
+    state = static.solve(s)
+    u = {n: s.freedoms.matrix([(n, d) for d in range(3)]) @ state.u for n in model.nodes}
+    force = {(o.element, o.quantity): float(s.freedoms.row(o.freedoms, o.u_row) @ state.u) + o.constant for o in s.outputs}
+    for spring, law_state, row in zip(s.laws, state.states, s.law_rows):
+        name = "contact" if spring.is_contact else f"force {spring.component}"
+        force[spring.element, name] = spring.law.branch(law_state).force(float(row @ state.u), 0.0)
+    # reactions: let the supports go, and see what must hold them
+    bare = replace(model, nodes={k: replace(n, fixed="") for k, n in model.nodes.items()}, damping=())
+    whole = assemble(bare, self_weight=self_weight)
+    full = np.array([u[n][d] for n, d in whole.freedoms.free])
+    r = whole.stiffness @ full - whole.loads
+    for spring, law_state, row in zip(whole.laws, state.states, whole.law_rows):
+        r += row * spring.law.branch(law_state).force(float(row @ full), 0.0)
+    at = dict(zip(whole.freedoms.free, r))
+    reaction = {
+        n.id: np.array([at[n.id, d] if "XYR"[d] in n.fixed else 0.0 for d in range(3)])
+        for n in model.nodes.values()
+        if n.fixed
+    }
+    return Solved(s, state, u, force, reaction)

