@@ -15,7 +15,7 @@ from pound_deck.model import Model
 from pound_deck.schema import Field, Kind, Spec
 
 from pound_solve.assemble import Structure
-from pound_solve.integrate.base import ENERGIES, Extreme, Start, Watch
+from pound_solve.integrate.base import ENERGIES, Extreme, Start, Watch, energies
 from pound_solve.laws import State, follow
 from pound_solve.scene import Scene
 
@@ -177,16 +177,17 @@ class Recorder:
             "energy": ((7,), {"labels": [*ENERGIES, "residual"], "unit": "F*L"}),
         }
 
-    def sample(self, t: float, u: Array, v: Array, a: Array, states: Sequence[State], energy: Mapping[str, float]) -> None:
+    def sample(self, t: float, u: Array, v: Array, a: Array, states: Sequence[State], works: Array) -> None:
         """Take one sample (see `integrate.base.Sink`)."""
         laws = self.scene.structure.laws
         s, rate = self.scene.excitation.value(t), self.scene.excitation.value(t, 1)
         d = self.scene.law_rows @ u + self.scene.law_inputs @ s
         ddot = self.scene.law_rows @ v + self.scene.law_inputs @ rate
         force = [x.law.branch(state).force(float(p), float(q)) for x, state, p, q in zip(laws, states, d, ddot)]
+        energy = energies(self.scene, t, u, v, states, works)
         if self.first_energy is None:
-            self.first_energy = dict(energy)
-        self.last_energy = dict(energy)
+            self.first_energy = energy
+        self.last_energy = energy
         residual = self.residual(energy)
         self.residual_peak = max(self.residual_peak, abs(residual))
         self._rows.append((t, u, v, a, s, d, np.array(force), [*(energy[k] for k in ENERGIES), residual]))

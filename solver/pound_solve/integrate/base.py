@@ -102,11 +102,32 @@ class Peaks:
     collisions: list[Collision] = field(default_factory=list)
 
 
+class Peak(Protocol):
+    """Something that keeps extremes, as `Extreme`."""
+
+    @property
+    def high(self) -> float:
+        """Largest value so far."""
+        ...
+
+    @property
+    def low(self) -> float:
+        """Smallest value so far."""
+        ...
+
+    def take(self, value: float, t: float) -> None:
+        """Count a value in."""
+        ...
+
+
 class Sink(Protocol):
     """Takes the samples of a history."""
 
-    def sample(self, t: float, u: Array, v: Array, a: Array, states: Sequence[State], energy: Mapping[str, float]) -> None:
-        """Take the motion, the laws' states and the energies at an output time."""
+    def sample(self, t: float, u: Array, v: Array, a: Array, states: Sequence[State], works: Array) -> None:
+        """Take the motion and the laws' states at an output time.
+
+        `works`, shape (3,), are the work put in, and that lost so far in the structure's and in the contacts' dashpots.
+        """
         ...
 
 
@@ -173,11 +194,31 @@ class Ledger:
         if collision is not None and value > collision.peak:
             collision.peak, collision.t_peak = value, t
 
+    def running(self, law: int) -> Peak:
+        """Keeper of the largest force in the contact's present collision."""
+        return _Running(self, law)
+
     def close(self) -> Peaks:
         """Return all peaks; contacts still closed come last."""
         self.peaks.collisions += [self.open[i] for i in sorted(self.open)]
         self.open = {}
         return self.peaks
+
+
+class _Running:
+    """Feeds a contact's force into its running collision; only the largest counts."""
+
+    low = -np.inf
+
+    def __init__(self, ledger: Ledger, law: int) -> None:
+        self.ledger, self.law = ledger, law
+
+    @property
+    def high(self) -> float:
+        return self.ledger.open[self.law].peak
+
+    def take(self, value: float, t: float) -> None:
+        self.ledger.force(self.law, value, t)
 
 
 def cubic_top(f0: float, f1: float, s0: float, s1: float, h: float) -> tuple[float, float]:
@@ -193,9 +234,7 @@ def cubic_top(f0: float, f1: float, s0: float, s1: float, h: float) -> tuple[flo
     return (0.0, f0) if f0 > f1 else (h, f1)
 
 
-def stock(
-    scene: Scene, t: float, u: Array, v: Array, states: Sequence[State], input_work: float, damping_work: float, contact_work: float
-) -> dict[str, float]:
+def energies(scene: Scene, t: float, u: Array, v: Array, states: Sequence[State], works: Array) -> dict[str, float]:
     """Return all energies by name [F L]: the works so far, and what the present state holds and has lost."""
     laws = scene.structure.laws
     d = scene.law_rows @ u + scene.law_inputs @ scene.excitation.value(t) if laws else np.zeros(0)
@@ -205,8 +244,8 @@ def stock(
         kinetic, strain = 0.5 * float(all_v @ s.mass @ all_v), 0.5 * float(all_u @ s.stiffness @ all_u)
     else:
         kinetic, strain = 0.5 * float(v @ scene.mass @ v), 0.5 * float(u @ scene.stiffness @ u)
-    out = dict(zip(ENERGIES, (input_work, kinetic, strain, damping_work, 0.0, contact_work)))
-    for s_, x, at in zip(laws, states, d.tolist()):
-        out["strain"] += s_.law.stored(x, at)
-        out["contact" if s_.is_contact else "hysteretic"] += s_.law.dissipated(x, at)
+    out = dict(zip(ENERGIES, (float(works[0]), kinetic, strain, float(works[1]), 0.0, float(works[2]))))
+    for spring, x, at in zip(laws, states, d.tolist()):
+        out["strain"] += spring.law.stored(x, at)
+        out["contact" if spring.is_contact else "hysteretic"] += spring.law.dissipated(x, at)
     return out

@@ -33,9 +33,10 @@ from pound_solve.integrate import phi
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-MOST_CONDITION = 1e7  #: of the mode matrix; beyond it the series is used
+MOST_CONDITION = 1e5  #: of the mode matrix; beyond it the series is used
+SLOW = 1e-3  #: omega^2 below this share of the largest is sought again among the slow modes
 RECURRING = 64  #: lengths of segments for which the response is kept
-RIGID = 1e-14  #: omega^2 below this share of the largest (times the size) is a rigid-body mode
+RIGID = 1e-14  #: omega^2 below this share of the rounding scale (times the size) is a rigid-body mode
 
 
 class Mechanism(Exception):
@@ -146,17 +147,33 @@ def _undamped(m: Array, k: Array) -> tuple[Array, Array]:
     if not np.any(m - np.diag(np.diag(m))):
         root = 1.0 / np.sqrt(np.diag(m))
         values, vectors = np.linalg.eigh(root[:, None] * k * root)
-        return values, root[:, None] * vectors
-    lower = np.linalg.inv(np.linalg.cholesky(m))
-    values, vectors = np.linalg.eigh(lower @ k @ lower.T)
-    return values, lower.T @ vectors
+        phi_u = root[:, None] * vectors
+    else:
+        lower = np.linalg.inv(np.linalg.cholesky(m))
+        values, vectors = np.linalg.eigh(lower @ k @ lower.T)
+        phi_u = lower.T @ vectors
+    # all values carry the rounding of the largest: cleared of the fast modes, the slow ones are solved again
+    # among themselves (a light node beside heavy ones would cost the slow modes half their digits)
+    slow = np.arange(len(values))
+    while len(slow):
+        chosen = np.abs(values[slow]) < SLOW * np.abs(values[slow]).max()
+        fast, slow = slow[~chosen], slow[chosen]
+        shapes = phi_u[:, slow]
+        shapes = shapes - phi_u[:, fast] @ ((phi_u[:, fast].T @ (k @ shapes)) / np.where(values[fast], values[fast], 1.0)[:, None])
+        values[slow], turn = np.linalg.eigh(shapes.T @ k @ shapes)
+        phi_u[:, slow] = shapes @ turn
+    return values, phi_u
 
 
 def _second_order(m: Array, c: Array, k: Array) -> StateSpace:
     n = len(m)
     omega2, phi_u = _undamped(m, k)
     top = np.abs(omega2).max(initial=0.0)
-    omega2 = np.where(np.abs(omega2) < RIGID * n * top, 0.0, omega2)
+    terms = np.einsum("ri,rs,si->i", np.abs(phi_u), np.abs(k), np.abs(phi_u))  # what omega^2 is summed from
+    omega2 = np.where(np.abs(omega2) < RIGID * n * terms, 0.0, omega2)
+    still = omega2 == 0.0
+    # among rigid-body modes those without damping are told from the others
+    phi_u[:, still] = phi_u[:, still] @ np.linalg.eigh(phi_u[:, still].T @ c @ phi_u[:, still])[1]
     # the scale of a rigid mode's displacement is free; that of a falling one (negative stiffness) is its rate
     scale = np.sqrt(np.abs(omega2))
     scale[scale == 0.0] = min(1.0, np.sqrt(top)) if top else 1.0
@@ -166,7 +183,7 @@ def _second_order(m: Array, c: Array, k: Array) -> StateSpace:
     a[n:, :n] = np.diag(-omega2 / scale)
     a[n:, n:] = -damping
     zero = np.zeros((n, n))
-    free = (omega2 == 0.0) & (np.abs(damping).max(axis=1, initial=0.0) <= 1e-14 * np.abs(damping).max(initial=0.0))
+    free = still & (np.abs(damping).max(axis=1, initial=0.0) <= 1e-14 * np.abs(damping).max(initial=0.0))
     rigid = tuple((int(i), int(n + i)) for i in np.flatnonzero(free))
     to_modes = phi_u.T @ m
     return StateSpace(
@@ -211,11 +228,11 @@ class Flow:
         raise NotImplementedError
 
     def forcing(self, coefs: Array, constant: Array) -> NDArray[np.generic]:
-        """Return the forcing g of q, shape (degree + 1, n_q), from inputs' coefficients and a constant force."""
+        """Return the forcing g of q, shape (..., degree + 1, n_q), from inputs' coefficients and a constant force."""
         raise NotImplementedError
 
     def push(self, p: Array) -> NDArray[np.generic]:
-        """Return the forcing of q from force polynomials, shape (degree + 1, n)."""
+        """Return the forcing of q from force polynomials, shape (..., degree + 1, n)."""
         raise NotImplementedError
 
     def integral(self, q: NDArray[np.generic], g: NDArray[np.generic], t: float) -> NDArray[np.generic]:
@@ -226,8 +243,30 @@ class Flow:
         """Return q at 0, h, ..., (count - 1) h, shape (n_q, count)."""
         raise NotImplementedError
 
+    def march(self, q: NDArray[np.generic], gs: NDArray[np.generic], h: float) -> NDArray[np.generic]:
+        """Return q at the ends of successive intervals of length `h`, shape (n_q, n + 1), the start included.
+
+        `gs`, shape (n, degree + 1, n_q), holds the forcing of each interval about its own start.
+        """
+        out = [q]
+        for g in gs:
+            out.append(self.at(out[-1], g, h))
+        return np.stack(out, axis=1)
+
+    def samples(self, qs: NDArray[np.generic], gs: NDArray[np.generic], h: float, count: int) -> NDArray[np.generic]:
+        """Return `sample` for several intervals with starts `qs`, shape (n_q, n, count)."""
+        return np.stack([self.sample(qs[:, i], g, h, count) for i, g in enumerate(gs)], axis=1)
+
+    def rates(self, samples: NDArray[np.generic], gs: NDArray[np.generic], t: Array) -> NDArray[np.generic]:
+        """Return `rate` for the samples of several intervals at local times `t`, same shape."""
+        return np.stack([self.rate(samples[:, i], g, t) for i, g in enumerate(gs)], axis=1)
+
     def at(self, q: NDArray[np.generic], g: NDArray[np.generic], t: float) -> NDArray[np.generic]:
         """Return q at one time `t`."""
+        raise NotImplementedError
+
+    def path(self, q: NDArray[np.generic], g: NDArray[np.generic], times: Array) -> NDArray[np.generic]:
+        """Return q at rising `times`, shape (n_q, n_times)."""
         raise NotImplementedError
 
     def rate(self, q: NDArray[np.generic], g: NDArray[np.generic], t: Array | float) -> NDArray[np.generic]:
@@ -250,15 +289,21 @@ class ModalFlow(Flow):
         rest = [i for i in range(len(space.a)) if i not in set(rigid_u) | set(rigid_v)]
         if rest:
             lam, x = np.linalg.eig(space.a[np.ix_(rest, rest)])
-            left = np.linalg.inv(x)
         else:
-            lam, x, left = np.zeros(0, complex), np.zeros((0, 0), complex), np.zeros((0, 0), complex)
-        self.condition = float(np.linalg.norm(x, 1) * np.linalg.norm(left, 1)) if rest else 1.0
+            lam, x = np.zeros(0, complex), np.zeros((0, 0), complex)
         residual = np.abs(space.a[np.ix_(rest, rest)] @ x - x * lam).max(initial=0.0)
         self.residual = float(residual / max(np.abs(lam).max(initial=0.0), 1e-300))
         keep = lam.imag >= 0.0
-        lam, x, left = lam[keep], x[:, keep], left[keep]
-        weight = np.where(lam.imag > 0.0, 2.0, 1.0)
+        lam, x = lam[keep], x[:, keep]
+        paired = lam.imag > 0.0
+        weight = np.where(paired, 2.0, 1.0)
+        # inverted as real and imaginary parts: a complex inverse keeps pairs conjugate only to rounding, which near
+        # critical damping costs the condition twice over
+        parts = np.hstack([x.real, x.imag[:, paired]])
+        back = np.linalg.inv(parts)
+        left = back[: len(lam)].astype(complex)
+        left[paired] = 0.5 * (back[: len(lam)][paired] - 1j * back[len(lam) :])
+        self.condition = float(np.linalg.norm(parts, 1) * np.linalg.norm(back, 1)) if rest else 1.0
         nr, ne = len(rigid_u), len(lam)
         self.a_rows = np.arange(ne, ne + nr)  # displacements of rigid modes among q
         self.b_rows = np.arange(ne + nr, ne + 2 * nr)  # their velocities
@@ -285,7 +330,7 @@ class ModalFlow(Flow):
 
     def forcing(self, coefs: Array, constant: Array) -> Complex:  # noqa: D102
         g = coefs @ self._input.T
-        g[0] += self._force @ constant
+        g[..., 0, :] += self._force @ constant
         return g
 
     def push(self, p: Array) -> Complex:  # noqa: D102
@@ -309,50 +354,82 @@ class ModalFlow(Flow):
         # t^(k+1) K_k(lam t), shape (degree + 1, n_q, n_t)
         return e, phi.duhamel(z, degree, e) * powers(t, degree + 1)[1:, None, :]
 
-    def sample(self, q: Complex, g: Complex, h: float, count: int) -> Complex:  # type: ignore[override]  # noqa: D102
-        degree = len(g) - 1
+    def _table(self, h: float, count: int, degree: int) -> tuple[Complex, Complex]:
+        """Responses at 0, h, ..., (count - 1) h, kept."""
         n, e, tables = self._tables.get((h, degree), (0, None, None))
         if n < count:
             n = max(count, 16)
-            t = h * np.arange(n)
-            e, tables = self._responses(t, degree)
+            e, tables = self._responses(h * np.arange(n), degree)
             self._tables[h, degree] = (n, e, tables)
-        out = e[:, :count] * q[:, None]
-        for k in range(degree + 1):
-            out += tables[k, :, :count] * g[k][:, None]
-        self._drift(out, q, g, h * np.arange(count))
+        return e[:, :count], tables[:, :, :count]
+
+    def _once(self, t: float, degree: int) -> tuple[Complex, Complex]:
+        """Response at one time, kept if there is room: lengths of segments recur."""
+        found = self._single.get((t, degree))
+        if found is None:
+            e, tables = self._responses(np.array([t]), degree)
+            found = e[:, 0], tables[:, :, 0]
+            if len(self._single) < RECURRING:
+                self._single[t, degree] = found
+        return found
+
+    def sample(self, q: Complex, g: Complex, h: float, count: int) -> Complex:  # type: ignore[override]  # noqa: D102
+        return self.samples(q[:, None], g[None], h, count)[:, 0]
+
+    def samples(self, qs: Complex, gs: Complex, h: float, count: int) -> Complex:  # type: ignore[override]  # noqa: D102
+        e, tables = self._table(h, count, gs.shape[1] - 1)
+        out = e[:, None, :] * qs[:, :, None]
+        for k in range(gs.shape[1]):
+            out += tables[k][:, None, :] * gs[:, k].T[:, :, None]
+        self._drift(out, qs, gs, h * np.arange(count))
         return out
 
     def at(self, q: Complex, g: Complex, t: float) -> Complex:  # type: ignore[override]  # noqa: D102
-        key = (t, len(g) - 1)
-        found = self._single.get(key)
-        if found is None:
-            found = self._responses(np.array([t]), len(g) - 1)
-            if len(self._single) < RECURRING:
-                self._single[key] = found
-        e, table = found
-        out = e[:, 0] * q + np.einsum("ki,ki->i", table[:, :, 0], g)
-        out = out[:, None]
-        self._drift(out, q, g, np.array([t]))
+        e, table = self._once(t, len(g) - 1)
+        out = e * q + (table * g).sum(axis=0)
+        if len(self.a_rows):
+            out = out[:, None, None]
+            self._drift(out, q[:, None], g[None], np.array([t]))
+            out = out[:, 0, 0]
+        return out
+
+    def march(self, q: Complex, gs: Complex, h: float) -> Complex:  # type: ignore[override]  # noqa: D102
+        if len(self.a_rows):
+            return super().march(q, gs, h)
+        e, table = self._once(h, gs.shape[1] - 1)
+        pushed = (table * gs).sum(axis=1)
+        out = np.empty((len(q), len(gs) + 1), complex)
+        out[:, 0] = q
+        for i, push in enumerate(pushed):
+            out[:, i + 1] = q = e * q + push
+        return out
+
+    def path(self, q: Complex, g: Complex, times: Array) -> Complex:  # type: ignore[override]  # noqa: D102
+        e, table = self._responses(times, len(g) - 1)
+        out = (e * q[:, None] + np.einsum("kit,ki->it", table, g))[:, None]
+        self._drift(out, q[:, None], g[None], times)
         return out[:, 0]
 
-    def _drift(self, out: Complex, q: Complex, g: Complex, t: Array) -> None:
-        """Add what rigid-body velocities and forces do to rigid-body displacements."""
+    def _drift(self, out: Complex, qs: Complex, gs: Complex, t: Array) -> None:
+        """Add what rigid-body velocities and forces do to rigid-body displacements, shape (n_q, n, n_t)."""
         if len(self.a_rows):
-            a, b, s = self.a_rows, self.b_rows, self.scale[:, None]
-            out[a] += s * q[b][:, None] * t
-            for k in range(len(g)):
-                out[a] += s * g[k][b][:, None] * t ** (k + 2) / ((k + 1) * (k + 2))
+            a, b, s = self.a_rows, self.b_rows, self.scale[:, None, None]
+            out[a] += s * qs[b][:, :, None] * t
+            for k in range(gs.shape[1]):
+                out[a] += s * gs[:, k, b].T[:, :, None] * t ** (k + 2) / ((k + 1) * (k + 2))
 
     def rate(self, q: Complex, g: Complex, t: Array | float) -> Complex:  # type: ignore[override]  # noqa: D102
-        t = np.atleast_1d(t)
-        samples = q if q.ndim == 2 else q[:, None]
-        out = self.lam[:, None] * samples
-        for k in range(len(g)):
-            out += g[k][:, None] * t**k
+        one = q.ndim == 1
+        out = self.rates(q[:, None, None] if one else q[:, None], g[None], np.atleast_1d(t))[:, 0]
+        return out[:, 0] if one else out
+
+    def rates(self, samples: Complex, gs: Complex, t: Array) -> Complex:  # type: ignore[override]  # noqa: D102
+        out = self.lam[:, None, None] * samples
+        for k in range(gs.shape[1]):
+            out += gs[:, k].T[:, :, None] * t**k
         if len(self.a_rows):
-            out[self.a_rows] += self.scale[:, None] * samples[self.b_rows]
-        return out if q.ndim == 2 else out[:, 0]
+            out[self.a_rows] += self.scale[:, None, None] * samples[self.b_rows]
+        return out
 
 
 class SeriesFlow(Flow):
@@ -372,7 +449,7 @@ class SeriesFlow(Flow):
 
     def forcing(self, coefs: Array, constant: Array) -> Array:  # noqa: D102
         g = coefs @ self._input.T
-        g[0] += self.space.b @ constant
+        g[..., 0, :] += self.space.b @ constant
         return g
 
     def push(self, p: Array) -> Array:  # noqa: D102
@@ -380,7 +457,15 @@ class SeriesFlow(Flow):
 
     def integral(self, q: Array, g: Array, t: float) -> Array:  # type: ignore[override]  # noqa: D102
         w, points = gauss(t, self.fastest)
-        return np.stack([self.at(q, g, float(x)) for x in points], axis=1) @ w
+        return self.path(q, g, points) @ w
+
+    def path(self, q: Array, g: Array, times: Array) -> Array:  # type: ignore[override]  # noqa: D102
+        # from time to time, each as the start of the next
+        out, last = np.empty((len(q), len(times))), 0.0
+        for i, t in enumerate(times):
+            q = self.at(q, _shift(g, last), float(t) - last)
+            out[:, i], last = q, float(t)
+        return out
 
     def at(self, q: Array, g: Array, t: float) -> Array:  # type: ignore[override]  # noqa: D102
         # Taylor series of the solution in substeps with |a| h <= 1: derivative by derivative
@@ -431,7 +516,7 @@ class SeriesFlow(Flow):
         return self.space.a @ q + np.einsum("ki,k->i", g, p)
 
 
-_X, _W = np.polynomial.legendre.leggauss(8)
+_X, _W = np.polynomial.legendre.leggauss(12)
 _X, _W = 0.5 * (_X + 1.0), 0.5 * _W
 
 

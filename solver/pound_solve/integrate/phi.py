@@ -28,7 +28,7 @@ def _near(degree: int) -> tuple[float, int]:
 
 @cache
 def _series(degree: int, of_duhamel: bool) -> NDArray[np.float64]:
-    """Coefficients of the power series of all K_k or J_k, highest power first, shape (n_terms, degree + 1).
+    """Coefficients of the power series of all K_k or J_k, lowest power first, shape (n_terms, degree + 1).
 
     ``K_k = k! sum z^n / (n + k + 1)!`` and ``J_k = sum z^n / (n! (n + k + 1))``; see `_near`.
     """
@@ -37,15 +37,16 @@ def _series(degree: int, of_duhamel: bool) -> NDArray[np.float64]:
     for k in range(degree + 1):
         for n in range(count):
             out[n, k] = factorial(k) / factorial(n + k + 1) if of_duhamel else 1.0 / (factorial(n) * (n + k + 1))
-    return out[::-1].copy()
+    return out
 
 
 def _sum_series(z: Complex, degree: int, of_duhamel: bool) -> Complex:
+    """Sum the series of all k at once for a row of arguments, shape (degree + 1, n)."""
     coefs = _series(degree, of_duhamel)
-    total = np.zeros((degree + 1, *z.shape), complex)
-    for row in coefs:
-        total = total * z + row.reshape(-1, *([1] * z.ndim))
-    return total
+    powers = np.empty((len(coefs), len(z)), complex)
+    powers[0] = 1.0
+    powers[1:] = z
+    return coefs.T @ np.multiply.accumulate(powers, axis=0, out=powers)
 
 
 def duhamel(z: Complex, degree: int, exp_z: Complex | None = None) -> Complex:

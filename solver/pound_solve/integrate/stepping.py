@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.base import Ledger, Outcome, Sink, Start, Stop, Watch, cubic_top, stock
+from pound_solve.integrate.base import Ledger, Outcome, Sink, Start, Stop, Watch, cubic_top
 from pound_solve.laws import Branch
 from pound_solve.modes import massless
 from pound_solve.scene import Scene
@@ -63,7 +63,7 @@ class Stepper:
         self.a = np.zeros_like(self.u)
         self.ledger = Ledger(scene, len(watch.names))
         self.steps = self.events = self.same_instant = 0
-        self.work = {"input": 0.0, "damping": 0.0, "contact": 0.0}
+        self.works = np.zeros(3)  # input, dashpots of the structure, dashpots of contacts
         self.largest = np.zeros((2, len(self.laws)))
         self._maps: dict[tuple[Any, ...], Array] = {}
         self._noted: tuple[Array, Array] = (np.zeros(0), np.zeros(0))
@@ -283,13 +283,13 @@ class Stepper:
             else:
                 p0 = s.inputs @ s.excitation.value(self.t) + s.constant
                 p1 = s.inputs @ s.excitation.value(self.t + h) + s.constant
-                self.work["input"] += h / 6 * float((2 * p0 + p1) @ self.v + (p0 + 2 * p1) @ v)
+                self.works[0] += h / 6 * float((2 * p0 + p1) @ self.v + (p0 + 2 * p1) @ v)
                 c0 = s.damping @ self.v
-                self.work["damping"] += h / 3 * float(c0 @ self.v + c0 @ v + v @ s.damping @ v)
+                self.works[1] += h / 3 * float(c0 @ self.v + c0 @ v + v @ s.damping @ v)
             rate0, rate1 = s.law_rows @ self.v, s.law_rows @ v
             if self.law_c.any():
                 loss = h / 3 * self.law_c * (rate0 * rate0 + rate0 * rate1 + rate1 * rate1)
-                self.work["contact"] += float(loss.sum())
+                self.works[2] += float(loss.sum())
                 for law in np.flatnonzero(loss):
                     self.ledger.peaks.dashpot_losses[law] += float(loss[law])
             if self.ledger.open:
@@ -307,8 +307,8 @@ class Stepper:
         for t, motion in ((self.t, (self.u, self.v, self.a)), (self.t + h, new)):
             u, v, a = (scene.all_freedoms(x, t, order) for order, x in enumerate(motion))
             force = s.stiffness @ u + s.damping @ v + s.mass @ a + s.law_rows.T @ self._law_forces(t, motion[0], motion[1])
-            self.work["input"] += 0.5 * h * float(force[n:] @ v[n:] + s.loads[:n] @ v[:n])
-            self.work["damping"] += 0.5 * h * float(v @ s.damping @ v)
+            self.works[0] += 0.5 * h * float(force[n:] @ v[n:] + s.loads[:n] @ v[:n])
+            self.works[1] += 0.5 * h * float(v @ s.damping @ v)
 
     def _law_forces(self, t: float, u: Array, v: Array) -> Array:
         d, rate = self.deformations(t, u, v)
@@ -357,12 +357,7 @@ class Stepper:
                 self.ledger.force(law, value, t)
 
     def _sample(self, t: float) -> None:
-        self.sink.sample(t, self.u.copy(), self.v.copy(), self.a.copy(), tuple(self.states), self.energies())
-
-    def energies(self) -> dict[str, float]:
-        """Energies at the present state, by name."""
-        w = self.work
-        return stock(self.scene, self.t, self.u, self.v, self.states, w["input"], w["damping"], w["contact"])
+        self.sink.sample(t, self.u.copy(), self.v.copy(), self.a.copy(), tuple(self.states), self.works.copy())
 
     def outcome(self) -> Outcome:
         """What the run gathered."""

@@ -9,7 +9,8 @@ has free-free terms :math:`c_i c_j S_{ij}(e^{(\lambda_i+\lambda_j)\tau}-1)/(\lam
 moments :math:`\int t^k e^{\lambda t}`, and forced-forced terms that are plain polynomials.  No balance of energy is used, so
 the sum of all energies remains a check.
 
-For polynomials above the first degree, and where the modes are defective, Gauss quadrature on a grid that
+Modes that hardly change over the interval are polynomials as a whole.  For forces above the first degree, and
+where the modes are nearly or fully defective, Gauss quadrature on a grid that
 resolves the fastest mode takes its place.
 """
 
@@ -28,12 +29,24 @@ from pound_solve.scene import Scene
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+SLOW = 0.1  #: modes with |eigenvalue| times interval below this are expanded in powers of time
+TERMS = 11  #: of that expansion, beyond the force's own
+MOST_SQUARED = 3e3  #: condition of the modes up to which their products are used
+
 class Work(NamedTuple):
     """Dissipation in dashpots, input, and for each pressed contact (law, loss) [F L]."""
 
     damping: float
     input: float
     contacts: list[tuple[int, float]]
+
+
+class Works(NamedTuple):
+    """`Work` of several intervals, arrays of shape (n,)."""
+
+    damping: Array
+    input: Array
+    contacts: list[tuple[int, Array]]
 
 
 class Meter:
@@ -54,53 +67,61 @@ class Meter:
     ) -> None:
         self.flow, self.inputs, self.contacts, self.damping_matrix = flow, inputs, contacts, damping
         self.damped = bool(np.any(damping))
-        self.closed_form = isinstance(flow, ModalFlow) and flow.u_p is None
+        # the quadratic forms lose the square of the modes' condition
+        self.closed_form = isinstance(flow, ModalFlow) and flow.u_p is None and flow.condition < MOST_SQUARED
         if not isinstance(flow, ModalFlow) or not self.closed_form:
             return
-        lam, v = flow.lam, flow.v_q
-        # modes that move nothing (displacement offsets of a mechanism) and rigid-body pairs have no free part
-        self.free = np.abs(lam) > 1e-10 * max(flow.fastest, 1e-300)
-        self.lam = np.where(self.free, lam, 1.0)
+        v = flow.v_q
+        self.lam = flow.lam
         self.forms = [self._form(v, damping)] if self.damped else []
         self.contact_forms = [self._form(row[None, :] @ v, np.array([[c]])) for _, c, row in contacts]
         self.power_rows = inputs.T @ v
-        self._moments: dict[tuple[float, int], tuple[Complex, Complex]] = {}
+        self._moments: dict[tuple[float, int], tuple[NDArray[np.bool_], Complex, Complex]] = {}
 
     def _form(self, v: Complex, c: Array) -> tuple[Complex, Complex, Complex, Array]:
         """Return (V, R1, R2, C): the free-free quadratic forms already divided by their exponents."""
-        v = np.where(self.free, v, 0.0)
         cv = c @ v
         plain, mixed = v.T @ cv, v.conj().T @ cv
         s1, s2 = self.lam[:, None] + self.lam[None, :], self.lam.conj()[:, None] + self.lam[None, :]
         # an undamped pair has no dissipation to divide: 0/0 is 0
-        floor = 1e-13 * max(float(np.abs(self.lam).max(initial=0.0)), 1e-300)
+        floor = 1e-15 * max(float(np.abs(self.lam).max(initial=0.0)), 1e-300)
         r1 = np.where(np.abs(s1) > floor, plain / np.where(np.abs(s1) > floor, s1, 1.0), 0.0)
         r2 = np.where(np.abs(s2) > floor, mixed / np.where(np.abs(s2) > floor, s2, 1.0), 0.0)
         return v, r1, r2, c
 
-    def _split(self, q: Complex, g: Complex, tau: float) -> tuple[Complex, Complex, Complex, Complex]:
-        """Free amplitudes at 0 and tau, forced polynomials (degree + 1, n_q), moments (degree + 2, n_q)."""
-        degree = len(g) - 1
-        p = np.zeros((degree + 3, len(q)), complex)
+    def _split(self, qs: Complex, gs: Complex, tau: float) -> tuple[Complex, Complex, Complex, Complex]:
+        """Free amplitudes at 0 and tau (n_q, n), forced polynomials (powers, n_q, n), moments (powers, n_q)."""
+        degree = gs.shape[1] - 1
+        g = gs.transpose(1, 2, 0)
+        slow, grown, moments = self._responses(tau, degree)
+        powers_used = len(moments)
+        lam = np.where(slow, 1.0, self.lam)[:, None]
+        p = np.zeros((powers_used + 1, *qs.shape), complex)
         for k in range(degree, -1, -1):
-            p[k] = np.where(self.free, ((k + 1) * p[k + 1] - g[k]) / self.lam, 0.0)
-        c0 = np.where(self.free, q - p[0], 0.0)
-        flow = self.flow
-        assert isinstance(flow, ModalFlow)
-        if len(flow.b_rows):  # rigid-body velocities are polynomials outright
-            b = flow.b_rows
-            p[0, b] = q[b]
-            for k in range(degree + 1):
-                p[k + 1, b] = g[k, b] / (k + 1)
-        key = (tau, degree)
-        found = self._moments.get(key)
+            p[k] = ((k + 1) * p[k + 1] - g[k]) / lam
+        p[:, slow] = 0.0
+        c0 = np.where(slow[:, None], 0.0, qs - p[0])
+        if slow.any():
+            p[0, slow] = qs[slow]
+            for k in range(powers_used - 1):
+                force = g[k, slow] if k <= degree else 0.0
+                p[k + 1, slow] = (self.lam[slow, None] * p[k, slow] + force) / (k + 1)
+        return c0, c0 * grown[:, None], p[:powers_used], moments
+
+    def _responses(self, tau: float, degree: int) -> tuple[NDArray[np.bool_], Complex, Complex]:
+        """Which modes are slow, growth and moments (powers, n_q) of the others; kept if there is room."""
+        found = self._moments.get((tau, degree))
         if found is None:
-            z = np.where(self.free, self.lam * tau, 0.0)
-            found = np.exp(z), phi.moments(z, degree + 2) * (tau ** np.arange(1, degree + 4))[:, None]
+            # split into free and forced, a slow mode would be the small difference of large numbers: its
+            # power series serves instead (of a rigid-body mode it ends by itself)
+            slow = np.abs(self.lam) * tau < SLOW
+            more = 0 if not slow.any() else 1 if not self.lam[slow].any() else TERMS
+            z = np.where(slow, 0.0, self.lam * tau)
+            count = degree + 1 + more
+            found = slow, np.exp(z), phi.moments(z, count - 1) * (tau ** np.arange(1, count + 1))[:, None]
             if len(self._moments) < RECURRING:
-                self._moments[key] = found
-        used = degree + 3 if len(flow.b_rows) else degree + 1  # rigid bodies integrate the forces once more
-        return c0, c0 * found[0], p[:used], found[1]
+                self._moments[tau, degree] = found
+        return found
 
     def measure(
         self, q: NDArray[Any], g: NDArray[Any], tau: float, coefs: Array, constant: Array, p: Array | None = None
@@ -118,51 +139,67 @@ class Meter:
         p : ndarray, shape (degree + 1, n), or None
             Force polynomials on the unknowns, where massless freedoms need them.
         """
-        if not self.closed_form or len(g) > 2:
-            return self._quadrature(q, g, tau, coefs, constant, p)
-        c0, c1, forced, moments = self._split(q, g, tau)
-        loss = sum(self._loss(form, c0, c1, forced, moments, tau) for form in self.forms)
+        out = self.measures(q[:, None], g[None], tau, coefs[None], constant, None if p is None else p[None])
+        return Work(float(out.damping[0]), float(out.input[0]), [(law, float(loss[0])) for law, loss in out.contacts])
+
+    def measures(
+        self, qs: NDArray[Any], gs: NDArray[Any], tau: float, coefs: Array, constant: Array, ps: Array | None = None
+    ) -> Works:
+        """Return `measure` for several intervals of length `tau` at once.
+
+        Parameters
+        ----------
+        qs : ndarray, shape (n_q, n)
+            Modal states at their starts.
+        gs : ndarray, shape (n, degree + 1, n_q)
+        coefs : ndarray, shape (n, degree + 1, n_inputs)
+        ps : ndarray, shape (n, degree + 1, n_unknowns), or None
+        """
+        if not self.closed_form or gs.shape[1] > 2:
+            each = [
+                self._quadrature(qs[:, i], gs[i], tau, coefs[i], constant, None if ps is None else ps[i]) for i in range(len(gs))
+            ]
+            losses = [(law, np.array([w.contacts[n][1] for w in each])) for n, (law, _, _) in enumerate(self.contacts)]
+            return Works(np.array([w.damping for w in each]), np.array([w.input for w in each]), losses)
+        c0, c1, forced, moments = self._split(qs, gs, tau)
+        loss = sum((self._loss(form, c0, c1, forced, moments, tau) for form in self.forms), np.zeros(len(gs)))
         contacts = [
             (law, self._loss(form, c0, c1, forced, moments, tau)) for (law, _, _), form in zip(self.contacts, self.contact_forms)
         ]
         # input: sum over inputs j and powers k of coefs[k, j] * integral t^k F_j^T v
-        total = 0.0
-        for k in range(len(coefs)):
-            integral = c0 * moments[k] + sum(forced[j] * tau ** (j + k + 1) / (j + k + 1) for j in range(len(forced)))
-            total += float(coefs[k] @ (self.power_rows @ integral).real)
-        if constant.any():
-            integral = c0 * moments[0] + sum(forced[j] * tau ** (j + 1) / (j + 1) for j in range(len(forced)))
-            total += float(constant @ (self.flow.v_q @ integral).real)
-        return Work(loss, total, contacts)
+        total = np.zeros(len(gs))
+        for k in range(coefs.shape[1]):
+            integral = c0 * moments[k][:, None] + sum(forced[j] * tau ** (j + k + 1) / (j + k + 1) for j in range(len(forced)))
+            total += np.einsum("ij,ji->i", coefs[:, k], (self.power_rows @ integral).real)
+            if k == 0 and constant.any():
+                total += constant @ (self.flow.v_q @ integral).real
+        return Works(loss, total, contacts)
 
-    def _loss(self, form: tuple[Complex, Complex, Complex, Array], c0: Complex, c1: Complex, p: Complex, moments: Complex, tau: float) -> float:
+    def _loss(
+        self, form: tuple[Complex, Complex, Complex, Array], c0: Complex, c1: Complex, p: Complex, moments: Complex, tau: float
+    ) -> Array:
         v, r1, r2, c = form
         # v = Re(V q): v^T C v = (q^T S1 q + q^H S2 q) / 2, real part
-        free = 0.5 * ((c1 @ r1 @ c1 - c0 @ r1 @ c0) + (c1.conj() @ r2 @ c1 - c0.conj() @ r2 @ c0)).real
-        forced = (v @ p.T).real  # velocity polynomials, (n, degree + 3)
-        cf = c @ forced
-        mixed = 2.0 * sum(float(((v.T @ cf[:, k]) @ (c0 * moments[k])).real) for k in range(min(len(moments), forced.shape[1])))
-        plain = 0.0
-        for j in range(forced.shape[1]):
-            for k in range(forced.shape[1]):
-                plain += float(forced[:, j] @ cf[:, k]) * tau ** (j + k + 1) / (j + k + 1)
-        return float(free) + mixed + plain
+        loss = 0.5 * ((c1 * (r1 @ c1)).sum(axis=0) - (c0 * (r1 @ c0)).sum(axis=0)).real
+        loss += 0.5 * ((c1.conj() * (r2 @ c1)).sum(axis=0) - (c0.conj() * (r2 @ c0)).sum(axis=0)).real
+        forced = [(v @ x).real for x in p]  # velocity polynomials, each (n, n_intervals)
+        pulled = [c @ x for x in forced]
+        for k, x in enumerate(pulled):
+            loss += 2.0 * ((v.T @ x) * (c0 * moments[k][:, None])).sum(axis=0).real
+            for j, y in enumerate(forced):
+                loss += (y * x).sum(axis=0) * (tau ** (j + k + 1) / (j + k + 1))
+        return loss
 
     def _quadrature(self, q: NDArray[Any], g: NDArray[Any], tau: float, coefs: Array, constant: Array, p: Array | None) -> Work:
         w, points = gauss(tau, self.flow.fastest)
-        v = np.stack([velocity(self.flow, q, g, p, float(x)) for x in points], axis=1)
+        v = (self.flow.v_q @ self.flow.path(q, g, points)).real
+        if self.flow.u_p is not None and p is not None:
+            value, slope = (np.array([polynomial(p, float(x), order) for x in points]).T for order in (0, 1))
+            v += self.flow.space.v_p @ value + self.flow.u_p @ slope
         force = constant[:, None] + self.inputs @ np.einsum("kj,kt->jt", coefs, powers(points, len(coefs) - 1))
         loss = float(np.einsum("it,ij,jt,t->", v, self.damping_matrix, v, w)) if self.damped else 0.0
         contacts = [(law, float(c * (w @ (row @ v) ** 2))) for law, c, row in self.contacts]
         return Work(loss, float(np.einsum("it,it,t->", v, force, w)), contacts)
-
-
-def velocity(flow: ModalFlow | SeriesFlow, q: NDArray[Any], g: NDArray[Any], p: Array | None, t: float) -> Array:
-    """Velocity of a block's unknowns at local time `t`; `p` are its force polynomials where massless freedoms need them."""
-    v = (flow.v_q @ flow.at(q, g, t)).real
-    if flow.u_p is not None and p is not None:
-        v = v + flow.space.v_p @ polynomial(p, t) + flow.u_p @ polynomial(p, t, 1)
-    return v
 
 
 def polynomial(p: Array, t: float, order: int = 0) -> Array:

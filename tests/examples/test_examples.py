@@ -1,0 +1,128 @@
+"""Every deck below ``examples`` runs, and every expected number of a README is what the program gives."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from examples.expected import Expected, last_digit, read
+
+ROOT = Path(__file__).parents[2]
+EXAMPLES = ROOT / "examples"
+DECKS = sorted(EXAMPLES.rglob("*.inp"))
+READMES = sorted(EXAMPLES.rglob("README.md"))
+EXPECTED = [e for readme in READMES for e in read(readme)]
+
+
+@pytest.mark.parametrize("deck", DECKS, ids=lambda d: f"{d.parent.name}/{d.name}")
+def test_deck_runs_to_its_end_without_a_warning(deck: Path, run):
+    status, results, prepared = run(deck)
+    assert (status, results.status, results.message) == (0, "done", "")
+    assert prepared.warnings == ()
+    # what a reader of the report would look at first
+    if "checks" in results.tables:
+        assert {str(v) for v in results.table("checks")["verdict"]} == {"good"}
+
+
+@pytest.mark.parametrize("expected", EXPECTED, ids=str)
+def test_numbers_of_the_readme(expected: Expected, run):
+    _, results, _ = run(expected.deck, expected.params)
+    assert results.status == "done"
+    assert expected.differences(results.table(expected.table)) == []
+
+
+def test_every_folder_has_a_readme_that_names_its_decks_and_holds_numbers():
+    index = (EXAMPLES / "README.md").read_text("utf-8")
+    for folder in {deck.parent for deck in DECKS}:
+        text = (folder / "README.md").read_text("utf-8")
+        assert all(f"]({d.name})" in text for d in DECKS if d.parent == folder)
+        assert f"({folder.name}/README.md)" in index
+    assert {e.deck for e in EXPECTED} == set(DECKS)
+
+
+def test_links_lead_somewhere():
+    for readme in READMES:
+        for link in links(readme.read_text("utf-8")):
+            assert (readme.parent / link).exists(), f"{readme}: {link}"
+
+
+def links(text: str) -> list[str]:
+    """Files that a Markdown page links to."""
+    import re
+
+    found = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text)
+    return [f for f in found if not f.startswith(("http:", "https:"))]
+
+
+# The scheme itself: a test that compares numbers must be able to fail.
+
+PAGE = """
+# A page
+
+<!-- expected: deck=a.inp set=n=5;s="x" table=t key=name columns=a,b times=0.001,1 -->
+
+| name | a [mm] | b | remark |
+|---|---|---|---|
+| one | 1.50 | -2E3 | free |
+| two | 0.004 | - | |
+"""
+ROWS = np.array([("one", 0.001504, -2499.0), ("two", 4.4e-6, np.nan)], dtype=[("name", "O"), ("a", "f8"), ("b", "f8")])
+
+
+def page(tmp_path: Path, text: str) -> list[Expected]:
+    (tmp_path / "README.md").write_text(text, "utf-8")
+    return list(read(tmp_path / "README.md"))
+
+
+def test_a_mark_is_read(tmp_path: Path):
+    (e,) = page(tmp_path, PAGE)
+    assert (e.deck, e.line, e.params) == (tmp_path / "a.inp", 4, {"n": "5", "s": '"x"'})
+    assert e.rows == (("one", "1.50", "-2E3"), ("two", "0.004", "-"))
+    assert e.differences(ROWS) == []
+
+
+@pytest.mark.parametrize(
+    "row, column, value", [(0, "a", 0.001506), (0, "a", 0.001494), (0, "b", -2501.0), (1, "a", 4.6e-6), (1, "b", 0.0)]
+)
+def test_a_number_off_by_more_than_half_a_digit_is_told(tmp_path: Path, row: int, column: str, value: float):
+    (e,) = page(tmp_path, PAGE)
+    rows = ROWS.copy()
+    rows[column][row] = value
+    assert len(e.differences(rows)) == 1
+
+
+def test_a_missing_or_double_row_is_told(tmp_path: Path):
+    (e,) = page(tmp_path, PAGE)
+    assert len(e.differences(ROWS[:1])) == 1
+    assert len(e.differences(np.concatenate([ROWS, ROWS[:1]]))) == 1
+
+
+def test_a_relative_tolerance(tmp_path: Path):
+    (e,) = page(tmp_path, PAGE.replace("key=name", "key=name rtol=0.01").replace("| - |", "| 7 |"))
+    rows = ROWS.copy()
+    rows["b"] = -1981.0, 7.06
+    rows["a"][1] = 4e-6
+    assert e.differences(rows) == []
+    rows["b"] = -1979.0, 7.08
+    assert len(e.differences(rows)) == 2
+
+
+@pytest.mark.parametrize(
+    "old, new",
+    [
+        ("table=t", "tabel=t"),
+        ("columns=a,b", ""),
+        ("times=0.001,1", "times=1,2,3"),
+        ("|---|---|---|---|\n", "\n"),
+        ("columns=a,b times=0.001,1", "columns=a,b,c,d"),
+    ],
+)
+def test_a_mark_with_a_slip_is_an_error(tmp_path: Path, old: str, new: str):
+    with pytest.raises(ValueError, match=r"README.md:4"):
+        page(tmp_path, PAGE.replace(old, new))
+
+
+@pytest.mark.parametrize("text, worth", [("12", 1), ("1.50", 0.01), ("-2E3", 1000), ("2.5e-3", 1e-4), ("0.", 1)])
+def test_worth_of_the_last_digit(text: str, worth: float):
+    assert last_digit(text) == pytest.approx(worth)

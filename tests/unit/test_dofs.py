@@ -1,0 +1,117 @@
+"""Freedoms: numbering, slaving with rigid arms, prescribed supports."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from decks import model_of, solved, structure_of
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from pound_deck.model import Node, Span
+
+from pound_solve.dofs import number
+
+SPAN = Span("test", 1, 1, 2)
+
+
+def node(n, x, y, fixed="", **slaved):
+    return Node(n, x, y, fixed, SPAN, slaved)
+
+
+def numbered(*nodes, moved=()):
+    return number({n.id: n for n in nodes}, moved)
+
+
+def test_unknowns_come_in_the_order_of_the_nodes():
+    f = numbered(node(9, 0, 0), node(2, 1, 0, "XYR"), node(5, 2, 0, "Y"))
+    assert f.free == ((9, 0), (9, 1), (9, 2), (5, 0), (5, 2))
+    assert f.terms[2, 0] == () and f.terms[5, 1] == ()
+    assert f.terms[5, 2] == ((4, 1.0),)
+
+
+def test_moved_supports_come_last_and_are_no_unknowns():
+    f = numbered(node(1, 0, 0, "XYR"), node(2, 0, 1, "R"), moved=[(1, 1), (1, 0)])
+    assert f.free == ((2, 0), (2, 1)) and f.moved == ((1, 0), (1, 1)) and f.size == 4
+    assert f.terms[1, 0] == ((2, 1.0),) and f.terms[1, 2] == ()
+
+
+@settings(max_examples=50, deadline=None)
+@given(x=st.floats(-5, 5), y=st.floats(-5, 5), u=st.tuples(*[st.floats(-1, 1)] * 3))
+def test_a_slave_moves_as_a_rigid_body_with_its_master(x, y, u):
+    """The slave stands before its master in the deck: order must not matter."""
+    f = numbered(node(1, 1 + x, 2 + y, X=2, Y=2, R=2), node(2, 1, 2))
+    ux, uy, turn = u
+    assert f.matrix([(1, d) for d in range(3)]) @ np.array(u) == pytest.approx([ux - turn * y, uy + turn * x, turn])
+
+
+def test_only_the_slaved_directions_follow():
+    """A floor that moves along x only keeps its own uy and rz, and its arm turns with the master's rotation."""
+    f = numbered(node(1, 0, 0), node(2, 3, 0.5, X=1))
+    assert f.free == ((1, 0), (1, 1), (1, 2), (2, 1), (2, 2))
+    assert f.terms[2, 0] == ((0, 1.0), (2, -0.5))
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2), (2, 1, 0), (1, 0, 2), (1, 2, 0)])
+def test_the_arm_turns_with_a_master_that_follows_another_in_rotation(order):
+    nodes = (node(1, 0, 0), node(2, 1, 0, R=1), node(3, 1, 2, X=2))
+    f = numbered(*(nodes[i] for i in order))
+    column = {free: i for i, free in enumerate(f.free)}
+    assert dict(f.terms[3, 0]) == {column[2, 0]: 1.0, column[1, 2]: -2.0}
+
+
+def test_a_slave_of_a_fixed_master_is_fixed():
+    f = numbered(node(1, 0, 0, "XYR"), node(2, 1, 1, X=1, Y=1, R=1))
+    assert f.free == () and all(f.terms[2, d] == () for d in range(3))
+
+
+def test_slaves_on_arms_are_one_rigid_body():
+    """Five slaved nodes, loaded and sprung all over, against the same sums done by hand at the master."""
+    places = {2: (1.0, 0.0), 3: (1.0, 2.0), 4: (-1.5, 0.5), 5: (0.0, -3.0), 6: (2.0, 2.0)}
+    loads = {2: (1.0, 2.0, 3.0), 4: (-2.0, 0.5, 0.0), 6: (0.3, -1.0, -4.0)}
+    springs = {3: (300.0, 200.0, 50.0), 5: (500.0, 0.0, 0.0), 4: (10.0, 700.0, 0.0)}
+    props = "\n".join(f" S{n} SPRING KX={k[0]} KY={k[1]} KR={k[2]}" for n, k in springs.items())
+    s = solved(f"""
+NODES
+ 1 0 0
+{chr(10).join(f" {n} {x} {y} SLAVED=XYR MASTER=1" for n, (x, y) in places.items())}
+ELEMENTS
+{chr(10).join(f" {n} S{n} {n}" for n in springs)}
+PROPS
+{props}
+LOADS
+{chr(10).join(f" {n} {a} {b} {c}" for n, (a, b, c) in loads.items())}
+WEIGHTS
+ 2 TO 6  9.81 19.62 4.905
+""")
+    k, f, m = np.zeros((3, 3)), np.zeros(3), np.zeros((3, 3))
+    for n, (x, y) in places.items():
+        arm = np.array([[1, 0, -y], [0, 1, x], [0, 0, 1]])
+        k += arm.T @ np.diag(springs.get(n, (0, 0, 0))) @ arm
+        f += arm.T @ loads.get(n, (0, 0, 0))
+        m += arm.T @ np.diag([1.0, 2.0, 0.5]) @ arm
+    u = np.linalg.solve(k, f)
+    assert s.u[1] == pytest.approx(u, rel=1e-12)
+    for n, (x, y) in places.items():
+        assert s.u[n] == pytest.approx([u[0] - u[2] * y, u[1] + u[2] * x, u[2]], rel=1e-12)
+    assert s.structure.mass == pytest.approx(m, rel=1e-13)
+
+
+def test_the_deck_fills_nodes():
+    model = model_of("NODES\n 1 0 0 FIX=XYR\n 2 1 0 FIX=R\n 3 1 1 FIX=Y SLAVED=XR MASTER=2\nELEMENTS\n 1 S 1 2\nPROPS\n S SPRING KX=1")
+    assert model.nodes[3].slaved == {"X": 2, "R": 2} and model.nodes[3].fixed == "Y"
+
+
+def test_ground_moves_what_rides_on_a_slave():
+    """Mass on arms: the ground's pull has a moment about the master."""
+    s = structure_of("""
+NODES
+ 1 0 0
+ 2 3 4 SLAVED=XYR MASTER=1
+ELEMENTS
+ 1 S 1
+PROPS
+ S SPRING KX=1 KY=1 KR=1
+WEIGHTS
+ 2 9.81
+""")
+    assert s.ground == pytest.approx(np.array([[1, 0, -4], [0, 1, 3]]), abs=1e-14)
