@@ -34,7 +34,7 @@ def fields_of(card: Card) -> Iterator[Field]:
                 yield f
 
 
-def options(model: Model, overrides: dict[str, str]) -> Rows:
+def options(model: Model, overridden: set[str]) -> Rows:
     """Rows of ``options``: units, mass, parameters, analyses."""
     u = model.units
 
@@ -47,7 +47,7 @@ def options(model: Model, overrides: dict[str, str]) -> Rows:
         ("mass of members", model.mass, default("mass"), ""),
     ]
     for name, value in model.params.items():
-        rows.append((f"PARAM {name}", text_of(value), "", "set on the command line" if name.lower() in overrides else ""))
+        rows.append((f"PARAM {name}", text_of(value), "", "set on the command line" if name.lower() in overridden else ""))
     for card in model.analyses:
         rows.append((card.spec.name, "", "", card.spec.title))
         for f in fields_of(card):

@@ -20,6 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_solve import polynomial
 from pound_solve.assemble import Structure
 from pound_solve.dofs import NAMES, Freedom
 from pound_solve.modes import massless
@@ -62,25 +63,12 @@ class Excitation:
 
     def local(self, piece: int, t: float) -> Array:
         """Coefficients about `t`, shape (degree + 1, n_inputs)."""
-        return shift(self.coefs[piece], t - self.breaks[piece])
+        return polynomial.shift(self.coefs[piece], t - float(self.breaks[piece]))
 
     def value(self, t: float, order: int = 0) -> Array:
         """Value of the inputs (or of their derivative of that order) at `t`, shape (n_inputs,)."""
-        c = self.local(self.piece(t), t)
-        if order >= len(c):
-            return np.zeros(c.shape[1])
-        return c[order] * float(np.prod(np.arange(1, order + 1)))
-
-
-def shift(coefs: Array, t: float) -> Array:
-    """Coefficients of polynomials about an origin `t` later, first axis the powers."""
-    if t == 0.0:
-        return coefs
-    out = coefs.copy()
-    for i in range(len(out) - 1):
-        for k in range(len(out) - 2, i - 1, -1):
-            out[k] += t * out[k + 1]
-    return out
+        i = self.piece(t)
+        return polynomial.value(self.coefs[i], t - float(self.breaks[i]), order)
 
 
 @dataclass

@@ -19,7 +19,12 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
     """Run a deck with PARAM values, a method and a step; the same request again gives the same results."""
     done: dict[tuple[object, ...], tuple[int, Results, Prepared]] = {}
 
-    def once(deck: Path, params: Mapping[str, str] | None = None, method: str | None = None, dt: float | None = None):
+    def once(
+        deck: Path,
+        params: Mapping[str, str] | None = None,
+        method: str | None = None,
+        dt: float | None = None,
+    ):
         key = (deck, tuple(sorted((params or {}).items())), method, dt)
         if key not in done:
             needs_records(deck)

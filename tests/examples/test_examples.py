@@ -1,12 +1,122 @@
-"""Every deck below ``examples`` runs, and every expected number of a README is what the program gives."""
+"""Every deck below ``examples`` runs, and every expected number of a README is what the program gives.
+
+Expected numbers stand in tables behind a comment ``<!-- expected: ... -->``, see ``examples/README.md``.
+"""
 
 from __future__ import annotations
 
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from examples.expected import Expected, last_digit, read
+
+WORDS = {"deck", "table", "key", "columns", "set", "times", "rtol"}
+MARK = re.compile(r"<!-- expected:(.*?)-->", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Expected:
+    """One table of a README and what it is compared with."""
+
+    readme: Path
+    line: int
+    deck: Path
+    table: str
+    key: str
+    columns: tuple[str, ...]
+    times: tuple[float, ...]
+    rows: tuple[tuple[str, ...], ...]
+    params: dict[str, str] = field(default_factory=dict)
+    rtol: float | None = None
+
+    def __str__(self) -> str:
+        return f"{self.readme.parent.name}:{self.line}-{self.deck.stem}-{self.table}"
+
+    def differences(self, rows: Any) -> list[str]:
+        """Every number that differs from a table of results (a structured array)."""
+        out = []
+        for cells in self.rows:
+            mine = [
+                r for n, r in enumerate(rows, 1) if cells[0] == str(n if self.key == "#" else r[self.key])
+            ]
+            if len(mine) != 1:
+                out.append(f"{self}: {len(mine)} rows of the results have {self.key} {cells[0]}")
+                continue
+            for name, text, times in zip(self.columns, cells[1:], self.times, strict=True):
+                got = float(mine[0][name])
+                if not self._agree(text, got, times):
+                    out.append(f"{self}: {cells[0]} {name} is {got / times:.12g}, README says {text}")
+        return out
+
+    def _agree(self, text: str, got: float, times: float) -> bool:
+        if text == "-":
+            return math.isnan(got)
+        want = float(text)
+        if self.rtol is not None:
+            return abs(got / times - want) <= self.rtol * abs(want)
+        # a hair more than half a unit, for what the decimal fraction itself loses
+        return abs(got / times - want) <= 0.5000001 * last_digit(text)
+
+
+def last_digit(text: str) -> float:
+    """Worth of the last digit of a number as written."""
+    mantissa, _, exponent = text.upper().partition("E")
+    return float(10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2])))
+
+
+def read(readme: Path) -> Iterator[Expected]:
+    """All marked tables of a README.
+
+    Raises
+    ------
+    ValueError
+        A mark is not understood, or no table follows it.
+    """
+    text = readme.read_text("utf-8")
+    # a fenced block only tells how marks are written
+    text = re.sub(r"^```.*?^```", lambda m: "\n" * m[0].count("\n"), text, flags=re.DOTALL | re.MULTILINE)
+    for mark in MARK.finditer(text):
+        line = text.count("\n", 0, mark.start()) + 1
+        words = dict(word.partition("=")[::2] for word in mark[1].split())
+        if not {"deck", "table", "key", "columns"} <= words.keys() <= WORDS:
+            raise ValueError(
+                f"{readme}:{line}: the mark needs deck, table, key, columns; it has {sorted(words)}"
+            )
+        columns = tuple(words["columns"].split(","))
+        times = [float(t) for t in words.get("times", "1").split(",")]
+        if len(times) == 1:
+            times *= len(columns)
+        rows = tuple(tuple(cells[: 1 + len(columns)]) for cells in table_after(text[mark.end() :]))
+        if not rows or len(times) != len(columns) or any(len(r) != 1 + len(columns) for r in rows):
+            raise ValueError(f"{readme}:{line}: no table of {1 + len(columns)} columns, or wrong times=")
+        yield Expected(
+            readme,
+            line,
+            readme.parent / words["deck"],
+            words["table"],
+            words["key"],
+            columns,
+            tuple(times),
+            rows,
+            dict(item.partition("=")[::2] for item in words["set"].split(";")) if "set" in words else {},
+            float(words["rtol"]) if "rtol" in words else None,
+        )
+
+
+def table_after(text: str) -> list[list[str]]:
+    """Body of the Markdown table that a text begins with."""
+    lines = []
+    for line in text.lstrip("\n").splitlines():
+        if not line.startswith("|"):
+            break
+        lines.append([cell.strip() for cell in line.strip("|").split("|")])
+    return lines[2:]
+
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"
@@ -49,8 +159,6 @@ def test_links_lead_somewhere():
 
 def links(text: str) -> list[str]:
     """Files that a Markdown page links to."""
-    import re
-
     found = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", text)
     return [f for f in found if not f.startswith(("http:", "https:"))]
 
@@ -67,7 +175,9 @@ PAGE = """
 | one | 1.50 | -2E3 | free |
 | two | 0.004 | - | |
 """
-ROWS = np.array([("one", 0.001504, -2499.0), ("two", 4.4e-6, np.nan)], dtype=[("name", "O"), ("a", "f8"), ("b", "f8")])
+ROWS = np.array(
+    [("one", 0.001504, -2499.0), ("two", 4.4e-6, np.nan)], dtype=[("name", "O"), ("a", "f8"), ("b", "f8")]
+)
 
 
 def page(tmp_path: Path, text: str) -> list[Expected]:
@@ -83,9 +193,12 @@ def test_a_mark_is_read(tmp_path: Path):
 
 
 @pytest.mark.parametrize(
-    "row, column, value", [(0, "a", 0.001506), (0, "a", 0.001494), (0, "b", -2501.0), (1, "a", 4.6e-6), (1, "b", 0.0)]
+    "row, column, value",
+    [(0, "a", 0.001506), (0, "a", 0.001494), (0, "b", -2501.0), (1, "a", 4.6e-6), (1, "b", 0.0)],
 )
-def test_a_number_off_by_more_than_half_a_digit_is_told(tmp_path: Path, row: int, column: str, value: float):
+def test_a_number_off_by_more_than_half_a_digit_is_told(
+    tmp_path: Path, row: int, column: str, value: float
+):
     (e,) = page(tmp_path, PAGE)
     rows = ROWS.copy()
     rows[column][row] = value
@@ -123,6 +236,8 @@ def test_a_mark_with_a_slip_is_an_error(tmp_path: Path, old: str, new: str):
         page(tmp_path, PAGE.replace(old, new))
 
 
-@pytest.mark.parametrize("text, worth", [("12", 1), ("1.50", 0.01), ("-2E3", 1000), ("2.5e-3", 1e-4), ("0.", 1)])
+@pytest.mark.parametrize(
+    "text, worth", [("12", 1), ("1.50", 0.01), ("-2E3", 1000), ("2.5e-3", 1e-4), ("0.", 1)]
+)
 def test_worth_of_the_last_digit(text: str, worth: float):
     assert last_digit(text) == pytest.approx(worth)

@@ -11,7 +11,8 @@ DECK, SOLVER = ROOT / "parser/pound_deck", ROOT / "solver/pound_solve"
 
 # from the bottom to the top: a module may import its own layer and those below
 LAYERS = (
-    ("laws", "dofs", "modes", "records", "motions"),
+    ("laws", "dofs", "modes", "polynomial", "records"),
+    ("motions",),
     ("hysteresis", "contact", "damping"),
     ("elements",),
     ("assemble",),
@@ -21,6 +22,7 @@ LAYERS = (
     ("catalog", "tables"),
     ("results", "echo", "reference"),
     ("report", "export"),
+    ("course",),
     ("app",),
     ("__init__",),
     ("cli",),

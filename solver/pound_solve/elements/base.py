@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -133,3 +134,10 @@ def axes(angle: float) -> tuple[tuple[float, float], tuple[float, float]]:
     else:
         c, s = float(np.cos(np.radians(angle))), float(np.sin(np.radians(angle)))
     return (c, s), (-s, c)
+
+
+def direction(dx: float, dy: float) -> tuple[float, float]:
+    """Unit vector along (dx, dy); what coordinates miss a right angle by in rounding is none of it."""
+    length = math.hypot(dx, dy)
+    c, s = dx / length, dy / length
+    return (0.0 if abs(c) < 1e-14 else c), (0.0 if abs(s) < 1e-14 else s)

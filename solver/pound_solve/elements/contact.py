@@ -11,6 +11,7 @@ import math
 
 from pound_deck.schema import Field, Kind, Spec
 
+from pound_solve.elements import base
 from pound_solve.elements.base import ElementError, LawSpring, Parts, Site, axes
 
 
@@ -22,10 +23,9 @@ def direction(site: Site) -> tuple[float, float]:
     if site.j is None:
         return 1.0, 0.0
     dx, dy = site.j.x - site.i.x, site.j.y - site.i.y
-    length = math.hypot(dx, dy)
-    if length == 0.0:
+    if dx == 0.0 and dy == 0.0:
         raise ElementError("the nodes coincide: ANGLE must say along which direction they meet", "ANGLE")
-    return dx / length, dy / length
+    return base.direction(dx, dy)
 
 
 def build(site: Site) -> Parts:

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pound_deck.schema import Field, Kind, Spec
 
-from pound_solve.elements.base import Block, ElementError, Output, Parts, Site
+from pound_solve.elements.base import Block, ElementError, Output, Parts, Site, direction
 
 Array = NDArray[np.float64]
 
@@ -64,11 +64,13 @@ def end_blocks(at_i: float, at_j: float) -> Array:
     return t
 
 
-def release(k: Array, pins: list[int]) -> tuple[Array, Array]:
+def release(k: Array, pins: list[int]) -> tuple[Array, Array, Array]:
     """Condense pinned rotations.
 
     Returns
     -------
+    forces : ndarray, shape (6, 6)
+        End forces from the local displacements, which is the condensed stiffness.
     shape : ndarray, shape (6, 6)
         All local displacements from the kept ones (rows of pinned rotations filled).
     flexibility : ndarray, shape (6, 6)
@@ -81,7 +83,12 @@ def release(k: Array, pins: list[int]) -> tuple[Array, Array]:
         shape[np.ix_(pins, pins)] = 0.0
         shape[np.ix_(pins, keep)] = -inverse @ k[np.ix_(pins, keep)]
         flexibility[np.ix_(pins, pins)] = inverse
-    return shape, flexibility
+    forces = k @ shape
+    # no rounding may pass for a stiffness: it would hide a mechanism
+    forces[pins] = 0.0
+    if len(pins) == 2:
+        forces[[1, 4]] = 0.0
+    return forces, shape, flexibility
 
 
 def block_mass(m: float, length: float, sign: float) -> Array:
@@ -100,7 +107,7 @@ def build(site: Site) -> Parts:
     length = full - p["END1"] - p["END2"]
     if length <= 0.0:
         raise ElementError(f"no flexible length is left: {full:g} less the end blocks", "END1")
-    c, s = dx / full, dy / full
+    c, s = direction(dx, dy)
     rotation = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
     to_local = np.kron(np.eye(2), rotation)
     ei = p["E"] * p["I"]
@@ -111,13 +118,14 @@ def build(site: Site) -> Parts:
         phi = 12 * ei / (p["G"] * p["AS"] * length**2)
     k = stiffness(p["E"] * p["A"], ei, length, phi)
     pins = {"NONE": [], "I": [2], "J": [5], "BOTH": [2, 5]}[p["PIN"] if ei > 0.0 else "BOTH"]
-    shape, flexibility = release(k, pins)
+    forces, shape, flexibility = release(k, pins)
     if ei == 0.0:  # an axial bar stays straight: it hands its loads and mass on as a beam on two pins does
-        shape, _ = release(stiffness(0.0, 1.0, length, 0.0), pins)
+        _, shape, _ = release(stiffness(0.0, 1.0, length, 0.0), pins)
     ends = end_blocks(p["END1"], p["END2"])
-    from_nodes = shape @ ends @ to_local  # global nodal displacements -> local ends of the flexible part
+    to_ends = ends @ to_local
+    from_nodes = shape @ to_ends  # global nodal displacements -> local ends of the flexible part
     freedoms = tuple((n.id, d) for n in (site.i, site.j) for d in range(3))
-    parts = Parts(stiffness=[Block(freedoms, from_nodes.T @ k @ from_nodes)])
+    parts = Parts(stiffness=[Block(freedoms, to_ends.T @ forces @ to_ends)])
 
     m = p["WGT"] / site.gravity
     if m > 0.0:
@@ -147,7 +155,7 @@ def build(site: Site) -> Parts:
         parts.loads.append((freedoms, nodal))
 
     # end forces of the flexible part: k (shape u + flexibility f) - f
-    force_rows = k @ from_nodes
+    force_rows = forces @ to_ends
     constant = k @ (flexibility @ equivalent) - equivalent
     for name, unit, row, sign in (
         ("axial", "F", 3, 1.0),

@@ -17,6 +17,9 @@ Array = NDArray[np.float64]
 ENERGIES = ("input", "kinetic", "strain", "damping", "hysteretic", "contact")
 
 
+INTERRUPTED = "interrupted by the user; what was computed up to then is kept"
+
+
 @dataclass(frozen=True)
 class Watch:
     """Quantities whose peaks an integrator finds, linear in u: drifts.

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_solve import polynomial
 from pound_solve.integrate import work
 from pound_solve.integrate.flow import Mechanism, ModalFlow, SeriesFlow, make_flow
 from pound_solve.laws import Branch
@@ -229,8 +230,8 @@ class Window:
             offset = self.coefs @ part.row_inputs.T  # polynomials of what the inputs add, (n, degree + 1, n_rows)
             for out, order in ((value, 0), (rate, 1), (second, 2)):
                 for i in range(n):
-                    out[:, i * count : (i + 1) * count] += np.array([work.polynomial(offset[i], x, order) for x in t]).T
-                out[:, -1] += work.polynomial(offset[-1], self.length, order)
+                    out[:, i * count : (i + 1) * count] += np.array([polynomial.value(offset[i], x, order) for x in t]).T
+                out[:, -1] += polynomial.value(offset[-1], self.length, order)
         for block in part.blocks:
             flow, w, m = block.regime.flow, block.regime.watched, len(block.regime.watched)
             if not m:
@@ -255,7 +256,7 @@ class Window:
         assert block.ps is not None and flow.u_p is not None
         u_p, v_p = block.regime.rows @ flow.u_p, block.regime.rows @ flow.space.v_p
         times = [(i, x) for i in range(self.intervals) for x in t] + [(self.intervals - 1, self.length)]
-        force, slope, bend = (np.array([work.polynomial(block.ps[i], x, order) for i, x in times]).T for order in (0, 1, 2))
+        force, slope, bend = (np.array([polynomial.value(block.ps[i], x, order) for i, x in times]).T for order in (0, 1, 2))
         value[w] += u_p @ force
         rate[w] += v_p @ force + u_p @ slope
         second[w] += v_p @ slope + u_p @ bend
@@ -278,7 +279,7 @@ class Window:
         if part.known:
             offset = self.coefs[i] @ part.row_inputs[chosen].T
             for out, order in ((value, 0), (rate, 1), (second, 2)):
-                out += work.polynomial(offset, tau, order)
+                out += polynomial.value(offset, tau, order)
         for block in part.blocks:
             r = block.regime
             n = len(r.watched)
@@ -296,7 +297,7 @@ class Window:
             rate[to] += (on_v @ q).real
             second[to] += (on_v @ r.flow.rate(q, block.gs[i], tau)).real
             if block.ps is not None and r.flow.u_p is not None:
-                force, slope, bend = (work.polynomial(block.ps[i], tau, order) for order in (0, 1, 2))
+                force, slope, bend = (polynomial.value(block.ps[i], tau, order) for order in (0, 1, 2))
                 u_p, v_p = r.rows[own] @ r.flow.u_p, r.rows[own] @ r.flow.space.v_p
                 value[to] += u_p @ force
                 rate[to] += v_p @ force + u_p @ slope
@@ -315,7 +316,7 @@ class Window:
             v[index] = (flow.v_q @ q).real
             a[index] = (flow.v_q @ flow.rate(q, g, tau)).real
             if block.ps is not None and flow.u_p is not None:
-                force, slope, bend = (work.polynomial(block.ps[interval], tau, order) for order in (0, 1, 2))
+                force, slope, bend = (polynomial.value(block.ps[interval], tau, order) for order in (0, 1, 2))
                 u_p, v_p = flow.u_p, flow.space.v_p
                 u[index] += u_p @ force
                 v[index] += v_p @ force + u_p @ slope
@@ -366,5 +367,5 @@ class Window:
             if block.ps is not None and flow.u_p is not None:
                 p = block.ps[interval]
                 area += float(row @ flow.u_p @ sum(p[k] * tau ** (k + 1) / (k + 1) for k in range(len(p))))
-                change += float(row @ flow.u_p @ (work.polynomial(p, tau) - p[0]))
+                change += float(row @ flow.u_p @ (polynomial.value(p, tau) - p[0]))
         return float(b.force0 * tau + b.stiffness * area + b.damping * change)

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from pound_deck.schema import Field, Kind, Spec
 
 from pound_solve.integrate import search, work
-from pound_solve.integrate.base import Ledger, Outcome, Sink, Start, Stop, Watch
+from pound_solve.integrate.base import INTERRUPTED, Ledger, Outcome, Sink, Start, Stop, Watch
 from pound_solve.integrate.blocks import Partition, Window
 from pound_solve.integrate.flow import Mechanism, SeriesFlow
 from pound_solve.laws import Branch
@@ -86,7 +86,7 @@ class Exact:
             self.partition.form(self.branches, self.u, self.v)
         except Mechanism as err:
             worst = int(np.argmax(np.abs(err.shape)))
-            raise self._stop("A501", f"{self.scene.name(worst)} has no mass and nothing holds it") from None
+            raise self.stop("A501", f"{self.scene.name(worst)} has no mass and nothing holds it") from None
         self.exit_pairs = [(i, e) for i, b in enumerate(self.branches) for e in range(len(b.exits))]
         self.exit_law = np.array([i for i, _ in self.exit_pairs], np.intp)
         self.exit_factors = np.array([self.branches[i].exits[e] for i, e in self.exit_pairs]).reshape(-1, 3).T
@@ -123,7 +123,7 @@ class Exact:
         t = window.grid(h)
         value, rate, second = window.functionals(h, self.bending)
         if not np.isfinite(value).all() or not np.isfinite(rate).all():
-            raise self._stop("A504", "the motion grew beyond all numbers")
+            raise self.stop("A504", "the motion grew beyond all numbers")
         self.windows += 1
         event = self._first_event(window, t, value, rate, second) if self.n_laws else None
         if event is None:
@@ -223,7 +223,7 @@ class Exact:
         self.ledger.peaks.force[law].take(force, self.t)
         if self.same_instant > 50 + 4 * self.n_laws:
             s = self.laws[law]
-            raise self._stop(
+            raise self.stop(
                 "A503", f"{self.same_instant} changes at one instant, the last in element {s.element} ({s.rule}): {before} to {after.name}"
             )
         self._form()
@@ -270,7 +270,8 @@ class Exact:
             checks.append(("defective modes", "met", "integrated by the exponential series"))
         return Outcome(self.ledger.close(), figures, checks)
 
-    def _stop(self, code: str, why: str) -> Stop:
+    def stop(self, code: str, why: str) -> Stop:
+        """The exception that ends the run here."""
         return Stop(code, self.t, why, self.outcome())
 
 
@@ -280,9 +281,13 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     Raises
     ------
     Stop
-        Too many changes at one instant, a mechanism, or numbers beyond all bounds.
+        Too many changes at one instant, a mechanism, numbers beyond all bounds, or an interrupt.
     """
-    return Exact(scene, start, watch, options, sink).run()
+    run = Exact(scene, start, watch, options, sink)
+    try:
+        return run.run()
+    except KeyboardInterrupt:
+        raise run.stop("A506", INTERRUPTED) from None
 
 
 SPEC = Spec(

@@ -28,12 +28,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_solve import polynomial
 from pound_solve.integrate import phi
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-MOST_CONDITION = 1e5  #: of the mode matrix; beyond it the series is used
+MOST_CONDITION = 1e6  #: of the mode matrix; beyond it the series is used
 SLOW = 1e-3  #: omega^2 below this share of the largest is sought again among the slow modes
 RECURRING = 64  #: lengths of segments for which the response is kept
 RIGID = 1e-14  #: omega^2 below this share of the rounding scale (times the size) is a rigid-body mode
@@ -117,28 +118,32 @@ def state_space(m: Array, c: Array, k: Array) -> StateSpace:
     size = 2 * nh + nd
     a = np.zeros((size, size))
     u, v, d = slice(0, nh), slice(nh, 2 * nh), slice(2 * nh, size)
+    # like the others, displacements of damped massless freedoms are scaled to the root of their energy
+    grip = np.sqrt(np.abs(np.diag(k1)[nh:]))
+    grip[grip == 0.0] = 1.0
+    rate_z = grip[:, None] * rate
     a[u, v] = np.diag(scale)
     a[v, u] = -(phi_h.T @ k_h @ phi_h) / scale
     a[v, v] = -phi_h.T @ c_h @ phi_h
-    a[v, d] = -phi_h.T @ k_hd
-    a[d, u] = -rate @ k1[nh:, :nh] @ phi_h / scale
-    a[d, v] = -rate @ c1[nh:, :nh] @ phi_h
-    a[d, d] = -rate @ k1[nh:, nh:]
+    a[v, d] = -phi_h.T @ k_hd / grip
+    a[d, u] = -rate_z @ k1[nh:, :nh] @ phi_h / scale
+    a[d, v] = -rate_z @ c1[nh:, :nh] @ phi_h
+    a[d, d] = -rate_z @ k1[nh:, nh:] / grip
     b = np.zeros((size, n))
     b[v] = phi_h.T @ (keep[:, :nh].T - to_h @ keep[:, nh:].T)
-    b[d] = rate @ keep[:, nh:].T
+    b[d] = rate_z @ keep[:, nh:].T
     x_z = np.zeros((n1, size))
     x_z[:nh, u] = phi_h / scale
-    x_z[nh:, d] = np.eye(nd)
+    x_z[nh:, d] = np.diag(1.0 / grip)
     xdot_z = np.zeros((n1, size))
     xdot_z[:nh, v] = phi_h
-    xdot_z[nh:] = a[d]
+    xdot_z[nh:] = a[d] / grip[:, None]
     z_u, z_v = np.zeros((size, n)), np.zeros((size, n))
     back = np.linalg.pinv(basis[:, :n1])  # the basis is orthonormal apart from the eliminated part
     z_u[u] = (scale[:, None] * phi_h.T @ m1[:nh, :nh]) @ back[:nh]
     z_v[v] = (phi_h.T @ m1[:nh, :nh]) @ back[:nh]
-    z_u[d] = back[nh:]
-    v_p = keep[:, nh:] @ b[d] if nd else np.zeros((n, n))
+    z_u[d] = grip[:, None] * back[nh:]
+    v_p = keep[:, nh:] @ rate @ keep[:, nh:].T if nd else np.zeros((n, n))
     return StateSpace(a, b, keep @ x_z, keep @ xdot_z, z_u, z_v, u_p, v_p, ())
 
 
@@ -463,7 +468,7 @@ class SeriesFlow(Flow):
         # from time to time, each as the start of the next
         out, last = np.empty((len(q), len(times))), 0.0
         for i, t in enumerate(times):
-            q = self.at(q, _shift(g, last), float(t) - last)
+            q = self.at(q, polynomial.shift(g, last), float(t) - last)
             out[:, i], last = q, float(t)
         return out
 
@@ -472,7 +477,7 @@ class SeriesFlow(Flow):
         steps = max(1, int(np.ceil(abs(t) * self.norm)))
         h = t / steps
         for s in range(steps):
-            local = _shift(g, s * h)
+            local = polynomial.shift(g, s * h)
             term, total, j = q.copy(), q.copy(), 0
             while True:
                 # q^(j+1) / (j+1)! h^(j+1) from q^(j) / j! h^j; the force adds its own Taylor coefficient
@@ -505,7 +510,7 @@ class SeriesFlow(Flow):
         out = np.empty((size, count))
         out[:, 0] = q
         for i in range(1, count):
-            local = _shift(g, (i - 1) * h)
+            local = polynomial.shift(g, (i - 1) * h)
             out[:, i] = step @ np.concatenate([out[:, i - 1], local.ravel()])
         return out
 
@@ -525,15 +530,6 @@ def gauss(t: float, fastest: float) -> tuple[Array, Array]:
     cells = max(1, int(np.ceil(t * fastest / 4.0)))
     width = t / cells
     return np.tile(_W * width, cells), (np.arange(cells)[:, None] * width + _X * width).ravel()
-
-
-def _shift(coefs: Array, t: float) -> Array:
-    """Coefficients of the same polynomials about a later origin `t`, shape (degree + 1, ...)."""
-    out = coefs.copy()
-    for i in range(len(coefs) - 1):
-        for k in range(len(coefs) - 2, i - 1, -1):
-            out[k] = out[k] + t * out[k + 1]
-    return out
 
 
 def make_flow(m: Array, c: Array, k: Array, inputs: Array) -> ModalFlow | SeriesFlow:

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.base import Ledger, Outcome, Sink, Start, Stop, Watch, cubic_top
+from pound_solve.integrate.base import INTERRUPTED, Ledger, Outcome, Sink, Start, Stop, Watch, cubic_top
 from pound_solve.laws import Branch
 from pound_solve.modes import massless
 from pound_solve.scene import Scene
@@ -143,7 +143,19 @@ class Stepper:
         return d, rate
 
     def run(self) -> Outcome:
-        """Integrate to the last output time."""
+        """Integrate to the last output time.
+
+        Raises
+        ------
+        Stop
+            Too many changes within one step, numbers beyond all bounds, or an interrupt.
+        """
+        try:
+            return self._run()
+        except KeyboardInterrupt:
+            raise self.stop("A506", INTERRUPTED) from None
+
+    def _run(self) -> Outcome:
         breaks, end = self.scene.excitation.breaks, float(self.times[-1])
         d, v = self.deformations(0.0, self.u, self.v)
         for i, s in enumerate(self.laws):
@@ -161,7 +173,7 @@ class Stepper:
                 self._advance(h if i < n - 1 else float(goal) - self.t, h)
             self.t = float(goal)
             if not np.isfinite(self.u).all() or not np.isfinite(self.v).all():
-                raise self._stop("A504", "the motion grew beyond all numbers")
+                raise self.stop("A504", "the motion grew beyond all numbers")
             if goal >= self.times[next_out]:
                 self._sample(self.t)
                 next_out += 1
@@ -269,7 +281,7 @@ class Stepper:
         self.same_instant += 1
         if self.same_instant > 100 + 8 * len(self.laws):
             s = self.laws[law]
-            raise self._stop("A503", f"{self.same_instant} changes within one step, the last in element {s.element} ({s.rule}): {before} to {after.name}")
+            raise self.stop("A503", f"{self.same_instant} changes within one step, the last in element {s.element} ({s.rule}): {before} to {after.name}")
         self._regime()
         self.settle()
         self._note()
@@ -364,5 +376,6 @@ class Stepper:
         figures = {"method": self.name, "time step": f"{self.dt:.6g}", "steps": self.steps, "events": self.events}
         return Outcome(self.ledger.close(), figures)
 
-    def _stop(self, code: str, why: str) -> Stop:
+    def stop(self, code: str, why: str) -> Stop:
+        """The exception that ends the run here."""
         return Stop(code, self.t, why, self.outcome())

@@ -22,6 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_solve import polynomial
 from pound_solve.integrate import phi
 from pound_solve.integrate.flow import RECURRING, ModalFlow, SeriesFlow, gauss, powers
 from pound_solve.scene import Scene
@@ -194,20 +195,12 @@ class Meter:
         w, points = gauss(tau, self.flow.fastest)
         v = (self.flow.v_q @ self.flow.path(q, g, points)).real
         if self.flow.u_p is not None and p is not None:
-            value, slope = (np.array([polynomial(p, float(x), order) for x in points]).T for order in (0, 1))
+            value, slope = (np.array([polynomial.value(p, float(x), order) for x in points]).T for order in (0, 1))
             v += self.flow.space.v_p @ value + self.flow.u_p @ slope
         force = constant[:, None] + self.inputs @ np.einsum("kj,kt->jt", coefs, powers(points, len(coefs) - 1))
         loss = float(np.einsum("it,ij,jt,t->", v, self.damping_matrix, v, w)) if self.damped else 0.0
         contacts = [(law, float(c * (w @ (row @ v) ** 2))) for law, c, row in self.contacts]
         return Work(loss, float(np.einsum("it,it,t->", v, force, w)), contacts)
-
-
-def polynomial(p: Array, t: float, order: int = 0) -> Array:
-    """Value of polynomials (ascending, first axis) at `t`, or of their derivative of some order."""
-    out = np.zeros(p.shape[1:])
-    for k in range(len(p) - 1, order - 1, -1):
-        out = out * t + p[k] * float(np.prod(np.arange(k - order + 1, k + 1)))
-    return out
 
 
 def total_work(

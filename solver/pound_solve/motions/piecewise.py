@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pound_solve.polynomial import shift
+
 Array = NDArray[np.float64]
 
 
@@ -89,7 +91,7 @@ class Piecewise:
         t0 : float, optional, [T]
             Local origin; the beginning of the interval if left out.
         """
-        return self.coefs[:, i].copy() if t0 is None else _shift(self.coefs[:, i], t0 - self.breaks[i])
+        return self.coefs[:, i].copy() if t0 is None else shift(self.coefs[:, i], t0 - self.breaks[i])
 
     def on(self, breaks: ArrayLike) -> Piecewise:
         """The same function written on other breaks, zero where they reach beyond its own.
@@ -113,7 +115,7 @@ class Piecewise:
         # middles, because a new break may lie a rounding error to the wrong side of an old one
         middle = 0.5 * (new[:-1] + new[1:])
         i = self.piece(middle)
-        coefs = _shift(self.coefs[:, i], new[:-1] - self.breaks[i])
+        coefs = shift(self.coefs[:, i], new[:-1] - self.breaks[i])
         coefs[:, (middle < self.start) | (middle > self.end)] = 0.0
         return Piecewise(new, coefs)
 
@@ -200,13 +202,4 @@ def _horner(coefs: Array, s: Array) -> Array:
     out = np.array(coefs[-1])
     for c in coefs[-2::-1]:
         out = out * s + c
-    return out
-
-
-def _shift(coefs: Array, s: Array | float) -> Array:
-    """Taylor shift: coefficients about a point that lies `s` after the old origin (repeated Horner)."""
-    out = np.array(coefs)
-    for j in range(len(out) - 1):
-        for k in range(len(out) - 2, j - 1, -1):
-            out[k] += s * out[k + 1]
     return out

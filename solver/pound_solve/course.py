@@ -1,0 +1,309 @@
+"""The course of a run: the analyses of a deck one after the other, and the tables that come of them."""
+
+from __future__ import annotations
+
+import platform
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pound_deck.model import Card, Model
+
+from pound_solve import __version__, echo, scene
+from pound_solve.analyses import history, modal, static
+from pound_solve.assemble import Structure, assemble
+from pound_solve.integrate.base import ENERGIES, Outcome, Stop
+from pound_solve.motions.base import Motion
+from pound_solve.results import Writer
+
+Array = NDArray[np.float64]
+Progress = Callable[[float, float], None]  #: told the time reached and the time to reach
+
+ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
+
+
+class Course:
+    """The analyses of one deck.
+
+    Parameters
+    ----------
+    model : Model
+    motions : sequence of Motion
+    structure : Structure
+    overridden : set of str
+        Lower-case names of PARAMs that the command line set.
+    writer : Writer
+    progress : callable or None
+    began : float
+        Reading of the clock when the run began.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        motions: Sequence[Motion],
+        structure: Structure,
+        overridden: set[str],
+        writer: Writer,
+        progress: Progress | None,
+        began: float,
+    ) -> None:
+        self.model, self.motions, self.structure = model, motions, structure
+        self.overridden, self.writer, self.progress = overridden, writer, progress
+        self.began, self.solve_seconds = began, 0.0
+
+    def all(self) -> str:
+        """Run everything the deck asks for; return why it stopped, or nothing."""
+        self._echo()
+        try:
+            state = self._static()
+            for card in self.model.analyses:
+                if card.spec.name == "MODAL":
+                    self._modal(card)
+            for card in self.model.analyses:
+                if card.spec.name == "HISTORY":
+                    self._history(card, state)
+        except static.Unstable as err:
+            return f"A501 static analysis: {err}"
+        except np.linalg.LinAlgError as err:
+            return f"A501 the structure is a mechanism ({err})"
+        except Stop as err:
+            return f"{err.code} at t = {err.t:.9g} {self.model.units.time}: {err}"
+        finally:
+            self._figures()
+        return ""
+
+    def _echo(self) -> None:
+        m, s, w = self.model, self.structure, self.writer
+        for name, text in m.files.items():
+            w.text(Path(name).name, text)
+        w.text("parameters", "\n".join(f"{k} = {echo.text_of(v)}" for k, v in m.params.items()))
+        w.table("options", echo.options(m, self.overridden))
+        w.table("nodes", echo.nodes(m))
+        w.table("elements", echo.elements(m))
+        w.table("properties", echo.properties(m))
+        w.table("masses", echo.masses(s))
+        w.table("loads", echo.loads(s.model))
+        w.table("member_loads", echo.member_loads(m))
+        w.table("damping", echo.damping(s))
+        w.table("contact_laws", echo.contact_laws(s))
+        w.table("motions", echo.motions(self.motions))
+        contacts = sum(x.is_contact for x in s.laws)
+        w.table(
+            "size",
+            [
+                ("nodes", str(len(m.nodes))),
+                ("elements", str(len(m.elements))),
+                ("freedoms", str(3 * len(m.nodes))),
+                ("unknowns before reduction", str(s.n_free)),
+                ("prescribed freedoms", str(len(s.freedoms.moved))),
+                ("hysteretic components", str(len(s.laws) - contacts)),
+                ("contacts", str(contacts)),
+            ],
+        )
+
+    def _static(self) -> static.StaticState:
+        asked = any(c.spec.name == "STATIC" for c in self.model.analyses)
+        histories = [c for c in self.model.analyses if c.spec.name == "HISTORY"]
+        s = self.structure
+        if not asked and all(c["FROM"] == "REST" for c in histories):
+            return static.StaticState(np.zeros(s.n_free), tuple(x.law.start() for x in s.laws), 0)
+        state = static.solve(s)
+        if asked:
+            self._static_tables(state)
+        return state
+
+    def _static_tables(self, state: static.StaticState) -> None:
+        s, w = self.structure, self.writer
+        full = np.concatenate([state.u, np.zeros(len(s.freedoms.moved))])
+        rows = []
+        for node in self.model.nodes:
+            rows.append((node, *map(float, s.freedoms.matrix([(node, d) for d in range(3)]) @ full)))
+        w.table("static_displacement", rows)
+        units = self.model.units
+        forces: list[tuple[Any, ...]] = [
+            (o.element, o.quantity, float(s.freedoms.row(o.freedoms, o.u_row) @ full) + o.constant, units.text(o.unit)) for o in s.outputs
+        ]
+        for x, law_state, row in zip(s.laws, state.states, s.law_rows):
+            d = float(row @ full)
+            quantity = "contact force" if x.is_contact else f"force {x.component}"
+            forces.append((x.element, quantity, x.law.branch(law_state).force(d, 0.0), units.text("F*L" if x.component == "R" else "F")))
+        w.table("static_force", sorted(forces, key=lambda r: r[0]))
+        w.table("reactions", self._reactions(state))
+
+    def _reactions(self, state: static.StaticState) -> list[tuple[Any, ...]]:
+        """Support reactions: what the elements and loads leave at fixed freedoms, by assembling with them free."""
+        fixed = {(n.id, d) for n in self.model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed}
+        whole = assemble(self.structure.model, fixed, all(c["SELF_WEIGHT"] == "YES" for c in self.model.analyses if c.spec.name == "STATIC"))
+        n = whole.n_free
+        u = np.zeros(whole.freedoms.size)
+        u[:n] = state.u
+        law = np.array([x.law.branch(k).force(float(r @ u), 0.0) for x, k, r in zip(whole.laws, state.states, whole.law_rows)])
+        r = whole.stiffness @ u - whole.loads
+        if len(law):
+            r = r + whole.law_rows.T @ law
+        at = {f: float(r[n + i]) for i, f in enumerate(whole.freedoms.moved)}
+        return [
+            (node, *(at.get((node, d), 0.0) for d in range(3))) for node, x in self.model.nodes.items() if x.fixed and any((node, d) in at for d in range(3))
+        ]
+
+    def _modal(self, card: Card) -> None:
+        rows = modal.rows(self.structure, card["MODES"])
+        self.writer.table("modes", rows)
+        if card["SHAPES"] == "YES":
+            self.writer.table("mode_shapes", modal.shape_rows(self.structure, len(rows)))
+
+    def _history(self, card: Card, state: static.StaticState) -> None:
+        s, end = self.structure, float(card["T"])
+        if card["FROM"] == "REST":
+            state = static.StaticState(np.zeros(s.n_free), tuple(x.law.start() for x in s.laws), 0)
+        u0, v0 = history.initial(s)
+        u = state.u + u0
+        place = scene.build(s, self.motions, end, u, v0)
+        drifts = history.watch(s, place)
+        times = self._times(end)
+        start = history.begin(s, place, u, v0, state.states, state.u, times)
+        tell = self.progress or (lambda t, end: None)
+        recorder = history.Recorder(place, drifts, self.writer.append, lambda t: tell(t, end))
+        self.writer.start_history(recorder.layout())
+        spec = card.laws["METHOD"][0]
+        began = time.perf_counter()
+        stop: Stop | None = None
+        outcome: Outcome | None = None
+        try:
+            outcome = spec.impl(place, start, drifts, {f.name: card[f.name] for f in spec.fields}, recorder)
+        except Stop as err:
+            stop, outcome = err, err.outcome
+        self.solve_seconds += time.perf_counter() - began
+        recorder.flush()
+        self._scene_tables(place)
+        self._history_tables(place, recorder, outcome)
+        if stop is not None:
+            raise stop
+
+    def _times(self, end: float) -> Array:
+        every = self.model.output["EVERY"]
+        if every is None:
+            steps = [m.info.get("dt") for m in self.motions if m.info.get("dt")]
+            every = min(steps, default=end / ROWS)
+            every *= max(1, round(end / every / ROWS))
+        count = int(np.floor(end / every * (1 + 1e-12)))
+        times = every * np.arange(count + 1)
+        return np.append(times, end) if end - times[-1] > 1e-9 * end else np.append(times[:-1], end)
+
+    def _scene_tables(self, place: scene.Scene) -> None:
+        rows = [(d.subject, d.decision, d.why) for d in place.decisions]
+        form = "total displacements" if place.total else "relative to the ground"
+        rows.append(("displacements", form, "supports move apart from each other" if place.total else "one motion for the whole base"))
+        self.writer.table("scene", rows)
+
+    def _history_tables(self, place: scene.Scene, recorder: history.Recorder, outcome: Outcome | None) -> None:
+        m, s, w, units = self.model, self.structure, self.writer, self.model.units
+        rows: list[tuple[Any, ...]] = []
+        for i, node in enumerate(recorder.nodes):
+            for d in range(3):
+                for q, word, dimension in (("u", "displacement", "L"), ("v", "velocity", "L/T"), ("a", "acceleration", "L/T^2")):
+                    e = recorder.node_extremes[q][3 * i + d]
+                    if e.high != 0.0 or e.low != 0.0:
+                        unit = units.text(dimension if d < 2 else dimension.replace("L", "rad"))
+                        rows.append((node, "XYR"[d], word, unit, e.high, e.t_high, e.low, e.t_low))
+        relative = "displacements and velocities are relative to the ground, accelerations are total"
+        w.table("node_envelope", rows, "at the output times; " + ("all are total" if place.total else relative))
+        w.table(
+            "member_envelope",
+            [
+                (o.element, o.quantity, units.text(o.unit), e.high, e.t_high, e.low, e.t_low)
+                for o, e in zip(recorder.outputs, recorder.output_extremes)
+            ],
+            "at the output times",
+        )
+        energy, input_ = recorder.last_energy, recorder.last_energy["input"]
+        first = recorder.first_energy or energy
+        share = 100.0 / input_ if input_ else float("nan")
+        w.table(
+            "energy",
+            [(k, energy[k] - (first[k] if k != "input" else 0.0), (energy[k] - (first[k] if k != "input" else 0.0)) * share) for k in ENERGIES]
+            + [("residual", recorder.residual(energy), recorder.residual(energy) * share)],
+            "changes since the start" + ("" if place.total else ", of the motion relative to the ground"),
+        )
+        if outcome is None:
+            return
+        exact = str(outcome.figures.get("method", "")).startswith("EXACT")
+        how = "exact peaks" if exact else "at the ends of the steps"
+        peaks = outcome.peaks
+        w.table(
+            "drift_envelope",
+            [
+                (name, e.high, e.t_high, e.low, e.t_low, h, max(abs(e.high), abs(e.low)) / h)
+                for name, e, h in zip(recorder.drifts.names, peaks.watch, history.heights(m))
+            ],
+            how,
+        )
+        energies = recorder.law_losses()
+        spring_rows, contact_rows = [], []
+        for i, x in enumerate(s.laws):
+            d, f = peaks.deformation[i], peaks.force[i]
+            if not x.is_contact:
+                force, length = ("F*L", "rad") if x.component == "R" else ("F", "L")
+                plus, minus = x.yields or (np.nan, np.nan)
+                ductility = max(d.high / plus if plus else np.nan, d.low / minus if minus else np.nan)
+                spring_rows.append(
+                    (x.element, x.component, x.rule, units.text(force), f.high, f.low, units.text(length), d.high, d.low, peaks.yields[i], ductility, energies[i])
+                )
+                continue
+            own = [c for c in peaks.collisions if c.law == i]
+            best = max(own, key=lambda c: c.peak, default=None)
+            closed = sum((c.t_end if np.isfinite(c.t_end) else recorder.reached) - c.t_start for c in own)
+            gap = x.facts["gap"]
+            contact_rows.append(
+                (
+                    history.contact_name(m, x.element),
+                    len(own),
+                    best.peak if best else 0.0,
+                    best.t_peak if best else float("nan"),
+                    max(d.high - gap, 0.0),
+                    sum(c.impulse for c in own),
+                    energies[i] + peaks.dashpot_losses[i],
+                    gap - d.high if not own else 0.0,
+                    closed,
+                )
+            )
+        w.table("spring_envelope", spring_rows, how)
+        w.table("contact_summary", contact_rows, how + "; a closure that has not ended counts")
+        ordered = sorted(peaks.collisions, key=lambda c: (c.t_start, c.law))
+        w.table(
+            "collisions",
+            [
+                (
+                    history.contact_name(m, s.laws[c.law].element),
+                    c.t_start,
+                    c.t_end,
+                    c.approach,
+                    c.separation,
+                    c.separation / c.approach if c.approach > 0 else float("nan"),
+                    c.peak,
+                    c.t_peak,
+                    c.impulse,
+                )
+                for c in ordered
+            ],
+        )
+        # a motion that was only started has no input: its residual is held against what it started with
+        scale = max(abs(input_), abs(first["kinetic"]) + abs(first["strain"]))
+        ratio = recorder.residual_peak / scale if scale else 0.0
+        good = "good" if ratio < (1e-9 if exact else 1e-2) else "look: energy is lost or made"
+        checks = [("largest energy residual over input or initial energy", f"{ratio:.2e}", good)]
+        w.table("checks", checks + outcome.checks)
+        w.table("run", [("unknowns", str(place.size)), *((k, str(v)) for k, v in outcome.figures.items())])
+
+    def _figures(self) -> None:
+        rows = [
+            ("solve seconds", f"{self.solve_seconds:.4f}"),
+            ("total seconds", f"{time.perf_counter() - self.began:.4f}"),
+            ("pound-solve", __version__),
+            ("Python, numpy", f"{platform.python_version()}, {np.__version__}"),
+        ]
+        self.writer.table("run_figures", rows)

@@ -1,0 +1,52 @@
+"""Polynomials with ascending coefficients along the first axis."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import comb, perm
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@cache
+def _binomials(n: int) -> tuple[Array, Array]:
+    """Binomials C(k, i) at [i, k], and the powers k - i (0 where the binomial is 0)."""
+    table = np.array([[comb(k, i) for k in range(n)] for i in range(n)], float)
+    return table, np.maximum(np.arange(n)[None, :] - np.arange(n)[:, None], 0)
+
+
+@cache
+def _falling(n: int, order: int) -> Array:
+    """Factors k (k-1) ... (k-order+1) that `order` derivatives leave before each coefficient from `order` on."""
+    return np.array([perm(k, order) for k in range(order, n)], float)
+
+
+def shift(coefs: Array, t: float | Array) -> Array:
+    """Coefficients of the same polynomials about an origin `t` later.
+
+    Parameters
+    ----------
+    coefs : ndarray, shape (degree + 1, ...)
+    t : float, or ndarray that broadcasts with one coefficient
+
+    Returns
+    -------
+    ndarray, shape of `coefs`
+    """
+    table, power = _binomials(len(coefs))
+    if np.ndim(t) == 0:
+        return coefs if t == 0.0 else np.tensordot(table * float(t) ** power, coefs, axes=1)
+    factors = table.reshape(*table.shape, *([1] * np.ndim(t))) * np.asarray(t) ** power.reshape(*power.shape, *([1] * np.ndim(t)))
+    return (factors * coefs).sum(axis=1)
+
+
+def value(coefs: Array, t: float, order: int = 0) -> Array:
+    """Value at `t` of polynomials, or of their derivative of some order, shape ``coefs.shape[1:]``."""
+    n = len(coefs)
+    if order >= n:
+        return np.zeros(coefs.shape[1:])
+    weights = _falling(n, order) * float(t) ** np.arange(n - order)
+    return np.tensordot(weights, coefs[order:], axes=1)
