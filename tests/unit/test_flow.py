@@ -1,0 +1,382 @@
+"""flow: the exact motion of linear blocks against the matrix exponential of the same system with its forcing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from pound_solve import polynomial
+from pound_solve.integrate.flow import (
+    Mechanism,
+    ModalFlow,
+    SeriesFlow,
+    gauss,
+    make_flow,
+    state_space,
+)
+
+Array = NDArray[np.float64]
+Block = tuple[Array, Array, Array]
+
+
+def chain(stiffness: list[float]) -> Array:
+    """Stiffness of masses in a row, the first one held by the first spring."""
+    n = len(stiffness)
+    rows = np.eye(n) - np.eye(n, k=-1)
+    return np.asarray(rows.T @ np.diag(stiffness) @ rows)
+
+
+def block(kind: str, n: int = 4, seed: int = 0) -> Block:
+    """Random mass, damping and stiffness of one kind."""
+    rng = np.random.default_rng([seed, sum(map(ord, kind))])
+    x, y = rng.normal(size=(2, n, n))
+    m, c, k = np.diag(rng.uniform(0.5, 2.0, n)), 0.1 * y @ y.T, x @ x.T + 0.2 * np.eye(n)
+    free = chain([0.0, *rng.uniform(1.0, 5.0, n - 1)])
+    if kind == "overdamped":
+        c = 100.0 * c
+    elif kind == "undamped":
+        c = 0.0 * c
+    elif kind == "consistent mass":
+        m = m + 0.3 * (np.eye(n, k=1) + np.eye(n, k=-1))
+    elif kind == "rigid body":
+        k, c = free, 0.01 * free
+    elif kind == "rigid body, mass damping":
+        k, c = free, 0.01 * free + 0.1 * m
+    elif kind == "no stiffness":
+        k = 0.0 * k
+    elif kind == "free masses":
+        k, c = 0.0 * k, 0.0 * c
+    elif kind == "free masses, one dashpot":
+        row = np.eye(n)[0] - np.eye(n)[-1]
+        k, c = 0.0 * k, 0.7 * np.outer(row, row)
+    elif kind == "negative stiffness":
+        k = k - np.diag([3.0] + [0.0] * (n - 1))
+    elif kind == "repeated frequencies":
+        m, k = np.eye(n), 4.0 * np.eye(n)
+    elif kind == "repeated, undamped":
+        m, c, k = np.eye(n), 0.0 * c, 4.0 * np.eye(n)
+    elif kind == "critically damped":
+        # one mode of a damped pair, turned into the others so that rounding hides it
+        k = np.diag(rng.uniform(1.0, 9.0, n))
+        c = np.diag(np.r_[2.0, np.full(n - 1, 0.1)] * np.sqrt(np.diag(k)))
+        turn = np.linalg.qr(x)[0]
+        m, c, k = np.eye(n), turn @ c @ turn.T, turn @ k @ turn.T
+    return m, c, k
+
+
+KINDS = (
+    "damped",
+    "overdamped",
+    "undamped",
+    "consistent mass",
+    "rigid body",
+    "rigid body, mass damping",
+    "no stiffness",
+    "free masses",
+    "free masses, one dashpot",
+    "negative stiffness",
+    "repeated frequencies",
+    "repeated, undamped",
+    "critically damped",
+)
+
+
+def reference(m: Array, c: Array, k: Array, p: Array, u: Array, v: Array, t: float) -> tuple[Array, Array]:
+    """Displacement and velocity at `t` under force polynomials `p`: exponential of (u, v, 1, t, t^2, ...)."""
+    n, count = len(m), len(p)
+    inverse = np.linalg.inv(m)
+    a = np.zeros((2 * n + count, 2 * n + count))
+    a[:n, n : 2 * n] = np.eye(n)
+    a[n : 2 * n, :n], a[n : 2 * n, n : 2 * n] = -inverse @ k, -inverse @ c
+    a[n : 2 * n, 2 * n :] = inverse @ p.T
+    for j in range(1, count):
+        a[2 * n + j, 2 * n + j - 1] = j
+    y = expm(a * t) @ np.concatenate([u, v, [1.0], np.zeros(count - 1)])
+    return y[:n], y[n : 2 * n]
+
+
+def motion(flow: ModalFlow | SeriesFlow, q: NDArray, g: NDArray, t: float) -> tuple[Array, Array]:  # type: ignore[type-arg]
+    at = flow.at(q, g, t)
+    return (flow.u_q @ at).real, (flow.v_q @ at).real
+
+
+def apart(x: tuple[Array, Array], y: tuple[Array, Array]) -> float:
+    """Largest difference, each of displacement and velocity against its largest entry."""
+    return max(float(np.abs(a - b).max() / np.abs(b).max()) for a, b in zip(x, y))
+
+
+def loads(n: int, degree: int, seed: int = 0) -> tuple[Array, Array, Array, Array, Array, Array]:
+    """Inputs, their coefficients, constant load, the force polynomials of both, and a start (u, v)."""
+    rng = np.random.default_rng([7, seed, degree])
+    inputs, coefs, constant = rng.normal(size=(n, 2)), rng.normal(size=(degree + 1, 2)), rng.normal(size=n)
+    p = coefs @ inputs.T
+    p[0] += constant
+    return inputs, coefs, constant, p, *rng.normal(size=(2, n))
+
+
+@pytest.mark.parametrize("degree", [0, 1, 3, 10])
+@pytest.mark.parametrize("kind", KINDS)
+def test_both_flows_against_the_matrix_exponential(kind: str, degree: int) -> None:
+    # measured: 3e-14 at worst
+    for seed in range(3):
+        m, c, k = block(kind, seed=seed)
+        inputs, coefs, constant, p, u, v = loads(4, degree, seed)
+        for flow in (make_flow(m, c, k, inputs), SeriesFlow(state_space(m, c, k), inputs)):
+            q, g = flow.enter(u, v), flow.forcing(coefs, constant)
+            assert apart(motion(flow, q, g, 1.3), reference(m, c, k, p, u, v, 1.3)) < 1e-11 * (
+                1 if kind == "no stiffness" else 0.05
+            )
+            assert np.allclose(g, flow.push(p), rtol=1e-13, atol=1e-13)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_enter_and_read_back(kind: str) -> None:
+    m, c, k = block(kind)
+    inputs, *_, u, v = loads(4, 0)
+    for flow in (make_flow(m, c, k, inputs), SeriesFlow(state_space(m, c, k), inputs)):
+        q = flow.enter(u, v)
+        assert apart(((flow.u_q @ q).real, (flow.v_q @ q).real), (u, v)) < 1e-12
+
+
+@pytest.mark.parametrize("degree", [0, 1, 4])
+@pytest.mark.parametrize("kind", KINDS)
+def test_samples_steps_and_rates_agree_with_single_times(kind: str, degree: int) -> None:
+    m, c, k = block(kind)
+    inputs, coefs, constant, _, u, v = loads(4, degree)
+    for flow in (make_flow(m, c, k, inputs), SeriesFlow(state_space(m, c, k), inputs)):
+        q, g = flow.enter(u, v), flow.forcing(coefs, constant)
+        times = 0.125 * np.arange(9)
+        single = np.stack([flow.at(q, g, float(t)) for t in times], axis=1)
+        scale = np.abs(single).max()
+        assert np.abs(flow.sample(q, g, 0.125, 9) - single).max() < 1e-13 * scale
+        assert np.abs(flow.path(q, g, times) - single).max() < 1e-13 * scale
+        # successive intervals, the forcing of each about its own start
+        gs = np.stack([polynomial.shift(g, float(t)) for t in times[:-1]])
+        marched = flow.march(q, gs, 0.125)
+        assert np.abs(marched - single).max() < 1e-12 * scale
+        several = flow.samples(marched[:, :-1], gs, 0.0625, 2)
+        assert np.abs(several[:, :, 0] - single[:, :-1]).max() < 1e-12 * scale
+        # the rate is the derivative: Richardson's difference of the motion itself
+        h = 1e-3
+        d = [(flow.at(q, g, 0.5 + s * h) - flow.at(q, g, 0.5 - s * h)) / (2 * s * h) for s in (1, 2)]
+        slope = flow.rate(flow.at(q, g, 0.5), g, 0.5)
+        speed = np.abs(slope).max() * max(1.0, flow.fastest) ** 4
+        assert np.abs((4 * d[0] - d[1]) / 3 - slope).max() < 1e-10 * speed
+        assert np.allclose(flow.rate(single, g, times)[:, 4], slope, rtol=1e-12, atol=1e-12 * scale)
+
+
+@pytest.mark.parametrize("degree", [0, 1, 4])
+@pytest.mark.parametrize("kind", KINDS)
+def test_integral_of_the_motion(kind: str, degree: int) -> None:
+    m, c, k = block(kind)
+    inputs, coefs, constant, _, u, v = loads(4, degree)
+    x, w = np.polynomial.legendre.leggauss(20)
+    for flow in (make_flow(m, c, k, inputs), SeriesFlow(state_space(m, c, k), inputs)):
+        q, g = flow.enter(u, v), flow.forcing(coefs, constant)
+        cells = int(np.ceil(1.3 * flow.fastest)) + 1
+        width = 1.3 / cells
+        expected = sum(
+            0.5 * width * b * flow.at(q, g, (i + 0.5 + 0.5 * a) * width)
+            for i in range(cells)
+            for a, b in zip(x, w)
+        )
+        assert np.abs(flow.integral(q, g, 1.3) - expected).max() < 1e-12 * np.abs(expected).max()
+
+
+def test_series_where_the_modes_are_defective() -> None:
+    chosen = {kind: type(make_flow(*block(kind), np.eye(4))) for kind in KINDS}
+    assert chosen.pop("critically damped") is SeriesFlow
+    assert set(chosen.values()) == {ModalFlow}
+
+
+def test_critically_damped_closed_form() -> None:
+    # u = (u0 + (v0 + w u0) t) exp(-w t) with w = 3
+    flow = make_flow(np.eye(1), np.array([[6.0]]), np.array([[9.0]]), np.eye(1))
+    assert isinstance(flow, SeriesFlow)
+    u, v = motion(flow, flow.enter(np.array([0.4]), np.array([-2.0])), np.zeros((1, 2)), 0.7)
+    fall, b = np.exp(-2.1), -2.0 + 3.0 * 0.4
+    assert u[0] == pytest.approx((0.4 + b * 0.7) * fall, rel=1e-13)
+    assert v[0] == pytest.approx((b - 3.0 * (0.4 + b * 0.7)) * fall, rel=1e-13)
+
+
+@pytest.mark.parametrize("side", [-1, 1])
+@pytest.mark.parametrize("off", [1e-3, 1e-6, 1e-9, 1e-12, 1e-15])
+def test_nearly_critical_damping(off: float, side: int) -> None:
+    """One mode within `off` of critical, turned into two others: no more digits are lost than the condition asks."""
+    turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
+    k, xi = np.array([9.0, 4.0, 1.0]), 1.0 + side * off
+    c = np.array([2.0 * xi * 3.0, 0.2, 0.1])
+    p = np.array([[0.3, -0.2, 0.1], [1.0, 0.5, -0.4]])
+    u, v = np.array([0.4, 1.0, -0.3]), np.array([-2.0, 0.5, 0.1])
+    turned = (np.eye(3), turn @ np.diag(c) @ turn.T, turn @ np.diag(k) @ turn.T)
+    flow = make_flow(*turned, np.eye(3))
+    found = motion(flow, flow.enter(turn @ u, turn @ v), flow.push(p @ turn.T), 0.7)
+    expected = reference(np.eye(3), np.diag(c), np.diag(k), p, u, v, 0.7)
+    # the solution itself is smooth in the damping: the exponential has no trouble here
+    assert apart(found, (turn @ expected[0], turn @ expected[1])) < 1e-10
+    if isinstance(flow, ModalFlow) and side < 0:
+        assert apart(found, (turn @ expected[0], turn @ expected[1])) < 1e-13
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_light_mass_beside_heavy_ones(ratio: float) -> None:
+    """Two heavy masses with a light one between: the slow motion keeps its digits.
+
+    By symmetry the masses 1 at the ends of two springs 1, held outside by springs 1, move against each other
+    with the light mass still: omega^2 = 2, whatever the light mass.
+    """
+    m, k = np.diag([1.0, ratio, 1.0]), np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 2.0]])
+    flow = make_flow(m, np.zeros((3, 3)), k, np.eye(3))
+    u, v = motion(
+        flow, flow.enter(np.array([1.0, 0.0, -1.0]), np.zeros(3)), np.zeros((1, len(flow.lam))), 40.0
+    )
+    expected = np.array([1.0, 0.0, -1.0]) * np.cos(np.sqrt(2.0) * 40.0)
+    assert np.abs(u - expected).max() < 1e-12
+    # in the other slow mode the light mass takes part: omega^2 is the small root of
+    # r w^2 - 2 (1 + r) w + 2 = 0 (written without cancellation), shape (1, 2 - w, 1)
+    w = 2.0 / ((1.0 + ratio) + np.sqrt(1.0 + ratio * ratio))
+    shape = np.array([1.0, 2.0 - w, 1.0])
+    u, v = motion(flow, flow.enter(shape, np.zeros(3)), np.zeros((1, len(flow.lam))), 40.0)
+    assert np.abs(u - shape * np.cos(np.sqrt(w) * 40.0)).max() < 1e-11
+
+
+@pytest.mark.parametrize("decay", [1e-2, 1e-4, 1e-6, 1e-8])
+def test_hardly_damped_rigid_body(decay: float) -> None:
+    """A free mass with m u'' + decay u' = 1: the modes cancel to eps / decay, the series takes over before it hurts."""
+    flow = make_flow(np.eye(1), np.array([[decay]]), np.zeros((1, 1)), np.eye(1))
+    t, zero = 1.5, np.zeros(1)
+    # v = t - decay t^2 / 2 + ..., u = t^2 / 2 - decay t^3 / 6 + ...: series of (1 - exp(-decay t)) / decay
+    v = sum((-decay) ** j * t ** (j + 1) / float(np.prod(np.arange(1, j + 2))) for j in range(12))
+    u = sum((-decay) ** j * t ** (j + 2) / float(np.prod(np.arange(1, j + 3))) for j in range(12))
+    found = motion(flow, flow.enter(zero, zero), flow.push(np.ones((1, 1))), t)
+    assert found[0][0] == pytest.approx(u, rel=1e-9)
+    assert found[1][0] == pytest.approx(v, rel=1e-12)
+
+
+# ---------------------------------------------------------------------- massless freedoms
+
+
+def massless(
+    heavy: int, damped: int, static: int, units: float, seed: int
+) -> tuple[Array, Array, Array, NDArray[np.intp]]:
+    """Random block with massless freedoms, with and without dashpots, in mixed order; its order is returned too."""
+    rng = np.random.default_rng([seed, heavy, damped, static])
+    n = heavy + damped + static
+    x, y = rng.normal(size=(n, n)), np.zeros((n, n))
+    y[: heavy + damped] = rng.normal(size=(heavy + damped, n))
+    m = np.diag(np.r_[rng.uniform(0.5, 2.0, heavy), np.zeros(damped + static)])
+    order = rng.permutation(n)
+    k = x @ x.T + 0.3 * np.eye(n)
+    return tuple(units * a[np.ix_(order, order)] for a in (m, 0.3 * y @ y.T, k)) + (order,)  # type: ignore[return-value]
+
+
+def eliminated(
+    m: Array,
+    c: Array,
+    k: Array,
+    p: Array,
+    u: Array,
+    v: Array,
+    t: float,
+    order: NDArray[np.intp],
+    heavy: int,
+    damped: int,
+) -> tuple[Array, Array]:
+    """The same motion with the massless freedoms eliminated by hand."""
+    where = np.argsort(order)
+    h, d, s = where[:heavy], where[heavy : heavy + damped], where[heavy + damped :]
+    x = np.r_[h, d]
+    flex = np.linalg.inv(k[np.ix_(s, s)])
+    carry = flex @ k[np.ix_(s, x)]  # u_s = flex p_s - carry u_x
+    kx, cx = k[np.ix_(x, x)] - k[np.ix_(x, s)] @ carry, c[np.ix_(x, x)]
+    px = p[:, x] - p[:, s] @ carry
+    nh, count = len(h), len(p)
+    size = 2 * nh + len(d)
+    a = np.zeros((size + count, size + count))
+    hu, hv, du, one = slice(0, nh), slice(nh, 2 * nh), slice(2 * nh, size), slice(size, size + count)
+    a[hu, hv] = np.eye(nh)
+    slack = np.linalg.inv(cx[nh:, nh:])
+    a[du, hu], a[du, hv], a[du, du], a[du, one] = (
+        -slack @ kx[nh:, :nh],
+        -slack @ cx[nh:, :nh],
+        -slack @ kx[nh:, nh:],
+        slack @ px[:, nh:].T,
+    )
+    a[hv, hu], a[hv, hv], a[hv, du], a[hv, one] = -kx[:nh, :nh], -cx[:nh, :nh], -kx[:nh, nh:], px[:, :nh].T
+    a[hv] -= cx[:nh, nh:] @ a[du]
+    a[hv] = np.linalg.solve(m[np.ix_(h, h)], a[hv])
+    for j in range(1, count):
+        a[size + j, size + j - 1] = j
+    y = expm(a * t) @ np.concatenate([u[h], v[h], u[d], [1.0], np.zeros(count - 1)])
+    rate = a @ y
+    out_u, out_v = np.zeros(len(m)), np.zeros(len(m))
+    out_u[h], out_v[h], out_u[d], out_v[d] = y[hu], y[hv], y[du], rate[du]
+    force, change = polynomial.value(p, t), polynomial.value(p, t, 1)
+    out_u[s], out_v[s] = flex @ force[s] - carry @ out_u[x], flex @ change[s] - carry @ out_v[x]
+    return out_u, out_v
+
+
+@pytest.mark.parametrize("units", [1.0, 1e6, 1e-6])
+@pytest.mark.parametrize(("damped", "static"), [(1, 0), (0, 2), (2, 1), (2, 2)])
+def test_massless_freedoms(damped: int, static: int, units: float) -> None:
+    # measured: 2e-13 at worst; the reference's exponential of the stiff relaxations is no better
+    for seed in range(4):
+        m, c, k, order = massless(3, damped, static, units, seed)
+        n = len(m)
+        inputs, coefs, constant, p, u, v = loads(n, 2, seed)
+        p = units * p
+        flow = make_flow(m, c, k, inputs)
+        assert isinstance(flow, ModalFlow)
+        assert flow.u_p is not None
+        q, g = flow.enter(u, v), flow.forcing(units * coefs, units * constant)
+        at = flow.at(q, g, 1.3)
+        found = (
+            (flow.u_q @ at).real + flow.u_p @ polynomial.value(p, 1.3),
+            (flow.v_q @ at).real
+            + flow.space.v_p @ polynomial.value(p, 1.3)
+            + flow.u_p @ polynomial.value(p, 1.3, 1),
+        )
+        assert apart(found, eliminated(m, c, k, p, u, v, 1.3, order, 3, damped)) < 1e-11
+
+
+def test_condition_does_not_depend_on_units() -> None:
+    for seed in range(4):
+        m, c, k, _ = massless(3, 2, 1, 1.0, seed)
+        of = [make_flow(s * m, s * c, s * k, np.eye(6)).condition for s in (1e-9, 1.0, 1e9)]
+        assert of == pytest.approx([of[1]] * 3, rel=1e-6)
+
+
+def test_massless_freedoms_keep_continuity_of_position_only() -> None:
+    """Entering drops the velocity of massless freedoms and the position of those without dashpots."""
+    m, c, k, order = massless(3, 1, 1, 1.0, 0)
+    flow = make_flow(m, c, k, np.eye(5))
+    _, _, _, p, u, v = loads(5, 0)
+    q = flow.enter(u, v)
+    kept_u, kept_v = np.isin(order, [0, 1, 2, 3]), np.isin(order, [0, 1, 2])
+    found_u = (flow.u_q @ q).real + flow.u_p @ p[0]
+    found_v = (flow.v_q @ q).real + flow.space.v_p @ p[0]
+    assert np.allclose(found_u[kept_u], u[kept_u], rtol=1e-11, atol=1e-12)
+    assert np.allclose(found_v[kept_v], v[kept_v], rtol=1e-11, atol=1e-12)
+    # and what follows is in balance: no force is left on the massless freedoms
+    residual = k @ found_u + c @ found_v - p[0]
+    assert np.abs(residual[~kept_v]).max() < 1e-11
+
+
+def test_mechanism_names_its_shape() -> None:
+    # two massless nodes that hang together, held by nothing: they move as one
+    m = np.diag([1.0, 0.0, 0.0])
+    k = np.array([[2.0, 0.0, 0.0], [0.0, 3.0, -3.0], [0.0, -3.0, 3.0]])
+    with pytest.raises(Mechanism) as caught:
+        make_flow(m, np.zeros((3, 3)), k, np.eye(3))
+    shape = caught.value.shape
+    assert np.allclose(shape / shape[1], [0.0, 1.0, 1.0], atol=1e-12)
+    # a dashpot is enough of a hold
+    assert make_flow(m, np.diag([0.0, 0.5, 0.0]), k, np.eye(3)).u_p is not None
+
+
+def test_gauss_resolves_products_of_the_fastest_mode() -> None:
+    w, x = gauss(1.0, 50.0)
+    for rate in (100.0j, -50.0 + 50.0j, -100.0):
+        assert abs(w @ np.exp(rate * x) - (np.exp(rate) - 1.0) / rate) < 1e-14
