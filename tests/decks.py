@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+
 from pound_deck.diagnostics import has_errors, render
 from pound_deck.model import Model
 from pound_deck.reader import read_text
-
 from pound_solve import scene
 from pound_solve.analyses import history, static
 from pound_solve.assemble import Structure, assemble
@@ -91,7 +91,10 @@ def solve(model: Model, self_weight: bool = True) -> Solved:
     s = assemble(model, self_weight=self_weight)
     state = static.solve(s)
     u = {n: s.freedoms.matrix([(n, d) for d in range(3)]) @ state.u for n in model.nodes}
-    force = {(o.element, o.quantity): float(s.freedoms.row(o.freedoms, o.u_row) @ state.u) + o.constant for o in s.outputs}
+    force = {
+        (o.element, o.quantity): float(s.freedoms.row(o.freedoms, o.u_row) @ state.u) + o.constant
+        for o in s.outputs
+    }
     for spring, law_state, row in zip(s.laws, state.states, s.law_rows):
         name = "contact" if spring.is_contact else f"force {spring.component}"
         force[spring.element, name] = spring.law.branch(law_state).force(float(row @ state.u), 0.0)

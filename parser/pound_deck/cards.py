@@ -1,7 +1,8 @@
 """Logical lines to rows of items, each with its Span: the only module that uses lark.
 
 The parser's callbacks only put tokens into postfix order; spans are added afterwards in plain loops.  So no
-step calls itself, however long or deep a card is, and the one Lark object serves every file.
+step calls itself, however long or deep a card is.  How a card is built depends on the kinds of its tokens
+only: the thousandth line of a table is taken apart as its first was, without parsing it again.
 """
 
 from __future__ import annotations
@@ -30,6 +31,9 @@ _SIGNS: Final = frozenset({"PLUS", "MINUS", "STAR", "SLASH", "POWER"})
 # a keyword, and no named item; what follows TITLE is free
 _FIRST_WORD: Final = re.compile(r"\s*(TITLE(?![\w.])|[A-Za-z_][\w.]*(?![\w.]|\s*=))", re.IGNORECASE)
 _BRACKET: Final = re.compile(r""""[^"\n]*"|'[^'\n]*'|([()])""")
+_LONGEST_NAME: Final = 300  #: of a file, with its path
+_PATH_START: Final = re.compile(r"\.{1,2}[/\\]|~/|\\\\|[A-Za-z]:[/\\]")
+_FILE: Final = re.compile(r"""[^()*"']*[A-Za-z_][^()*"']*\.[A-Za-z]\w*""")  #: a letter, and an extension
 _LOOKALIKES: Final = {
     "−": "-",
     "–": "-",
@@ -51,6 +55,11 @@ class Item:
     parts: tuple[Part, ...]
     span: Span
     name_span: Span
+
+    @property
+    def text(self) -> str:
+        """Its value as written."""
+        return ",".join(part.text for part in self.parts)
 
     @property
     def word(self) -> str:
@@ -75,6 +84,7 @@ class Row:
 
 def parse(lines: Iterable[Line], report: list[Diagnostic]) -> Iterator[Row]:
     """Parse line by line; a line that cannot be parsed adds a diagnostic and comes without items."""
+    shapes: dict[tuple[str, ...], _Shape] = {}
     for line in lines:
         first = _FIRST_WORD.match(line.text)
         word = first[1].upper() if first else ""
@@ -83,15 +93,15 @@ def parse(lines: Iterable[Line], report: list[Diagnostic]) -> Iterator[Row]:
             items = ()  # the rest of a title is free text
         else:
             try:
-                items = parse_items(line)
+                items = parse_items(line, shapes)
             except Mistake as error:
                 if error.diagnostic:
                     report.append(error.diagnostic)
         yield Row(word, items, line, line.span)
 
 
-def parse_items(line: Line) -> tuple[Item, ...]:
-    """Items of one logical line.
+def parse_items(line: Line, shapes: dict[tuple[str, ...], _Shape] | None = None) -> tuple[Item, ...]:
+    """Items of one logical line; `shapes` keeps what was parsed before.
 
     Raises
     ------
@@ -99,10 +109,27 @@ def parse_items(line: Line) -> tuple[Item, ...]:
         The line does not follow the grammar.
     """
     _check_nesting(line)
+    lexer, parser = _lark()
     try:
-        return tuple(_item(raw, line) for raw in _lark().parse(line.text))  # type: ignore[attr-defined]
+        tokens = list(lexer.lex(line.text))
+        kinds = tuple([token.type for token in tokens])
+        shape = shapes.get(kinds) if shapes else None
+        if shape is None:
+            shape = _shape(parser.parse(line.text), tokens)
+            if shapes is not None:
+                shapes[kinds] = shape
     except UnexpectedInput as error:
-        raise _explain(error, line) from None
+        raise _explain(_first_error(parser, line, error), line) from None
+    return tuple([_item(item, tokens, line) for item in shape])
+
+
+def _first_error(parser: Lark, line: Line, error: UnexpectedInput) -> UnexpectedInput:
+    """What the parser meets first: the lexer alone runs past mistakes of grammar."""
+    try:
+        parser.parse(line.text)
+    except UnexpectedInput as first:
+        return first
+    return error
 
 
 class _Blanks(PostLex):
@@ -124,7 +151,10 @@ class _Blanks(PostLex):
 
 
 class _Postfix(Transformer):
-    """Puts tokens into postfix order: a list of (kind, token, number of values), extended in place."""
+    """Puts tokens into postfix order: a list of (kind, token, number of values), extended in place.
+
+    Brackets stay as steps of the kind ``mark``: they have a place, but no value.
+    """
 
     def number(self, children: list[Any]) -> list[Any]:
         return [("number", children[0], 0)]
@@ -136,7 +166,10 @@ class _Postfix(Transformer):
         return [("text", children[0], 0)]
 
     def bracket(self, children: list[Any]) -> list[Any]:
-        return children[0]
+        opening, steps, closing = children
+        steps.append(("mark", opening, 0))
+        steps.append(("mark", closing, 0))
+        return steps
 
     def unary(self, children: list[Any]) -> list[Any]:
         sign, steps = children
@@ -152,13 +185,14 @@ class _Postfix(Transformer):
     def call(self, children: list[Any]) -> list[Any]:
         name, *rest = children
         arguments = [c for c in rest if not isinstance(c, Token)]
-        return [step for argument in arguments for step in argument] + [("call", name, len(arguments))]
+        steps = [step for argument in arguments for step in argument]
+        return [*steps, ("call", name, len(arguments)), ("mark", rest[-1], 0)]
 
     def expression(self, children: list[Any]) -> tuple[Any, ...]:
-        return ("expression", children[0])
+        return (children[0],)
 
     def range(self, children: list[Any]) -> tuple[Any, ...]:
-        return ("range", *(c for c in children if isinstance(c, tuple)))
+        return tuple(c[0] for c in children if isinstance(c, tuple))
 
     def plain(self, children: list[Any]) -> tuple[Any, list[Any]]:
         return None, [c for c in children if isinstance(c, tuple)]
@@ -170,11 +204,46 @@ class _Postfix(Transformer):
         return [c for c in children if c is not None]
 
 
+@dataclass(frozen=True, slots=True)
+class _Formula:
+    """Steps of an expression as (kind, index of token, number of values), and its first and last token."""
+
+    steps: tuple[tuple[str, int, int], ...]
+    first: int
+    last: int
+
+
+#: for each item the index of its name and its parts: of one formula an expression, of more a range
+_Shape = tuple[tuple[int | None, tuple[tuple[_Formula, ...], ...]], ...]
+
+
+def _shape(parsed: Any, tokens: list[Token]) -> _Shape:
+    """What the parser made of a card, with indices in place of its tokens."""
+    index = {token.start_pos: k for k, token in enumerate(tokens)}
+
+    def formula(raw: list[tuple[str, Token, int]]) -> _Formula:
+        steps = [(kind, index[token.start_pos], arity) for kind, token, arity in raw]
+        places = [k for _, k, _ in steps]
+        return _Formula(tuple(s for s in steps if s[0] != "mark"), min(places), max(places))
+
+    return tuple(
+        (
+            None if name is None else index[name.start_pos],
+            tuple(tuple(formula(raw) for raw in part) for part in parts),
+        )
+        for name, parts in parsed
+    )
+
+
 @cache
-def _lark() -> Lark:
+def _lark() -> tuple[Lark, Lark]:
+    """The lexer alone, and the parser with the same lexer."""
     # the basic lexer looks at no parser state, so _Blanks may read one token ahead
     grammar = files("pound_deck").joinpath("deck.lark").read_text("utf-8")
-    return Lark(grammar, parser="lalr", lexer="basic", postlex=_Blanks(), transformer=_Postfix())
+    return (
+        Lark(grammar, parser=None, lexer="basic", postlex=_Blanks()),
+        Lark(grammar, parser="lalr", lexer="basic", postlex=_Blanks(), transformer=_Postfix()),
+    )
 
 
 def _span(token: Token, line: Line) -> Span:
@@ -188,31 +257,36 @@ def _join(first: Span, last: Span) -> Span:
     return Span(first.file, first.line, first.column, last.end if last.line == first.line else first.end)
 
 
-def _expression(raw: list[tuple[str, Token, int]], line: Line) -> Expression:
-    steps = tuple(
-        Step(kind, token[1:-1] if kind == "text" else str(token), _span(token, line), arity)
-        for kind, token, arity in raw
-    )
-    if len(steps) == 1:
-        return Expression(steps, steps[0].span)
-    places = [step.span for step in steps]
-    first = min(places, key=lambda s: (s.line, s.column))
-    return Expression(steps, _join(first, max(places, key=lambda s: (s.line, s.end))))
+def _expression(formula: _Formula, tokens: list[Token], line: Line) -> Expression:
+    first, last = tokens[formula.first], tokens[formula.last]
+    text = line.text[first.start_pos : last.end_pos]
+    if formula.first == formula.last:
+        kind = formula.steps[0][0]
+        span = _span(first, line)
+        return Expression((Step(kind, text[1:-1] if kind == "text" else text, span),), span, text)
+    steps = []
+    for kind, k, arity in formula.steps:
+        token = tokens[k]
+        steps.append(Step(kind, token[1:-1] if kind == "text" else str(token), _span(token, line), arity))
+    return Expression(tuple(steps), _join(_span(first, line), _span(last, line)), text)
 
 
-def _part(raw: tuple[Any, ...], line: Line) -> Part:
-    kind, *rest = raw
-    if kind == "expression":
-        return _expression(rest[0], line)
-    first, last, *step = (_expression(r[1], line) for r in rest)
-    return Range(first, last, step[0] if step else None, _join(first.span, (step or [last])[0].span))
-
-
-def _item(raw: tuple[Token | None, list[Any]], line: Line) -> Item:
-    name, values = raw
-    parts = tuple(_part(value, line) for value in values)
-    span = _join(parts[0].span, parts[-1].span)
-    return Item(name.upper(), parts, span, _span(name, line)) if name else Item("", parts, span, span)
+def _item(
+    shape: tuple[int | None, tuple[tuple[_Formula, ...], ...]], tokens: list[Token], line: Line
+) -> Item:
+    name, raw = shape
+    parts: list[Part] = []
+    for formulas in raw:
+        values = [_expression(formula, tokens, line) for formula in formulas]
+        if len(values) == 1:
+            parts.append(values[0])
+        else:
+            span = _join(values[0].span, values[-1].span)
+            parts.append(Range(values[0], values[1], values[2] if len(values) > 2 else None, span))
+    span = parts[0].span if len(parts) == 1 else _join(parts[0].span, parts[-1].span)
+    if name is None:
+        return Item("", tuple(parts), span, span)
+    return Item(tokens[name].upper(), tuple(parts), span, _span(tokens[name], line))
 
 
 def _check_nesting(line: Line) -> None:
@@ -236,11 +310,21 @@ def _place(line: Line, at: int, length: int = 1) -> Span:
 def _explain(error: UnexpectedInput, line: Line) -> Mistake:
     text = line.text
     at = min(error.pos_in_stream if error.pos_in_stream is not None else len(text), len(text))
-    if isinstance(error, UnexpectedCharacters):
-        return _strange(text[at], _place(line, at))
-    token: Token = getattr(error, "token", Token("$END", ""))
+    token: Token = getattr(error, "token", Token("", ""))  # a strange character is none
     if token.type == "$END":
         at = len(text.rstrip())
+    path = _path(text, at)
+    if path:
+        start, name = path
+        message = f"{name[:60]} is neither a word nor an expression"
+        return mistake(
+            "P239",
+            message,
+            _place(line, start, len(name)),
+            f'the name of a file stands in quotes: "{name[:60]}"',
+        )
+    if isinstance(error, UnexpectedCharacters):
+        return _strange(text[at], _place(line, at))
     before = text[:at].rstrip()
     last = before[-1:]
     place = _place(line, at, len(token.rstrip()))
@@ -279,6 +363,19 @@ def _explain(error: UnexpectedInput, line: Line) -> Mistake:
     return mistake(
         "P209", f"{shown[:60]} does not belong here", place, "items are separated by blanks: 1 2 NAME=3"
     )
+
+
+def _path(text: str, at: int) -> tuple[int, str] | None:
+    """Start and text of what stands at a place without blanks, if it is like the name of a file."""
+    start = end = at
+    while start and text[start - 1] not in " \t\n=,":
+        start -= 1
+    while end < len(text) and text[end] not in " \t\n=,":
+        end += 1
+    piece = text[start:end]
+    if end == at or len(piece) > _LONGEST_NAME or not (_PATH_START.match(piece) or _FILE.fullmatch(piece)):
+        return None
+    return start, piece
 
 
 def _unclosed(text: str) -> int:

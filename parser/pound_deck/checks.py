@@ -12,6 +12,7 @@ from pound_deck.schema import Kind
 Found = Iterator[Diagnostic]
 #: where the kinds that name something are defined: nodes, elements, property sets
 _TABLE: Final = {Kind.NODE: 0, Kind.NODES: 0, Kind.ELEMENTS: 1, Kind.PROP: 2, Kind.PROPS: 2}
+_MOST_HINTS: Final = 100  #: more messages are not printed, and each hint takes its time
 
 
 def run_checks(
@@ -44,7 +45,7 @@ def _references(model: Model, cards: Iterable[Card], broken: frozenset[str]) -> 
         code, what, section, known = tables[_TABLE[kind]]
         if section not in broken and value not in known and span not in told:
             told.add(span)
-            near = suggest(value, known) if isinstance(value, str) else ""
+            near = suggest(value, known) if isinstance(value, str) and len(told) <= _MOST_HINTS else ""
             ground = "leave J out for the ground" if value == 0 else ""
             hint = near or ground or f"define it under {section}"
             yield Diagnostic(code, f"there is no {what} {value}", span, hint)
@@ -135,7 +136,8 @@ def _analysis(model: Model) -> Found:
 
 
 def _excitation(model: Model) -> Found:
-    if model.equake or model.initial or model.loads or model.member_loads:
+    loaded = any(card["NODES"] for card in (*model.initial, *model.loads))  # a list may be empty
+    if model.equake or loaded or any(card["ELEMENTS"] for card in model.member_loads):
         return
     for card in model.analyses:
         if card.spec.name == "HISTORY":

@@ -8,10 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from itertools import islice
 from typing import Final, Literal
 
 from pound_deck.model import Span
 
+_MANY_CHOICES, _MOST_CHOICES = 50, 500  #: to be looked through for the one that was meant
 _WIDTH: Final = 160  #: longest piece of a source line that is printed
 
 
@@ -46,8 +48,11 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 def closest(word: str, choices: Iterable[str]) -> str:
     """The choice that is most like a misspelt word, in any case; empty where none is near."""
-    known = {choice.upper(): choice for choice in choices}
-    close = get_close_matches(word.upper()[:100], known, n=1, cutoff=0.6)
+    known = {choice.upper(): choice for choice in islice(choices, _MOST_CHOICES)}
+    word = word.upper()[:100]
+    if len(known) > _MANY_CHOICES:  # a slip seldom changes both ends; looking at all would take too long
+        known = {k: c for k, c in known.items() if k[:1] == word[:1] or k[-1:] == word[-1:]}
+    close = get_close_matches(word, known, n=1, cutoff=0.6)
     return known[close[0]] if close else ""
 
 
@@ -211,12 +216,12 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P215": (
         "item after a named one",
         "Items by position stand before the named ones. Values of one item are joined by commas "
-        "without blanks.",
+        "without blanks: NODES=100,100+n.",
     ),
     "P216": (
         "wrong kind of value",
-        "The place holds another kind of value: a number, a whole number, a text or a word. Texts "
-        "stand in quotes.",
+        "The place holds another kind of value: a number, a whole number, a text or a word. A text "
+        "stands in quotes unless it is one word or one number.",
     ),
     "P217": (
         "value out of limits",
@@ -234,7 +239,9 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P220": (
         "range does not fit",
         "The range descends, misses its end, or cannot be stepped evenly along with the card's "
-        "first range.",
+        "first range. a TO b with b = a - 1 is no mistake but means none: it adds nothing to a list "
+        "of nodes or elements, a card whose list is empty applies to nothing, and a line of NODES or "
+        "ELEMENTS that starts with it generates nothing. Anything lower is an error.",
     ),
     "P221": (
         "too much generated",
@@ -274,7 +281,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P233": (
         "--set value not understood",
-        "A PARAM that holds a number is set to a number or an expression.",
+        "A PARAM that holds a number is set to a number or an expression; one that holds a text to "
+        "any text, with or without quotes.",
     ),
     "P234": (
         "line outside any section",
@@ -291,6 +299,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P237": ("card given twice", "TITLE, UNITS, GRAVITY and MASS stand once in a deck."),
     "P238": ("UNITS not understood", "Write UNITS force length time, for example UNITS kN m s."),
+    "P239": (
+        "file name without quotes",
+        "The item is neither a word nor an expression. If it names a file, put it in quotes: FILE="
+        '"records/a-1.at2".',
+    ),
     "P301": ("node given twice", "Two cards define the same node number. Ranges generate numbers too."),
     "P302": (
         "element given twice",
@@ -342,6 +355,21 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "WX is the number of a node and WY differs from it. Node lists have commas: 1,2 and not 1 2.",
     ),
     "P321": ("element ends at one node", "Both ends of the element are the same node."),
+    "P330": (
+        "element cannot be built",
+        "The values of the element or of its property set contradict each other or its nodes. The "
+        "message says why; mend the property set, or the line under ELEMENTS that the hint names.",
+    ),
+    "P331": (
+        "loads on an element that is no member",
+        "MEMBER_LOADS act on FRAME members only. Load the nodes of springs, dashpots and contacts under "
+        "LOADS, or correct the element's number.",
+    ),
+    "P332": (
+        "damping contradictory or not computable",
+        "The options of the DAMPING line exclude each other, or the modes they name do not exist. Give "
+        "ALPHA and BETA, or XI with OMEGA or MODES, and support the structure.",
+    ),
     "R401": (
         "record not found",
         "The record stands neither in the deck's folder nor in the record folders. Check its name, "

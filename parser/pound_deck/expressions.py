@@ -10,6 +10,7 @@ import math
 from collections import ChainMap
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from itertools import chain
 from typing import Final
 
 from pound_deck.diagnostics import Diagnostic, Mistake, mistake, suggest
@@ -30,10 +31,11 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Expression:
-    """A number, word, text or formula of the deck."""
+    """A number, word, text or formula of the deck, with its `text` as written."""
 
     steps: tuple[Step, ...]
     span: Span
+    text: str
 
     @property
     def lone(self) -> Step | None:
@@ -54,6 +56,11 @@ class Range:
     last: Expression
     step: Expression | None
     span: Span
+
+    @property
+    def text(self) -> str:
+        """As written, with single blanks."""
+        return f"{self.first.text} TO {self.last.text}" + (f" BY {self.step.text}" if self.step else "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,7 +151,7 @@ def _leaf(step: Step, params: Mapping[str, Value | None]) -> Value:
         raise mistake(
             "P222", message, step.span, f"write {step.text}(...) with no blank before the bracket"
         )
-    hint = suggest(name, [*params, "PI"]) or "define it with PARAM, or put a text in quotes"
+    hint = suggest(name, chain(params, ["PI"])) or "define it with PARAM, or put a text in quotes"
     raise mistake("P222", f"{step.text} is no number and no PARAM of this deck", step.span, hint)
 
 

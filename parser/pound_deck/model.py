@@ -77,7 +77,7 @@ class Node:
 class Element:
     """A member, spring, dashpot or contact: number, property label, end nodes.
 
-    `j` is None for an element that ends at the ground or at a wall; `name` is a text from the deck or empty.
+    `j` is None for an element that ends at the ground or at a wall; `name` is a text or empty.
     """
 
     id: int

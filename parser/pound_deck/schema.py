@@ -54,8 +54,8 @@ class Field:
     unit : str
         Dimensions, see the module's head; ``"-"`` for a pure number, ``""`` where units mean nothing.
     default : object
-        Value when the item is left out; `REQUIRED` when it must stand; None where its absence means something.
-        For ``count`` above one the default is a tuple or None.
+        Value when the item is left out; `REQUIRED` when it must stand; None where its absence means
+        something. For ``count`` above one the default is a tuple or None.
     doc : str
         One sentence for the manual, lower case, no full stop.
     lo, hi : float or None

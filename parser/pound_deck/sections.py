@@ -7,11 +7,13 @@ and ``analysis``.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Final
 
 from pound_deck.schema import Field, Kind, Spec
 
-_ID = {"positional": True, "varies": True}
+#: a field by position that steps along with the ranges of its card
+_step = partial(Field, positional=True, varies=True)
 
 SECTIONS: Final = (
     Spec(
@@ -19,12 +21,17 @@ SECTIONS: Final = (
         "NODES",
         "nodes: coordinates, supports and slaved freedoms",
         (
-            Field("NODE", Kind.INT, doc="node number; a range generates nodes", lo=1, **_ID),
-            Field("X", Kind.REAL, "L", doc="horizontal coordinate; a range spaces evenly", **_ID),
-            Field("Y", Kind.REAL, "L", doc="vertical coordinate, upwards; a range spaces evenly", **_ID),
+            _step("NODE", Kind.INT, doc="node number; a range generates nodes", lo=1),
+            _step("X", Kind.REAL, "L", doc="horizontal coordinate; a range spaces evenly"),
+            _step("Y", Kind.REAL, "L", doc="vertical coordinate, upwards; a range spaces evenly"),
             Field("FIX", Kind.FLAGS, default="", words=("XYR",), doc="fixed directions, letters of XYR"),
             Field("SLAVED", Kind.FLAGS, default="", words=("XYR",), doc="directions that follow MASTER"),
-            Field("MASTER", Kind.NODE, default=None, doc="node that the SLAVED directions follow, rigid arm included"),
+            Field(
+                "MASTER",
+                Kind.NODE,
+                default=None,
+                doc="node that the SLAVED directions follow, rigid arm included",
+            ),
         ),
     ),
     Spec(
@@ -32,10 +39,10 @@ SECTIONS: Final = (
         "ELEMENTS",
         "elements: which property set joins which nodes",
         (
-            Field("ELEMENT", Kind.INT, doc="element number; a range generates elements", lo=1, **_ID),
+            _step("ELEMENT", Kind.INT, doc="element number; a range generates elements", lo=1),
             Field("PROP", Kind.PROP, doc="label of its property set", positional=True),
-            Field("I", Kind.NODE, doc="first node", **_ID),
-            Field("J", Kind.NODE, default=None, doc="second node; left out: the ground or a wall", **_ID),
+            _step("I", Kind.NODE, doc="first node"),
+            _step("J", Kind.NODE, default=None, doc="second node; left out: the ground or a wall"),
             Field("NAME", Kind.TEXT, default="", doc="name in the report"),
         ),
     ),
@@ -46,8 +53,24 @@ SECTIONS: Final = (
         (
             Field("NODES", Kind.NODES, doc="nodes that get this weight each", positional=True),
             Field("WX", Kind.REAL, "F", doc="weight that moves along x", lo=0, positional=True),
-            Field("WY", Kind.REAL, "F", default=None, doc="weight that moves along y; left out: WX", lo=0, positional=True),
-            Field("WR", Kind.REAL, "F*L^2", default=0.0, doc="rotational inertia times gravity", lo=0, positional=True),
+            Field(
+                "WY",
+                Kind.REAL,
+                "F",
+                default=None,
+                doc="weight that moves along y; left out: WX",
+                lo=0,
+                positional=True,
+            ),
+            Field(
+                "WR",
+                Kind.REAL,
+                "F*L^2",
+                default=0.0,
+                doc="rotational inertia times gravity",
+                lo=0,
+                positional=True,
+            ),
         ),
     ),
     Spec(
@@ -67,11 +90,23 @@ SECTIONS: Final = (
         "static loads on FRAME members, held during the history",
         (
             Field("ELEMENTS", Kind.ELEMENTS, doc="members that get this load each", positional=True),
-            Field("WX", Kind.REAL, "F/L", default=0.0, doc="uniform load along global x per length of member"),
-            Field("WY", Kind.REAL, "F/L", default=0.0, doc="uniform load along global y per length of member"),
+            Field(
+                "WX", Kind.REAL, "F/L", default=0.0, doc="uniform load along global x per length of member"
+            ),
+            Field(
+                "WY", Kind.REAL, "F/L", default=0.0, doc="uniform load along global y per length of member"
+            ),
             Field("PX", Kind.REAL, "F", default=0.0, doc="point load along global x"),
             Field("PY", Kind.REAL, "F", default=0.0, doc="point load along global y"),
-            Field("AT", Kind.REAL, "-", default=0.5, doc="place of the point load as a share of the flexible length from I", lo=0, hi=1),
+            Field(
+                "AT",
+                Kind.REAL,
+                "-",
+                default=0.5,
+                doc="place of the point load as a share of the flexible length from I",
+                lo=0,
+                hi=1,
+            ),
         ),
     ),
     Spec(
@@ -96,7 +131,14 @@ SECTIONS: Final = (
             Field("NAME", Kind.TEXT, doc="name in the report", positional=True),
             Field("I", Kind.NODE, doc="lower node", positional=True),
             Field("J", Kind.NODE, doc="upper node", positional=True),
-            Field("HEIGHT", Kind.REAL, "L", default=None, above=0, doc="storey height; left out: from the coordinates"),
+            Field(
+                "HEIGHT",
+                Kind.REAL,
+                "L",
+                default=None,
+                above=0,
+                doc="storey height; left out: from the coordinates",
+            ),
             Field("DIRECTION", Kind.WORD, default="X", words=("X", "Y"), doc="direction of the drift"),
         ),
     ),
@@ -105,10 +147,30 @@ SECTIONS: Final = (
         "OUTPUT",
         "what is stored and printed",
         (
-            Field("EVERY", Kind.REAL, "T", default=None, above=0, doc="interval of stored histories; left out: about 1000 rows"),
-            Field("NODES", Kind.NODES, default=None, doc="nodes with histories and envelopes; left out: all"),
-            Field("MEMBERS", Kind.ELEMENTS, default=None, doc="elements with histories and envelopes; left out: all"),
-            Field("COLLISIONS", Kind.INT, default=200, lo=0, doc="most collisions printed in the report; the results file holds all"),
+            Field(
+                "EVERY",
+                Kind.REAL,
+                "T",
+                default=None,
+                above=0,
+                doc="interval of stored histories; left out: about 1000 rows",
+            ),
+            Field(
+                "NODES", Kind.NODES, default=None, doc="nodes with histories and envelopes; left out: all"
+            ),
+            Field(
+                "MEMBERS",
+                Kind.ELEMENTS,
+                default=None,
+                doc="elements with histories and envelopes; left out: all",
+            ),
+            Field(
+                "COLLISIONS",
+                Kind.INT,
+                default=200,
+                lo=0,
+                doc="most collisions printed in the report; the results file holds all",
+            ),
         ),
     ),
 )

@@ -126,10 +126,13 @@ class Scene:
 
         With `order` 1 or 2 `u` is their velocity or acceleration, and so is the result.
         """
-        s = self.excitation.value(t, order)
+        return self.expanded(u, self.excitation.value(t, order), order)
+
+    def expanded(self, u: Array, s: Array, order: int = 0) -> Array:
+        """`all_freedoms` from inputs `s` (of the same order of derivative); columns are instants where there are several."""
         free = self.expand @ u + self.expand_inputs @ s
         if order == 0:
-            free = free + self.expand_constant
+            free = (free.T + self.expand_constant).T
         return np.concatenate([free, self.support_inputs @ s])
 
     @property
@@ -290,20 +293,27 @@ def _can_move(structure: Structure, inputs: Array, excitation: Excitation, start
 
 
 def _condensable(k: Array, c: Array, light: NDArray[np.bool_], live: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    none = np.zeros_like(light)
-    for candidates in (light, light & ~np.any(c[: len(light)] != 0.0, axis=1)):
+    """Which massless freedoms follow the others exactly; those that do not are taken out until the rest do."""
+    none, candidates = np.zeros_like(light), light
+    while candidates.any():
         s = np.flatnonzero(candidates)
-        if not len(s):
+        values = np.linalg.eigvalsh(k[np.ix_(s, s)])
+        if values[0] <= 1e-13 * max(values[-1], 0.0):
+            # a mechanism among them, or what only dashpots hold: leave it to the integrator, which can name it
+            undamped = candidates & ~np.any(c[: len(light)] != 0.0, axis=1)
+            if (undamped == candidates).all():
+                return none
+            candidates = undamped
             continue
         # prescribed freedoms are among the others that they follow
         rest = np.concatenate([np.flatnonzero(live & ~candidates), np.arange(len(live), len(k))])
-        values = np.linalg.eigvalsh(k[np.ix_(s, s)])
-        if values[0] <= 1e-13 * max(values[-1], 0.0):
-            continue  # a mechanism among them: leave it to the integrator, which can name it
         g = -np.linalg.solve(k[np.ix_(s, s)], k[np.ix_(s, rest)])
-        misfit = c[np.ix_(s, rest)] + c[np.ix_(s, s)] @ g
-        if np.abs(misfit).max(initial=0.0) <= 1e-11 * max(np.abs(c[s]).max(initial=0.0), 1e-300):
+        misfit = np.abs(c[np.ix_(s, rest)] + c[np.ix_(s, s)] @ g).max(axis=1, initial=0.0)
+        bad = misfit > 1e-11 * max(np.abs(c[s]).max(initial=0.0), 1e-300)
+        if not bad.any():
             return candidates
+        candidates = candidates.copy()
+        candidates[s[bad]] = False
     return none
 
 

@@ -25,7 +25,7 @@ def dashpot() -> float:
 
 
 def integrate() -> tuple[np.ndarray, np.ndarray]:
-    """Extremes of both drifts, shape (2, 2), and collisions (start, end, approach, separation), shape (n, 4).
+    """Extremes of both drifts, shape (2, 2), and collisions (start, end, velocities), shape (n, 4).
 
     Where a velocity is zero its drift is stationary: those instants are events too, so nothing is sampled.
     """

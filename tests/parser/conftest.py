@@ -88,6 +88,7 @@ def make_catalog() -> Catalog:
                 (
                     Field("FILE", Kind.TEXT, doc="file of the record"),
                     Field("FORMAT", Kind.FAMILY, default="PEER", family="record"),
+                    Field("UNIT", Kind.WORD, default="G", words=("G", "CM/S2"), doc="unit of the samples"),
                 ),
             ),
             Spec("record", "PEER", "PEER"),

@@ -1,12 +1,15 @@
 """What holds for any input: no exception, right arithmetic, no meaning in blanks and case."""
 
 import math
+import re
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from pound_deck.cards import parse_items
 from pound_deck.diagnostics import MESSAGES, render
 from pound_deck.reader import read_text
+from pound_deck.source import Line
 
 DECK = """TITLE  Two towers
 UNITS  kN m s
@@ -79,6 +82,54 @@ def test_a_damaged_deck_gives_diagnostics_only(catalog, at, length, word, blank)
 def test_the_deck_of_these_tests_is_good(catalog):
     model, found, files = read_text(DECK, catalog)
     assert model is not None and not found, render(found, files)
+
+
+@quiet
+@given(st.lists(st.sampled_from([line for line in DECK.split("\n") if line]), min_size=1), st.data())
+def test_known_shapes_change_nothing(lines, data):
+    def other(match):
+        return data.draw(
+            st.sampled_from({"0": ["7", "31.5"], "a": ["b", "xyz_1"]}["0a"[match[0].isalpha()]])
+        )
+
+    shapes = {}
+    for line in lines:
+        card = Line("deck.inp", 1, line)
+        same_kinds = Line(
+            "deck.inp", 2, re.sub(r"(?<![\w.])(\d+|(?!TO\b|BY\b)[A-Za-z]+)(?![\w.])", other, line)
+        )
+        for one in (card, same_kinds):
+            if not one.text.startswith("TITLE"):
+                assert parse_items(one, shapes) == parse_items(one)
+
+
+# any text can be given to a PARAM that holds one
+
+bare = st.text(st.characters(exclude_categories=["Cs"]), max_size=40).map(str.strip)
+plain = bare.filter(lambda t: not (len(t) > 1 and t[0] == t[-1] and t[0] in "\"'"))
+
+
+@quiet
+@given(plain, st.sampled_from(["", '"', "'"]))
+def test_a_text_is_set_to_any_text(catalog, text, quote):
+    given = text if quote in text else quote + text + quote
+    model, found, files = read_text(DECK, catalog, {"rec": given})
+    assert model is not None, render(found, files)
+    assert model.params["REC"] == model.equake[0]["FILE"] == text
+
+
+def test_texts_set_from_the_command_line(catalog):
+    for text in (
+        "a b.at2",
+        "../x-y/el centro.at2",
+        "5",
+        "2*n",
+        "it's",
+        '"a" b "c"',
+        "C:\\r\\a",
+        "! no comment",
+    ):
+        assert read_text(DECK, catalog, {"Rec": text})[0].params["REC"] == text
 
 
 # every number with a decimal point: Python's whole numbers grow without end

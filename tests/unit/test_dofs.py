@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from decks import model_of, solved, structure_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pound_deck.model import Node, Span
 
+from decks import model_of, solved, structure_of
+from pound_deck.model import Node, Span
 from pound_solve.dofs import number
 
 SPAN = Span("test", 1, 1, 2)
@@ -41,7 +41,9 @@ def test_a_slave_moves_as_a_rigid_body_with_its_master(x, y, u):
     """The slave stands before its master in the deck: order must not matter."""
     f = numbered(node(1, 1 + x, 2 + y, X=2, Y=2, R=2), node(2, 1, 2))
     ux, uy, turn = u
-    assert f.matrix([(1, d) for d in range(3)]) @ np.array(u) == pytest.approx([ux - turn * y, uy + turn * x, turn])
+    assert f.matrix([(1, d) for d in range(3)]) @ np.array(u) == pytest.approx(
+        [ux - turn * y, uy + turn * x, turn]
+    )
 
 
 def test_only_the_slaved_directions_follow():
@@ -97,7 +99,9 @@ WEIGHTS
 
 
 def test_the_deck_fills_nodes():
-    model = model_of("NODES\n 1 0 0 FIX=XYR\n 2 1 0 FIX=R\n 3 1 1 FIX=Y SLAVED=XR MASTER=2\nELEMENTS\n 1 S 1 2\nPROPS\n S SPRING KX=1")
+    model = model_of(
+        "NODES\n 1 0 0 FIX=XYR\n 2 1 0 FIX=R\n 3 1 1 FIX=Y SLAVED=XR MASTER=2\nELEMENTS\n 1 S 1 2\nPROPS\n S SPRING KX=1"
+    )
     assert model.nodes[3].slaved == {"X": 2, "R": 2} and model.nodes[3].fixed == "Y"
 
 

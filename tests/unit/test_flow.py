@@ -1,4 +1,4 @@
-"""flow: the exact motion of linear blocks against the matrix exponential of the same system with its forcing."""
+"""flow: exact motion of linear blocks, against the matrix exponential of the system with its forcing."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ KINDS = (
 
 
 def reference(m: Array, c: Array, k: Array, p: Array, u: Array, v: Array, t: float) -> tuple[Array, Array]:
-    """Displacement and velocity at `t` under force polynomials `p`: exponential of (u, v, 1, t, t^2, ...)."""
+    """Displacement and velocity at `t` under force polynomials `p`: exponential of (u, v, 1, t, ...)."""
     n, count = len(m), len(p)
     inverse = np.linalg.inv(m)
     a = np.zeros((2 * n + count, 2 * n + count))
@@ -125,9 +125,9 @@ def test_both_flows_against_the_matrix_exponential(kind: str, degree: int) -> No
         inputs, coefs, constant, p, u, v = loads(4, degree, seed)
         for flow in (make_flow(m, c, k, inputs), SeriesFlow(state_space(m, c, k), inputs)):
             q, g = flow.enter(u, v), flow.forcing(coefs, constant)
-            assert apart(motion(flow, q, g, 1.3), reference(m, c, k, p, u, v, 1.3)) < 1e-11 * (
-                1 if kind == "no stiffness" else 0.05
-            )
+            found, expected = motion(flow, q, g, 1.3), reference(m, c, k, p, u, v, 1.3)
+            # without stiffness the slowest random decay leaves a condition of 1e5
+            assert apart(found, expected) < (1e-11 if kind == "no stiffness" else 5e-13)
             assert np.allclose(g, flow.push(p), rtol=1e-13, atol=1e-13)
 
 
@@ -177,11 +177,8 @@ def test_integral_of_the_motion(kind: str, degree: int) -> None:
         q, g = flow.enter(u, v), flow.forcing(coefs, constant)
         cells = int(np.ceil(1.3 * flow.fastest)) + 1
         width = 1.3 / cells
-        expected = sum(
-            0.5 * width * b * flow.at(q, g, (i + 0.5 + 0.5 * a) * width)
-            for i in range(cells)
-            for a, b in zip(x, w)
-        )
+        points = (width * (np.arange(cells)[:, None] + 0.5 + 0.5 * x)).ravel()
+        expected = flow.path(q, g, points) @ np.tile(0.5 * width * w, cells)
         assert np.abs(flow.integral(q, g, 1.3) - expected).max() < 1e-12 * np.abs(expected).max()
 
 
@@ -204,7 +201,7 @@ def test_critically_damped_closed_form() -> None:
 @pytest.mark.parametrize("side", [-1, 1])
 @pytest.mark.parametrize("off", [1e-3, 1e-6, 1e-9, 1e-12, 1e-15])
 def test_nearly_critical_damping(off: float, side: int) -> None:
-    """One mode within `off` of critical, turned into two others: no more digits are lost than the condition asks."""
+    """A mode within `off` of critical, turned into two others: the condition costs no more than itself."""
     turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
     k, xi = np.array([9.0, 4.0, 1.0]), 1.0 + side * off
     c = np.array([2.0 * xi * 3.0, 0.2, 0.1])
@@ -224,12 +221,12 @@ def test_nearly_critical_damping(off: float, side: int) -> None:
 def test_light_mass_beside_heavy_ones(ratio: float) -> None:
     """Two heavy masses with a light one between: the slow motion keeps its digits.
 
-    By symmetry the masses 1 at the ends of two springs 1, held outside by springs 1, move against each other
-    with the light mass still: omega^2 = 2, whatever the light mass.
+    By symmetry the masses 1 at the ends of two springs 1, held outside by springs 1, move against
+    each other with the light mass still: omega^2 = 2, whatever the light mass.
     """
     m, k = np.diag([1.0, ratio, 1.0]), np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 2.0]])
     flow = make_flow(m, np.zeros((3, 3)), k, np.eye(3))
-    u, v = motion(
+    u, _ = motion(
         flow, flow.enter(np.array([1.0, 0.0, -1.0]), np.zeros(3)), np.zeros((1, len(flow.lam))), 40.0
     )
     expected = np.array([1.0, 0.0, -1.0]) * np.cos(np.sqrt(2.0) * 40.0)
@@ -238,13 +235,13 @@ def test_light_mass_beside_heavy_ones(ratio: float) -> None:
     # r w^2 - 2 (1 + r) w + 2 = 0 (written without cancellation), shape (1, 2 - w, 1)
     w = 2.0 / ((1.0 + ratio) + np.sqrt(1.0 + ratio * ratio))
     shape = np.array([1.0, 2.0 - w, 1.0])
-    u, v = motion(flow, flow.enter(shape, np.zeros(3)), np.zeros((1, len(flow.lam))), 40.0)
+    u, _ = motion(flow, flow.enter(shape, np.zeros(3)), np.zeros((1, len(flow.lam))), 40.0)
     assert np.abs(u - shape * np.cos(np.sqrt(w) * 40.0)).max() < 1e-11
 
 
 @pytest.mark.parametrize("decay", [1e-2, 1e-4, 1e-6, 1e-8])
 def test_hardly_damped_rigid_body(decay: float) -> None:
-    """A free mass with m u'' + decay u' = 1: the modes cancel to eps / decay, the series takes over before it hurts."""
+    """A free mass, u'' + decay u' = 1: modes cancel to eps / decay, so the series takes over."""
     flow = make_flow(np.eye(1), np.array([[decay]]), np.zeros((1, 1)), np.eye(1))
     t, zero = 1.5, np.zeros(1)
     # v = t - decay t^2 / 2 + ..., u = t^2 / 2 - decay t^3 / 6 + ...: series of (1 - exp(-decay t)) / decay
@@ -261,7 +258,7 @@ def test_hardly_damped_rigid_body(decay: float) -> None:
 def massless(
     heavy: int, damped: int, static: int, units: float, seed: int
 ) -> tuple[Array, Array, Array, NDArray[np.intp]]:
-    """Random block with massless freedoms, with and without dashpots, in mixed order; its order is returned too."""
+    """Random block with massless freedoms, with and without dashpots, in mixed order, and that order."""
     rng = np.random.default_rng([seed, heavy, damped, static])
     n = heavy + damped + static
     x, y = rng.normal(size=(n, n)), np.zeros((n, n))
@@ -269,7 +266,8 @@ def massless(
     m = np.diag(np.r_[rng.uniform(0.5, 2.0, heavy), np.zeros(damped + static)])
     order = rng.permutation(n)
     k = x @ x.T + 0.3 * np.eye(n)
-    return tuple(units * a[np.ix_(order, order)] for a in (m, 0.3 * y @ y.T, k)) + (order,)  # type: ignore[return-value]
+    m, c, k = (units * a[np.ix_(order, order)] for a in (m, 0.3 * y @ y.T, k))
+    return m, c, k, order
 
 
 def eliminated(

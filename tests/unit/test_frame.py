@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from decks import Solved, model_of, solve, solved, structure_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from decks import Solved, model_of, solve, solved, structure_of
 
 E, A, I, G, AS = 2.1e8, 0.011, 1.7e-4, 8.0e7, 0.004
 angles = st.one_of(st.sampled_from([0.0, 90.0, 180.0, -90.0, 45.0]), st.floats(-180.0, 180.0))
@@ -127,7 +128,14 @@ def test_cantilever_with_tip_loads(shear, angle, n, px, py, m):
 
 @pytest.mark.parametrize("shear", [False, True])
 @settings(max_examples=25, deadline=None)
-@given(angle=angles, n=st.floats(0.5, 20.0), wx=st.floats(-9, 9), wy=st.floats(-9, 9), p=st.floats(-9, 9), at=st.floats(0, 1))
+@given(
+    angle=angles,
+    n=st.floats(0.5, 20.0),
+    wx=st.floats(-9, 9),
+    wy=st.floats(-9, 9),
+    p=st.floats(-9, 9),
+    at=st.floats(0, 1),
+)
 def test_cantilever_with_member_loads(shear, angle, n, wx, wy, p, at):
     """Loads are given along the global axes; two cards on one member add up."""
     w, q = turned(angle, wx, wy), turned(angle, 0.0, p)
@@ -201,7 +209,14 @@ def test_self_weight_is_a_load_and_can_be_switched_off(angle):
 
 
 @settings(max_examples=30, deadline=None)
-@given(angle=angles, n=st.floats(1.0, 20.0), a=st.floats(0, 0.4), b=st.floats(0, 0.4), shear=st.booleans(), pin=st.sampled_from(["NONE", "I", "J", "BOTH"]))
+@given(
+    angle=angles,
+    n=st.floats(1.0, 20.0),
+    a=st.floats(0, 0.4),
+    b=st.floats(0, 0.4),
+    shear=st.booleans(),
+    pin=st.sampled_from(["NONE", "I", "J", "BOTH"]),
+)
 def test_end_blocks_are_a_shorter_member_on_rigid_arms(angle, n, a, b, shear, pin):
     """The same member built from slaved nodes, springs at the tip, uniform, point and self-weight loads."""
     a, b = a * n, b * n
@@ -309,7 +324,9 @@ MEMBER_LOADS
     for key, value in still.force.items():
         close(other.force[key], value, scale=size)
     for node, u in still.u.items():
-        close(local(angle, other.u[node]), u, rel=1e-10, scale=max(np.abs(x).max() for x in still.u.values()))
+        close(
+            local(angle, other.u[node]), u, rel=1e-10, scale=max(np.abs(x).max() for x in still.u.values())
+        )
 
 
 def test_order_of_nodes_and_elements_does_not_matter():
@@ -325,7 +342,12 @@ LOADS
 """
 
     def run(order_n, order_e):
-        text = "NODES\n" + "\n".join(nodes[i] for i in order_n) + "\nELEMENTS\n" + "\n".join(elements[i] for i in order_e)
+        text = (
+            "NODES\n"
+            + "\n".join(nodes[i] for i in order_n)
+            + "\nELEMENTS\n"
+            + "\n".join(elements[i] for i in order_e)
+        )
         return solved(text + tail)
 
     first = run(range(5), range(4))
@@ -393,7 +415,9 @@ LOADS
 def test_consistent_mass_has_the_kinetic_energy_of_rigid_motions(angle, n, a, b, shear, pin, motion):
     m, g = 0.8, 9.81
     extra = f"WGT={m * g!r} END1={a * n!r} END2={b * n!r}" + ("" if pin == "BAR" else f" PIN={pin}")
-    deck = member(n, angle, extra, shear=shear, head=f"MASS CONSISTENT\nGRAVITY {g}").replace("1.5  -0.7  FIX=XYR", "1.5  -0.7")
+    deck = member(n, angle, extra, shear=shear, head=f"MASS CONSISTENT\nGRAVITY {g}").replace(
+        "1.5  -0.7  FIX=XYR", "1.5  -0.7"
+    )
     if pin == "BAR":
         deck = deck.replace(f"I={I!r}", "I=0")
     s = structure_of(deck)
@@ -412,7 +436,9 @@ def test_consistent_mass_has_the_kinetic_energy_of_rigid_motions(angle, n, a, b,
 
 @pytest.mark.parametrize("mass", ["LUMPED", "CONSISTENT"])
 def test_total_mass_is_m_l(mass):
-    deck = member(5.0, 30.0, "WGT=9.81 END1=0.5 END2=0.25", head=f"MASS {mass}\nGRAVITY 9.81").replace("FIX=XYR", "")
+    deck = member(5.0, 30.0, "WGT=9.81 END1=0.5 END2=0.25", head=f"MASS {mass}\nGRAVITY 9.81").replace(
+        "FIX=XYR", ""
+    )
     s = structure_of(deck)
     for d in range(2):
         r = np.array([1.0 if f[1] == d else 0.0 for f in s.freedoms.free])
@@ -426,7 +452,10 @@ def test_reactions_of_the_program_are_those_of_the_test_helper(tmp_path):
     """The report's table of reactions, end to end."""
     from pound_solve.app import Request, execute
 
-    deck = member(4.0, 25.0, "WGT=1 PIN=J", "FIX=XY", member_loads=" 7 WY=-3 PX=2 AT=0.25") + "\nANALYSIS\n STATIC\n"
+    deck = (
+        member(4.0, 25.0, "WGT=1 PIN=J", "FIX=XY", member_loads=" 7 WY=-3 PX=2 AT=0.25")
+        + "\nANALYSIS\n STATIC\n"
+    )
     path = tmp_path / "beam.inp"
     path.write_text(deck)
     _, results, _ = execute(Request(str(path)))

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 import pytest
-from decks import structure_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from decks import structure_of
 from pound_solve import modes
 from pound_solve.analyses import modal
 
@@ -39,7 +39,7 @@ def test_two_storeys():
     wanted = [(3 + sign * math.sqrt(5)) / 2 * 4.2e5 / m for sign in (-1, 1)]
     assert s.free_vibration.omega**2 == pytest.approx(wanted, rel=1e-13)
     unit = 1 / math.sqrt(m * (1 + PHI**2))
-    assert s.free_vibration.shapes.T == pytest.approx(unit * np.array([[1, PHI], [PHI, -1]]), rel=1e-13)
+    assert pytest.approx(unit * np.array([[1, PHI], [PHI, -1]]), rel=1e-13) == s.free_vibration.shapes.T
     rows = modal.rows(s, None)
     # gamma = sum m phi for mass-normalised shapes
     gammas = [m * unit * (1 + PHI), m * unit * (PHI - 1)]
@@ -53,7 +53,9 @@ def test_two_storeys():
 def test_uniform_shear_building(n):
     """omega_j = 2 sqrt(k/m) sin((2j-1) pi / (4n+2))."""
     s = structure_of(shear_building(n, 1000.0, 9.81))
-    wanted = [2 * math.sqrt(1000.0) * math.sin((2 * j - 1) * math.pi / (4 * n + 2)) for j in range(1, n + 1)]
+    wanted = [
+        2 * math.sqrt(1000.0) * math.sin((2 * j - 1) * math.pi / (4 * n + 2)) for j in range(1, n + 1)
+    ]
     assert s.free_vibration.omega == pytest.approx(wanted, rel=1e-12)
     rows = modal.rows(s, 100)
     assert len(rows) == n
@@ -122,7 +124,9 @@ WEIGHTS
  2 {masses[0]}
  3 {masses[1]}
 """)
-    flexibility = np.array([[min(a, b) ** 2 * (3 * max(a, b) - min(a, b)) / (6 * ei) for b in at] for a in at])
+    flexibility = np.array(
+        [[min(a, b) ** 2 * (3 * max(a, b) - min(a, b)) / (6 * ei) for b in at] for a in at]
+    )
     wanted = np.sort(1 / np.sqrt(np.linalg.eigvals(flexibility * masses)))
     assert s.free_vibration.omega == pytest.approx(wanted, rel=1e-12)
     # the rotations in the shapes are the static ones: no moment is left on them
@@ -152,7 +156,9 @@ PROPS
     exact = 4.730040744862704**2 / length**2 * math.sqrt(2e4)
     assert v.omega[3] == pytest.approx(exact, rel=3e-6 if mass == "CONSISTENT" else 1e-2)
     rows = modal.rows(s, 3)
-    assert sum(r[6] for r in rows) == pytest.approx(length, rel=1e-10)  # a unit motion is rigid: all the mass
+    assert sum(r[6] for r in rows) == pytest.approx(
+        length, rel=1e-10
+    )  # a unit motion is rigid: all the mass
     assert math.isinf(rows[0][3]) and math.isnan(rows[0][4])
 
 
@@ -215,7 +221,11 @@ def test_random_systems(data):
     b = rng.normal(size=(n, n)) + 2 * np.eye(n)
     k = b.T @ b
     light = rng.random(n) < 0.3
-    a = np.diag(rng.uniform(0.5, 3, n)) if data.draw(st.booleans()) else (lambda q: q.T @ q + np.eye(n))(rng.normal(size=(n, n)))
+    a = (
+        np.diag(rng.uniform(0.5, 3, n))
+        if data.draw(st.booleans())
+        else (lambda q: q.T @ q + np.eye(n))(rng.normal(size=(n, n)))
+    )
     m = np.where(light[:, None] | light, 0.0, a)
     v = modes.solve(k, m)
     assert len(v.omega) == n - light.sum()

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from decks import solved, structure_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from decks import solved, structure_of
 from pound_solve.analyses import static
 
 
@@ -36,7 +36,12 @@ LOADS
         (17.5, 0.1, (10, 5, 2.5), 0),  # just at the yield point of A
         (40.0, 0.4, (10, 20, 10), 1),  # 17.5 at 0.1, then k 75: 22.5 / 75 = 0.3
         (45.0, 0.6, (10, 20, 15), 2),  # B at 0.4, then k 25
-        (-62.0, -0.88, (-10, -30, -22), 2),  # A at -0.1 (-17.5), k 75 to -0.6 (-55), k 25 for the last 7: -0.28
+        (
+            -62.0,
+            -0.88,
+            (-10, -30, -22),
+            2,
+        ),  # A at -0.1 (-17.5), k 75 to -0.6 (-55), k 25 for the last 7: -0.28
     ],
 )
 def test_parallel_springs_yield_one_after_the_other(load, u, forces, events):
@@ -103,7 +108,9 @@ def test_elasto_plastic_portal():
     assert f2 == pytest.approx(2 * 180 / h + 50 * u2, rel=1e-12)  # the figures agree with the mechanism's
     for f, u in ((0.7 * f1, 0.7 * u1), ((f1 + f2) / 2, (u1 + u2) / 2), (f2 + 10, u2 + 0.2)):
         s = solved(portal(f))
-        assert s.u[5][0] == pytest.approx(u, rel=1e-4)  # hinges of 1e9 instead of rigid ones: 4 EI/h / 1e9 = 2e-5
+        assert s.u[5][0] == pytest.approx(
+            u, rel=1e-4
+        )  # hinges of 1e9 instead of rigid ones: 4 EI/h / 1e9 = 2e-5
     assert s.state.events == 4
     assert [abs(s.force[e, "force R"]) for e in (3, 4, 5, 6)] == pytest.approx([80, 80, 100, 100], rel=1e-9)
     # beyond the last hinge the exact rate of the brace alone
@@ -171,7 +178,9 @@ def test_a_contact_that_touches_only_for_a_while():
     Rigid contacts are approached with 1e9.
     """
     deck = contact(0.1, 70.0, "LINEAR K=1e9")
-    deck = deck.replace("KX=200", "KX=200 FX=20 RULE=ELASTO_PLASTIC").replace(" 9 C 1 2", " 9 C 1 2\n 10 W 2")
+    deck = deck.replace("KX=200", "KX=200 FX=20 RULE=ELASTO_PLASTIC").replace(
+        " 9 C 1 2", " 9 C 1 2\n 10 W 2"
+    )
     deck = deck.replace("\nLOADS", "\n W CONTACT GAP=0.25 LAW=LINEAR K=1000\nLOADS")
     s = solved(deck)
     # F = 10 + 300*0.1 = 40 at yield; 100*0.15 more to the wall: 55; the last 15 on 100 + 1000

@@ -43,6 +43,7 @@ class Ran:
     time: Array
     u: Array  # (nt, nodes, 3)
     v: Array
+    a: Array
     force: Array  # contact forces, (nt, contacts)
     nodes: tuple[int, ...]
 
@@ -63,10 +64,10 @@ def run_deck(path: Path, params: Mapping[str, object] | None = None, method: str
     """Run a deck into a folder of its own and read the results."""
     with tempfile.TemporaryDirectory() as folder, run(path, params, out=folder, method=method, dt=dt) as r:
         tables = {name: r.table(name) for name in r.tables}
-        moved = "node/u" in r.histories
-        nodes = tuple(int(n) for n in r.attributes("node/u")["nodes"]) if moved else ()
-        u, v, f = (r.history(h) if moved else np.zeros(0) for h in ("node/u", "node/v", "contact/force"))
-        return Ran(r.status, r.message, tables, r.time, u, v, f, nodes)
+        nodes = tuple(int(n) for n in r.attributes("node/u")["nodes"]) if "node/u" in r.histories else ()
+        names = ("node/u", "node/v", "node/a", "contact/force")
+        u, v, a, f = (r.history(h) if h in r.histories else np.zeros(0) for h in names)
+        return Ran(r.status, r.message, tables, r.time, u, v, a, f, nodes)
 
 
 def run_text(text: str, params: Mapping[str, object] | None = None, method: str | None = None, dt: float | None = None) -> Ran:
@@ -345,8 +346,8 @@ class Oscillator:
         return u + us, v + vs
 
 
-def sdnd102(times: Array) -> Array:
-    """Absolute displacement of SDND102's oscillator: free and pressed solutions joined at their contact events."""
+def sdnd102(times: Array) -> tuple[Array, int]:
+    """Absolute displacement of SDND102's oscillator and its closures: free and pressed solutions joined at their contact events."""
     m, k, xi, gap, kc, p = 25.0, 98696.0, 0.07, 5e-4, 5.76e7, 20 * np.pi
     w = math.sqrt(k / m)
     # relative to the base x = s + u, s = -sin(p t)/p^2: u'' + 2 xi w u' + w^2 u = sin(p t)(-1); the wall presses on s + u,
@@ -358,7 +359,7 @@ def sdnd102(times: Array) -> Array:
     def ground(t: Array) -> Array:
         return -np.sin(p * t) / p**2
 
-    t0, u0, v0, pressed = 0.0, 0.0, 0.0, False
+    t0, u0, v0, pressed, closures = 0.0, 0.0, 0.0, False, 0
     out = np.zeros_like(times)
     while t0 < times[-1]:
         now = hard if pressed else free
@@ -380,8 +381,10 @@ def sdnd102(times: Array) -> Array:
         out[inside] = now.at(times[inside], t0, u0, v0)[0] + ground(times[inside])
         u, v = now.at(np.array(end), t0, u0, v0)
         t0, u0, v0 = end, float(u), float(v)
-        pressed ^= bool(len(over))
-    return out
+        if len(over):
+            pressed = not pressed
+            closures += pressed and t0 < times[-1]
+    return out, closures
 
 
 # ---------------------------------------------------------------------- the cases
@@ -416,7 +419,7 @@ def sdnd102_pounding() -> Sequence[Row]:
     up to 2.5 % from the exact solution. Expected: the exact solution between contact events, recomputed from its closed
     forms, with the events found by bisection. The wall and the pair must agree."""
     times = np.array(list(SDND102))
-    exact = sdnd102(times)
+    exact, closures = sdnd102(times)
     wall, pair = (example(f"sdnd102/{d}.inp") for d in ("wall", "pair"))
     rows = []
     for form, r in (("wall", wall), ("pair", pair)):
@@ -424,14 +427,14 @@ def sdnd102_pounding() -> Sequence[Row]:
             got = float(r.u[r.at(t), r.nodes.index(2), 0])
             rows.append(Row(f"displacement at {t:g} s, {form}", float(x), got, 1e-10, "m", 9))
             # half a unit of its ninth digit
-            rows.append(Row(f"the same against nine digits, {form}", known, got, 5e-9, "m", 9, shown=False, source="facts"))
+            rows.append(Row(f"the same against nine digits, {form}", known, got, 5e-9, "m", 9, shown=False, source="digits on file"))
     apart = np.abs(wall.u[:, 1, 0] - pair.u[:, 1, 0]).max() / np.abs(wall.u[:, 1, 0]).max()
     mirror = np.abs(pair.u[:, 1, 0] + pair.u[:, 2, 0]).max() / np.abs(pair.u[:, 1, 0]).max()
     rows += [
         Row("wall less pair, all samples, over the largest", 0.0, float(apart), 1e-10, absolute=True),
         Row("pair: left plus right, all samples, over the largest", 0.0, float(mirror), 1e-10, absolute=True),
-        Row("collisions in 1 s, wall", 10.0, float(len(wall.tables["collisions"])), 0.0, "", 2, source="both forms"),
-        Row("collisions in 1 s, pair", 10.0, float(len(pair.tables["collisions"])), 0.0, "", 2, source="both forms"),
+        Row("collisions in 1 s, wall", closures, float(len(wall.tables["collisions"])), 0.0, "", 2),
+        Row("collisions in 1 s, pair", closures, float(len(pair.tables["collisions"])), 0.0, "", 2),
     ]
     return tuple(rows)
 
@@ -479,8 +482,9 @@ def unit_impact() -> Sequence[Row]:
                 "pair": example("unit_impact/unit_impact.inp", e=e, tension=tension),
                 "wall": example("unit_impact/wall.inp", e=e, tension=tension),
                 "30 degrees": example("unit_impact/unit_impact.inp", e=e, tension=tension, angle=30, slide=0.7),
-                "wall, -120 degrees": example("unit_impact/wall.inp", e=e, tension=tension, angle=-120),
             }
+            if e in SHOWN:
+                runs["wall, -120 degrees"] = example("unit_impact/wall.inp", e=e, tension=tension, angle=-120)
             for against, r in runs.items():
                 shown = e in SHOWN and against == "pair"
                 c, s = r.tables["collisions"][0], r.tables["contact_summary"][0]
@@ -517,7 +521,7 @@ def published_relation() -> Sequence[Row]:
         got, said = float(r.column("collisions", "restitution")[0]), float(r.column("contact_laws", "e_given")[0])
         rows += [
             Row(f"restitution where {e:g} is asked", given, got, 1e-10, "", 4),
-            Row(f"the same against four digits, {e:g}", digits, got, 5e-5, "", 4, absolute=True, shown=False, source="facts"),
+            Row(f"the same against four digits, {e:g}", digits, got, 5e-5, "", 4, absolute=True, shown=False, source="digits on file"),
             Row(f"what the report says, {e:g}", given, said, 1e-12, "", 4, shown=False),
         ]
     return tuple(rows)
@@ -668,10 +672,10 @@ def two_bars() -> Sequence[Row]:
         Row("contact time over 2 L/c, equal bars, n = 200", 1.0, last / 2.0, 6e-3, "", 4, absolute=True, source="waves"),
         # a chain that opens on the falling front keeps the time to about an element's crossing
         Row("contact time over T2, Z1/Z2 = 4, n = 200", 1.0, float(collide(STAIRS, 200).column("collisions", "t_end")[-1]) / 5.0, 6e-3, "", 4, absolute=True, source="waves"),
-        Row("plateau, Table IV, per m/s", 8129.6, TABLE_IV.force, 1e-5, "kN", 5, source="facts"),
-        Row("restitution of the waves, Table IV", 0.52664, TABLE_IV.restitution(), 5e-6, "", 5, absolute=True, source="facts"),
-        Row("restitution by Cole et al. Eq. 14, Table IV", 0.42324, TABLE_IV.restitution_paper(), 5e-6, "", 5, absolute=True, source="facts"),
-        Row("end of contact of the waves, Table IV", 0.040318, TABLE_IV.stairs()[-1][1], 1.3e-5, "s", 5, source="facts"),
+        Row("plateau, Table IV, per m/s", 8129.6, TABLE_IV.force, 1e-5, "kN", 5, source="digits on file"),
+        Row("restitution of the waves, Table IV", 0.52664, TABLE_IV.restitution(), 5e-6, "", 5, absolute=True, source="digits on file"),
+        Row("restitution by Cole et al. Eq. 14, Table IV", 0.42324, TABLE_IV.restitution_paper(), 5e-6, "", 5, absolute=True, source="digits on file"),
+        Row("end of contact of the waves, Table IV", 0.040318, TABLE_IV.stairs()[-1][1], 1.3e-5, "s", 5, source="digits on file"),
     ]
     return tuple(rows)
 
@@ -757,7 +761,7 @@ def sdof_linear() -> Sequence[Row]:
 def yielding(t: Array, gap: float, grow: bool | None) -> Array:
     """Displacement of sdof/yielding.inp (`grow` None) and sdof/slack.inp after the blow: piece by piece by hand."""
     w, v, uy = 10.0, 2.0, 0.05
-    a = 2.0 * w * uy * w / 2.0  # deceleration while it yields, fy/m
+    a = w * w * uy  # deceleration while it yields, fy/m
     reach = gap / v
     t1 = reach + math.asin(w * uy / v) / w
     v1 = math.sqrt(v * v - (w * uy) ** 2)
@@ -767,17 +771,15 @@ def yielding(t: Array, gap: float, grow: bool | None) -> Array:
     out = np.where(t > t1, gap + uy + v1 * (t - t1) - 0.5 * a * (t - t1) ** 2, out)
     out = np.where(t > t2, gap + slip + uy * np.cos(w * (t - t2)), out)
     if grow is not None:
-        t3 = t2 + math.pi / (2 * w)
-        back = gap + slip - (-gap if grow else slip - gap)  # width of the slack now
-        t4 = t3 + back / (w * uy)
-        out = np.where(t > t3, gap + slip - w * uy * (t - t3), out)
-        out = np.where(t > t4, gap + slip - back - uy * np.sin(w * (t - t4)), out)
-        t5 = t4 + math.pi / w
-        out = np.where(t > t5, gap + slip - back + w * uy * (t - t5), out)
-        if t5 + back / (w * uy) < t[-1]:
-            t6 = t5 + back / (w * uy)
-            out = np.where(t > t6, gap + slip + uy * np.sin(w * (t - t6)), out)
-            assert t[-1] < t6 + math.pi / w
+        plus = gap + slip  # where it takes hold now, on either side
+        minus = -gap if grow else slip - gap
+        now, side = t2 + math.pi / (2 * w), 1.0
+        while now < t[-1]:  # across the slack, then half a swing beyond it
+            here, there = (plus, minus) if side > 0 else (minus, plus)
+            then = now + (plus - minus) / (w * uy)
+            out = np.where(t > now, here - side * w * uy * (t - now), out)
+            out = np.where(t > then, there - side * uy * np.sin(w * (t - then)), out)
+            now, side = then + math.pi / w, -side
     return out
 
 
@@ -790,17 +792,15 @@ def sdof_yielding() -> Sequence[Row]:
     r = example("sdof/yielding.inp")
     s = r.tables["spring_envelope"][0]
     u = yielding(r.time, 0.0, None)
-    w = 10.0
-    t2 = math.asin(0.25) / w + math.sqrt(3.75) / 5.0
-    later = r.time > t2
-    swing = r.u[later, 1, 0]
+    centre = float(r.u[-1, 1, 0] + r.a[-1, 1, 0] / 10.0**2)  # of the swing that is left
+    energy = r.tables["energy"]
+    plastic = float(energy["value"][list(energy["item"]).index("hysteretic")])
     rows = [
         Row("peak", 0.425, float(s["deformation_max"]), 1e-12, "m", 8, source="by hand"),
-        Row("permanent set: mean of the swing's extremes", 0.375, 0.5 * float(_extreme(r, w, t2, 0) + _extreme(r, w, t2, 1)), 1e-12, "m", 8, source="by hand"),
-        Row("plastic work", 3.75, float(r.tables["energy"]["value"][list(r.tables["energy"]["kind"]).index("hysteretic")]), 1e-12, "J", 8, source="by hand"),
+        Row("permanent set", 0.375, centre, 1e-12, "m", 8, source="by hand"),
+        Row("plastic work", 3.75, plastic, 1e-12, "J", 8, source="by hand"),
         Row("largest force", 10.0, float(s["force_max"]), 1e-12, "N", 8, source="by hand"),
         Row("yield events", 1.0, float(s["yield_events"]), 0.0, "", 1, source="by hand"),
-        Row("swing's amplitude over the yield deformation", 1.0, float(np.ptp(swing)) / 0.1, 2e-3, "", 3, source="by hand", shown=False),
         Row("largest error of displacement", 0.0, float(np.abs(r.u[:, 1, 0] - u).max()), 1e-12, "m", absolute=True, source="by hand"),
     ]
     for grow, how in (("YES", "slack grows"), ("NO", "slack moves along")):
@@ -810,19 +810,9 @@ def sdof_yielding() -> Sequence[Row]:
         rows += [
             Row(f"peak, {how}", 0.475, float(s["deformation_max"]), 1e-12, "m", 8, source="by hand"),
             Row(f"yield events, {how}", 1.0, float(s["yield_events"]), 0.0, "", 1, source="by hand"),
-            Row(f"smallest force, {how}", -10.0, float(s["force_min"]), 1e-12, "N", 8, source="by hand"),
             Row(f"largest error of displacement, {how}", 0.0, float(np.abs(r.u[:, 1, 0] - u).max()), 1e-12, "m", absolute=True, source="by hand"),
         ]
     return tuple(rows)
-
-
-def _extreme(r: Ran, w: float, t2: float, which: int) -> float:
-    """Extreme of the free swing after `t2` from one sample: centre and amplitude from displacement and velocity."""
-    i = r.at(t2 + 1.0)
-    phase = w * (r.time[i] - t2)
-    swing = -r.v[i, 1, 0] / (w * math.sin(phase))
-    centre = r.u[i, 1, 0] - swing * math.cos(phase)
-    return float(centre + (swing if which == 0 else -swing))
 
 
 # ---------------------------------------------------------------------- the page

@@ -11,8 +11,9 @@ import math
 
 import numpy as np
 import pytest
-from decks import solved, structure_of
 from scipy.optimize import brentq
+
+from decks import solved, structure_of
 
 E, A, I, L, M = 2.0e8, 0.02, 3.0e-4, 8.0, 0.7  # kN/m2, m2, m4, m, t/m
 EI = E * I
@@ -22,8 +23,12 @@ SUPPORTS = {"simple": ("XY", "XY"), "cantilever": ("XYR", ""), "fixed": ("XYR", 
 # roots of the characteristic equations, to rounding
 ROOTS = {
     "simple": [math.pi, 2 * math.pi],
-    "cantilever": [brentq(lambda x: math.cos(x) * math.cosh(x) + 1, a, b, xtol=1e-15) for a, b in ((1, 3), (4, 5))],
-    "fixed": [brentq(lambda x: math.cos(x) * math.cosh(x) - 1, a, b, xtol=1e-15) for a, b in ((4, 5), (7, 8))],
+    "cantilever": [
+        brentq(lambda x: math.cos(x) * math.cosh(x) + 1, a, b, xtol=1e-15) for a, b in ((1, 3), (4, 5))
+    ],
+    "fixed": [
+        brentq(lambda x: math.cos(x) * math.cosh(x) - 1, a, b, xtol=1e-15) for a, b in ((4, 5), (7, 8))
+    ],
 }
 
 
@@ -88,7 +93,9 @@ def test_axial_frequencies_of_a_rod():
     for mass, sign in (("LUMPED", -1), ("CONSISTENT", 1)):
         errors = []
         for n in (10, 20):
-            s = structure_of(mesh("cantilever", n, mass).replace(f" {n + 1} {L!r} 0 ", f" {n + 1} {L!r} 0 FIX=YR"))
+            s = structure_of(
+                mesh("cantilever", n, mass).replace(f" {n + 1} {L!r} 0 ", f" {n + 1} {L!r} 0 FIX=YR")
+            )
             shapes = s.free_vibration.shapes
             x = [i for i, f in enumerate(s.freedoms.free) if f[1] == 0]
             axial = np.abs(shapes[x]).max(axis=0) > 1e-6
@@ -108,7 +115,9 @@ def test_meshes_are_exact_at_their_nodes(n, shear):
     w = -M * G
     for k in range(1, n + 2):
         x = (k - 1) * L / n
-        v = w * x**2 * (6 * L**2 - 4 * L * x + x**2) / (24 * EI) + (w * (L * x - x**2 / 2) / ga if shear else 0)
+        v = w * x**2 * (6 * L**2 - 4 * L * x + x**2) / (24 * EI) + (
+            w * (L * x - x**2 / 2) / ga if shear else 0
+        )
         turn = w * x * (3 * L**2 - 3 * L * x + x**2) / (6 * EI)
         assert s.u[k] == pytest.approx([0, v, turn], rel=1e-10, abs=1e-16)
     for k in range(1, n + 1):  # end forces: what hangs beyond

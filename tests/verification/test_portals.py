@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from decks import solved
 
 H, L, IC, IB = 4.0, 7.0, 2.0e-4, 5.0e-4
@@ -70,12 +71,16 @@ class TestKleinlogel:
 
     def test_hinged_legs_lateral_load(self, stiff, rel):
         corner = P * H / 2  # M_B = - M_C = P h / 2
-        check("XY", LATERAL, [-P / 2, -P / 2], [0, 0], [corner, corner], [-P * H / L, P * H / L], stiff, rel)
+        check(
+            "XY", LATERAL, [-P / 2, -P / 2], [0, 0], [corner, corner], [-P * H / L, P * H / L], stiff, rel
+        )
 
     def test_fixed_legs_uniform_load(self, stiff, rel):
         base, corner = W * L**2 / (12 * (K + 2)), W * L**2 / (6 * (K + 2))
         thrust = (base + corner) / H
-        check("XYR", UNIFORM, [thrust, -thrust], [-base, base], [-corner, corner], [W * L / 2] * 2, stiff, rel)
+        check(
+            "XYR", UNIFORM, [thrust, -thrust], [-base, base], [-corner, corner], [W * L / 2] * 2, stiff, rel
+        )
 
     def test_fixed_legs_lateral_load(self, stiff, rel):
         base = P * H / 2 * (3 * K + 1) / (6 * K + 1)

@@ -6,7 +6,8 @@ The spring takes hold at :math:`d = g^+` (and at :math:`g^- \le 0`).  On the pos
 
 where :math:`p^+` is the plastic deformation of that side, and likewise on the negative side.  With GROW=YES
 (braces: the slack grows by the plastic deformation) each side keeps its own :math:`p`; with GROW=NO the
-whole slack zone moves with one common :math:`p` and hardening is kinematic.
+whole slack zone moves with one common :math:`p` and hardening is kinematic: after a large :math:`p` the other side's
+yield force :math:`F_y^- + H p` lies above zero, and the spring yields back before it lets go.
 
 References
 ----------
@@ -53,36 +54,55 @@ class Slackness:
             return Branch(name, 0.0, 0.0, 0.0, (Exit(1.0, 0.0, -on_plus), Exit(-1.0, 0.0, on_minus)))
         if name == "elastic +":
             fy = self.fy_plus + hard * plus
-            return Branch(name, k, 0.0, -k * on_plus, (Exit(k, 0.0, -k * on_plus - fy), Exit(-1.0, 0.0, on_plus)))
+            off = Exit(-k, 0.0, k * on_plus + max(self._back(state), 0.0))
+            return Branch(name, k, 0.0, -k * on_plus, (Exit(k, 0.0, -k * on_plus - fy), off))
         if name == "elastic -":
             fy = self.fy_minus + hard * minus
-            return Branch(name, k, 0.0, -k * on_minus, (Exit(-k, 0.0, k * on_minus + fy), Exit(1.0, 0.0, -on_minus)))
-        gap, fy = (self.gap_plus, self.fy_plus) if name == "yielding +" else (self.gap_minus, self.fy_minus)
+            off = Exit(k, 0.0, -k * on_minus - min(self._back(state), 0.0))
+            return Branch(name, k, 0.0, -k * on_minus, (Exit(-k, 0.0, k * on_minus + fy), off))
+        gap, fy = self._line(name)
         slope = self.r * k
-        return Branch(name, slope, 0.0, fy - slope * (gap + fy / k), (REVERSAL[name],))
+        force0 = (1.0 - self.r) * fy - slope * gap
+        if name.startswith("yielding"):
+            return Branch(name, slope, 0.0, force0, (REVERSAL[name],))
+        sign = 1.0 if name == "back +" else -1.0
+        turn, off = Exit(0.0, sign, 0.0), Exit(-sign * slope, 0.0, -sign * force0)
+        return Branch(name, slope, 0.0, force0, (turn, off))
+
+    def _line(self, name: str) -> tuple[float, float]:
+        """Gap and yield force of a yield line; the sign in its name is the side of the slack it is on."""
+        gap = self.gap_plus if name[-1] == "+" else self.gap_minus
+        return gap, self.fy_plus if (name[-1] == "+") != name.startswith("back") else self.fy_minus
+
+    def _back(self, state: State) -> float:
+        """Force at which the spring yields back, if it gets so far before it lets go."""
+        name, plus, minus, _ = state
+        if self.grow:
+            return 0.0
+        hard = self.k * self.r / (1.0 - self.r)
+        return self.fy_minus + hard * minus if name == "elastic +" else self.fy_plus + hard * plus
 
     def leave(self, state: State, exit_index: int, d: float) -> State:
         """Take hold, yield, let go, or unload where the motion turns."""
         name, plus, minus, work = state
-        if name.startswith("yielding"):
+        if name.startswith(("yielding", "back")):
             plus, minus = self._plastic(state, d)
-            return "elastic " + name[-1], plus, minus, self.dissipated(state, d)
+            return ("elastic " + name[-1], "slack")[exit_index], plus, minus, self.dissipated(state, d)
         if name == "slack":
             name = ("elastic +", "elastic -")[exit_index]
         else:
-            name = ("yielding " + name[-1], "slack")[exit_index]
+            off = "back " + name[-1] if self._back(state) * (1.0 if name[-1] == "+" else -1.0) > 0.0 else "slack"
+            name = ("yielding " + name[-1], off)[exit_index]
         return name, plus, minus, work
 
     def _plastic(self, state: State, d: float) -> tuple[float, float]:
         name, plus, minus, _ = state
-        if not name.startswith("yielding"):
+        if not name.startswith(("yielding", "back")):
             return plus, minus
-        force = self.branch(state).force(d, 0.0)
-        if name == "yielding +":
-            now = d - self.gap_plus - force / self.k
-            return now, (minus if self.grow else now)
-        now = d - self.gap_minus - force / self.k
-        return (plus if self.grow else now), now
+        now = d - self._line(name)[0] - self.branch(state).force(d, 0.0) / self.k
+        if not self.grow:
+            return now, now
+        return (now, minus) if name == "yielding +" else (plus, now)
 
     def stored(self, state: State, d: float) -> float:
         """Recoverable energy; hardening is recoverable only where the slack zone moves as a whole."""
@@ -93,10 +113,10 @@ class Slackness:
     def dissipated(self, state: State, d: float) -> float:
         """Plastic work so far."""
         name, plus, minus, work = state
-        if not name.startswith("yielding"):
+        if not name.startswith(("yielding", "back")):
             return work
-        side = 0 if name == "yielding +" else 1
-        fy, before = ((self.fy_plus, plus), (self.fy_minus, minus))[side]
+        side = 0 if name[-1] == "+" else 1
+        fy, before = self._line(name)[1], (plus, minus)[side]
         now = self._plastic(state, d)[side]
         hard = self.k * self.r / (1.0 - self.r) if self.grow else 0.0
         return work + fy * (now - before) + 0.5 * hard * (now * now - before * before)

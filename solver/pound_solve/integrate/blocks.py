@@ -311,18 +311,25 @@ class Window:
 
     def motion(self, interval: int, tau: float) -> tuple[Array, Array, Array]:
         """Displacement, velocity and acceleration of the unknowns at `tau` within an interval."""
+        u, v, a = self.path(interval, np.array([tau]))
+        return u[:, 0], v[:, 0], a[:, 0]
+
+    def path(self, interval: int, times: Array) -> tuple[Array, Array, Array]:
+        """`motion` at several times within an interval, shape (n, n_times) each."""
         size = self.partition.scene.size
-        u, v, a = np.zeros(size), np.zeros(size), np.zeros(size)
+        u, v, a = (np.zeros((size, len(times))) for _ in range(3))
         for block in self.partition.blocks:
-            flow, index = block.regime.flow, block.regime.index
-            q = self.state(block, interval, tau)
-            g = block.gs[interval]
+            flow, index, g = block.regime.flow, block.regime.index, block.gs[interval]
+            if len(times) == 1:  # the ends of intervals are known, other times recur
+                q = self.state(block, interval, float(times[0]))[:, None]
+            else:
+                q = flow.path(block.qs[:, interval], g, times)
             u[index] = (flow.u_q @ q).real
             v[index] = (flow.v_q @ q).real
-            a[index] = (flow.v_q @ flow.rate(q, g, tau)).real
+            a[index] = (flow.v_q @ flow.rate(q, g, times)).real
             if block.ps is not None and flow.u_p is not None:
-                force, slope, bend = (polynomial.value(block.ps[interval], tau, order) for order in (0, 1, 2))
-                u_p, v_p = flow.u_p, flow.space.v_p
+                p, u_p, v_p = block.ps[interval], flow.u_p, flow.space.v_p
+                force, slope, bend = (np.array([polynomial.value(p, float(x), k) for x in times]).T for k in range(3))
                 u[index] += u_p @ force
                 v[index] += v_p @ force + u_p @ slope
                 a[index] += v_p @ slope + u_p @ bend

@@ -183,14 +183,8 @@ class Exact:
             a, b, c = window.works(slice(interval, interval + 1), tau)
             damping, input_, contacts = a[0], b[0], {k: x[0] for k, x in c.items()}
         if scene.total:
-            start = self.t + interval * window.length
             input_, damping = work.total_work(
-                scene,
-                tau,
-                self.partition.fastest,
-                lambda x: window.motion(interval, x),
-                lambda x: np.array([b.force(*window.at(i, interval * window.length + x)[:2]) for i, b in enumerate(self.branches)]),
-                start,
+                scene, tau, self.partition.fastest, window.coefs[interval], lambda x: window.path(interval, x), self.branches
             )
         self.works = self.works + [input_, damping, sum(contacts.values())]
         for law, loss in contacts.items():

@@ -112,9 +112,10 @@ def state_space(m: Array, c: Array, k: Array) -> StateSpace:
     c_h = c1[:nh, :nh] - to_h @ c1[nh:, :nh]
     k_h = k1[:nh, :nh] - to_h @ k1[nh:, :nh]
     k_hd = k1[:nh, nh:] - to_h @ k1[nh:, nh:]
-    low_half = 0.5 * (k_h + k_h.T)
-    omega2, phi_h = _undamped(m1[:nh, :nh], low_half)
-    scale = np.sqrt(np.maximum(omega2, omega2.max(initial=0.0) * 1e-12 + 1e-300))
+    # scaled to the root of the energy with the dashpots' freedoms held
+    omega2, phi_h = _undamped(m1[:nh, :nh], k1[:nh, :nh])
+    top = np.abs(omega2).max(initial=0.0)
+    scale = np.sqrt(np.where(np.abs(omega2) > 1e-12 * top, np.abs(omega2), min(1.0, top) if top else 1.0))
     size = 2 * nh + nd
     a = np.zeros((size, size))
     u, v, d = slice(0, nh), slice(nh, 2 * nh), slice(2 * nh, size)

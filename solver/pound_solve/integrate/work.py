@@ -16,7 +16,7 @@ resolves the fastest mode takes its place.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from pound_solve import polynomial
 from pound_solve.integrate import phi
 from pound_solve.integrate.flow import RECURRING, ModalFlow, SeriesFlow, gauss, powers
+from pound_solve.laws import Branch
 from pound_solve.scene import Scene
 
 Array = NDArray[np.float64]
@@ -204,30 +205,38 @@ class Meter:
 
 
 def total_work(
-    scene: Scene, tau: float, fastest: float, motion: Callable[[float], tuple[Array, Array, Array]], law_force: Callable[[float], Array], t0: float
+    scene: Scene,
+    tau: float,
+    fastest: float,
+    coefs: Array,
+    path: Callable[[Array], tuple[Array, Array, Array]],
+    branches: Sequence[Branch],
 ) -> tuple[float, float]:
     """Return input and dashpot work over a segment in the total form.
 
-    The input is the power of the supports: their reactions times their velocities, and of the constant loads.
+    The input is the power of the supports, their reactions times their velocities, and of the constant loads.
 
     Parameters
     ----------
     scene : Scene
     tau : float
-        Length of the segment [T]; `t0` is its start.
+        Length of the segment [T].
     fastest : float
-        Fastest eigenvalue, for the quadrature.
-    motion : callable
-        Displacement, velocity and acceleration of the unknowns at a local time.
-    law_force : callable
-        Forces of all laws at a local time, shape (n_laws,).
+        Fastest eigenvalue [1/T], for the quadrature.
+    coefs : ndarray, shape (degree + 1, n_inputs)
+        Inputs over the segment.
+    path : callable
+        Displacement, velocity and acceleration of the unknowns at local times, shape (n, n_times) each.
+    branches : sequence of Branch
+        Of all laws.
     """
-    s = scene.structure
-    n = s.n_free
-    done, lost = 0.0, 0.0
-    for w, x in zip(*gauss(tau, fastest)):
-        u, v, a = (scene.all_freedoms(y, t0 + float(x), order) for order, y in enumerate(motion(float(x))))
-        force = s.stiffness @ u + s.damping @ v + s.mass @ a + s.law_rows.T @ law_force(float(x))
-        done += w * float(force[n:] @ v[n:] + s.loads[:n] @ v[:n])
-        lost += w * float(v @ s.damping @ v)
-    return done, lost
+    structure, n = scene.structure, scene.structure.n_free
+    w, x = gauss(tau, fastest)
+    inputs = [np.array([polynomial.value(coefs, float(y), order) for y in x]).T for order in range(3)]
+    u, v, a = path(x)
+    k, c, f0 = (np.array([getattr(b, name) for b in branches])[:, None] for name in ("stiffness", "damping", "force0"))
+    law = k * (scene.law_rows @ u + scene.law_inputs @ inputs[0]) + c * (scene.law_rows @ v + scene.law_inputs @ inputs[1]) + f0
+    u, v, a = (scene.expanded(y, s, order) for order, (y, s) in enumerate(zip((u, v, a), inputs)))
+    force = structure.stiffness @ u + structure.damping @ v + structure.mass @ a + structure.law_rows.T @ law
+    power = (force[n:] * v[n:]).sum(axis=0) + structure.loads[:n] @ v[:n]
+    return float(w @ power), float(w @ (v * (structure.damping @ v)).sum(axis=0))
