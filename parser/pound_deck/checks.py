@@ -135,6 +135,16 @@ def _analysis(model: Model) -> Found:
         yield Diagnostic("P316", "the deck asks for no analysis", None, hint)
 
 
+def _analysis_twice(model: Model) -> Found:
+    seen: dict[str, Span] = {}
+    for card in model.analyses:
+        name = card.spec.name
+        if name in seen:
+            hint = f"the first stands at {seen[name]}; run the deck again with other PARAMs for another one"
+            yield Diagnostic("P324", f"a second {name}: a deck holds one analysis of each kind", card.span, hint)
+        seen.setdefault(name, card.span)
+
+
 def _excitation(model: Model) -> Found:
     loaded = any(card["NODES"] for card in (*model.initial, *model.loads))  # a list may be empty
     if model.equake or loaded or any(card["ELEMENTS"] for card in model.member_loads):
@@ -178,6 +188,7 @@ _PROPS: Final = frozenset({"PROPS"})
 CHECKS: Final[tuple[tuple[Callable[[Model], Found], frozenset[str]], ...]] = (
     (_something, _NODES | _MEMBERS),
     (_analysis, frozenset({"ANALYSIS"})),
+    (_analysis_twice, frozenset({"ANALYSIS"})),
     (_slaving, frozenset()),
     (_zero_length, frozenset()),
     (_unused_props, _MEMBERS | _PROPS),

@@ -355,6 +355,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "WX is the number of a node and WY differs from it. Node lists have commas: 1,2 and not 1 2.",
     ),
     "P321": ("element ends at one node", "Both ends of the element are the same node."),
+    "P324": (
+        "analysis asked for twice",
+        "A deck holds one STATIC, one MODAL and one HISTORY. Run it again with other PARAM values "
+        "(--set) for another one.",
+    ),
     "P330": (
         "element cannot be built",
         "The values of the element or of its property set contradict each other or its nodes. The "

@@ -164,13 +164,6 @@ SECTIONS: Final = (
                 default=None,
                 doc="elements with histories and envelopes; left out: all",
             ),
-            Field(
-                "COLLISIONS",
-                Kind.INT,
-                default=200,
-                lo=0,
-                doc="most collisions printed in the report; the results file holds all",
-            ),
         ),
     ),
 )

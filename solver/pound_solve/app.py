@@ -161,10 +161,10 @@ def _override(model: Model, request: Request, found: list[Diagnostic]) -> Model:
             if request.dt is not None and "DT" in own:
                 own["DT"] = request.dt
             elif request.dt is not None:
-                found.append(Diagnostic("P210", f"--dt: {name} takes no time step", None, severity="warning"))
+                found.append(Diagnostic("P211", f"--dt: {name} takes no time step", None, severity="warning"))
             missing = [key for key, value in own.items() if value is REQUIRED]
             if missing:
-                found.append(Diagnostic("P211", f"--method {name} needs {', '.join(missing)}: give --dt", None))
+                found.append(Diagnostic("P213", f"--method {name} needs {', '.join(missing)}: give --dt", None))
                 return model
             spans = dict(card.spans) | {k: Span("--method/--dt", 1, 1, 2) for k in ("METHOD", "DT")}
             card = replace(card, values={**card.values, **own, "METHOD": name}, laws={"METHOD": (methods[name],)}, spans=spans)

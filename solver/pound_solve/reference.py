@@ -309,6 +309,7 @@ s.
 
 - `11 TO 15` means 11, 12, 13, 14, 15, and `11 TO 15 BY 2` means 11, 13, 15. The ends may be expressions.
 - A list of nodes or elements may hold both: `1,5,11 TO 15 BY 2`.
+- A range whose end is one below its start, such as `11 TO 10+n` with n = 0, is empty. Others ascend.
 - In NODES and ELEMENTS a range in the first place writes one card for each of its numbers. The items
   marked "or range" may then be ranges too: coordinates are spaced evenly from end to end, node numbers
   step along evenly. So `11 TO 15  0 TO 8  3.5` makes five nodes 2 apart at height 3.5.

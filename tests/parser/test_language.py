@@ -193,7 +193,7 @@ def test_sections_may_be_repeated_and_carry_a_number(read):
 def test_output_lines_are_one_card(read, codes):
     model = read(HEAD + "OUTPUT\n EVERY=0.1\n NODES=1,2\n")
     assert model.output["EVERY"] == 0.1 and model.output["NODES"] == (1, 2)
-    assert read(HEAD).output["COLLISIONS"] == 200
+    assert read(HEAD).output["EVERY"] is None
     assert codes(HEAD + "OUTPUT\n EVERY=0.1\n EVERY=2\n") == ["P212"]
 
 

@@ -109,6 +109,17 @@ def test_the_range_of_the_page():
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize("n, weights", [(0, 1), (1, 2)])
+def test_the_empty_range_of_the_page(n: int, weights: int):
+    deck = f"PARAM n = {n}\nNODES\n 11 TO 10+n  0  0\n" + MINIMAL.replace(
+        "   2   1\n", "   2,11 TO 10+n   1\n"
+    )
+    model, found, _ = read_text(deck, catalog())
+    assert model is not None, found
+    assert len(model.nodes) == 2 + n
+    assert len(model.weights[0]["NODES"]) == weights
+
+
 @pytest.mark.parametrize(
     "words, said",
     [

@@ -6,6 +6,7 @@ import math
 import re
 
 import pytest
+
 from verification import cases
 
 
@@ -13,7 +14,11 @@ from verification import cases
 def test_rows(name: str) -> None:
     rows = cases.CASES[name].rows()
     assert rows
-    wrong = [f"{r.quantity}: {r.computed:.15g} is not {r.expected:.15g} within {r.tol:g} (off by {r.error:.2e})" for r in rows if not r.ok]
+    wrong = [
+        f"{r.quantity}: {r.computed:.15g} is not {r.expected:.15g} within {r.tol:g} (off by {r.error:.2e})"
+        for r in rows
+        if not r.ok
+    ]
     assert not wrong, "\n".join(wrong)
 
 
@@ -39,21 +44,28 @@ def test_bars_come_nearer_with_the_mesh(name: str, bars: cases.Bars) -> None:
 
 
 def test_raw_peak_overshoots_on_every_mesh() -> None:
-    """A lumped chain's first peak stands 44.5 % (equal bars) and 13.7 % (Table IV) above the plateau, whatever n."""
+    """A lumped chain's first peak stands 44.5 % (equal bars) and 13.7 % (Table IV) above the plateau,
+    whatever n."""
     for bars, over in ((cases.EQUAL, 1.44529), (cases.TABLE_IV, 1.13718)):
-        peaks = [float(cases.collide(bars, n).column("collisions", "peak_force").max()) / bars.force for n in cases.MESHES]
+        peaks = [
+            float(cases.collide(bars, n).column("collisions", "peak_force").max()) / bars.force
+            for n in cases.MESHES
+        ]
         assert peaks == pytest.approx([over] * len(peaks), abs=1e-5)
 
 
 def test_stairs_by_momentum() -> None:
-    """The closed form by another way: the free end of each bar from wave reflections, counted on a fine magic-step grid.
+    """The closed form by another way: the free end of each bar from wave reflections, counted on a fine
+    magic-step grid.
 
-    With equal transit times per cell, d'Alembert's solution on a grid is exact: velocities and forces move one cell a step.
+    With equal transit times per cell, d'Alembert's solution on a grid is exact: velocities and forces
+    move one cell a step.
     """
     for bars in (cases.STAIRS, cases.HALF, cases.EQUAL):
         (z1, z2), (t1, t2) = bars.z, bars.period
         cells = [round(t / 2 * 1000) for t in (t1, t2)]
-        # characteristics v + f/z (towards the contact) and v - f/z (from it); compression positive, bar 1 moves at v
+        # characteristics v + f/z (towards the contact) and v - f/z (from it); compression positive, bar 1
+        # moves at v
         towards1, from1 = [bars.v] * cells[0], [bars.v] * cells[0]
         towards2, from2 = [0.0] * cells[1], [0.0] * cells[1]
         impulse, dt = 0.0, 1e-3

@@ -6,11 +6,12 @@ import math
 
 import numpy as np
 import pytest
+
 from verification.cases import kelvin_voigt_xi, run_text
 
 BALL = """TITLE  Ball dropped on a floor
 UNITS  N m s
-PARAM  k = 1e5   e = 0.5   drop = 0.5   g = 10   t = 6
+PARAM  k = 1e5   e = 0.5   drop = 0.5   g = 10   t = 12
 GRAVITY g
 NODES
    1   0   0   FIX=XR
@@ -32,12 +33,13 @@ ANALYSIS
 @pytest.mark.parametrize("k", [1e3, 1e5, 1e7, 1e9])
 @pytest.mark.parametrize("e", [0.05, 0.5, 0.8])
 def test_ball_comes_to_rest(k: float, e: float) -> None:
-    """After a finite number of bounces the ball lies in the static overlap m g/k, and the run goes on to its end.
+    """After a finite number of bounces the ball lies in the static overlap m g/k, and the run goes on to
+    its end.
 
-    An impact gives back e of its speed only while the weight does not matter, so the time until rest is less than
-    that of the ideal bounces, sqrt(2 h/g) (1 + e)/(1 - e), plus the swings in the floor.
+    An impact gives back e of its speed only while the weight does not matter, so the time until rest is
+    less than that of the ideal bounces, sqrt(2 h/g) (1 + e)/(1 - e), plus the swings in the floor.
     """
-    g, drop, t = 10.0, 0.5, 6.0
+    g, drop, t = 10.0, 0.5, 12.0
     r = run_text(BALL, {"k": k, "e": e})
     assert r.status == "done" and r.time[-1] == t
     assert r.u[-1, 0, 1] == pytest.approx(-drop - g / k, abs=1e-9 * drop)
@@ -55,9 +57,12 @@ def test_ball_comes_to_rest(k: float, e: float) -> None:
 
 
 def test_first_bounces_give_back_what_was_asked() -> None:
-    """On a stiff floor the weight matters little: e within m g/(k times the overlap)."""
-    c = run_text(BALL, {"k": 1e9, "e": 0.5}).tables["collisions"]
-    assert c["restitution"][:3] == pytest.approx([0.5] * 3, rel=2e-4)
+    """On a stiff floor e is off by no more than the weight's share of the impulse, g times the duration
+    over the speed."""
+    c = run_text(BALL, {"k": 1e9, "e": 0.5}).tables["collisions"][:3]
+    share = 10.0 * (c["t_end"] - c["t_start"]) / c["approach_velocity"]
+    assert np.all(np.abs(c["restitution"] - 0.5) < share)
+    assert np.all(share < 2e-3)
 
 
 def test_elastic_ball_bounces_for_ever() -> None:
@@ -103,15 +108,17 @@ def test_grazing(off: float, xi: float, method: str, dt: float | None) -> None:
     if method == "EXACT":
         # what a graze may change: k c off at most
         assert np.abs(r.u[:, 1, 0] + 0.1 * np.cos(2 * r.time)).max() < 1e-8
-    assert len(r.tables["collisions"]) <= 2 * 7
+    assert len(r.tables["collisions"]) <= 6  # the wall is reached at 2 t = pi (2 i + 1)
 
 
 def test_shallow_touches_are_found() -> None:
-    """1e-9 beyond the wall (1e-8 of the amplitude) is a touch in each of the 7 cycles of 20 s that reach it (t = pi/2 + i pi)."""
+    """1e-9 beyond the wall, 1e-8 of the amplitude, is a touch in each of the six cycles that reach it (t
+    = pi/2 + i pi)."""
     c = run_text(GRAZE, {"off": -1e-9}).tables["collisions"]
-    # the wall is reached at 2 t = pi (2 i + 1)
     assert len(c) == 6
-    assert 0.5 * (c["t_start"] + c["t_end"]) == pytest.approx(math.pi / 2 + math.pi * np.arange(6), abs=1e-6)
+    assert 0.5 * (c["t_start"] + c["t_end"]) == pytest.approx(
+        math.pi / 2 + math.pi * np.arange(6), abs=1e-6
+    )
     assert c["peak_force"] == pytest.approx([400e-9] * 6, rel=0.02)
 
 
@@ -152,7 +159,8 @@ def test_touching_at_rest_stays_at_rest(method: str, dt: float | None) -> None:
 
 @pytest.mark.parametrize(("method", "dt"), [("EXACT", None), ("NEWMARK", 0.01), ("CENTRAL", 0.01)])
 def test_touching_nodes_that_part(method: str, dt: float | None) -> None:
-    """A load draws the second node away: no contact until it comes back, and it comes back to exactly where it was, at rest."""
+    """A load draws the second node away: no contact until it comes back, and it comes back to exactly
+    where it was, at rest."""
     r = run_text(REST, {"f": 1}, method, dt)
     assert r.status == "done"
     assert r.u[:, 0, 0] == pytest.approx(np.zeros(len(r.time)), abs=1e-6)

@@ -23,7 +23,7 @@ def sticky(xi: float) -> float:
     """Restitution [-] for damping ratio `xi` [-] when the contact holds until the overlap is gone."""
     if xi >= 1.0:
         return 0.0
-    return math.exp(-math.pi * xi / math.sqrt(1.0 - xi * xi))
+    return math.exp(-math.pi * xi / math.sqrt((1.0 - xi) * (1.0 + xi)))
 
 
 def sticky_ratio(e: float) -> float:
@@ -39,8 +39,8 @@ def no_tension(xi: float) -> float:
         # acos(xi)/sqrt(1-xi^2) and its continuation beyond 1 share the series 1 - off/3 + 2 off^2/15
         return math.exp(-2.0 * xi * (1.0 - off / 3.0 + 2.0 * off * off / 15.0))
     if xi < 1.0:
-        return math.exp(-2.0 * xi * math.acos(xi) / math.sqrt(1.0 - xi * xi))
-    return math.exp(-2.0 * xi * math.acosh(xi) / math.sqrt(xi * xi - 1.0))
+        return math.exp(-2.0 * xi * math.acos(xi) / math.sqrt((1.0 - xi) * (1.0 + xi)))
+    return math.exp(-2.0 * xi * math.acosh(xi) / math.sqrt((xi - 1.0) * (xi + 1.0)))
 
 
 def no_tension_ratio(e: float) -> float:

@@ -63,16 +63,16 @@ class Slackness:
         gap, fy = self._line(name)
         slope = self.r * k
         force0 = (1.0 - self.r) * fy - slope * gap
-        if name.startswith("yielding"):
+        if name in REVERSAL:
             return Branch(name, slope, 0.0, force0, (REVERSAL[name],))
-        sign = 1.0 if name == "back +" else -1.0
+        sign = 1.0 if name[-1] == "+" else -1.0
         turn, off = Exit(0.0, sign, 0.0), Exit(-sign * slope, 0.0, -sign * force0)
         return Branch(name, slope, 0.0, force0, (turn, off))
 
     def _line(self, name: str) -> tuple[float, float]:
         """Gap and yield force of a yield line; the sign in its name is the side of the slack it is on."""
         gap = self.gap_plus if name[-1] == "+" else self.gap_minus
-        return gap, self.fy_plus if (name[-1] == "+") != name.startswith("back") else self.fy_minus
+        return gap, self.fy_plus if (name[-1] == "+") != ("back" in name) else self.fy_minus
 
     def _back(self, state: State) -> float:
         """Force at which the spring yields back, if it gets so far before it lets go."""
@@ -85,19 +85,20 @@ class Slackness:
     def leave(self, state: State, exit_index: int, d: float) -> State:
         """Take hold, yield, let go, or unload where the motion turns."""
         name, plus, minus, work = state
-        if name.startswith(("yielding", "back")):
+        if name.startswith("yielding"):
             plus, minus = self._plastic(state, d)
             return ("elastic " + name[-1], "slack")[exit_index], plus, minus, self.dissipated(state, d)
         if name == "slack":
             name = ("elastic +", "elastic -")[exit_index]
         else:
-            off = "back " + name[-1] if self._back(state) * (1.0 if name[-1] == "+" else -1.0) > 0.0 else "slack"
-            name = ("yielding " + name[-1], off)[exit_index]
+            side = name[-1]
+            back = self._back(state) > 0.0 if side == "+" else self._back(state) < 0.0
+            name = ("yielding " + side, "yielding back " + side if back else "slack")[exit_index]
         return name, plus, minus, work
 
     def _plastic(self, state: State, d: float) -> tuple[float, float]:
         name, plus, minus, _ = state
-        if not name.startswith(("yielding", "back")):
+        if not name.startswith("yielding"):
             return plus, minus
         now = d - self._line(name)[0] - self.branch(state).force(d, 0.0) / self.k
         if not self.grow:
@@ -113,7 +114,7 @@ class Slackness:
     def dissipated(self, state: State, d: float) -> float:
         """Plastic work so far."""
         name, plus, minus, work = state
-        if not name.startswith(("yielding", "back")):
+        if not name.startswith("yielding"):
             return work
         side = 0 if name[-1] == "+" else 1
         fy, before = self._line(name)[1], (plus, minus)[side]

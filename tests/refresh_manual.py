@@ -1,0 +1,25 @@
+"""Rewrite the pages of the manual that the program makes (``make manual``); tests check that they are fresh."""
+
+from pathlib import Path
+
+from pound_deck.diagnostics import messages_page
+from pound_solve.reference import deck_page
+from pound_solve.tables import results_page
+from verification import cases
+
+MANUAL = Path(__file__).parents[1] / "manual"
+
+
+def write(name: str, text: str) -> None:
+    """Write a page."""
+    (MANUAL / name).write_text(text, encoding="utf-8", newline="\n")
+
+
+if __name__ == "__main__":
+    write("messages.md", messages_page())
+    write("deck-reference.md", deck_page())
+    page = (MANUAL / "results.md").read_text(encoding="utf-8")
+    mark = "<!-- made by pound_solve.tables.results_page"
+    head, line = page.split(mark)[0], mark + page.split(mark)[1].split("\n")[0]
+    write("results.md", f"{head}{line}\n\n{results_page()}")
+    cases.PAGE.write_text(cases.page(cases.PAGE.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")
