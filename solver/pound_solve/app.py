@@ -13,9 +13,8 @@ from pathlib import Path
 
 from pound_deck.diagnostics import Diagnostic, has_errors
 from pound_deck.model import Model, Span
-from pound_deck.schema import REQUIRED
 from pound_deck.reader import read_deck
-
+from pound_deck.schema import REQUIRED
 from pound_solve import __version__, scene
 from pound_solve.assemble import AssemblyError, Structure, assemble
 from pound_solve.catalog import catalog
@@ -98,27 +97,40 @@ def prepare(request: Request) -> Prepared:
     for card in model.equake:
         try:
             motions.append(card.spec.impl(card.values, context(model, request)))
-            found += [Diagnostic("R404", w, card.span, severity="warning") for w in motions[-1].info.get("warnings", ())]
+            found += [
+                Diagnostic("R404", w, card.span, severity="warning")
+                for w in motions[-1].info.get("warnings", ())
+            ]
         except RecordError as err:
             found.append(Diagnostic(err.code, err.message, card.place("FILE"), hint=err.hint))
     apart = [m.supports is not None for m in motions]
     if any(apart) and not all(apart):
         spot = model.equake[apart.index(False)].span
         found.append(
-            Diagnostic("R405", "some motions have SUPPORTS and this one has not: give SUPPORTS to all or to none", spot)
+            Diagnostic(
+                "R405",
+                "some motions have SUPPORTS and this one has not: give SUPPORTS to all or to none",
+                spot,
+            )
         )
     for card, motion in zip(model.equake, motions):
         for node in motion.supports or ():
             if node in model.nodes and motion.direction not in model.nodes[node].fixed:
                 found.append(
-                    Diagnostic("R405", f"node {node} is not fixed along {motion.direction}: a support that moves must be", card.place("SUPPORTS"))
+                    Diagnostic(
+                        "R405",
+                        f"node {node} is not fixed along {motion.direction}: a support that moves must be",
+                        card.place("SUPPORTS"),
+                    )
                 )
     structure = None
     try:
         fixed = [(n.id, d) for n in model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed]
         heavy = any(c.spec.name == "STATIC" and c["GRAVITY"] == "YES" for c in model.analyses)
         self_weight = all(c["SELF_WEIGHT"] == "YES" for c in model.analyses if c.spec.name == "STATIC")
-        structure = assemble(_weighed(model) if heavy else model, scene.moved_supports(motions, fixed), self_weight)
+        structure = assemble(
+            _weighed(model) if heavy else model, scene.moved_supports(motions, fixed), self_weight
+        )
     except AssemblyError as err:
         found += err.diagnostics
     if has_errors(found) or structure is None:
@@ -153,7 +165,11 @@ def _override(model: Model, request: Request, found: list[Diagnostic]) -> Model:
         if card.spec.name == "HISTORY":
             name = (request.method or card["METHOD"]).upper()
             if name not in methods:
-                found.append(Diagnostic("P210", f"--method {request.method}: known methods are {', '.join(methods)}", None))
+                found.append(
+                    Diagnostic(
+                        "P210", f"--method {request.method}: known methods are {', '.join(methods)}", None
+                    )
+                )
                 return model
             own = {f.name: card.values.get(f.name, f.default) for f in methods[name].fields}
             # an item of the deck's own method that was left out there may be one that this method must have
@@ -161,13 +177,22 @@ def _override(model: Model, request: Request, found: list[Diagnostic]) -> Model:
             if request.dt is not None and "DT" in own:
                 own["DT"] = request.dt
             elif request.dt is not None:
-                found.append(Diagnostic("P211", f"--dt: {name} takes no time step", None, severity="warning"))
+                found.append(
+                    Diagnostic("P211", f"--dt: {name} takes no time step", None, severity="warning")
+                )
             missing = [key for key, value in own.items() if value is REQUIRED]
             if missing:
-                found.append(Diagnostic("P213", f"--method {name} needs {', '.join(missing)}: give --dt", None))
+                found.append(
+                    Diagnostic("P213", f"--method {name} needs {', '.join(missing)}: give --dt", None)
+                )
                 return model
             spans = dict(card.spans) | {k: Span("--method/--dt", 1, 1, 2) for k in ("METHOD", "DT")}
-            card = replace(card, values={**card.values, **own, "METHOD": name}, laws={"METHOD": (methods[name],)}, spans=spans)
+            card = replace(
+                card,
+                values={**card.values, **own, "METHOD": name},
+                laws={"METHOD": (methods[name],)},
+                spans=spans,
+            )
         cards.append(card)
     return replace(model, analyses=tuple(cards))
 
@@ -194,9 +219,13 @@ def execute(request: Request, progress: Progress | None = None) -> tuple[int, Re
     if request.out is not None:
         request.out.mkdir(parents=True, exist_ok=True)
     path = request.path(".h5")
-    with Writer(path, title=ready.model.title, units=ready.model.units, program_version=__version__) as writer:
+    with Writer(
+        path, title=ready.model.title, units=ready.model.units, program_version=__version__
+    ) as writer:
         overridden = {name.lower() for name in request.params}
-        message = Course(ready.model, ready.motions, ready.structure, overridden, writer, progress, began).all()
+        message = Course(
+            ready.model, ready.motions, ready.structure, overridden, writer, progress, began
+        ).all()
         writer.finish("stopped" if message else "done", message)
     results = Results.open(path)
     from pound_solve.report import render

@@ -6,6 +6,7 @@ import argparse
 import sys
 import time
 from collections.abc import Sequence
+from difflib import get_close_matches
 from pathlib import Path
 
 from pound_solve import __version__
@@ -16,7 +17,8 @@ VERBS = ("run", "check", "report", "export", "list")
 def parser() -> argparse.ArgumentParser:
     """Return the argument parser; ``run`` is the verb where none is given."""
     out = argparse.ArgumentParser(
-        prog="pound-solve", description="Earthquake pounding of 2-D frames: a text deck in, a report and an HDF5 file out."
+        prog="pound-solve",
+        description="Earthquake pounding of 2-D frames: a text deck in, a report and an HDF5 file out.",
     )
     out.add_argument("--version", action="version", version=f"pound-solve {__version__}")
     verbs = out.add_subparsers(dest="verb", required=True, metavar="VERB")
@@ -24,14 +26,20 @@ def parser() -> argparse.ArgumentParser:
     def deck(name: str, text: str) -> argparse.ArgumentParser:
         p = verbs.add_parser(name, help=text, description=text)
         p.add_argument("deck", help="input deck")
-        p.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="replace a PARAM of the deck")
-        p.add_argument("--records", action="append", default=[], type=Path, metavar="DIR", help="folder with records")
+        p.add_argument(
+            "--set", action="append", default=[], metavar="NAME=VALUE", help="replace a PARAM of the deck"
+        )
+        p.add_argument(
+            "--records", action="append", default=[], type=Path, metavar="DIR", help="folder with records"
+        )
         p.add_argument("--method", help="replace METHOD of HISTORY")
         p.add_argument("--dt", type=float, help="replace DT of HISTORY")
         return p
 
     run = deck("run", "run a deck (the verb may be left out)")
-    run.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder of report and results (default: the deck's)")
+    run.add_argument(
+        "-o", "--out", type=Path, metavar="DIR", help="folder of report and results (default: the deck's)"
+    )
     run.add_argument("--quiet", action="store_true", help="print nothing but errors")
     deck("check", "report all mistakes of a deck without running it")
     report = verbs.add_parser("report", help="print the report of a results file")
@@ -41,7 +49,11 @@ def parser() -> argparse.ArgumentParser:
     export.add_argument("results", help="results file (.h5)")
     export.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: beside the file)")
     listing = verbs.add_parser("list", help="list what a deck may use")
-    listing.add_argument("family", nargs="?", help="section, element, hysteresis, contact, damping, motion, record, analysis or method")
+    listing.add_argument(
+        "family",
+        nargs="?",
+        help="section, element, hysteresis, contact, damping, motion, record, analysis or method",
+    )
     listing.add_argument("name", nargs="?", help="one member: its items")
     return out
 
@@ -50,12 +62,23 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status (0 done, 1 stopped, 2 mistakes, 3 files)."""
     words = list(sys.argv[1:] if argv is None else argv)
     if words and words[0] not in VERBS and not words[0].startswith("-"):
+        if len(words) > 1 and not words[1].startswith("-") and not Path(words[0]).exists():
+            near = get_close_matches(words[0], VERBS, 1)
+            return (
+                _complain(
+                    f"{words[0]} is neither a verb nor a deck"
+                    + (f"; did you mean {near[0]}?" if near else "")
+                )
+                and 2
+            )
         words.insert(0, "run")
     elif words and words[0].startswith("-") and words[0] not in ("-h", "--help", "--version"):
         words.insert(0, "run")
     args = parser().parse_args(words)
     try:
-        return {"run": _run, "check": _check, "report": _report, "export": _export, "list": _list}[args.verb](args)
+        return {"run": _run, "check": _check, "report": _report, "export": _export, "list": _list}[
+            args.verb
+        ](args)
     except BrokenPipeError:  # the reader of our output has gone: not our mistake
         sys.stderr.close()
         return 0
@@ -84,7 +107,6 @@ def _request(args: argparse.Namespace) -> object:
 
 def _run(args: argparse.Namespace) -> int:
     from pound_deck.diagnostics import render
-
     from pound_solve import app
     from pound_solve.results import ResultsError
 
@@ -123,7 +145,12 @@ class _Progress:
             return
         self.told = now
         left = (now - self.began) * (end / t - 1.0) if t > 0 else 0.0
-        print(f"\r t = {t:10.4f} of {end:g}   {100 * t / end:5.1f} %   {left:6.0f} s to go ", end="", file=sys.stderr, flush=True)
+        print(
+            f"\r t = {t:10.4f} of {end:g}   {100 * t / end:5.1f} %   {left:6.0f} s to go ",
+            end="",
+            file=sys.stderr,
+            flush=True,
+        )
 
     def end(self) -> None:
         """Clear the line."""
@@ -133,7 +160,6 @@ class _Progress:
 
 def _check(args: argparse.Namespace) -> int:
     from pound_deck.diagnostics import render
-
     from pound_solve import app
 
     request = _request(args)
@@ -146,7 +172,9 @@ def _check(args: argparse.Namespace) -> int:
     if ready.warnings:
         print(render(ready.warnings, ready.files), file=sys.stderr)
     m = ready.model
-    print(f"{args.deck}: no mistakes; {len(m.nodes)} nodes, {len(m.elements)} elements, {ready.structure.n_free} unknowns")
+    print(
+        f"{args.deck}: no mistakes; {len(m.nodes)} nodes, {len(m.elements)} elements, {ready.structure.n_free} unknowns"
+    )
     return app.DONE
 
 

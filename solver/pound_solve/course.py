@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pound_deck.model import Card, Model
 
+from pound_deck.model import Card, Model
 from pound_solve import __version__, echo, scene
 from pound_solve.analyses import history, modal, static
 from pound_solve.assemble import Structure, assemble
@@ -67,7 +67,7 @@ class Course:
                 if card.spec.name == "HISTORY":
                     self._history(card, state)
         except static.Unstable as err:
-            return f"A501 static analysis: {err}"
+            return f"{err.code} static analysis: {err}"
         except np.linalg.LinAlgError as err:
             return f"A501 the structure is a mechanism ({err})"
         except Stop as err:
@@ -125,29 +125,53 @@ class Course:
         w.table("static_displacement", rows)
         units = self.model.units
         forces: list[tuple[Any, ...]] = [
-            (o.element, o.quantity, float(s.freedoms.row(o.freedoms, o.u_row) @ full) + o.constant, units.text(o.unit)) for o in s.outputs
+            (
+                o.element,
+                o.quantity,
+                float(s.freedoms.row(o.freedoms, o.u_row) @ full) + o.constant,
+                units.text(o.unit),
+            )
+            for o in s.outputs
         ]
         for x, law_state, row in zip(s.laws, state.states, s.law_rows):
             d = float(row @ full)
             quantity = "contact force" if x.is_contact else f"force {x.component}"
-            forces.append((x.element, quantity, x.law.branch(law_state).force(d, 0.0), units.text("F*L" if x.component == "R" else "F")))
+            forces.append(
+                (
+                    x.element,
+                    quantity,
+                    x.law.branch(law_state).force(d, 0.0),
+                    units.text("F*L" if x.component == "R" else "F"),
+                )
+            )
         w.table("static_force", sorted(forces, key=lambda r: r[0]))
         w.table("reactions", self._reactions(state))
 
     def _reactions(self, state: static.StaticState) -> list[tuple[Any, ...]]:
         """Support reactions: what the elements and loads leave at fixed freedoms, by assembling with them free."""
         fixed = {(n.id, d) for n in self.model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed}
-        whole = assemble(self.structure.model, fixed, all(c["SELF_WEIGHT"] == "YES" for c in self.model.analyses if c.spec.name == "STATIC"))
+        whole = assemble(
+            self.structure.model,
+            fixed,
+            all(c["SELF_WEIGHT"] == "YES" for c in self.model.analyses if c.spec.name == "STATIC"),
+        )
         n = whole.n_free
         u = np.zeros(whole.freedoms.size)
         u[:n] = state.u
-        law = np.array([x.law.branch(k).force(float(r @ u), 0.0) for x, k, r in zip(whole.laws, state.states, whole.law_rows)])
+        law = np.array(
+            [
+                x.law.branch(k).force(float(r @ u), 0.0)
+                for x, k, r in zip(whole.laws, state.states, whole.law_rows)
+            ]
+        )
         r = whole.stiffness @ u - whole.loads
         if len(law):
             r = r + whole.law_rows.T @ law
         at = {f: float(r[n + i]) for i, f in enumerate(whole.freedoms.moved)}
         return [
-            (node, *(at.get((node, d), 0.0) for d in range(3))) for node, x in self.model.nodes.items() if x.fixed and any((node, d) in at for d in range(3))
+            (node, *(at.get((node, d), 0.0) for d in range(3)))
+            for node, x in self.model.nodes.items()
+            if x.fixed and any((node, d) in at for d in range(3))
         ]
 
     def _modal(self, card: Card) -> None:
@@ -197,21 +221,35 @@ class Course:
     def _scene_tables(self, place: scene.Scene) -> None:
         rows = [(d.subject, d.decision, d.why) for d in place.decisions]
         form = "total displacements" if place.total else "relative to the ground"
-        rows.append(("displacements", form, "supports move apart from each other" if place.total else "one motion for the whole base"))
+        rows.append(
+            (
+                "displacements",
+                form,
+                "supports move apart from each other" if place.total else "one motion for the whole base",
+            )
+        )
         self.writer.table("scene", rows)
 
-    def _history_tables(self, place: scene.Scene, recorder: history.Recorder, outcome: Outcome | None) -> None:
+    def _history_tables(
+        self, place: scene.Scene, recorder: history.Recorder, outcome: Outcome | None
+    ) -> None:
         m, s, w, units = self.model, self.structure, self.writer, self.model.units
         rows: list[tuple[Any, ...]] = []
         for i, node in enumerate(recorder.nodes):
             for d in range(3):
-                for q, word, dimension in (("u", "displacement", "L"), ("v", "velocity", "L/T"), ("a", "acceleration", "L/T^2")):
+                for q, word, dimension in (
+                    ("u", "displacement", "L"),
+                    ("v", "velocity", "L/T"),
+                    ("a", "acceleration", "L/T^2"),
+                ):
                     e = recorder.node_extremes[q][3 * i + d]
                     if e.high != 0.0 or e.low != 0.0:
                         unit = units.text(dimension if d < 2 else dimension.replace("L", "rad"))
                         rows.append((node, "XYR"[d], word, unit, e.high, e.t_high, e.low, e.t_low))
         relative = "displacements and velocities are relative to the ground, accelerations are total"
-        w.table("node_envelope", rows, "at the output times; " + ("all are total" if place.total else relative))
+        w.table(
+            "node_envelope", rows, "at the output times; " + ("all are total" if place.total else relative)
+        )
         w.table(
             "member_envelope",
             [
@@ -225,7 +263,14 @@ class Course:
         share = 100.0 / input_ if input_ else float("nan")
         w.table(
             "energy",
-            [(k, energy[k] - (first[k] if k != "input" else 0.0), (energy[k] - (first[k] if k != "input" else 0.0)) * share) for k in ENERGIES]
+            [
+                (
+                    k,
+                    energy[k] - (first[k] if k != "input" else 0.0),
+                    (energy[k] - (first[k] if k != "input" else 0.0)) * share,
+                )
+                for k in ENERGIES
+            ]
             + [("residual", recorder.residual(energy), recorder.residual(energy) * share)],
             "changes since the start" + ("" if place.total else ", of the motion relative to the ground"),
         )
@@ -251,7 +296,20 @@ class Course:
                 plus, minus = x.yields or (np.nan, np.nan)
                 ductility = max(d.high / plus if plus else np.nan, d.low / minus if minus else np.nan)
                 spring_rows.append(
-                    (x.element, x.component, x.rule, units.text(force), f.high, f.low, units.text(length), d.high, d.low, peaks.yields[i], ductility, energies[i])
+                    (
+                        x.element,
+                        x.component,
+                        x.rule,
+                        units.text(force),
+                        f.high,
+                        f.low,
+                        units.text(length),
+                        d.high,
+                        d.low,
+                        peaks.yields[i],
+                        ductility,
+                        energies[i],
+                    )
                 )
                 continue
             own = [c for c in peaks.collisions if c.law == i]
@@ -267,7 +325,7 @@ class Course:
                     max(d.high - gap, 0.0),
                     sum(c.impulse for c in own),
                     energies[i] + peaks.dashpot_losses[i],
-                    gap - d.high if not own else 0.0,
+                    gap - d.high,
                     closed,
                 )
             )

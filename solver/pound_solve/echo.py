@@ -8,7 +8,6 @@ from typing import Any
 
 from pound_deck.model import Card, Model
 from pound_deck.schema import Field, Kind
-
 from pound_solve.assemble import Structure
 from pound_solve.motions.base import Motion
 
@@ -20,7 +19,11 @@ def text_of(value: Any) -> str:
     if value is None:
         return "-"
     if isinstance(value, tuple):
-        return ", ".join(text_of(v) for v in value) if len(value) <= 12 else f"{text_of(value[:10])}, ... ({len(value)})"
+        return (
+            ", ".join(text_of(v) for v in value)
+            if len(value) <= 12
+            else f"{text_of(value[:10])}, ... ({len(value)})"
+        )
     return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
@@ -47,7 +50,14 @@ def options(model: Model, overridden: set[str]) -> Rows:
         ("mass of members", model.mass, default("mass"), ""),
     ]
     for name, value in model.params.items():
-        rows.append((f"PARAM {name}", text_of(value), "", "set on the command line" if name.lower() in overridden else ""))
+        rows.append(
+            (
+                f"PARAM {name}",
+                text_of(value),
+                "",
+                "set on the command line" if name.lower() in overridden else "",
+            )
+        )
     for card in model.analyses:
         rows.append((card.spec.name, "", "", card.spec.title))
         for f in fields_of(card):
@@ -61,7 +71,8 @@ def options(model: Model, overridden: set[str]) -> Rows:
 def nodes(model: Model) -> Rows:
     """Rows of ``nodes``."""
     return [
-        (n.id, n.x, n.y, n.fixed, "".join(n.slaved), next(iter(n.slaved.values()), 0)) for n in model.nodes.values()
+        (n.id, n.x, n.y, n.fixed, "".join(n.slaved), next(iter(n.slaved.values()), 0))
+        for n in model.nodes.values()
     ]
 
 
@@ -83,7 +94,16 @@ def properties(model: Model) -> Rows:
             if card[f.name] is None and f.name not in card.spans:
                 continue
             unit = model.units.text(f.unit) if f.kind in (Kind.REAL, Kind.INT) and f.unit != "-" else ""
-            out.append((label, card.spec.name, f.name, text_of(card[f.name]), unit, "" if f.name in card.spans else "*"))
+            out.append(
+                (
+                    label,
+                    card.spec.name,
+                    f.name,
+                    text_of(card[f.name]),
+                    unit,
+                    "" if f.name in card.spans else "*",
+                )
+            )
     return out
 
 
@@ -114,7 +134,11 @@ def damping(structure: Structure) -> Rows:
     """Rows of ``damping``."""
     out = []
     for card, text in structure.damping_texts:
-        where = [f"{f.name.lower()} {text_of(card[f.name])}" for f in card.spec.fields if f.name in ("NODES", "PROPS") and card[f.name]]
+        where = [
+            f"{f.name.lower()} {text_of(card[f.name])}"
+            for f in card.spec.fields
+            if f.name in ("NODES", "PROPS") and card[f.name]
+        ]
         out.append(("; ".join(where) or "all", card.spec.name, text))
     return out
 

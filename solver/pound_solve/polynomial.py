@@ -39,7 +39,9 @@ def shift(coefs: Array, t: float | Array) -> Array:
     table, power = _binomials(len(coefs))
     if np.ndim(t) == 0:
         return coefs if t == 0.0 else np.tensordot(table * float(t) ** power, coefs, axes=1)
-    factors = table.reshape(*table.shape, *([1] * np.ndim(t))) * np.asarray(t) ** power.reshape(*power.shape, *([1] * np.ndim(t)))
+    factors = table.reshape(*table.shape, *([1] * np.ndim(t))) * np.asarray(t) ** power.reshape(
+        *power.shape, *([1] * np.ndim(t))
+    )
     return (factors * coefs).sum(axis=1)
 
 

@@ -155,7 +155,9 @@ def moved_supports(motions: Sequence[Motion], fixed: Sequence[Freedom]) -> tuple
     return tuple(sorted(out & set(fixed)))
 
 
-def build(structure: Structure, motions: Sequence[Motion], t_end: float, start: Array, start_rate: Array) -> Scene:
+def build(
+    structure: Structure, motions: Sequence[Motion], t_end: float, start: Array, start_rate: Array
+) -> Scene:
     """Reduce a structure to what its history needs.
 
     Parameters
@@ -180,7 +182,9 @@ def build(structure: Structure, motions: Sequence[Motion], t_end: float, start: 
     if not live.all():
         dead = [f for f, ok in zip(names, live) if not ok]
         decisions.append(
-            Decision(f"{len(dead)} of {n} freedoms", "dropped", "nothing sets them in motion: " + _some(dead))
+            Decision(
+                f"{len(dead)} of {n} freedoms", "dropped", "nothing sets them in motion: " + _some(dead)
+            )
         )
     # massless freedoms on linear elements follow the others exactly, if what damps them is proportional to
     # what holds them (C_ca + C_cc G = 0) or they are not damped at all
@@ -188,12 +192,20 @@ def build(structure: Structure, motions: Sequence[Motion], t_end: float, start: 
     slave = _condensable(structure.stiffness, structure.damping, light, live)
     if slave.any():
         decisions.append(
-            Decision(f"{int(slave.sum())} massless freedoms", "condensed", "they follow the others statically, no error is made")
+            Decision(
+                f"{int(slave.sum())} massless freedoms",
+                "condensed",
+                "they follow the others statically, no error is made",
+            )
         )
     left = light & ~slave
     if left.any():
         decisions.append(
-            Decision(f"{int(left.sum())} massless freedoms", "kept", "dashpots move them: " + _some([f for f, x in zip(names, left) if x]))
+            Decision(
+                f"{int(left.sum())} massless freedoms",
+                "kept",
+                "dashpots move them: " + _some([f for f, x in zip(names, left) if x]),
+            )
         )
     keep = np.flatnonzero(live & ~slave)
     s = np.flatnonzero(slave)
@@ -227,7 +239,9 @@ def build(structure: Structure, motions: Sequence[Motion], t_end: float, start: 
     )
 
 
-def _inputs(structure: Structure, motions: Sequence[Motion], t_end: float) -> tuple[Excitation, Array, Array, Array]:
+def _inputs(
+    structure: Structure, motions: Sequence[Motion], t_end: float
+) -> tuple[Excitation, Array, Array, Array]:
     """Excitation, its force on the unknowns, prescribed displacements from it, ground acceleration from it."""
     n, moved = structure.n_free, structure.freedoms.moved
     breaks = common_breaks(motions, t_end)
@@ -247,7 +261,9 @@ def _inputs(structure: Structure, motions: Sequence[Motion], t_end: float) -> tu
         displacement_of = np.zeros((len(moved), 3 * len(motions)))
         for j, motion in enumerate(motions):
             columns = [
-                i for i, (node, d) in enumerate(moved) if "XY"[d] == motion.direction and motion.supports and node in motion.supports
+                i
+                for i, (node, d) in enumerate(moved)
+                if "XY"[d] == motion.direction and motion.supports and node in motion.supports
             ]
             displacement_of[columns, 3 * j] = 1.0
             at = [n + i for i in columns]
@@ -262,10 +278,16 @@ def _inputs(structure: Structure, motions: Sequence[Motion], t_end: float) -> tu
     return Excitation(breaks, coefs), force, displacement_of, ground
 
 
-def _can_move(structure: Structure, inputs: Array, excitation: Excitation, start: Array, start_rate: Array) -> NDArray[np.bool_]:
+def _can_move(
+    structure: Structure, inputs: Array, excitation: Excitation, start: Array, start_rate: Array
+) -> NDArray[np.bool_]:
     """Which unknowns anything can set in motion: all that hang together with one that is driven or not at zero."""
     n = structure.n_free
-    linked = (structure.stiffness[:n, :n] != 0) | (structure.damping[:n, :n] != 0) | (structure.mass[:n, :n] != 0)
+    linked = (
+        (structure.stiffness[:n, :n] != 0)
+        | (structure.damping[:n, :n] != 0)
+        | (structure.mass[:n, :n] != 0)
+    )
     parent = list(range(n))
 
     def root(i: int) -> int:
@@ -292,7 +314,9 @@ def _can_move(structure: Structure, inputs: Array, excitation: Excitation, start
     return np.array([root(i) in awake for i in range(n)], bool) & real
 
 
-def _condensable(k: Array, c: Array, light: NDArray[np.bool_], live: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _condensable(
+    k: Array, c: Array, light: NDArray[np.bool_], live: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
     """Which massless freedoms follow the others exactly; those that do not are taken out until the rest do."""
     none, candidates = np.zeros_like(light), light
     while candidates.any():

@@ -87,7 +87,11 @@ def test_imports_go_down():
     for path in SOLVER.rglob("*.py"):
         own = path.relative_to(SOLVER).parts[0].removesuffix(".py")
         for name in imported(path):
-            if name.startswith("pound_solve") and part(name) != own and not name.startswith("pound_solve.__version__"):
+            if (
+                name.startswith("pound_solve")
+                and part(name) != own
+                and not name.startswith("pound_solve.__version__")
+            ):
                 assert LEVEL[part(name)] <= LEVEL[own], f"{path.name} imports {name}"
 
 
@@ -97,7 +101,9 @@ def test_numerics_open_no_file_and_print_nothing():
     files += [SOLVER / n for n in ("laws.py", "dofs.py", "modes.py", "assemble.py", "scene.py")]
     for path in files:
         called = {
-            n.func.id for n in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)
+            n.func.id
+            for n in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)
         }
         assert not called & {"open", "print", "input", "eval", "exec"}, path
 
@@ -108,7 +114,9 @@ def test_no_module_keeps_mutable_state():
         assert not [n for n in ast.walk(tree) if isinstance(n, ast.Global)], path
         for node in tree.body:
             # a display may stand at module level only as a constant, in capitals, and is never changed in place
-            if isinstance(node, ast.Assign) and isinstance(node.value, ast.List | ast.Dict | ast.Set | ast.ListComp):
+            if isinstance(node, ast.Assign) and isinstance(
+                node.value, ast.List | ast.Dict | ast.Set | ast.ListComp
+            ):
                 names = [t.id for t in node.targets if isinstance(t, ast.Name)]
                 assert all(n == n.upper() for n in names), f"{path}: {names}"
                 changed = {
@@ -125,6 +133,8 @@ def test_no_module_keeps_mutable_state():
 def test_no_function_evaluates_text():
     for path in modules():
         called = {
-            n.func.id for n in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)
+            n.func.id
+            for n in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)
         }
         assert not called & {"eval", "exec"}, path

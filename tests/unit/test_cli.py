@@ -134,12 +134,19 @@ def test_a_mechanism_under_load_is_named(deck, capsys):
     assert "node 2 uy" in capsys.readouterr().err
 
 
-LONG = DECK.replace("HISTORY 3", "HISTORY 1000 METHOD=NEWMARK DT=0.001").replace("ANALYSIS", "OUTPUT\n EVERY=0.01\nANALYSIS")
+LONG = DECK.replace("HISTORY 3", "HISTORY 1000 METHOD=NEWMARK DT=0.001").replace(
+    "ANALYSIS", "OUTPUT\n EVERY=0.01\nANALYSIS"
+)
 
 
 def start(deck):
     deck.write_text(LONG)
-    return subprocess.Popen([sys.executable, "-m", "pound_solve", str(deck)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=os.environ)
+    return subprocess.Popen(
+        [sys.executable, "-m", "pound_solve", str(deck)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env=os.environ,
+    )
 
 
 def wait_for_rows(path: Path):

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
 from pound_deck.model import Model
 from pound_deck.schema import Field, Kind, Spec
-
 from pound_solve.assemble import Structure
 from pound_solve.integrate.base import ENERGIES, Extreme, Start, Watch, energies
 from pound_solve.laws import State, follow
@@ -57,7 +57,15 @@ def initial(structure: Structure) -> tuple[Array, Array]:
     return u, v
 
 
-def begin(structure: Structure, scene: Scene, u: Array, v: Array, states: Sequence[State], u_static: Array, times: Array) -> Start:
+def begin(
+    structure: Structure,
+    scene: Scene,
+    u: Array,
+    v: Array,
+    states: Sequence[State],
+    u_static: Array,
+    times: Array,
+) -> Start:
     """State at t = 0: the static one, plus INITIAL, the laws led along from the one to the other."""
     index = {f: i for i, f in enumerate(structure.freedoms.free)}
     keep = [index[f] for f in scene.freedoms]
@@ -76,7 +84,12 @@ def watch(structure: Structure, scene: Scene) -> Watch:
     cards = structure.model.drifts
     n = structure.n_free
     rows = np.array(
-        [structure.freedoms.row([(c["J"], "XY".index(c["DIRECTION"])), (c["I"], "XY".index(c["DIRECTION"]))], [1.0, -1.0]) for c in cards]
+        [
+            structure.freedoms.row(
+                [(c["J"], "XY".index(c["DIRECTION"])), (c["I"], "XY".index(c["DIRECTION"]))], [1.0, -1.0]
+            )
+            for c in cards
+        ]
     ).reshape(len(cards), structure.freedoms.size)
     return Watch(
         [c["NAME"] for c in cards],
@@ -109,7 +122,9 @@ class Recorder:
         Told the time of every sample.
     """
 
-    def __init__(self, scene: Scene, drifts: Watch, append: Append, progress: Callable[[float], None]) -> None:
+    def __init__(
+        self, scene: Scene, drifts: Watch, append: Append, progress: Callable[[float], None]
+    ) -> None:
         structure = scene.structure
         model, freedoms = structure.model, structure.freedoms
         self.scene, self.drifts, self._append, self._progress = scene, drifts, append, progress
@@ -150,7 +165,10 @@ class Recorder:
 
         def springs(unit_of: Callable[[str], str]) -> dict[str, Any]:
             chosen = [laws[i] for i in self.springs]
-            return {"labels": [f"{s.element} {s.component}" for s in chosen], "unit": [unit_of(s.component) for s in chosen]}
+            return {
+                "labels": [f"{s.element} {s.component}" for s in chosen],
+                "unit": [unit_of(s.component) for s in chosen],
+            }
 
         names = [contact_name(model, laws[i].element) for i in self.contacts]
         return {
@@ -172,7 +190,10 @@ class Recorder:
             "drift": ((len(self.drifts.names),), {"labels": list(self.drifts.names), "unit": "L"}),
             "ground": (
                 (len(self.scene.motions),),
-                {"labels": [f"{i + 1} {m.direction}" for i, m in enumerate(self.scene.motions)], "unit": "L/T^2"},
+                {
+                    "labels": [f"{i + 1} {m.direction}" for i, m in enumerate(self.scene.motions)],
+                    "unit": "L/T^2",
+                },
             ),
             "energy": ((7,), {"labels": [*ENERGIES, "residual"], "unit": "F*L"}),
         }
@@ -183,7 +204,9 @@ class Recorder:
         s, rate = self.scene.excitation.value(t), self.scene.excitation.value(t, 1)
         d = self.scene.law_rows @ u + self.scene.law_inputs @ s
         ddot = self.scene.law_rows @ v + self.scene.law_inputs @ rate
-        force = [x.law.branch(state).force(float(p), float(q)) for x, state, p, q in zip(laws, states, d, ddot)]
+        force = [
+            x.law.branch(state).force(float(p), float(q)) for x, state, p, q in zip(laws, states, d, ddot)
+        ]
         energy = energies(self.scene, t, u, v, states, works)
         if self.first_energy is None:
             self.first_energy = energy
@@ -213,7 +236,10 @@ class Recorder:
         full_v = np.array([scene.all_freedoms(r[2], r[0], 1) for r in rows])
         full_a = np.array([scene.all_freedoms(r[3], r[0], 2) for r in rows])
         shape = (len(t), len(self.nodes), 3)
-        node = {q: (full @ self.node_rows.T).reshape(shape) for q, full in (("u", full_u), ("v", full_v), ("a", full_a))}
+        node = {
+            q: (full @ self.node_rows.T).reshape(shape)
+            for q, full in (("u", full_u), ("v", full_v), ("a", full_a))
+        }
         ground = s @ scene.acceleration_inputs.T  # (nt, 2): accelerations of nodes are total
         node["a"][:, :, 0] += ground[:, :1]
         node["a"][:, :, 1] += ground[:, 1:]
@@ -234,7 +260,9 @@ class Recorder:
                 "spring/force": force[:, self.springs] if self.springs else np.zeros((len(t), 0)),
                 "spring/deformation": d[:, self.springs] if self.springs else np.zeros((len(t), 0)),
                 "drift": u @ self.drifts.rows.T + s @ self.drifts.input_rows.T + self.drifts.constants,
-                "ground": np.array([[float(m.acceleration.value(x)) for m in scene.motions] for x in t]).reshape(len(t), -1),
+                "ground": np.array(
+                    [[float(m.acceleration.value(x)) for m in scene.motions] for x in t]
+                ).reshape(len(t), -1),
                 "energy": energy,
             }
         )

@@ -14,8 +14,8 @@ Chopra AK (2012), Dynamics of Structures, 4th edn, sections 13.1 and 13.2.
 from __future__ import annotations
 
 import numpy as np
-from pound_deck.schema import Field, Kind, Spec
 
+from pound_deck.schema import Field, Kind, Spec
 from pound_solve.assemble import Structure
 from pound_solve.dofs import Freedom
 
@@ -24,7 +24,14 @@ SPEC = Spec(
     "MODAL",
     "natural modes of the initial structure",
     (
-        Field("MODES", Kind.INT, default=None, lo=1, doc="number of modes; left out: all, at most 12", positional=True),
+        Field(
+            "MODES",
+            Kind.INT,
+            default=None,
+            lo=1,
+            doc="number of modes; left out: all, at most 12",
+            positional=True,
+        ),
         Field("SHAPES", Kind.WORD, default="YES", words=("YES", "NO"), doc="print the mode shapes"),
     ),
 )
@@ -68,5 +75,6 @@ def shape_rows(structure: Structure, count: int) -> list[tuple[float, ...]]:
         scale = np.abs(shapes[:, i]).max()
         for at in freedoms:
             x = structure.freedoms.matrix(at) @ full / scale
+            x[np.abs(x) < 1e-12] = 0.0  # rounding
             out.append((i + 1, at[0][0], *map(float, x)))
     return out

@@ -41,7 +41,11 @@ class StaticState:
 
 
 class Unstable(Exception):
-    """The structure cannot carry the load: a mechanism, named by its worst freedom."""
+    """The structure cannot carry the load: a mechanism, named by its worst freedom; `code` is the message's number."""
+
+    def __init__(self, why: str, code: str = "A501") -> None:
+        super().__init__(why)
+        self.code = code
 
 
 def solve(structure: Structure, most_events: int = 10_000) -> StaticState:
@@ -90,7 +94,7 @@ def solve(structure: Structure, most_events: int = 10_000) -> StaticState:
         states[i] = laws[i].law.leave(states[i], e, d[i] - (share - 1.0) * overlaps[i])
         events += 1
         if events > most_events:
-            raise Unstable(f"more than {most_events} springs and contacts changed state under the static load")
+            raise Unstable(f"more than {most_events} springs and contacts changed state under the static load", "A507")
     return StaticState(u, tuple(states), events)
 
 

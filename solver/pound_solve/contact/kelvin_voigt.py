@@ -1,7 +1,7 @@
 r"""Kelvin-Voigt contact: spring and dashpot, :math:`f = k\delta + c\dot\delta` while pressed.
 
 With TENSION=NO (default) the contact lets go where the force falls to zero, with some overlap left
-(Shakya and Wijeyewickrema 2009, Adv. Struct. Engng 12: 71-85); with TENSION=YES it holds until the overlap is
+(Shakya, Wijeyewickrema and Ohmachi 2008, 14th World Conf. Earthquake Engng, Beijing); with TENSION=YES it holds until the overlap is
 gone and pulls before it does (Anagnostopoulos 1988, Earthquake Engng Struct. Dyn. 16: 443-456).
 
 The dashpot is given as C, as damping ratio XI, or as restitution E.  The relation of E to XI is the exact one
@@ -20,7 +20,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from pound_deck.schema import Field, Kind, Spec
-
 from pound_solve.contact import restitution
 from pound_solve.laws import Branch, Exit
 
@@ -97,10 +96,14 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     """
     given = [name for name in ("C", "XI", "E") if values[name] is not None]
     if len(given) != 1:
-        raise ValueError("give the dashpot once: as C, as XI or as E" + (", not " + " and ".join(given) if given else ""))
+        raise ValueError(
+            "give the dashpot once: as C, as XI or as E" + (", not " + " and ".join(given) if given else "")
+        )
     k, tension = values["K"], values["TENSION"] == "YES"
     exact, ratio = (
-        (restitution.sticky, restitution.sticky_ratio) if tension else (restitution.no_tension, restitution.no_tension_ratio)
+        (restitution.sticky, restitution.sticky_ratio)
+        if tension
+        else (restitution.no_tension, restitution.no_tension_ratio)
     )
     e_asked, note = math.nan, "C given"
     root = 2.0 * math.sqrt(k * reduced_mass)
@@ -129,8 +132,23 @@ SPEC = Spec(
     (
         Field("K", Kind.REAL, "F/L", above=0, doc="contact stiffness"),
         Field("C", Kind.REAL, "F*T/L", default=None, lo=0, doc="dashpot (one of C, XI, E)"),
-        Field("XI", Kind.REAL, "-", default=None, lo=0, doc="damping ratio on the colliding masses (one of C, XI, E)"),
-        Field("E", Kind.REAL, "-", default=None, above=0, hi=1, doc="coefficient of restitution (one of C, XI, E)"),
+        Field(
+            "XI",
+            Kind.REAL,
+            "-",
+            default=None,
+            lo=0,
+            doc="damping ratio on the colliding masses (one of C, XI, E)",
+        ),
+        Field(
+            "E",
+            Kind.REAL,
+            "-",
+            default=None,
+            above=0,
+            hi=1,
+            doc="coefficient of restitution (one of C, XI, E)",
+        ),
         Field(
             "RELATION",
             Kind.WORD,
@@ -138,9 +156,16 @@ SPEC = Spec(
             words=("EXACT", "PUBLISHED"),
             doc="how E becomes XI: exact for the form chosen, or Anagnostopoulos 2004",
         ),
-        Field("TENSION", Kind.WORD, default="NO", words=("NO", "YES"), codes={"NO": 0, "YES": 1}, doc="hold until the overlap is gone"),
+        Field(
+            "TENSION",
+            Kind.WORD,
+            default="NO",
+            words=("NO", "YES"),
+            codes={"NO": 0, "YES": 1},
+            doc="hold until the overlap is gone",
+        ),
     ),
     code=1,
-    reference="Anagnostopoulos 1988, 2004; no tension: Shakya & Wijeyewickrema 2009",
+    reference="Anagnostopoulos 1988, 2004; no tension: Shakya, Wijeyewickrema & Ohmachi 2008",
     impl=build,
 )

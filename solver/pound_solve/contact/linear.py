@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-
 from pound_solve.contact.kelvin_voigt import Built, KelvinVoigt
 
 

@@ -12,9 +12,9 @@ Wilson EL, Penzien J (1972), Evaluation of orthogonal damping matrices, Int. J. 
 from __future__ import annotations
 
 import numpy as np
+
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
-
 from pound_solve.damping.base import Ground, Group
 
 
@@ -26,14 +26,27 @@ def build(card: Card, ground: Ground) -> Group:
     weighted = mass @ shapes
     c = (weighted * (2 * xi * omega)) @ weighted.T
     text = ", ".join(f"{x:.6g}" for x in given)
-    return Group(ground.pad(c), None, f"XI {text}" + (" (the last for all higher modes)" if len(given) < len(omega) else ""))
+    return Group(
+        ground.pad(c),
+        None,
+        f"XI {text}" + (" (the last for all higher modes)" if len(given) < len(omega) else ""),
+    )
 
 
 SPEC = Spec(
     "damping",
     "MODAL",
     "ratio for each mode, constant matrix",
-    (Field("XI", Kind.REAL, "-", count=(1, 1000), lo=0, doc="damping ratio of mode 1, 2, ...; the last holds for the rest"),),
+    (
+        Field(
+            "XI",
+            Kind.REAL,
+            "-",
+            count=(1, 1000),
+            lo=0,
+            doc="damping ratio of mode 1, 2, ...; the last holds for the rest",
+        ),
+    ),
     code=4,
     reference="Wilson & Penzien 1972",
     impl=build,

@@ -16,8 +16,7 @@ from __future__ import annotations
 
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
-
-from pound_solve.damping.base import DampingError, Group, Ground
+from pound_solve.damping.base import DampingError, Ground, Group
 
 
 def build(card: Card, ground: Ground) -> Group:
@@ -28,7 +27,9 @@ def build(card: Card, ground: Ground) -> Group:
         if alpha is not None or beta is not None:
             raise DampingError("give ALPHA and BETA, or XI with OMEGA or MODES, not both", "XI")
         if (card["OMEGA"] is None) == (card["MODES"] is None):
-            raise DampingError("XI needs two circular frequencies OMEGA=w1,w2 or two modes MODES=m1,m2", "XI")
+            raise DampingError(
+                "XI needs two circular frequencies OMEGA=w1,w2 or two modes MODES=m1,m2", "XI"
+            )
         if card["OMEGA"] is not None:
             w1, w2 = card["OMEGA"]
         else:
@@ -56,10 +57,30 @@ SPEC = Spec(
         Field("ALPHA", Kind.REAL, "1/T", default=None, lo=0, doc="factor of the mass"),
         Field("BETA", Kind.REAL, "T", default=None, lo=0, doc="factor of the initial stiffness"),
         Field("XI", Kind.REAL, "-", default=None, lo=0, doc="damping ratio at OMEGA or MODES"),
-        Field("OMEGA", Kind.REAL, "1/T", default=None, count=(2, 2), above=0, doc="circular frequencies that have XI"),
-        Field("MODES", Kind.INT, default=None, count=(2, 2), lo=1, doc="modes of the whole structure that have XI"),
+        Field(
+            "OMEGA",
+            Kind.REAL,
+            "1/T",
+            default=None,
+            count=(2, 2),
+            above=0,
+            doc="circular frequencies that have XI",
+        ),
+        Field(
+            "MODES",
+            Kind.INT,
+            default=None,
+            count=(2, 2),
+            lo=1,
+            doc="modes of the whole structure that have XI",
+        ),
         Field("NODES", Kind.NODES, default=None, doc="nodes of the mass part; left out: all"),
-        Field("PROPS", Kind.PROPS, default=None, doc="property sets of the stiffness part; left out: all but contacts"),
+        Field(
+            "PROPS",
+            Kind.PROPS,
+            default=None,
+            doc="property sets of the stiffness part; left out: all but contacts",
+        ),
     ),
     code=0,
     reference="Clough & Penzien 1993, section 12-5",

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pound_deck.model import Card, Element, Node
 
+from pound_deck.model import Card, Element, Node
 from pound_solve.dofs import Freedom
 from pound_solve.laws import Law
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 
 from pound_deck.schema import Field, Kind, Spec
-
 from pound_solve.elements import base
 from pound_solve.elements.base import ElementError, LawSpring, Parts, Site, axes
 
@@ -71,7 +70,13 @@ SPEC = Spec(
     "contact between two nodes or with a wall",
     (
         Field("GAP", Kind.REAL, "L", doc="distance at rest; 0 touching, negative overlapping"),
-        Field("ANGLE", Kind.REAL, "deg", default=None, doc="direction from I towards J or the wall; left out: the line I-J, or +x for a wall"),
+        Field(
+            "ANGLE",
+            Kind.REAL,
+            "deg",
+            default=None,
+            doc="direction from I towards J or the wall; left out: the line I-J, or +x for a wall",
+        ),
         Field("LAW", Kind.FAMILY, default="LINEAR", family="contact", doc="contact law"),
         Field(
             "MASSES",

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from pound_deck.schema import Field, Kind, Spec
 
+from pound_deck.schema import Field, Kind, Spec
 from pound_solve.elements.base import Block, Output, Parts, Site
 from pound_solve.elements.spring import components
 
@@ -19,7 +19,9 @@ def build(site: Site) -> Parts:
         r = np.array(row)
         parts.damping.append(Block(freedoms, c * np.outer(r, r)))
         unit = "F*L" if name == "R" else "F"
-        parts.outputs.append(Output(site.element.id, f"force {name}", unit, freedoms, np.zeros(len(row)), c * r))
+        parts.outputs.append(
+            Output(site.element.id, f"force {name}", unit, freedoms, np.zeros(len(row)), c * r)
+        )
     return parts
 
 

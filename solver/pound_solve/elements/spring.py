@@ -8,8 +8,8 @@ them.  A spring has no length of its own: its forces make no moment.
 from __future__ import annotations
 
 import numpy as np
-from pound_deck.schema import Field, Kind, Spec
 
+from pound_deck.schema import Field, Kind, Spec
 from pound_solve.dofs import Freedom
 from pound_solve.elements.base import Block, ElementError, LawSpring, Output, Parts, Site, axes
 
@@ -19,7 +19,11 @@ def components(site: Site) -> list[tuple[str, tuple[Freedom, ...], tuple[float, 
     ax, ay = axes(site.prop["ANGLE"])
     i, j = site.i.id, None if site.j is None else site.j.id
     out = []
-    for name, parts in (("X", ((0, ax[0]), (1, ax[1]))), ("Y", ((0, ay[0]), (1, ay[1]))), ("R", ((2, 1.0),))):
+    for name, parts in (
+        ("X", ((0, ax[0]), (1, ax[1]))),
+        ("Y", ((0, ay[0]), (1, ay[1]))),
+        ("R", ((2, 1.0),)),
+    ):
         parts = tuple(p for p in parts if p[1] != 0.0)
         if j is None:
             freedoms, row = tuple((i, d) for d, _ in parts), tuple(f for _, f in parts)
@@ -41,7 +45,17 @@ def build(site: Site) -> Parts:
             continue
         r = np.array(row)
         unit = "F*L" if name == "R" else "F"
-        if rule.impl is None or force is None:
+        yielding = "F" + name if name != "R" else "MR"
+        if rule.impl is not None and force is None:
+            raise ElementError(
+                f"{rule.name} along {name} needs the yield force {yielding}; an elastic component has its own RULE=...,ELASTIC",
+                "RULE",
+            )
+        if rule.impl is None and force is not None:
+            raise ElementError(
+                f"{yielding} has no effect with RULE=ELASTIC: name a rule that yields", yielding
+            )
+        if rule.impl is None:
             parts.stiffness.append(Block(freedoms, k * np.outer(r, r)))
             parts.outputs.append(Output(site.element.id, f"force {name}", unit, freedoms, k * r))
             continue
@@ -49,7 +63,10 @@ def build(site: Site) -> Parts:
         minus = force[1] if len(force) == 2 else -plus
         if plus < 0 or minus > 0:
             raise ElementError("yield forces are written positive, then negative (signed)", "F" + name)
-        law = rule.impl(card.values, k, plus, minus)
+        try:
+            law = rule.impl(card.values, k, plus, minus)
+        except ValueError as err:
+            raise ElementError(str(err), "RULE") from None
         parts.laws.append(
             LawSpring(site.element.id, name, rule.name, freedoms, row, law, k, (plus / k, minus / k))
         )
@@ -65,7 +82,14 @@ SPEC = Spec(
         Field("KY", Kind.REAL, "F/L", default=0.0, lo=0, doc="stiffness along local y"),
         Field("KR", Kind.REAL, "F*L", default=0.0, lo=0, doc="rotational stiffness"),
         Field("ANGLE", Kind.REAL, "deg", default=0.0, doc="angle of local x from global x, anticlockwise"),
-        Field("FX", Kind.REAL, "F", default=None, count=(1, 2), doc="yield force along x, positive and (signed) negative; left out: elastic"),
+        Field(
+            "FX",
+            Kind.REAL,
+            "F",
+            default=None,
+            count=(1, 2),
+            doc="yield force along x, positive and (signed) negative; left out: elastic",
+        ),
         Field("FY", Kind.REAL, "F", default=None, count=(1, 2), doc="yield force along y"),
         Field("MR", Kind.REAL, "F*L", default=None, count=(1, 2), doc="yield moment"),
         Field(

@@ -21,10 +21,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-
 from pound_solve.laws import Branch, Exit
 
-State = tuple[str, float, float]  #: branch, plastic deformation d_p (at entry), plastic work so far (at entry)
+State = tuple[
+    str, float, float
+]  #: branch, plastic deformation d_p (at entry), plastic work so far (at entry)
 
 REVERSAL = {"yielding +": Exit(0.0, -1.0, 0.0), "yielding -": Exit(0.0, 1.0, 0.0)}
 
@@ -95,7 +96,16 @@ SPEC = Spec(
     "hysteresis",
     "BILINEAR",
     "bilinear, kinematic hardening",
-    (Field("R", Kind.REAL, "-", default=0.0, below=1.0, doc="post-yield stiffness as a share of the initial"),),
+    (
+        Field(
+            "R",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            below=1.0,
+            doc="post-yield stiffness as a share of the initial",
+        ),
+    ),
     code=2,
     reference="Iwan 1966; Ruaumoko rule 2",
     impl=build,

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-
 from pound_solve.hysteresis.bilinear import Bilinear
 
 
@@ -16,5 +15,10 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
 
 
 SPEC = Spec(
-    "hysteresis", "ELASTO_PLASTIC", "elastic, perfectly plastic", code=1, reference="Prandtl; Ruaumoko rule 1", impl=build
+    "hysteresis",
+    "ELASTO_PLASTIC",
+    "elastic, perfectly plastic",
+    code=1,
+    reference="Prandtl; Ruaumoko rule 1",
+    impl=build,
 )

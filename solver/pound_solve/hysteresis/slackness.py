@@ -22,7 +22,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-
 from pound_solve.hysteresis.bilinear import REVERSAL
 from pound_solve.laws import Branch, Exit
 
@@ -127,6 +126,8 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
     """Rule from a card's values, a stiffness and the two yield forces."""
     gap = values["SLACK"]
     gap_minus = gap[1] if len(gap) == 2 else -gap[0]
+    if gap[0] < 0 or gap_minus > 0:
+        raise ValueError("SLACK is written positive, then negative (signed)")
     return Slackness(k, fy_plus, fy_minus, gap[0], gap_minus, values["R"], values["GROW"] == "YES")
 
 
@@ -135,7 +136,15 @@ SPEC = Spec(
     "BILINEAR_SLACK",
     "bilinear with slackness",
     (
-        Field("R", Kind.REAL, "-", default=0.0, lo=0.0, below=1.0, doc="post-yield stiffness as a share of the initial"),
+        Field(
+            "R",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            lo=0.0,
+            below=1.0,
+            doc="post-yield stiffness as a share of the initial",
+        ),
         Field(
             "SLACK",
             Kind.REAL,
@@ -144,7 +153,14 @@ SPEC = Spec(
             count=(1, 2),
             doc="deformation at which it takes hold, positive and (signed) negative; one value: the same both ways",
         ),
-        Field("GROW", Kind.WORD, default="YES", words=("YES", "NO"), codes={"YES": 0, "NO": 1}, doc="slack grows with yield"),
+        Field(
+            "GROW",
+            Kind.WORD,
+            default="YES",
+            words=("YES", "NO"),
+            codes={"YES": 0, "NO": 1},
+            doc="slack grows with yield",
+        ),
     ),
     code=5,
     reference="Ruaumoko rule 5",

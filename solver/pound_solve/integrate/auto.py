@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-
 from pound_solve.integrate import exact, newmark
 from pound_solve.integrate.base import Outcome, Sink, Start, Stop, Watch
 from pound_solve.scene import Decision, Scene
@@ -17,11 +16,25 @@ MOST_UNKNOWNS = 600  #: a complex eigen-decomposition of twice as many states ta
 def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
     """Choose a method, note why, and run it."""
     if scene.size <= MOST_UNKNOWNS:
-        scene.decisions.append(Decision("method", "EXACT", f"all laws are piecewise linear and {scene.size} unknowns are few: no time step is needed"))
+        scene.decisions.append(
+            Decision(
+                "method",
+                "EXACT",
+                f"all laws are piecewise linear and {scene.size} unknowns are few: no time step is needed",
+            )
+        )
         return exact.integrate(scene, start, watch, {}, sink)
     if options.get("DT") is None:
-        raise Stop("A505", 0.0, f"{scene.size} unknowns are too many for EXACT (up to {MOST_UNKNOWNS}); give METHOD=AUTO a DT for NEWMARK")
-    scene.decisions.append(Decision("method", "NEWMARK", f"{scene.size} unknowns are too many for EXACT (up to {MOST_UNKNOWNS})"))
+        raise Stop(
+            "A505",
+            0.0,
+            f"{scene.size} unknowns are too many for EXACT (up to {MOST_UNKNOWNS}); give METHOD=AUTO a DT for NEWMARK",
+        )
+    scene.decisions.append(
+        Decision(
+            "method", "NEWMARK", f"{scene.size} unknowns are too many for EXACT (up to {MOST_UNKNOWNS})"
+        )
+    )
     return newmark.integrate(scene, start, watch, options, sink)
 
 

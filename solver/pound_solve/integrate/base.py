@@ -164,7 +164,9 @@ class Stop(Exception):
 class Method(Protocol):
     """An integrator, as a Spec's `impl`."""
 
-    def __call__(self, scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
+    def __call__(
+        self, scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink
+    ) -> Outcome:
         """Integrate over `start.times` and hand a sample to `sink` at each of them."""
         ...
 
@@ -175,10 +177,18 @@ class Ledger:
     def __init__(self, scene: Scene, n_watch: int) -> None:
         self.laws = scene.structure.laws
         n = len(self.laws)
-        self.peaks = Peaks([Extreme() for _ in range(n_watch)], [Extreme() for _ in range(n)], [Extreme() for _ in range(n)], [0] * n, [0.0] * n)
+        self.peaks = Peaks(
+            [Extreme() for _ in range(n_watch)],
+            [Extreme() for _ in range(n)],
+            [Extreme() for _ in range(n)],
+            [0] * n,
+            [0.0] * n,
+        )
         self.open: dict[int, Collision] = {}
 
-    def switched(self, law: int, before: str, after: str, t: float, d: float, v: float, force_after: float) -> None:
+    def switched(
+        self, law: int, before: str, after: str, t: float, d: float, v: float, force_after: float
+    ) -> None:
         """Note that a law went from branch `before` to `after` at deformation `d`, rate `v`."""
         if not self.laws[law].is_contact:
             if after.startswith("yielding"):
@@ -224,6 +234,19 @@ class _Running:
         self.ledger.force(self.law, value, t)
 
 
+def goals(scene: Scene, times: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the times after 0 at which an integrator must arrive, and which of them are output times.
+
+    Breaks of the excitation and output times that differ by rounding only are one: no interval is a sliver.
+    """
+    breaks, end = scene.excitation.breaks, float(times[-1])
+    inner = breaks[(breaks > 0) & (breaks < end)]
+    near = np.clip(np.searchsorted(times, inner), 1, len(times) - 1)
+    apart = np.minimum(np.abs(inner - times[near]), np.abs(inner - times[near - 1])) > 1e-12 * end
+    out = np.unique(np.concatenate([inner[apart], times[1:]]))
+    return out, np.isin(out, times[1:])
+
+
 def cubic_top(f0: float, f1: float, s0: float, s1: float, h: float) -> tuple[float, float]:
     """Place in (0, h) and value of the maximum of the cubic with these end values and slopes, rising, then falling."""
     a = 2 * (f0 - f1) / h**3 + (s0 + s1) / h**2
@@ -237,7 +260,9 @@ def cubic_top(f0: float, f1: float, s0: float, s1: float, h: float) -> tuple[flo
     return (0.0, f0) if f0 > f1 else (h, f1)
 
 
-def energies(scene: Scene, t: float, u: Array, v: Array, states: Sequence[State], works: Array) -> dict[str, float]:
+def energies(
+    scene: Scene, t: float, u: Array, v: Array, states: Sequence[State], works: Array
+) -> dict[str, float]:
     """Return all energies by name [F L]: the works so far, and what the present state holds and has lost."""
     laws = scene.structure.laws
     d = scene.law_rows @ u + scene.law_inputs @ scene.excitation.value(t) if laws else np.zeros(0)

@@ -136,8 +136,14 @@ class Partition:
         for label in np.unique(labels):
             index = np.flatnonzero(labels == label)
             laws = np.array([i for i in acting if np.any(scene.law_rows[i, index])], np.intp)
-            key = (int(label), len(index), *((int(i), branches[i].stiffness, branches[i].damping) for i in laws))
-            constant = scene.constant[index] - scene.law_rows[np.ix_(laws, index)].T @ [branches[i].force0 for i in laws]
+            key = (
+                int(label),
+                len(index),
+                *((int(i), branches[i].stiffness, branches[i].damping) for i in laws),
+            )
+            constant = scene.constant[index] - scene.law_rows[np.ix_(laws, index)].T @ [
+                branches[i].force0 for i in laws
+            ]
             if key in old:
                 old[key].constant = constant
                 blocks.append(old[key])
@@ -148,7 +154,9 @@ class Partition:
             blocks.append(Block(key, regime, constant, regime.flow.enter(u[index], v[index])))
         self.blocks = blocks
 
-    def _regime(self, index: NDArray[np.intp], laws: NDArray[np.intp], branches: Sequence[Branch]) -> Regime:
+    def _regime(
+        self, index: NDArray[np.intp], laws: NDArray[np.intp], branches: Sequence[Branch]
+    ) -> Regime:
         scene = self.scene
         grid = np.ix_(index, index)
         b = scene.law_rows[np.ix_(laws, index)]
@@ -165,9 +173,13 @@ class Partition:
         for i, row in enumerate(watched.tolist()):
             place[row] = i
         rows = self.rows[np.ix_(watched, index)]
-        dashpots = [(int(i), branches[i].damping, scene.law_rows[i, index]) for i in laws if branches[i].damping]
+        dashpots = [
+            (int(i), branches[i].damping, scene.law_rows[i, index]) for i in laws if branches[i].damping
+        ]
         meter = work.Meter(flow, scene.damping[grid], scene.inputs[index], dashpots)
-        return Regime(index, laws, flow, watched, place, rows, np.vstack([rows @ flow.u_q, rows @ flow.v_q]), meter)
+        return Regime(
+            index, laws, flow, watched, place, rows, np.vstack([rows @ flow.u_q, rows @ flow.v_q]), meter
+        )
 
 
 class Window:
@@ -183,7 +195,9 @@ class Window:
         Of each interval [T].
     """
 
-    def __init__(self, partition: Partition, branches: Sequence[Branch], coefs: Array, length: float) -> None:
+    def __init__(
+        self, partition: Partition, branches: Sequence[Branch], coefs: Array, length: float
+    ) -> None:
         self.partition, self.branches, self.coefs, self.length = partition, branches, coefs, length
         scene = partition.scene
         for block in partition.blocks:
@@ -221,7 +235,10 @@ class Window:
         """Local times: every interval's start and steps of `h` within it, and the end of the window."""
         count = int(np.ceil(self.length / h * (1 - 1e-12)))
         within = h * np.arange(count)
-        return np.append((self.length * np.arange(self.intervals)[:, None] + within).ravel(), self.length * self.intervals)
+        return np.append(
+            (self.length * np.arange(self.intervals)[:, None] + within).ravel(),
+            self.length * self.intervals,
+        )
 
     def functionals(self, h: float, bending: bool) -> tuple[Array, Array, Array]:
         """Value, rate and (with `bending`, else zero) second rate of all rows on `grid`, shape (n_rows, n_times)."""
@@ -232,10 +249,14 @@ class Window:
         value = np.repeat(part.row_constants[:, None], n * count + 1, axis=1)
         rate, second = np.zeros_like(value), np.zeros_like(value)
         if part.known:
-            offset = self.coefs @ part.row_inputs.T  # polynomials of what the inputs add, (n, degree + 1, n_rows)
+            offset = (
+                self.coefs @ part.row_inputs.T
+            )  # polynomials of what the inputs add, (n, degree + 1, n_rows)
             for out, order in ((value, 0), (rate, 1), (second, 2)):
                 for i in range(n):
-                    out[:, i * count : (i + 1) * count] += np.array([polynomial.value(offset[i], x, order) for x in t]).T
+                    out[:, i * count : (i + 1) * count] += np.array(
+                        [polynomial.value(offset[i], x, order) for x in t]
+                    ).T
                 out[:, -1] += polynomial.value(offset[-1], self.length, order)
         for block in part.blocks:
             flow, w, m = block.regime.flow, block.regime.watched, len(block.regime.watched)
@@ -261,7 +282,9 @@ class Window:
         assert block.ps is not None and flow.u_p is not None
         u_p, v_p = block.regime.rows @ flow.u_p, block.regime.rows @ flow.space.v_p
         times = [(i, x) for i in range(self.intervals) for x in t] + [(self.intervals - 1, self.length)]
-        force, slope, bend = (np.array([polynomial.value(block.ps[i], x, order) for i, x in times]).T for order in (0, 1, 2))
+        force, slope, bend = (
+            np.array([polynomial.value(block.ps[i], x, order) for i, x in times]).T for order in (0, 1, 2)
+        )
         value[w] += u_p @ force
         rate[w] += v_p @ force + u_p @ slope
         second[w] += v_p @ slope + u_p @ bend
@@ -329,7 +352,9 @@ class Window:
             a[index] = (flow.v_q @ flow.rate(q, g, times)).real
             if block.ps is not None and flow.u_p is not None:
                 p, u_p, v_p = block.ps[interval], flow.u_p, flow.space.v_p
-                force, slope, bend = (np.array([polynomial.value(p, float(x), k) for x in times]).T for k in range(3))
+                force, slope, bend = (
+                    np.array([polynomial.value(p, float(x), k) for x in times]).T for k in range(3)
+                )
                 u[index] += u_p @ force
                 v[index] += v_p @ force + u_p @ slope
                 a[index] += v_p @ slope + u_p @ bend
@@ -357,7 +382,12 @@ class Window:
                 continue
             ps = None if block.ps is None else block.ps[intervals]
             done = r.meter.measures(
-                block.qs[:, :-1][:, intervals], block.gs[intervals], length, self.coefs[intervals], scene.constant[r.index], ps
+                block.qs[:, :-1][:, intervals],
+                block.gs[intervals],
+                length,
+                self.coefs[intervals],
+                scene.constant[r.index],
+                ps,
             )
             damping, input_ = damping + done.damping, input_ + done.input
             contacts.update(done.contacts)

@@ -16,8 +16,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from pound_deck.schema import Field, Kind, Spec
 
+from pound_deck.schema import Field, Kind, Spec
 from pound_solve import modes
 from pound_solve.integrate.base import Outcome, Sink, Start, Stop, Watch
 from pound_solve.integrate.stepping import Stepper
@@ -42,13 +42,27 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     """
     light = modes.massless(scene.mass)
     if light.any():
-        raise Stop("A505", 0.0, f"CENTRAL needs mass at {scene.name(int(np.argmax(light)))}: give it weight, or use EXACT or NEWMARK")
+        raise Stop(
+            "A505",
+            0.0,
+            f"CENTRAL needs mass at {scene.name(int(np.argmax(light)))}: give it weight, or use EXACT or NEWMARK",
+        )
     longest = limit(scene)
     if options["DT"] > longest:
-        raise Stop("A502", 0.0, f"the step {options['DT']:g} is above the stability limit {longest:.4g}; EXACT needs no step, NEWMARK is stable for any")
+        raise Stop(
+            "A502",
+            0.0,
+            f"the step {options['DT']:g} is above the stability limit {longest:.4g}; EXACT needs no step, NEWMARK has no such limit",
+        )
     stepper = Stepper(scene, start, watch, sink, options["DT"], 0.0, 0.5, "CENTRAL, central differences")
     outcome = stepper.run()
-    outcome.checks.append(("stability limit of the step, contacts pressed", f"{longest:.4e}", f"step {options['DT']:.4e}: stable"))
+    outcome.checks.append(
+        (
+            "stability limit of the step, contacts pressed",
+            f"{longest:.4e}",
+            f"step {options['DT']:.4e}: stable",
+        )
+    )
     return outcome
 
 

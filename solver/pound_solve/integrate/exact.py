@@ -22,12 +22,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pound_deck.schema import Field, Kind, Spec
 
+from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate import search, work
 from pound_solve.integrate.base import INTERRUPTED, Ledger, Outcome, Sink, Start, Stop, Watch
+from pound_solve.integrate.base import goals as goals_of
 from pound_solve.integrate.blocks import Partition, Window
-from pound_solve.integrate.flow import Mechanism, SeriesFlow
+from pound_solve.integrate.flow import MOST_CONDITION, Mechanism, SeriesFlow
 from pound_solve.laws import Branch
 from pound_solve.scene import Decision, Scene
 
@@ -42,7 +43,9 @@ STILL = 1e-12  #: share of its largest value below which an exit counts as not r
 class Exact:
     """One run; see the module's head."""
 
-    def __init__(self, scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> None:
+    def __init__(
+        self, scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink
+    ) -> None:
         self.scene, self.sink, self.times = scene, sink, start.times
         self.refine = 2.0 ** -int(options.get("REFINE") or 0)
         self.laws = scene.structure.laws
@@ -57,7 +60,11 @@ class Exact:
             np.concatenate([np.zeros(n), watch.constants]),
         )
         if (parts := self.partition.parts) > 1:
-            scene.decisions.append(Decision(f"{parts} parts", "solved apart", "each on its own while no closed contact joins them"))
+            scene.decisions.append(
+                Decision(
+                    f"{parts} parts", "solved apart", "each on its own while no closed contact joins them"
+                )
+            )
         self.ledger = Ledger(scene, len(watch.names))
         self.t, self.u, self.v = 0.0, start.u.copy(), start.v.copy()
         self.works = np.zeros(3)  # input, dashpots of the structure, dashpots of contacts
@@ -67,14 +74,12 @@ class Exact:
 
     def run(self) -> Outcome:
         """Integrate to the last output time."""
-        breaks, end = self.scene.excitation.breaks, float(self.times[-1])
         for i, s in enumerate(self.laws):
             if s.is_contact and self.branches[i].name == "pressed":
                 d, v = float(self.scene.law_rows[i] @ self.u), float(self.scene.law_rows[i] @ self.v)
                 self.ledger.switched(i, "open", "pressed", 0.0, d, v, self.branches[i].force(d, v))
         self._form()
-        goals = np.unique(np.concatenate([breaks[(breaks > 0) & (breaks < end)], self.times[1:]]))
-        self.is_output = np.isin(goals, self.times[1:])
+        goals, self.is_output = goals_of(self.scene, self.times)
         first = self._window(0.0, np.zeros(1))  # of no length: for the first sample only
         self.sink.sample(0.0, *first.motion(0, 0.0), tuple(self.states), self.works)
         cursor = 0
@@ -91,7 +96,9 @@ class Exact:
             raise self.stop("A501", f"{self.scene.name(worst)} has no mass and nothing holds it") from None
         self.exit_pairs = [(i, e) for i, b in enumerate(self.branches) for e in range(len(b.exits))]
         self.exit_law = np.array([i for i, _ in self.exit_pairs], np.intp)
-        self.exit_factors = np.array([self.branches[i].exits[e] for i, e in self.exit_pairs]).reshape(-1, 3).T
+        self.exit_factors = (
+            np.array([self.branches[i].exits[e] for i, e in self.exit_pairs]).reshape(-1, 3).T
+        )
         # the second rate of a law matters where its rate decides
         self.bending = bool(np.any(self.exit_factors[1])) or any(b.damping for b in self.branches)
 
@@ -106,7 +113,12 @@ class Exact:
         if goals[cursor] - self.t <= 1e-14 * max(1.0, self.t):  # an event fell on the goal
             self.t = float(goals[cursor])
             if self.is_output[cursor]:
-                self.sink.sample(self.t, *self._window(0.0, np.array([self.t])).motion(0, 0.0), tuple(self.states), self.works)
+                self.sink.sample(
+                    self.t,
+                    *self._window(0.0, np.array([self.t])).motion(0, 0.0),
+                    tuple(self.states),
+                    self.works,
+                )
             return cursor + 1
         # twelve digits: intervals of equal length share their exponentials, whatever the rounding of the times
         length = float(f"{goals[cursor] - self.t:.12e}")
@@ -161,16 +173,27 @@ class Exact:
         """Step of the search grid: it resolves the fastest mode; a power of two, so that tables are found again."""
         fastest = self.partition.fastest
         h = 2.0 ** np.ceil(np.log2(length / 8))
-        return float(min(h, 2.0 ** np.floor(np.log2(GRID * self.refine / fastest)))) if fastest > 0 else float(h)
+        return (
+            float(min(h, 2.0 ** np.floor(np.log2(GRID * self.refine / fastest))))
+            if fastest > 0
+            else float(h)
+        )
 
     def _sample(self, window: Window, goals: Array, cursor: int, count: int) -> None:
         """Hand out the samples at the ends of the first `count` intervals, with the work done until each."""
         for i in range(count):
             if i == 0:
-                self._before = window.works(slice(0, count), window.length) if not self.scene.total else None
+                self._before = (
+                    window.works(slice(0, count), window.length) if not self.scene.total else None
+                )
             self._work(window, i, window.length, i)
             if self.is_output[cursor + i]:
-                self.sink.sample(float(goals[cursor + i]), *window.motion(i, window.length), tuple(self.states), self.works)
+                self.sink.sample(
+                    float(goals[cursor + i]),
+                    *window.motion(i, window.length),
+                    tuple(self.states),
+                    self.works,
+                )
 
     def _work(self, window: Window, interval: int, tau: float, known: int | None = None) -> None:
         """Add the work done over the first `tau` of an interval; `known` its place in what `_sample` has measured."""
@@ -178,13 +201,22 @@ class Exact:
             return
         scene = self.scene
         if known is not None and self._before is not None:
-            damping, input_, contacts = (self._before[0][known], self._before[1][known], {k: x[known] for k, x in self._before[2].items()})
+            damping, input_, contacts = (
+                self._before[0][known],
+                self._before[1][known],
+                {k: x[known] for k, x in self._before[2].items()},
+            )
         else:
             a, b, c = window.works(slice(interval, interval + 1), tau)
             damping, input_, contacts = a[0], b[0], {k: x[0] for k, x in c.items()}
         if scene.total:
             input_, damping = work.total_work(
-                scene, tau, self.partition.fastest, window.coefs[interval], lambda x: window.path(interval, x), self.branches
+                scene,
+                tau,
+                self.partition.fastest,
+                window.coefs[interval],
+                lambda x: window.path(interval, x),
+                self.branches,
             )
         self.works = self.works + [input_, damping, sum(contacts.values())]
         for law, loss in contacts.items():
@@ -193,7 +225,9 @@ class Exact:
             if self.branches[law].name == "pressed":
                 collision.impulse += window.impulse(law, interval, tau)
 
-    def _first_event(self, window: Window, t: Array, value: Array, rate: Array, second: Array) -> tuple[float, int, int] | None:
+    def _first_event(
+        self, window: Window, t: Array, value: Array, rate: Array, second: Array
+    ) -> tuple[float, int, int] | None:
         law, (a, b, c) = self.exit_law, self.exit_factors
         g, slope = a[:, None] * value[law] + c[:, None], a[:, None] * rate[law]
         if self.bending:
@@ -220,7 +254,8 @@ class Exact:
         if self.same_instant > 50 + 4 * self.n_laws:
             s = self.laws[law]
             raise self.stop(
-                "A503", f"{self.same_instant} changes at one instant, the last in element {s.element} ({s.rule}): {before} to {after.name}"
+                "A503",
+                f"{self.same_instant} changes at one instant, the last in element {s.element} ({s.rule}): {before} to {after.name}",
             )
         self._form()
 
@@ -228,7 +263,9 @@ class Exact:
         n, peaks = self.n_laws, self.ledger.peaks
         if n:
             np.maximum(self.largest, np.abs([value[:n], rate[:n]]).max(axis=2), out=self.largest)
-        search.widen([*peaks.deformation, *peaks.watch], self.t, t, value, rate, lambda i, x: window.at(i, x)[:2])
+        search.widen(
+            [*peaks.deformation, *peaks.watch], self.t, t, value, rate, lambda i, x: window.at(i, x)[:2]
+        )
         end = self.t + t[-1]
         for i, b in enumerate(self.branches):
             if b.damping == 0.0:  # without a dashpot the force peaks where the deformation does
@@ -241,7 +278,10 @@ class Exact:
         pressed = [i for i in self.ledger.open if self.branches[i].name == "pressed"]
         if not pressed:
             return
-        k, c, f0 = (np.array([getattr(self.branches[i], x) for i in pressed])[:, None] for x in ("stiffness", "damping", "force0"))
+        k, c, f0 = (
+            np.array([getattr(self.branches[i], x) for i in pressed])[:, None]
+            for x in ("stiffness", "damping", "force0")
+        )
 
         def exact(i: int, tau: float) -> tuple[float, float]:
             d, v, w = window.at(pressed[i], tau)
@@ -256,11 +296,27 @@ class Exact:
     def outcome(self) -> Outcome:
         """What the run gathered."""
         flows = [r.flow for r in self.partition.regimes.values()]
-        residual, condition = max((f.residual for f in flows), default=0.0), max((f.condition for f in flows), default=1.0)
-        figures = {"method": "EXACT, event-driven", "events": self.events, "windows": self.windows, "linear regimes": len(flows)}
+        residual, condition = (
+            max((f.residual for f in flows), default=0.0),
+            max((f.condition for f in flows), default=1.0),
+        )
+        figures = {
+            "method": "EXACT, event-driven",
+            "events": self.events,
+            "windows": self.windows,
+            "linear regimes": len(flows),
+        }
         checks = [
-            ("residual of the modes, worst regime", f"{residual:.1e}", "good" if residual < 1e-10 else "look"),
-            ("condition of the modes, worst regime", f"{condition:.1e}", "good" if condition < 1e7 else "look"),
+            (
+                "residual of the modes, worst regime",
+                f"{residual:.1e}",
+                "good" if residual < 1e-10 else "look",
+            ),
+            (
+                "condition of the modes, worst regime",
+                f"{condition:.1e}",
+                "good" if condition < MOST_CONDITION else "look",
+            ),
         ]
         if any(isinstance(f, SeriesFlow) for f in flows):
             checks.append(("defective modes", "met", "integrated by the exponential series"))
@@ -290,7 +346,11 @@ SPEC = Spec(
     "method",
     "EXACT",
     "event-driven, exact between events",
-    (Field("REFINE", Kind.INT, default=0, lo=0, hi=8, doc="halvings of the search grid, for a self-check"),),
+    (
+        Field(
+            "REFINE", Kind.INT, default=0, lo=0, hi=8, doc="halvings of the search grid, for a self-check"
+        ),
+    ),
     reference="after Nigam & Jennings 1969, for many freedoms and events",
     impl=integrate,
 )

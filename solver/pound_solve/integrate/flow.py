@@ -161,22 +161,27 @@ def _undamped(m: Array, k: Array) -> tuple[Array, Array]:
     # all values carry the rounding of the largest: cleared of the fast modes, the slow ones are solved again
     # among themselves (a light node beside heavy ones would cost the slow modes half their digits)
     slow = np.arange(len(values))
-    while len(slow):
+    # no further than their stiffness, as assembled, is known: what cancels in it is rounding
+    while len(slow) and np.abs(values[slow]).max() > SLOW * _terms(phi_u[:, slow], k).max():
         chosen = np.abs(values[slow]) < SLOW * np.abs(values[slow]).max()
         fast, slow = slow[~chosen], slow[chosen]
         shapes = phi_u[:, slow]
-        shapes = shapes - phi_u[:, fast] @ ((phi_u[:, fast].T @ (k @ shapes)) / np.where(values[fast], values[fast], 1.0)[:, None])
+        shapes = shapes - phi_u[:, fast] @ ((phi_u[:, fast].T @ (k @ shapes)) / values[fast][:, None])
         values[slow], turn = np.linalg.eigh(shapes.T @ k @ shapes)
         phi_u[:, slow] = shapes @ turn
     return values, phi_u
+
+
+def _terms(shapes: Array, k: Array) -> Array:
+    """Sum of the magnitudes that make up each shape's quadratic form: its rounding is this times 1e-16."""
+    return np.asarray(np.einsum("ri,rs,si->i", np.abs(shapes), np.abs(k), np.abs(shapes), optimize=True))
 
 
 def _second_order(m: Array, c: Array, k: Array) -> StateSpace:
     n = len(m)
     omega2, phi_u = _undamped(m, k)
     top = np.abs(omega2).max(initial=0.0)
-    terms = np.einsum("ri,rs,si->i", np.abs(phi_u), np.abs(k), np.abs(phi_u))  # what omega^2 is summed from
-    omega2 = np.where(np.abs(omega2) < RIGID * n * terms, 0.0, omega2)
+    omega2 = np.where(np.abs(omega2) < RIGID * n * _terms(phi_u, k), 0.0, omega2)
     still = omega2 == 0.0
     # among rigid-body modes those without damping are told from the others
     phi_u[:, still] = phi_u[:, still] @ np.linalg.eigh(phi_u[:, still].T @ c @ phi_u[:, still])[1]

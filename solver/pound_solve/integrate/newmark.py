@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-
 from pound_solve.integrate.base import Outcome, Sink, Start, Stop, Watch
 from pound_solve.integrate.stepping import Stepper
 from pound_solve.scene import Scene
@@ -22,8 +21,16 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     """
     beta, gamma = options.get("BETA", 0.25), options.get("GAMMA", 0.5)
     if not 2 * beta >= gamma >= 0.5:
-        raise Stop("A505", 0.0, f"NEWMARK is stable for any step only with 2 BETA >= GAMMA >= 0.5, not {beta:g} and {gamma:g}; CENTRAL is the explicit method")
-    name = "NEWMARK, average acceleration" if (beta, gamma) == (0.25, 0.5) else f"NEWMARK, beta {beta:g}, gamma {gamma:g}"
+        raise Stop(
+            "A505",
+            0.0,
+            f"NEWMARK is stable for any step only with 2 BETA >= GAMMA >= 0.5, not {beta:g} and {gamma:g}; CENTRAL is the explicit method",
+        )
+    name = (
+        "NEWMARK, average acceleration"
+        if (beta, gamma) == (0.25, 0.5)
+        else f"NEWMARK, beta {beta:g}, gamma {gamma:g}"
+    )
     return Stepper(scene, start, watch, sink, options["DT"], beta, gamma, name).run()
 
 

@@ -146,10 +146,14 @@ def widen(peaks: Sequence[Peak], t0: float, t: Array, value: Array, rate: Array,
     for i, j in zip(*np.nonzero(beyond)):
         i, sign = int(i), 1.0 if s0[i, j] > 0 else -1.0
         best = peaks[i].high if sign > 0 else -peaks[i].low
-        f_low, f_high, s_low, s_high = (sign * float(x) for x in (f0[i, j], value[i, j + 1], s0[i, j], s1[i, j]))
+        f_low, f_high, s_low, s_high = (
+            sign * float(x) for x in (f0[i, j], value[i, j + 1], s0[i, j], s1[i, j])
+        )
         # the cubic through both ends tells whether it can win; only then is it polished
         top = cubic_top(f_low, f_high, s_low, s_high, float(t[j + 1] - t[j]))[1]
         if top + 0.02 * (top - max(f_low, f_high)) <= best:
             continue
-        at = turning(lambda x, i=i, sign=sign: sign * exact(i, x)[1], float(t[j]), float(t[j + 1]), s_low, s_high)  # type: ignore[misc]
+        at = turning(
+            lambda x, i=i, sign=sign: sign * exact(i, x)[1], float(t[j]), float(t[j + 1]), s_low, s_high
+        )  # type: ignore[misc]
         peaks[i].take(exact(i, at)[0], t0 + at)

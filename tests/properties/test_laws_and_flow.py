@@ -1,0 +1,156 @@
+"""Properties of the exact integrator's parts that hold for any input (hypothesis finds the inputs)."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from pound_solve import polynomial
+from pound_solve.contact.kelvin_voigt import KelvinVoigt
+from pound_solve.hysteresis.bilinear import Bilinear
+from pound_solve.hysteresis.slackness import Slackness
+from pound_solve.integrate.flow import make_flow
+from pound_solve.integrate.work import Meter
+from pound_solve.laws import Law, follow
+
+Array = NDArray[np.float64]
+
+forces = st.floats(0.5, 50.0)
+paths = st.lists(st.floats(-10.0, 10.0), min_size=1, max_size=12)
+ratios = st.floats(-0.5, 0.95)
+hardening = st.floats(0.0, 0.95)
+
+
+@st.composite
+def rules(draw: st.DrawFn) -> Law:
+    k, plus, minus = draw(st.floats(1.0, 100.0)), draw(forces), -draw(forces)
+    if draw(st.booleans()):
+        return Bilinear(k, plus, minus, draw(ratios))
+    gap = draw(st.floats(0.0, 2.0)), -draw(st.floats(0.0, 2.0))
+    return Slackness(k, plus, minus, *gap, draw(hardening), draw(st.booleans()))
+
+
+def work_along(law: Law, path: list[float]) -> tuple[float, float, float, float]:
+    """Work done on a rule by trapezoids between its own corners, what it stores and lost, and the gross work."""
+    state, d, work, gross = law.start(), 0.0, 0.0, 1.0
+    for goal in path:
+        # the corners: where `follow` leaves branches, found by leaving them one by one
+        for _ in range(50):
+            branch = law.branch(state)
+            sign = 1.0 if goal >= d else -1.0
+            hits = []
+            for n, (a, b, c) in enumerate(branch.exits):
+                if b and not a:
+                    if b * sign > 0 and goal != d:
+                        hits.append((d, n))
+                elif a * sign > 0 and a * goal + c > 0:
+                    hits.append((sign * max(sign * d, sign * (-c / a)), n))
+            if not hits:
+                break
+            at, n = min(hits, key=lambda hit: sign * hit[0])
+            work += 0.5 * (branch.force(d, 0.0) + branch.force(at, 0.0)) * (at - d)
+            state, d = law.leave(state, n, at), at
+        else:
+            raise AssertionError("a rule changed branch fifty times on one way")
+        branch = law.branch(state)
+        work += 0.5 * (branch.force(d, 0.0) + branch.force(goal, 0.0)) * (goal - d)
+        d = goal
+        gross += abs(work) + abs(law.stored(state, d)) + law.dissipated(state, d)
+    return work, law.stored(state, d), law.dissipated(state, d), gross
+
+
+@given(rules(), paths)
+def test_work_in_is_stored_or_lost(law: Law, path: list[float]) -> None:
+    work, stored, lost, gross = work_along(law, path)
+    assert lost >= -1e-12 * gross
+    assert abs(work - stored - lost) < 1e-10 * gross
+
+
+@given(rules(), paths)
+def test_closed_loops_never_give_energy(law: Law, path: list[float]) -> None:
+    """However it began: once a loop has closed on itself, work goes in."""
+    # two rounds settle the loop, the third is judged
+    once = [*path, 0.0]
+    two, three = work_along(law, once * 2), work_along(law, once * 3)
+    gain = (two[0] - two[1]) - (three[0] - three[1])
+    assert gain < 1e-10 * three[3]
+
+
+@given(rules(), paths, st.floats(0.0, 1.0))
+def test_stopping_on_the_way_changes_nothing(law: Law, path: list[float], share: float) -> None:
+    whole, broken, d = law.start(), law.start(), 0.0
+    for goal in path:
+        between = d + share * (goal - d)
+        whole = follow(law, whole, d, goal)
+        broken = follow(law, follow(law, broken, d, between), between, goal)
+        d = goal
+        f = law.branch(whole).force(d, 0.0), law.branch(broken).force(d, 0.0)
+        size = 1.0 + abs(f[0]) + abs(law.branch(whole).stiffness) * 10.0
+        assert abs(f[0] - f[1]) < 1e-9 * size
+        assert abs(law.dissipated(whole, d) - law.dissipated(broken, d)) < 1e-9 * size * 20.0
+
+
+@given(
+    st.floats(1.0, 1e6),
+    st.floats(0.0, 1e3),
+    st.floats(-0.1, 0.1),
+    st.floats(-1.0, 1.0),
+    st.floats(-5.0, 5.0),
+)
+def test_a_pressed_contact_without_tension_only_pushes(
+    k: float, c: float, gap: float, d: float, v: float
+) -> None:
+    law = KelvinVoigt(k, c, gap)
+    branch = law.branch(("pressed", 0.0))
+    held = all(e.d_factor * d + e.v_factor * v + e.constant <= 0.0 for e in branch.exits)
+    size = k * (abs(d) + abs(gap)) + c * abs(v)
+    assert not held or branch.force(d, v) >= -1e-15 * size
+
+
+blocks = st.integers(0, 2**32 - 1)
+
+
+def random_block(seed: int) -> tuple[Array, Array, Array, int]:
+    """Mass, damping and stiffness of up to five masses; some blocks have rigid-body modes, some no damping."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 6))
+    rank = int(rng.integers(0, n + 1))
+    x = rng.normal(size=(n, rank))
+    y = rng.normal(size=(n, int(rng.integers(0, n + 1))))
+    m = np.diag(10.0 ** rng.uniform(-2.0, 2.0, n))
+    return m, 0.2 * y @ y.T, 10.0 ** rng.uniform(0.0, 3.0) * x @ x.T, n
+
+
+@given(blocks, st.floats(0.01, 3.0), st.floats(0.01, 3.0))
+def test_two_intervals_are_one(seed: int, first: float, second: float) -> None:
+    m, c, k, n = random_block(seed)
+    rng = np.random.default_rng(seed + 1)
+    flow = make_flow(m, c, k, np.eye(n))
+    u, v, p = rng.normal(size=n), rng.normal(size=n), rng.normal(size=(3, n))
+    q, g = flow.enter(u, v), flow.push(p)
+    middle = flow.at(q, g, first)
+    again = flow.enter((flow.u_q @ middle).real, (flow.v_q @ middle).real)
+    end = flow.at(again, flow.push(polynomial.shift(p, first)), second)
+    direct = flow.at(q, g, first + second)
+    for row in (flow.u_q, flow.v_q):
+        a, b = (row @ end).real, (row @ direct).real
+        assert np.abs(a - b).max() < 1e-8 * (1.0 + np.abs(b).max() + np.abs((row @ middle).real).max())
+
+
+@given(blocks, st.floats(1e-6, 4.0))
+def test_energy_balances(seed: int, tau: float) -> None:
+    m, c, k, n = random_block(seed)
+    rng = np.random.default_rng(seed + 1)
+    flow = make_flow(m, c, k, np.eye(n))
+    u, v, p = rng.normal(size=n), rng.normal(size=n), rng.normal(size=(2, n))
+    q, g = flow.enter(u, v), flow.push(p)
+    found = Meter(flow, c, np.eye(n), []).measure(q, g, tau, p, np.zeros(n))
+    energies = []
+    for at in (q, flow.at(q, g, tau)):
+        x, y = (flow.u_q @ at).real, (flow.v_q @ at).real
+        energies.append(float(0.5 * y @ m @ y + 0.5 * x @ k @ x))
+    gross = sum(energies) + found.damping + abs(found.input) + float(np.abs(p[0]) @ np.abs(v)) * tau
+    assert found.damping >= -1e-12 * gross
+    assert abs(found.input - found.damping - energies[1] + energies[0]) < 1e-9 * gross
