@@ -33,7 +33,7 @@ def rules(draw: st.DrawFn) -> Law:
 
 
 def work_along(law: Law, path: list[float]) -> tuple[float, float, float, float]:
-    """Work done on a rule by trapezoids between its own corners, what it stores and lost, and the gross work."""
+    """Work done on a rule by trapezoids between its corners, what it stores, what it lost, gross work."""
     state, d, work, gross = law.start(), 0.0, 0.0, 1.0
     for goal in path:
         # the corners: where `follow` leaves branches, found by leaving them one by one
@@ -113,7 +113,7 @@ blocks = st.integers(0, 2**32 - 1)
 
 
 def random_block(seed: int) -> tuple[Array, Array, Array, int]:
-    """Mass, damping and stiffness of up to five masses; some blocks have rigid-body modes, some no damping."""
+    """Mass, damping and stiffness of up to five masses, some with rigid bodies, some without damping."""
     rng = np.random.default_rng(seed)
     n = int(rng.integers(1, 6))
     rank = int(rng.integers(0, n + 1))

@@ -44,6 +44,8 @@ def block(kind: str, n: int = 4, seed: int = 0) -> Block:
         k, c = free, 0.01 * free
     elif kind == "rigid body, mass damping":
         k, c = free, 0.01 * free + 0.1 * m
+    elif kind == "several rigid bodies":
+        k = 1e3 * x[:, : n - 2] @ x[:, : n - 2].T
     elif kind == "no stiffness":
         k = 0.0 * k
     elif kind == "free masses":
@@ -73,6 +75,7 @@ KINDS = (
     "consistent mass",
     "rigid body",
     "rigid body, mass damping",
+    "several rigid bodies",
     "no stiffness",
     "free masses",
     "free masses, one dashpot",
@@ -138,6 +141,19 @@ def test_enter_and_read_back(kind: str) -> None:
     for flow in (make_flow(m, c, k, inputs), SeriesFlow(state_space(m, c, k), inputs)):
         q = flow.enter(u, v)
         assert apart(((flow.u_q @ q).real, (flow.v_q @ q).real), (u, v)) < 1e-12
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_state_space_is_the_same_system(kind: str) -> None:
+    for seed in range(5):
+        m, c, k = block(kind, seed=seed)
+        n, space = len(m), state_space(m, c, k)
+        to, back = np.vstack([space.u_z, space.v_z]), np.hstack([space.z_u, space.z_v])
+        assert np.abs(back @ to - np.eye(2 * n)).max() < 1e-13
+        force, none = np.linalg.inv(m), np.zeros((n, n))
+        whole = np.block([[none, np.eye(n)], [-force @ k, -force @ c]])
+        assert np.abs(to @ space.a @ back - whole).max() < 1e-13 * np.abs(whole).max()
+        assert np.abs(to @ space.b - np.vstack([none, force])).max() < 1e-13
 
 
 @pytest.mark.parametrize("degree", [0, 1, 4])
