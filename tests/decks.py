@@ -42,7 +42,9 @@ def structure_of(
 
 
 def scene_of(text: str, params: Mapping[str, object] | None = None) -> scene.Scene:
-    """The scene of a deck with EQUAKE and HISTORY cards, started from its static state and INITIAL cards."""
+    """The scene of a deck with EQUAKE and HISTORY cards, started
+    from its static state and INITIAL cards.
+    """
     model = model_of(text, params)
     end = max(c["T"] for c in model.analyses if c.spec.name == "HISTORY")
     motions = [c.spec.impl(c.values, Context(model.gravity, 1.0, (), end)) for c in model.equake]

@@ -1,4 +1,6 @@
-"""Rewrite the pages of the manual that the program makes (``make manual``); tests check that they are fresh."""
+"""Rewrite the pages of the manual that the program makes (``make manual``);
+tests check that they are fresh.
+"""
 
 from pathlib import Path
 
@@ -22,4 +24,6 @@ if __name__ == "__main__":
     mark = "<!-- made by pound_solve.tables.results_page"
     head, line = page.split(mark)[0], mark + page.split(mark)[1].split("\n")[0]
     write("results.md", f"{head}{line}\n\n{results_page()}")
-    cases.PAGE.write_text(cases.page(cases.PAGE.read_text(encoding="utf-8")), encoding="utf-8", newline="\n")
+    cases.PAGE.write_text(
+        cases.page(cases.PAGE.read_text(encoding="utf-8")), encoding="utf-8", newline="\n"
+    )

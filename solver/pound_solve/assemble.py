@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
-
 from pound_solve import modes
 from pound_solve.damping.base import DampingError, Ground
 from pound_solve.dofs import DIRECTIONS, Freedom, Freedoms, number
@@ -76,7 +76,7 @@ class Structure:
         """Quasi-static motion of the unknowns for unit prescribed motions, shape (n_free, n_moved)."""
         n = self.n_free
         k = self.initial_stiffness
-        return -np.linalg.lstsq(k[:n, :n], k[:n, n:], rcond=None)[0]
+        return -np.asarray(np.linalg.lstsq(k[:n, :n], k[:n, n:], rcond=None)[0], float)
 
 
 class AssemblyError(Exception):
@@ -134,7 +134,9 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
         return np.inf if inverse == 0.0 else 1.0 / inverse
 
     parts: dict[int, Parts] = {}
-    contacts_last = sorted(model.elements.values(), key=lambda e: model.props[e.prop].spec.name == "CONTACT")
+    contacts_last = sorted(
+        model.elements.values(), key=lambda e: model.props[e.prop].spec.name == "CONTACT"
+    )
     masses_known = False
     for element in contacts_last:
         prop = model.props[element.prop]
@@ -153,12 +155,23 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
             mass_along,
         )
         if site.member_loads and prop.spec.name != "FRAME":
-            problems.append(Diagnostic("P331", f"element {element.id} is a {prop.spec.name}: only FRAME takes member loads", site.member_loads[0].span))
+            problems.append(
+                Diagnostic(
+                    "P331",
+                    f"element {element.id} is a {prop.spec.name}: only FRAME takes member loads",
+                    site.member_loads[0].span,
+                )
+            )
         try:
             parts[element.id] = prop.spec.impl(site)
         except ElementError as err:
             problems.append(
-                Diagnostic("P330", f"element {element.id} ({prop.label}): {err}", prop.place(err.item), hint=f"element {element.id} stands at {element.span}")
+                Diagnostic(
+                    "P330",
+                    f"element {element.id} ({prop.label}): {err}",
+                    prop.place(err.item),
+                    hint=f"element {element.id} stands at {element.span}",
+                )
             )
             continue
         nodes = frozenset(k for k in (element.i, element.j) if k is not None)
@@ -192,7 +205,18 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
     k0 = k_linear + (rows.T * [s.k0 for s in laws]) @ rows
 
     structure = Structure(
-        model, freedoms, k_linear, k0, mass, c, loads, ground, laws, rows, tuple(o for p in ordered for o in p.outputs), nodal_mass
+        model,
+        freedoms,
+        k_linear,
+        k0,
+        mass,
+        c,
+        loads,
+        ground,
+        laws,
+        rows,
+        tuple(o for p in ordered for o in p.outputs),
+        nodal_mass,
     )
     _add_damping(structure, mass_terms, parts, problems)
     if problems:
@@ -200,10 +224,13 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
     return structure
 
 
-def _add_diagonals(terms: list[tuple[frozenset[int], tuple[Freedom, ...], Array]], model: Model, out: dict[Freedom, float]) -> None:
+def _add_diagonals(
+    terms: list[tuple[frozenset[int], tuple[Freedom, ...], Array]], model: Model, out: dict[Freedom, float]
+) -> None:
     for _, at, matrix in terms:
         for a, freedom in enumerate(at):
-            # a consistent matrix is summed along the row of its own direction: the node's share of rigid motion
+            # a consistent matrix is summed along the row of its own direction:
+            # the node's share of rigid motion
             same = [b for b, other in enumerate(at) if other[1] == freedom[1]] if freedom[1] < 2 else [a]
             out[freedom] = out.get(freedom, 0.0) + float(matrix[a, same].sum())
     # what follows a master is felt at the master
@@ -273,7 +300,13 @@ def _add_damping(
             problems.append(Diagnostic("P332", str(err), card.place(err.item)))
             continue
         except np.linalg.LinAlgError:
-            problems.append(Diagnostic("P332", "the modes that this damping needs cannot be computed: the structure is a mechanism", card.span))
+            problems.append(
+                Diagnostic(
+                    "P332",
+                    "the modes that this damping needs cannot be computed: the structure is a mechanism",
+                    card.span,
+                )
+            )
             continue
         if group.relative is not None:
             free = group.relative[:n, :n]
@@ -286,5 +319,3 @@ def _add_damping(
         if group.between is not None:
             structure.damping += group.between
         structure.damping_texts.append((card, group.text))
-
-

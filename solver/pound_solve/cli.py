@@ -173,7 +173,8 @@ def _check(args: argparse.Namespace) -> int:
         print(render(ready.warnings, ready.files), file=sys.stderr)
     m = ready.model
     print(
-        f"{args.deck}: no mistakes; {len(m.nodes)} nodes, {len(m.elements)} elements, {ready.structure.n_free} unknowns"
+        f"{args.deck}: no mistakes; {len(m.nodes)} nodes, {len(m.elements)} elements, "
+        f"{ready.structure.n_free} unknowns"
     )
     return app.DONE
 

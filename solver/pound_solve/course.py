@@ -148,7 +148,9 @@ class Course:
         w.table("reactions", self._reactions(state))
 
     def _reactions(self, state: static.StaticState) -> list[tuple[Any, ...]]:
-        """Support reactions: what the elements and loads leave at fixed freedoms, by assembling with them free."""
+        """Support reactions: what the elements and loads leave at fixed freedoms,
+        by assembling with them free.
+        """
         fixed = {(n.id, d) for n in self.model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed}
         whole = assemble(
             self.structure.model,
@@ -211,7 +213,7 @@ class Course:
     def _times(self, end: float) -> Array:
         every = self.model.output["EVERY"]
         if every is None:
-            steps = [m.info.get("dt") for m in self.motions if m.info.get("dt")]
+            steps = [dt for m in self.motions if (dt := m.info.get("dt"))]
             every = min(steps, default=end / ROWS)
             every *= max(1, round(end / every / ROWS))
         count = int(np.floor(end / every * (1 + 1e-12)))
@@ -236,16 +238,16 @@ class Course:
         m, s, w, units = self.model, self.structure, self.writer, self.model.units
         rows: list[tuple[Any, ...]] = []
         for i, node in enumerate(recorder.nodes):
-            for d in range(3):
+            for axis in range(3):
                 for q, word, dimension in (
                     ("u", "displacement", "L"),
                     ("v", "velocity", "L/T"),
                     ("a", "acceleration", "L/T^2"),
                 ):
-                    e = recorder.node_extremes[q][3 * i + d]
+                    e = recorder.node_extremes[q][3 * i + axis]
                     if e.high != 0.0 or e.low != 0.0:
-                        unit = units.text(dimension if d < 2 else dimension.replace("L", "rad"))
-                        rows.append((node, "XYR"[d], word, unit, e.high, e.t_high, e.low, e.t_low))
+                        unit = units.text(dimension if axis < 2 else dimension.replace("L", "rad"))
+                        rows.append((node, "XYR"[axis], word, unit, e.high, e.t_high, e.low, e.t_low))
         relative = "displacements and velocities are relative to the ground, accelerations are total"
         w.table(
             "node_envelope", rows, "at the output times; " + ("all are total" if place.total else relative)

@@ -1,8 +1,8 @@
 """Freedoms: which displacements are unknown, which follow a master, which are prescribed.
 
-Every node has ``ux``, ``uy`` and ``rz``.  A fixed one is zero, a slaved one follows its master with the rigid
-arm between them, one at a moved support is prescribed; the rest are the unknowns.  Columns of every
-assembled matrix are the unknowns first, then the prescribed freedoms.
+Every node has ``ux``, ``uy`` and ``rz``.  A fixed one is zero, a slaved one follows its master
+with the rigid arm between them, one at a moved support is prescribed; the rest are the unknowns.
+Columns of every assembled matrix are the unknowns first, then the prescribed freedoms.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
 from pound_deck.model import Node
 
 DIRECTIONS = "XYR"
@@ -72,7 +73,11 @@ def number(nodes: Mapping[int, Node], moved: Collection[Freedom] = ()) -> Freedo
             if DIRECTIONS[d] in n.slaved:
                 continue  # below, once all masters are known
             terms[n.id, d] = ((column[n.id, d], 1.0),) if (n.id, d) in column else ()
-    for d in (2, 0, 1):  # rotations first: an arm turns with its master, which may itself follow another there
+    for d in (
+        2,
+        0,
+        1,
+    ):  # rotations first: an arm turns with its master, which may itself follow another there
         for n in nodes.values():
             if DIRECTIONS[d] not in n.slaved:
                 continue

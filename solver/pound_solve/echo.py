@@ -1,4 +1,6 @@
-"""Rows that echo the input in the report: what the deck says, defaults marked, and what follows from it at once."""
+"""Rows that echo the input in the report: what the deck says, defaults marked,
+and what follows from it at once.
+"""
 
 from __future__ import annotations
 
@@ -87,7 +89,9 @@ def elements(model: Model) -> Rows:
 
 
 def properties(model: Model) -> Rows:
-    """Rows of ``properties``: every item of every set, defaults marked; items left out with no default are not shown."""
+    """Rows of ``properties``: every item of every set, defaults marked;
+    items left out with no default are not shown.
+    """
     out = []
     for label, card in model.props.items():
         for f in fields_of(card):

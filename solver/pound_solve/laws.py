@@ -1,9 +1,10 @@
 """Piecewise-linear laws: what hysteresis rules and contact laws share.
 
-Between events such a law is a spring, a dashpot and a constant: ``f = k d + c v + f0`` with the deformation
-``d`` and its rate ``v``.  It leaves this branch when one of its *exits* ``g = a d + b v + g0`` rises through
-zero.  An integrator needs no more than that; it never knows which law it drives, and a law never knows
-the integrator.  The state is an immutable value, so a step can be tried and forgotten.
+Between events such a law is a spring, a dashpot and a constant:
+``f = k d + c v + f0`` with the deformation ``d`` and its rate ``v``.  It leaves this branch when
+one of its *exits* ``g = a d + b v + g0`` rises through zero.  An integrator needs no more than that;
+it never knows which law it drives, and a law never knows the integrator.  The state is an immutable value,
+so a step can be tried and forgotten.
 """
 
 from __future__ import annotations
@@ -57,6 +58,19 @@ class Law(Protocol):
     def dissipated(self, state: State, d: float) -> float:
         """Return the energy [F L] lost so far by slip or release, dashpots apart."""
         ...
+
+
+def settle(law: Law, state: State, d: float, v: float) -> State:
+    """Leave every branch whose exit is passed already at deformation `d` and rate `v`,
+    as at a sudden start.
+    """
+    for _ in range(10):
+        exits = law.branch(state).exits
+        passed = [n for n, e in enumerate(exits) if e.d_factor * d + e.v_factor * v + e.constant > 0.0]
+        if not passed:
+            break
+        state = law.leave(state, passed[0], d)
+    return state
 
 
 class NoProgressError(Exception):

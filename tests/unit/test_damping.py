@@ -94,7 +94,9 @@ def test_alpha_and_beta_as_given(mass):
 
 @pytest.mark.parametrize("mass", ["LUMPED", "CONSISTENT"])
 def test_groups_add_up_to_the_whole(mass):
-    """Nodes of each group, property sets of each group: all members' masses count, those between groups too."""
+    """Nodes of each group, property sets of each group: all members' masses count,
+    those between groups too.
+    """
     whole = frame(" RAYLEIGH ALPHA=0.3 BETA=0.002", mass).damping
     groups = frame(
         """
@@ -163,7 +165,9 @@ def test_damping_is_symmetric_and_takes_energy(cards, mass):
 
 
 def test_moved_supports_are_not_held_by_mass_damping():
-    """Mass-proportional damping acts on the motion relative to the supports: carried along with them, nothing resists."""
+    """Mass-proportional damping acts on the motion relative to the supports:
+    carried along with them, nothing resists.
+    """
     text = FRAME.format(mass="LUMPED") + "\nDAMPING\n RAYLEIGH ALPHA=0.5\n MODAL XI=0.05\n"
     moved = [(n, d) for n in (1, 4) for d in range(2)]
     s = structure_of(text, moved=moved)

@@ -47,7 +47,9 @@ def test_a_slave_moves_as_a_rigid_body_with_its_master(x, y, u):
 
 
 def test_only_the_slaved_directions_follow():
-    """A floor that moves along x only keeps its own uy and rz, and its arm turns with the master's rotation."""
+    """A floor that moves along x only keeps its own uy and rz, and its arm turns
+    with the master's rotation.
+    """
     f = numbered(node(1, 0, 0), node(2, 3, 0.5, X=1))
     assert f.free == ((1, 0), (1, 1), (1, 2), (2, 1), (2, 2))
     assert f.terms[2, 0] == ((0, 1.0), (2, -0.5))
@@ -100,7 +102,8 @@ WEIGHTS
 
 def test_the_deck_fills_nodes():
     model = model_of(
-        "NODES\n 1 0 0 FIX=XYR\n 2 1 0 FIX=R\n 3 1 1 FIX=Y SLAVED=XR MASTER=2\nELEMENTS\n 1 S 1 2\nPROPS\n S SPRING KX=1"
+        "NODES\n 1 0 0 FIX=XYR\n 2 1 0 FIX=R\n 3 1 1 FIX=Y SLAVED=XR MASTER=2\n"
+        "ELEMENTS\n 1 S 1 2\nPROPS\n S SPRING KX=1"
     )
     assert model.nodes[3].slaved == {"X": 2, "R": 2} and model.nodes[3].fixed == "Y"
 

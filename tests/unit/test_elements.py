@@ -65,7 +65,17 @@ LOADS
 
 
 def test_hysteretic_and_elastic_components_take_the_same_signs():
-    deck = "NODES\n 1 0 0 FIX=XYR\n 2 3 1\nELEMENTS\n 4 S 1 2\nPROPS\n S SPRING KX=100 KY=300 KR=50 ANGLE=25 {}\nLOADS\n 2 3 -4 2"
+    deck = """
+NODES
+ 1 0 0 FIX=XYR
+ 2 3 1
+ELEMENTS
+ 4 S 1 2
+PROPS
+ S SPRING KX=100 KY=300 KR=50 ANGLE=25 {}
+LOADS
+ 2 3 -4 2
+"""
     a, b = solved(deck.format("")), solved(deck.format("FX=1e6 FY=1e6 MR=1e6 RULE=ELASTO_PLASTIC"))
     assert b.u[2] == pytest.approx(a.u[2], rel=1e-12)
     assert {k: pytest.approx(v, rel=1e-12) for k, v in a.force.items()} == b.force
@@ -82,7 +92,7 @@ NODES
 ELEMENTS
  4 S 1
 PROPS
- S SPRING KX=1 KY=2 KR=3 FX=1 FY=2,-3 MR=4 RULE=BILINEAR,ELASTIC,ELASTO_PLASTIC R=0.1
+ S SPRING KX=1 KY=2 KR=3 FX=1 MR=4 RULE=BILINEAR,ELASTIC,ELASTO_PLASTIC R=0.1
 """)
     assert [(x.component, x.rule) for x in s.laws] == [("X", "BILINEAR"), ("R", "ELASTO_PLASTIC")]
     assert s.stiffness[1, 1] == 2
@@ -138,7 +148,7 @@ def test_the_normal_points_from_i_to_j():
     assert dict(zip(spring.freedoms, spring.row)) == pytest.approx(
         {(1, 0): 0.6, (1, 1): 0.8, (2, 0): -0.6, (2, 1): -0.8}
     )
-    s, spring = contact("2 1")
+    _, spring = contact("2 1")
     assert dict(zip(spring.freedoms, spring.row)) == pytest.approx(
         {(2, 0): -0.6, (2, 1): -0.8, (1, 0): 0.6, (1, 1): 0.8}
     )
@@ -233,7 +243,9 @@ def test_members_need_two_nodes():
 
 def test_weights_are_divided_by_gravity_and_default_to_both_directions():
     s = structure_of(
-        "GRAVITY 4\nNODES\n 1 0 0\n 2 1 0\nELEMENTS\n 1 S 1 2\nPROPS\n S SPRING KX=1\nWEIGHTS\n 1 8\n 2 8 12 2"
+        "GRAVITY 4\nNODES\n 1 0 0\n 2 1 0\nELEMENTS\n 1 S 1 2\n"
+        "PROPS\n S SPRING KX=1\n"
+        "WEIGHTS\n 1 8\n 2 8 12 2"
     )
     assert np.diag(s.mass).tolist() == [2, 2, 0, 2, 3, 0.5]
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from decks import Solved, model_of, solve, solved, structure_of
 
-E, A, I, G, AS = 2.1e8, 0.011, 1.7e-4, 8.0e7, 0.004
+E, A, IZ, G, AS = 2.1e8, 0.011, 1.7e-4, 8.0e7, 0.004
 angles = st.one_of(st.sampled_from([0.0, 90.0, 180.0, -90.0, 45.0]), st.floats(-180.0, 180.0))
 
 
@@ -25,7 +25,8 @@ def close(got, wanted, rel=1e-10, scale=None):
 
 @dataclass
 class Beam:
-    """Deflection v, slope and end forces of a straight beam, I at x = 0, by the force method (unit-load theorem).
+    """Deflection v, slope and end forces of a straight beam, I at x = 0,
+    by the force method (unit-load theorem).
 
     `loads` are transverse (w uniform, points (P, a)), positive along local y.
     """
@@ -39,7 +40,7 @@ class Beam:
 
     def cantilever(self, w=0.0, points=(), tip=0.0, moment=0.0):
         """Tip deflection and slope of the beam clamped at x = 0."""
-        n, ei = self.length, E * I
+        n, ei = self.length, E * IZ
         v = w * n**4 / (8 * ei) + w * n**2 / (2 * self.ga)
         v += tip * n**3 / (3 * ei) + tip * n / self.ga + moment * n**2 / (2 * ei)
         turn = w * n**3 / (6 * ei) + tip * n**2 / (2 * ei) + moment * n / ei
@@ -79,7 +80,7 @@ NODES
 ELEMENTS
  7 M 1 2
 PROPS
- M FRAME E={E!r} A={A!r} I={I!r} {f"G={G!r} AS={AS!r}" if shear else ""} {extra}
+ M FRAME E={E!r} A={A!r} I={IZ!r} {f"G={G!r} AS={AS!r}" if shear else ""} {extra}
 {"LOADS" if loads else ""}
 {loads}
 {"MEMBER_LOADS" if member_loads else ""}
@@ -115,8 +116,8 @@ def test_cantilever_with_tip_loads(shear, angle, n, px, py, m):
     beam, size = Beam(n, shear), max(abs(px), abs(py), abs(m), 1e-300)
     v, turn = beam.cantilever(tip=py, moment=m)
     close(u[0], px * n / (E * A), scale=size * n / (E * A) + 1e-2 * abs(v))
-    close(u[1], v, scale=size * abs(beam.cantilever(tip=1.0)[0]) + size * n**2 / (E * I))
-    close(u[2], turn, scale=size * (n + n**2) / (E * I))
+    close(u[1], v, scale=size * abs(beam.cantilever(tip=1.0)[0]) + size * n**2 / (E * IZ))
+    close(u[2], turn, scale=size * (n + n**2) / (E * IZ))
     arm = size * (1 + n)
     close(
         [s.force[7, q] for q in ("axial", "shear I", "moment I", "shear J", "moment J")],
@@ -146,7 +147,7 @@ def test_cantilever_with_member_loads(shear, angle, n, wx, wy, p, at):
     size = max(abs(wx) * n, abs(wy) * n, abs(p), 1e-300)
     close(u[0], wx * n**2 / (2 * E * A), scale=size * n / (E * A) + 1e-2 * abs(v))
     close(u[1], v, scale=size * beam.cantilever(tip=1.0)[0])
-    close(u[2], turn, scale=size * n**2 / (E * I))
+    close(u[2], turn, scale=size * n**2 / (E * IZ))
     close(
         [s.force[7, k] for k in ("shear I", "moment I", "shear J", "moment J")],
         [-wy * n - p, -wy * n**2 / 2 - p * at * n, 0.0, 0.0],
@@ -182,7 +183,9 @@ def test_clamped_member_with_pins(pin, shear, angle, n, w, p, at):
 
 
 def test_known_end_moments():
-    """Textbook numbers: w L^2/12, w L^2/8, P a b^2/L^2, P L/8, 3 P L/16 (loads downwards, left end first)."""
+    """Textbook numbers: w L^2/12, w L^2/8, P a b^2/L^2, P L/8, 3 P L/16
+    (loads downwards, left end first).
+    """
 
     def ends(pin, loads):
         s = solved(member(6.0, 0.0, f"PIN={pin}", "FIX=XYR", member_loads=loads))
@@ -203,7 +206,7 @@ def test_self_weight_is_a_load_and_can_be_switched_off(angle):
     s = solved(deck)
     balanced(s, (0.0, -weight * n), -weight * n * (1.5 + n / 2 * math.cos(math.radians(angle))))
     across = -weight * math.cos(math.radians(angle))
-    close(local(angle, s.u[2])[1], across * n**4 / (8 * E * I), scale=weight * n**4 / (8 * E * I))
+    close(local(angle, s.u[2])[1], across * n**4 / (8 * E * IZ), scale=weight * n**4 / (8 * E * IZ))
     off = solved(deck, self_weight=False)
     assert not np.any(off.u[2]) and off.structure.mass.any()
 
@@ -223,7 +226,9 @@ def test_end_blocks_are_a_shorter_member_on_rigid_arms(angle, n, a, b, shear, pi
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     w, p, weight, at = (0.7, -1.3), (2.0, 1.1), 0.9, 0.3
     down = (w[0], w[1] - weight)
-    section = f"E={E!r} A={A!r} I={I!r} PIN={pin} WGT={weight!r}" + (f" G={G!r} AS={AS!r}" if shear else "")
+    section = f"E={E!r} A={A!r} I={IZ!r} PIN={pin} WGT={weight!r}" + (
+        f" G={G!r} AS={AS!r}" if shear else ""
+    )
     loads = f" 7 WX={w[0]!r} WY={w[1]!r} PX={p[0]!r} PY={p[1]!r} AT={at!r}"
 
     def point(x):
@@ -308,8 +313,8 @@ ELEMENTS
  5 S 5 6
  6 W 5
 PROPS
- COL FRAME E={E!r} A={A!r} I={I!r} G={G!r} AS={AS!r} END2=0.3
- BEAM FRAME E={E!r} A={A!r} I={I!r} PIN=J
+ COL FRAME E={E!r} A={A!r} I={IZ!r} G={G!r} AS={AS!r} END2=0.3
+ BEAM FRAME E={E!r} A={A!r} I={IZ!r} PIN=J
  S SPRING KX=3e3 KY=5e3 KR=100 ANGLE={20 + turn!r}
  W SPRING KX=3e3 KY=1e3 KR=700 ANGLE={-35 + turn!r}
 LOADS
@@ -334,8 +339,8 @@ def test_order_of_nodes_and_elements_does_not_matter():
     elements = [" 1 COL 1 2", " 2 BEAM 2 3", " 3 COL 4 3", " 4 W 6"]
     tail = f"""
 PROPS
- COL FRAME E={E!r} A={A!r} I={I!r} WGT=1
- BEAM FRAME E={E!r} A={A!r} I={I!r} PIN=I WGT=2
+ COL FRAME E={E!r} A={A!r} I={IZ!r} WGT=1
+ BEAM FRAME E={E!r} A={A!r} I={IZ!r} PIN=I WGT=2
  W SPRING KX=50
 LOADS
  2,6 3 -2 1
@@ -376,7 +381,7 @@ def test_axial_bar_hands_on_loads_without_moments(angle, at):
     """I = 0: half of a uniform load to each end, a point load by the lever rule, no moment on any node."""
     n, w, p = 4.0, -2.0, 3.0
     deck = member(n, angle, "WGT=1", "FIX=XYR", member_loads=f" 7 WY={w!r} PX={p!r} AT={at!r}")
-    s = solved(deck.replace(f"I={I!r}", "I=0"))
+    s = solved(deck.replace(f"I={IZ!r}", "I=0"))
     close(s.reaction[1], [-p * (1 - at), (1 - w) * n / 2, 0.0])
     close(s.reaction[2], [-p * at, (1 - w) * n / 2, 0.0])
     assert (7, "moment I") not in s.force
@@ -419,11 +424,12 @@ def test_consistent_mass_has_the_kinetic_energy_of_rigid_motions(angle, n, a, b,
         "1.5  -0.7  FIX=XYR", "1.5  -0.7"
     )
     if pin == "BAR":
-        deck = deck.replace(f"I={I!r}", "I=0")
+        deck = deck.replace(f"I={IZ!r}", "I=0")
     s = structure_of(deck)
     vx, vy, turn = motion
     c, sn = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-    # about node 1; pinned ends without a block turn at will, so the nodes' own rotations are those of the motion
+    # about node 1; pinned ends without a block turn at will, so the nodes' own rotations
+    # are those of the motion
     v = np.array([vx, vy, turn, vx - turn * n * sn, vy + turn * n * c, turn])
     centre = (vx - turn * n / 2 * sn, vy + turn * n / 2 * c)
     wanted = 0.5 * m * n * (centre[0] ** 2 + centre[1] ** 2) + 0.5 * m * n**3 / 12 * turn**2

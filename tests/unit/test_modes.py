@@ -107,7 +107,9 @@ def test_shapes_are_orthonormal_and_participation_is_complete(mass):
 
 
 def test_massless_rotations_are_condensed_exactly():
-    """Cantilever with two lumped masses: 1/omega^2 are the eigenvalues of F M, F the flexibilities a^2(3b-a)/6EI."""
+    """Cantilever with two lumped masses: 1/omega^2 are the eigenvalues of F M,
+    F the flexibilities a^2(3b-a)/6EI.
+    """
     ei, masses, at = 2e4, np.array([3.0, 2.0]), (2.0, 5.0)
     s = structure_of(f"""
 GRAVITY 1
@@ -172,8 +174,8 @@ def test_a_mass_held_by_nothing_has_no_mode():
 def test_mass_on_a_slave_alone():
     """A mass on an arm makes a singular mass matrix of its master: one direction of it is massless.
 
-    Column with sway stiffness k and turning stiffness kr, mass m at the height a above its top, no rotational
-    inertia: the springs act one after the other, 1/K = 1/k + a^2/kr.
+    Column with sway stiffness k and turning stiffness kr, mass m at the height a above its top,
+    no rotational inertia: the springs act one after the other, 1/K = 1/k + a^2/kr.
     """
     k, kr, a, m = 300.0, 800.0, 1.5, 2.0
     s = structure_of(f"""
@@ -215,7 +217,9 @@ WEIGHTS
 @settings(max_examples=60, deadline=None)
 @given(st.data())
 def test_random_systems(data):
-    """Any K = B'B and lumped or consistent M, massless freedoms among them: M- and K-orthogonal, none lost."""
+    """Any K = B'B and lumped or consistent M, massless freedoms among them:
+    M- and K-orthogonal, none lost.
+    """
     n = data.draw(st.integers(1, 7))
     rng = np.random.default_rng(data.draw(st.integers(0, 2**31)))
     b = rng.normal(size=(n, n)) + 2 * np.eye(n)

@@ -32,8 +32,8 @@ def response(m, c, k, f, omega):
 def same_response(place, omegas=(0.3, 2.0, 9.0, 40.0), rel=1e-9):
     """Harmonic response of the scene, spread over all freedoms, is that of the structure as assembled.
 
-    Harmonic motion exp(i w t) of every input; in the total form displacement, velocity and acceleration of one
-    motion are tied by i w.
+    Harmonic motion exp(i w t) of every input; in the total form displacement,
+    velocity and acceleration of one motion are tied by i w.
     """
     s, n = place.structure, place.structure.n_free
     moved = len(s.freedoms.moved)
@@ -109,8 +109,23 @@ def test_long_lists_are_cut_short():
 
 
 def test_contacts_and_dashpots_join_what_they_touch():
-    """A frame that only a contact, or a dashpot, links to a shaken one is awake; a gap's size does not matter."""
-    far = "NODES\n 1 0 0 FIX=XYR\n 2 0 3 FIX=YR\n 3 1 3 FIX=YR\nELEMENTS\n 1 S 1 2\n 9 C 2 3\nPROPS\n S SPRING KX=400\n C {}\nWEIGHTS\n 2 10\n"
+    """A node that only a contact, or a dashpot, links to a shaken one is awake;
+    the gap's size is no matter.
+    """
+    far = """
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=YR
+ 3 1 3 FIX=YR
+ELEMENTS
+ 1 S 1 2
+ 9 C 2 3
+PROPS
+ S SPRING KX=400
+ C {}
+WEIGHTS
+ 2 10
+"""
     supports = tail("SUPPORTS=1")
     # only support 1 moves: node 3 has no weight on it and no spring of its own
     for c in ("CONTACT GAP=5 LAW=LINEAR K=9", "DASHPOT CX=3"):
@@ -119,7 +134,20 @@ def test_contacts_and_dashpots_join_what_they_touch():
 
 
 def test_an_overlap_sets_in_motion():
-    deck = "NODES\n 1 0 0 FIX=R\n 2 0 3 FIX=R\nELEMENTS\n 1 S 1\n 2 S 2\n 9 C 1 2\nPROPS\n S SPRING KX=400 KY=400\n C CONTACT GAP={} LAW=LINEAR K=9\nWEIGHTS\n 1,2 10\n"
+    deck = """
+NODES
+ 1 0 0 FIX=R
+ 2 0 3 FIX=R
+ELEMENTS
+ 1 S 1
+ 2 S 2
+ 9 C 1 2
+PROPS
+ S SPRING KX=400 KY=400
+ C CONTACT GAP={} LAW=LINEAR K=9
+WEIGHTS
+ 1,2 10
+"""
     assert (1, 1) not in scene_of(deck.format(0.1) + tail()).freedoms
     assert (1, 1) in scene_of(deck.format(-0.1) + tail()).freedoms
 
@@ -153,8 +181,8 @@ PORTAL = PORTAL.replace(" 2 TO 3 B 2,5 5,3", " 2 B 2 5\n 3 B 5 3")
         ("", 4, 6),
         ("DAMPING\n RAYLEIGH ALPHA=0.3 BETA=0.004", 4, 6),
         ("DAMPING\n MODAL XI=0.05", 4, 6),
-        # members of different beta meet at nodes 2 and 3 and their rotations follow no more; node 5 between beams does,
-        # and so does the hinged foot 4
+        # members of different beta meet at nodes 2 and 3 and their rotations follow no more;
+        # node 5 between beams does, and so does the hinged foot 4
         ("DAMPING\n RAYLEIGH BETA=0.004 PROPS=C\n RAYLEIGH BETA=0.01 PROPS=B", None, 4),
     ],
 )
@@ -222,7 +250,9 @@ ANALYSIS
 
 
 def test_a_massless_node_between_moved_supports_keeps_its_dashpots():
-    """Springs and dashpots of different ratio to two moved supports and to nothing else: no static follower."""
+    """Springs and dashpots of different ratio to two moved supports and
+    to nothing else: no static follower.
+    """
     deck = """
 NODES
  1 0 0 FIX=XYR
@@ -258,7 +288,8 @@ def test_random_frames_lose_nothing(data):
     """A pile of storeys with random damping groups and dashpots: harmonic response as assembled."""
     storeys = data.draw(st.integers(1, 3))
     rate = st.sampled_from([0.0, 0.003, 0.01])
-    damping = f"DAMPING\n RAYLEIGH ALPHA=0.2 BETA={data.draw(rate)} PROPS=C\n RAYLEIGH BETA={data.draw(rate)} PROPS=B\n"
+    legs, beams = data.draw(rate), data.draw(rate)
+    damping = f"DAMPING\n RAYLEIGH ALPHA=0.2 BETA={legs} PROPS=C\n RAYLEIGH BETA={beams} PROPS=B\n"
     nodes, elements, e = [" 1 0 0 FIX=XYR", " 2 5 0 FIX=XY"], [], 0
     for i in range(1, storeys + 1):
         nodes += [f" {2 * i + 1} 0 {3 * i}", f" {2 * i + 2} 5 {3 * i}"]
@@ -308,3 +339,25 @@ def test_excitation_is_the_motion():
         assert local[0] == pytest.approx(x.value(t)) and local[1] == pytest.approx(x.value(t, 1))
     assert x.value(0.5)[0] == pytest.approx(2 * np.sin(2 * np.pi * 0.3 / 0.7), rel=1e-9)
     assert not x.value(0.5, x.degree + 1).any()
+
+
+def test_mass_on_an_arm_needs_rotational_inertia_at_its_master():
+    """Without it one joint motion of ux and rz has no inertia: a frequency of rounding,
+    that none can follow.
+    """
+    deck = """
+NODES
+ 1 0 3 FIX=Y
+ 2 0 4.5 SLAVED=XYR MASTER=1
+ELEMENTS
+ 1 S 1
+PROPS
+ S SPRING KX=300 KR=800
+WEIGHTS
+ 2 2 {}
+"""
+    with pytest.raises(np.linalg.LinAlgError, match="node 1 rz has no inertia of its own"):
+        scene_of(deck.format("") + tail())
+    place = scene_of(deck.format("2 0.01") + tail())
+    assert place.size == 2
+    same_response(place)

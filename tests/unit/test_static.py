@@ -54,14 +54,18 @@ def test_parallel_springs_yield_one_after_the_other(load, u, forces, events):
 
 
 def test_hardening_springs():
-    """R = 0.1: A carries 10 k (d - 0.1) beyond its yield point: 10 + 5 + 2.5 at 0.1, then k = 10 + 50 + 25."""
+    """R = 0.1: A carries 10 k (d - 0.1) beyond its yield point: 10 + 5 + 2.5 at 0.1,
+    then k = 10 + 50 + 25.
+    """
     s = solved(parallel(17.5 + 85 * 0.2, "RULE=BILINEAR R=0.1"))
     assert s.u[1][0] == pytest.approx(0.3, rel=1e-12)
     assert s.force[1, "force X"] == pytest.approx(10 + 10 * 0.2, rel=1e-12)
 
 
 def portal(load: float, hinge: float = 80.0) -> str:
-    """Rigid-plastic hinges by stiff rotational springs at the feet and tops of two legs under a rigid beam."""
+    """Rigid-plastic hinges by stiff rotational springs at the feet and tops of two legs
+    under a rigid beam.
+    """
     return f"""
 NODES
  1 0 0 FIX=XYR
@@ -96,9 +100,9 @@ LOADS
 def test_elasto_plastic_portal():
     """Sway mechanism against plastic theory: feet (80) hinge first, then tops (100); h = 4, EI = 2e4.
 
-    Clamped legs carry 24 EI/h^3 u, end moments 6 EI/h^2 u = 7500 u (feet yield at 80/7500).  Then a leg is pinned at
-    its foot but for the moment 80: its top has 3 EI/h^2 du more (yield after 20/3750).  Then only the brace is left:
-    F = 2 (80 + 100)/4 + 50 u.
+    Clamped legs carry 24 EI/h^3 u, end moments 6 EI/h^2 u = 7500 u (feet yield at 80/7500).
+    Then a leg is pinned at its foot but for the moment 80: its top has 3 EI/h^2 du more
+    (yield after 20/3750).  Then only the brace is left: F = 2 (80 + 100)/4 + 50 u.
     """
     ei, h = 2e4, 4.0
     u1 = 80 / (6 * ei / h**2)
@@ -125,7 +129,9 @@ def test_the_collapse_of_a_portal_without_brace_is_named():
 
 
 def contact(gap: float, load: float, law: str = "LINEAR K=300", more: str = "") -> str:
-    """Two nodes on springs 100 and 200 with a contact between them; the load pushes the left one to the right."""
+    """Two nodes on springs 100 and 200 with a contact between them;
+    the load pushes the left one to the right.
+    """
     return f"""
 NODES
  1 0 0 FIX=YR
@@ -171,11 +177,12 @@ def test_an_overlap_alone_pushes_apart():
 
 
 def test_a_contact_that_touches_only_for_a_while():
-    """Yielding of the wall's spring opens no contact, but a second one closes behind: series of events by hand.
+    """Yielding of the wall's spring opens no contact, but a second one closes behind:
+    series of events by hand.
 
-    u1 meets spring B at 0.1 (F = 10), both move with 100 + 200 k; at F = 10 + 300 (0.1) = 40 node 2 has moved 0.1
-    and spring B (yield 20) gives way: then 100 only, and a wall at gap 0.25 of node 2 stops it (k 1e3).
-    Rigid contacts are approached with 1e9.
+    u1 meets spring B at 0.1 (F = 10), both move with 100 + 200 k;
+    at F = 10 + 300 (0.1) = 40 node 2 has moved 0.1 and spring B (yield 20) gives way: then 100 only,
+    and a wall at gap 0.25 of node 2 stops it (k 1e3). Rigid contacts are approached with 1e9.
     """
     deck = contact(0.1, 70.0, "LINEAR K=1e9")
     deck = deck.replace("KX=200", "KX=200 FX=20 RULE=ELASTO_PLASTIC").replace(
@@ -255,7 +262,10 @@ def test_a_loaded_mechanism_is_named(load, words):
 
 def test_a_turning_mechanism_is_named():
     """A beam on one pin falls: its far end moves most."""
-    deck = "NODES\n 1 0 0 FIX=XY\n 2 4 0\nELEMENTS\n 1 B 1 2\nPROPS\n B FRAME E=2e8 A=0.01 I=1e-4\nLOADS\n 2 0 -1"
+    deck = (
+        "NODES\n 1 0 0 FIX=XY\n 2 4 0\nELEMENTS\n 1 B 1 2\n"
+        "PROPS\n B FRAME E=2e8 A=0.01 I=1e-4\nLOADS\n 2 0 -1"
+    )
     with pytest.raises(static.Unstable, match="mechanism, worst at node 2 uy"):
         solved(deck)
 
@@ -305,12 +315,14 @@ def test_softening_beyond_collapse_is_told():
 
 
 def test_a_closing_contact_turns_a_yielding_spring_back():
-    """A rigid bar on two spots with a load between; it meets a wall, turns about it and unloads the yielded spring.
+    """A rigid bar on two spots with a load between; it meets a wall,
+    turns about it and unloads the yielded spring.
 
-    Deflections v(x) = v0 + r x downwards.  At x = 0 stand an elasto-plastic spring (100, yield 2) and an elastic one
-    (10), at x = 1 an elastic one (100); P stands at 0.8, the wall (1000) at 0.6.  Up to P = 11: v0 = 0.2 P/110, v1 =
-    0.8 P/100, then v0' = 0.2/10; the gap of 0.0736 is shut at P = 12 with v0 = 0.04, v1 = 0.096.  Beyond, the bar goes
-    up at x = 0: the spring there follows its elastic branch.
+    Deflections v(x) = v0 + r x downwards.  At x = 0 stand an elasto-plastic spring (100, yield 2)
+    and an elastic one (10), at x = 1 an elastic one (100); P stands at 0.8, the wall (1000) at 0.6.
+    Up to P = 11: v0 = 0.2 P/110, v1 = 0.8 P/100, then v0' = 0.2/10;
+    the gap of 0.0736 is shut at P = 12 with v0 = 0.04, v1 = 0.096.  Beyond, the bar goes up at x = 0:
+    the spring there follows its elastic branch.
     """
     s = solved("""
 NODES

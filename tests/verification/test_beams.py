@@ -1,8 +1,9 @@
 """Uniform beams against closed forms: deflections of meshes and the convergence of natural frequencies.
 
-Frequencies: Blevins RD (1979), Formulas for Natural Frequency and Mode Shape, table 8-1 (Euler-Bernoulli beams).
-Deflections: Timoshenko SP, Gere JM (1972), Mechanics of Materials, appendix; the shear parts by the unit-load
-theorem.
+Frequencies: Blevins RD (1979), Formulas for Natural Frequency and Mode Shape, table 8-1
+(Euler-Bernoulli beams).
+Deflections: Timoshenko SP, Gere JM (1972), Mechanics of Materials, appendix;
+the shear parts by the unit-load theorem.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ from scipy.optimize import brentq
 
 from decks import solved, structure_of
 
-E, A, I, L, M = 2.0e8, 0.02, 3.0e-4, 8.0, 0.7  # kN/m2, m2, m4, m, t/m
-EI = E * I
+E, A, IZ, L, M = 2.0e8, 0.02, 3.0e-4, 8.0, 0.7  # kN/m2, m2, m4, m, t/m
+EI = E * IZ
 G = 10.0
 
 SUPPORTS = {"simple": ("XY", "XY"), "cantilever": ("XYR", ""), "fixed": ("XYR", "XYR")}
@@ -49,7 +50,7 @@ NODES
 ELEMENTS
  1 TO {n}  B  1 TO {n}  2 TO {n + 1}
 PROPS
- B FRAME E={E!r} A={A!r} I={I!r} WGT={M * G!r} {section}
+ B FRAME E={E!r} A={A!r} I={IZ!r} WGT={M * G!r} {section}
 {tail}
 """
 
@@ -76,7 +77,8 @@ def frequencies(support: str, n: int, mass: str) -> np.ndarray:
 )
 def test_frequencies_converge_at_the_right_order(support, mass, order, mode):
     exact = ROOTS[support][mode] ** 2 / L**2 * math.sqrt(EI / M)
-    # the lumped fixed beam has a large next term (order 4.3 at n = 8); finer meshes show rounding, some 1e-9
+    # the lumped fixed beam has a large next term (order 4.3 at n = 8);
+    # finer meshes show rounding, some 1e-9
     n = 16 if (support, mass) == ("fixed", "LUMPED") else 8
     errors = {k: float(frequencies(support, k, mass)[mode] / exact - 1) for k in (n, 2 * n, 4 * n)}
     measured = [math.log2(abs(errors[k] / errors[2 * k])) for k in (n, 2 * n)]
@@ -88,7 +90,9 @@ def test_frequencies_converge_at_the_right_order(support, mass, order, mode):
 
 
 def test_axial_frequencies_of_a_rod():
-    """Fixed-free rod: omega = pi/2L sqrt(EA/m); linear members, so order 2 from below (lumped) and above."""
+    """Fixed-free rod: omega = pi/2L sqrt(EA/m); linear members,
+    so order 2 from below (lumped) and above.
+    """
     exact = math.pi / (2 * L) * math.sqrt(E * A / M)
     for mass, sign in (("LUMPED", -1), ("CONSISTENT", 1)):
         errors = []
@@ -109,7 +113,9 @@ def test_axial_frequencies_of_a_rod():
 @pytest.mark.parametrize("n", [1, 3, 8])
 @pytest.mark.parametrize("shear", [False, True])
 def test_meshes_are_exact_at_their_nodes(n, shear):
-    """Cantilever under its weight: v(x) = w x^2 (6 L^2 - 4 L x + x^2)/24EI + w (L x - x^2/2)/GAs at every node."""
+    """Cantilever under its weight: v(x) = w x^2 (6 L^2 - 4 L x + x^2)/24EI + w (L x - x^2/2)/GAs
+    at every node.
+    """
     ga, phi = 5.0e4, "G=1e7 AS=0.005"
     s = solved(mesh("cantilever", n, section=phi if shear else ""))
     w = -M * G
@@ -141,7 +147,9 @@ def test_simple_beam_at_midspan():
 
 
 def test_two_spans_over_three_supports():
-    """Clapeyron: support moment w L^2/8, middle reaction 5 w L/4, outer ones 3 w L/8 (spans L, pinned ends)."""
+    """Clapeyron: support moment w L^2/8, middle reaction 5 w L/4, outer ones 3 w L/8
+    (spans L, pinned ends).
+    """
     s = solved(f"""
 NODES
  1 0 0 FIX=XY
@@ -150,7 +158,7 @@ NODES
 ELEMENTS
  1 TO 2 B 1 TO 2 2 TO 3
 PROPS
- B FRAME E={E!r} A={A!r} I={I!r}
+ B FRAME E={E!r} A={A!r} I={IZ!r}
 MEMBER_LOADS
  1,2 WY=-4
 """)
@@ -160,7 +168,9 @@ MEMBER_LOADS
 
 
 def test_a_slender_mesh_is_no_mechanism():
-    """A cantilever of 400 members; condition numbers grow as n^4, so half the digits remain, and no more is asked."""
+    """A cantilever of 400 members; condition numbers grow as n^4, so half the digits remain,
+    and no more is asked.
+    """
     s = solved(mesh("cantilever", 400))
     assert s.u[401][1] == pytest.approx(-M * G * L**4 / (8 * EI), rel=1e-4)
     exact = ROOTS["cantilever"][0] ** 2 / L**2 * math.sqrt(EI / M)
@@ -168,7 +178,9 @@ def test_a_slender_mesh_is_no_mechanism():
 
 
 def test_low_modes_keep_their_digits():
-    """100 consistent members, squared frequencies from 1 to 3e10: rounding of the stiff modes must not reach the first."""
+    """100 consistent members, squared frequencies from 1 to 3e10:
+    rounding of the stiff modes must not reach the first.
+    """
     exact = ROOTS["cantilever"][0] ** 2 / L**2 * math.sqrt(EI / M)
     s = structure_of(mesh("cantilever", 100, "CONSISTENT"))
     assert s.free_vibration.omega[0] == pytest.approx(exact, rel=1e-8)

@@ -170,7 +170,7 @@ ANALYSIS
 
 @pytest.mark.parametrize("method", ["EXACT", "NEWMARK", "CENTRAL"])
 def test_steps_of_rounding_length(method: str) -> None:
-    """The sine's pieces end at 0.01 i, the samples stand at 0.05 j; some of these differ in the last bit."""
+    """The sine's pieces end at 0.01 i, the samples stand at 0.05 j; some differ in the last bit."""
     r = run_text(STEPS_BESIDE_BREAKS, None, method, None if method == "EXACT" else 0.001)
     u, _ = Oscillator(10.0, 0.0, 1.0, 2 * np.pi / 0.32).at(r.time, 0.0, 0.0, 0.0)
     assert np.abs(r.u[:, 1, 0] - u).max() < 1e-3 * np.abs(u).max()
@@ -198,9 +198,6 @@ ANALYSIS
 
 #: times between touch and the end of the step of 0.01 s
 HAIRS = (0.0, 1e-13, 1e-11, 1e-9, 1e-7, 1e-5)
-SMALL_STEPS = (
-    "NEWMARK divides by the square of the step: pieces that an event cuts off ruin the acceleration"
-)
 
 
 def bounce(method: str, before: float) -> tuple[float, float, float]:
@@ -225,22 +222,15 @@ def test_touch_at_the_end_of_a_step_central(before: float) -> None:
     assert max(bounce("CENTRAL", before)) < 2e-3
 
 
-@pytest.mark.parametrize(
-    "before",
-    [pytest.param(x, marks=pytest.mark.xfail(strict=True, reason=SMALL_STEPS)) for x in HAIRS if x < 1e-6]
-    + [1e-5],
-)
+@pytest.mark.parametrize("before", HAIRS)
 def test_touch_at_the_end_of_a_step_newmark(before: float) -> None:
-    """Average acceleration keeps an elastic bounce's energy; its duration is off by (omega h)^2/12 = 8e-4."""
+    """Average acceleration keeps an elastic bounce's energy; its time is off by (omega h)^2/12 = 8e-4."""
     force, duration, speed = bounce("NEWMARK", before)
     assert speed < 1e-6
     assert force < 1e-5
     assert duration < 1e-3
 
 
-@pytest.mark.xfail(
-    strict=True, reason="the smallest force of a spring whose path matters is taken from the grid only"
-)
 def test_spring_force_envelope_is_exact() -> None:
     """After the blow the mass swings between +-fy; the smallest force lies between grid points."""
     s = example("sdof/yielding.inp").tables["spring_envelope"][0]
@@ -251,9 +241,6 @@ def test_spring_force_envelope_is_exact() -> None:
 PARTING = UNIT.read_text(encoding="utf-8").replace("1   VX=c-slide*s   VY=s+slide*c", "1   VX=-c   VY=-s")
 
 
-@pytest.mark.xfail(
-    strict=True, reason="an overlap at the start is pressed without asking for the force's sign"
-)
 def test_overlap_that_parts_at_once_does_not_pull() -> None:
     """k d + c v < 0 at the start: the contact is to be let go before it pulls."""
     r = run_text(PARTING, {"gap": -0.1, "e": 0.1})

@@ -1,8 +1,9 @@
-"""Portal frames against Kleinlogel A (1952), Rigid Frame Formulas, the rectangular frames with hinged and with
-fixed legs: k = (I_beam / I_column) (h / L), hinged N = 2k + 3, fixed N1 = k + 2 and N2 = 6k + 1.
+"""Portal frames against Kleinlogel A (1952), Rigid Frame Formulas, the rectangular frames with hinged
+and with fixed legs: k = (I_beam / I_column) (h / L), hinged N = 2k + 3, fixed N1 = k + 2 and N2 = 6k + 1.
 
-The formulas neglect axial strain: the tops of the legs are held vertically and the beam's ends move together, so
-that the comparison is exact.  A second pass with real areas checks that the difference is the axial strain.
+The formulas neglect axial strain: the tops of the legs are held vertically and the beam's ends move
+together, so that the comparison is exact.  A second pass with real areas checks that the difference
+is the axial strain.
 """
 
 from __future__ import annotations
@@ -36,7 +37,9 @@ PROPS
 
 
 def results(bases, loads, stiff=True):
-    """Base shear x, base moment, corner moment of the left leg, all of them forces on the leg; and the legs' thrusts."""
+    """Base shear x, base moment, corner moment of the left leg, all of them forces on the leg;
+    and the legs' thrusts.
+    """
     s = solved(portal(bases, loads, stiff))
     vertical = [s.reaction[a][1] + (s.reaction[b][1] if stiff else 0.0) for a, b in ((1, 2), (4, 3))]
     return s, s.reaction[1], s.reaction[4], s.force[1, "moment J"], s.force[3, "moment J"], vertical
@@ -60,8 +63,9 @@ def check(bases, loads, base_x, base_m, corner, vertical, stiff=True, rel=1e-10)
 
 @pytest.mark.parametrize(("stiff", "rel"), [(True, 1e-10), (False, 1e-3)])
 class TestKleinlogel:
-    """Moments on a leg are anticlockwise; equilibrium of the left one, with the base pushing H to the right, is
-    M_base + M_top + H h = 0: under gravity load its top is turned clockwise, against the beam's end.
+    """Moments on a leg are anticlockwise; equilibrium of the left one,
+    with the base pushing H to the right, is M_base + M_top + H h = 0: under gravity load
+    its top is turned clockwise, against the beam's end.
     """
 
     def test_hinged_legs_uniform_load(self, stiff, rel):

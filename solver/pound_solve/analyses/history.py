@@ -1,7 +1,7 @@
 """HISTORY: the motion under the ground motions, from the static state.
 
-Chooses nothing and integrates nothing itself: it prepares the scene's start, hands it to the method, and turns
-the samples that come back into histories, envelopes and tables.
+Chooses nothing and integrates nothing itself: it prepares the scene's start, hands it to the method,
+and turns the samples that come back into histories, envelopes and tables.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pound_deck.model import Model
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.assemble import Structure
 from pound_solve.integrate.base import ENERGIES, Extreme, Start, Watch, energies
-from pound_solve.laws import State, follow
+from pound_solve.laws import State, follow, settle
 from pound_solve.scene import Scene
 
 Array = NDArray[np.float64]
@@ -36,7 +36,8 @@ SPEC = Spec(
             Kind.WORD,
             default="STATIC",
             words=("STATIC", "REST"),
-            doc="start from the static state under the loads, or unloaded at rest with the loads put on at t = 0",
+            doc="start from the static state under the loads, "
+            "or unloaded at rest with the loads put on at t = 0",
         ),
     ),
 )
@@ -72,9 +73,12 @@ def begin(
     u0, v0 = u[keep], v[keep]
     before = structure.law_rows[:, : structure.n_free] @ u_static
     after = scene.law_rows @ u0 + scene.law_inputs @ scene.excitation.value(0.0)
+    rates = scene.law_rows @ v0 + scene.law_inputs @ scene.excitation.value(0.0, 1)
     led = tuple(
-        s.law.branch(x) and (follow(s.law, x, float(b), float(a)) if a != b else x)
-        for s, x, b, a in zip(structure.laws, states, before, after)
+        settle(s.law, follow(s.law, x, d0, d1) if d0 != d1 else x, d1, rate)
+        for s, x, d0, d1, rate in zip(
+            structure.laws, states, before.tolist(), after.tolist(), rates.tolist()
+        )
     )
     return Start(u0, v0, led, times)
 
@@ -230,7 +234,7 @@ class Recorder:
         if not self._rows:
             return
         scene, laws = self.scene, self.scene.structure.laws
-        t, u, v, a, s, d, force, energy = (np.array(x) for x in zip(*self._rows))
+        t, u, _v, _a, s, d, force, energy = (np.array(x) for x in zip(*self._rows))
         rows, self._rows = self._rows, []
         full_u = np.array([scene.all_freedoms(r[1], r[0]) for r in rows])
         full_v = np.array([scene.all_freedoms(r[2], r[0], 1) for r in rows])

@@ -2,9 +2,11 @@ r"""MODAL: natural modes with participation, effective mass and damping ratio.
 
 For a ground direction with influence vector r:
 
-.. math:: \Gamma_n = \phi_n^T M r, \qquad m_n^* = \Gamma_n^2, \qquad \xi_n = \frac{\phi_n^T C\,\phi_n}{2\omega_n}
+.. math:: \Gamma_n = \phi_n^T M r, \qquad m_n^* = \Gamma_n^2, \qquad
+          \xi_n = \frac{\phi_n^T C\,\phi_n}{2\omega_n}
 
-for mass-normalised shapes; the effective masses of all modes add up to the mass that the direction can move.
+for mass-normalised shapes; the effective masses of all modes add up to the mass
+that the direction can move.
 
 References
 ----------
@@ -49,7 +51,8 @@ def rows(structure: Structure, wanted: int | None) -> list[tuple[float, ...]]:
     n, modes = structure.n_free, structure.free_vibration
     count = min(len(modes.omega), 12 if wanted is None else wanted)
     out: list[tuple[float, ...]] = []
-    # what rides on fixed freedoms only is no part of any mode: the sum over all modes is the mass that can move
+    # what rides on fixed freedoms only is no part of any mode:
+    # the sum over all modes is the mass that can move
     total = ((structure.ground[:, :n] @ modes.shapes) ** 2).sum(axis=1)
     c = structure.damping[:n, :n]
     for i in range(count):

@@ -1,8 +1,9 @@
 r"""STATIC: displacements under the loads, event to event.
 
-The laws are piecewise linear, so the path from the unloaded to the loaded structure is a chain of straight
-pieces: at each one the load is raised until the next spring yields or the next contact closes, exactly, and the
-stiffness is changed.  An initial overlap of a contact grows with the load too, so that the start is stress-free.
+The laws are piecewise linear, so the path from the unloaded to the loaded structure is a chain
+of straight pieces: at each one the load is raised until the next spring yields or the next contact closes,
+exactly, and the stiffness is changed.  An initial overlap of a contact grows with the load too,
+so that the start is stress-free.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pound_deck.schema import Field, Kind, Spec
 
+from pound_deck.schema import Field, Kind, Spec
 from pound_solve.assemble import Structure
 from pound_solve.dofs import NAMES
 from pound_solve.laws import State
@@ -41,7 +42,9 @@ class StaticState:
 
 
 class Unstable(Exception):
-    """The structure cannot carry the load: a mechanism, named by its worst freedom; `code` is the message's number."""
+    """The structure cannot carry the load: a mechanism, named by its worst freedom;
+    `code` is the message's number.
+    """
 
     def __init__(self, why: str, code: str = "A501") -> None:
         super().__init__(why)
@@ -75,7 +78,8 @@ def solve(structure: Structure, most_events: int = 10_000) -> StaticState:
         rate = rows @ step
         best, which = 1.0 - share, None
         for i, branch in enumerate(branches):
-            # exits move with the overlap that is led in: along a contact the effective deformation is d - (share-1) gap
+            # exits move with the overlap that is led in: along a contact the effective deformation
+            # is d - (share-1) gap
             effective, speed = d[i] - (share - 1.0) * overlaps[i], rate[i] - overlaps[i]
             for e, (a, b, c) in enumerate(branch.exits):
                 if a == 0.0:  # leaves where the motion turns
@@ -94,7 +98,9 @@ def solve(structure: Structure, most_events: int = 10_000) -> StaticState:
         states[i] = laws[i].law.leave(states[i], e, d[i] - (share - 1.0) * overlaps[i])
         events += 1
         if events > most_events:
-            raise Unstable(f"more than {most_events} springs and contacts changed state under the static load", "A507")
+            raise Unstable(
+                f"more than {most_events} springs and contacts changed state under the static load", "A507"
+            )
     return StaticState(u, tuple(states), events)
 
 
@@ -120,7 +126,10 @@ def _solve(structure: Structure, k: Array, load: Array) -> Array:
     along = vectors.T @ push
     if np.any(values < -1e-10):
         worst = at[int(np.argmax(np.abs(vectors[:, 0])))]
-        raise Unstable(f"the stiffness is negative: the structure has collapsed, worst at {_name(structure, int(worst))}")
+        raise Unstable(
+            "the stiffness is negative: the structure has collapsed, "
+            f"worst at {_name(structure, int(worst))}"
+        )
     if np.any(np.abs(along[weak]) > 1e-10 * np.abs(along).max()):
         worst = at[int(np.argmax(np.abs(vectors[:, weak] @ along[weak])))]
         raise Unstable(f"the loaded structure is a mechanism, worst at {_name(structure, int(worst))}")
@@ -140,7 +149,19 @@ SPEC = Spec(
     "STATIC",
     "displacements under the static loads",
     (
-        Field("GRAVITY", Kind.WORD, default="NO", words=("NO", "YES"), doc="let the nodal WEIGHTS load the structure downwards"),
-        Field("SELF_WEIGHT", Kind.WORD, default="YES", words=("YES", "NO"), doc="let the weight WGT of the members load it"),
+        Field(
+            "GRAVITY",
+            Kind.WORD,
+            default="NO",
+            words=("NO", "YES"),
+            doc="let the nodal WEIGHTS load the structure downwards",
+        ),
+        Field(
+            "SELF_WEIGHT",
+            Kind.WORD,
+            default="YES",
+            words=("YES", "NO"),
+            doc="let the weight WGT of the members load it",
+        ),
     ),
 )

@@ -1,15 +1,16 @@
 r"""Kelvin-Voigt contact: spring and dashpot, :math:`f = k\delta + c\dot\delta` while pressed.
 
 With TENSION=NO (default) the contact lets go where the force falls to zero, with some overlap left
-(Shakya, Wijeyewickrema and Ohmachi 2008, 14th World Conf. Earthquake Engng, Beijing); with TENSION=YES it holds until the overlap is
-gone and pulls before it does (Anagnostopoulos 1988, Earthquake Engng Struct. Dyn. 16: 443-456).
+(Shakya, Wijeyewickrema and Ohmachi 2008, 14th World Conf. Earthquake Engng, Beijing);
+with TENSION=YES it holds until the overlap is gone and pulls before it does (Anagnostopoulos 1988,
+Earthquake Engng Struct. Dyn. 16: 443-456).
 
-The dashpot is given as C, as damping ratio XI, or as restitution E.  The relation of E to XI is the exact one
-of the form chosen, or by RELATION=PUBLISHED the published one, :math:`\xi = -\ln e / \sqrt{\pi^2 + \ln^2 e}`, which is
-exact only with tension.
+The dashpot is given as C, as damping ratio XI, or as restitution E.
+The relation of E to XI is the exact one of the form chosen, or by RELATION=PUBLISHED the published one,
+:math:`\xi = -\ln e / \sqrt{\pi^2 + \ln^2 e}`, which is exact only with tension.
 
-Energy: the dashpot's loss is the integral of :math:`c\dot\delta^2`; an overlap :math:`\delta_r` left at release
-loses :math:`\tfrac12 k\delta_r^2` as the contact element relaxes alone.
+Energy: the dashpot's loss is the integral of :math:`c\dot\delta^2`; an overlap :math:`\delta_r` left at
+release loses :math:`\tfrac12 k\delta_r^2` as the contact element relaxes alone.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-r"""Linear contact: a spring while pressed, :math:`f = k\delta`; restitution 1 (Kelvin-Voigt without a dashpot)."""
+r"""Linear contact: a spring while pressed, :math:`f = k\delta`;
+restitution 1 (Kelvin-Voigt without a dashpot).
+"""
 
 from __future__ import annotations
 

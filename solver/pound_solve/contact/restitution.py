@@ -1,11 +1,13 @@
 r"""Restitution of a free impact against the damping ratio of the linear viscoelastic contact.
 
-Two masses meet, reduced mass :math:`m`, contact :math:`f = k\delta + c\dot\delta`, :math:`\xi = c / (2\sqrt{k m})`.
+Two masses meet, reduced mass :math:`m`, contact :math:`f = k\delta + c\dot\delta`,
+:math:`\xi = c / (2\sqrt{k m})`.
 
 *Sticky* (released at :math:`\delta = 0`, tension allowed): :math:`e = \exp(-\pi\xi/\sqrt{1-\xi^2})`,
 Anagnostopoulos (2004), Earthquake Engng Struct. Dyn. 33: 897-902; Cole et al. (2011), Eqs 15-17.
 
-*No tension* (released at :math:`f = 0`): the motion is :math:`\delta = (v_0/\omega_d) e^{-\xi\omega t}\sin\omega_d t`;
+*No tension* (released at :math:`f = 0`):
+the motion is :math:`\delta = (v_0/\omega_d) e^{-\xi\omega t}\sin\omega_d t`;
 :math:`f = 0` at :math:`t = 2\arccos(\xi)/\omega_d`, where
 
 .. math:: e = \exp\!\left(-\frac{2\xi\arccos\xi}{\sqrt{1-\xi^2}}\right), \qquad

@@ -6,7 +6,8 @@ with the modes of the initial structure, contacts open.  Modes beyond the list t
 
 References
 ----------
-Wilson EL, Penzien J (1972), Evaluation of orthogonal damping matrices, Int. J. Numer. Methods Engng 4: 5-10.
+Wilson EL, Penzien J (1972), Evaluation of orthogonal damping matrices,
+Int. J. Numer. Methods Engng 4: 5-10.
 """
 
 from __future__ import annotations

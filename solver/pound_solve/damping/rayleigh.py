@@ -2,10 +2,11 @@ r"""RAYLEIGH: :math:`C = \alpha M + \beta K_0`, on a group of nodes and property
 
 ALPHA and BETA are given, or follow from a ratio XI at two circular frequencies (OMEGA) or modes (MODES):
 
-.. math:: \alpha = 2\xi\frac{\omega_1\omega_2}{\omega_1+\omega_2}, \qquad \beta = \frac{2\xi}{\omega_1+\omega_2}
+.. math:: \alpha = 2\xi\frac{\omega_1\omega_2}{\omega_1+\omega_2}, \qquad
+          \beta = \frac{2\xi}{\omega_1+\omega_2}
 
-The mass part acts on the masses of NODES, the stiffness part on the initial stiffness of the elements of PROPS;
-contacts are never damped by it.
+The mass part acts on the masses of NODES, the stiffness part on the initial stiffness of the elements
+of PROPS; contacts are never damped by it.
 
 References
 ----------

@@ -104,7 +104,8 @@ class Site:
     self_weight : bool
         Whether member weight loads the structure.
     mass_along : callable
-        ``mass_along(node, (nx, ny))``: translational mass [F T^2/L] of a node along a direction; contacts only.
+        ``mass_along(node, (nx, ny))``: translational mass [F T^2/L] of a node
+        along a direction; contacts only.
     """
 
     element: Element

@@ -1,8 +1,8 @@
 """CONTACT: two nodes, or a node and a wall, that meet along a direction.
 
-The closure is the displacement of I less that of J along the direction (the wall does not move); the contact
-touches when it reaches GAP.  The direction points from I to J (or to the wall): along the line between the
-nodes, or at ANGLE.  A negative GAP is an overlap from the start.  Compression is positive.
+The closure is the displacement of I less that of J along the direction (the wall does not move);
+the contact touches when it reaches GAP.  The direction points from I to J (or to the wall): along the line
+between the nodes, or at ANGLE.  A negative GAP is an overlap from the start.  Compression is positive.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 r"""FRAME: elastic beam-column between two nodes.
 
-Axial and bending stiffness, shear deformation by :math:`\phi = 12EI/(G A_s L^2)`, rigid end blocks, pinned ends
-(condensed inside the member), self weight, uniform and point loads, lumped or consistent mass.
+Axial and bending stiffness, shear deformation by :math:`\phi = 12EI/(G A_s L^2)`, rigid end blocks,
+pinned ends (condensed inside the member), self weight, uniform and point loads, lumped or consistent mass.
 
 Local axes: x from I to J, y to its left.  Interpolation over the flexible length with :math:`\xi = x/L`:
 
@@ -23,8 +23,8 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from pound_deck.schema import Field, Kind, Spec
 
+from pound_deck.schema import Field, Kind, Spec
 from pound_solve.elements.base import Block, ElementError, Output, Parts, Site, direction
 
 Array = NDArray[np.float64]
@@ -167,12 +167,22 @@ def build(site: Site) -> Parts:
         if row != 3 and ei == 0.0:
             continue
         parts.outputs.append(
-            Output(site.element.id, name, unit, freedoms, sign * force_rows[row], None, sign * float(constant[row]))
+            Output(
+                site.element.id,
+                name,
+                unit,
+                freedoms,
+                sign * force_rows[row],
+                None,
+                sign * float(constant[row]),
+            )
         )
     return parts
 
 
-def _mass(site: Site, m: float, length: float, full: float, phi: float, from_nodes: Array, to_local: Array) -> Array:
+def _mass(
+    site: Site, m: float, length: float, full: float, phi: float, from_nodes: Array, to_local: Array
+) -> Array:
     """Mass of the member on its global nodal freedoms, shape (6, 6)."""
     p = site.prop
     if not site.consistent:
@@ -199,7 +209,14 @@ SPEC = Spec(
         Field("I", Kind.REAL, "L^4", default=0.0, lo=0, doc="second moment of area; 0: an axial bar"),
         Field("G", Kind.REAL, "F/L^2", default=None, above=0, doc="shear modulus, with AS"),
         Field("AS", Kind.REAL, "L^2", default=0.0, lo=0, doc="shear area; 0: no shear deformation"),
-        Field("WGT", Kind.REAL, "F/L", default=0.0, lo=0, doc="self weight per length: mass, and a load in STATIC"),
+        Field(
+            "WGT",
+            Kind.REAL,
+            "F/L",
+            default=0.0,
+            lo=0,
+            doc="self weight per length: mass, and a load in STATIC",
+        ),
         Field("END1", Kind.REAL, "L", default=0.0, lo=0, doc="length of the rigid block at I"),
         Field("END2", Kind.REAL, "L", default=0.0, lo=0, doc="length of the rigid block at J"),
         Field(

@@ -19,12 +19,12 @@ def components(site: Site) -> list[tuple[str, tuple[Freedom, ...], tuple[float, 
     ax, ay = axes(site.prop["ANGLE"])
     i, j = site.i.id, None if site.j is None else site.j.id
     out = []
-    for name, parts in (
+    for name, direction in (
         ("X", ((0, ax[0]), (1, ax[1]))),
         ("Y", ((0, ay[0]), (1, ay[1]))),
         ("R", ((2, 1.0),)),
     ):
-        parts = tuple(p for p in parts if p[1] != 0.0)
+        parts = tuple(p for p in direction if p[1] != 0.0)
         if j is None:
             freedoms, row = tuple((i, d) for d, _ in parts), tuple(f for _, f in parts)
         else:
@@ -48,7 +48,8 @@ def build(site: Site) -> Parts:
         yielding = "F" + name if name != "R" else "MR"
         if rule.impl is not None and force is None:
             raise ElementError(
-                f"{rule.name} along {name} needs the yield force {yielding}; an elastic component has its own RULE=...,ELASTIC",
+                f"{rule.name} along {name} needs the yield force {yielding}; "
+                "an elastic component has its own RULE=...,ELASTIC",
                 "RULE",
             )
         if rule.impl is None and force is not None:

@@ -6,7 +6,8 @@ a spring :math:`r k` beside an elastic, perfectly plastic spring :math:`(1-r) k`
 
 .. math:: f = r k d + (1-r) k (d - d_p), \qquad (1-r) F_y^- \le (1-r) k (d - d_p) \le (1-r) F_y^+
 
-Energy: :math:`\tfrac12 r k d^2 + \tfrac12 (1-r) k (d-d_p)^2` is stored, :math:`(1-r) F_y^\pm \, \Delta d_p` is lost.
+Energy: :math:`\tfrac12 r k d^2 + \tfrac12 (1-r) k (d-d_p)^2` is stored,
+:math:`(1-r) F_y^\pm \, \Delta d_p` is lost.
 
 References
 ----------

@@ -4,15 +4,16 @@ The spring takes hold at :math:`d = g^+` (and at :math:`g^- \le 0`).  On the pos
 
 .. math:: f = k (d - g^+ - p^+), \qquad f \le F_y^+ + H p^+, \qquad H = \frac{k r}{1 - r}
 
-where :math:`p^+` is the plastic deformation of that side, and likewise on the negative side.  With GROW=YES
-(braces: the slack grows by the plastic deformation) each side keeps its own :math:`p`; with GROW=NO the
-whole slack zone moves with one common :math:`p` and hardening is kinematic: after a large :math:`p` the other side's
-yield force :math:`F_y^- + H p` lies above zero, and the spring yields back before it lets go.
+where :math:`p^+` is the plastic deformation of that side, and likewise on the negative side.
+With GROW=YES (braces: the slack grows by the plastic deformation) each side keeps its own :math:`p`;
+with GROW=NO the whole slack zone moves with one common :math:`p` and hardening is kinematic:
+after a large :math:`p` the other side's yield force :math:`F_y^- + H p` lies above zero,
+and the spring yields back before it lets go.
 
 References
 ----------
-Ruaumoko's rule 5 (the shape; written for slender cross braces).  The choice of H, which makes the yield line
-run at slope :math:`r k` through the first yield point, and the two forms of growth are ours.
+Ruaumoko's rule 5 (the shape; written for slender cross braces).  The choice of H, which makes the yield
+line run at slope :math:`r k` through the first yield point, and the two forms of growth are ours.
 """
 
 from __future__ import annotations
@@ -151,7 +152,8 @@ SPEC = Spec(
             "L",
             default=(0.0,),
             count=(1, 2),
-            doc="deformation at which it takes hold, positive and (signed) negative; one value: the same both ways",
+            doc="deformation at which it takes hold, positive and (signed) negative; "
+            "one value: the same both ways",
         ),
         Field(
             "GROW",

@@ -28,7 +28,8 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
         raise Stop(
             "A505",
             0.0,
-            f"{scene.size} unknowns are too many for EXACT (up to {MOST_UNKNOWNS}); give METHOD=AUTO a DT for NEWMARK",
+            f"{scene.size} unknowns are too many for EXACT (up to {MOST_UNKNOWNS}); "
+            "give METHOD=AUTO a DT for NEWMARK",
         )
     scene.decisions.append(
         Decision(

@@ -129,7 +129,8 @@ class Sink(Protocol):
     def sample(self, t: float, u: Array, v: Array, a: Array, states: Sequence[State], works: Array) -> None:
         """Take the motion and the laws' states at an output time.
 
-        `works`, shape (3,), are the work put in, and that lost so far in the structure's and in the contacts' dashpots.
+        `works`, shape (3,), are the work put in, and that lost so far in the structure's
+        and in the contacts' dashpots.
         """
         ...
 
@@ -194,7 +195,13 @@ class Ledger:
             if after.startswith("yielding"):
                 self.peaks.yields[law] += 1
             return
-        if after == "pressed" and law not in self.open:
+        if before == "released" and after == "pressed":
+            # the bodies never parted: the collision goes on
+            last = max(i for i, c in enumerate(self.peaks.collisions) if c.law == law)
+            again = self.peaks.collisions.pop(last)
+            again.t_end = again.separation = np.nan
+            self.open[law] = again
+        elif after == "pressed" and law not in self.open:
             self.open[law] = Collision(law, t, v, peak=force_after, t_peak=t)
         elif before == "pressed" and law in self.open:
             done = self.open.pop(law)
@@ -248,7 +255,9 @@ def goals(scene: Scene, times: Array) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def cubic_top(f0: float, f1: float, s0: float, s1: float, h: float) -> tuple[float, float]:
-    """Place in (0, h) and value of the maximum of the cubic with these end values and slopes, rising, then falling."""
+    """Place in (0, h) and value of the maximum of the cubic with these end values
+    and slopes, rising, then falling.
+    """
     a = 2 * (f0 - f1) / h**3 + (s0 + s1) / h**2
     b = 3 * (f1 - f0) / h**2 - (2 * s0 + s1) / h
     root = b * b - 3 * a * s0
@@ -263,7 +272,9 @@ def cubic_top(f0: float, f1: float, s0: float, s1: float, h: float) -> tuple[flo
 def energies(
     scene: Scene, t: float, u: Array, v: Array, states: Sequence[State], works: Array
 ) -> dict[str, float]:
-    """Return all energies by name [F L]: the works so far, and what the present state holds and has lost."""
+    """Return all energies by name [F L]: the works so far,
+    and what the present state holds and has lost.
+    """
     laws = scene.structure.laws
     d = scene.law_rows @ u + scene.law_inputs @ scene.excitation.value(t) if laws else np.zeros(0)
     if scene.total:  # moved supports have mass and stretch elements too

@@ -1,4 +1,6 @@
-"""The scene in blocks: parts that move on their own between events, and their motion over a window of time."""
+"""The scene in blocks: parts that move on their own between events, and their motion over
+a window of time.
+"""
 
 from __future__ import annotations
 
@@ -116,7 +118,8 @@ class Partition:
             labels = lowest
 
     def form(self, branches: Sequence[Branch], u: Array, v: Array) -> None:
-        """Form the blocks that the branches ask for at displacement `u`, velocity `v`; keep those that go on.
+        """Form the blocks that the branches ask for at displacement `u`, velocity `v`;
+        keep those that go on.
 
         Raises
         ------
@@ -183,7 +186,8 @@ class Partition:
 
 
 class Window:
-    """The motion over a few intervals of equal length, within each of which the excitation is one polynomial.
+    """The motion over a few intervals of equal length, within each of which
+    the excitation is one polynomial.
 
     Parameters
     ----------
@@ -212,7 +216,9 @@ class Window:
             block.qs = flow.march(block.q, block.gs, length)
 
     def _supports(self, block: Block) -> Array:
-        """Forces of laws that reach to moved supports, whose deformation has a known part, (n, degree + 1, n_unknowns)."""
+        """Forces of laws that reach to moved supports, whose deformation has a known part,
+        (n, degree + 1, n_unknowns).
+        """
         scene, laws = self.partition.scene, block.regime.laws
         e = self.coefs @ scene.law_inputs[laws].T
         rate = np.zeros_like(e)
@@ -241,7 +247,9 @@ class Window:
         )
 
     def functionals(self, h: float, bending: bool) -> tuple[Array, Array, Array]:
-        """Value, rate and (with `bending`, else zero) second rate of all rows on `grid`, shape (n_rows, n_times)."""
+        """Value, rate and (with `bending`, else zero) second rate of all rows on `grid`,
+        shape (n_rows, n_times).
+        """
         part = self.partition
         n = self.intervals
         count = int(np.ceil(self.length / h * (1 - 1e-12)))
@@ -290,7 +298,9 @@ class Window:
         second[w] += v_p @ slope + u_p @ bend
 
     def at(self, row: int, tau: float) -> tuple[float, float, float]:
-        """Value, rate and second rate of one row at local time `tau`: what polishing asks for again and again."""
+        """Value, rate and second rate of one row at local time `tau`:
+        what polishing asks for again and again.
+        """
         value, rate, second = self._evaluate(tau, row)
         return float(value[0]), float(rate[0]), float(second[0])
 
@@ -372,7 +382,9 @@ class Window:
             block.q = self.state(block, interval, tau)
 
     def works(self, intervals: slice, length: float) -> tuple[Array, Array, dict[int, Array]]:
-        """Dashpots' work, input, and losses in contacts' dashpots by law, over `length` of some intervals each."""
+        """Dashpots' work, input, and losses in contacts' dashpots by law,
+        over `length` of some intervals each.
+        """
         scene = self.partition.scene
         count = len(range(*intervals.indices(self.intervals)))
         damping, input_, contacts = np.zeros(count), np.zeros(count), {}

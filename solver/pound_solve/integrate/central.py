@@ -1,13 +1,13 @@
 r"""CENTRAL: explicit central differences, events located within the step.
 
-Newmark's :math:`\beta = 0`, :math:`\gamma = \tfrac12` is the central difference method with a start of its own.
-It is stable for :math:`h < 2/\omega_{max}`; the limit is computed with every contact pressed and every spring elastic,
-and a longer step is refused.
+Newmark's :math:`\beta = 0`, :math:`\gamma = \tfrac12` is the central difference method
+with a start of its own.  It is stable for :math:`h < 2/\omega_{max}`; the limit is computed
+with every contact pressed and every spring elastic, and a longer step is refused.
 
 References
 ----------
-Chopra AK (2012), Dynamics of Structures, 4th edn, section 5.3; Hughes TJR (1987), The Finite Element Method,
-section 9.1 (the equivalence).
+Chopra AK (2012), Dynamics of Structures, 4th edn, section 5.3; Hughes TJR (1987),
+The Finite Element Method, section 9.1 (the equivalence).
 """
 
 from __future__ import annotations
@@ -25,7 +25,9 @@ from pound_solve.scene import Scene
 
 
 def limit(scene: Scene) -> float:
-    """Largest stable step [T]: 2 over the highest frequency with all contacts pressed and all springs elastic."""
+    """Largest stable step [T]: 2 over the highest frequency with all contacts pressed
+    and all springs elastic.
+    """
     stiffest = [s.facts["k"] if s.is_contact else s.k0 for s in scene.structure.laws]
     k = scene.stiffness + (scene.law_rows.T * stiffest) @ scene.law_rows
     omega = modes.solve(k, scene.mass).omega
@@ -38,21 +40,24 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     Raises
     ------
     Stop
-        Step above the stability limit, massless freedoms that cannot be condensed, or numbers beyond all bounds.
+        Step above the stability limit, massless freedoms that cannot be condensed,
+        or numbers beyond all bounds.
     """
     light = modes.massless(scene.mass)
     if light.any():
         raise Stop(
             "A505",
             0.0,
-            f"CENTRAL needs mass at {scene.name(int(np.argmax(light)))}: give it weight, or use EXACT or NEWMARK",
+            f"CENTRAL needs mass at {scene.name(int(np.argmax(light)))}: "
+            "give it weight, or use EXACT or NEWMARK",
         )
     longest = limit(scene)
     if options["DT"] > longest:
         raise Stop(
             "A502",
             0.0,
-            f"the step {options['DT']:g} is above the stability limit {longest:.4g}; EXACT needs no step, NEWMARK has no such limit",
+            f"the step {options['DT']:g} is above the stability limit {longest:.4g}; "
+            "EXACT needs no step, NEWMARK has no such limit",
         )
     stepper = Stepper(scene, start, watch, sink, options["DT"], 0.0, 0.5, "CENTRAL, central differences")
     outcome = stepper.run()

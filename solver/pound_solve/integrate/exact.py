@@ -1,18 +1,18 @@
 r"""EXACT: event-driven integration without a time step.
 
-Between events (a spring yields or unloads, a contact closes or opens) the scene is linear and its motion under
-piecewise-polynomial excitation is known in closed form (:mod:`~pound_solve.integrate.flow`).  So only the event
-times need finding: the exits of all laws are sampled with their slopes on a grid that resolves the fastest
-mode, bracketed by value and by slope (two crossings within one interval), and polished to the last digits
-(:mod:`~pound_solve.integrate.search`).  Peaks of drifts, spring deformations and contact forces are found the same
-way.
+Between events (a spring yields or unloads, a contact closes or opens) the scene is linear and its motion
+under piecewise-polynomial excitation is known in closed form (:mod:`~pound_solve.integrate.flow`).
+So only the event times need finding: the exits of all laws are sampled with their slopes on a grid
+that resolves the fastest mode, bracketed by value and by slope (two crossings within one interval),
+and polished to the last digits (:mod:`~pound_solve.integrate.search`).  Peaks of drifts,
+spring deformations and contact forces are found the same way.
 
 Parts of the structure that no closed contact joins are solved apart, each with its own modes for each
 combination of stiffnesses, kept for when it returns (:mod:`~pound_solve.integrate.blocks`).
 
-Energies are integrated independently of each other: the dashpots' work as the closed integral of
-:math:`v^T C v`, the input as that of :math:`v^T p`, the plastic work from the laws' slip.  Their sum against kinetic and
-strain energy is therefore a check of the whole integration.
+Energies are integrated independently of each other: the dashpots' work as the closed integral
+of :math:`v^T C v`, the input as that of :math:`v^T p`, the plastic work from the laws' slip.
+Their sum against kinetic and strain energy is therefore a check of the whole integration.
 """
 
 from __future__ import annotations
@@ -120,7 +120,8 @@ class Exact:
                     self.works,
                 )
             return cursor + 1
-        # twelve digits: intervals of equal length share their exponentials, whatever the rounding of the times
+        # twelve digits: intervals of equal length share their exponentials,
+        # whatever the rounding of the times
         length = float(f"{goals[cursor] - self.t:.12e}")
         h = self._grid_step(length)
         per_interval = int(np.ceil(length / h * (1 - 1e-12)))
@@ -170,7 +171,9 @@ class Exact:
         return cursor + interval
 
     def _grid_step(self, length: float) -> float:
-        """Step of the search grid: it resolves the fastest mode; a power of two, so that tables are found again."""
+        """Step of the search grid: it resolves the fastest mode; a power of two,
+        so that tables are found again.
+        """
         fastest = self.partition.fastest
         h = 2.0 ** np.ceil(np.log2(length / 8))
         return (
@@ -180,7 +183,9 @@ class Exact:
         )
 
     def _sample(self, window: Window, goals: Array, cursor: int, count: int) -> None:
-        """Hand out the samples at the ends of the first `count` intervals, with the work done until each."""
+        """Hand out the samples at the ends of the first `count` intervals,
+        with the work done until each.
+        """
         for i in range(count):
             if i == 0:
                 self._before = (
@@ -196,7 +201,9 @@ class Exact:
                 )
 
     def _work(self, window: Window, interval: int, tau: float, known: int | None = None) -> None:
-        """Add the work done over the first `tau` of an interval; `known` its place in what `_sample` has measured."""
+        """Add the work done over the first `tau` of an interval; `known` its place
+        in what `_sample` has measured.
+        """
         if tau <= 0.0:
             return
         scene = self.scene
@@ -218,7 +225,7 @@ class Exact:
                 lambda x: window.path(interval, x),
                 self.branches,
             )
-        self.works = self.works + [input_, damping, sum(contacts.values())]
+        self.works = self.works + np.array([input_, damping, sum(contacts.values())])
         for law, loss in contacts.items():
             self.ledger.peaks.dashpot_losses[law] += float(loss)
         for law, collision in self.ledger.open.items():
@@ -255,7 +262,8 @@ class Exact:
             s = self.laws[law]
             raise self.stop(
                 "A503",
-                f"{self.same_instant} changes at one instant, the last in element {s.element} ({s.rule}): {before} to {after.name}",
+                f"{self.same_instant} changes at one instant, "
+                f"the last in element {s.element} ({s.rule}): {before} to {after.name}",
             )
         self._form()
 
@@ -266,31 +274,24 @@ class Exact:
         search.widen(
             [*peaks.deformation, *peaks.watch], self.t, t, value, rate, lambda i, x: window.at(i, x)[:2]
         )
-        end = self.t + t[-1]
-        for i, b in enumerate(self.branches):
-            if b.damping == 0.0:  # without a dashpot the force peaks where the deformation does
-                for j in (int(value[i].argmax()), int(value[i].argmin())):
-                    peaks.force[i].take(b.force(float(value[i, j]), 0.0), self.t + float(t[j]))
-                top = peaks.deformation[i]
-                for d, at in ((top.high, top.t_high), (top.low, top.t_low)):
-                    if self.t <= at <= end:
-                        peaks.force[i].take(b.force(d, 0.0), at)
-        pressed = [i for i in self.ledger.open if self.branches[i].name == "pressed"]
-        if not pressed:
+        # forces of springs, and of contacts that are pressed: those go to the collision that runs
+        acting = [i for i, spring in enumerate(self.laws) if not spring.is_contact or i in self.ledger.open]
+        if not acting:
             return
         k, c, f0 = (
-            np.array([getattr(self.branches[i], x) for i in pressed])[:, None]
+            np.array([getattr(self.branches[i], x) for i in acting])[:, None]
             for x in ("stiffness", "damping", "force0")
         )
 
         def exact(i: int, tau: float) -> tuple[float, float]:
-            d, v, w = window.at(pressed[i], tau)
+            d, v, w = window.at(acting[i], tau)
             return float(k[i, 0] * d + c[i, 0] * v + f0[i, 0]), float(k[i, 0] * v + c[i, 0] * w)
 
-        force, slope = k * value[pressed] + c * rate[pressed] + f0, k * rate[pressed] + c * second[pressed]
-        search.widen([self.ledger.running(i) for i in pressed], self.t, t, force, slope, exact)
-        for i in pressed:
-            collision = self.ledger.open[i]
+        force, slope = k * value[acting] + c * rate[acting] + f0, k * rate[acting] + c * second[acting]
+        running = self.ledger.open
+        targets = [self.ledger.running(i) if i in running else peaks.force[i] for i in acting]
+        search.widen(targets, self.t, t, force, slope, exact)
+        for i, collision in running.items():
             peaks.force[i].take(collision.peak, collision.t_peak)
 
     def outcome(self) -> Outcome:

@@ -2,18 +2,19 @@ r"""Exact solution of a linear block between events.
 
 .. math:: M\ddot u + C\dot u + K u = p(t) = F s(t) + f, \qquad s(t)\ \text{polynomial in } t
 
-The massive freedoms are written in the undamped modes, :math:`u = \Phi\eta`, with the state
-:math:`z = (\omega\eta, \dot\eta)`, which balances displacement against velocity and leaves a nearly normal matrix.
+The massive freedoms are written in the undamped modes,
+:math:`u = \Phi\eta`, with the state :math:`z = (\omega\eta, \dot\eta)`,
+which balances displacement against velocity and leaves a nearly normal matrix.
 Its complex modes :math:`q` are uncoupled, :math:`\dot q_i = \lambda_i q_i + \sum_k g_{ik} t^k`, hence
 
 .. math:: q_i(t) = e^{\lambda_i t} q_i(0) + \sum_k g_{ik}\, t^{k+1} K_k(\lambda_i t)
 
-(:mod:`~pound_solve.integrate.phi`).  Undamped rigid-body modes are polynomials and are kept apart, so that the
-double eigenvalue zero of a plastic storey needs no special care.  Massless freedoms are eliminated: those that
-a dashpot moves keep a first-order state, the others follow statically.
+(:mod:`~pound_solve.integrate.phi`).  Undamped rigid-body modes are polynomials and are kept apart, so that
+the double eigenvalue zero of a plastic storey needs no special care.  Massless freedoms are eliminated:
+those that a dashpot moves keep a first-order state, the others follow statically.
 
-Where the modes do not span the space (critical damping, repeated defective eigenvalues) `SeriesFlow` takes over:
-the exponential series of the same matrix, exact to rounding as well, only slower.
+Where the modes do not span the space (critical damping, repeated defective eigenvalues)
+`SeriesFlow` takes over: the exponential series of the same matrix, exact to rounding as well, only slower.
 
 References
 ----------
@@ -50,7 +51,8 @@ class Mechanism(Exception):
 
 @dataclass(frozen=True)
 class StateSpace:
-    """First-order form of a block: ``z' = a z + b p``, ``u = u_z z + u_p p``, ``v = v_z z + v_p p + u_p p'``.
+    """First-order form of a block:
+    ``z' = a z + b p``, ``u = u_z z + u_p p``, ``v = v_z z + v_p p + u_p p'``.
 
     `enter` maps (u, v) to z: ``z = z_u u + z_v v``.  `rigid` lists pairs (displacement, velocity) of states
     that are undamped rigid-body modes.
@@ -86,7 +88,8 @@ def state_space(m: Array, c: Array, k: Array) -> StateSpace:
         return _second_order(m, c, k)
     z = np.flatnonzero(~heavy)
     h = np.flatnonzero(heavy)
-    # split the massless freedoms into what dashpots move (range of C) and what follows statically (its kernel)
+    # split the massless freedoms into what dashpots move (range of C)
+    # and what follows statically (its kernel)
     values, vectors = np.linalg.eigh(c[np.ix_(z, z)])
     damped = values > 1e-12 * max(np.abs(c).max(), 1e-300)
     basis = np.zeros((n, n))
@@ -158,8 +161,8 @@ def _undamped(m: Array, k: Array) -> tuple[Array, Array]:
         lower = np.linalg.inv(np.linalg.cholesky(m))
         values, vectors = np.linalg.eigh(lower @ k @ lower.T)
         phi_u = lower.T @ vectors
-    # all values carry the rounding of the largest: cleared of the fast modes, the slow ones are solved again
-    # among themselves (a light node beside heavy ones would cost the slow modes half their digits)
+    # all values carry the rounding of the largest: cleared of the fast modes, the slow ones are solved
+    # again among themselves (a light node beside heavy ones would cost the slow modes half their digits)
     slow = np.arange(len(values))
     # no further than their stiffness, as assembled, is known: what cancels in it is rounding
     while len(slow) and np.abs(values[slow]).max() > SLOW * _terms(phi_u[:, slow], k).max():
@@ -185,7 +188,8 @@ def _second_order(m: Array, c: Array, k: Array) -> StateSpace:
     still = omega2 == 0.0
     # among rigid-body modes those without damping are told from the others
     phi_u[:, still] = phi_u[:, still] @ np.linalg.eigh(phi_u[:, still].T @ c @ phi_u[:, still])[1]
-    # the scale of a rigid mode's displacement is free; that of a falling one (negative stiffness) is its rate
+    # the scale of a rigid mode's displacement is free; that of a falling one
+    # (negative stiffness) is its rate
     scale = np.sqrt(np.abs(omega2))
     scale[scale == 0.0] = min(1.0, np.sqrt(top)) if top else 1.0
     damping = phi_u.T @ c @ phi_u
@@ -239,7 +243,9 @@ class Flow:
         raise NotImplementedError
 
     def forcing(self, coefs: Array, constant: Array) -> NDArray[np.generic]:
-        """Return the forcing g of q, shape (..., degree + 1, n_q), from inputs' coefficients and a constant force."""
+        """Return the forcing g of q, shape (..., degree + 1, n_q), from inputs' coefficients
+        and a constant force.
+        """
         raise NotImplementedError
 
     def push(self, p: Array) -> NDArray[np.generic]:
@@ -250,12 +256,15 @@ class Flow:
         """Return the integral of q over (0, t)."""
         raise NotImplementedError
 
-    def sample(self, q: NDArray[np.generic], g: NDArray[np.generic], h: float, count: int) -> NDArray[np.generic]:
+    def sample(
+        self, q: NDArray[np.generic], g: NDArray[np.generic], h: float, count: int
+    ) -> NDArray[np.generic]:
         """Return q at 0, h, ..., (count - 1) h, shape (n_q, count)."""
         raise NotImplementedError
 
     def march(self, q: NDArray[np.generic], gs: NDArray[np.generic], h: float) -> NDArray[np.generic]:
-        """Return q at the ends of successive intervals of length `h`, shape (n_q, n + 1), the start included.
+        """Return q at the ends of successive intervals of length `h`, shape (n_q,
+        n + 1), the start included.
 
         `gs`, shape (n, degree + 1, n_q), holds the forcing of each interval about its own start.
         """
@@ -264,7 +273,9 @@ class Flow:
             out.append(self.at(out[-1], g, h))
         return np.stack(out, axis=1)
 
-    def samples(self, qs: NDArray[np.generic], gs: NDArray[np.generic], h: float, count: int) -> NDArray[np.generic]:
+    def samples(
+        self, qs: NDArray[np.generic], gs: NDArray[np.generic], h: float, count: int
+    ) -> NDArray[np.generic]:
         """Return `sample` for several intervals with starts `qs`, shape (n_q, n, count)."""
         return np.stack([self.sample(qs[:, i], g, h, count) for i, g in enumerate(gs)], axis=1)
 
@@ -308,8 +319,8 @@ class ModalFlow(Flow):
         lam, x = lam[keep], x[:, keep]
         paired = lam.imag > 0.0
         weight = np.where(paired, 2.0, 1.0)
-        # inverted as real and imaginary parts: a complex inverse keeps pairs conjugate only to rounding, which near
-        # critical damping costs the condition twice over
+        # inverted as real and imaginary parts: a complex inverse keeps pairs conjugate only to rounding,
+        # which near critical damping costs the condition twice over
         parts = np.hstack([x.real, x.imag[:, paired]])
         back = np.linalg.inv(parts)
         left = back[: len(lam)].astype(complex)
@@ -334,7 +345,9 @@ class ModalFlow(Flow):
         self._input = self._force @ inputs
         self.fastest = float(np.abs(lam).max(initial=0.0))
         self._tables: dict[tuple[float, int], tuple[int, Complex, Complex]] = {}
-        self._single: dict[tuple[float, int], tuple[Complex, Complex]] = {}  # responses at a few times that recur
+        self._single: dict[
+            tuple[float, int], tuple[Complex, Complex]
+        ] = {}  # responses at a few times that recur
 
     def enter(self, u: Array, v: Array) -> Complex:  # noqa: D102
         return self._enter_u @ u + self._enter_v @ v
@@ -492,7 +505,9 @@ class SeriesFlow(Flow):
                     term = term + local[j] * h ** (j + 1) / (j + 1)
                 total = total + term
                 j += 1
-                if j > len(local) and np.abs(term).max(initial=0.0) <= 1e-18 * np.abs(total).max(initial=0.0):
+                if j > len(local) and np.abs(term).max(initial=0.0) <= 1e-18 * np.abs(total).max(
+                    initial=0.0
+                ):
                     break
                 if j > 80:
                     break

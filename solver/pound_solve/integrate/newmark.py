@@ -24,7 +24,8 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
         raise Stop(
             "A505",
             0.0,
-            f"NEWMARK is stable for any step only with 2 BETA >= GAMMA >= 0.5, not {beta:g} and {gamma:g}; CENTRAL is the explicit method",
+            f"NEWMARK is stable for any step only with 2 BETA >= GAMMA >= 0.5, "
+            f"not {beta:g} and {gamma:g}; CENTRAL is the explicit method",
         )
     name = (
         "NEWMARK, average acceleration"

@@ -2,9 +2,9 @@ r"""Two families of integrals of the exponential against powers, for complex arg
 
 .. math:: K_k(z) = \int_0^1 e^{z(1-x)} x^k\,dx, \qquad J_k(z) = \int_0^1 e^{zx} x^k\,dx
 
-:math:`K_k = k!\,\varphi_{k+1}(z)` answers a mode under a force :math:`t^k` (Duhamel); :math:`J_k` integrates a mode
-against :math:`t^k`.  Both are summed as power series near zero and by their upward recurrences elsewhere:
-:math:`K_k = (k K_{k-1} - 1)/z`, :math:`J_k = (e^z - k J_{k-1})/z`.
+:math:`K_k = k!\,\varphi_{k+1}(z)` answers a mode under a force :math:`t^k` (Duhamel);
+:math:`J_k` integrates a mode against :math:`t^k`.  Both are summed as power series near zero and by their
+upward recurrences elsewhere: :math:`K_k = (k K_{k-1} - 1)/z`, :math:`J_k = (e^z - k J_{k-1})/z`.
 """
 
 from __future__ import annotations
@@ -36,7 +36,9 @@ def _series(degree: int, of_duhamel: bool) -> NDArray[np.float64]:
     out = np.empty((count, degree + 1))
     for k in range(degree + 1):
         for n in range(count):
-            out[n, k] = factorial(k) / factorial(n + k + 1) if of_duhamel else 1.0 / (factorial(n) * (n + k + 1))
+            out[n, k] = (
+                factorial(k) / factorial(n + k + 1) if of_duhamel else 1.0 / (factorial(n) * (n + k + 1))
+            )
     return out
 
 

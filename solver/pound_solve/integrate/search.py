@@ -51,6 +51,8 @@ def first_rise(t: Array, g: Array, slope: Array, tol: Array, exact: Exact) -> tu
                 if slope[n, 0] > 0.0:
                     return low, n  # it leaves at once
                 low = _dip(lambda x, n=n: exact(n, x)[0], low, high)  # type: ignore[misc]
+            if crossed[n, j] and low == t[j] and g[n, j] == 0.0:
+                return low, n  # it rises from the start, however slowly
             at = _root(lambda x, n=n: exact(n, x), low, high)  # type: ignore[misc]
             if best is None or at < best[0]:
                 best = at, n
@@ -153,7 +155,9 @@ def widen(peaks: Sequence[Peak], t0: float, t: Array, value: Array, rate: Array,
         top = cubic_top(f_low, f_high, s_low, s_high, float(t[j + 1] - t[j]))[1]
         if top + 0.02 * (top - max(f_low, f_high)) <= best:
             continue
-        at = turning(
-            lambda x, i=i, sign=sign: sign * exact(i, x)[1], float(t[j]), float(t[j + 1]), s_low, s_high
-        )  # type: ignore[misc]
+
+        def slope(x: float, i: int = i, sign: float = sign) -> float:
+            return sign * exact(i, x)[1]
+
+        at = turning(slope, float(t[j]), float(t[j + 1]), s_low, s_high)
         peaks[i].take(exact(i, at)[0], t0 + at)

@@ -3,14 +3,16 @@ r"""Step-by-step integration with events located within the step: what NEWMARK a
 Newmark's family with parameters :math:`\beta, \gamma`:
 
 .. math::
-    u_1 = u_0 + h v_0 + h^2[(\tfrac12-\beta) a_0 + \beta a_1], \qquad v_1 = v_0 + h[(1-\gamma) a_0 + \gamma a_1]
+    u_1 = u_0 + h v_0 + h^2[(\tfrac12-\beta) a_0 + \beta a_1], \qquad
+    v_1 = v_0 + h[(1-\gamma) a_0 + \gamma a_1]
 
-with equilibrium at the end of the step.  Between events the scene is linear, so a step needs no iteration.  When
-an exit of a law is passed within a step, the step is taken again, shorter, so that it ends on the exit (to 1e-12 of
-the step), the law changes branch, the acceleration is made consistent, and the rest of the step follows.
+with equilibrium at the end of the step.  Between events the scene is linear, so a step needs no iteration.
+When an exit of a law is passed within a step, the step is taken again, shorter, so that it ends
+on the exit (to 1e-12 of the step), the law changes branch, the acceleration is made consistent,
+and the rest of the step follows.
 
-Energies are integrated from velocities taken as straight lines over a step, not by the trapezoid rule of the
-method itself, which would balance for any step, right or wrong.
+Energies are integrated from velocities taken as straight lines over a step,
+not by the trapezoid rule of the method itself, which would balance for any step, right or wrong.
 
 References
 ----------
@@ -124,7 +126,9 @@ class Stepper:
         return p
 
     def settle(self) -> None:
-        """Make the acceleration (and the velocity of damped massless freedoms) consistent with the present regime."""
+        """Make the acceleration (and the velocity of damped massless freedoms)
+        consistent with the present regime.
+        """
         h, z = self.heavy, self.light
         force = self.force(self.t) - self.k @ self.u
         if z.any():
@@ -139,31 +143,25 @@ class Stepper:
 
     def step(self, h: float, keep: bool) -> Motion:
         """Return the motion one step `h` on; `keep` the inverse for the next step of this length."""
-        u, v, a, b, g = self.u, self.v, self.a, self.beta, self.gamma
-        m, c, k = self.scene.mass, self.c, self.k
-        p = self.force(self.t + h)
+        u, v, b, g = self.u, self.v, self.beta, self.gamma
+        # the acceleration is the unknown: a remainder of a step, however short, divides nothing by h^2
+        ahead = u + h * v + h * h * (0.5 - b) * self.a
+        faster = v + (1 - g) * h * self.a
+        rhs = self.scaled(self.force(self.t + h) - self.k @ ahead - self.c @ faster, h)
         inverse = self._maps.get((self.key, h)) if keep else None
-        if b == 0.0:
-            u1 = u + h * v + 0.5 * h * h * a
-            part = v + (1 - g) * h * a
-            rhs = p - k @ u1 - c @ part
-            a1 = inverse @ rhs if inverse is not None else self._solve(m + g * h * c, rhs, h, keep)
-            return u1, part + g * h * a1, a1
-        rhs = p + m @ (u / (b * h * h) + v / (b * h) + (0.5 / b - 1) * a)
-        rhs += c @ (g / (b * h) * u + (g / b - 1) * v + h * (0.5 * g / b - 1) * a)
-        u1 = (
-            inverse @ rhs
-            if inverse is not None
-            else self._solve(k + g / (b * h) * c + m / (b * h * h), rhs, h, keep)
-        )
-        a1 = (u1 - u) / (b * h * h) - v / (b * h) - (0.5 / b - 1) * a
-        return u1, v + h * ((1 - g) * a + g * a1), a1
+        if inverse is None:
+            matrix = self.scaled(self.scene.mass + g * h * self.c + b * h * h * self.k, h)
+            if keep:
+                inverse = self._maps[self.key, h] = np.asarray(np.linalg.inv(matrix), float)
+        a1 = np.linalg.solve(matrix, rhs) if inverse is None else inverse @ rhs
+        return ahead + b * h * h * a1, faster + g * h * a1, a1
 
-    def _solve(self, matrix: Array, rhs: Array, h: float, keep: bool) -> Array:
-        if not keep:
-            return np.linalg.solve(matrix, rhs)
-        self._maps[self.key, h] = np.linalg.inv(matrix)
-        return self._maps[self.key, h] @ rhs
+    def scaled(self, rows: Array, h: float) -> Array:
+        """Multiply the rows of massless freedoms so that they weigh as much as the others."""
+        if self.light.any():
+            rows = rows.copy()
+            rows[self.light] *= 1.0 / (self.beta * h * h)
+        return rows
 
     def deformations(self, t: float, u: Array, v: Array) -> tuple[Array, Array]:
         """Deformation and rate of every law."""
@@ -201,7 +199,8 @@ class Stepper:
         with np.errstate(over="ignore", invalid="ignore"):  # a runaway is told in words
             for goal, is_output in zip(*goals(self.scene, self.times)):
                 n = max(1, int(np.ceil((goal - self.t) / self.dt * (1 - 1e-9))))
-                # twelve digits: steps of equal length share their inverse, whatever the rounding of the times
+                # twelve digits: steps of equal length share their inverse,
+                # whatever the rounding of the times
                 h = float(f"{(goal - self.t) / n:.12e}")
                 for i in range(n):
                     self._advance(h if i < n - 1 else float(goal) - self.t, h)
@@ -334,7 +333,8 @@ class Stepper:
             s = self.laws[law]
             raise self.stop(
                 "A503",
-                f"{self.same_instant} changes within one step, the last in element {s.element} ({s.rule}): {before} to {after.name}",
+                f"{self.same_instant} changes within one step, "
+                f"the last in element {s.element} ({s.rule}): {before} to {after.name}",
             )
         self._regime()
         self.settle()
@@ -358,7 +358,7 @@ class Stepper:
             if self.law_c.any():
                 loss = h / 3 * self.law_c * (rate0 * rate0 + rate0 * rate1 + rate1 * rate1)
                 self.works[2] += float(loss.sum())
-                for law in np.flatnonzero(loss):
+                for law in np.flatnonzero(loss).tolist():
                     self.ledger.peaks.dashpot_losses[law] += float(loss[law])
             if self.ledger.open:
                 f0 = self._law_forces(self.t, self.u, self.v)
@@ -369,7 +369,9 @@ class Stepper:
         self.steps += 1
 
     def _total_work(self, h: float, new: Motion) -> None:
-        """Input (power of the supports' reactions) and dashpot work of a step in the total form, by the trapezoid."""
+        """Input (power of the supports' reactions) and dashpot work of a step
+        in the total form, by the trapezoid.
+        """
         scene, s = self.scene, self.scene.structure
         n = s.n_free
         for t, motion in ((self.t, (self.u, self.v, self.a)), (self.t + h, new)):
@@ -388,7 +390,9 @@ class Stepper:
         return self.law_k * d + self.law_c * rate + self.law_f0
 
     def _watched(self) -> tuple[Array, Array, Array]:
-        """Values and slopes of all quantities whose peaks are kept: drifts, deformations, contact forces; law rates."""
+        """Values and slopes of all quantities whose peaks are kept: drifts, deformations,
+        contact forces; law rates.
+        """
         w, s = self.watch, self.scene
         value, slope = w.rows @ self.u + w.constants, w.rows @ self.v
         if s.total:
@@ -405,16 +409,18 @@ class Stepper:
         return np.concatenate([value, d, force]), np.concatenate([slope, rate, change]), rate
 
     def _note(self, since: float = 0.0) -> None:
-        """Count the present motion into the peaks; `since` the last note on the same branches, turning points too."""
+        """Count the present motion into the peaks; `since` the last note
+        on the same branches, turning points too.
+        """
         value, slope, _ = self._watched()
         for i, x in enumerate(value.tolist()):
             self._take(i, x, self.t)
         if since > 0.0:
             f0, s0 = self._noted
-            for i in np.flatnonzero(s0 * slope < 0):
+            for i in np.flatnonzero(s0 * slope < 0).tolist():
                 sign = 1.0 if s0[i] > 0 else -1.0
                 x, top = cubic_top(sign * f0[i], sign * value[i], sign * s0[i], sign * slope[i], since)
-                self._take(int(i), sign * top, self.t - since + x)
+                self._take(i, sign * top, self.t - since + x)
         self._noted = value, slope
 
     def _take(self, i: int, value: float, t: float) -> None:

@@ -5,13 +5,13 @@ Split each mode into a free and a forced part, :math:`q_i = c_i e^{\lambda_i t} 
 
 .. math:: \int_0^\tau v^T C v\,dt
 
-has free-free terms :math:`c_i c_j S_{ij}(e^{(\lambda_i+\lambda_j)\tau}-1)/(\lambda_i+\lambda_j)`, free-forced terms through the
-moments :math:`\int t^k e^{\lambda t}`, and forced-forced terms that are plain polynomials.  No balance of energy is used, so
-the sum of all energies remains a check.
+has free-free terms :math:`c_i c_j S_{ij}(e^{(\lambda_i+\lambda_j)\tau}-1)/(\lambda_i+\lambda_j)`,
+free-forced terms through the moments :math:`\int t^k e^{\lambda t}`, and forced-forced terms that are
+plain polynomials.  No balance of energy is used, so the sum of all energies remains a check.
 
-Modes that hardly change over the interval are polynomials as a whole.  For forces above the first degree, and
-where the modes are nearly or fully defective, Gauss quadrature on a grid that
-resolves the fastest mode takes its place.
+Modes that hardly change over the interval are polynomials as a whole.
+For forces above the first degree, and where the modes are nearly or fully defective,
+Gauss quadrature on a grid that resolves the fastest mode takes its place.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ Complex = NDArray[np.complex128]
 SLOW = 0.1  #: modes with |eigenvalue| times interval below this are expanded in powers of time
 TERMS = 11  #: of that expansion, beyond the force's own
 MOST_SQUARED = 3e3  #: condition of the modes up to which their products are used
+
 
 class Work(NamedTuple):
     """Dissipation in dashpots, input, and for each pressed contact (law, loss) [F L]."""
@@ -65,12 +66,18 @@ class Meter:
     """
 
     def __init__(
-        self, flow: ModalFlow | SeriesFlow, damping: Array, inputs: Array, contacts: list[tuple[int, float, Array]]
+        self,
+        flow: ModalFlow | SeriesFlow,
+        damping: Array,
+        inputs: Array,
+        contacts: list[tuple[int, float, Array]],
     ) -> None:
         self.flow, self.inputs, self.contacts, self.damping_matrix = flow, inputs, contacts, damping
         self.damped = bool(np.any(damping))
         # the quadratic forms lose the square of the modes' condition
-        self.closed_form = isinstance(flow, ModalFlow) and flow.u_p is None and flow.condition < MOST_SQUARED
+        self.closed_form = (
+            isinstance(flow, ModalFlow) and flow.u_p is None and flow.condition < MOST_SQUARED
+        )
         if not isinstance(flow, ModalFlow) or not self.closed_form:
             return
         v = flow.v_q
@@ -92,7 +99,9 @@ class Meter:
         return v, r1, r2, c
 
     def _split(self, qs: Complex, gs: Complex, tau: float) -> tuple[Complex, Complex, Complex, Complex]:
-        """Free amplitudes at 0 and tau (n_q, n), forced polynomials (powers, n_q, n), moments (powers, n_q)."""
+        """Free amplitudes at 0 and tau (n_q, n), forced polynomials (powers, n_q,
+        n), moments (powers, n_q).
+        """
         degree = gs.shape[1] - 1
         g = gs.transpose(1, 2, 0)
         slow, grown, moments = self._responses(tau, degree)
@@ -126,7 +135,13 @@ class Meter:
         return found
 
     def measure(
-        self, q: NDArray[Any], g: NDArray[Any], tau: float, coefs: Array, constant: Array, p: Array | None = None
+        self,
+        q: NDArray[Any],
+        g: NDArray[Any],
+        tau: float,
+        coefs: Array,
+        constant: Array,
+        p: Array | None = None,
     ) -> Work:
         """Return the work over (0, tau).
 
@@ -142,10 +157,20 @@ class Meter:
             Force polynomials on the unknowns, where massless freedoms need them.
         """
         out = self.measures(q[:, None], g[None], tau, coefs[None], constant, None if p is None else p[None])
-        return Work(float(out.damping[0]), float(out.input[0]), [(law, float(loss[0])) for law, loss in out.contacts])
+        return Work(
+            float(out.damping[0]),
+            float(out.input[0]),
+            [(law, float(loss[0])) for law, loss in out.contacts],
+        )
 
     def measures(
-        self, qs: NDArray[Any], gs: NDArray[Any], tau: float, coefs: Array, constant: Array, ps: Array | None = None
+        self,
+        qs: NDArray[Any],
+        gs: NDArray[Any],
+        tau: float,
+        coefs: Array,
+        constant: Array,
+        ps: Array | None = None,
     ) -> Works:
         """Return `measure` for several intervals of length `tau` at once.
 
@@ -159,26 +184,41 @@ class Meter:
         """
         if not self.closed_form or gs.shape[1] > 2:
             each = [
-                self._quadrature(qs[:, i], gs[i], tau, coefs[i], constant, None if ps is None else ps[i]) for i in range(len(gs))
+                self._quadrature(qs[:, i], gs[i], tau, coefs[i], constant, None if ps is None else ps[i])
+                for i in range(len(gs))
             ]
-            losses = [(law, np.array([w.contacts[n][1] for w in each])) for n, (law, _, _) in enumerate(self.contacts)]
+            losses = [
+                (law, np.array([w.contacts[n][1] for w in each]))
+                for n, (law, _, _) in enumerate(self.contacts)
+            ]
             return Works(np.array([w.damping for w in each]), np.array([w.input for w in each]), losses)
         c0, c1, forced, moments = self._split(qs, gs, tau)
-        loss = sum((self._loss(form, c0, c1, forced, moments, tau) for form in self.forms), np.zeros(len(gs)))
+        loss = sum(
+            (self._loss(form, c0, c1, forced, moments, tau) for form in self.forms), np.zeros(len(gs))
+        )
         contacts = [
-            (law, self._loss(form, c0, c1, forced, moments, tau)) for (law, _, _), form in zip(self.contacts, self.contact_forms)
+            (law, self._loss(form, c0, c1, forced, moments, tau))
+            for (law, _, _), form in zip(self.contacts, self.contact_forms)
         ]
         # input: sum over inputs j and powers k of coefs[k, j] * integral t^k F_j^T v
         total = np.zeros(len(gs))
         for k in range(coefs.shape[1]):
-            integral = c0 * moments[k][:, None] + sum(forced[j] * tau ** (j + k + 1) / (j + k + 1) for j in range(len(forced)))
+            integral = c0 * moments[k][:, None] + sum(
+                forced[j] * tau ** (j + k + 1) / (j + k + 1) for j in range(len(forced))
+            )
             total += np.einsum("ij,ji->i", coefs[:, k], (self.power_rows @ integral).real)
             if k == 0 and constant.any():
                 total += constant @ (self.flow.v_q @ integral).real
         return Works(loss, total, contacts)
 
     def _loss(
-        self, form: tuple[Complex, Complex, Complex, Array], c0: Complex, c1: Complex, p: Complex, moments: Complex, tau: float
+        self,
+        form: tuple[Complex, Complex, Complex, Array],
+        c0: Complex,
+        c1: Complex,
+        p: Complex,
+        moments: Complex,
+        tau: float,
     ) -> Array:
         v, r1, r2, c = form
         # v = Re(V q): v^T C v = (q^T S1 q + q^H S2 q) / 2, real part
@@ -192,13 +232,19 @@ class Meter:
                 loss += (y * x).sum(axis=0) * (tau ** (j + k + 1) / (j + k + 1))
         return loss
 
-    def _quadrature(self, q: NDArray[Any], g: NDArray[Any], tau: float, coefs: Array, constant: Array, p: Array | None) -> Work:
+    def _quadrature(
+        self, q: NDArray[Any], g: NDArray[Any], tau: float, coefs: Array, constant: Array, p: Array | None
+    ) -> Work:
         w, points = gauss(tau, self.flow.fastest)
         v = (self.flow.v_q @ self.flow.path(q, g, points)).real
         if self.flow.u_p is not None and p is not None:
-            value, slope = (np.array([polynomial.value(p, float(x), order) for x in points]).T for order in (0, 1))
+            value, slope = (
+                np.array([polynomial.value(p, float(x), order) for x in points]).T for order in (0, 1)
+            )
             v += self.flow.space.v_p @ value + self.flow.u_p @ slope
-        force = constant[:, None] + self.inputs @ np.einsum("kj,kt->jt", coefs, powers(points, len(coefs) - 1))
+        force = constant[:, None] + self.inputs @ np.einsum(
+            "kj,kt->jt", coefs, powers(points, len(coefs) - 1)
+        )
         loss = float(np.einsum("it,ij,jt,t->", v, self.damping_matrix, v, w)) if self.damped else 0.0
         contacts = [(law, float(c * (w @ (row @ v) ** 2))) for law, c, row in self.contacts]
         return Work(loss, float(np.einsum("it,it,t->", v, force, w)), contacts)
@@ -214,7 +260,8 @@ def total_work(
 ) -> tuple[float, float]:
     """Return input and dashpot work over a segment in the total form.
 
-    The input is the power of the supports, their reactions times their velocities, and of the constant loads.
+    The input is the power of the supports, their reactions times their velocities,
+    and of the constant loads.
 
     Parameters
     ----------
@@ -234,9 +281,18 @@ def total_work(
     w, x = gauss(tau, fastest)
     inputs = [np.array([polynomial.value(coefs, float(y), order) for y in x]).T for order in range(3)]
     u, v, a = path(x)
-    k, c, f0 = (np.array([getattr(b, name) for b in branches])[:, None] for name in ("stiffness", "damping", "force0"))
-    law = k * (scene.law_rows @ u + scene.law_inputs @ inputs[0]) + c * (scene.law_rows @ v + scene.law_inputs @ inputs[1]) + f0
+    k, c, f0 = (
+        np.array([getattr(b, name) for b in branches])[:, None]
+        for name in ("stiffness", "damping", "force0")
+    )
+    law = (
+        k * (scene.law_rows @ u + scene.law_inputs @ inputs[0])
+        + c * (scene.law_rows @ v + scene.law_inputs @ inputs[1])
+        + f0
+    )
     u, v, a = (scene.expanded(y, s, order) for order, (y, s) in enumerate(zip((u, v, a), inputs)))
-    force = structure.stiffness @ u + structure.damping @ v + structure.mass @ a + structure.law_rows.T @ law
+    force = (
+        structure.stiffness @ u + structure.damping @ v + structure.mass @ a + structure.law_rows.T @ law
+    )
     power = (force[n:] * v[n:]).sum(axis=0) + structure.loads[:n] @ v[:n]
     return float(w @ power), float(w @ (v * (structure.damping @ v)).sum(axis=0))
