@@ -248,9 +248,9 @@ class Course:
                     if e.high != 0.0 or e.low != 0.0:
                         unit = units.text(dimension if axis < 2 else dimension.replace("L", "rad"))
                         rows.append((node, "XYR"[axis], word, unit, e.high, e.t_high, e.low, e.t_low))
-        relative = "displacements and velocities are relative to the ground, accelerations are total"
+        relative = "displacements and velocities are relative to the ground, accelerations are total."
         w.table(
-            "node_envelope", rows, "at the output times; " + ("all are total" if place.total else relative)
+            "node_envelope", rows, "At the output times; " + ("all are total." if place.total else relative)
         )
         w.table(
             "member_envelope",
@@ -258,7 +258,7 @@ class Course:
                 (o.element, o.quantity, units.text(o.unit), e.high, e.t_high, e.low, e.t_low)
                 for o, e in zip(recorder.outputs, recorder.output_extremes)
             ],
-            "at the output times",
+            "At the output times.",
         )
         energy, input_ = recorder.last_energy, recorder.last_energy["input"]
         first = recorder.first_energy or energy
@@ -274,12 +274,12 @@ class Course:
                 for k in ENERGIES
             ]
             + [("residual", recorder.residual(energy), recorder.residual(energy) * share)],
-            "changes since the start" + ("" if place.total else ", of the motion relative to the ground"),
+            "Changes since the start" + ("." if place.total else ", of the motion relative to the ground."),
         )
         if outcome is None:
             return
         exact = str(outcome.figures.get("method", "")).startswith("EXACT")
-        how = "exact peaks" if exact else "at the ends of the steps"
+        how = "Peaks are exact." if exact else "Peaks are those of the steps, interpolated between them."
         peaks = outcome.peaks
         w.table(
             "drift_envelope",
@@ -332,7 +332,7 @@ class Course:
                 )
             )
         w.table("spring_envelope", spring_rows, how)
-        w.table("contact_summary", contact_rows, how + "; a closure that has not ended counts")
+        w.table("contact_summary", contact_rows, how + " A closure that has not ended counts.")
         ordered = sorted(peaks.collisions, key=lambda c: (c.t_start, c.law))
         w.table(
             "collisions",

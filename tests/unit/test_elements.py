@@ -144,7 +144,7 @@ def contact(ends="1 2", angle="", fix1="", fix2="", fix3="FIX=XYR"):
 
 
 def test_the_normal_points_from_i_to_j():
-    s, spring = contact()
+    _, spring = contact()
     assert dict(zip(spring.freedoms, spring.row)) == pytest.approx(
         {(1, 0): 0.6, (1, 1): 0.8, (2, 0): -0.6, (2, 1): -0.8}
     )

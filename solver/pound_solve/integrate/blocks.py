@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pound_solve import polynomial
 from pound_solve.integrate import work
-from pound_solve.integrate.flow import Mechanism, ModalFlow, SeriesFlow, make_flow
+from pound_solve.integrate.flow import Flow, Mechanism, make_flow
 from pound_solve.laws import Branch
 from pound_solve.scene import Scene
 
@@ -40,7 +40,7 @@ class Regime:
 
     index: NDArray[np.intp]
     laws: NDArray[np.intp]
-    flow: ModalFlow | SeriesFlow
+    flow: Flow
     watched: NDArray[np.intp]
     place: list[int]
     rows: Array
@@ -284,10 +284,10 @@ class Window:
                 self._direct(block, t, value, rate, second)
         return value, rate, second
 
-    def _direct(self, block: Block, t: Array, value: Array, rate: Array, second: Array) -> None:
+    def _direct(self, block: Block, t: NDArray[Any], value: Array, rate: Array, second: Array) -> None:
         """Add what forces on massless freedoms move directly."""
         flow, w = block.regime.flow, block.regime.watched
-        assert block.ps is not None and flow.u_p is not None
+        assert block.ps is not None and flow.u_p is not None and flow.space.v_p is not None
         u_p, v_p = block.regime.rows @ flow.u_p, block.regime.rows @ flow.space.v_p
         times = [(i, x) for i in range(self.intervals) for x in t] + [(self.intervals - 1, self.length)]
         force, slope, bend = (
@@ -336,6 +336,7 @@ class Window:
             second[to] += (on_v @ r.flow.rate(q, block.gs[i], tau)).real
             if block.ps is not None and r.flow.u_p is not None:
                 force, slope, bend = (polynomial.value(block.ps[i], tau, order) for order in (0, 1, 2))
+                assert r.flow.space.v_p is not None  # stands where u_p does
                 u_p, v_p = r.rows[own] @ r.flow.u_p, r.rows[own] @ r.flow.space.v_p
                 value[to] += u_p @ force
                 rate[to] += v_p @ force + u_p @ slope
@@ -373,7 +374,7 @@ class Window:
     def state(self, block: Block, interval: int, tau: float) -> NDArray[Any]:
         """State q of a block at `tau` within an interval."""
         if tau == self.length:
-            return block.qs[:, interval + 1]  # type: ignore[no-any-return]
+            return block.qs[:, interval + 1]
         return block.regime.flow.at(block.qs[:, interval], block.gs[interval], tau)
 
     def accept(self, interval: int, tau: float) -> None:
@@ -387,7 +388,8 @@ class Window:
         """
         scene = self.partition.scene
         count = len(range(*intervals.indices(self.intervals)))
-        damping, input_, contacts = np.zeros(count), np.zeros(count), {}
+        damping, input_ = np.zeros(count), np.zeros(count)
+        contacts: dict[int, Array] = {}
         for block in self.partition.blocks:
             r = block.regime
             if scene.total and not r.meter.contacts:

@@ -2,10 +2,10 @@ r"""Exact solution of a linear block between events.
 
 .. math:: M\ddot u + C\dot u + K u = p(t) = F s(t) + f, \qquad s(t)\ \text{polynomial in } t
 
-The massive freedoms are written in the undamped modes,
-:math:`u = \Phi\eta`, with the state :math:`z = (\omega\eta, \dot\eta)`,
-which balances displacement against velocity and leaves a nearly normal matrix.
-Its complex modes :math:`q` are uncoupled, :math:`\dot q_i = \lambda_i q_i + \sum_k g_{ik} t^k`, hence
+The massive freedoms are written in the undamped modes, :math:`u = \Phi\eta`,
+with the state :math:`z = (\omega\eta, \dot\eta)`, which balances displacement
+against velocity and leaves a nearly normal matrix.  Its complex modes :math:`q` are uncoupled,
+:math:`\dot q_i = \lambda_i q_i + \sum_k g_{ik} t^k`, hence
 
 .. math:: q_i(t) = e^{\lambda_i t} q_i(0) + \sum_k g_{ik}\, t^{k+1} K_k(\lambda_i t)
 
@@ -25,6 +25,7 @@ accelerograms); Foss KA (1958), J. Appl. Mech. 25: 361-364 (complex modes of dam
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -223,11 +224,15 @@ class Flow:
         Largest |eigenvalue| [1/T]: what the sampling grid must resolve.
     u_q, v_q : ndarray, shape (n, n_q)
         ``u = Re(u_q q) + u_p p``, ``v = Re(v_q q) + v_p p + u_p p'``.
+    condition, residual : float
+        Of the matrix of modes; of its eigenvectors, relative to `fastest`.
     """
 
     fastest: float
-    u_q: NDArray[np.generic]
-    v_q: NDArray[np.generic]
+    condition: float
+    residual: float
+    u_q: NDArray[Any]
+    v_q: NDArray[Any]
 
     def __init__(self, space: StateSpace, inputs: Array) -> None:
         self.space = space
@@ -238,33 +243,31 @@ class Flow:
         """Direct share of the forces in the displacements (massless freedoms), or None."""
         return self.space.u_p
 
-    def enter(self, u: Array, v: Array) -> NDArray[np.generic]:
+    def enter(self, u: Array, v: Array) -> NDArray[Any]:
         """Return q at a given displacement and velocity."""
         raise NotImplementedError
 
-    def forcing(self, coefs: Array, constant: Array) -> NDArray[np.generic]:
+    def forcing(self, coefs: Array, constant: Array) -> NDArray[Any]:
         """Return the forcing g of q, shape (..., degree + 1, n_q), from inputs' coefficients
         and a constant force.
         """
         raise NotImplementedError
 
-    def push(self, p: Array) -> NDArray[np.generic]:
+    def push(self, p: Array) -> NDArray[Any]:
         """Return the forcing of q from force polynomials, shape (..., degree + 1, n)."""
         raise NotImplementedError
 
-    def integral(self, q: NDArray[np.generic], g: NDArray[np.generic], t: float) -> NDArray[np.generic]:
+    def integral(self, q: NDArray[Any], g: NDArray[Any], t: float) -> NDArray[Any]:
         """Return the integral of q over (0, t)."""
         raise NotImplementedError
 
-    def sample(
-        self, q: NDArray[np.generic], g: NDArray[np.generic], h: float, count: int
-    ) -> NDArray[np.generic]:
+    def sample(self, q: NDArray[Any], g: NDArray[Any], h: float, count: int) -> NDArray[Any]:
         """Return q at 0, h, ..., (count - 1) h, shape (n_q, count)."""
         raise NotImplementedError
 
-    def march(self, q: NDArray[np.generic], gs: NDArray[np.generic], h: float) -> NDArray[np.generic]:
-        """Return q at the ends of successive intervals of length `h`, shape (n_q,
-        n + 1), the start included.
+    def march(self, q: NDArray[Any], gs: NDArray[Any], h: float) -> NDArray[Any]:
+        """Return q at the ends of successive intervals of length `h`,
+        shape (n_q, n + 1), the start included.
 
         `gs`, shape (n, degree + 1, n_q), holds the forcing of each interval about its own start.
         """
@@ -273,30 +276,28 @@ class Flow:
             out.append(self.at(out[-1], g, h))
         return np.stack(out, axis=1)
 
-    def samples(
-        self, qs: NDArray[np.generic], gs: NDArray[np.generic], h: float, count: int
-    ) -> NDArray[np.generic]:
+    def samples(self, qs: NDArray[Any], gs: NDArray[Any], h: float, count: int) -> NDArray[Any]:
         """Return `sample` for several intervals with starts `qs`, shape (n_q, n, count)."""
         return np.stack([self.sample(qs[:, i], g, h, count) for i, g in enumerate(gs)], axis=1)
 
-    def rates(self, samples: NDArray[np.generic], gs: NDArray[np.generic], t: Array) -> NDArray[np.generic]:
+    def rates(self, samples: NDArray[Any], gs: NDArray[Any], t: NDArray[Any]) -> NDArray[Any]:
         """Return `rate` for the samples of several intervals at local times `t`, same shape."""
         return np.stack([self.rate(samples[:, i], g, t) for i, g in enumerate(gs)], axis=1)
 
-    def at(self, q: NDArray[np.generic], g: NDArray[np.generic], t: float) -> NDArray[np.generic]:
+    def at(self, q: NDArray[Any], g: NDArray[Any], t: float) -> NDArray[Any]:
         """Return q at one time `t`."""
         raise NotImplementedError
 
-    def path(self, q: NDArray[np.generic], g: NDArray[np.generic], times: Array) -> NDArray[np.generic]:
+    def path(self, q: NDArray[Any], g: NDArray[Any], times: Array) -> NDArray[Any]:
         """Return q at rising `times`, shape (n_q, n_times)."""
         raise NotImplementedError
 
-    def rate(self, q: NDArray[np.generic], g: NDArray[np.generic], t: Array | float) -> NDArray[np.generic]:
+    def rate(self, q: NDArray[Any], g: NDArray[Any], t: Array | float) -> NDArray[Any]:
         """Return dq/dt of samples `q` at times `t`."""
         raise NotImplementedError
 
 
-def powers(t: Array | float, degree: int) -> Array:
+def powers(t: NDArray[Any] | float, degree: int) -> Array:
     """Return t^0 .. t^degree, shape (degree + 1, ...)."""
     return np.stack([np.asarray(t, float) ** k for k in range(degree + 1)])
 
@@ -330,12 +331,12 @@ class ModalFlow(Flow):
         self.a_rows = np.arange(ne, ne + nr)  # displacements of rigid modes among q
         self.b_rows = np.arange(ne + nr, ne + 2 * nr)  # their velocities
         self.scale = np.array([space.a[i, j] for i, j in space.rigid])
-        self.lam = np.concatenate([lam, np.zeros(2 * nr)])
-        x_full = np.zeros((len(space.a), ne + 2 * nr), complex)
+        self.lam: Complex = np.concatenate([lam, np.zeros(2 * nr)])
+        x_full: Complex = np.zeros((len(space.a), ne + 2 * nr), complex)
         x_full[np.ix_(rest, range(ne))] = x * weight
         x_full[rigid_u, self.a_rows] = 1.0
         x_full[rigid_v, self.b_rows] = 1.0
-        left_full = np.zeros((ne + 2 * nr, len(space.a)), complex)
+        left_full: Complex = np.zeros((ne + 2 * nr, len(space.a)), complex)
         left_full[np.ix_(range(ne), rest)] = left
         left_full[self.a_rows, rigid_u] = 1.0
         left_full[self.b_rows, rigid_v] = 1.0
@@ -345,9 +346,8 @@ class ModalFlow(Flow):
         self._input = self._force @ inputs
         self.fastest = float(np.abs(lam).max(initial=0.0))
         self._tables: dict[tuple[float, int], tuple[int, Complex, Complex]] = {}
-        self._single: dict[
-            tuple[float, int], tuple[Complex, Complex]
-        ] = {}  # responses at a few times that recur
+        # responses at a few times that recur
+        self._single: dict[tuple[float, int], tuple[Complex, Complex]] = {}
 
     def enter(self, u: Array, v: Array) -> Complex:  # noqa: D102
         return self._enter_u @ u + self._enter_v @ v
@@ -360,7 +360,7 @@ class ModalFlow(Flow):
     def push(self, p: Array) -> Complex:  # noqa: D102
         return p @ self._force.T
 
-    def integral(self, q: Complex, g: Complex, t: float) -> Complex:  # type: ignore[override]  # noqa: D102
+    def integral(self, q: Complex, g: Complex, t: float) -> Complex:  # noqa: D102
         kernels = phi.duhamel(self.lam * t, len(g))
         out = t * kernels[0] * q
         for k in range(len(g)):
@@ -372,7 +372,7 @@ class ModalFlow(Flow):
                 out[a] += s * g[k][b] * t ** (k + 3) / ((k + 1) * (k + 2) * (k + 3))
         return out
 
-    def _responses(self, t: Array, degree: int) -> tuple[Complex, Complex]:
+    def _responses(self, t: NDArray[Any], degree: int) -> tuple[Complex, Complex]:
         z = self.lam[:, None] * t
         e = np.exp(z)
         # t^(k+1) K_k(lam t), shape (degree + 1, n_q, n_t)
@@ -380,7 +380,8 @@ class ModalFlow(Flow):
 
     def _table(self, h: float, count: int, degree: int) -> tuple[Complex, Complex]:
         """Responses at 0, h, ..., (count - 1) h, kept."""
-        n, e, tables = self._tables.get((h, degree), (0, None, None))
+        none: tuple[int, Any, Any] = (0, None, None)
+        n, e, tables = self._tables.get((h, degree), none)
         if n < count:
             n = max(count, 16)
             e, tables = self._responses(h * np.arange(n), degree)
@@ -397,10 +398,10 @@ class ModalFlow(Flow):
                 self._single[t, degree] = found
         return found
 
-    def sample(self, q: Complex, g: Complex, h: float, count: int) -> Complex:  # type: ignore[override]  # noqa: D102
+    def sample(self, q: Complex, g: Complex, h: float, count: int) -> Complex:  # noqa: D102
         return self.samples(q[:, None], g[None], h, count)[:, 0]
 
-    def samples(self, qs: Complex, gs: Complex, h: float, count: int) -> Complex:  # type: ignore[override]  # noqa: D102
+    def samples(self, qs: Complex, gs: Complex, h: float, count: int) -> Complex:  # noqa: D102
         e, tables = self._table(h, count, gs.shape[1] - 1)
         out = e[:, None, :] * qs[:, :, None]
         for k in range(gs.shape[1]):
@@ -408,7 +409,7 @@ class ModalFlow(Flow):
         self._drift(out, qs, gs, h * np.arange(count))
         return out
 
-    def at(self, q: Complex, g: Complex, t: float) -> Complex:  # type: ignore[override]  # noqa: D102
+    def at(self, q: Complex, g: Complex, t: float) -> Complex:  # noqa: D102
         e, table = self._once(t, len(g) - 1)
         out = e * q + (table * g).sum(axis=0)
         if len(self.a_rows):
@@ -417,7 +418,7 @@ class ModalFlow(Flow):
             out = out[:, 0, 0]
         return out
 
-    def march(self, q: Complex, gs: Complex, h: float) -> Complex:  # type: ignore[override]  # noqa: D102
+    def march(self, q: Complex, gs: Complex, h: float) -> Complex:  # noqa: D102
         if len(self.a_rows):
             return super().march(q, gs, h)
         e, table = self._once(h, gs.shape[1] - 1)
@@ -428,13 +429,13 @@ class ModalFlow(Flow):
             out[:, i + 1] = q = e * q + push
         return out
 
-    def path(self, q: Complex, g: Complex, times: Array) -> Complex:  # type: ignore[override]  # noqa: D102
+    def path(self, q: Complex, g: Complex, times: Array) -> Complex:  # noqa: D102
         e, table = self._responses(times, len(g) - 1)
         out = (e * q[:, None] + np.einsum("kit,ki->it", table, g))[:, None]
         self._drift(out, q[:, None], g[None], times)
         return out[:, 0]
 
-    def _drift(self, out: Complex, qs: Complex, gs: Complex, t: Array) -> None:
+    def _drift(self, out: Complex, qs: Complex, gs: Complex, t: NDArray[Any]) -> None:
         """Add what rigid-body velocities and forces do to rigid-body displacements, shape (n_q, n, n_t)."""
         if len(self.a_rows):
             a, b, s = self.a_rows, self.b_rows, self.scale[:, None, None]
@@ -442,12 +443,12 @@ class ModalFlow(Flow):
             for k in range(gs.shape[1]):
                 out[a] += s * gs[:, k, b].T[:, :, None] * t ** (k + 2) / ((k + 1) * (k + 2))
 
-    def rate(self, q: Complex, g: Complex, t: Array | float) -> Complex:  # type: ignore[override]  # noqa: D102
+    def rate(self, q: Complex, g: Complex, t: Array | float) -> Complex:  # noqa: D102
         one = q.ndim == 1
         out = self.rates(q[:, None, None] if one else q[:, None], g[None], np.atleast_1d(t))[:, 0]
         return out[:, 0] if one else out
 
-    def rates(self, samples: Complex, gs: Complex, t: Array) -> Complex:  # type: ignore[override]  # noqa: D102
+    def rates(self, samples: Complex, gs: Complex, t: NDArray[Any]) -> Complex:  # noqa: D102
         out = self.lam[:, None, None] * samples
         for k in range(gs.shape[1]):
             out += gs[:, k].T[:, :, None] * t**k
@@ -479,11 +480,11 @@ class SeriesFlow(Flow):
     def push(self, p: Array) -> Array:  # noqa: D102
         return p @ self.space.b.T
 
-    def integral(self, q: Array, g: Array, t: float) -> Array:  # type: ignore[override]  # noqa: D102
+    def integral(self, q: Array, g: Array, t: float) -> Array:  # noqa: D102
         w, points = gauss(t, self.fastest)
         return self.path(q, g, points) @ w
 
-    def path(self, q: Array, g: Array, times: Array) -> Array:  # type: ignore[override]  # noqa: D102
+    def path(self, q: Array, g: Array, times: Array) -> Array:  # noqa: D102
         # from time to time, each as the start of the next
         out, last = np.empty((len(q), len(times))), 0.0
         for i, t in enumerate(times):
@@ -491,7 +492,7 @@ class SeriesFlow(Flow):
             out[:, i], last = q, float(t)
         return out
 
-    def at(self, q: Array, g: Array, t: float) -> Array:  # type: ignore[override]  # noqa: D102
+    def at(self, q: Array, g: Array, t: float) -> Array:  # noqa: D102
         # Taylor series of the solution in substeps with |a| h <= 1: derivative by derivative
         steps = max(1, int(np.ceil(abs(t) * self.norm)))
         h = t / steps
@@ -514,7 +515,7 @@ class SeriesFlow(Flow):
             q = total
         return q
 
-    def sample(self, q: Array, g: Array, h: float, count: int) -> Array:  # type: ignore[override]  # noqa: D102
+    def sample(self, q: Array, g: Array, h: float, count: int) -> Array:  # noqa: D102
         size, degree = len(q), len(g) - 1
         key = (h, degree)
         if key not in self._maps:
@@ -535,7 +536,7 @@ class SeriesFlow(Flow):
             out[:, i] = step @ np.concatenate([out[:, i - 1], local.ravel()])
         return out
 
-    def rate(self, q: Array, g: Array, t: Array | float) -> Array:  # type: ignore[override]  # noqa: D102
+    def rate(self, q: Array, g: Array, t: Array | float) -> Array:  # noqa: D102
         p = powers(t, len(g) - 1)
         if q.ndim == 2:
             return self.space.a @ q + np.einsum("ki,kt->it", g, p)

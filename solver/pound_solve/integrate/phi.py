@@ -45,10 +45,11 @@ def _series(degree: int, of_duhamel: bool) -> NDArray[np.float64]:
 def _sum_series(z: Complex, degree: int, of_duhamel: bool) -> Complex:
     """Sum the series of all k at once for a row of arguments, shape (degree + 1, n)."""
     coefs = _series(degree, of_duhamel)
-    powers = np.empty((len(coefs), len(z)), complex)
+    powers: Complex = np.empty((len(coefs), len(z)), complex)
     powers[0] = 1.0
     powers[1:] = z
-    return coefs.T @ np.multiply.accumulate(powers, axis=0, out=powers)
+    np.multiply.accumulate(powers, axis=0, out=powers)
+    return coefs.T @ powers
 
 
 def duhamel(z: Complex, degree: int, exp_z: Complex | None = None) -> Complex:

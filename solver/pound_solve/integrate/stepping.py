@@ -153,7 +153,7 @@ class Stepper:
             matrix = self.scaled(self.scene.mass + g * h * self.c + b * h * h * self.k, h)
             if keep:
                 inverse = self._maps[self.key, h] = np.asarray(np.linalg.inv(matrix), float)
-        a1 = np.linalg.solve(matrix, rhs) if inverse is None else inverse @ rhs
+        a1 = np.asarray(np.linalg.solve(matrix, rhs), float) if inverse is None else inverse @ rhs
         return ahead + b * h * h * a1, faster + g * h * a1, a1
 
     def scaled(self, rows: Array, h: float) -> Array:

@@ -99,8 +99,8 @@ class Meter:
         return v, r1, r2, c
 
     def _split(self, qs: Complex, gs: Complex, tau: float) -> tuple[Complex, Complex, Complex, Complex]:
-        """Free amplitudes at 0 and tau (n_q, n), forced polynomials (powers, n_q,
-        n), moments (powers, n_q).
+        """Free amplitudes at 0 and tau (n_q, n), forced
+        polynomials (powers, n_q, n), moments (powers, n_q).
         """
         degree = gs.shape[1] - 1
         g = gs.transpose(1, 2, 0)
