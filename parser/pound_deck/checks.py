@@ -140,8 +140,10 @@ def _analysis_twice(model: Model) -> Found:
     for card in model.analyses:
         name = card.spec.name
         if name in seen:
-            hint = f"the first stands at {seen[name]}; run the deck again with other PARAMs for another one"
-            yield Diagnostic("P324", f"a second {name}: a deck holds one analysis of each kind", card.span, hint)
+            hint = f"the first stands at {seen[name]}; run the deck again with other PARAMs"
+            yield Diagnostic(
+                "P324", f"a second {name}: a deck holds one analysis of each kind", card.span, hint
+            )
         seen.setdefault(name, card.span)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from decks import solved, structure_of
@@ -150,8 +150,12 @@ LOADS
 """
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(gap=st.floats(-0.5, 0.5), load=st.floats(-50, 50))
+@example(gap=-0.1, load=-50.0)  # an overlap that the load pulls open
+@example(gap=-0.1, load=-5.0)  # and one that it does not
+@example(gap=-0.1, load=50.0)
+@example(gap=0.1, load=50.0)
 def test_a_contact_with_any_gap(gap, load):
     """Closed: 100 u1 + f = F, 200 u2 = f, f = 300 (u1 - u2 - gap); open where that f is negative."""
     for law in ("LINEAR K=300", "KELVIN_VOIGT K=300 C=7", "KELVIN_VOIGT K=300 C=7 TENSION=YES"):
