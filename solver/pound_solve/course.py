@@ -260,20 +260,12 @@ class Course:
             ],
             "At the output times.",
         )
-        energy, input_ = recorder.last_energy, recorder.last_energy["input"]
-        first = recorder.first_energy or energy
+        first, input_ = recorder.first_energy, float(recorder.last_energy[0])
+        changes = [*(recorder.last_energy - first * (np.arange(len(ENERGIES)) > 0)), recorder.last_residual]
         share = 100.0 / input_ if input_ else float("nan")
         w.table(
             "energy",
-            [
-                (
-                    k,
-                    energy[k] - (first[k] if k != "input" else 0.0),
-                    (energy[k] - (first[k] if k != "input" else 0.0)) * share,
-                )
-                for k in ENERGIES
-            ]
-            + [("residual", recorder.residual(energy), recorder.residual(energy) * share)],
+            [(name, float(x), float(x) * share) for name, x in zip((*ENERGIES, "residual"), changes)],
             "Changes since the start" + ("." if place.total else ", of the motion relative to the ground."),
         )
         if outcome is None:
@@ -289,7 +281,6 @@ class Course:
             ],
             how,
         )
-        energies = recorder.law_losses()
         spring_rows, contact_rows = [], []
         for i, x in enumerate(s.laws):
             d, f = peaks.deformation[i], peaks.force[i]
@@ -310,7 +301,7 @@ class Course:
                         d.low,
                         peaks.yields[i],
                         ductility,
-                        energies[i],
+                        recorder.losses[i],
                     )
                 )
                 continue
@@ -326,7 +317,7 @@ class Course:
                     best.t_peak if best else float("nan"),
                     max(d.high - gap, 0.0),
                     sum(c.impulse for c in own),
-                    energies[i] + peaks.dashpot_losses[i],
+                    recorder.losses[i] + peaks.dashpot_losses[i],
                     gap - d.high,
                     closed,
                 )
@@ -352,7 +343,7 @@ class Course:
             ],
         )
         # a motion that was only started has no input: its residual is held against what it started with
-        scale = max(abs(input_), abs(first["kinetic"]) + abs(first["strain"]))
+        scale = max(abs(input_), abs(float(first[1])) + abs(float(first[2])))
         ratio = recorder.residual_peak / scale if scale else 0.0
         good = "good" if ratio < (1e-9 if exact else 1e-2) else "look: energy is lost or made"
         checks = [("largest energy residual over input or initial energy", f"{ratio:.2e}", good)]

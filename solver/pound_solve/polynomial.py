@@ -54,3 +54,23 @@ def value(coefs: Array, t: float, order: int = 0) -> Array:
         return np.zeros(coefs.shape[1:])
     weights = _falling(n, order) * float(t) ** np.arange(n - order)
     return np.tensordot(weights, coefs[order:], axes=1)
+
+
+def values(coefs: Array, t: Array, order: int = 0) -> Array:
+    """`value` of one set of polynomials at each time.
+
+    Parameters
+    ----------
+    coefs : ndarray, shape (n_times, degree + 1, n)
+    t : ndarray, shape (n_times,)
+    order : int
+
+    Returns
+    -------
+    ndarray, shape (n_times, n)
+    """
+    n = coefs.shape[1]
+    if order >= n:
+        return np.zeros((len(t), coefs.shape[2]))
+    weights = _falling(n, order) * t[:, None] ** np.arange(n - order)
+    return np.einsum("tk,tkn->tn", weights, coefs[:, order:])

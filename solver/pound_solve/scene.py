@@ -71,6 +71,11 @@ class Excitation:
         i = self.piece(t)
         return polynomial.value(self.coefs[i], t - float(self.breaks[i]), order)
 
+    def values(self, t: Array, order: int = 0) -> Array:
+        """`value` at several times, shape (n_times, n_inputs)."""
+        i = np.clip(np.searchsorted(self.breaks, t, side="right") - 1, 0, len(self.coefs) - 1)
+        return polynomial.values(self.coefs[i], t - self.breaks[i], order)
+
 
 @dataclass
 class Scene:

@@ -147,19 +147,11 @@ class Recorder:
         self.contacts = [i for i, s in enumerate(structure.laws) if s.is_contact]
         self.node_extremes = {q: [Extreme() for _ in range(3 * len(self.nodes))] for q in "uva"}
         self.output_extremes = [Extreme() for _ in self.outputs]
-        self.last_energy: dict[str, float] = dict.fromkeys(ENERGIES, 0.0)
-        self.first_energy: dict[str, float] | None = None
-        self.residual_peak = 0.0
+        self.first_energy = self.last_energy = np.zeros(len(ENERGIES))
+        self.last_residual = self.residual_peak = 0.0
+        self.losses = [0.0] * len(structure.laws)  # by slip and release, dashpots apart [F L]
         self.reached = 0.0
-        self._last: tuple[Array, Sequence[State]] | None = None
-        self._rows: list[tuple[Any, ...]] = []
-
-    def law_losses(self) -> list[float]:
-        """Energy lost so far in every law by slip and release, dashpots apart [F L]."""
-        if self._last is None:
-            return [0.0] * len(self.scene.structure.laws)
-        d, states = self._last
-        return [s.law.dissipated(x, float(at)) for s, x, at in zip(self.scene.structure.laws, states, d)]
+        self._rows: list[tuple[float, Array, Array, Array, Sequence[State], Array]] = []
 
     def layout(self) -> dict[str, tuple[tuple[int, ...], dict[str, Any]]]:
         """What `results.Writer.start_history` needs."""
@@ -204,41 +196,47 @@ class Recorder:
 
     def sample(self, t: float, u: Array, v: Array, a: Array, states: Sequence[State], works: Array) -> None:
         """Take one sample (see `integrate.base.Sink`)."""
-        laws = self.scene.structure.laws
-        s, rate = self.scene.excitation.value(t), self.scene.excitation.value(t, 1)
-        d = self.scene.law_rows @ u + self.scene.law_inputs @ s
-        ddot = self.scene.law_rows @ v + self.scene.law_inputs @ rate
-        force = [
-            x.law.branch(state).force(float(p), float(q)) for x, state, p, q in zip(laws, states, d, ddot)
-        ]
-        energy = energies(self.scene, t, u, v, states, works)
-        if self.first_energy is None:
-            self.first_energy = energy
-        self.last_energy = energy
-        residual = self.residual(energy)
-        self.residual_peak = max(self.residual_peak, abs(residual))
-        self._rows.append((t, u, v, a, s, d, np.array(force), [*(energy[k] for k in ENERGIES), residual]))
-        self.reached, self._last = t, (d, tuple(states))
+        self._rows.append((t, u, v, a, states, works))
+        self.reached = t
         self._progress(t)
         if len(self._rows) >= BLOCK:
             self.flush()
 
-    def residual(self, energy: Mapping[str, float]) -> float:
-        """Input less what it became, against the start [F L]."""
-        start = self.first_energy or energy
-        spent = sum(energy[k] - start[k] for k in ENERGIES if k != "input")
-        return energy["input"] - start["input"] - spent
+    def _residuals(self, energy: Array) -> Array:
+        """Input less what it became, against the start [F L], for rows of energies."""
+        change = energy - self.first_energy
+        return 2.0 * change[:, 0] - change.sum(axis=1)
+
+    def _forces(self, d: Array, rate: Array, states: Sequence[Sequence[State]]) -> Array:
+        """Forces of all laws, shape of `d`."""
+        laws = self.scene.structure.laws
+        rows = [
+            [x.law.branch(own).force(p, q) for x, own, p, q in zip(laws, state, *pair)]
+            for state, *pair in zip(states, d.tolist(), rate.tolist())
+        ]
+        return np.array(rows).reshape(d.shape)
 
     def flush(self) -> None:
         """Write the samples that are held."""
         if not self._rows:
             return
         scene, laws = self.scene, self.scene.structure.laws
-        t, u, _v, _a, s, d, force, energy = (np.array(x) for x in zip(*self._rows))
-        rows, self._rows = self._rows, []
-        full_u = np.array([scene.all_freedoms(r[1], r[0]) for r in rows])
-        full_v = np.array([scene.all_freedoms(r[2], r[0], 1) for r in rows])
-        full_a = np.array([scene.all_freedoms(r[3], r[0], 2) for r in rows])
+        states = [row[4] for row in self._rows]
+        t, u, v, a, works = (np.array([row[k] for row in self._rows]) for k in (0, 1, 2, 3, 5))
+        self._rows = []
+        s, s1, s2 = (scene.excitation.values(t, order) for order in range(3))
+        d = u @ scene.law_rows.T + s @ scene.law_inputs.T
+        force = self._forces(d, v @ scene.law_rows.T + s1 @ scene.law_inputs.T, states)
+        energy = energies(scene, t, u, v, states, works)
+        if t[0] == 0.0:
+            self.first_energy = energy[0]
+        residual = self._residuals(energy)
+        self.last_energy, self.last_residual = energy[-1], float(residual[-1])
+        self.residual_peak = max(self.residual_peak, float(np.abs(residual).max()))
+        self.losses = [x.law.dissipated(own, at) for x, own, at in zip(laws, states[-1], d[-1].tolist())]
+        full_u, full_v, full_a = (
+            scene.expanded(x.T, y.T, order).T for order, (x, y) in enumerate(((u, s), (v, s1), (a, s2)))
+        )
         shape = (len(t), len(self.nodes), 3)
         node = {
             q: (full @ self.node_rows.T).reshape(shape)
@@ -267,7 +265,7 @@ class Recorder:
                 "ground": np.array(
                     [[float(m.acceleration.value(x)) for m in scene.motions] for x in t]
                 ).reshape(len(t), -1),
-                "energy": energy,
+                "energy": np.column_stack([energy, residual]),
             }
         )
 

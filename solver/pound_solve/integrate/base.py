@@ -270,21 +270,36 @@ def cubic_top(f0: float, f1: float, s0: float, s1: float, h: float) -> tuple[flo
 
 
 def energies(
-    scene: Scene, t: float, u: Array, v: Array, states: Sequence[State], works: Array
-) -> dict[str, float]:
-    """Return all energies by name [F L]: the works so far,
-    and what the present state holds and has lost.
+    scene: Scene, t: Array, u: Array, v: Array, states: Sequence[Sequence[State]], works: Array
+) -> Array:
+    """Return all energies at some times: the works so far, and what the states hold and have lost.
+
+    Parameters
+    ----------
+    scene : Scene
+    t : ndarray, shape (n_times,)
+    u, v : ndarray, shape (n_times, n)
+    states : sequence of n_times sequences of State
+    works : ndarray, shape (n_times, 3)
+
+    Returns
+    -------
+    ndarray, shape (n_times, 6)
+        In the order of `ENERGIES` [F L].
     """
-    laws = scene.structure.laws
-    d = scene.law_rows @ u + scene.law_inputs @ scene.excitation.value(t) if laws else np.zeros(0)
+    laws, mass, stiffness = scene.structure.laws, scene.mass, scene.stiffness
+    inputs = scene.excitation.values(t)
+    d = u @ scene.law_rows.T + inputs @ scene.law_inputs.T
     if scene.total:  # moved supports have mass and stretch elements too
-        s = scene.structure
-        all_u, all_v = scene.all_freedoms(u, t), scene.all_freedoms(v, t, 1)
-        kinetic, strain = 0.5 * float(all_v @ s.mass @ all_v), 0.5 * float(all_u @ s.stiffness @ all_u)
-    else:
-        kinetic, strain = 0.5 * float(v @ scene.mass @ v), 0.5 * float(u @ scene.stiffness @ u)
-    out = dict(zip(ENERGIES, (float(works[0]), kinetic, strain, float(works[1]), 0.0, float(works[2]))))
-    for spring, x, at in zip(laws, states, d.tolist()):
-        out["strain"] += spring.law.stored(x, at)
-        out["contact" if spring.is_contact else "hysteretic"] += spring.law.dissipated(x, at)
+        mass, stiffness = scene.structure.mass, scene.structure.stiffness
+        u = scene.expanded(u.T, inputs.T).T
+        v = scene.expanded(v.T, scene.excitation.values(t, 1).T, 1).T
+    out = np.zeros((len(t), len(ENERGIES)))
+    out[:, 0], out[:, 3], out[:, 5] = works.T
+    out[:, 1] = 0.5 * (v * (v @ mass)).sum(axis=1)
+    out[:, 2] = 0.5 * (u * (u @ stiffness)).sum(axis=1)
+    for row, at, state in zip(out, d.tolist(), states):
+        for spring, x, own in zip(laws, at, state):
+            row[2] += spring.law.stored(own, x)
+            row[5 if spring.is_contact else 4] += spring.law.dissipated(own, x)
     return out

@@ -371,6 +371,27 @@ class Window:
                 a[index] += v_p @ slope + u_p @ bend
         return u, v, a
 
+    def ends(self, count: int) -> tuple[Array, Array, Array]:
+        """`motion` at the ends of the first `count` intervals, shape (n, count) each."""
+        size = self.partition.scene.size
+        u, v, a = (np.zeros((size, count)) for _ in range(3))
+        t = np.array([self.length])
+        for block in self.partition.blocks:
+            flow, index, q = block.regime.flow, block.regime.index, block.qs[:, 1 : count + 1]
+            u[index] = (flow.u_q @ q).real
+            v[index] = (flow.v_q @ q).real
+            a[index] = (flow.v_q @ flow.rates(q[:, :, None], block.gs[:count], t)[:, :, 0]).real
+            if block.ps is not None and flow.u_p is not None:
+                u_p, v_p = flow.u_p, flow.space.v_p
+                force, slope, bend = (
+                    np.array([polynomial.value(p, self.length, k) for p in block.ps[:count]]).T
+                    for k in range(3)
+                )
+                u[index] += u_p @ force
+                v[index] += v_p @ force + u_p @ slope
+                a[index] += v_p @ slope + u_p @ bend
+        return u, v, a
+
     def state(self, block: Block, interval: int, tau: float) -> NDArray[Any]:
         """State q of a block at `tau` within an interval."""
         if tau == self.length:

@@ -183,54 +183,43 @@ class Exact:
         )
 
     def _sample(self, window: Window, goals: Array, cursor: int, count: int) -> None:
-        """Hand out the samples at the ends of the first `count` intervals,
-        with the work done until each.
-        """
-        for i in range(count):
-            if i == 0:
-                self._before = (
-                    window.works(slice(0, count), window.length) if not self.scene.total else None
-                )
-            self._work(window, i, window.length, i)
-            if self.is_output[cursor + i]:
-                self.sink.sample(
-                    float(goals[cursor + i]),
-                    *window.motion(i, window.length),
-                    tuple(self.states),
-                    self.works,
-                )
-
-    def _work(self, window: Window, interval: int, tau: float, known: int | None = None) -> None:
-        """Add the work done over the first `tau` of an interval; `known` its place
-        in what `_sample` has measured.
-        """
-        if tau <= 0.0:
+        """Add the work of the first `count` intervals and hand out the samples at their ends."""
+        if not count:
             return
-        scene = self.scene
-        if known is not None and self._before is not None:
-            damping, input_, contacts = (
-                self._before[0][known],
-                self._before[1][known],
-                {k: x[known] for k, x in self._before[2].items()},
-            )
-        else:
-            a, b, c = window.works(slice(interval, interval + 1), tau)
-            damping, input_, contacts = a[0], b[0], {k: x[0] for k, x in c.items()}
-        if scene.total:
-            input_, damping = work.total_work(
-                scene,
-                tau,
-                self.partition.fastest,
-                window.coefs[interval],
-                lambda x: window.path(interval, x),
-                self.branches,
-            )
-        self.works = self.works + np.array([input_, damping, sum(contacts.values())])
+        works = self.works + np.cumsum(self._measure(window, 0, count, window.length), axis=0)
+        u, v, a = window.ends(count)
+        states = tuple(self.states)
+        for i in np.flatnonzero(self.is_output[cursor : cursor + count]).tolist():
+            self.sink.sample(float(goals[cursor + i]), u[:, i], v[:, i], a[:, i], states, works[i])
+        self.works = works[-1]
+
+    def _work(self, window: Window, interval: int, tau: float) -> None:
+        """Add the work done over the first `tau` of an interval."""
+        if tau > 0.0:
+            self.works = self.works + self._measure(window, interval, interval + 1, tau)[0]
+
+    def _measure(self, window: Window, first: int, last: int, tau: float) -> Array:
+        """Work put in and lost in dashpots over `tau` of some intervals, shape (last - first, 3).
+
+        Contacts' losses and impulses are noted on the way.
+        """
+        damping, input_, contacts = window.works(slice(first, last), tau)
+        if self.scene.total:
+            for i in range(first, last):
+                input_[i - first], damping[i - first] = work.total_work(
+                    self.scene,
+                    tau,
+                    self.partition.fastest,
+                    window.coefs[i],
+                    lambda x, i=i: window.path(i, x),  # type: ignore[misc]
+                    self.branches,
+                )
         for law, loss in contacts.items():
-            self.ledger.peaks.dashpot_losses[law] += float(loss)
+            self.ledger.peaks.dashpot_losses[law] += float(loss.sum())
         for law, collision in self.ledger.open.items():
-            if self.branches[law].name == "pressed":
-                collision.impulse += window.impulse(law, interval, tau)
+            collision.impulse += sum(window.impulse(law, i, tau) for i in range(first, last))
+        lost = sum(contacts.values(), np.zeros(last - first))
+        return np.column_stack([input_, damping, lost])
 
     def _first_event(
         self, window: Window, t: Array, value: Array, rate: Array, second: Array

@@ -194,8 +194,10 @@ class Stepper:
         self.settle()
         self._note()
         self._sample(0.0)
-        first = energies(self.scene, 0.0, self.u, self.v, self.states, self.works)
-        self.held = first["kinetic"] + first["strain"]
+        first = energies(
+            self.scene, np.zeros(1), self.u[None], self.v[None], [self.states], self.works[None]
+        )
+        self.held = float(first[0, 1] + first[0, 2])
         with np.errstate(over="ignore", invalid="ignore"):  # a runaway is told in words
             for goal, is_output in zip(*goals(self.scene, self.times)):
                 n = max(1, int(np.ceil((goal - self.t) / self.dt * (1 - 1e-9))))
