@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import time
 from collections.abc import Sequence
@@ -86,6 +87,19 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _complain(f"{err.filename or ''}: {err.strerror or err}".lstrip(": "))
     except KeyboardInterrupt:
         return _complain("interrupted") and 1
+    except MemoryError:
+        return (
+            _complain("not enough memory: store less (OUTPUT EVERY, NODES, MEMBERS) or use a smaller model")
+            and 1
+        )
+    except Exception as err:
+        if os.environ.get("POUND_DEBUG"):
+            raise
+        kind = type(err).__name__
+        return (
+            _complain(f"a fault of the program, not of the deck: {kind}: {err}; POUND_DEBUG=1 shows where")
+            and 1
+        )
 
 
 def _complain(text: str) -> int:

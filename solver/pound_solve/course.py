@@ -70,6 +70,8 @@ class Course:
             return f"{err.code} static analysis: {err}"
         except np.linalg.LinAlgError as err:
             return f"A501 the structure is a mechanism ({err})"
+        except scene.SceneError as err:
+            return f"A505 {err}"
         except Stop as err:
             return f"{err.code} at t = {err.t:.9g} {self.model.units.time}: {err}"
         finally:

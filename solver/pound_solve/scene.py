@@ -30,6 +30,10 @@ from pound_solve.motions.base import Motion, Piecewise, common_breaks
 Array = NDArray[np.float64]
 
 
+class SceneError(Exception):
+    """A structure whose motion no method can follow."""
+
+
 @dataclass(frozen=True)
 class Decision:
     """One line of the report's SCENE block."""
@@ -179,8 +183,8 @@ def build(
 
     Raises
     ------
-    numpy.linalg.LinAlgError
-        Mass on slaved nodes leaves a motion without inertia.
+    SceneError
+        Mass on arms of slaved nodes leaves some motion without inertia.
     """
     n, total = structure.n_free, bool(structure.freedoms.moved)
     decisions: list[Decision] = []
@@ -375,7 +379,7 @@ def _all_inert(m: Array, names: Sequence[Freedom]) -> None:
         # the rotation at the other end of the arms, where one takes part
         share = np.abs(vectors[:, 0]) * [2.0 if names[int(i)][1] == 2 else 1.0 for i in heavy]
         node, d = names[int(heavy[int(np.argmax(share))])]
-        raise np.linalg.LinAlgError(
+        raise SceneError(
             f"node {node} {NAMES[d]} has no inertia of its own beside the mass on slaved nodes: "
             "give it a rotational weight WR"
         )
