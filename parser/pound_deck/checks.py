@@ -147,6 +147,21 @@ def _analysis_twice(model: Model) -> Found:
         seen.setdefault(name, card.span)
 
 
+def _initial(model: Model) -> Found:
+    for card in model.initial:
+        for letter in "XYR":
+            given = [name for name in ("U" + letter, "V" + letter) if card[name]]
+            for number in card["NODES"]:
+                node = model.nodes.get(number)
+                if not given or node is None or not (letter in node.fixed or letter in node.slaved):
+                    continue
+                state = "fixed" if letter in node.fixed else f"slaved to node {node.slaved[letter]}"
+                hint = "give the initial motion to the master" if letter in node.slaved else "leave it out"
+                message = f"node {number} is {state} along {letter}: {given[0]} has no effect"
+                yield Diagnostic("P325", message, card.place(given[0]), hint)
+                break  # one node tells enough
+
+
 def _excitation(model: Model) -> Found:
     loaded = any(card["NODES"] for card in (*model.initial, *model.loads))  # a list may be empty
     if model.equake or loaded or any(card["ELEMENTS"] for card in model.member_loads):
@@ -191,6 +206,7 @@ CHECKS: Final[tuple[tuple[Callable[[Model], Found], frozenset[str]], ...]] = (
     (_something, _NODES | _MEMBERS),
     (_analysis, frozenset({"ANALYSIS"})),
     (_analysis_twice, frozenset({"ANALYSIS"})),
+    (_initial, frozenset({"NODES", "INITIAL"})),
     (_slaving, frozenset()),
     (_zero_length, frozenset()),
     (_unused_props, _MEMBERS | _PROPS),

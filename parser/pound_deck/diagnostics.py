@@ -360,6 +360,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "A deck holds one STATIC, one MODAL and one HISTORY. Run it again with other PARAM values "
         "(--set) for another one.",
     ),
+    "P325": (
+        "initial motion of a freedom that cannot have it",
+        "INITIAL gives a displacement or velocity to a direction that is fixed or follows a master. Give it to a "
+        "free direction, or to the master.",
+    ),
     "P330": (
         "element cannot be built",
         "The values of the element or of its property set contradict each other or its nodes. The "

@@ -120,8 +120,8 @@ def test_cantilever_with_tip_loads(shear, angle, n, px, py, m):
     close(u[2], turn, scale=size * (n + n**2) / (E * IZ))
     arm = size * (1 + n)
     close(
-        [s.force[7, q] for q in ("axial", "shear I", "moment I", "shear J", "moment J")],
-        [px, -py, -m - n * py, py, m],
+        [s.force[7, q] for q in ("axial I", "axial J", "shear I", "moment I", "shear J", "moment J")],
+        [px, px, -py, -m - n * py, py, m],
         scale=arm,
     )
     close(local(angle, s.reaction[1]), [-px, -py, -m - n * py], scale=arm)
@@ -470,3 +470,11 @@ def test_reactions_of_the_program_are_those_of_the_test_helper(tmp_path):
     for row in rows:
         close(row[1:], wanted[int(row[0])], scale=10.0)
     assert [int(r[0]) for r in rows] == [1, 2]
+
+
+def test_a_column_under_its_weight_is_pressed_more_at_its_foot():
+    s = solved(
+        "NODES\n 1 0 0 FIX=XYR\n 2 0 4\nELEMENTS\n 7 C 1 2\nPROPS\n C FRAME E=2E7 A=0.1 I=0.001 WGT=3\n"
+        "LOADS\n 2 0 -5\nANALYSIS\n STATIC\n"
+    )
+    close([s.force[7, "axial I"], s.force[7, "axial J"]], [-17.0, -5.0])

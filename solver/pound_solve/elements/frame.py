@@ -158,13 +158,14 @@ def build(site: Site) -> Parts:
     force_rows = forces @ to_ends
     constant = k @ (flexibility @ equivalent) - equivalent
     for name, unit, row, sign in (
-        ("axial", "F", 3, 1.0),
+        ("axial I", "F", 0, -1.0),  # tension is positive at both ends
+        ("axial J", "F", 3, 1.0),
         ("shear I", "F", 1, 1.0),
         ("moment I", "F*L", 2, 1.0),
         ("shear J", "F", 4, 1.0),
         ("moment J", "F*L", 5, 1.0),
     ):
-        if row != 3 and ei == 0.0:
+        if row not in (0, 3) and ei == 0.0:
             continue
         parts.outputs.append(
             Output(
