@@ -362,8 +362,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P325": (
         "initial motion of a freedom that cannot have it",
-        "INITIAL gives a displacement or velocity to a direction that is fixed or follows a master. Give it to a "
-        "free direction, or to the master.",
+        "INITIAL gives a displacement or velocity to a direction that is fixed or follows a master. "
+        "Give it to a free direction, or to the master.",
     ),
     "P330": (
         "element cannot be built",
