@@ -15,13 +15,14 @@ from pound_deck.model import Card, Model
 from pound_solve import __version__, echo, scene
 from pound_solve.analyses import history, modal, static
 from pound_solve.assemble import Structure, assemble
-from pound_solve.integrate.base import ENERGIES, Outcome, Stop
+from pound_solve.integrate.base import ENERGIES, Outcome, Peaks, Stop
 from pound_solve.motions.base import Motion
 from pound_solve.results import Writer
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, float], None]  #: told the time reached and the time to reach
 
+EXACT, STEPS = "Peaks are exact.", "Peaks are those of the steps, interpolated between them."
 ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
 
 
@@ -208,7 +209,10 @@ class Course:
         self.solve_seconds += time.perf_counter() - began
         recorder.flush()
         self._scene_tables(place)
-        self._history_tables(place, recorder, outcome)
+        self._sample_tables(place, recorder)
+        if outcome is not None:
+            self._peak_tables(recorder, outcome.peaks, EXACT if outcome.exact else STEPS)
+            self._check_tables(place, recorder, outcome)
         if stop is not None:
             raise stop
 
@@ -234,10 +238,9 @@ class Course:
         )
         self.writer.table("scene", rows)
 
-    def _history_tables(
-        self, place: scene.Scene, recorder: history.Recorder, outcome: Outcome | None
-    ) -> None:
-        m, s, w, units = self.model, self.structure, self.writer, self.model.units
+    def _sample_tables(self, place: scene.Scene, recorder: history.Recorder) -> None:
+        """Envelopes of nodes and members and the energies: what the samples tell."""
+        w, units = self.writer, self.model.units
         rows: list[tuple[Any, ...]] = []
         for i, node in enumerate(recorder.nodes):
             for axis in range(3):
@@ -270,11 +273,10 @@ class Course:
             [(name, float(x), float(x) * share) for name, x in zip((*ENERGIES, "residual"), changes)],
             "Changes since the start" + ("." if place.total else ", of the motion relative to the ground."),
         )
-        if outcome is None:
-            return
-        exact = str(outcome.figures.get("method", "")).startswith("EXACT")
-        how = "Peaks are exact." if exact else "Peaks are those of the steps, interpolated between them."
-        peaks = outcome.peaks
+
+    def _peak_tables(self, recorder: history.Recorder, peaks: Peaks, how: str) -> None:
+        """Drifts, springs, contacts and collisions: what the method found on its way; `how` it found it."""
+        m, s, w, units = self.model, self.structure, self.writer, self.model.units
         w.table(
             "drift_envelope",
             [
@@ -344,10 +346,14 @@ class Course:
                 for c in ordered
             ],
         )
+
+    def _check_tables(self, place: scene.Scene, recorder: history.Recorder, outcome: Outcome) -> None:
+        """Self-checks and the course of the run."""
+        w, first, input_ = self.writer, recorder.first_energy, float(recorder.last_energy[0])
         # a motion that was only started has no input: its residual is held against what it started with
         scale = max(abs(input_), abs(float(first[1])) + abs(float(first[2])))
         ratio = recorder.residual_peak / scale if scale else 0.0
-        good = "good" if ratio < (1e-9 if exact else 1e-2) else "look: energy is lost or made"
+        good = "good" if ratio < (1e-9 if outcome.exact else 1e-2) else "look: energy is lost or made"
         checks = [("largest energy residual over input or initial energy", f"{ratio:.2e}", good)]
         w.table("checks", checks + outcome.checks)
         w.table("run", [("unknowns", str(place.size)), *((k, str(v)) for k, v in outcome.figures.items())])

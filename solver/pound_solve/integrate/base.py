@@ -137,11 +137,12 @@ class Sink(Protocol):
 
 @dataclass
 class Outcome:
-    """How an integration went: figures for the report, self-checks, and its peaks."""
+    """How an integration went: figures for the report, self-checks, its peaks, and whether these are exact."""
 
     peaks: Peaks
     figures: dict[str, Any]
     checks: list[tuple[str, str, str]] = field(default_factory=list)
+    exact: bool = False
 
 
 class Stop(Exception):

@@ -310,7 +310,7 @@ class Exact:
         ]
         if any(isinstance(f, SeriesFlow) for f in flows):
             checks.append(("defective modes", "met", "integrated by the exponential series"))
-        return Outcome(self.ledger.close(), figures, checks)
+        return Outcome(self.ledger.close(), figures, checks, exact=True)
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""
