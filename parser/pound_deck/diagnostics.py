@@ -380,6 +380,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "The options of the DAMPING line exclude each other, or the modes they name do not exist. Give "
         "ALPHA and BETA, or XI with OMEGA or MODES, and support the structure.",
     ),
+    "P334": (
+        "contact along an inclined line",
+        "A contact without ANGLE acts along the line from I to J. Nodes at different heights make "
+        "that line inclined; floors that meet along x want ANGLE=0.",
+    ),
     "R401": (
         "record not found",
         "The record stands neither in the deck's folder nor in the record folders. Check its name, "

@@ -135,7 +135,25 @@ def prepare(request: Request) -> Prepared:
         found += err.diagnostics
     if has_errors(found) or structure is None:
         raise DeckError(found, files)
+    found += _inclined(structure)
     return Prepared(model, tuple(motions), structure, tuple(found), files)
+
+
+def _inclined(structure: Structure) -> list[Diagnostic]:
+    """Contacts along an inclined line between their nodes: seldom meant between floors."""
+    out = []
+    for spring in structure.laws:
+        if not spring.is_contact:
+            continue
+        element = structure.model.elements[spring.element]
+        angle = spring.facts["angle"]
+        if structure.model.props[element.prop]["ANGLE"] is None and angle % 90.0:
+            message = (
+                f"contact {spring.element} acts along the line between its nodes, at {angle:.4g} degrees"
+            )
+            hint = "give ANGLE (0 for floors that meet along x) if that is not meant"
+            out.append(Diagnostic("P334", message, element.span, hint, "warning"))
+    return out
 
 
 def context(model: Model, request: Request) -> Context:

@@ -139,6 +139,10 @@ def _run(args: argparse.Namespace) -> int:
     if ready.warnings and not args.quiet:
         print(render(ready.warnings, ready.files), file=sys.stderr)
     with results:
+        if "checks" in results.tables and not args.quiet:
+            for check, value, verdict in results.table("checks"):
+                if verdict.startswith("look"):
+                    print(f"pound-solve: warning: {check}: {value}; {verdict}", file=sys.stderr)
         if status == app.STOPPED:
             print(f"pound-solve: stopped: {results.message}", file=sys.stderr)
         if not args.quiet:

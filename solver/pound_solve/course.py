@@ -22,7 +22,11 @@ from pound_solve.results import Writer
 Array = NDArray[np.float64]
 Progress = Callable[[float, float], None]  #: told the time reached and the time to reach
 
+SIGNS = (
+    "End forces act on the member along its own axes; axial tension and contact compression are positive."
+)
 EXACT, STEPS = "Peaks are exact.", "Peaks are those of the steps, interpolated between them."
+MOST_ROWS = 5_000_000  #: of stored histories
 ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
 
 
@@ -54,7 +58,7 @@ class Course:
     ) -> None:
         self.model, self.motions, self.structure = model, motions, structure
         self.overridden, self.writer, self.progress = overridden, writer, progress
-        self.began, self.solve_seconds = began, 0.0
+        self.began, self.solve_seconds, self.every = began, 0.0, 0.0
 
     def all(self) -> str:
         """Run everything the deck asks for; return why it stopped, or nothing."""
@@ -147,7 +151,7 @@ class Course:
                     units.text("F*L" if x.component == "R" else "F"),
                 )
             )
-        w.table("static_force", sorted(forces, key=lambda r: r[0]))
+        w.table("static_force", sorted(forces, key=lambda r: r[0]), SIGNS)
         w.table("reactions", self._reactions(state))
 
     def _reactions(self, state: static.StaticState) -> list[tuple[Any, ...]]:
@@ -181,6 +185,10 @@ class Course:
 
     def _modal(self, card: Card) -> None:
         rows = modal.rows(self.structure, card["MODES"])
+        if not rows:
+            self.writer.table(
+                "scene", [("free vibration", "no modes", "no freedom that has mass has stiffness too")]
+            )
         self.writer.table("modes", rows)
         if card["SHAPES"] == "YES":
             self.writer.table("mode_shapes", modal.shape_rows(self.structure, len(rows)))
@@ -222,12 +230,27 @@ class Course:
             steps = [dt for m in self.motions if (dt := m.info.get("dt"))]
             every = min(steps, default=end / ROWS)
             every *= max(1, round(end / every / ROWS))
+        if end / every > MOST_ROWS:
+            raise Stop(
+                "A505",
+                0.0,
+                f"OUTPUT EVERY={every:g} asks for {end / every:.0f} rows, more than {MOST_ROWS}",
+            )
         count = int(np.floor(end / every * (1 + 1e-12)))
+        self.every = every
         times = every * np.arange(count + 1)
         return np.append(times, end) if end - times[-1] > 1e-9 * end else np.append(times[:-1], end)
 
     def _scene_tables(self, place: scene.Scene) -> None:
         rows = [(d.subject, d.decision, d.why) for d in place.decisions]
+        if place.total and any(e.j is None for e in self.model.elements.values()):
+            rows.append(
+                (
+                    "elements with one node",
+                    "end at a fixed point",
+                    "what no motion of SUPPORTS moves stands still",
+                )
+            )
         form = "total displacements" if place.total else "relative to the ground"
         rows.append(
             (
@@ -255,7 +278,10 @@ class Course:
                         rows.append((node, "XYR"[axis], word, unit, e.high, e.t_high, e.low, e.t_low))
         relative = "displacements and velocities are relative to the ground, accelerations are total."
         w.table(
-            "node_envelope", rows, "At the output times; " + ("all are total." if place.total else relative)
+            "node_envelope",
+            rows,
+            f"At the output times, every {self.every:.6g} {units.time}: peaks between them are not seen, "
+            "a smaller OUTPUT EVERY finds them; " + ("all are total." if place.total else relative),
         )
         w.table(
             "member_envelope",
@@ -263,7 +289,8 @@ class Course:
                 (o.element, o.quantity, units.text(o.unit), e.high, e.t_high, e.low, e.t_low)
                 for o, e in zip(recorder.outputs, recorder.output_extremes)
             ],
-            "At the output times.",
+            f"At the output times, every {self.every:.6g} {units.time}: peaks between them are not seen. "
+            + SIGNS,
         )
         first, input_ = recorder.first_energy, float(recorder.last_energy[0])
         changes = [*(recorder.last_energy - first * (np.arange(len(ENERGIES)) > 0)), recorder.last_residual]
@@ -349,12 +376,12 @@ class Course:
 
     def _check_tables(self, place: scene.Scene, recorder: history.Recorder, outcome: Outcome) -> None:
         """Self-checks and the course of the run."""
-        w, first, input_ = self.writer, recorder.first_energy, float(recorder.last_energy[0])
-        # a motion that was only started has no input: its residual is held against what it started with
-        scale = max(abs(input_), abs(float(first[1])) + abs(float(first[2])))
+        w = self.writer
+        # not over the input at the end, which a free body may have given back
+        scale = recorder.energy_peak
         ratio = recorder.residual_peak / scale if scale else 0.0
         good = "good" if ratio < (1e-9 if outcome.exact else 1e-2) else "look: energy is lost or made"
-        checks = [("largest energy residual over input or initial energy", f"{ratio:.2e}", good)]
+        checks = [("largest energy residual over the largest energy", f"{ratio:.2e}", good)]
         w.table("checks", checks + outcome.checks)
         w.table("run", [("unknowns", str(place.size)), *((k, str(v)) for k, v in outcome.figures.items())])
 

@@ -158,7 +158,21 @@ def contact_laws(structure: Structure) -> Rows:
             k = f"{f['k']:.7g} {model.units.text('F/L')}"
             mass = f["reduced_mass"] or math.nan
             xi = f["xi"] if math.isfinite(f["xi"]) else math.nan
-            out.append((name, s.rule, k, f["c"], xi, f["e_asked"], f["e_given"], mass, f["gap"], f["note"]))
+            out.append(
+                (
+                    name,
+                    s.rule,
+                    k,
+                    f["c"],
+                    xi,
+                    f["e_asked"],
+                    f["e_given"],
+                    mass,
+                    f["angle"],
+                    f["gap"],
+                    f["note"],
+                )
+            )
     return out
 
 

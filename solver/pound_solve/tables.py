@@ -241,6 +241,7 @@ _INPUT = (
             Column(
                 "mass", "reduced\nmass", "F*T^2/L", "short", "mass of the colliding pair, m1 m2 / (m1 + m2)"
             ),
+            Column("angle", "angle", "deg", "short", "direction in which node I meets J, from global x"),
             Column("gap", "gap", "L", "num", "initial gap"),
             Column("note", doc="remarks on the law's constants"),
         ),
@@ -332,14 +333,15 @@ _MODAL = (
             Column("frequency", "frequency", "1/T", "short", "cycles per unit of time"),
             Column("period", "period", "T", "short", "period"),
             Column("damping", "damping", "%", "percent", "fraction of critical damping"),
-            Column("gamma_x", "particip.\nX", "-", "short", "participation factor, ground motion in X"),
+            Column("gamma_x", "particip.\nX", "", "short", "participation factor, ground motion in X"),
             Column("mass_x", "eff. mass\nX", "F*T^2/L", "short", "effective mass in X"),
             Column("share_x", "share\nX", "%", "percent", "effective mass over the moving mass in X"),
-            Column("gamma_y", "particip.\nY", "-", "short", "participation factor, ground motion in Y"),
+            Column("gamma_y", "particip.\nY", "", "short", "participation factor, ground motion in Y"),
             Column("mass_y", "eff. mass\nY", "F*T^2/L", "short", "effective mass in Y"),
             Column("share_y", "share\nY", "%", "percent", "effective mass over the moving mass in Y"),
         ),
-        note="Contacts are open in the free vibration.",
+        note="Contacts are open in the free vibration. Participation factors belong to modes of "
+        "unit modal mass: their squares are the effective masses.",
     ),
     Table(
         "mode_shapes",
@@ -460,7 +462,8 @@ _CONTACTS = (
             _time("t_peak", "at time", "time of the largest compression"),
             Column("impulse", "impulse", "F*T", "short", "integral of the force over time"),
         ),
-        note="Both velocities are positive for bodies that approach before and part after.",
+        note="Both velocities are positive for bodies that approach before and part after. "
+        "Restitution is that of the law only where nothing else acts on the bodies during the collision.",
         limit=100,
     ),
 )

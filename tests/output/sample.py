@@ -85,7 +85,7 @@ def rows(seed: int = 1) -> dict[str, list[tuple[Any, ...]]]:
             ("all", "RAYLEIGH", "alpha 0.52360 1/s on the mass, beta 0.0014 s on the initial stiffness")
         ],
         "contact_laws": [
-            ("901", "KELVIN_VOIGT", "15050400 kN/m", 412.33, 0.1364, 0.65, 0.65, 40.7886, 0.008, ""),
+            ("901", "KELVIN_VOIGT", "15050400 kN/m", 412.33, 0.1364, 0.65, 0.65, 40.7886, 0.0, 0.008, ""),
             (
                 "902",
                 "HERTZDAMP",
@@ -95,10 +95,11 @@ def rows(seed: int = 1) -> dict[str, list[tuple[Any, ...]]]:
                 0.65,
                 0.6483,
                 40.7886,
+                0.0,
                 0.008,
                 "c varies",
             ),
-            ("903", "LINEAR", "15050400 kN/m", 0.0, 0.0, NAN, 1.0, 40.7886, 0.01, ""),
+            ("903", "LINEAR", "15050400 kN/m", 0.0, 0.0, NAN, 1.0, 40.7886, 180.0, 0.01, ""),
         ],
         "motions": [
             (

@@ -25,7 +25,7 @@ def test_columns_are_sound() -> None:
         for column in table.columns:
             assert column.fmt in FORMATS
             assert column.title.isascii()
-            assert re.fullmatch(r"[-%FLT*/^\d1rad.]*", column.unit)
+            assert re.fullmatch(r"deg|[-%FLT*/^\d1rad.]*", column.unit)
 
 
 def test_the_page_is_fresh() -> None:

@@ -148,7 +148,7 @@ class Recorder:
         self.node_extremes = {q: [Extreme() for _ in range(3 * len(self.nodes))] for q in "uva"}
         self.output_extremes = [Extreme() for _ in self.outputs]
         self.first_energy = self.last_energy = np.zeros(len(ENERGIES))
-        self.last_residual = self.residual_peak = 0.0
+        self.last_residual = self.residual_peak = self.energy_peak = 0.0
         self.losses = [0.0] * len(structure.laws)  # by slip and release, dashpots apart [F L]
         self.reached = 0.0
         self._rows: list[tuple[float, Array, Array, Array, Sequence[State], Array]] = []
@@ -232,6 +232,7 @@ class Recorder:
             self.first_energy = energy[0]
         residual = self._residuals(energy)
         self.last_energy, self.last_residual = energy[-1], float(residual[-1])
+        self.energy_peak = max(self.energy_peak, float(np.abs(energy).max()))
         self.residual_peak = max(self.residual_peak, float(np.abs(residual).max()))
         self.losses = [x.law.dissipated(own, at) for x, own, at in zip(laws, states[-1], d[-1].tolist())]
         full_u, full_v, full_a = (

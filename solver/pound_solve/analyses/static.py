@@ -110,7 +110,12 @@ def _solve(structure: Structure, k: Array, load: Array) -> Array:
     held = np.any(k != 0.0, axis=1)
     loose = ~held & (load != 0.0)
     if loose.any():
-        raise Unstable(f"{_name(structure, int(np.flatnonzero(loose)[0]))} is loaded, but nothing holds it")
+        first = int(np.flatnonzero(loose)[0])
+        touched = any(
+            s.is_contact and row[first] != 0.0 for s, row in zip(structure.laws, structure.law_rows)
+        )
+        hint = ": only an open contact could; HISTORY FROM=REST lets it come down" if touched else ""
+        raise Unstable(f"{_name(structure, first)} is loaded, but nothing holds it{hint}")
     at = np.flatnonzero(held)
     u = np.zeros(n)
     if not len(at):
@@ -132,7 +137,11 @@ def _solve(structure: Structure, k: Array, load: Array) -> Array:
         )
     if np.any(np.abs(along[weak]) > 1e-10 * np.abs(along).max()):
         worst = at[int(np.argmax(np.abs(vectors[:, weak] @ along[weak])))]
-        raise Unstable(f"the loaded structure is a mechanism, worst at {_name(structure, int(worst))}")
+        raise Unstable(
+            f"the loaded structure is a mechanism, worst at {_name(structure, int(worst))} (or parts of it "
+            "are so much stiffer than others that it cannot be told from one: END1, END2 or SLAVED make "
+            "parts rigid)"
+        )
     # an unloaded mechanism (a free diaphragm) stays where it is
     along[weak] = 0.0
     u[at] = root * (vectors @ (along / np.where(weak, 1.0, values)))

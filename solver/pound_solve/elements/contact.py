@@ -37,6 +37,8 @@ def build(site: Site) -> Parts:
     else:
         masses = [site.mass_along(node, (nx, ny)) for node, _ in ends]
         inverse = math.inf if 0.0 in masses else sum(1.0 / m for m in masses)
+    if inverse == 0.0:
+        raise ElementError("nothing that it joins can move along its direction", "ANGLE")
     reduced = 0.0 if math.isinf(inverse) else 1.0 / inverse
     try:
         built = card.laws["LAW"][0].impl(card.values, reduced)
@@ -51,6 +53,7 @@ def build(site: Site) -> Parts:
         "e_given": built.e_given,
         "note": built.note,
         "reduced_mass": reduced,
+        "angle": math.degrees(math.atan2(ny, nx)),
     }
     spring = LawSpring(
         site.element.id,

@@ -20,7 +20,8 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
             Decision(
                 "method",
                 "EXACT",
-                f"all laws are piecewise linear and {scene.size} unknowns are few: no time step is needed",
+                f"all laws are piecewise linear and {scene.size} unknowns are not many: "
+                "no time step is needed",
             )
         )
         return exact.integrate(scene, start, watch, {}, sink)

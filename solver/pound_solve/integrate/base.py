@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 ENERGIES = ("input", "kinetic", "strain", "damping", "hysteretic", "contact")
 
 
+RUNAWAY = "the motion grows without bound: its energy {:.3g} is far above what was put in"
 INTERRUPTED = "interrupted by the user; what was computed up to then is kept"
 
 
@@ -137,7 +138,7 @@ class Sink(Protocol):
 
 @dataclass
 class Outcome:
-    """How an integration went: figures for the report, self-checks, its peaks, and whether these are exact."""
+    """How an integration went: its peaks, whether they are exact, figures, self-checks."""
 
     peaks: Peaks
     figures: dict[str, Any]

@@ -25,7 +25,17 @@ from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate import search, work
-from pound_solve.integrate.base import INTERRUPTED, Ledger, Outcome, Sink, Start, Stop, Watch
+from pound_solve.integrate.base import (
+    INTERRUPTED,
+    RUNAWAY,
+    Ledger,
+    Outcome,
+    Sink,
+    Start,
+    Stop,
+    Watch,
+    energies,
+)
 from pound_solve.integrate.base import goals as goals_of
 from pound_solve.integrate.blocks import Partition, Window
 from pound_solve.integrate.flow import MOST_CONDITION, Mechanism, SeriesFlow
@@ -35,6 +45,7 @@ from pound_solve.scene import Decision, Scene
 Array = NDArray[np.float64]
 
 MOST_POINTS = 1024  #: grid points of one window
+MOST_PIECES = 20_000  #: windows within one interval of the excitation
 MOST_INTERVALS = 32  #: intervals of one window
 GRID = 1.0  #: grid interval times the fastest eigenvalue
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
@@ -70,7 +81,8 @@ class Exact:
         self.works = np.zeros(3)  # input, dashpots of the structure, dashpots of contacts
         self.largest = np.zeros((2, n))  # |d|, |v| seen, the scale of the exits
         self.ahead = 1  # intervals of the next window
-        self.events = self.windows = self.same_instant = 0
+        self.events = self.windows = self.same_instant = self.pieces = 0
+        self.held = self.put_in = 0.0  # energy at the start, sum of all |input| since
 
     def run(self) -> Outcome:
         """Integrate to the last output time."""
@@ -80,6 +92,9 @@ class Exact:
                 self.ledger.switched(i, "open", "pressed", 0.0, d, v, self.branches[i].force(d, v))
         self._form()
         goals, self.is_output = goals_of(self.scene, self.times)
+        now = [self.states]
+        whole = energies(self.scene, np.zeros(1), self.u[None], self.v[None], now, self.works[None])
+        self.held = float(whole[0, 1] + whole[0, 2])
         first = self._window(0.0, np.zeros(1))  # of no length: for the first sample only
         self.sink.sample(0.0, *first.motion(0, 0.0), tuple(self.states), self.works)
         cursor = 0
@@ -129,6 +144,7 @@ class Exact:
         starts = np.array([self.t])
         if not whole:
             length = MOST_POINTS * h
+            self._resolvable(length)
         else:
             most = min(self.ahead, max(1, MOST_POINTS // per_interval), len(goals) - cursor)
             later = np.append(self.t, goals[cursor : cursor + most])
@@ -145,6 +161,7 @@ class Exact:
             self._peaks(window, t, value, rate, second)
             self._sample(window, goals, cursor, window.intervals if whole else 0)
             if whole:
+                self.pieces = 0
                 cursor += window.intervals
                 self.t = float(goals[cursor - 1])
             else:
@@ -170,6 +187,17 @@ class Exact:
         self._switch(law, exit_index, float(now[0][law]), float(now[1][law]))
         return cursor + interval
 
+    def _resolvable(self, length: float) -> None:
+        """Stop where the fastest mode cannot be followed: time would not advance, or too slowly."""
+        self.pieces += 1
+        if length < 1e-15 * max(1.0, self.t) or self.pieces > MOST_PIECES:
+            fastest = self.partition.fastest
+            raise self.stop(
+                "A503",
+                f"the fastest mode, {fastest:.3g} rad per unit of time, is too fast to be followed: "
+                "look for a mass too small or a stiffness or dashpot too large",
+            )
+
     def _grid_step(self, length: float) -> float:
         """Step of the search grid: it resolves the fastest mode; a power of two,
         so that tables are found again.
@@ -188,6 +216,10 @@ class Exact:
             return
         works = self.works + np.cumsum(self._measure(window, 0, count, window.length), axis=0)
         u, v, a = window.ends(count)
+        self.put_in += float(np.abs(np.diff(works[:, 0], prepend=self.works[0])).sum())
+        kinetic = 0.5 * float(v[:, -1] @ self.scene.mass @ v[:, -1])
+        if not kinetic <= 10.0 * (self.held + self.put_in) + 1e-300:
+            raise self.stop("A504", RUNAWAY.format(kinetic))
         states = tuple(self.states)
         for i in np.flatnonzero(self.is_output[cursor : cursor + count]).tolist():
             self.sink.sample(float(goals[cursor + i]), u[:, i], v[:, i], a[:, i], states, works[i])

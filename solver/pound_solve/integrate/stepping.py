@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from pound_solve.integrate.base import (
     INTERRUPTED,
+    RUNAWAY,
     Ledger,
     Outcome,
     Sink,
@@ -218,7 +219,7 @@ class Stepper:
         if not np.isfinite(self.u).all() or not kinetic <= 10.0 * (self.held + self.put_in) + 1e-300:
             raise self.stop(
                 "A504",
-                f"the motion grows without bound: its energy {kinetic:.3g} is far above what was put in",
+                RUNAWAY.format(kinetic),
             )
 
     def _advance(self, length: float, nominal: float) -> None:

@@ -26,6 +26,8 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.motions.base import COMMON, Context, Motion, Piecewise, RecordError, finish
 from pound_solve.motions.piecewise import Array
 
+MOST_SAMPLES: Final = 10_000_000
+
 
 def build(card_values: Mapping[str, Any], context: Context) -> Motion:
     """Motion of a SYNTHETIC card; the same SEED gives the same motion.
@@ -45,6 +47,10 @@ def build(card_values: Mapping[str, Any], context: Context) -> Motion:
     n = round(duration / dt) + 1
     if n < 3:
         raise RecordError("R405", f"DURATION={duration:g} is shorter than two steps DT={dt:g}")
+    if duration / dt > MOST_SAMPLES:
+        raise RecordError(
+            "R405", f"DT={dt:g} asks for more than {MOST_SAMPLES} samples", "give a longer DT"
+        )
     wg, zg = float(card_values["WG"]), float(card_values["ZG"])
     wf = 0.1 * wg if card_values.get("WF") is None else float(card_values["WF"])
     zf = zg if card_values.get("ZF") is None else float(card_values["ZF"])

@@ -29,6 +29,11 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     known = formats()
     for spec in sorted(known.values(), key=lambda s: (s.impl.greedy, s.name)):
         if spec.impl.sniff(start):
+            given = {f.name for f in SPEC.fields if options.get(f.name, f.default) != f.default}
+            if odd := sorted(given - {f.name for f in spec.fields}):
+                raise RecordError(
+                    "R405", f"the file is {spec.name}, which takes no {', '.join(odd)}", "leave it out"
+                )
             raw: RawRecord = spec.impl.read(text, options)
             return raw.named(spec.name)
     names = ", ".join(name for name in sorted(known) if name != SPEC.name)
