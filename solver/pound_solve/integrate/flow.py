@@ -24,6 +24,7 @@ accelerograms); Foss KA (1958), J. Appl. Mech. 25: 361-364 (complex modes of dam
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
@@ -215,7 +216,7 @@ def _second_order(m: Array, c: Array, k: Array) -> StateSpace:
     )
 
 
-class Flow:
+class Flow(ABC):
     """A block's exact motion; the base of `ModalFlow` and `SeriesFlow`.
 
     Attributes
@@ -243,27 +244,27 @@ class Flow:
         """Direct share of the forces in the displacements (massless freedoms), or None."""
         return self.space.u_p
 
+    @abstractmethod
     def enter(self, u: Array, v: Array) -> NDArray[Any]:
         """Return q at a given displacement and velocity."""
-        raise NotImplementedError
 
+    @abstractmethod
     def forcing(self, coefs: Array, constant: Array) -> NDArray[Any]:
         """Return the forcing g of q, shape (..., degree + 1, n_q), from inputs' coefficients
         and a constant force.
         """
-        raise NotImplementedError
 
+    @abstractmethod
     def push(self, p: Array) -> NDArray[Any]:
         """Return the forcing of q from force polynomials, shape (..., degree + 1, n)."""
-        raise NotImplementedError
 
+    @abstractmethod
     def integral(self, q: NDArray[Any], g: NDArray[Any], t: float) -> NDArray[Any]:
         """Return the integral of q over (0, t)."""
-        raise NotImplementedError
 
+    @abstractmethod
     def sample(self, q: NDArray[Any], g: NDArray[Any], h: float, count: int) -> NDArray[Any]:
         """Return q at 0, h, ..., (count - 1) h, shape (n_q, count)."""
-        raise NotImplementedError
 
     def march(self, q: NDArray[Any], gs: NDArray[Any], h: float) -> NDArray[Any]:
         """Return q at the ends of successive intervals of length `h`,
@@ -284,17 +285,17 @@ class Flow:
         """Return `rate` for the samples of several intervals at local times `t`, same shape."""
         return np.stack([self.rate(samples[:, i], g, t) for i, g in enumerate(gs)], axis=1)
 
+    @abstractmethod
     def at(self, q: NDArray[Any], g: NDArray[Any], t: float) -> NDArray[Any]:
         """Return q at one time `t`."""
-        raise NotImplementedError
 
+    @abstractmethod
     def path(self, q: NDArray[Any], g: NDArray[Any], times: Array) -> NDArray[Any]:
         """Return q at rising `times`, shape (n_q, n_times)."""
-        raise NotImplementedError
 
+    @abstractmethod
     def rate(self, q: NDArray[Any], g: NDArray[Any], t: Array | float) -> NDArray[Any]:
         """Return dq/dt of samples `q` at times `t`."""
-        raise NotImplementedError
 
 
 def powers(t: NDArray[Any] | float, degree: int) -> Array:
