@@ -23,7 +23,7 @@ from pound_solve.motions.base import METRE, Context, Motion
 from pound_solve.records.base import RecordError
 from pound_solve.results import Results, Writer
 
-DONE, STOPPED, MISTAKES, NO_FILE = 0, 1, 2, 3  #: exit statuses
+DONE, STOPPED, MISTAKES = 0, 1, 2  #: exit statuses; 3 (files) is the command line's own
 
 
 class DeckError(Exception):

@@ -44,6 +44,8 @@ class Structure:
         Quantities of the elements outside laws.
     nodal_mass : mapping of Freedom to float
         Diagonal mass by node and direction, weights and members.
+    self_weight : bool
+        Whether the weight of members is among the loads.
     damping_texts : list of (Card, str)
     """
 
@@ -59,6 +61,7 @@ class Structure:
     law_rows: Array
     outputs: tuple[Output, ...]
     nodal_mass: dict[Freedom, float]
+    self_weight: bool
     damping_texts: list[tuple[Card, str]] = field(default_factory=list)
 
     @property
@@ -217,6 +220,7 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
         rows,
         tuple(o for p in ordered for o in p.outputs),
         nodal_mass,
+        self_weight,
     )
     _add_damping(structure, mass_terms, parts, problems)
     if problems:

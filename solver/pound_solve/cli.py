@@ -65,13 +65,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     if words and words[0] not in VERBS and not words[0].startswith("-"):
         if len(words) > 1 and not words[1].startswith("-") and not Path(words[0]).exists():
             near = get_close_matches(words[0], VERBS, 1)
-            return (
-                _complain(
-                    f"{words[0]} is neither a verb nor a deck"
-                    + (f"; did you mean {near[0]}?" if near else "")
-                )
-                and 2
-            )
+            hint = f"; did you mean {near[0]}?" if near else ""
+            return _complain(f"{words[0]} is neither a verb nor a deck{hint}", 2)
         words.insert(0, "run")
     elif words and words[0].startswith("-") and words[0] not in ("-h", "--help", "--version"):
         words.insert(0, "run")
@@ -86,25 +81,22 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as err:
         return _complain(f"{err.filename or ''}: {err.strerror or err}".lstrip(": "))
     except KeyboardInterrupt:
-        return _complain("interrupted") and 1
+        return _complain("interrupted", 1)
     except MemoryError:
-        return (
-            _complain("not enough memory: store less (OUTPUT EVERY, NODES, MEMBERS) or use a smaller model")
-            and 1
-        )
+        cure = "store less (OUTPUT EVERY, NODES, MEMBERS) or use a smaller model"
+        return _complain(f"not enough memory: {cure}", 1)
     except Exception as err:
         if os.environ.get("POUND_DEBUG"):
             raise
         kind = type(err).__name__
-        return (
-            _complain(f"a fault of the program, not of the deck: {kind}: {err}; POUND_DEBUG=1 shows where")
-            and 1
-        )
+        text = f"a fault of the program, not of the deck: {kind}: {err}; POUND_DEBUG=1 shows where"
+        return _complain(text, 1)
 
 
-def _complain(text: str) -> int:
+def _complain(text: str, status: int = 3) -> int:
+    """Print a line on the error stream and return the exit status; 3 is for files."""
     print(f"pound-solve: {text}", file=sys.stderr)
-    return 3
+    return status
 
 
 def _request(args: argparse.Namespace) -> object:
@@ -114,7 +106,7 @@ def _request(args: argparse.Namespace) -> object:
     for item in args.set:
         name, equals, value = item.partition("=")
         if not equals or not name.strip():
-            raise SystemExit(_complain(f"--set {item}: write NAME=VALUE") and 2)
+            raise SystemExit(_complain(f"--set {item}: write NAME=VALUE", 2))
         params[name.strip()] = value.strip()
     return Request(args.deck, params, getattr(args, "out", None), tuple(args.records), args.method, args.dt)
 
@@ -229,5 +221,5 @@ def _list(args: argparse.Namespace) -> int:
     try:
         print(listing(args.family, args.name))
     except KeyError as err:
-        return _complain(str(err.args[0])) and 2
+        return _complain(str(err.args[0]), 2)
     return 0

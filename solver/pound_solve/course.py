@@ -117,7 +117,7 @@ class Course:
         histories = [c for c in self.model.analyses if c.spec.name == "HISTORY"]
         s = self.structure
         if not asked and all(c["FROM"] == "REST" for c in histories):
-            return static.StaticState(np.zeros(s.n_free), tuple(x.law.start() for x in s.laws), 0)
+            return static.at_rest(s)
         state = static.solve(s)
         if asked:
             self._static_tables(state)
@@ -159,11 +159,7 @@ class Course:
         by assembling with them free.
         """
         fixed = {(n.id, d) for n in self.model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed}
-        whole = assemble(
-            self.structure.model,
-            fixed,
-            all(c["SELF_WEIGHT"] == "YES" for c in self.model.analyses if c.spec.name == "STATIC"),
-        )
+        whole = assemble(self.structure.model, fixed, self.structure.self_weight)
         n = whole.n_free
         u = np.zeros(whole.freedoms.size)
         u[:n] = state.u
@@ -196,7 +192,7 @@ class Course:
     def _history(self, card: Card, state: static.StaticState) -> None:
         s, end = self.structure, float(card["T"])
         if card["FROM"] == "REST":
-            state = static.StaticState(np.zeros(s.n_free), tuple(x.law.start() for x in s.laws), 0)
+            state = static.at_rest(s)
         u0, v0 = history.initial(s)
         u = state.u + u0
         place = scene.build(s, self.motions, end, u, v0)

@@ -114,16 +114,23 @@ def solve(k: Array, m: Array) -> Modes:
     return Modes(np.sqrt(values), full * sign)
 
 
-def _eigen(k: Array, m: Array) -> tuple[Array, Array]:
-    """Squared frequencies and mass-normalised shapes of K and a positive definite M."""
+def generalised(k: Array, m: Array) -> tuple[Array, Array]:
+    """Squared frequencies, ascending, and mass-normalised shapes of K and a positive definite M.
+
+    All values carry the rounding of the largest.
+    """
     if not np.any(m - np.diag(np.diag(m))):
         root = 1.0 / np.sqrt(np.diag(m))
         values, vectors = np.linalg.eigh(root[:, None] * k * root)
-        shapes = root[:, None] * vectors
-    else:
-        lower = np.linalg.inv(np.linalg.cholesky(m))
-        values, vectors = np.linalg.eigh(lower @ k @ lower.T)
-        shapes = lower.T @ vectors
+        return values, root[:, None] * vectors
+    lower = np.linalg.inv(np.linalg.cholesky(m))
+    values, vectors = np.linalg.eigh(lower @ k @ lower.T)
+    return values, lower.T @ vectors
+
+
+def _eigen(k: Array, m: Array) -> tuple[Array, Array]:
+    """`generalised`, with rigid-body modes told from slow ones, and these sharpened."""
+    values, shapes = generalised(k, m)
     size = scaling(k)
     scaled = size[:, None] * k * size
     rigid = np.arange(len(k)) < deficiency(scaled)  # rounding leaves them at +-1e-16 of the largest value

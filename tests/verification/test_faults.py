@@ -250,3 +250,32 @@ def test_overlap_that_parts_at_once_does_not_pull() -> None:
 def test_overlap_that_parts_at_once_leaves_the_motion_alone() -> None:
     r = run_text(PARTING, {"gap": -0.1, "e": 0.1})
     assert r.v[-1, 0, 0] == pytest.approx(-1.0, rel=1e-12)
+
+
+AGAIN = """UNITS N m s
+GRAVITY 1
+NODES
+   1 0 0 FIX=YR
+ELEMENTS
+   1 WALL 1
+PROPS
+   WALL CONTACT GAP=-1 LAW=KELVIN_VOIGT K=1 C=5
+WEIGHTS
+   1 1
+LOADS
+   1 3
+INITIAL
+   1 VX=-1
+ANALYSIS
+   HISTORY 10 FROM=REST
+"""
+
+
+def test_overlap_that_is_let_go_at_once_may_be_pressed_again() -> None:
+    """It starts released, with no collision before: the pressing is its first one."""
+    r = run_text(AGAIN)
+    c = r.tables["collisions"]
+    assert r.status == "done" and len(c) == 1
+    # until then it moves under the load of 3 N alone: k d + c v = 1 + x + 5 v = 0 with v = -1 + 3 t
+    t = (-14 + np.sqrt(14**2 + 4 * 1.5 * 4)) / (2 * 1.5)
+    assert c["t_start"][0] == pytest.approx(t, rel=1e-10)

@@ -41,6 +41,11 @@ class StaticState:
     events: int
 
 
+def at_rest(structure: Structure) -> StaticState:
+    """The unloaded state: no displacement, every law virgin."""
+    return StaticState(np.zeros(structure.n_free), tuple(s.law.start() for s in structure.laws), 0)
+
+
 class Unstable(Exception):
     """The structure cannot carry the load: a mechanism, named by its worst freedom;
     `code` is the message's number.
@@ -61,14 +66,13 @@ def solve(structure: Structure, most_events: int = 10_000) -> StaticState:
     """
     n = structure.n_free
     laws, rows = structure.laws, structure.law_rows[:, :n]
-    states: list[State] = [s.law.start() for s in laws]
-    d = np.zeros(len(laws))
-    u = np.zeros(n)
     load = structure.loads[:n]
     # the overlap of a contact is led in with the load: f = k (d - share * gap)
     overlaps = np.array([min(s.facts["gap"], 0.0) if s.is_contact else 0.0 for s in laws])
     if not load.any() and not overlaps.any():
-        return StaticState(u, tuple(states), 0)
+        return at_rest(structure)
+    states: list[State] = [s.law.start() for s in laws]
+    d, u = np.zeros(len(laws)), np.zeros(n)
     share, events = 0.0, 0
     while share < 1.0:
         branches = [s.law.branch(x) for s, x in zip(laws, states)]

@@ -197,10 +197,10 @@ class Ledger:
             if after.startswith("yielding"):
                 self.peaks.yields[law] += 1
             return
-        if before == "released" and after == "pressed":
+        ended = [i for i, c in enumerate(self.peaks.collisions) if c.law == law]
+        if before == "released" and after == "pressed" and ended:
             # the bodies never parted: the collision goes on
-            last = max(i for i, c in enumerate(self.peaks.collisions) if c.law == law)
-            again = self.peaks.collisions.pop(last)
+            again = self.peaks.collisions.pop(ended[-1])
             again.t_end = again.separation = np.nan
             self.open[law] = again
         elif after == "pressed" and law not in self.open:

@@ -33,6 +33,7 @@ from numpy.typing import NDArray
 
 from pound_solve import polynomial
 from pound_solve.integrate import phi
+from pound_solve.modes import generalised
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -155,14 +156,7 @@ def state_space(m: Array, c: Array, k: Array) -> StateSpace:
 
 def _undamped(m: Array, k: Array) -> tuple[Array, Array]:
     """Squared frequencies and mass-normalised modes of K and a positive definite M."""
-    if not np.any(m - np.diag(np.diag(m))):
-        root = 1.0 / np.sqrt(np.diag(m))
-        values, vectors = np.linalg.eigh(root[:, None] * k * root)
-        phi_u = root[:, None] * vectors
-    else:
-        lower = np.linalg.inv(np.linalg.cholesky(m))
-        values, vectors = np.linalg.eigh(lower @ k @ lower.T)
-        phi_u = lower.T @ vectors
+    values, phi_u = generalised(k, m)
     # all values carry the rounding of the largest: cleared of the fast modes, the slow ones are solved
     # again among themselves (a light node beside heavy ones would cost the slow modes half their digits)
     slow = np.arange(len(values))
