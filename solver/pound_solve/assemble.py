@@ -106,8 +106,6 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
     AssemblyError
         An element or a damping group cannot be built; every mistake is listed.
     """
-    freedoms = number(model.nodes, moved)
-    n = freedoms.size
     problems: list[Diagnostic] = []
     # the mass of the nodes comes first: contacts need it
     mass_terms: list[tuple[frozenset[int], tuple[Freedom, ...], Array]] = []
@@ -184,6 +182,8 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
     if problems:
         raise AssemblyError(problems)
     ordered = [parts[e] for e in model.elements]
+    freedoms = number(model.nodes, moved, [f for p in ordered for f in p.internal()])
+    n = freedoms.size
 
     laws = tuple(s for p in ordered for s in p.laws)
     rows = np.array([freedoms.row(s.freedoms, s.row) for s in laws]).reshape(len(laws), n)

@@ -147,7 +147,7 @@ class Course:
                 (
                     x.element,
                     quantity,
-                    x.law.branch(law_state).force(d, 0.0),
+                    x.force(law_state, d, 0.0),
                     units.text("F*L" if x.component == "R" else "F"),
                 )
             )
@@ -164,10 +164,7 @@ class Course:
         u = np.zeros(whole.freedoms.size)
         u[:n] = state.u
         law = np.array(
-            [
-                x.law.branch(k).force(float(r @ u), 0.0)
-                for x, k, r in zip(whole.laws, state.states, whole.law_rows)
-            ]
+            [x.force(k, float(r @ u), 0.0) for x, k, r in zip(whole.laws, state.states, whole.law_rows)]
         )
         r = whole.stiffness @ u - whole.loads
         if len(law):

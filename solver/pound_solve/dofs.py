@@ -1,6 +1,7 @@
 """Freedoms: which displacements are unknown, which follow a master, which are prescribed.
 
-Every node has ``ux``, ``uy`` and ``rz``.  A fixed one is zero, a slaved one follows its master
+Every node has ``ux``, ``uy`` and ``rz``; an element may have internal freedoms besides (the turns of its
+hinges).  A fixed one is zero, a slaved one follows its master
 with the rigid arm between them, one at a moved support is prescribed; the rest are the unknowns.
 Columns of every assembled matrix are the unknowns first, then the prescribed freedoms.
 """
@@ -17,8 +18,16 @@ from pound_deck.model import Node
 
 DIRECTIONS = "XYR"
 NAMES = ("ux", "uy", "rz")
+INTERNAL = ("turn inside I", "turn inside J", "stretch inside I", "stretch inside J")
 
-Freedom = tuple[int, int]  #: node number and direction (0 x, 1 y, 2 rotation)
+#: node number and direction (0 x, 1 y, 2 rotation), or element number and 3, 4, ... for its internal ones
+Freedom = tuple[int, int]
+
+
+def label(freedom: Freedom) -> str:
+    """Freedom in words."""
+    owner, d = freedom
+    return f"node {owner} {NAMES[d]}" if d < 3 else f"element {owner} {INTERNAL[d - 3]}"
 
 
 @dataclass(frozen=True)
@@ -28,7 +37,7 @@ class Freedoms:
     Attributes
     ----------
     free : tuple of Freedom
-        The unknowns, in the order of the nodes.
+        The unknowns, in the order of the nodes; internal ones of elements last.
     moved : tuple of Freedom
         Freedoms at moved supports, whose motion is prescribed.
     terms : mapping of Freedom to tuple of (int, float)
@@ -57,17 +66,21 @@ class Freedoms:
         return np.array([self.row([f], [1.0]) for f in freedoms]).reshape(len(freedoms), self.size)
 
 
-def number(nodes: Mapping[int, Node], moved: Collection[Freedom] = ()) -> Freedoms:
-    """Number the freedoms of `nodes`; those in `moved` (fixed ones) get prescribed columns."""
+def number(
+    nodes: Mapping[int, Node], moved: Collection[Freedom] = (), internal: Collection[Freedom] = ()
+) -> Freedoms:
+    """Number the freedoms of `nodes` and the `internal` ones of elements;
+    those in `moved` (fixed ones) get prescribed columns.
+    """
     moved = tuple(sorted(moved))
     free = tuple(
         (n.id, d)
         for n in nodes.values()
         for d in range(3)
         if DIRECTIONS[d] not in n.fixed and DIRECTIONS[d] not in n.slaved and (n.id, d) not in moved
-    )
+    ) + tuple(internal)
     column = {f: i for i, f in enumerate(free + moved)}
-    terms: dict[Freedom, tuple[tuple[int, float], ...]] = {}
+    terms: dict[Freedom, tuple[tuple[int, float], ...]] = {f: ((column[f], 1.0),) for f in internal}
     for n in nodes.values():
         for d in range(3):
             if DIRECTIONS[d] in n.slaved:

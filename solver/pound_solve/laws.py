@@ -1,17 +1,108 @@
-"""Piecewise-linear laws: what hysteresis rules and contact laws share.
+"""Force laws as automata: what hysteresis rules and contact laws share.
 
-Between events such a law is a spring, a dashpot and a constant:
-``f = k d + c v + f0`` with the deformation ``d`` and its rate ``v``.  It leaves this branch when
-one of its *exits* ``g = a d + b v + g0`` rises through zero.  An integrator needs no more than that;
-it never knows which law it drives, and a law never knows the integrator.  The state is an immutable value,
-so a step can be tried and forgotten.
+A law is always on one of its *branches*.  It leaves the branch when one of up to three *exits*
+``g = a d + b v + g0`` rises through zero, with the deformation ``d`` and its rate ``v``.  On most branches
+the force is linear, ``f = k d + c v + f0``; a law with a `curve` computes it.  An integrator needs no more
+than that: it never knows which law it drives, and a law never knows the integrator.  The state is an
+immutable value, so a step can be tried and forgotten.
+
+The functions of a Rule take and return plain numbers and tuples of fixed length, so that `jit` can compile
+the very same source.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
 
-State = Any  #: a law's memory: a hashable tuple, its first item the branch
+PARAMETERS, MEMORY, EXITS = 20, 16, 3  #: numbers in a law's parameters and memory, exits of a branch
+
+Numbers = tuple[float, ...]
+State = tuple[int, float, float, Numbers]  #: branch; deformation and work at its entry; memory
+
+NEVER = (0.0, 0.0, -1.0)  #: the exit that is not there
+TURNS_DOWN, TURNS_UP = (0.0, -1.0, 0.0), (0.0, 1.0, 0.0)  #: exits where the rate changes its sign
+
+
+def above(d: float) -> tuple[float, float, float]:
+    """Exit where the deformation rises above `d`."""
+    return (1.0, 0.0, -d)
+
+
+def below(d: float) -> tuple[float, float, float]:
+    """Exit where the deformation falls below `d`."""
+    return (-1.0, 0.0, d)
+
+
+def piece(
+    k: float,
+    f0: float,
+    first: tuple[float, float, float] = NEVER,
+    second: tuple[float, float, float] = NEVER,
+    third: tuple[float, float, float] = NEVER,
+    c: float = 0.0,
+) -> Numbers:
+    """Return the branch ``f = k d + c v + f0`` with its exits as 3 + 3 x 3 numbers."""
+    return (k, c, f0, *first, *second, *third)
+
+
+def remember(
+    a: float = 0.0,
+    b: float = 0.0,
+    c: float = 0.0,
+    d: float = 0.0,
+    e: float = 0.0,
+    f: float = 0.0,
+    g: float = 0.0,
+    h: float = 0.0,
+    i: float = 0.0,
+    j: float = 0.0,
+    k: float = 0.0,
+    l: float = 0.0,  # noqa: E741
+    m: float = 0.0,
+    n: float = 0.0,
+    o: float = 0.0,
+    q: float = 0.0,
+) -> Numbers:
+    """Return a memory of `MEMORY` numbers."""
+    return (a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, q)
+
+
+def on_spring(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Recoverable energy of a law that unloads with its initial stiffness ``p[0]``."""
+    return 0.5 * f * f / p[0]
+
+
+class Rule(NamedTuple):
+    """A kind of law as functions of its parameters ``p``, present branch ``at`` and memory ``m``.
+
+    Attributes
+    ----------
+    branches : tuple of str
+        Their names; ``at`` counts them from 0.  Names that begin with "yielding" count as yield.
+    start : callable
+        ``start(p) -> (at, m)``: virgin, at zero deformation.
+    branch : callable
+        ``branch(p, at, m) -> piece(...)``.
+    leave : callable
+        ``leave(p, at, m, way, d) -> (at, m)``: the state after exit `way` was reached at deformation `d`.
+        The force must be the same on both sides, unless a dashpot or a release makes it jump.
+    recoverable : callable
+        ``recoverable(p, at, m, d, f) -> energy`` that comes back when the force `f` is taken off.
+    curve : callable or None
+        ``curve(p, at, m, d0, d, v) -> (force, d force/d d, d force/d v, work since d0)`` where branches are
+        not linear; `d0` is the deformation at their entry.
+    """
+
+    branches: tuple[str, ...]
+    start: Callable[[Numbers], tuple[int, Numbers]]
+    branch: Callable[[Numbers, int, Numbers], Numbers]
+    leave: Callable[[Numbers, int, Numbers, int, float], tuple[int, Numbers]]
+    recoverable: Callable[[Numbers, int, Numbers, float, float], float] = on_spring
+    curve: (
+        Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]] | None
+    ) = None
 
 
 class Exit(NamedTuple):
@@ -36,28 +127,68 @@ class Branch(NamedTuple):
         return self.stiffness * d + self.damping * v + self.force0
 
 
-class Law(Protocol):
-    """A piecewise-linear force law with memory."""
+@dataclass(frozen=True)
+class Law:
+    """A force law with memory: a Rule with its parameters.
+
+    The energy balance is the same for every rule: the work done on the spring is integrated in closed form
+    along each branch, and what of it is not recoverable has been dissipated.
+    """
+
+    rule: Rule
+    p: Numbers
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "p", tuple(map(float, self.p)) + (0.0,) * (PARAMETERS - len(self.p)))
+
+    @property
+    def curved(self) -> bool:
+        """Whether its branches are not linear."""
+        return self.rule.curve is not None
 
     def start(self) -> State:
         """Return the virgin state at zero deformation."""
-        ...
+        at, m = self.rule.start(self.p)
+        state = (at, 0.0, 0.0, m)
+        return (at, 0.0, self.stored(state, 0.0), m)
 
     def branch(self, state: State) -> Branch:
-        """Return the linear piece that `state` is on."""
-        ...
+        """Return the linear piece that `state` is on (of a curved law its exits, and a tangent)."""
+        k, c, f0, *flat = self.rule.branch(self.p, state[0], state[3])
+        exits = [Exit(*flat[i : i + 3]) for i in range(0, 3 * EXITS, 3)]
+        while exits and exits[-1] == NEVER:
+            exits.pop()
+        return Branch(self.rule.branches[state[0]], k, c, f0, tuple(exits))
+
+    def force(self, state: State, d: float, v: float = 0.0) -> tuple[float, float, float]:
+        """Force at deformation `d` and rate `v`, and its derivatives by them."""
+        if self.rule.curve is not None:
+            return self.rule.curve(self.p, state[0], state[3], state[1], d, v)[:3]
+        k, c, f0 = self.rule.branch(self.p, state[0], state[3])[:3]
+        return k * d + c * v + f0, k, c
+
+    def work(self, state: State, d: float) -> float:
+        """Work done on the law so far [F L], dashpots apart, at deformation `d`."""
+        at, d0, before, m = state
+        if self.rule.curve is not None:
+            return before + self.rule.curve(self.p, at, m, d0, d, 0.0)[3]
+        k, _, f0 = self.rule.branch(self.p, at, m)[:3]
+        return before + (0.5 * k * (d + d0) + f0) * (d - d0)
 
     def leave(self, state: State, exit_index: int, d: float) -> State:
         """Return the state after that exit of the branch was reached at deformation `d`."""
-        ...
+        at, m = self.rule.leave(self.p, state[0], state[3], exit_index, d)
+        return at, d, self.work(state, d), m
 
     def stored(self, state: State, d: float) -> float:
         """Return the recoverable energy [F L] at deformation `d`."""
-        ...
+        return self.rule.recoverable(self.p, state[0], state[3], d, self.force(state, d)[0])
 
     def dissipated(self, state: State, d: float) -> float:
         """Return the energy [F L] lost so far by slip or release, dashpots apart."""
-        ...
+        work, stored = self.work(state, d), self.stored(state, d)
+        lost = work - stored
+        return lost if abs(lost) > 1e-13 * max(abs(work), stored) else 0.0  # no rounding for an elastic law
 
 
 def settle(law: Law, state: State, d: float, v: float) -> State:

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from pound_solve import polynomial
 from pound_solve.assemble import Structure
-from pound_solve.dofs import NAMES, Freedom
+from pound_solve.dofs import Freedom, label
 from pound_solve.modes import massless
 from pound_solve.motions.base import Motion, Piecewise, common_breaks
 
@@ -154,8 +154,7 @@ class Scene:
 
     def name(self, index: int) -> str:
         """Unknown in words."""
-        node, d = self.freedoms[index]
-        return f"node {node} {NAMES[d]}"
+        return label(self.freedoms[index])
 
 
 def moved_supports(motions: Sequence[Motion], fixed: Sequence[Freedom]) -> tuple[Freedom, ...]:
@@ -378,14 +377,14 @@ def _all_inert(m: Array, names: Sequence[Freedom]) -> None:
     if values[0] < 1e-13 * len(values):
         # the rotation at the other end of the arms, where one takes part
         share = np.abs(vectors[:, 0]) * [2.0 if names[int(i)][1] == 2 else 1.0 for i in heavy]
-        node, d = names[int(heavy[int(np.argmax(share))])]
+        worst = label(names[int(heavy[int(np.argmax(share))])])
         raise SceneError(
-            f"node {node} {NAMES[d]} has no inertia of its own beside the mass on slaved nodes: "
+            f"{worst} has no inertia of its own beside the mass on slaved nodes: "
             "give it a rotational weight WR"
         )
 
 
 def _some(freedoms: Sequence[Freedom], most: int = 6) -> str:
     """Name a few freedoms."""
-    text = ", ".join(f"{node} {NAMES[d]}" for node, d in freedoms[:most])
+    text = ", ".join(label(f).removeprefix("node ") for f in freedoms[:most])
     return text + (f", and {len(freedoms) - most} more" if len(freedoms) > most else "")

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from decks import solved, structure_of
 from pound_solve.analyses import static
+from pound_solve.contact.kelvin_voigt import PRESSED
 
 
 def parallel(load: float, rules: str = "RULE=ELASTO_PLASTIC") -> str:
@@ -169,7 +170,7 @@ def test_a_contact_with_any_gap(gap, load):
 @pytest.mark.parametrize(("gap", "events"), [(0.05, 1), (0.0, 1), (-0.05, 0)])
 def test_events_of_a_closing_contact(gap, events):
     s = solved(contact(gap, 30.0))
-    assert s.state.events == events and s.state.states[0][0] == "pressed"
+    assert s.state.events == events and s.state.states[0][0] == PRESSED
     assert solved(contact(abs(gap), -30.0)).state.events == 0
 
 

@@ -211,7 +211,7 @@ class Recorder:
         """Forces of all laws, shape of `d`."""
         laws = self.scene.structure.laws
         rows = [
-            [x.law.branch(own).force(p, q) for x, own, p, q in zip(laws, state, *pair)]
+            [x.force(own, p, q) for x, own, p, q in zip(laws, state, *pair)]
             for state, *pair in zip(states, d.tolist(), rate.tolist())
         ]
         return np.array(rows).reshape(d.shape)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.assemble import Structure
-from pound_solve.dofs import NAMES
+from pound_solve.dofs import label
 from pound_solve.laws import State
 from pound_solve.modes import deficiency, scaling
 
@@ -153,8 +153,7 @@ def _solve(structure: Structure, k: Array, load: Array) -> Array:
 
 
 def _name(structure: Structure, index: int) -> str:
-    node, d = structure.freedoms.free[index]
-    return f"node {node} {NAMES[d]}"
+    return label(structure.freedoms.free[index])
 
 
 SPEC = Spec(

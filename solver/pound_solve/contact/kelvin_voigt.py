@@ -17,63 +17,52 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.contact import restitution
-from pound_solve.laws import Branch, Exit
+from pound_solve.laws import Law, Numbers, Rule, above, below, piece, remember
 
-State = tuple[str, float]  #: branch, energy lost at releases so far
+OPEN, PRESSED, RELEASED = 0, 1, 2
 
 
-@dataclass(frozen=True, slots=True)
-class KelvinVoigt:
-    """The law of one contact; deformation is the closure, overlap = closure - gap."""
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Open, or pressed where the gap is negative (an overlap from the start)."""
+    return (PRESSED if p[2] < 0.0 else OPEN), remember()
 
-    k: float
-    c: float
-    gap: float
-    tension: bool = False
 
-    def start(self) -> State:
-        """Open, or pressed where the gap is negative (an overlap from the start)."""
-        return ("pressed" if self.gap < 0 else "open"), 0.0
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Deformation is the closure, overlap = closure - gap."""
+    k, c, gap, tension = p[:4]
+    if at == OPEN:
+        return piece(0.0, 0.0, above(gap))
+    if at == RELEASED:
+        # overlap left, force zero: pressed again if k*overlap + c*rate turns positive
+        return piece(0.0, 0.0, (k, c, -k * gap), below(gap))
+    return piece(k, -k * gap, below(gap) if tension != 0.0 else (-k, -c, k * gap), c=c)
 
-    def branch(self, state: State) -> Branch:
-        """Linear piece of `state`."""
-        k, c, gap = self.k, self.c, self.gap
-        if state[0] == "open":
-            return Branch("open", 0.0, 0.0, 0.0, (Exit(1.0, 0.0, -gap),))
-        if state[0] == "released":
-            # overlap left, force zero: pressed again if k*overlap + c*rate turns positive
-            return Branch("released", 0.0, 0.0, 0.0, (Exit(k, c, -k * gap), Exit(-1.0, 0.0, gap)))
-        let_go = Exit(-1.0, 0.0, gap) if self.tension else Exit(-k, -c, k * gap)
-        return Branch("pressed", k, c, -k * gap, (let_go,))
 
-    def leave(self, state: State, exit_index: int, d: float) -> State:
-        """Touch, let go, or part."""
-        name, lost = state
-        overlap = 0.5 * self.k * (d - self.gap) ** 2
-        if name == "open":
-            return "pressed", lost
-        if name == "released":
-            return ("pressed", lost - overlap) if exit_index == 0 else ("open", lost)
-        return ("open", lost) if self.tension or self.c == 0.0 else ("released", lost + overlap)
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+    """Touch, let go, or part."""
+    if at == OPEN or (at == RELEASED and way == 0):
+        return PRESSED, m
+    return (OPEN if at == RELEASED or p[3] != 0.0 or p[1] == 0.0 else RELEASED), m
 
-    def stored(self, state: State, d: float) -> float:
-        """Energy of the contact spring."""
-        return 0.5 * self.k * (d - self.gap) ** 2 if state[0] == "pressed" else 0.0
 
-    def dissipated(self, state: State, d: float) -> float:
-        """Energy lost at releases (the dashpot's loss apart)."""
-        return state[1]
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy of the contact spring."""
+    return 0.5 * p[0] * (d - p[2]) ** 2 if at == PRESSED else 0.0
+
+
+RULE = Rule(("open", "pressed", "released"), start, branch, leave, recoverable)
 
 
 class Built(NamedTuple):
     """A contact law with what the report says of it."""
 
-    law: KelvinVoigt
+    law: Law
+    k: float
+    c: float
     xi: float
     e_asked: float
     e_given: float
@@ -123,7 +112,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
             note = "published relation of E to XI" if published else "exact relation of E to XI"
         c = xi * root
     e_given = exact(xi) if math.isfinite(xi) else math.nan
-    return Built(KelvinVoigt(k, c, values["GAP"], tension), xi, e_asked, e_given, note)
+    return Built(Law(RULE, (k, c, values["GAP"], float(tension))), k, c, xi, e_asked, e_given, note)
 
 
 SPEC = Spec(

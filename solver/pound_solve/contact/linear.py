@@ -8,12 +8,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.contact.kelvin_voigt import Built, KelvinVoigt
+from pound_solve.contact.kelvin_voigt import RULE, Built
+from pound_solve.laws import Law
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     """Law from a card's values (GAP, K)."""
-    return Built(KelvinVoigt(values["K"], 0.0, values["GAP"]), 0.0, 1.0, 1.0, "elastic")
+    return Built(Law(RULE, (values["K"], 0.0, values["GAP"])), values["K"], 0.0, 0.0, 1.0, 1.0, "elastic")
 
 
 SPEC = Spec(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pound_deck.model import Card, Element, Node
 from pound_solve.dofs import Freedom
-from pound_solve.laws import Law
+from pound_solve.laws import Branch, Law, State
 
 Matrix = NDArray[np.float64]
 
@@ -39,6 +39,8 @@ class LawSpring:
         Name of the law's Spec.
     k0 : float
         Initial stiffness for modes and damping [F/L] or [F L]; 0 for a contact.
+    beta : float
+        Dashpot as a multiple of the present stiffness [T] (damping models set it).
     yields : tuple of float or None
         Deformations at first yield, positive and negative, for ductilities.
     facts : mapping
@@ -54,11 +56,22 @@ class LawSpring:
     k0: float = 0.0
     yields: tuple[float, float] | None = None
     facts: Mapping[str, Any] = field(default_factory=dict)
+    beta: float = 0.0
 
     @property
     def is_contact(self) -> bool:
         """Whether the component is a contact."""
         return self.component == "contact"
+
+    def branch(self, state: State) -> Branch:
+        """Linear piece that the law is on, the dashpot of `beta` included."""
+        own = self.law.branch(state)
+        return own._replace(damping=own.damping + self.beta * own.stiffness) if self.beta else own
+
+    def force(self, state: State, d: float, v: float) -> float:
+        """Force at deformation `d` and rate `v`."""
+        f, k, _ = self.law.force(state, d, v)
+        return f + self.beta * k * v
 
 
 @dataclass(frozen=True)
@@ -87,6 +100,12 @@ class Parts:
     loads: list[tuple[tuple[Freedom, ...], Matrix]] = field(default_factory=list)
     laws: list[LawSpring] = field(default_factory=list)
     outputs: list[Output] = field(default_factory=list)
+
+    def internal(self) -> tuple[Freedom, ...]:
+        """Freedoms of the element's own, beside those of its nodes."""
+        touched = [b.freedoms for b in self.stiffness] + [s.freedoms for s in self.laws]
+        used = [f for freedoms in touched for f in freedoms if f[1] > 2]
+        return tuple(sorted(set(used)))
 
 
 @dataclass(frozen=True)

@@ -45,9 +45,9 @@ def build(site: Site) -> Parts:
     except ValueError as err:
         raise ElementError(str(err), "LAW") from None
     facts = {
-        "k": built.law.k,
-        "c": built.law.c,
-        "gap": built.law.gap,
+        "k": built.k,
+        "c": built.c,
+        "gap": card["GAP"],
         "xi": built.xi,
         "e_asked": built.e_asked,
         "e_given": built.e_given,

@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.hysteresis.bilinear import Bilinear
+from pound_solve.hysteresis.bilinear import RULE
+from pound_solve.laws import Law
 
 
-def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Bilinear:
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
     """Rule from a stiffness and the two yield forces."""
-    return Bilinear(k, fy_plus, fy_minus)
+    return Law(RULE, (k, fy_plus, fy_minus))
 
 
 SPEC = Spec(

@@ -19,117 +19,105 @@ line run at slope :math:`r k` through the first yield point, and the two forms o
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.hysteresis.bilinear import REVERSAL
-from pound_solve.laws import Branch, Exit
+from pound_solve.laws import TURNS_DOWN, TURNS_UP, Law, Numbers, Rule, above, below, piece, remember
 
-State = tuple[str, float, float, float]  #: branch, p+ and p- (at entry), plastic work so far (at entry)
-
-
-@dataclass(frozen=True, slots=True)
-class Slackness:
-    """The rule for one component; symbols as at the head of the file."""
-
-    k: float
-    fy_plus: float
-    fy_minus: float
-    gap_plus: float
-    gap_minus: float
-    r: float = 0.0
-    grow: bool = True
-
-    def start(self) -> State:
-        """Virgin state."""
-        return "slack", 0.0, 0.0, 0.0
-
-    def branch(self, state: State) -> Branch:
-        """Linear piece of `state`."""
-        name, plus, minus, _ = state
-        k, hard = self.k, self.k * self.r / (1.0 - self.r)
-        on_plus, on_minus = self.gap_plus + plus, self.gap_minus + minus
-        if name == "slack":
-            return Branch(name, 0.0, 0.0, 0.0, (Exit(1.0, 0.0, -on_plus), Exit(-1.0, 0.0, on_minus)))
-        if name == "elastic +":
-            fy = self.fy_plus + hard * plus
-            off = Exit(-k, 0.0, k * on_plus + max(self._back(state), 0.0))
-            return Branch(name, k, 0.0, -k * on_plus, (Exit(k, 0.0, -k * on_plus - fy), off))
-        if name == "elastic -":
-            fy = self.fy_minus + hard * minus
-            off = Exit(k, 0.0, -k * on_minus - min(self._back(state), 0.0))
-            return Branch(name, k, 0.0, -k * on_minus, (Exit(-k, 0.0, k * on_minus + fy), off))
-        gap, fy = self._line(name)
-        slope = self.r * k
-        force0 = (1.0 - self.r) * fy - slope * gap
-        if name in REVERSAL:
-            return Branch(name, slope, 0.0, force0, (REVERSAL[name],))
-        sign = 1.0 if name[-1] == "+" else -1.0
-        turn, off = Exit(0.0, sign, 0.0), Exit(-sign * slope, 0.0, -sign * force0)
-        return Branch(name, slope, 0.0, force0, (turn, off))
-
-    def _line(self, name: str) -> tuple[float, float]:
-        """Gap and yield force of a yield line; the sign in its name is the side of the slack it is on."""
-        gap = self.gap_plus if name[-1] == "+" else self.gap_minus
-        return gap, self.fy_plus if (name[-1] == "+") != ("back" in name) else self.fy_minus
-
-    def _back(self, state: State) -> float:
-        """Force at which the spring yields back, if it gets so far before it lets go."""
-        name, plus, minus, _ = state
-        if self.grow:
-            return 0.0
-        hard = self.k * self.r / (1.0 - self.r)
-        return self.fy_minus + hard * minus if name == "elastic +" else self.fy_plus + hard * plus
-
-    def leave(self, state: State, exit_index: int, d: float) -> State:
-        """Take hold, yield, let go, or unload where the motion turns."""
-        name, plus, minus, work = state
-        if name.startswith("yielding"):
-            plus, minus = self._plastic(state, d)
-            return ("elastic " + name[-1], "slack")[exit_index], plus, minus, self.dissipated(state, d)
-        if name == "slack":
-            name = ("elastic +", "elastic -")[exit_index]
-        else:
-            side = name[-1]
-            back = self._back(state) > 0.0 if side == "+" else self._back(state) < 0.0
-            name = ("yielding " + side, "yielding back " + side if back else "slack")[exit_index]
-        return name, plus, minus, work
-
-    def _plastic(self, state: State, d: float) -> tuple[float, float]:
-        name, plus, minus, _ = state
-        if not name.startswith("yielding"):
-            return plus, minus
-        now = d - self._line(name)[0] - self.branch(state).force(d, 0.0) / self.k
-        if not self.grow:
-            return now, now
-        return (now, minus) if name == "yielding +" else (plus, now)
-
-    def stored(self, state: State, d: float) -> float:
-        """Recoverable energy; hardening is recoverable only where the slack zone moves as a whole."""
-        force = self.branch(state).force(d, 0.0)
-        hard = 0.0 if self.grow else self.k * self.r / (1.0 - self.r) * self._plastic(state, d)[0] ** 2
-        return 0.5 * force * force / self.k + 0.5 * hard
-
-    def dissipated(self, state: State, d: float) -> float:
-        """Plastic work so far."""
-        name, plus, minus, work = state
-        if not name.startswith("yielding"):
-            return work
-        side = 0 if name[-1] == "+" else 1
-        fy, before = self._line(name)[1], (plus, minus)[side]
-        now = self._plastic(state, d)[side]
-        hard = self.k * self.r / (1.0 - self.r) if self.grow else 0.0
-        return work + fy * (now - before) + 0.5 * hard * (now * now - before * before)
+SLACK, ELASTIC_PLUS, ELASTIC_MINUS, YIELDING_PLUS, YIELDING_MINUS, BACK_PLUS, BACK_MINUS = range(7)
 
 
-def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Slackness:
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: in the slack."""
+    return SLACK, remember()
+
+
+def line(p: Numbers, at: int) -> tuple[float, float, float]:
+    """Gap, yield force and side (+1, -1) of a yield line; yielding back stays on the side that holds."""
+    plus, minus, gap_plus, gap_minus = p[1:5]
+    if at == YIELDING_PLUS:
+        return gap_plus, plus, 1.0
+    if at == YIELDING_MINUS:
+        return gap_minus, minus, -1.0
+    return (gap_plus, minus, 1.0) if at == BACK_PLUS else (gap_minus, plus, -1.0)
+
+
+def yields_back(p: Numbers, at: int, m: Numbers) -> float:
+    """Force at which an elastic spring yields back, if it gets so far before it lets go."""
+    k, plus, minus, _, _, r, grow = p[:7]
+    if grow != 0.0:
+        return 0.0
+    hard = k * r / (1.0 - r) * m[0]
+    return minus + hard if at == ELASTIC_PLUS else plus + hard
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Nothing, elastic on one side, or along a yield line."""
+    k, plus, minus, gap_plus, gap_minus, r = p[:6]
+    hard = k * r / (1.0 - r)
+    on_plus, on_minus = gap_plus + m[0], gap_minus + m[1]
+    if at == SLACK:
+        return piece(0.0, 0.0, above(on_plus), below(on_minus))
+    if at == ELASTIC_PLUS:
+        lets_go = (-k, 0.0, k * on_plus + max(yields_back(p, at, m), 0.0))
+        return piece(k, -k * on_plus, (k, 0.0, -k * on_plus - plus - hard * m[0]), lets_go)
+    if at == ELASTIC_MINUS:
+        lets_go = (k, 0.0, -k * on_minus - min(yields_back(p, at, m), 0.0))
+        return piece(k, -k * on_minus, (-k, 0.0, k * on_minus + minus + hard * m[1]), lets_go)
+    gap, fy, side = line(p, at)
+    slope = r * k
+    f0 = (1.0 - r) * fy - slope * gap
+    if at == YIELDING_PLUS:
+        return piece(slope, f0, TURNS_DOWN)
+    if at == YIELDING_MINUS:
+        return piece(slope, f0, TURNS_UP)
+    turn = TURNS_UP if side > 0.0 else TURNS_DOWN
+    return piece(slope, f0, turn, (-side * slope, 0.0, -side * f0))
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+    """Take hold, yield, let go, or unload where the motion turns."""
+    k, grow = p[0], p[6]
+    if at == SLACK:
+        return (ELASTIC_PLUS if way == 0 else ELASTIC_MINUS), m
+    if at == ELASTIC_PLUS:
+        if way == 0:
+            return YIELDING_PLUS, m
+        return (BACK_PLUS if yields_back(p, at, m) > 0.0 else SLACK), m
+    if at == ELASTIC_MINUS:
+        if way == 0:
+            return YIELDING_MINUS, m
+        return (BACK_MINUS if yields_back(p, at, m) < 0.0 else SLACK), m
+    gap, fy, side = line(p, at)
+    slope = p[5] * k
+    now = d - gap - ((1.0 - p[5]) * fy + slope * (d - gap)) / k
+    if grow == 0.0:
+        m = remember(now, now)
+    elif side > 0.0:
+        m = remember(now, m[1])
+    else:
+        m = remember(m[0], now)
+    if way == 1:
+        return SLACK, m
+    return (ELASTIC_PLUS if side > 0.0 else ELASTIC_MINUS), m
+
+
+RULE = Rule(
+    ("slack", "elastic +", "elastic -", "yielding +", "yielding -", "yielding back +", "yielding back -"),
+    start,
+    branch,
+    leave,
+)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
     """Rule from a card's values, a stiffness and the two yield forces."""
     gap = values["SLACK"]
     gap_minus = gap[1] if len(gap) == 2 else -gap[0]
     if gap[0] < 0 or gap_minus > 0:
         raise ValueError("SLACK is written positive, then negative (signed)")
-    return Slackness(k, fy_plus, fy_minus, gap[0], gap_minus, values["R"], values["GROW"] == "YES")
+    grow = float(values["GROW"] == "YES")
+    return Law(RULE, (k, fy_plus, fy_minus, gap[0], gap_minus, values["R"], grow))
 
 
 SPEC = Spec(

@@ -62,7 +62,7 @@ class Exact:
         self.laws = scene.structure.laws
         n = self.n_laws = len(self.laws)
         self.states = list(start.states)
-        self.branches: list[Branch] = [s.law.branch(x) for s, x in zip(self.laws, self.states)]
+        self.branches: list[Branch] = [s.branch(x) for s, x in zip(self.laws, self.states)]
         # the rows that are followed: deformations of the laws, then the drifts
         self.partition = Partition(
             scene,
@@ -274,7 +274,7 @@ class Exact:
     def _switch(self, law: int, exit_index: int, d: float, v: float) -> None:
         before = self.branches[law].name
         self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, d)
-        after = self.branches[law] = self.laws[law].law.branch(self.states[law])
+        after = self.branches[law] = self.laws[law].branch(self.states[law])
         force = after.force(d, v)
         self.events += 1
         self.ledger.switched(law, before, after.name, self.t, d, v, force)

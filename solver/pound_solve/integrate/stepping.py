@@ -85,7 +85,7 @@ class Stepper:
         )
         self.laws = scene.structure.laws
         self.states = list(start.states)
-        self.branches: list[Branch] = [s.law.branch(x) for s, x in zip(self.laws, self.states)]
+        self.branches: list[Branch] = [s.branch(x) for s, x in zip(self.laws, self.states)]
         self.times = start.times
         self.light = massless(scene.mass)
         self.heavy = ~self.light
@@ -320,7 +320,7 @@ class Stepper:
         d, v = self.deformations(self.t, self.u, self.v)
         before = self.branches[law].name
         self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, float(d[law]))
-        after = self.branches[law] = self.laws[law].law.branch(self.states[law])
+        after = self.branches[law] = self.laws[law].branch(self.states[law])
         self.ledger.switched(
             law,
             before,
