@@ -136,7 +136,7 @@ class Law:
     """
 
     rule: Rule
-    p: Numbers
+    p: Numbers  #: the first is the (initial) stiffness
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "p", tuple(map(float, self.p)) + (0.0,) * (PARAMETERS - len(self.p)))
@@ -186,9 +186,9 @@ class Law:
 
     def dissipated(self, state: State, d: float) -> float:
         """Return the energy [F L] lost so far by slip or release, dashpots apart."""
-        work, stored = self.work(state, d), self.stored(state, d)
-        lost = work - stored
-        return lost if abs(lost) > 1e-13 * max(abs(work), stored) else 0.0  # no rounding for an elastic law
+        lost = self.work(state, d) - self.stored(state, d)
+        # what the rounding of d alone makes of it is no loss: an elastic law shows none
+        return lost if abs(lost) > 1e-14 * self.p[0] * max(abs(d), abs(state[1])) ** 2 else 0.0
 
 
 def settle(law: Law, state: State, d: float, v: float) -> State:
