@@ -11,7 +11,7 @@ DECK, SOLVER = ROOT / "parser/pound_deck", ROOT / "solver/pound_solve"
 
 # from the bottom to the top: a module may import its own layer and those below
 LAYERS = (
-    ("laws", "dofs", "modes", "polynomial", "records"),
+    ("laws", "jit", "dofs", "modes", "polynomial", "records"),
     ("motions",),
     ("hysteresis", "contact", "damping"),
     ("elements",),

@@ -20,6 +20,7 @@ import numpy as np
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve import modes
 from pound_solve.integrate.base import Outcome, Sink, Start, Stop, Watch
+from pound_solve.integrate.kernel import Scheme
 from pound_solve.integrate.stepping import Stepper
 from pound_solve.scene import Scene
 
@@ -59,7 +60,7 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
             f"the step {options['DT']:g} is above the stability limit {longest:.4g}; "
             "EXACT needs no step, NEWMARK has no such limit",
         )
-    stepper = Stepper(scene, start, watch, sink, options["DT"], 0.0, 0.5, "CENTRAL, central differences")
+    stepper = Stepper(scene, start, watch, sink, options, Scheme(0.0, 0.5), "CENTRAL, central differences")
     outcome = stepper.run()
     outcome.checks.append(
         (

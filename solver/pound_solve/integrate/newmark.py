@@ -7,7 +7,8 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate.base import Outcome, Sink, Start, Stop, Watch
-from pound_solve.integrate.stepping import Stepper
+from pound_solve.integrate.kernel import Scheme
+from pound_solve.integrate.stepping import COMMON, Stepper
 from pound_solve.scene import Scene
 
 
@@ -32,7 +33,7 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
         if (beta, gamma) == (0.25, 0.5)
         else f"NEWMARK, beta {beta:g}, gamma {gamma:g}"
     )
-    return Stepper(scene, start, watch, sink, options["DT"], beta, gamma, name).run()
+    return Stepper(scene, start, watch, sink, options, Scheme(beta, gamma), name).run()
 
 
 SPEC = Spec(
@@ -40,7 +41,7 @@ SPEC = Spec(
     "NEWMARK",
     "implicit steps, average acceleration",
     (
-        Field("DT", Kind.REAL, "T", above=0, doc="time step"),
+        *COMMON,
         Field("BETA", Kind.REAL, "-", default=0.25, above=0, doc="Newmark's beta"),
         Field("GAMMA", Kind.REAL, "-", default=0.5, lo=0, doc="Newmark's gamma"),
     ),

@@ -1,64 +1,85 @@
-r"""Step-by-step integration with events located within the step: what NEWMARK and CENTRAL share.
+r"""Step-by-step integration with events located within the step: what NEWMARK, HHT, GENERALISED_ALPHA
+and CENTRAL share.
 
-Newmark's family with parameters :math:`\beta, \gamma`:
-
-.. math::
-    u_1 = u_0 + h v_0 + h^2[(\tfrac12-\beta) a_0 + \beta a_1], \qquad
-    v_1 = v_0 + h[(1-\gamma) a_0 + \gamma a_1]
-
-with equilibrium at the end of the step.  Between events the scene is linear, so a step needs no iteration.
-When an exit of a law is passed within a step, the step is taken again, shorter, so that it ends
-on the exit (to 1e-12 of the step), the law changes branch, the acceleration is made consistent,
-and the rest of the step follows.
+Lays the scene out for the kernels (see `kernel`), lets them run, and takes in what they kept:
+samples, changes of branches, peaks.
 
 Energies are integrated from velocities taken as straight lines over a step,
 not by the trapezoid rule of the method itself, which would balance for any step, right or wrong.
 
 References
 ----------
-Newmark NM (1959), A method of computation for structural dynamics, J. Engng Mech. Div. ASCE 85(EM3): 67-94.
+Newmark NM (1959), A method of computation for structural dynamics, J. Engng Mech. Div. ASCE 85(EM3): 67-94;
+Chung J, Hulbert GM (1993), A time integration algorithm for structural dynamics with improved numerical
+dissipation: the generalized-alpha method, J. Appl. Mech. 60(2): 371-375.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_deck.schema import Field, Kind
+from pound_solve import jit
+from pound_solve.hysteresis import bilinear
+from pound_solve.integrate import kernel, ldl
 from pound_solve.integrate.base import (
     INTERRUPTED,
     RUNAWAY,
+    Collision,
+    Extreme,
+    LawValues,
     Ledger,
     Outcome,
     Sink,
     Start,
     Stop,
     Watch,
-    cubic_top,
-    energies,
+    energy_at_start,
     goals,
 )
-from pound_solve.laws import Branch
+from pound_solve.laws import MEMORY, PARAMETERS
 from pound_solve.modes import massless
 from pound_solve.scene import Scene
 
 Array = NDArray[np.float64]
-Motion = tuple[Array, Array, Array]  #: displacement, velocity, acceleration
+Index = NDArray[np.int64]
 
-STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
+COMMON = (
+    Field("DT", Kind.REAL, "T", above=0, doc="longest time step"),
+    Field(
+        "EVENTS",
+        Kind.WORD,
+        default="LOCATED",
+        words=("LOCATED", "STEPPED"),
+        doc="cut the step where a law changes branch, or let it change at the end of the step",
+    ),
+)  #: fields of every implicit method
+
+SAMPLES, LOG = 64, 4096  #: samples and changes of branches kept between two visits of Python
+
+
+def sparse(a: Array) -> tuple[Index, Index, Array]:
+    """Rows of a matrix as pointers, columns and values."""
+    rows, columns = np.nonzero(a)
+    pointers = np.searchsorted(rows, np.arange(len(a) + 1)).astype(np.int64)
+    return pointers, columns.astype(np.int64), np.ascontiguousarray(a[rows, columns], float)
 
 
 class Stepper:
-    """One run of a Newmark method; see the module's head.
+    """One run of a method; see the module's head.
 
     Parameters
     ----------
     scene, start, watch, sink
         See `integrate.base`.
-    dt : float
-        Longest step [T]; every interval between output times and record points is divided evenly.
-    beta, gamma : float
+    options : mapping
+        DT, the longest step [T]: every interval between output times and record points is divided evenly;
+        EVENTS.
+    scheme : Scheme
     name : str
         For the report.
     """
@@ -69,109 +90,154 @@ class Stepper:
         start: Start,
         watch: Watch,
         sink: Sink,
-        dt: float,
-        beta: float,
-        gamma: float,
+        options: Mapping[str, Any],
+        scheme: kernel.Scheme,
         name: str,
     ) -> None:
-        self.scene, self.watch, self.sink, self.dt, self.beta, self.gamma, self.name = (
-            scene,
-            watch,
-            sink,
-            dt,
-            beta,
-            gamma,
-            name,
-        )
+        self.scene, self.watch, self.sink = scene, watch, sink
+        self.dt, self.name = options["DT"], name
+        self.scheme = scheme._replace(locate=options.get("EVENTS", "LOCATED") == "LOCATED")
         self.laws = scene.structure.laws
-        self.states = list(start.states)
-        self.branches: list[Branch] = [s.branch(x) for s, x in zip(self.laws, self.states)]
         self.times = start.times
-        self.light = massless(scene.mass)
-        self.heavy = ~self.light
-        self.t, self.u, self.v = 0.0, start.u.copy(), start.v.copy()
-        self.a = np.zeros_like(self.u)
         self.ledger = Ledger(scene, len(watch.names))
-        self.steps = self.events = self.same_instant = 0
-        self.works = np.zeros(3)  # input, dashpots of the structure, dashpots of contacts
-        self.largest = np.zeros((2, len(self.laws)))
-        self.held = self.put_in = 0.0  # energy at the start, sum of all |input| since
-        self._maps: dict[tuple[Any, ...], Array] = {}
-        self._noted: tuple[Array, Array] = (np.zeros(0), np.zeros(0))
-        self._regime()
+        self.rules = list(dict.fromkeys(s.law.rule for s in self.laws))
+        self.tables = jit.tables(self.rules or [bilinear.RULE])  # never empty, which compiles to nothing
+        self._lay_out(start)
+        self.count = np.zeros(8, np.int64)
+        self.clock = np.array([0.0, -1.0, energy_at_start(scene, start.u, start.v, start.states)])
 
-    def _regime(self) -> None:
-        scene = self.scene
-        ks = np.array([b.stiffness for b in self.branches])
-        cs = np.array([b.damping for b in self.branches])
-        self.law_k, self.law_c, self.law_f0 = ks, cs, np.array([b.force0 for b in self.branches])
-        rows = scene.law_rows
-        self.k = scene.stiffness + (rows.T * ks) @ rows
-        self.c = scene.damping + (rows.T * cs) @ rows if cs.any() else scene.damping
-        self.key = (ks.tobytes(), cs.tobytes())
-        pairs = [(i, e) for i, b in enumerate(self.branches) for e in range(len(b.exits))]
-        self.exit_pairs = pairs
-        self.exit_law = np.array([i for i, _ in pairs], np.intp)
-        self.exit_factors = np.array([self.branches[i].exits[e] for i, e in pairs]).reshape(-1, 3)
+    def _lay_out(self, start: Start) -> None:
+        scene, watch, laws = self.scene, self.watch, self.laws
+        n, count = scene.size, len(laws)
+        damps = np.array([bool(s.facts.get("c")) or s.beta != 0.0 or s.law.curved for s in laws], bool)
+        stiff = self.scheme.beta > 0.0
+        linked = (scene.mass != 0) | (scene.damping != 0) | np.eye(n, dtype=bool)
+        if stiff:
+            linked |= scene.stiffness != 0
+        for row in scene.law_rows[damps | stiff]:
+            touched = np.flatnonzero(row)
+            linked[np.ix_(touched, touched)] = True
+        self.order = ldl.order(linked)
+        o, grid = self.order, np.ix_(self.order, self.order)
+        pattern = ldl.analyse(linked[grid])
+        mass, damping, stiffness = (a[grid] for a in (scene.mass, scene.damping, scene.stiffness))
+        columns = np.repeat(np.arange(n), np.diff(pattern.ap))
+        heavy = ~massless(mass)
+        on_pattern = [a[pattern.ai, columns] for a in (mass, damping, stiffness * stiff)]
+        moved = scene.support_inputs
+        s = scene.structure
+        free = [s.freedoms.free.index(scene.freedoms[i]) for i in o]
+        nf = s.n_free
+        rate_of, bend_of = np.zeros_like(moved), np.zeros_like(moved)
+        rate_of[:, 1:], bend_of[:, 2:] = moved[:, :-1], moved[:, :-2]
+        self.matrices = kernel.Matrices(
+            k=sparse(stiffness),
+            c=sparse(damping),
+            m=sparse(mass),
+            inputs=np.ascontiguousarray(scene.inputs[o]),
+            constant=scene.constant[o],
+            pattern=pattern,
+            a=np.array(on_pattern),
+            heavy=heavy,
+            diagonal=not np.any(mass - np.diag(np.diag(mass))),
+            explicit=not stiff and not len(pattern.li),
+            rows=sparse(watch.rows[:, o]),
+            row_inputs=np.ascontiguousarray(watch.input_rows),
+            row_constants=np.ascontiguousarray(watch.constants),
+            reactions=np.array([a[nf:, free] for a in (s.stiffness, s.damping, s.mass)]),
+            supports=np.array(
+                [
+                    s.stiffness[nf:, nf:] @ moved
+                    + s.damping[nf:, nf:] @ rate_of
+                    + s.mass[nf:, nf:] @ bend_of,
+                    rate_of,
+                ]
+            ),
+            support_c=np.ascontiguousarray(s.damping[nf:, nf:]),
+        )
+        rows = sparse(scene.law_rows[:, o])
+        position = {(int(i), int(j)): q for q, (i, j) in enumerate(zip(pattern.ai, columns))}
+        pairs: list[list[tuple[int, float]]] = [[] for _ in laws]
+        for i in range(count):
+            if not (stiff or damps[i]):
+                continue
+            span = range(rows[0][i], rows[0][i + 1])
+            at, own = [int(rows[1][q]) for q in span], [float(rows[2][q]) for q in span]
+            pairs[i] = [
+                (position[at[a], at[b]], own[a] * own[b])
+                for a in range(len(at))
+                for b in range(len(at))
+                if at[a] >= at[b]
+            ]
+        total = scene.excitation
+        d = scene.law_rows @ start.u + scene.law_inputs @ total.value(0.0)
+        v = scene.law_rows @ start.v + scene.law_inputs @ total.value(0.0, 1)
+        self.w = w = kernel.Laws(
+            rows=rows,
+            inputs=np.ascontiguousarray(scene.law_inputs),
+            pairs=(
+                np.concatenate([[0], np.cumsum([len(p) for p in pairs])]).astype(np.int64),
+                np.array([q for p in pairs for q, _ in p], np.int64),
+                np.array([x for p in pairs for _, x in p], float),
+            ),
+            supports=np.ascontiguousarray(s.law_rows[:, nf:]),
+            p=np.array([x.law.p for x in laws]).reshape(count, PARAMETERS),
+            memory=np.array([x[3] for x in start.states], float).reshape(count, MEMORY),
+            f=np.zeros((count, 25)),
+            i=np.zeros((count, 6), np.int64),
+            saved=np.zeros((count, 3 + MEMORY)),
+        )
+        for i, (law, state) in enumerate(zip(laws, start.states)):
+            w.i[i, :4] = self.rules.index(law.law.rule), law.law.curved, law.is_contact, state[0]
+            w.f[i, [kernel.D0, kernel.WORK, kernel.BETA]] = state[1], state[2], law.beta
+            w.f[i, [kernel.LD, kernel.LV]] = d[i], v[i]
+            w.f[i, [kernel.MOST_D, kernel.MOST_V]] = abs(d[i]), abs(v[i])
+        self.x = x = kernel.Motion(
+            np.zeros((18, n)),
+            np.zeros((3, len(pattern.li))),
+            np.zeros(len(columns)),
+            np.zeros((6, len(watch.names) + 2 * count)),
+            np.zeros(4),
+            np.zeros((4, scene.inputs.shape[1])),
+        )
+        x.q[kernel.U], x.q[kernel.V] = start.u[o], start.v[o]
+        x.q[kernel.CV] = damping @ start.v[o]
+        x.peak[kernel.HIGH], x.peak[kernel.LOW] = -np.inf, np.inf
+        padded = np.where((pattern.ai == columns) & ~heavy[columns], 1.0, on_pattern[0])
+        ldl.factor(pattern, padded, x.l, kernel.MASS, x.q, kernel.D + kernel.MASS, kernel.W)
+        self.z = kernel.Samples(
+            np.zeros((SAMPLES, 3, n)),
+            np.zeros((SAMPLES, 3, count)),
+            np.zeros((SAMPLES, 4)),
+            np.zeros((LOG + 16 * count, kernel.COLUMNS)),
+        )
+        for i in range(count):
+            kernel.enter(w, self.tables, i)
+            if w.i[i, kernel.CURVED]:
+                kernel.tangent(w, self.tables, i)
+        self._let_massless_go()
 
-    def force(self, t: float) -> Array:
-        """Load on the unknowns in the present regime: inputs, constant loads, constants of the laws."""
-        scene = self.scene
-        p = scene.inputs @ scene.excitation.value(t) + scene.constant
-        if len(self.laws):
-            known = self.law_f0
-            if scene.total:
-                known = known + self.law_k * (scene.law_inputs @ scene.excitation.value(t))
-                known = known + self.law_c * (scene.law_inputs @ scene.excitation.value(t, 1))
-            p = p - scene.law_rows.T @ known
-        return p
+    def _let_massless_go(self) -> None:
+        """Give damped massless unknowns the velocity that their forces ask for at the start."""
+        light, f, q = ~self.matrices.heavy, self.w.f, self.x.q
+        if not light.any():
+            return
+        scene, o, rows = self.scene, self.order, self.scene.law_rows[:, self.order]
+        c = scene.damping[np.ix_(o, o)] + (rows.T * f[:, kernel.C]) @ rows
+        force = self._force(0.0) - scene.stiffness[np.ix_(o, o)] @ q[kernel.U]
+        force -= rows.T @ (f[:, kernel.K] * f[:, kernel.LD] + f[:, kernel.F0])
+        czz, old = c[np.ix_(light, light)], q[kernel.V, light]
+        if not czz.any():
+            return
+        back = np.linalg.pinv(czz, rcond=1e-12)
+        to_heavy = c[np.ix_(light, ~light)] @ q[kernel.V, ~light]
+        q[kernel.V, light] = back @ (force[light] - to_heavy) + old - back @ (czz @ old)
+        q[kernel.CV] = scene.damping[np.ix_(o, o)] @ q[kernel.V]
+        f[:, kernel.LV] = rows @ q[kernel.V] + scene.law_inputs @ scene.excitation.value(0.0, 1)
 
-    def settle(self) -> None:
-        """Make the acceleration (and the velocity of damped massless freedoms)
-        consistent with the present regime.
-        """
-        h, z = self.heavy, self.light
-        force = self.force(self.t) - self.k @ self.u
-        if z.any():
-            czz = self.c[np.ix_(z, z)]
-            if czz.any():
-                back = np.linalg.pinv(czz, rcond=1e-12)
-                old = self.v[z]
-                self.v[z] = back @ (force[z] - self.c[np.ix_(z, h)] @ self.v[h]) + old - back @ (czz @ old)
-            self.a[z] = 0.0
-        force = force - self.c @ self.v
-        self.a[h] = np.linalg.solve(self.scene.mass[np.ix_(h, h)], force[h])
-
-    def step(self, h: float, keep: bool) -> Motion:
-        """Return the motion one step `h` on; `keep` the inverse for the next step of this length."""
-        u, v, b, g = self.u, self.v, self.beta, self.gamma
-        # the acceleration is the unknown: a remainder of a step, however short, divides nothing by h^2
-        ahead = u + h * v + h * h * (0.5 - b) * self.a
-        faster = v + (1 - g) * h * self.a
-        rhs = self.scaled(self.force(self.t + h) - self.k @ ahead - self.c @ faster, h)
-        inverse = self._maps.get((self.key, h)) if keep else None
-        if inverse is None:
-            matrix = self.scaled(self.scene.mass + g * h * self.c + b * h * h * self.k, h)
-            if keep:
-                inverse = self._maps[self.key, h] = np.asarray(np.linalg.inv(matrix), float)
-        a1 = np.asarray(np.linalg.solve(matrix, rhs), float) if inverse is None else inverse @ rhs
-        return ahead + b * h * h * a1, faster + g * h * a1, a1
-
-    def scaled(self, rows: Array, h: float) -> Array:
-        """Multiply the rows of massless freedoms so that they weigh as much as the others."""
-        if self.light.any():
-            rows = rows.copy()
-            rows[self.light] *= 1.0 / (self.beta * h * h)
-        return rows
-
-    def deformations(self, t: float, u: Array, v: Array) -> tuple[Array, Array]:
-        """Deformation and rate of every law."""
-        scene = self.scene
-        d, rate = scene.law_rows @ u, scene.law_rows @ v
-        if scene.total:
-            d = d + scene.law_inputs @ scene.excitation.value(t)
-            rate = rate + scene.law_inputs @ scene.excitation.value(t, 1)
-        return d, rate
+    def _force(self, t: float) -> Array:
+        """Loads on the unknowns, in the order of elimination."""
+        return self.matrices.inputs @ self.scene.excitation.value(t) + self.matrices.constant
 
     def run(self) -> Outcome:
         """Integrate to the last output time.
@@ -179,7 +245,8 @@ class Stepper:
         Raises
         ------
         Stop
-            Too many changes within one step, numbers beyond all bounds, or an interrupt.
+            Too many changes within one step, a step that finds no solution, numbers beyond all bounds,
+            or an interrupt.
         """
         try:
             return self._run()
@@ -187,272 +254,100 @@ class Stepper:
             raise self.stop("A506", INTERRUPTED) from None
 
     def _run(self) -> Outcome:
-        d, v = self.deformations(0.0, self.u, self.v)
+        m, w, x, z, scene = self.matrices, self.w, self.x, self.z, self.scene
         for i, s in enumerate(self.laws):
-            if s.is_contact and self.branches[i].name == "pressed":
-                at, rate = float(d[i]), float(v[i])
-                self.ledger.switched(i, "open", "pressed", 0.0, at, rate, self.branches[i].force(at, rate))
-        self.settle()
-        self._note()
-        self._sample(0.0)
-        first = energies(
-            self.scene, np.zeros(1), self.u[None], self.v[None], [self.states], self.works[None]
-        )
-        self.held = float(first[0, 1] + first[0, 2])
-        with np.errstate(over="ignore", invalid="ignore"):  # a runaway is told in words
-            for goal, is_output in zip(*goals(self.scene, self.times)):
-                n = max(1, int(np.ceil((goal - self.t) / self.dt * (1 - 1e-9))))
-                # twelve digits: steps of equal length share their inverse,
-                # whatever the rounding of the times
-                h = float(f"{(goal - self.t) / n:.12e}")
-                for i in range(n):
-                    self._advance(h if i < n - 1 else float(goal) - self.t, h)
-                self.t = float(goal)
-                self._check()
-                if is_output:
-                    self._sample(self.t)
-        return self.outcome()
+            if s.is_contact and s.law.rule.branches[w.i[i, kernel.AT]] == "pressed":
+                d, v = w.f[i, [kernel.LD, kernel.LV]].tolist()
+                force = kernel.law_force(w, self.tables, i, d, v)
+                self.ledger.switched(i, "open", "pressed", 0.0, d, v, force)
+                w.f[i, kernel.PEAK] = force
+        x.q[kernel.P] = self._force(0.0)
+        x.inputs[:2] = scene.excitation.value(0.0), scene.excitation.value(0.0, 1)
+        kernel.settle(m, w, x)
+        kernel.note(m, w, x, 0.0, 0.0)
+        kernel.sample(w, x, z, self.tables, self.count, 0.0)
+        ends, is_output = goals(scene, self.times)
+        lengths = np.diff(ends, prepend=0.0)
+        steps = np.maximum(1, np.ceil(lengths / self.dt * (1 - 1e-9))).astype(np.int64)
+        # twelve digits: steps of equal length share their factor, whatever the rounding of the times
+        h = np.array([float(f"{x:.12e}") for x in lengths / steps])
+        ex = scene.excitation
+        pieces = np.array([ex.piece(t + 1e-13 * max(1.0, t)) for t in ends - lengths], np.int64)
+        coefs = np.ascontiguousarray(ex.coefs)
+        advance = jit.compiled(kernel.advance)
+        while True:
+            with np.errstate(all="ignore"), jit.quiet():  # a runaway is told in words
+                why = advance(
+                    m, w, x, z, self.tables, self.scheme, coefs, ex.breaks, ends, steps, h, is_output,
+                    pieces, self.count, self.clock,
+                )  # fmt: skip
+            self._fetch()
+            if why == kernel.DONE:
+                return self.outcome()
+            if why != kernel.FULL:
+                raise self._trouble(why)
 
-    def _check(self) -> None:
-        """Stop a runaway: motion cannot hold more than it started with and what was put in."""
-        kinetic = 0.5 * float(self.v @ self.scene.mass @ self.v)
-        if not np.isfinite(self.u).all() or not kinetic <= 10.0 * (self.held + self.put_in) + 1e-300:
-            raise self.stop(
-                "A504",
-                RUNAWAY.format(kinetic),
-            )
-
-    def _advance(self, length: float, nominal: float) -> None:
-        """Advance by one nominal step, in pieces where events cut it."""
-        left = length
-        whole = True
-        while left > 0.0:
-            h = nominal if whole else left
-            new = self.step(h, keep=whole)
-            event = self._event(h, new) if len(self.exit_pairs) else None
-            if event is None:
-                self._accept(h, new)
-                self.t += left
-                self.same_instant = 0
-                self._note(h)
-                return
-            tau, new, law, exit_index = event
-            self._accept(tau, new)
-            self.t += tau
-            left -= tau
-            whole = False
-            self._note(tau)
-            self._switch(law, exit_index)
-
-    def _exits(self, t: float, motion: Motion) -> tuple[Array, Array]:
-        """Values and slopes of all exits."""
-        u, v, a = motion
-        d, rate = self.deformations(t, u, v)
-        second = self.scene.law_rows @ a
-        if self.scene.total:
-            second = second + self.scene.law_inputs @ self.scene.excitation.value(t, 2)
-        k = self.exit_law
-        fd, fv, c = self.exit_factors.T
-        return fd * d[k] + fv * rate[k] + c, fd * rate[k] + fv * second[k]
-
-    def _event(self, h: float, new: Motion) -> tuple[float, Motion, int, int] | None:
-        g0, s0 = self._exits(self.t, (self.u, self.v, self.a))
-        g1, s1 = self._exits(self.t + h, new)
-        fd, fv, c = np.abs(self.exit_factors).T
-        tol = STILL * np.maximum(
-            fd * self.largest[0, self.exit_law] + fv * self.largest[1, self.exit_law] + c, np.abs(g1)
-        )
-        g0 = np.minimum(g0, 0.0)  # a branch holds when it is entered
-        crossed = g1 > tol
-        with np.errstate(divide="ignore", invalid="ignore"):
-            x = (g1 - g0 - s1 * h) / (s0 - s1)
-            turn = ~crossed & (s0 > 0) & (s1 < 0) & (g0 + s0 * x > tol)
-        best: tuple[float, Motion, int, int] | None = None
-        for n in np.flatnonzero(crossed | turn):
-            high = h
-            if not crossed[n]:
-                top = h * s0[n] / (s0[n] - s1[n])
-                if self._exits(self.t + top, self.step(top, keep=False))[0][n] <= tol[n]:
-                    continue
-                high = top
-            tau, motion = self._locate(int(n), high, float(g0[n]), float(s0[n]))
-            if best is None or tau < best[0]:
-                best = (tau, motion, *self.exit_pairs[n])
-        return best
-
-    def _locate(self, n: int, high: float, g_low: float, s_low: float) -> tuple[float, Motion]:
-        """Step length at which exit `n` is reached: Illinois regula falsi on the length of the step."""
-        low, span = 0.0, high
-        motion = self.step(high, keep=False)
-        g_high = float(self._exits(self.t + high, motion)[0][n])
-        if g_low == 0.0 and s_low < 0.0:  # it falls from zero first: find where it is below
-            x = high
-            for _ in range(50):
-                x *= 0.5
-                g = float(self._exits(self.t + x, self.step(x, keep=False))[0][n])
-                if g < 0.0:
-                    low, g_low = x, g
-                    break
-        side = 0
-        for _ in range(100):
-            if high - low <= 1e-12 * span:
-                break
-            x = (g_low * high - g_high * low) / (g_low - g_high) if g_low < 0.0 else 0.5 * (low + high)
-            if not low < x < high:
-                break
-            trial = self.step(x, keep=False)
-            g = float(self._exits(self.t + x, trial)[0][n])
-            if g >= 0.0:
-                high, g_high, motion = x, g, trial
-                if side == 1:
-                    g_low *= 0.5
-                side = 1
-            else:
-                low, g_low = x, g
-                if side == -1:
-                    g_high *= 0.5
-                side = -1
-            if abs(g) == 0.0:
-                break
-        return high, motion
-
-    def _switch(self, law: int, exit_index: int) -> None:
-        d, v = self.deformations(self.t, self.u, self.v)
-        before = self.branches[law].name
-        self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, float(d[law]))
-        after = self.branches[law] = self.laws[law].branch(self.states[law])
-        self.ledger.switched(
-            law,
-            before,
-            after.name,
-            self.t,
-            float(d[law]),
-            float(v[law]),
-            after.force(float(d[law]), float(v[law])),
-        )
-        self.events += 1
-        self.same_instant += 1
-        if self.same_instant > 100 + 8 * len(self.laws):
-            s = self.laws[law]
-            raise self.stop(
-                "A503",
-                f"{self.same_instant} changes within one step, "
-                f"the last in element {s.element} ({s.rule}): {before} to {after.name}",
-            )
-        self._regime()
-        self.settle()
-        self._note()
-
-    def _accept(self, h: float, new: Motion) -> None:
-        u, v, a = new
-        s = self.scene
-        if h > 0.0:
-            before = float(self.works[0])
-            if s.total:
-                self._total_work(h, new)
-            else:
-                p0 = s.inputs @ s.excitation.value(self.t) + s.constant
-                p1 = s.inputs @ s.excitation.value(self.t + h) + s.constant
-                self.works[0] += h / 6 * float((2 * p0 + p1) @ self.v + (p0 + 2 * p1) @ v)
-                c0 = s.damping @ self.v
-                self.works[1] += h / 3 * float(c0 @ self.v + c0 @ v + v @ s.damping @ v)
-            self.put_in += abs(float(self.works[0]) - before)
-            rate0, rate1 = s.law_rows @ self.v, s.law_rows @ v
-            if self.law_c.any():
-                loss = h / 3 * self.law_c * (rate0 * rate0 + rate0 * rate1 + rate1 * rate1)
-                self.works[2] += float(loss.sum())
-                for law in np.flatnonzero(loss).tolist():
-                    self.ledger.peaks.dashpot_losses[law] += float(loss[law])
-            if self.ledger.open:
-                f0 = self._law_forces(self.t, self.u, self.v)
-                f1 = self._law_forces(self.t + h, u, v)
-                for law, collision in self.ledger.open.items():
-                    collision.impulse += 0.5 * h * float(f0[law] + f1[law])
-        self.u, self.v, self.a = u, v, a
-        self.steps += 1
-
-    def _total_work(self, h: float, new: Motion) -> None:
-        """Input (power of the supports' reactions) and dashpot work of a step
-        in the total form, by the trapezoid.
-        """
-        scene, s = self.scene, self.scene.structure
-        n = s.n_free
-        for t, motion in ((self.t, (self.u, self.v, self.a)), (self.t + h, new)):
-            u, v, a = (scene.all_freedoms(x, t, order) for order, x in enumerate(motion))
-            force = (
-                s.stiffness @ u
-                + s.damping @ v
-                + s.mass @ a
-                + s.law_rows.T @ self._law_forces(t, motion[0], motion[1])
-            )
-            self.works[0] += 0.5 * h * float(force[n:] @ v[n:] + s.loads[:n] @ v[:n])
-            self.works[1] += 0.5 * h * float(v @ s.damping @ v)
-
-    def _law_forces(self, t: float, u: Array, v: Array) -> Array:
-        d, rate = self.deformations(t, u, v)
-        return self.law_k * d + self.law_c * rate + self.law_f0
-
-    def _watched(self) -> tuple[Array, Array, Array]:
-        """Values and slopes of all quantities whose peaks are kept: drifts, deformations,
-        contact forces; law rates.
-        """
-        w, s = self.watch, self.scene
-        value, slope = w.rows @ self.u + w.constants, w.rows @ self.v
-        if s.total:
-            value = value + w.input_rows @ s.excitation.value(self.t)
-            slope = slope + w.input_rows @ s.excitation.value(self.t, 1)
-        d, rate = self.deformations(self.t, self.u, self.v)
-        force, change = self.law_k * d + self.law_c * rate + self.law_f0, self.law_k * rate
-        if self.law_c.any():
-            second = s.law_rows @ self.a
-            if s.total:
-                second = second + s.law_inputs @ s.excitation.value(self.t, 2)
-            change = change + self.law_c * second
-        np.maximum(self.largest, np.abs([d, rate]), out=self.largest)
-        return np.concatenate([value, d, force]), np.concatenate([slope, rate, change]), rate
-
-    def _note(self, since: float = 0.0) -> None:
-        """Count the present motion into the peaks; `since` the last note
-        on the same branches, turning points too.
-        """
-        value, slope, _ = self._watched()
-        for i, x in enumerate(value.tolist()):
-            self._take(i, x, self.t)
-        if since > 0.0:
-            f0, s0 = self._noted
-            for i in np.flatnonzero(s0 * slope < 0).tolist():
-                sign = 1.0 if s0[i] > 0 else -1.0
-                x, top = cubic_top(sign * f0[i], sign * value[i], sign * s0[i], sign * slope[i], since)
-                self._take(i, sign * top, self.t - since + x)
-        self._noted = value, slope
-
-    def _take(self, i: int, value: float, t: float) -> None:
-        peaks, n_watch, n = self.ledger.peaks, len(self.watch.names), len(self.laws)
-        if i < n_watch:
-            peaks.watch[i].take(value, t)
-        elif i < n_watch + n:
-            peaks.deformation[i - n_watch].take(value, t)
-        else:
-            law = i - n_watch - n
-            peaks.force[law].take(value, t)
+    def _fetch(self) -> None:
+        """Take in the samples and the changes of branches that were kept."""
+        z, count, laws = self.z, self.count, self.laws
+        back = np.argsort(self.order)
+        for row in z.log[: count[kernel.LOGGED]].tolist():
+            law, before, after = (int(x) for x in row[:3])
+            names = laws[law].law.rule.branches
             if law in self.ledger.open:
-                self.ledger.force(law, value, t)
+                self._count(self.ledger.open[law], row[7:])
+            self.ledger.switched(law, names[before], names[after], *row[3:7])
+        for i in range(count[kernel.KEPT]):
+            u, v, a = z.motion[i][:, back]
+            t, *works = z.works[i].tolist()
+            self.sink.sample(t, u, v, a, LawValues(*z.laws[i].copy()), np.array(works))
+        count[kernel.LOGGED] = count[kernel.KEPT] = 0
 
-    def _sample(self, t: float) -> None:
-        self.sink.sample(
-            t, self.u.copy(), self.v.copy(), self.a.copy(), tuple(self.states), self.works.copy()
-        )
+    @staticmethod
+    def _count(collision: Collision, running: list[float]) -> None:
+        """Count what a contact went through on one branch into its collision."""
+        peak, t_peak, impulse = running
+        collision.impulse += impulse
+        if peak > collision.peak:
+            collision.peak, collision.t_peak = peak, t_peak
+
+    def _trouble(self, why: int) -> Stop:
+        worst = int(self.count[kernel.WORST])
+        if why == kernel.RUNAWAY:
+            return self.stop("A504", RUNAWAY.format(self.clock[2]))
+        if why == kernel.PIVOT:
+            name = self.scene.name(int(self.order[worst]))
+            return self.stop("A501", f"{name} has no mass and nothing holds it")
+        s = self.laws[worst] if self.laws else None
+        if why == kernel.CHATTER and s is not None:
+            branch = s.law.rule.branches[self.w.i[worst, kernel.AT]]
+            return self.stop(
+                "A503",
+                f"too many changes within one step, the last in element {s.element} ({s.rule}): {branch}",
+            )
+        return self.stop("A503", "Newton's iterations find no equilibrium, however short the step")
 
     def outcome(self) -> Outcome:
         """What the run gathered."""
-        figures = {
+        for law, collision in self.ledger.open.items():
+            self._count(collision, self.w.f[law, kernel.PEAK : kernel.IMPULSE + 1].tolist())
+        peaks, x, n = self.ledger.close(), self.x, len(self.laws)
+        found = [Extreme(*e) for e in x.peak[: kernel.SLOPE].T.tolist()]
+        rest = len(found) - 2 * n
+        peaks.watch, peaks.deformation, peaks.force = (
+            found[:rest],
+            found[rest : rest + n],
+            found[rest + n :],
+        )
+        peaks.dashpot_losses = self.w.f[:, kernel.DASHPOT].tolist()
+        figures: dict[str, Any] = {
             "method": self.name,
             "time step": f"{self.dt:.6g}",
-            "steps": self.steps,
-            "events": self.events,
+            "steps": int(self.count[kernel.STEPS]),
+            "events": int(self.count[kernel.EVENTS]),
         }
-        return Outcome(self.ledger.close(), figures)
+        return Outcome(peaks, figures)
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""
-        return Stop(code, self.t, why, self.outcome())
+        return Stop(code, float(self.clock[0]), why, self.outcome())

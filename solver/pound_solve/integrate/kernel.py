@@ -1,0 +1,957 @@
+r"""The steps of NEWMARK, HHT, GENERALISED_ALPHA and CENTRAL as scalar kernels.
+
+One step of length h of the generalised-alpha family (Chung & Hulbert 1993):
+
+.. math::
+    u_1 = \tilde u + \beta h^2 a_1, \qquad \tilde u = u_0 + h v_0 + h^2(\tfrac12-\beta) a_0 \\
+    v_1 = \tilde v + \gamma h a_1, \qquad \tilde v = v_0 + (1-\gamma) h a_0 \\
+    \Bigl[\tfrac{1-\alpha_m}{1-\alpha_f} M + \gamma h C + \beta h^2 K\Bigr] a_1
+      = p_1 - C\tilde v - K\tilde u - f(\tilde u, \tilde v)
+      + \frac{\alpha_f r_0 - \alpha_m M a_0}{1-\alpha_f}
+
+with the residual :math:`r = p - C v - K u - f` at the start of the step.  Between events the laws are
+linear, so a step is one solution; curved laws take Newton iterations that change the factor by rank one.
+When an exit is passed within the step, the step is taken again, shorter, until it ends on the exit;
+then the law changes branch, the acceleration is made consistent, and the rest of the step follows.
+
+Everything here works on arrays in the order of elimination (see `ldl`); `jit` compiles it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.integrate.ldl import Pattern, factor, solve, update
+from pound_solve.jit import Tables
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+# why `advance` came back
+DONE, FULL, RUNAWAY, CHATTER, PIVOT, NEWTON, STEP_TOO_LONG = range(7)
+
+GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST = range(8)  #: the integers of `count`
+
+STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
+CLOSE = 1e-13  #: share of a step to which an event is located
+REFRESH = 200  #: updates of rank one before a factor is made anew
+COLUMNS = 10  #: of the log: law, branches before and after, t, d, v, force; peak, its time, impulse
+
+
+# rows of `Motion.q`: at the start (0) and the end (1) of a step; loads; residual; scratch; pivots
+U, V, A, U1, V1, A1, CV, CA, CA1, P, P1, R, BASE, Y, W, D = range(16)
+HIGH, T_HIGH, LOW, T_LOW, SLOPE, VALUE = range(6)  #: rows of `Motion.peak`
+WHOLE, PIECE, MASS = range(3)  #: rows of `Motion.l`, and of its pivots
+# columns of `Laws.f`: the linear piece, exits; entry of the state; motion; dashpot; what a contact counts
+K, C, F0, EXIT, D0, WORK = 0, 1, 2, 3, 12, 13
+LD, LV, LD1, LV1, MOST_D, MOST_V, BETA, DASHPOT, PEAK, T_PEAK, IMPULSE = range(14, 25)
+CODE, CURVED, CONTACT, AT, N_EXITS, SAVED = range(6)  #: columns of `Laws.i`
+
+
+class Matrices(NamedTuple):
+    """The linear part, constant through a run; sparse rows as (pointers, columns, values).
+
+    Attributes
+    ----------
+    k, c, m : tuples of ndarray
+        Stiffness, damping and mass.
+    inputs : ndarray, shape (n, n_inputs)
+    constant : ndarray, shape (n,)
+    pattern : Pattern
+    a : ndarray, shape (3, n_entries)
+        M, C and K on the pattern.
+    heavy : ndarray, shape (n,)
+        Which unknowns have mass.
+    diagonal : bool
+        Whether M is.
+    explicit : bool
+        Whether a step needs no factor: no stiffness in it, and a diagonal M + gamma h C.
+    rows : tuple of ndarray
+        Quantities whose peaks are kept, over the unknowns.
+    row_inputs : ndarray, shape (n_rows, n_inputs)
+    row_constants : ndarray, shape (n_rows,)
+    reactions : ndarray, shape (3, n_moved, n)
+        Of moved supports from displacements, velocities, accelerations; empty with one motion for the base.
+    supports : ndarray, shape (2, n_moved, n_inputs)
+        Reactions from the inputs, and the supports' velocities.
+    support_c : ndarray, shape (n_moved, n_moved)
+    """
+
+    k: tuple[Index, Index, Array]
+    c: tuple[Index, Index, Array]
+    m: tuple[Index, Index, Array]
+    inputs: Array
+    constant: Array
+    pattern: Pattern
+    a: Array
+    heavy: NDArray[np.bool_]
+    diagonal: bool
+    explicit: bool
+    rows: tuple[Index, Index, Array]
+    row_inputs: Array
+    row_constants: Array
+    reactions: Array
+    supports: Array
+    support_c: Array
+
+
+class Laws(NamedTuple):
+    """The laws: what they are, and the state they are in.
+
+    Attributes
+    ----------
+    rows : tuple of ndarray
+        Their deformations over the unknowns.
+    inputs : ndarray, shape (n_laws, n_inputs)
+    pairs : tuple of ndarray
+        Where each law's ``b b^T`` adds to A: pointers, positions in its pattern, products.
+    supports : ndarray, shape (n_laws, n_moved)
+    p : ndarray, shape (n_laws, PARAMETERS)
+    memory : ndarray, shape (n_laws, MEMORY)
+    f, i : ndarray, shapes (n_laws, 25), (n_laws, 6)
+        Columns as above.
+    saved : ndarray, shape (n_laws, 3 + MEMORY)
+        State at the start of a step that is not cut at events.
+    """
+
+    rows: tuple[Index, Index, Array]
+    inputs: Array
+    pairs: tuple[Index, Index, Array]
+    supports: Array
+    p: Array
+    memory: Array
+    f: Array
+    i: Index
+    saved: Array
+
+
+class Motion(NamedTuple):
+    """The motion, and scratch space.
+
+    Attributes
+    ----------
+    q : ndarray, shape (18, n)
+        Rows as above; `W` is zero between uses.
+    l : ndarray, shape (3, n_entries of L)
+        Factors for the nominal step, for a piece of one, and of M (with ones for massless unknowns).
+    ax : ndarray
+        Values of A.
+    peak : ndarray, shape (6, n_rows + 2 n_laws)
+        Of the rows, the deformations and the forces.
+    works : ndarray, shape (4,)
+        Work put in; lost in the structure's, in the contacts' dashpots; sum of all \\|input\\|.
+    inputs : ndarray, shape (4, n_inputs)
+        The motions and their rates, at the start and at the end of a step.
+    """
+
+    q: Array
+    l: Array  # noqa: E741
+    ax: Array
+    peak: Array
+    works: Array
+    inputs: Array
+
+
+class Samples(NamedTuple):
+    """What is kept until Python fetches it.
+
+    Attributes
+    ----------
+    motion : ndarray, shape (n_samples, 3, n)
+    laws : ndarray, shape (n_samples, 3, n_laws)
+        Forces, recoverable and lost energies.
+    works : ndarray, shape (n_samples, 4)
+        Time, and the first three works.
+    log : ndarray, shape (n_log, COLUMNS)
+    """
+
+    motion: Array
+    laws: Array
+    works: Array
+    log: Array
+
+
+class Scheme(NamedTuple):
+    """Parameters of the method, and whether events are located."""
+
+    beta: float
+    gamma: float
+    alpha_m: float = 0.0
+    alpha_f: float = 0.0
+    locate: bool = True
+
+
+def parameters(p: Array, i: int) -> tuple[float, ...]:
+    """Row of parameters as a tuple."""
+    return (
+        p[i, 0], p[i, 1], p[i, 2], p[i, 3], p[i, 4], p[i, 5], p[i, 6], p[i, 7], p[i, 8], p[i, 9],
+        p[i, 10], p[i, 11], p[i, 12], p[i, 13], p[i, 14], p[i, 15], p[i, 16], p[i, 17], p[i, 18], p[i, 19],
+    )  # fmt: skip
+
+
+def memory(m: Array, i: int) -> tuple[float, ...]:
+    """Row of a memory as a tuple."""
+    return (
+        m[i, 0], m[i, 1], m[i, 2], m[i, 3], m[i, 4], m[i, 5], m[i, 6], m[i, 7],
+        m[i, 8], m[i, 9], m[i, 10], m[i, 11], m[i, 12], m[i, 13], m[i, 14], m[i, 15],
+    )  # fmt: skip
+
+
+def motions(coefs: Array, s: float, out: Array, at: int) -> None:
+    """Inputs and their rates at the local time `s` of a piece, into rows `at` and `at + 1`."""
+    top, n = coefs.shape
+    for j in range(n):
+        value, rate = coefs[top - 1, j], 0.0
+        for k in range(top - 2, -1, -1):
+            rate = rate * s + value
+            value = value * s + coefs[k, j]
+        out[at, j], out[at + 1, j] = value, rate
+
+
+def load(m: Matrices, s: Array, q: Array, out: int) -> None:
+    """Loads for the inputs `s`, into row `out`."""
+    for i in range(q.shape[1]):
+        total = m.constant[i]
+        for j in range(len(s)):
+            total += m.inputs[i, j] * s[j]
+        q[out, i] = total
+
+
+def times(a: tuple[Index, Index, Array], q: Array, x: int, out: int) -> None:
+    """Product of sparse rows with row `x` of `q`, into row `out`."""
+    for i in range(q.shape[1]):
+        total = 0.0
+        for j in range(a[0][i], a[0][i + 1]):
+            total += a[2][j] * q[x, a[1][j]]
+        q[out, i] = total
+
+
+def along(a: tuple[Index, Index, Array], i: int, q: Array, x: int) -> float:
+    """One sparse row times row `x` of `q`."""
+    total = 0.0
+    for j in range(a[0][i], a[0][i + 1]):
+        total += a[2][j] * q[x, a[1][j]]
+    return total
+
+
+def enter(w: Laws, f: Tables, i: int) -> None:
+    """Take over the branch that law `i` is on."""
+    b = f.branch[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i))
+    w.f[i, K], w.f[i, C], w.f[i, F0] = b[0], b[1] + w.f[i, BETA] * b[0], b[2]
+    count = 0
+    for e in range(3):
+        x, y, z = b[3 + 3 * e], b[4 + 3 * e], b[5 + 3 * e]
+        w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2] = x, y, z
+        if x != 0.0 or y != 0.0:
+            count = e + 1
+    w.i[i, N_EXITS] = count
+
+
+def law_work(w: Laws, f: Tables, i: int, d: float) -> float:
+    """Work done on law `i` so far, dashpots apart."""
+    if w.i[i, CURVED]:
+        c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, 0.0)
+        return w.f[i, WORK] + c[3]
+    return w.f[i, WORK] + (0.5 * w.f[i, K] * (d + w.f[i, D0]) + w.f[i, F0]) * (d - w.f[i, D0])
+
+
+def law_force(w: Laws, f: Tables, i: int, d: float, v: float) -> float:
+    """Force of law `i`."""
+    if w.i[i, CURVED]:
+        c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, v)
+        return c[0] + w.f[i, BETA] * c[1] * v
+    return w.f[i, K] * d + w.f[i, C] * v + w.f[i, F0]
+
+
+def leave(w: Laws, f: Tables, i: int, way: int, d: float) -> None:
+    """Change the branch of law `i`."""
+    done = law_work(w, f, i, d)
+    at, m = f.leave[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), way, d)
+    w.i[i, AT], w.f[i, D0], w.f[i, WORK] = at, d, done
+    for j in range(len(m)):
+        w.memory[i, j] = m[j]
+    enter(w, f, i)
+
+
+def refactor(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float, at: int) -> int:
+    """Factorise A for steps of length `h`; return -1 or the unknown whose pivot vanishes."""
+    sm = (1.0 - scheme.alpha_m) / (1.0 - scheme.alpha_f)
+    sc, sk = scheme.gamma * h, scheme.beta * h * h
+    for q in range(len(x.ax)):
+        x.ax[q] = sm * m.a[0, q] + sc * m.a[1, q] + sk * m.a[2, q]
+    for i in range(len(w.i)):
+        change = sc * w.f[i, C] + sk * w.f[i, K]
+        if change != 0.0:
+            for q in range(w.pairs[0][i], w.pairs[0][i + 1]):
+                x.ax[w.pairs[1][q]] += change * w.pairs[2][q]
+    bad = factor(m.pattern, x.ax, x.l, at, x.q, D + at, W)
+    if m.explicit:
+        for i in range(x.q.shape[1]):
+            x.q[D + at, i] = 1.0 / x.q[D + at, i]
+    return bad
+
+
+def change_factor(m: Matrices, w: Laws, x: Motion, i: int, change: float, at: int) -> bool:
+    """Add ``change b b^T`` of law `i` to a factor; False where it must be made anew."""
+    if change == 0.0 or w.rows[0][i] == w.rows[0][i + 1]:
+        return True
+    first = x.q.shape[1]
+    for q in range(w.rows[0][i], w.rows[0][i + 1]):
+        x.q[W, w.rows[1][q]] += w.rows[2][q]
+        first = min(first, w.rows[1][q])
+    return update(m.pattern, x.l, at, x.q, D + at, W, first, change)
+
+
+def attempt(
+    m: Matrices, w: Laws, x: Motion, scheme: Scheme, f: Tables, coefs: Array, s1: float, h: float,
+    at: int, count: Index,
+) -> bool:  # fmt: skip
+    """Try a step of length `h` that ends at the local time `s1`; False where Newton does not converge."""
+    n, laws = x.q.shape[1], len(w.i)
+    b2, g1 = h * h * (0.5 - scheme.beta), (1.0 - scheme.gamma) * h
+    bk, gk = scheme.beta * h * h, scheme.gamma * h
+    motions(coefs, s1, x.inputs, 2)
+    s, rate = x.inputs[2], x.inputs[3]
+    load(m, s, x.q, P1)
+    for i in range(n):
+        x.q[U1, i] = x.q[U, i] + h * x.q[V, i] + b2 * x.q[A, i]
+        x.q[V1, i] = x.q[V, i] + g1 * x.q[A, i]
+    times(m.k, x.q, U1, BASE)
+    if scheme.alpha_f != 0.0 or scheme.alpha_m != 0.0:
+        times(m.m, x.q, A, Y)
+        one = 1.0 / (1.0 - scheme.alpha_f)
+        for i in range(n):
+            x.q[BASE, i] -= one * (scheme.alpha_f * x.q[R, i] - scheme.alpha_m * x.q[Y, i])
+    for i in range(n):
+        x.q[BASE, i] = x.q[P1, i] - x.q[BASE, i] - x.q[CV, i] - g1 * x.q[CA, i]
+    for i in range(laws):
+        dd, vv = along(w.rows, i, x.q, U1), along(w.rows, i, x.q, V1)
+        for j in range(len(s)):
+            dd += w.inputs[i, j] * s[j]
+            vv += w.inputs[i, j] * rate[j]
+        w.f[i, LD1], w.f[i, LV1] = dd, vv
+    any_curved = False
+    for _ in range(50):
+        for i in range(n):
+            x.q[A1, i] = x.q[BASE, i]
+        for i in range(laws):
+            force = w.f[i, K] * w.f[i, LD1] + w.f[i, C] * w.f[i, LV1] + w.f[i, F0]
+            if force != 0.0:
+                for q in range(w.rows[0][i], w.rows[0][i + 1]):
+                    x.q[A1, w.rows[1][q]] -= w.rows[2][q] * force
+        if m.explicit:
+            for i in range(n):
+                x.q[A1, i] *= x.q[D + at, i]
+        else:
+            solve(m.pattern, x.l, at, x.q, D + at, A1)
+        worst = 0.0
+        for i in range(laws):
+            if not w.i[i, CURVED]:
+                continue
+            any_curved = True
+            acc = along(w.rows, i, x.q, A1)
+            dd, vv = w.f[i, LD1] + bk * acc, w.f[i, LV1] + gk * acc
+            c = f.curve[w.i[i, CODE]](
+                parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], dd, vv
+            )
+            k, damp = c[1], c[2] + w.f[i, BETA] * c[1]
+            force = c[0] + w.f[i, BETA] * c[1] * vv
+            guess = w.f[i, K] * dd + w.f[i, C] * vv + w.f[i, F0]
+            size = max(abs(force), abs(k * w.f[i, MOST_D]), 1e-300)
+            worst = max(worst, abs(force - guess) / size)
+            change = bk * (k - w.f[i, K]) + gk * (damp - w.f[i, C])
+            w.f[i, K], w.f[i, C], w.f[i, F0] = k, damp, force - k * dd - damp * vv
+            count[UPDATES] += 1
+            if m.explicit or change_factor(m, w, x, i, change, at):
+                continue
+            if refactor(m, w, x, scheme, h, at) >= 0:
+                return False
+        if worst <= 1e-12:
+            break
+    else:
+        return not any_curved
+    for i in range(n):
+        x.q[U1, i] += bk * x.q[A1, i]
+        x.q[V1, i] += gk * x.q[A1, i]
+    for i in range(laws):
+        acc = along(w.rows, i, x.q, A1)
+        w.f[i, LD1] += bk * acc
+        w.f[i, LV1] += gk * acc
+    return True
+
+
+def first_exit(w: Laws, x: Motion, h: float) -> tuple[int, int, float]:
+    """The first exit that is passed in the step of length `h` that was tried.
+
+    Returns
+    -------
+    law, exit, time : int, int, float
+        Law -1 where there is none; the time is that of the cubic through values and slopes at both ends.
+    """
+    best, best_law, best_exit = np.inf, -1, -1
+    for i in range(len(w.i)):
+        d, v, d1, v1 = w.f[i, LD], w.f[i, LV], w.f[i, LD1], w.f[i, LV1]
+        for e in range(w.i[i, N_EXITS]):
+            fd, fv, fc = w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2]
+            if fd == 0.0 and fv == 0.0:
+                continue
+            g1 = fd * d1 + fv * v1 + fc
+            size = abs(fd) * w.f[i, MOST_D] + abs(fv) * w.f[i, MOST_V] + abs(fc)
+            tol = STILL * max(size, abs(g1))
+            s0, s1 = fd * v, fd * v1
+            if g1 <= tol and not (s0 > 0.0 and s1 < 0.0):
+                continue
+            if fv != 0.0:
+                s0 += fv * along(w.rows, i, x.q, A)
+                s1 += fv * along(w.rows, i, x.q, A1)
+            g0 = min(fd * d + fv * v + fc, 0.0)  # a branch holds when it is entered
+            if g1 > tol:
+                at = root(g0, g1, s0, s1, h)
+            else:
+                at, top = summit(g0, g1, s0, s1, h)
+                if top <= tol:
+                    continue
+                at = root(g0, top, s0, 0.0, at)
+            if at < best:
+                best, best_law, best_exit = at, i, e
+    return best_law, best_exit, best
+
+
+def summit(g0: float, g1: float, s0: float, s1: float, h: float) -> tuple[float, float]:
+    """Place and value of the maximum of a cubic that rises at 0 and falls at `h`."""
+    a = 2.0 * (g0 - g1) / h**3 + (s0 + s1) / h**2
+    b = 3.0 * (g1 - g0) / h**2 - (2.0 * s0 + s1) / h
+    q = b * b - 3.0 * a * s0
+    at = -1.0
+    if q >= 0.0:
+        # of the two forms of the root the one without cancellation
+        if b < 0.0:
+            at = s0 / (np.sqrt(q) - b)
+        elif a != 0.0:
+            at = -(b + np.sqrt(q)) / (3.0 * a)
+    if 0.0 <= at <= h:
+        return at, ((a * at + b) * at + s0) * at + g0
+    return (0.0, g0) if g0 > g1 else (h, g1)
+
+
+def root(g0: float, g1: float, s0: float, s1: float, h: float) -> float:
+    """First place where a cubic that is not above zero at 0 and above it at `h` rises through zero."""
+    if g0 >= 0.0 and s0 > 0.0:
+        return 0.0
+    a = 2.0 * (g0 - g1) / h**3 + (s0 + s1) / h**2
+    b = 3.0 * (g1 - g0) / h**2 - (2.0 * s0 + s1) / h
+    low, high = 0.0, h
+    if g0 >= 0.0:  # it falls from zero first
+        at = h
+        for _ in range(60):
+            at *= 0.5
+            if ((a * at + b) * at + s0) * at + g0 < 0.0:
+                low = at
+                break
+    at = 0.5 * (low + high)
+    if g0 < 0.0:
+        at = h * g0 / (g0 - g1)
+    for _ in range(60):
+        g = ((a * at + b) * at + s0) * at + g0
+        if g > 0.0:
+            high = at
+        else:
+            low = at
+        s = (3.0 * a * at + 2.0 * b) * at + s0
+        new = at - g / s if s > 0.0 else -1.0
+        if not low < new < high:
+            new = 0.5 * (low + high)
+        if abs(new - at) <= 1e-15 * h:
+            break
+        at = new
+    return at
+
+
+def power(m: Matrices, w: Laws, x: Motion, at: int) -> tuple[float, float]:
+    """Power that moved supports put in, and that lost in dashpots which end at them,
+    at the start (`at` 0) or the end (2) of a step.
+    """
+    s = x.inputs[at]
+    u, v, a, d, rate = (U, V, A, LD, LV) if at == 0 else (U1, V1, A1, LD1, LV1)
+    put, lost = 0.0, 0.0
+    moved = len(m.support_c)
+    for q in range(moved):
+        speed, force, drag = 0.0, 0.0, 0.0
+        for j in range(len(s)):
+            speed += m.supports[1, q, j] * s[j]
+            force += m.supports[0, q, j] * s[j]
+        if speed == 0.0:
+            continue
+        for i in range(x.q.shape[1]):
+            force += m.reactions[0, q, i] * x.q[u, i] + m.reactions[2, q, i] * x.q[a, i]
+            drag += m.reactions[1, q, i] * x.q[v, i]
+        for i in range(len(w.i)):
+            if w.supports[i, q] != 0.0:
+                force += w.supports[i, q] * (w.f[i, K] * w.f[i, d] + w.f[i, C] * w.f[i, rate] + w.f[i, F0])
+        put += (force + drag) * speed
+        lost += 2.0 * drag * speed
+        for z in range(moved):
+            for j in range(len(s)):
+                lost += speed * m.support_c[q, z] * m.supports[1, z, j] * s[j]
+    return put, lost
+
+
+def note(m: Matrices, w: Laws, x: Motion, t: float, since: float) -> None:
+    """Count the motion at the start of the coming step into the peaks, turning points
+    on the same branches since the last note, `since` ago, too.
+    """
+    s, rate = x.inputs[0], x.inputs[1]
+    rows, laws = len(m.row_constants), len(w.i)
+    for i in range(rows + 2 * laws):
+        if i < rows:
+            value, slope = along(m.rows, i, x.q, U) + m.row_constants[i], along(m.rows, i, x.q, V)
+            for j in range(len(s)):
+                value += m.row_inputs[i, j] * s[j]
+                slope += m.row_inputs[i, j] * rate[j]
+        elif i < rows + laws:
+            value, slope = w.f[i - rows, LD], w.f[i - rows, LV]
+        else:
+            law = i - rows - laws
+            value = w.f[law, K] * w.f[law, LD] + w.f[law, C] * w.f[law, LV] + w.f[law, F0]
+            slope = w.f[law, K] * w.f[law, LV]
+            if w.f[law, C] != 0.0:
+                slope += w.f[law, C] * along(w.rows, law, x.q, A)
+        take(w, x, i - rows - laws, i, value, t)
+        if since > 0.0 and x.peak[SLOPE, i] * slope < 0.0:
+            sign = 1.0 if x.peak[SLOPE, i] > 0.0 else -1.0
+            place, top = summit(
+                sign * x.peak[VALUE, i], sign * value, sign * x.peak[SLOPE, i], sign * slope, since
+            )
+            take(w, x, i - rows - laws, i, sign * top, t - since + place)
+        x.peak[VALUE, i], x.peak[SLOPE, i] = value, slope
+
+
+def take(w: Laws, x: Motion, law: int, i: int, value: float, t: float) -> None:
+    """Count a value into a peak; `law` is not negative for the force of a law."""
+    if value > x.peak[HIGH, i]:
+        x.peak[HIGH, i], x.peak[T_HIGH, i] = value, t
+    if value < x.peak[LOW, i]:
+        x.peak[LOW, i], x.peak[T_LOW, i] = value, t
+    if law >= 0 and w.i[law, CONTACT] and value > w.f[law, PEAK]:
+        w.f[law, PEAK], w.f[law, T_PEAK] = value, t
+
+
+def accept(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float) -> None:
+    """Make the end of the step that was tried the start of the next."""
+    n = x.q.shape[1]
+    before = x.works[0]
+    times(m.c, x.q, A1, CA1)
+    g1, gk = (1.0 - scheme.gamma) * h, scheme.gamma * h
+    work, loss = 0.0, 0.0
+    for i in range(n):
+        x.q[Y, i] = x.q[CV, i] + g1 * x.q[CA, i] + gk * x.q[CA1, i]
+        loss += x.q[CV, i] * (x.q[V, i] + x.q[V1, i]) + x.q[Y, i] * x.q[V1, i]
+    if len(m.support_c) > 0:
+        for i in range(n):
+            work += 3.0 * m.constant[i] * (x.q[V, i] + x.q[V1, i])
+        put0, lost0 = power(m, w, x, 0)
+        put1, lost1 = power(m, w, x, 2)
+        work += 3.0 * (put0 + put1)
+        loss += 1.5 * (lost0 + lost1)
+    else:
+        for i in range(n):
+            work += (2.0 * x.q[P, i] + x.q[P1, i]) * x.q[V, i] + (x.q[P, i] + 2.0 * x.q[P1, i]) * x.q[V1, i]
+    x.works[0] += work * h / 6.0
+    x.works[1] += loss * h / 3.0
+    x.works[3] += abs(x.works[0] - before)
+    for i in range(len(w.i)):
+        k, c, f0 = w.f[i, K], w.f[i, C], w.f[i, F0]
+        if c != 0.0:
+            lost = (
+                h
+                / 3.0
+                * c
+                * (w.f[i, LV] * w.f[i, LV] + w.f[i, LV] * w.f[i, LV1] + w.f[i, LV1] * w.f[i, LV1])
+            )
+            w.f[i, DASHPOT] += lost
+            x.works[2 if w.i[i, CONTACT] else 1] += lost
+        if w.i[i, CONTACT] and (k != 0.0 or c != 0.0):
+            w.f[i, IMPULSE] += (
+                0.5 * h * (k * (w.f[i, LD] + w.f[i, LD1]) + c * (w.f[i, LV] + w.f[i, LV1]) + 2.0 * f0)
+            )
+        w.f[i, LD], w.f[i, LV] = w.f[i, LD1], w.f[i, LV1]
+        w.f[i, MOST_D] = max(w.f[i, MOST_D], abs(w.f[i, LD]))
+        w.f[i, MOST_V] = max(w.f[i, MOST_V], abs(w.f[i, LV]))
+    if scheme.alpha_f != 0.0 or scheme.alpha_m != 0.0:
+        one = 1.0 / (1.0 - scheme.alpha_f)
+        for i in range(n):  # a is of no further use
+            x.q[A, i] = (1.0 - scheme.alpha_m) * x.q[A1, i] + scheme.alpha_m * x.q[A, i]
+        times(m.m, x.q, A, BASE)
+        for i in range(n):
+            x.q[R, i] = one * (x.q[BASE, i] - scheme.alpha_f * x.q[R, i])
+    for i in range(n):
+        x.q[U, i], x.q[V, i], x.q[A, i] = x.q[U1, i], x.q[V1, i], x.q[A1, i]
+        x.q[CV, i], x.q[CA, i], x.q[P, i] = x.q[Y, i], x.q[CA1, i], x.q[P1, i]
+    for j in range(x.inputs.shape[1]):
+        x.inputs[0, j], x.inputs[1, j] = x.inputs[2, j], x.inputs[3, j]
+
+
+def settle(m: Matrices, w: Laws, x: Motion) -> None:
+    """Make the acceleration consistent with the present branches."""
+    n = x.q.shape[1]
+    times(m.k, x.q, U, BASE)
+    for i in range(n):
+        x.q[R, i] = x.q[P, i] - x.q[BASE, i] - x.q[CV, i]
+    for i in range(len(w.i)):
+        force = w.f[i, K] * w.f[i, LD] + w.f[i, C] * w.f[i, LV] + w.f[i, F0]
+        if force != 0.0:
+            for q in range(w.rows[0][i], w.rows[0][i + 1]):
+                x.q[R, w.rows[1][q]] -= w.rows[2][q] * force
+    for i in range(n):
+        x.q[A, i] = x.q[R, i] if m.heavy[i] else 0.0
+    if m.diagonal:
+        for i in range(n):
+            x.q[A, i] /= x.q[D + MASS, i]
+    else:
+        solve(m.pattern, x.l, MASS, x.q, D + MASS, A)
+    times(m.c, x.q, A, CA)
+
+
+def switch(
+    m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, scheme: Scheme, count: Index, t: float,
+    h: float, i: int, way: int,
+) -> None:  # fmt: skip
+    """Let law `i` leave its branch; `h` is the nominal step, whose factor follows."""
+    before, k, c = w.i[i, AT], w.f[i, K], w.f[i, C]
+    leave(w, f, i, way, w.f[i, LD])
+    if w.i[i, CURVED]:
+        tangent(w, f, i)
+    change = scheme.gamma * h * (w.f[i, C] - c) + scheme.beta * h * h * (w.f[i, K] - k)
+    if not m.explicit and change != 0.0:
+        count[UPDATES] += 1
+        if count[UPDATES] > REFRESH or not change_factor(m, w, x, i, change, WHOLE):
+            count[UPDATES] = REFRESH + 1
+    force = w.f[i, K] * w.f[i, LD] + w.f[i, C] * w.f[i, LV] + w.f[i, F0]
+    if before != w.i[i, AT]:
+        write(w, z, count, i, before, t, force)
+    count[EVENTS] += 1
+
+
+def write(w: Laws, z: Samples, count: Index, i: int, before: int, t: float, force: float) -> None:
+    """Put a change of branch into the log; a contact begins to count its force anew."""
+    row = z.log[count[LOGGED]]
+    row[0], row[1], row[2], row[3], row[4], row[5], row[6] = (
+        i,
+        before,
+        w.i[i, AT],
+        t,
+        w.f[i, LD],
+        w.f[i, LV],
+        force,
+    )
+    row[7], row[8], row[9] = w.f[i, PEAK], w.f[i, T_PEAK], w.f[i, IMPULSE]
+    count[LOGGED] += 1
+    if w.i[i, CONTACT]:
+        w.f[i, PEAK], w.f[i, T_PEAK], w.f[i, IMPULSE] = force, t, 0.0
+
+
+def tangent(w: Laws, f: Tables, i: int) -> None:
+    """Linearise a curved law where it is."""
+    bend(w, f, i, w.f[i, LD], w.f[i, LV])
+
+
+def bend(w: Laws, f: Tables, i: int, d: float, v: float) -> None:
+    """Linearise a curved law at deformation `d` and rate `v`."""
+    c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, v)
+    k, damp = c[1], c[2] + w.f[i, BETA] * c[1]
+    w.f[i, K], w.f[i, C] = k, damp
+    w.f[i, F0] = c[0] + w.f[i, BETA] * c[1] * v - k * d - damp * v
+
+
+def sample(w: Laws, x: Motion, z: Samples, f: Tables, count: Index, t: float) -> None:
+    """Keep the motion, the laws' forces and energies."""
+    at = count[KEPT]
+    z.works[at, 0] = t
+    for i in range(x.q.shape[1]):
+        for j in range(3):
+            z.motion[at, j, i] = x.q[U + j, i]
+    for i in range(len(w.i)):
+        d = w.f[i, LD]
+        z.laws[at, 0, i] = law_force(w, f, i, d, w.f[i, LV])
+        still = z.laws[at, 0, i] - w.f[i, C] * w.f[i, LV]
+        if w.i[i, CURVED]:
+            still = law_force(w, f, i, d, 0.0)
+        held = f.recoverable[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), d, still)
+        lost = law_work(w, f, i, d) - held
+        size = max(abs(d), abs(w.f[i, D0]))
+        z.laws[at, 1, i] = held
+        z.laws[at, 2, i] = lost if abs(lost) > 1e-14 * w.p[i, 0] * size * size else 0.0
+    for i in range(3):
+        z.works[at, 1 + i] = x.works[i]
+    count[KEPT] += 1
+
+
+def save(w: Laws, i: int) -> None:
+    """Keep the state of law `i`."""
+    w.i[i, SAVED] = 1
+    w.saved[i, 0], w.saved[i, 1], w.saved[i, 2] = w.i[i, AT], w.f[i, D0], w.f[i, WORK]
+    for j in range(w.memory.shape[1]):
+        w.saved[i, 3 + j] = w.memory[i, j]
+
+
+def restore(w: Laws, f: Tables, i: int) -> None:
+    """Put law `i` back into the state that was kept."""
+    w.i[i, AT], w.f[i, D0], w.f[i, WORK] = int(w.saved[i, 0]), w.saved[i, 1], w.saved[i, 2]
+    for j in range(w.memory.shape[1]):
+        w.memory[i, j] = w.saved[i, 3 + j]
+    enter(w, f, i)
+
+
+def next_exit(w: Laws, i: int, at: float, to: float) -> tuple[int, float]:
+    """First exit on the straight path from `at` to `to` at an infinitely slow rate, and where
+    (see `laws.follow`); -1 where there is none.
+    """
+    way = 1.0 if to >= at else -1.0
+    best, where = -1, 0.0
+    for e in range(w.i[i, N_EXITS]):
+        a, b, c = w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2]
+        now, slope = a * at + c, a * way
+        if b != 0.0 and a == 0.0 and c == 0.0:
+            if b * way <= 0.0 or to == at:
+                continue
+            place = at
+        elif now >= 0.0 and (slope > 0.0 or (slope == 0.0 and now > 0.0)):
+            place = at
+        elif slope > 0.0 and a * to + c > 0.0:
+            place = at - now / slope * way
+        else:
+            continue
+        if best < 0 or (place - where) * way < 0.0:
+            best, where = e, place
+    return best, where
+
+
+def uncut_step(
+    m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, scheme: Scheme, coefs: Array, begin: float,
+    count: Index, clock: Array, length: float,
+) -> int:  # fmt: skip
+    """Advance by `length` without a cut at events: Newton to the forces of the laws at its end, each driven
+    along a straight path from its start.
+    """
+    laws = len(w.i)
+    for i in range(laws):
+        w.i[i, SAVED] = 0
+    for _ in range(50):
+        if not attempt(m, w, x, scheme, f, coefs, clock[0] + length - begin, length, WHOLE, count):
+            return NEWTON
+        changed, driven = False, 0
+        for i in range(laws):
+            d, d1 = w.f[i, LD], w.f[i, LD1]
+            if w.i[i, SAVED] == 0 and next_exit(w, i, d, d1)[0] < 0:
+                continue
+            k, c, f0 = w.f[i, K], w.f[i, C], w.f[i, F0]
+            if w.i[i, SAVED] == 0:
+                save(w, i)
+            else:
+                restore(w, f, i)
+            for _ in range(100):
+                way, where = next_exit(w, i, d, d1)
+                if way < 0:
+                    break
+                leave(w, f, i, way, where)
+                driven += 1
+                d = where
+            if w.i[i, CURVED]:
+                bend(w, f, i, d1, w.f[i, LV1])
+            if w.f[i, K] != k or w.f[i, C] != c or abs(w.f[i, F0] - f0) > STILL * abs(f0):
+                changed = True
+                change = scheme.gamma * length * (w.f[i, C] - c) + scheme.beta * length**2 * (w.f[i, K] - k)
+                if change != 0.0 and not m.explicit:
+                    count[UPDATES] += 1
+                    if not change_factor(m, w, x, i, change, WHOLE):
+                        bad = refactor(m, w, x, scheme, length, WHOLE)
+                        if bad >= 0:
+                            count[WORST] = bad
+                            return PIVOT
+        if changed:
+            continue
+        accept(m, w, x, scheme, length)
+        clock[0] += length
+        count[EVENTS] += driven
+        for i in range(laws):
+            if w.i[i, SAVED] == 1 and w.saved[i, 0] != w.i[i, AT]:
+                force = w.f[i, K] * w.f[i, LD] + w.f[i, C] * w.f[i, LV] + w.f[i, F0]
+                write(w, z, count, i, int(w.saved[i, 0]), clock[0], force)
+        note(m, w, x, clock[0], length)
+        return DONE
+    for i in range(laws):
+        if w.i[i, SAVED] == 1:
+            restore(w, f, i)
+    count[UPDATES] = REFRESH + 1
+    return NEWTON
+
+
+def whole_step(
+    m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, scheme: Scheme, coefs: Array, begin: float,
+    count: Index, clock: Array, length: float, h: float,
+) -> int:  # fmt: skip
+    """Advance by `length`, in pieces where events cut it; the factor at hand is for the step `h`."""
+    left, first, same = length, True, 0
+    most = 100 + 8 * len(w.i)
+    curved = False
+    for i in range(len(w.i)):
+        if w.i[i, CURVED]:
+            curved = True
+    while left > 0.0:
+        t = clock[0]
+        piece = left
+        slot = WHOLE if first else PIECE
+        if not first:
+            bad = refactor(m, w, x, scheme, piece, PIECE)
+            if bad >= 0:
+                count[WORST] = bad
+                return PIVOT
+        elif abs(length - h) > 1e-9 * h:
+            first = False
+            continue
+        halvings = 0
+        while not attempt(m, w, x, scheme, f, coefs, t + piece - begin, piece, slot, count):
+            halvings += 1
+            if halvings > 25:
+                return NEWTON
+            first, piece, count[UPDATES] = False, 0.5 * piece, REFRESH + 1
+            slot = PIECE
+            for i in range(len(w.i)):
+                if w.i[i, CURVED]:
+                    tangent(w, f, i)
+            if refactor(m, w, x, scheme, piece, PIECE) >= 0:
+                return NEWTON
+        law, way, tau = first_exit(w, x, piece)
+        if law < 0:
+            accept(m, w, x, scheme, piece)
+            left -= piece
+            clock[0] = t + piece
+            note(m, w, x, clock[0], piece)
+            first = False
+            continue
+        if curved:  # what is tried from here on moves the tangents away from the factor at hand
+            count[UPDATES] = REFRESH + 1
+        first, low, high, at = False, 0.0, piece, -1.0
+        for turn in range(100):
+            if tau <= CLOSE * h:
+                at = 0.0
+                break
+            last = high - low <= CLOSE * h
+            if last:
+                tau = high
+            elif turn > 8:
+                tau = 0.5 * (low + high)
+            bad = refactor(m, w, x, scheme, tau, PIECE)
+            if bad >= 0:
+                count[WORST] = bad
+                return PIVOT
+            if not attempt(m, w, x, scheme, f, coefs, t + tau - begin, tau, PIECE, count):
+                return NEWTON
+            law2, way2, tau2 = first_exit(w, x, tau)
+            if law2 >= 0:
+                law, way, high = law2, way2, tau
+                if tau - tau2 <= CLOSE * h or last:
+                    at = tau
+                    break
+                tau = tau2
+                continue
+            fd, fv, fc = (
+                w.f[law, EXIT + 3 * way],
+                w.f[law, EXIT + 3 * way + 1],
+                w.f[law, EXIT + 3 * way + 2],
+            )
+            g = fd * w.f[law, LD1] + fv * w.f[law, LV1] + fc
+            if last or abs(g) <= STILL * (
+                abs(fd) * w.f[law, MOST_D] + abs(fv) * w.f[law, MOST_V] + abs(fc)
+            ):
+                at = tau
+                break
+            low = tau
+            slope = fd * w.f[law, LV1]
+            if fv != 0.0:
+                slope += fv * along(w.rows, law, x.q, A1)
+            tau = tau - g / slope if slope > 0.0 else high
+            if not low < tau < high:
+                tau = 0.5 * (low + high)
+        if at > 0.0:
+            accept(m, w, x, scheme, at)
+            left -= at
+            clock[0] = t + at
+            note(m, w, x, clock[0], at)
+            if at > 1e-9 * h:
+                same = 0
+        switch(m, w, x, z, f, scheme, count, clock[0], h, law, way)
+        settle(m, w, x)
+        note(m, w, x, clock[0], 0.0)
+        same += 1
+        if same > most:
+            count[WORST] = law
+            return CHATTER
+    return DONE
+
+
+def advance(
+    m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, scheme: Scheme, coefs: Array, breaks: Array,
+    goals: Array, steps: Index, lengths: Array, outputs: NDArray[np.bool_], pieces: Index, count: Index,
+    clock: Array,
+) -> int:  # fmt: skip
+    """Integrate to the last goal, or until Python must look at something.
+
+    Parameters
+    ----------
+    coefs : ndarray, shape (n_pieces, degree + 1, n_inputs)
+        The motions; they begin at `breaks`.
+    goals : ndarray, shape (n_goals,)
+        Times that a step ends at, reached in `steps` steps of `lengths` each, on the motions' `pieces`;
+        `outputs` tells whether a sample is taken.
+    count : ndarray, shape (8,)
+        Goal, step on the way to it, samples and log rows kept, steps, events, updates of the factor,
+        unknown or law at fault.
+    clock : ndarray, shape (3,)
+        Time, length that the factor at hand is for, energy at the start.
+    """
+    room = 108 + 8 * len(w.i)
+    while count[GOAL] < len(goals):
+        goal = count[GOAL]
+        h = lengths[goal]
+        begin = breaks[pieces[goal]]
+        if count[STEP] == 0:
+            motions(coefs[pieces[goal]], clock[0] - begin, x.inputs, 0)
+            load(m, x.inputs[0], x.q, P)
+        while count[STEP] < steps[goal]:
+            if len(z.log) - count[LOGGED] < room:
+                return FULL
+            if clock[1] != h or count[UPDATES] > REFRESH:
+                bad = refactor(m, w, x, scheme, h, WHOLE)
+                if bad >= 0:
+                    count[WORST] = bad
+                    return PIVOT
+                clock[1], count[UPDATES] = h, 0
+            length = h if count[STEP] < steps[goal] - 1 else goals[goal] - clock[0]
+            why = NEWTON
+            if not scheme.locate:
+                why = uncut_step(m, w, x, z, f, scheme, coefs[pieces[goal]], begin, count, clock, length)
+            if why == NEWTON:  # cut at its events a step always has a solution
+                why = whole_step(m, w, x, z, f, scheme, coefs[pieces[goal]], begin, count, clock, length, h)
+            if why != DONE:
+                return why
+            count[STEP] += 1
+            count[STEPS] += 1
+        clock[0] = goals[goal]
+        kinetic = 0.0
+        times(m.m, x.q, V, Y)
+        for i in range(x.q.shape[1]):
+            kinetic += 0.5 * x.q[V, i] * x.q[Y, i]
+        if not kinetic <= 10.0 * (clock[2] + x.works[3]) + 1e-300:
+            clock[2] = kinetic
+            return RUNAWAY
+        count[GOAL] += 1
+        count[STEP] = 0
+        if outputs[goal]:
+            sample(w, x, z, f, count, clock[0])
+            if count[KEPT] == len(z.works):
+                return FULL
+    return DONE

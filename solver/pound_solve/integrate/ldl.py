@@ -1,0 +1,176 @@
+r"""Sparse :math:`A = L D L^T` on a fixed pattern, with updates of rank one.
+
+The unknowns are ordered once for little fill; the pattern of L follows from that of A, and every
+factorisation after it is a walk over known positions.  A spring that changes its stiffness by
+:math:`\delta` along the row b changes A by :math:`\delta\, b b^T`, and its factor only along the path
+from b's first unknown to the root of the elimination tree.
+
+References
+----------
+Davis TA (2006), Direct Methods for Sparse Linear Systems, SIAM, chapters 4 (factor) and 4.6 (update).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+class Pattern(NamedTuple):
+    """Where A and L have entries.
+
+    Attributes
+    ----------
+    ap, ai : ndarray
+        Columns of the lower triangle of A, the diagonal first: pointers (n + 1,) and rows.
+    lp, li : ndarray
+        Columns of L below the diagonal, rows ascending.
+    rp, rk, rq : ndarray
+        Rows of L: pointers, columns, and positions in the arrays of L.
+    """
+
+    ap: Index
+    ai: Index
+    lp: Index
+    li: Index
+    rp: Index
+    rk: Index
+    rq: Index
+
+
+def order(linked: NDArray[np.bool_]) -> Index:
+    """Order of elimination with little fill, shape (n,): minimum degree.
+
+    Parameters
+    ----------
+    linked : ndarray, shape (n, n)
+        Which unknowns are coupled.
+    """
+    n = len(linked)
+    if n < 3:
+        return np.arange(n)
+    from scipy.sparse import csc_matrix
+    from scipy.sparse.linalg import splu
+
+    a = csc_matrix(linked | linked.T, dtype=float)
+    a.setdiag(n + 1.0)  # the values do not matter: no pivot is ever exchanged
+    found = splu(a, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    return np.argsort(found.perm_c).astype(np.int64)
+
+
+def analyse(linked: NDArray[np.bool_]) -> Pattern:
+    """Pattern of a matrix in its order of elimination, and of its factor."""
+    n = len(linked)
+    below: list[list[int]] = [[] for _ in range(n)]
+    children: list[list[int]] = [[] for _ in range(n)]
+    for j in range(n):
+        rows = set((np.flatnonzero(linked[j + 1 :, j] | linked[j, j + 1 :]) + j + 1).tolist())
+        for child in children[j]:
+            rows.update(below[child][1:])
+        below[j] = sorted(rows)
+        if below[j]:
+            children[below[j][0]].append(j)
+    lp = np.concatenate([[0], np.cumsum([len(b) for b in below])]).astype(np.int64)
+    li = np.array([i for b in below for i in b], np.int64)
+    columns: list[list[tuple[int, int]]] = [[] for _ in range(n)]
+    for j in range(n):
+        for q in range(lp[j], lp[j + 1]):
+            columns[li[q]].append((j, q))
+    rp = np.concatenate([[0], np.cumsum([len(c) for c in columns])]).astype(np.int64)
+    rk = np.array([k for c in columns for k, _ in c], np.int64)
+    rq = np.array([q for c in columns for _, q in c], np.int64)
+    lower = [
+        [j, *(np.flatnonzero(linked[j + 1 :, j] | linked[j, j + 1 :]) + j + 1).tolist()] for j in range(n)
+    ]
+    ap = np.concatenate([[0], np.cumsum([len(x) for x in lower])]).astype(np.int64)
+    return Pattern(ap, np.array([i for x in lower for i in x], np.int64), lp, li, rp, rk, rq)
+
+
+def factor(s: Pattern, ax: Array, l: Array, at: int, q: Array, d: int, w: int) -> int:  # noqa: E741
+    """Factorise A with the values `ax` into row `at` of `l` and row `d` of `q`;
+    row `w` of `q` is zero before and after.
+
+    Returns
+    -------
+    int
+        -1, or the first unknown whose pivot vanishes.
+    """
+    for j in range(q.shape[1]):
+        for y in range(s.ap[j], s.ap[j + 1]):
+            q[w, s.ai[y]] = ax[y]
+        pivot = q[w, j]
+        size = abs(pivot)
+        for r in range(s.rp[j], s.rp[j + 1]):
+            k, y = s.rk[r], s.rq[r]
+            t = l[at, y] * q[d, k]
+            pivot -= l[at, y] * t
+            for x in range(y + 1, s.lp[k + 1]):
+                q[w, s.li[x]] -= l[at, x] * t
+        q[w, j] = 0.0
+        if not abs(pivot) > 1e-14 * size:
+            for y in range(s.lp[j], s.lp[j + 1]):
+                q[w, s.li[y]] = 0.0
+            return j
+        q[d, j] = pivot
+        for y in range(s.lp[j], s.lp[j + 1]):
+            l[at, y] = q[w, s.li[y]] / pivot
+            q[w, s.li[y]] = 0.0
+    return -1
+
+
+def update(
+    s: Pattern,
+    l: Array,  # noqa: E741
+    at: int,
+    q: Array,
+    d: int,
+    w: int,
+    first: int,
+    change: float,
+) -> bool:
+    """Add ``change * w w^T`` to the factored matrix; row `w` of `q`, which begins at unknown `first`,
+    is zeroed.
+
+    Returns
+    -------
+    bool
+        False where a pivot (nearly) vanishes: the factor must be made anew.
+    """
+    j, n = first, q.shape[1]
+    good = True
+    while j < n:
+        p = q[w, j]
+        q[w, j] = 0.0
+        if p != 0.0:
+            pivot = q[d, j] + change * p * p
+            if not abs(pivot) > 1e-8 * abs(q[d, j]):
+                good = False
+                pivot = q[d, j]
+            g = p * change / pivot
+            change *= q[d, j] / pivot
+            q[d, j] = pivot
+            for y in range(s.lp[j], s.lp[j + 1]):
+                i = s.li[y]
+                q[w, i] -= p * l[at, y]
+                l[at, y] += g * q[w, i]
+        j = s.li[s.lp[j]] if s.lp[j + 1] > s.lp[j] else n
+    return good
+
+
+def solve(s: Pattern, l: Array, at: int, q: Array, d: int, x: int) -> None:  # noqa: E741
+    """Solve in place for row `x` of `q`."""
+    n = q.shape[1]
+    for j in range(n):
+        t = q[x, j]
+        for y in range(s.lp[j], s.lp[j + 1]):
+            q[x, s.li[y]] -= l[at, y] * t
+    for j in range(n - 1, -1, -1):
+        t = q[x, j] / q[d, j]
+        for y in range(s.lp[j], s.lp[j + 1]):
+            t -= l[at, y] * q[x, s.li[y]]
+        q[x, j] = t
