@@ -17,6 +17,7 @@ from pound_solve.assemble import Structure, assemble
 from pound_solve.catalog import catalog
 from pound_solve.dofs import Freedom
 from pound_solve.motions.base import Context
+from pound_solve.motions.wave import fronts
 
 Array = NDArray[np.float64]
 
@@ -47,11 +48,16 @@ def scene_of(text: str, params: Mapping[str, object] | None = None) -> scene.Sce
     """
     model = model_of(text, params)
     end = max(c["T"] for c in model.analyses if c.spec.name == "HISTORY")
-    motions = [c.spec.impl(c.values, Context(model.gravity, 1.0, (), end)) for c in model.equake]
+    context = Context(model.gravity, 1.0, (), end)
+    x = {n.id: n.x for n in model.nodes.values()}
+    motions = [m for c in model.equake for m in fronts(c.spec.impl(c.values, context), x)]
+    forces = [c.spec.impl(c.values, context) for c in model.forces]
     fixed = [(n.id, d) for n in model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed]
     structure = assemble(model, scene.moved_supports(motions, fixed))
     u0, v0 = history.initial(structure)
-    return scene.build(structure, motions, end, static.solve(structure).u + u0, v0)
+    return scene.condense(
+        scene.build(structure, motions, end, static.solve(structure).u + u0, v0, forces)
+    ).scene
 
 
 @dataclass(frozen=True)
@@ -92,6 +98,7 @@ def solve(model: Model, self_weight: bool = True) -> Solved:
     """Static result of a model."""
     s = assemble(model, self_weight=self_weight)
     state = static.solve(s)
+    s = s.stressed(state.axial)
     u = {n: s.freedoms.matrix([(n, d) for d in range(3)]) @ state.u for n in model.nodes}
     force = {
         (o.element, o.quantity): float(s.freedoms.row(o.freedoms, o.u_row) @ state.u) + o.constant
@@ -102,8 +109,9 @@ def solve(model: Model, self_weight: bool = True) -> Solved:
         force[spring.element, name] = spring.law.branch(law_state).force(float(row @ state.u), 0.0)
     # reactions: let the supports go, and see what must hold them
     bare = replace(model, nodes={k: replace(n, fixed="") for k, n in model.nodes.items()}, damping=())
-    whole = assemble(bare, self_weight=self_weight)
-    full = np.array([u[n][d] for n, d in whole.freedoms.free])
+    whole = assemble(bare, self_weight=self_weight).stressed(state.axial)
+    own = dict(zip(s.freedoms.free, state.u))
+    full = np.array([own[n, d] if d > 2 else u[n][d] for n, d in whole.freedoms.free])
     r = whole.stiffness @ full - whole.loads
     for spring, law_state, row in zip(whole.laws, state.states, whole.law_rows):
         r += row * spring.law.branch(law_state).force(float(row @ full), 0.0)

@@ -5,6 +5,8 @@ tests check that they are fresh.
 from pathlib import Path
 
 from pound_deck.diagnostics import messages_page
+from pound_solve.catalog import specs
+from pound_solve.loop import AXES, picture
 from pound_solve.reference import deck_page
 from pound_solve.tables import results_page
 from verification import cases
@@ -17,6 +19,13 @@ def write(name: str, text: str) -> None:
     (MANUAL / name).write_text(text, encoding="utf-8", newline="\n")
 
 
+def pictures() -> dict[str, str]:
+    """Loops of all rules and contact laws as SVG, by file name; ELASTIC has none."""
+    drawn = [s for s in specs() if s.family in AXES and s.impl is not None]
+    kind = {"hysteresis": "loop", "contact": "contact"}
+    return {f"{kind[s.family]}_{s.name.lower()}.svg": picture(s) for s in drawn}
+
+
 if __name__ == "__main__":
     write("messages.md", messages_page())
     write("deck-reference.md", deck_page())
@@ -27,3 +36,9 @@ if __name__ == "__main__":
     cases.PAGE.write_text(
         cases.page(cases.PAGE.read_text(encoding="utf-8")), encoding="utf-8", newline="\n"
     )
+    folder = MANUAL / "pictures"
+    folder.mkdir(exist_ok=True)
+    for old in folder.glob("*.svg"):
+        old.unlink()
+    for name, text in pictures().items():
+        write(f"pictures/{name}", text)

@@ -20,6 +20,14 @@ _GRAVITY: Final = Field("GRAVITY", Kind.REAL, "L/T^2", doc="acceleration", above
 _MASS: Final = Field(
     "MASS", Kind.WORD, doc="mass matrix of members", words=("LUMPED", "CONSISTENT"), positional=True
 )
+_GEOMETRY: Final = Field(
+    "GEOMETRY",
+    Kind.WORD,
+    doc="what displacements do to equilibrium",
+    words=("SMALL", "PDELTA", "PDELTA_MEMBER", "LARGE"),
+    codes={"SMALL": 0, "PDELTA": 1, "LARGE": 2},
+    positional=True,
+)
 _LENGTHS: Final = {"M": 9.81, "MM": 9810.0, "CM": 981.0, "FT": 32.174, "IN": 386.09}
 _UNITS: Final = ("kN", "m", "s")  #: of words that UNITS leaves out
 _TIMES: Final = ("S", "SEC")
@@ -40,6 +48,11 @@ def build(
     bound = {name: _section(name, outline, binder) for name in NAMES}
     gravity = _single(Spec("card", "GRAVITY", "gravity", (_GRAVITY,)), outline, binder)
     mass = _single(Spec("card", "MASS", "mass of members", (_MASS,)), outline, binder)
+    geometry = _single(Spec("card", "GEOMETRY", "displacements", (_GEOMETRY,)), outline, binder)
+    if geometry == "LARGE":
+        message = "large displacements (GEOMETRY LARGE) cannot be analysed yet"
+        hint = "PDELTA takes axial forces into account, PDELTA_MEMBER along bent members too"
+        report.append(Diagnostic("P328", message, outline.single["GEOMETRY"].span, hint))
     output = bound["OUTPUT"] or (_default_output(),)
     nodes: dict[int, Node] = {}
     for card in bound["NODES"]:
@@ -57,12 +70,13 @@ def build(
     if known is None and "GRAVITY" not in outline.single and bound["WEIGHTS"]:
         message = f"no value of gravity is known for {units.length} and {units.time}"
         report.append(Diagnostic("P319", message, bound["WEIGHTS"][0].span, "add GRAVITY with its value"))
-    left = {"units": "UNITS", "gravity": "GRAVITY", "mass": "MASS"}
+    left = {"units": "UNITS", "gravity": "GRAVITY", "mass": "MASS", "geometry": "GEOMETRY"}
     model = Model(
         title=_title(outline.single.get("TITLE")),
         units=units,
         gravity=gravity if gravity is not None else known or 9.81,
         mass=mass or "LUMPED",
+        geometry=geometry or "SMALL",
         params={name: value for name, value in params.items() if value is not None},
         nodes=nodes,
         elements=elements,
@@ -74,6 +88,7 @@ def build(
         drifts=bound["DRIFT"],
         damping=bound["DAMPING"],
         equake=bound["EQUAKE"],
+        forces=bound["FORCES"],
         analyses=bound["ANALYSIS"],
         output=output[0],
         files=files,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Final
 
@@ -12,6 +13,8 @@ from pound_deck.schema import Kind
 Found = Iterator[Diagnostic]
 #: where the kinds that name something are defined: nodes, elements, property sets
 _TABLE: Final = {Kind.NODE: 0, Kind.NODES: 0, Kind.ELEMENTS: 1, Kind.PROP: 2, Kind.PROPS: 2}
+#: elements along the line between their nodes
+_LONG: Final = ("FRAME", "BEAM_COLUMN", "TENDON")
 _MOST_HINTS: Final = 100  #: more messages are not printed, and each hint takes its time
 
 
@@ -89,9 +92,10 @@ def _zero_length(model: Model) -> Found:
         if i is j:
             message = f"both ends of element {element.id} are node {i.id}"
             yield Diagnostic("P321", message, element.span, "name two nodes, or leave J out for the ground")
-        elif prop and prop.spec.name == "FRAME" and (i.x, i.y) == (j.x, j.y):
+        elif prop and prop.spec.name in _LONG and (i.x, i.y) == (j.x, j.y):
             message = f"member {element.id} has no length: nodes {i.id} and {j.id} are at the same place"
-            yield Diagnostic("P312", message, element.span, "a FRAME needs a length; use a SPRING")
+            hint = f"a {prop.spec.name} needs a length; use a SPRING"
+            yield Diagnostic("P312", message, element.span, hint)
 
 
 def _unused_props(model: Model) -> Found:
@@ -163,12 +167,13 @@ def _initial(model: Model) -> Found:
 
 
 def _excitation(model: Model) -> Found:
-    loaded = any(card["NODES"] for card in (*model.initial, *model.loads))  # a list may be empty
+    # a list may be empty
+    loaded = any(card["NODES"] for card in (*model.initial, *model.loads, *model.forces))
     if model.equake or loaded or any(card["ELEMENTS"] for card in model.member_loads):
         return
     for card in model.analyses:
         if card.spec.name == "HISTORY":
-            hint = "add EQUAKE, INITIAL or LOADS"
+            hint = "add EQUAKE, FORCES, INITIAL or LOADS"
             yield Diagnostic("P317", "nothing sets this history in motion", card.span, hint, "warning")
 
 
@@ -198,6 +203,27 @@ def _node_like_weights(model: Model) -> Found:
             yield Diagnostic("P320", message, card.place("WX"), hint, "warning")
 
 
+def _weights_twice(model: Model) -> Found:
+    """Lines that overlap in part are meant: elements that share an end put half their weight on each."""
+    lines = [(card, frozenset(card["NODES"])) for card in model.weights]
+    first: dict[int, int] = {}  # the line that names a node first
+    for i, (card, nodes) in enumerate(lines):
+        shared = Counter(first[n] for n in nodes if n in first)
+        within = [j for j, n in shared.items() if n in (len(nodes), len(lines[j][1]))]
+        hint = "take it out of one of the lists, or write the sum"
+        if within:
+            earlier, others = lines[min(within)]
+            node, line = min(nodes & others), earlier.span.line
+            message = f"node {node} has a weight in line {line} already, and this adds to it"
+            yield Diagnostic("P329", message, card.place("NODES"), hint, "warning")
+        elif len(nodes) < len(card["NODES"]):
+            twice = next(n for n, count in Counter(card["NODES"]).items() if count > 1)
+            message = f"node {twice} stands twice in this list, and gets the weight twice"
+            yield Diagnostic("P329", message, card.place("NODES"), hint, "warning")
+        for n in nodes:
+            first.setdefault(n, i)
+
+
 _NODES: Final = frozenset({"NODES"})
 _MEMBERS: Final = frozenset({"ELEMENTS"})
 _PROPS: Final = frozenset({"PROPS"})
@@ -211,8 +237,9 @@ CHECKS: Final[tuple[tuple[Callable[[Model], Found], frozenset[str]], ...]] = (
     (_zero_length, frozenset()),
     (_unused_props, _MEMBERS | _PROPS),
     (_loose_nodes, _NODES | _MEMBERS),
-    (_excitation, frozenset({"EQUAKE", "INITIAL", "LOADS", "MEMBER_LOADS"})),
+    (_excitation, frozenset({"EQUAKE", "FORCES", "INITIAL", "LOADS", "MEMBER_LOADS"})),
     (_drift_names, frozenset()),
     (_drift_heights, frozenset()),
     (_node_like_weights, frozenset()),
+    (_weights_twice, frozenset()),
 )

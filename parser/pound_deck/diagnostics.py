@@ -297,7 +297,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "words after a section's name",
         "A section's name stands alone on its line. Put column heads behind an exclamation mark.",
     ),
-    "P237": ("card given twice", "TITLE, UNITS, GRAVITY and MASS stand once in a deck."),
+    "P237": ("card given twice", "TITLE, UNITS, GRAVITY, MASS and GEOMETRY stand once in a deck."),
     "P238": ("UNITS not understood", "Write UNITS force length time, for example UNITS kN m s."),
     "P239": (
         "file name without quotes",
@@ -333,14 +333,17 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "fixed and slaved",
         "A direction is both fixed and slaved. Take the letter out of FIX or SLAVED.",
     ),
-    "P312": ("member without length", "Both ends of a FRAME member stand at the same place."),
+    "P312": (
+        "member without length",
+        "Both ends of a FRAME, BEAM_COLUMN or TENDON stand at the same place.",
+    ),
     "P313": ("property set not used (warning)", "No element has this property set."),
     "P314": ("loose node (warning)", "No element ends at the node, and no slaving ties it to another."),
     "P315": ("nothing to analyse", "The deck has no nodes or no elements."),
     "P316": ("no analysis", "The deck does not say what to do. Add a section ANALYSIS."),
     "P317": (
         "nothing moves the model (warning)",
-        "A HISTORY has no EQUAKE, no INITIAL motion and no loads, so all results are zero.",
+        "A HISTORY has no EQUAKE, no FORCES, no INITIAL motion and no loads, so all results are zero.",
     ),
     "P318": (
         "drift without height (warning)",
@@ -357,13 +360,23 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P321": ("element ends at one node", "Both ends of the element are the same node."),
     "P324": (
         "analysis asked for twice",
-        "A deck holds one STATIC, one MODAL and one HISTORY. Run it again with other PARAM values "
+        "A deck holds one analysis of each kind. Run it again with other PARAM values "
         "(--set) for another one.",
     ),
     "P325": (
         "initial motion of a freedom that cannot have it",
         "INITIAL gives a displacement or velocity to a direction that is fixed or follows a master. "
         "Give it to a free direction, or to the master.",
+    ),
+    "P328": (
+        "kind of geometry not built",
+        "GEOMETRY takes SMALL, PDELTA (axial forces act along the line between the nodes) or PDELTA_MEMBER "
+        "(along the bent member). Large displacements cannot be analysed yet.",
+    ),
+    "P329": (
+        "node with two weights (warning)",
+        "All nodes of a line under WEIGHTS have a weight from another line, or a node stands twice in a "
+        "list. Weights of a node add up. Lines that overlap in part are taken as meant: no warning.",
     ),
     "P330": (
         "element cannot be built",
@@ -372,18 +385,24 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P331": (
         "loads on an element that is no member",
-        "MEMBER_LOADS act on FRAME members only. Load the nodes of springs, dashpots and contacts under "
-        "LOADS, or correct the element's number.",
+        "MEMBER_LOADS act on FRAME and BEAM_COLUMN members only. Load the nodes of springs, dashpots and "
+        "contacts under LOADS, or correct the element's number.",
     ),
     "P332": (
         "damping contradictory or not computable",
-        "The options of the DAMPING line exclude each other, or the modes they name do not exist. Give "
-        "ALPHA and BETA, or XI with OMEGA or MODES, and support the structure.",
+        "The options of the DAMPING line exclude each other, the modes they name do not exist, or a ratio "
+        "comes out negative. The message says which; the manual's page on damping has the ranges.",
     ),
     "P334": (
         "contact along an inclined line",
         "A contact without ANGLE acts along the line from I to J. Nodes at different heights make "
         "that line inclined; floors that meet along x want ANGLE=0.",
+    ),
+    "P335": (
+        "pushover not possible",
+        "The items of PUSHOVER exclude each other, its control node cannot move, or no force comes of its "
+        "pattern. It needs a TARGET (with CONTROL=FORCE a FACTOR will do), FORCES go with PATTERN=FORCES "
+        "and as many NODES, ADAPTIVE=YES with PATTERN=MODE; the other patterns need mass.",
     ),
     "R401": (
         "record not found",
@@ -404,8 +423,14 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "units and the columns.",
     ),
     "R405": (
-        "motion option missing or contradictory",
-        "The motion needs an option that is not given, or two options exclude each other.",
+        "motion or force incomplete or contradictory",
+        "The line of EQUAKE or FORCES needs an item that is not given, or its items exclude each other. "
+        "The message says which.",
+    ),
+    "R406": (
+        "there is no saved state to restart from",
+        "Name the .h5 file of a run of the same structure that ended or had a SAVE time; its path is counted "
+        "from the deck's folder.",
     ),
     "A501": (
         "unstable structure",

@@ -117,23 +117,26 @@ class Model:
         Acceleration of gravity [L/T^2]; weights are divided by it.
     mass : str
         ``LUMPED`` or ``CONSISTENT`` mass of FRAME members.
+    geometry : str
+        ``SMALL`` displacements, or what axial forces do to the stiffness: ``PDELTA``, ``PDELTA_MEMBER``.
     params : mapping of str to float or str
         Values of all PARAM names, after ``--set``.
     nodes, elements, props : mappings by number or label
         `props` are Cards of the family ``element``.
-    weights, loads, member_loads, initial, drifts, damping, equake, analyses : tuples of Card
+    weights, loads, member_loads, initial, drifts, damping, equake, forces, analyses : tuples of Card
     output : Card
         The OUTPUT card, all defaults where the deck has none.
     files : mapping of str to str
         Text of the deck and of every included file, by the name in its Spans.
     defaults : frozenset of str
-        Which of ``units``, ``gravity``, ``mass`` were left to their defaults.
+        Which of ``units``, ``gravity``, ``mass``, ``geometry`` were left to their defaults.
     """
 
     title: str
     units: Units
     gravity: float
     mass: str
+    geometry: str
     params: Mapping[str, float | str]
     nodes: Mapping[int, Node]
     elements: Mapping[int, Element]
@@ -145,6 +148,7 @@ class Model:
     drifts: tuple[Card, ...]
     damping: tuple[Card, ...]
     equake: tuple[Card, ...]
+    forces: tuple[Card, ...]
     analyses: tuple[Card, ...]
     output: Card
     files: Mapping[str, str]

@@ -14,9 +14,15 @@ from pound_deck.schema import Catalog
 from pound_deck.sections import SECTIONS
 
 #: sections whose lines are cards of a family of the solver
-FAMILIES: Final = {"PROPS": "element", "DAMPING": "damping", "EQUAKE": "motion", "ANALYSIS": "analysis"}
+FAMILIES: Final = {
+    "PROPS": "element",
+    "DAMPING": "damping",
+    "EQUAKE": "motion",
+    "FORCES": "force",
+    "ANALYSIS": "analysis",
+}
 NAMES: Final = (*(spec.name for spec in SECTIONS), *FAMILIES)  #: of all sections
-_SINGLE: Final = ("TITLE", "UNITS", "GRAVITY", "MASS")  #: cards that stand once, anywhere
+_SINGLE: Final = ("TITLE", "UNITS", "GRAVITY", "MASS", "GEOMETRY")  #: cards that stand once, anywhere
 _KEYWORDS: Final = (*NAMES, *_SINGLE, "PARAM", "INCLUDE", "END")
 
 

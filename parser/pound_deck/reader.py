@@ -27,7 +27,7 @@ def read_deck(path: str, catalog: Catalog, overrides: Mapping[str, str] | None =
     path : str
         The deck's file; spans carry this name.
     catalog : Catalog
-        Every Spec that PROPS, DAMPING, EQUAKE and ANALYSIS may hold.
+        Every Spec that PROPS, DAMPING, EQUAKE, FORCES and ANALYSIS may hold.
     overrides : mapping of str to str
         Texts that replace PARAM values, by name in any case.
 

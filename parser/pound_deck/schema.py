@@ -100,8 +100,8 @@ class Spec:
     Parameters
     ----------
     family : str
-        ``section``, ``element``, ``hysteresis``, ``contact``, ``damping``, ``motion``, ``record``,
-        ``analysis`` or ``method``.
+        ``section``, ``element``, ``hysteresis``, ``contact``, ``damping``, ``motion``, ``force``,
+        ``record``, ``analysis`` or ``method``.
     name : str
         Upper-case word in the deck.
     title : str
@@ -112,6 +112,8 @@ class Spec:
         Old numeric code, accepted in place of the name.
     reference : str
         Where the equation comes from.
+    sample : str
+        Items, as a deck has them, that show the law well: ``pound-solve loop`` and the manual draw it so.
     impl : object
         What the solver needs to use the card (a class or a function); the reader never looks at it.
     """
@@ -122,6 +124,7 @@ class Spec:
     fields: tuple[Field, ...] = ()
     code: int | None = None
     reference: str = ""
+    sample: str = ""
     impl: Any = None
 
     def field(self, name: str) -> Field | None:

@@ -1,8 +1,8 @@
 """Specs of the deck's own sections: the lines that are not a plug-in family of the solver.
 
 NODES, ELEMENTS, WEIGHTS, LOADS, MEMBER_LOADS, INITIAL, DRIFT and OUTPUT have one kind of line each, given
-here.  PROPS, DAMPING, EQUAKE and ANALYSIS hold cards of the families ``element``, ``damping``, ``motion``
-and ``analysis``.
+here.  PROPS, DAMPING, EQUAKE, FORCES and ANALYSIS hold cards of the families ``element``, ``damping``,
+``motion``, ``force`` and ``analysis``.
 """
 
 from __future__ import annotations
@@ -76,18 +76,25 @@ SECTIONS: Final = (
     Spec(
         "section",
         "LOADS",
-        "static nodal loads, held during the history",
+        "static nodal loads",
         (
             Field("NODES", Kind.NODES, doc="nodes that get this load each", positional=True),
             Field("FX", Kind.REAL, "F", default=0.0, doc="force along x", positional=True),
             Field("FY", Kind.REAL, "F", default=0.0, doc="force along y, upwards", positional=True),
             Field("MZ", Kind.REAL, "F*L", default=0.0, doc="moment, anticlockwise", positional=True),
+            Field(
+                "HELD",
+                Kind.WORD,
+                default="YES",
+                words=("YES", "NO"),
+                doc="NO: in STATIC only, taken off at once where the history starts (snap-back)",
+            ),
         ),
     ),
     Spec(
         "section",
         "MEMBER_LOADS",
-        "static loads on FRAME members, held during the history",
+        "static loads on members (FRAME, BEAM_COLUMN), held during the history",
         (
             Field("ELEMENTS", Kind.ELEMENTS, doc="members that get this load each", positional=True),
             Field(

@@ -10,18 +10,25 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pound_deck.diagnostics import Diagnostic, has_errors
-from pound_deck.model import Model, Span
+from pound_deck.model import Card, Model, Span
 from pound_deck.reader import read_deck
 from pound_deck.schema import REQUIRED
 from pound_solve import __version__, scene
+from pound_solve.analyses import pushover
 from pound_solve.assemble import AssemblyError, Structure, assemble
 from pound_solve.catalog import catalog
 from pound_solve.course import Course, Progress
+from pound_solve.forces.base import Force
 from pound_solve.motions.base import METRE, Context, Motion
+from pound_solve.motions.wave import fronts
 from pound_solve.records.base import RecordError
-from pound_solve.results import Results, Writer
+from pound_solve.results import Results, ResultsError, Writer
 
 DONE, STOPPED, MISTAKES = 0, 1, 2  #: exit statuses; 3 (files) is the command line's own
 
@@ -69,13 +76,15 @@ class Request:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A deck that is read and checked, its motions and its assembled structure."""
+    """A deck that is read and checked, its motions, its forces in time and its assembled structure."""
 
     model: Model
     motions: tuple[Motion, ...]
+    forces: tuple[Force, ...]
     structure: Structure
     warnings: tuple[Diagnostic, ...]
     files: Mapping[str, str]
+    saved: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
 
 def prepare(request: Request) -> Prepared:
@@ -93,36 +102,9 @@ def prepare(request: Request) -> Prepared:
         raise DeckError(found, files)
     found = list(found)
     model = _override(model, request, found)
-    motions: list[Motion] = []
-    for card in model.equake:
-        try:
-            motions.append(card.spec.impl(card.values, context(model, request)))
-            found += [
-                Diagnostic("R404", w, card.span, severity="warning")
-                for w in motions[-1].info.get("warnings", ())
-            ]
-        except RecordError as err:
-            found.append(Diagnostic(err.code, err.message, card.place("FILE"), hint=err.hint))
-    apart = [m.supports is not None for m in motions]
-    if any(apart) and not all(apart):
-        spot = model.equake[apart.index(False)].span
-        found.append(
-            Diagnostic(
-                "R405",
-                "some motions have SUPPORTS and this one has not: give SUPPORTS to all or to none",
-                spot,
-            )
-        )
-    for card, motion in zip(model.equake, motions):
-        for node in motion.supports or ():
-            if node in model.nodes and motion.direction not in model.nodes[node].fixed:
-                found.append(
-                    Diagnostic(
-                        "R405",
-                        f"node {node} is not fixed along {motion.direction}: a support that moves must be",
-                        card.place("SUPPORTS"),
-                    )
-                )
+    surroundings = context(model, request)
+    motions = _motions(model, surroundings, found)
+    forces = [force for card in model.forces if (force := _built(card, surroundings, found)) is not None]
     structure = None
     try:
         fixed = [(n.id, d) for n in model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed]
@@ -133,10 +115,64 @@ def prepare(request: Request) -> Prepared:
         )
     except AssemblyError as err:
         found += err.diagnostics
+    if structure is not None:
+        found += _inclined(structure) + pushover.mistakes(structure)
+    saved = _saved(model, request, found)
     if has_errors(found) or structure is None:
         raise DeckError(found, files)
-    found += _inclined(structure)
-    return Prepared(model, tuple(motions), structure, tuple(found), files)
+    return Prepared(model, tuple(motions), tuple(forces), structure, tuple(found), files, saved)
+
+
+def _saved(model: Model, request: Request, found: list[Diagnostic]) -> dict[str, NDArray[np.float64]]:
+    """State of the results file that a history goes on from; read before the file may be written anew."""
+    for card in model.analyses:
+        if card.spec.name != "HISTORY" or not card["RESTART"]:
+            continue
+        path = Path(request.deck).parent / card["RESTART"]
+        try:
+            with Results.open(path) as results:
+                state = results.restart()
+        except ResultsError as err:
+            found.append(Diagnostic("R406", str(err), card.place("RESTART")))
+            return {}
+        if not state:
+            found.append(Diagnostic("R406", f"{path} holds no state to go on from", card.place("RESTART")))
+        return state
+    return {}
+
+
+def _built(card: Card, surroundings: Context, found: list[Diagnostic]) -> Any:
+    """What a card of EQUAKE or FORCES makes; None where it has a mistake."""
+    try:
+        return card.spec.impl(card.values, surroundings)
+    except RecordError as err:
+        found.append(Diagnostic(err.code, err.message, card.place(err.item), hint=err.hint))
+        return None
+
+
+def _motions(model: Model, surroundings: Context, found: list[Diagnostic]) -> list[Motion]:
+    """Ground motions of all EQUAKE cards, a wave as one for each place."""
+    out: list[Motion] = []
+    place = {node.id: node.x for node in model.nodes.values()}
+    apart = [card for card in model.equake if card["SUPPORTS"] is not None]
+    whole = [card for card in model.equake if card["SUPPORTS"] is None]
+    if apart and whole:
+        message = "some motions have SUPPORTS and this one has not: give SUPPORTS to all or to none"
+        found.append(Diagnostic("R405", message, whole[0].span))
+    for card in model.equake:
+        motion: Motion | None = _built(card, surroundings, found)
+        if motion is None:
+            continue
+        found += [
+            Diagnostic("R404", w, card.span, severity="warning") for w in motion.info.get("warnings", ())
+        ]
+        ways = {"XYR"[d] for d in motion.directions}
+        for node in motion.supports or ():
+            if not ways & set(model.nodes[node].fixed):
+                message = f"node {node} is not fixed along {motion.direction}: a support that moves must be"
+                found.append(Diagnostic("R405", message, card.place("SUPPORTS")))
+        out += fronts(motion, place)
+    return out
 
 
 def _inclined(structure: Structure) -> list[Diagnostic]:
@@ -169,7 +205,8 @@ def _weighed(model: Model) -> Model:
     extra = []
     for card in model.weights:
         wy = card["WX"] if card["WY"] is None else card["WY"]
-        extra.append(replace(card, values={"NODES": card["NODES"], "FX": 0.0, "FY": -wy, "MZ": 0.0}))
+        load = {"NODES": card["NODES"], "FX": 0.0, "FY": -wy, "MZ": 0.0, "HELD": "YES"}
+        extra.append(replace(card, values=load))
     return replace(model, loads=(*model.loads, *extra))
 
 
@@ -242,8 +279,9 @@ def execute(request: Request, progress: Progress | None = None) -> tuple[int, Re
     ) as writer:
         overridden = {name.lower() for name in request.params}
         message = Course(
-            ready.model, ready.motions, ready.structure, overridden, writer, progress, began
-        ).all()
+            ready.model, ready.motions, ready.forces, ready.structure, overridden, writer, progress, began,
+            ready.saved,
+        ).all()  # fmt: skip
         writer.finish("stopped" if message else "done", message)
     results = Results.open(path)
     from pound_solve.report import render

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,8 +13,9 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
 from pound_solve import modes
 from pound_solve.damping.base import DampingError, Ground
-from pound_solve.dofs import DIRECTIONS, Freedom, Freedoms, number
-from pound_solve.elements.base import ElementError, LawSpring, Output, Parts, Site
+from pound_solve.damping.secant import SecantLaw
+from pound_solve.dofs import DIRECTIONS, Freedom, Freedoms, label, number
+from pound_solve.elements.base import ElementError, Geometric, LawSpring, Output, Parts, Site
 
 Array = NDArray[np.float64]
 
@@ -32,20 +33,29 @@ class Structure:
     mass : ndarray, shape (n, n)
         [F T^2/L]
     damping : ndarray, shape (n, n)
-        [F T/L]
+        Dashpots of laws apart [F T/L].
+    initial_damping : ndarray, shape (n, n)
+        The same with the dashpots of hysteretic laws, at their initial stiffness.
     loads : ndarray, shape (n,)
         Static loads [F].
-    ground : ndarray, shape (2, n)
-        ``M r`` for a unit ground acceleration along x and y, supports included [F T^2/L].
+    released : ndarray, shape (n,)
+        Those among them that a history takes off where it starts.
+    ground : ndarray, shape (3, n)
+        ``M r`` for a unit acceleration of the ground along x and y and in a turn about the origin,
+        supports included [F T^2/L], [F T^2].
     laws : tuple of LawSpring
     law_rows : ndarray, shape (n_laws, n)
         Deformation of each law from the freedoms.
     outputs : tuple of Output
         Quantities of the elements outside laws.
+    geometric : tuple of Geometric
+        Stiffness of the members from their axial forces; empty for small displacements.
     nodal_mass : mapping of Freedom to float
         Diagonal mass by node and direction, weights and members.
     self_weight : bool
         Whether the weight of members is among the loads.
+    parts : mapping of int to Parts
+        What every element added, by its number.
     damping_texts : list of (Card, str)
     """
 
@@ -55,13 +65,17 @@ class Structure:
     initial_stiffness: Array
     mass: Array
     damping: Array
+    initial_damping: Array
     loads: Array
+    released: Array
     ground: Array
     laws: tuple[LawSpring, ...]
     law_rows: Array
     outputs: tuple[Output, ...]
+    geometric: tuple[Geometric, ...]
     nodal_mass: dict[Freedom, float]
     self_weight: bool
+    parts: dict[int, Parts]
     damping_texts: list[tuple[Card, str]] = field(default_factory=list)
 
     @property
@@ -69,11 +83,41 @@ class Structure:
         """Number of unknown freedoms."""
         return len(self.freedoms.free)
 
+    @property
+    def held(self) -> Array:
+        """Static loads that stay on during a history, shape (n,) [F]."""
+        return self.loads - self.released
+
     @cached_property
     def free_vibration(self) -> modes.Modes:
         """Modes of the initial structure, contacts open."""
         n = self.n_free
         return modes.solve(self.initial_stiffness[:n, :n], self.mass[:n, :n])
+
+    def axial(self, u: Array) -> Array:
+        """Axial forces of the members of `geometric` at displacements `u` of all columns [F]."""
+        return np.array([self.freedoms.row(g.freedoms, g.axial) @ u + g.constant for g in self.geometric])
+
+    def stressed(self, axial: Array) -> Structure:
+        """The structure whose members carry these axial forces, shape (n_geometric,):
+        their geometric stiffness is part of it.
+        """
+        if not len(axial):
+            return self
+        matrix = np.zeros_like(self.stiffness)
+        rows: dict[tuple[int, str], Array] = {}
+        for g, force in zip(self.geometric, axial.tolist()):
+            _scatter(matrix, self.freedoms, g.freedoms, force * g.matrix)
+            rows |= {(g.element, quantity): force * row for quantity, row in g.forces.items()}
+        outputs = tuple(
+            replace(o, u_row=o.u_row + rows.get((o.element, o.quantity), 0.0)) for o in self.outputs
+        )
+        return replace(
+            self,
+            stiffness=self.stiffness + matrix,
+            initial_stiffness=self.initial_stiffness + matrix,
+            outputs=outputs,
+        )
 
     def influence(self) -> Array:
         """Quasi-static motion of the unknowns for unit prescribed motions, shape (n_free, n_moved)."""
@@ -153,13 +197,14 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
             model.mass == "CONSISTENT",
             tuple(loads_of.pop(element.id, ())),
             self_weight,
+            model.geometry,
             mass_along,
         )
-        if site.member_loads and prop.spec.name != "FRAME":
+        if site.member_loads and prop.spec.name not in ("FRAME", "BEAM_COLUMN"):
             problems.append(
                 Diagnostic(
                     "P331",
-                    f"element {element.id} is a {prop.spec.name}: only FRAME takes member loads",
+                    f"element {element.id} is a {prop.spec.name}: only FRAME and BEAM_COLUMN take member loads",
                     site.member_loads[0].span,
                 )
             )
@@ -188,7 +233,7 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
     laws = tuple(s for p in ordered for s in p.laws)
     rows = np.array([freedoms.row(s.freedoms, s.row) for s in laws]).reshape(len(laws), n)
     k_linear, c = np.zeros((n, n)), np.zeros((n, n))
-    loads = np.zeros(n)
+    loads, released = np.zeros(n), np.zeros(n)
     for p in ordered:
         for b in p.stiffness:
             _scatter(k_linear, freedoms, b.freedoms, b.matrix)
@@ -198,13 +243,16 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
             loads += freedoms.row(at, vector)
     for card in model.loads:
         for node in card["NODES"]:
-            loads += freedoms.row([(node, d) for d in range(3)], [card["FX"], card["FY"], card["MZ"]])
+            row = freedoms.row([(node, d) for d in range(3)], [card["FX"], card["FY"], card["MZ"]])
+            loads += row
+            if card["HELD"] == "NO":
+                released += row
     mass = np.zeros((n, n))
-    ground = np.zeros((2, n))
+    ground = np.zeros((3, n))
     for _, at, matrix in mass_terms:
         _scatter(mass, freedoms, at, matrix)
-        for d in range(2):
-            ground[d] += freedoms.row(at, matrix @ [1.0 if f[1] == d else 0.0 for f in at])
+        for d in range(3):
+            ground[d] += freedoms.row(at, matrix @ [_ridden(model, f, d) for f in at])
     k0 = k_linear + (rows.T * [s.k0 for s in laws]) @ rows
 
     structure = Structure(
@@ -214,18 +262,35 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
         k0,
         mass,
         c,
+        c,
         loads,
+        released,
         ground,
         laws,
         rows,
         tuple(o for p in ordered for o in p.outputs),
+        tuple(g for p in ordered for g in p.geometric),
         nodal_mass,
         self_weight,
+        parts,
     )
     _add_damping(structure, mass_terms, parts, problems)
     if problems:
         raise AssemblyError(problems)
     return structure
+
+
+def _ridden(model: Model, freedom: Freedom, d: int) -> float:
+    """Motion of a freedom that rides on the ground, which moves by one along `d`
+    (2: turns about the origin).
+    """
+    owner, own = freedom
+    if own > 2:  # what is inside an element turns against its nodes
+        return 0.0
+    if d < 2:
+        return float(own == d)
+    node = model.nodes[owner]
+    return (-node.y, node.x, 1.0)[own]
 
 
 def _add_diagonals(
@@ -269,7 +334,7 @@ def _add_damping(
             return structure.mass
         out, chosen = np.zeros_like(structure.mass), frozenset(nodes)
         for where, at, matrix in mass_terms:
-            inside = np.array([f[0] in chosen for f in at])
+            inside = np.array([f[1] < 3 and f[0] in chosen for f in at])
             if not matrix[np.ix_(inside, ~inside)].any():  # lumped: each node takes its own
                 _scatter(out, freedoms, at, np.where(inside[:, None] & inside, matrix, 0.0))
             else:  # a consistent matrix is shared evenly by the nodes that can move
@@ -277,29 +342,40 @@ def _add_damping(
                 _scatter(out, freedoms, at, matrix * (len(loose & chosen) / max(len(loose), 1)))
         return out
 
-    def stiffness_of(labels: Collection[str] | None) -> Array:
-        if labels is None:
-            return structure.initial_stiffness
+    def stiffness_of(labels: Collection[str] | None, laws: bool) -> Array:
         out = np.zeros_like(structure.stiffness)
         for e in model.elements.values():
-            if e.prop in labels:
-                for b in parts[e.id].stiffness:
+            if labels is None or e.prop in labels:
+                for b in [parts[e.id].initial()] if laws else parts[e.id].stiffness:
                     _scatter(out, freedoms, b.freedoms, b.matrix)
-                for s in parts[e.id].laws:
-                    _scatter(out, freedoms, s.freedoms, s.k0 * np.outer(s.row, s.row))
         return out
 
-    def all_modes() -> tuple[Array, Array, Array]:
-        return structure.free_vibration.omega, structure.free_vibration.shapes, structure.mass[:n, :n]
+    def modes_of(nodes: Collection[int] | None) -> modes.Modes:
+        if nodes is None:
+            return structure.free_vibration
+        k, m = structure.initial_stiffness[:n, :n], structure.mass[:n, :n]
+        named = np.zeros(n, bool)
+        named[[i for k in nodes for d in range(3) for i, _ in freedoms.terms[k, d] if i < n]] = True
+        if not named.any():
+            raise DampingError("none of these nodes can move", "NODES")
+        linked, inside = (k != 0.0) | (m != 0.0), named
+        while (more := inside | linked[inside].any(axis=0)).sum() > inside.sum():
+            inside = more
+        strange = [f for f, x in zip(freedoms.free, inside & ~named) if x and f[1] < 3]
+        if strange:
+            raise DampingError(
+                f"{label(strange[0])} hangs together with these nodes: only a whole building has modes",
+                "NODES",
+            )
+        own = modes.solve(k[np.ix_(inside, inside)], m[np.ix_(inside, inside)])
+        shapes = np.zeros((n, len(own.omega)))
+        shapes[inside] = own.shapes
+        return modes.Modes(own.omega, shapes)
 
-    def pad(matrix: Array) -> Array:
-        out = np.zeros_like(structure.mass)
-        out[:n, :n] = matrix
-        return out
-
+    betas = np.zeros((2, len(structure.laws)))  # tangent, secant
     for card in model.damping:
         try:
-            group = card.spec.impl(card, Ground(mass_of, stiffness_of, all_modes, pad))
+            group = card.spec.impl(card, Ground(mass_of, stiffness_of, modes_of))
         except DampingError as err:
             problems.append(Diagnostic("P332", str(err), card.place(err.item)))
             continue
@@ -322,4 +398,17 @@ def _add_damping(
                 structure.damping[n:, n:] += follow.T @ free @ follow
         if group.between is not None:
             structure.damping += group.between
+        if group.dashpots is not None:
+            labels, beta, by_secant = group.dashpots
+            for i, s in enumerate(structure.laws):
+                if not s.is_contact and (labels is None or model.elements[s.element].prop in labels):
+                    betas[int(by_secant), i] += beta
         structure.damping_texts.append((card, group.text))
+    structure.initial_damping = structure.damping
+    if betas.any():
+        rows, k0 = structure.law_rows, [s.k0 for s in structure.laws]
+        structure.initial_damping = structure.damping + (rows.T * (betas.sum(axis=0) * k0)) @ rows
+        structure.laws = tuple(
+            replace(s, beta=beta, secant=secant, law=SecantLaw(s.law.rule, s.law.p) if secant else s.law)
+            for s, beta, secant in zip(structure.laws, *betas.tolist())
+        )

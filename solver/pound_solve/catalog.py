@@ -8,7 +8,17 @@ from pkgutil import iter_modules
 
 from pound_deck.schema import Catalog, Spec
 
-FAMILIES = ("elements", "hysteresis", "contact", "damping", "records", "motions", "analyses", "integrate")
+FAMILIES = (
+    "elements",
+    "hysteresis",
+    "contact",
+    "damping",
+    "records",
+    "motions",
+    "forces",
+    "analyses",
+    "integrate",
+)
 
 
 @cache

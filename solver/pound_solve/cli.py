@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import sys
 import time
@@ -12,7 +13,7 @@ from pathlib import Path
 
 from pound_solve import __version__
 
-VERBS = ("run", "check", "report", "export", "list")
+VERBS = ("run", "check", "report", "export", "list", "loop")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -56,6 +57,20 @@ def parser() -> argparse.ArgumentParser:
         help="section, element, hysteresis, contact, damping, motion, record, analysis or method",
     )
     listing.add_argument("name", nargs="?", help="one member: its items")
+    text = "drive a hysteresis rule or contact law along a path; print and draw its loop"
+    loop = verbs.add_parser("loop", help=text, description=text)
+    loop.add_argument("law", help="name of the rule or law")
+    loop.add_argument("items", nargs="*", metavar="NAME=VALUE", help="items of its card, as in a deck")
+    loop.add_argument("--path", metavar="D,D,...", help="turning points of the deformation")
+    loop.add_argument("--file", type=Path, help="file of turning points, any number a line")
+    loop.add_argument(
+        "--rate",
+        type=float,
+        metavar="V",
+        help="speed of the deformation (default: infinitely slow; of a contact 1)",
+    )
+    loop.add_argument("--png", type=Path, metavar="FILE", help="draw with matplotlib into a file")
+    loop.add_argument("--svg", type=Path, metavar="FILE", help="draw into an SVG file")
     return out
 
 
@@ -72,9 +87,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         words.insert(0, "run")
     args = parser().parse_args(words)
     try:
-        return {"run": _run, "check": _check, "report": _report, "export": _export, "list": _list}[
-            args.verb
-        ](args)
+        return {
+            "run": _run,
+            "check": _check,
+            "report": _report,
+            "export": _export,
+            "list": _list,
+            "loop": _loop,
+        }[args.verb](args)
     except BrokenPipeError:  # the reader of our output has gone: not our mistake
         sys.stderr.close()
         return 0
@@ -223,3 +243,52 @@ def _list(args: argparse.Namespace) -> int:
     except KeyError as err:
         return _complain(str(err.args[0]), 2)
     return 0
+
+
+def _loop(args: argparse.Namespace) -> int:
+    from pound_solve import loop, sketch
+
+    try:
+        family = args.law.lower() in loop.AXES and bool(args.items)
+        spec = loop.law_of(f"{args.law} {args.items.pop(0)}" if family else args.law)
+        spring, items = loop.specimen(spec, args.items)
+        path = _turning_points(args) or loop.protocol(spring)
+        rate = float(spring.is_contact) if args.rate is None else args.rate
+        found = loop.trace(spring.law, path, rate)
+    except loop.LoopError as err:
+        return _complain(str(err), 2)
+    texts = (f"{spec.name} {items}", *loop.AXES[spec.family])
+    print(f"{texts[0]}\n\n{loop.table(found.corners)}\n\n{sketch.letters(found.curve)}")
+    if args.svg:
+        args.svg.write_text(sketch.svg(found.curve, *texts), encoding="utf-8", newline="\n")
+    if args.png:
+        from pound_solve import plot
+
+        try:
+            plot.loop(found.curve, *texts, args.png)
+        except ImportError:
+            return _complain(
+                '--png needs matplotlib: pip install "pound-solve[plot]"; --svg needs nothing', 2
+            )
+    return 0
+
+
+def _turning_points(args: argparse.Namespace) -> list[float]:
+    """Numbers of --path or --file; empty where neither is given."""
+    from pound_solve.loop import LoopError
+
+    if args.path and args.file:
+        raise LoopError("give --path or --file, not both")
+    text = args.file.read_text(encoding="utf-8") if args.file else args.path or ""
+    words = [w for line in text.splitlines() for w in line.split("#")[0].replace(",", " ").split()]
+    out = []
+    for word in words:
+        try:
+            out.append(float(word))
+        except ValueError:
+            raise LoopError(f"{word[:60]} is no number: --path and --file take deformations") from None
+        if not math.isfinite(out[-1]):
+            raise LoopError(f"{word[:60]} is no finite number")
+    if (args.path is not None or args.file) and not out:
+        raise LoopError("--path and --file take one deformation at least")
+    return out

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import platform
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,11 @@ from numpy.typing import NDArray
 
 from pound_deck.model import Card, Model
 from pound_solve import __version__, echo, scene
-from pound_solve.analyses import history, modal, static
-from pound_solve.assemble import Structure, assemble
+from pound_solve.analyses import history, modal, pushover, restart, static
+from pound_solve.analyses.equilibrium import ROUNDING, Ground
+from pound_solve.analyses.path import Unstable
+from pound_solve.assemble import Structure
+from pound_solve.forces.base import Force
 from pound_solve.integrate.base import ENERGIES, Outcome, Peaks, Stop
 from pound_solve.motions.base import Motion
 from pound_solve.results import Writer
@@ -23,7 +27,8 @@ Array = NDArray[np.float64]
 Progress = Callable[[float, float], None]  #: told the time reached and the time to reach
 
 SIGNS = (
-    "End forces act on the member along its own axes; axial tension and contact compression are positive."
+    "End forces act on the member along its own axes; axial tension and contact compression are positive, "
+    "moments of hinges where the member sags."
 )
 EXACT, STEPS = "Peaks are exact.", "Peaks are those of the steps, interpolated between them."
 MOST_ROWS = 5_000_000  #: of stored histories
@@ -37,6 +42,7 @@ class Course:
     ----------
     model : Model
     motions : sequence of Motion
+    forces : sequence of Force
     structure : Structure
     overridden : set of str
         Lower-case names of PARAMs that the command line set.
@@ -44,38 +50,50 @@ class Course:
     progress : callable or None
     began : float
         Reading of the clock when the run began.
+    saved : mapping of str to ndarray
+        State that a history with RESTART goes on from, as it lies in the results file; else empty.
     """
 
     def __init__(
         self,
         model: Model,
         motions: Sequence[Motion],
+        forces: Sequence[Force],
         structure: Structure,
         overridden: set[str],
         writer: Writer,
         progress: Progress | None,
         began: float,
+        saved: Mapping[str, Array],
     ) -> None:
-        self.model, self.motions, self.structure = model, motions, structure
+        self.model, self.motions, self.forces, self.structure = model, motions, forces, structure
         self.overridden, self.writer, self.progress = overridden, writer, progress
         self.began, self.solve_seconds, self.every = began, 0.0, 0.0
+        self.saved = saved
+        self.checks: list[tuple[str, str, str]] = []
 
     def all(self) -> str:
         """Run everything the deck asks for; return why it stopped, or nothing."""
         self._echo()
+        doing = "static analysis"
         try:
             state = self._static()
-            for card in self.model.analyses:
-                if card.spec.name == "MODAL":
-                    self._modal(card)
-            for card in self.model.analyses:
-                if card.spec.name == "HISTORY":
-                    self._history(card, state)
-        except static.Unstable as err:
-            return f"{err.code} static analysis: {err}"
+            # from here on with the stiffness that the axial forces of the static state give
+            self.structure = self.structure.stressed(state.axial)
+            for name, analysis in (
+                ("MODAL", self._modal),
+                ("PUSHOVER", self._pushover),
+                ("HISTORY", self._history),
+            ):
+                for card in self.model.analyses:
+                    if card.spec.name == name:
+                        doing = name.lower()
+                        analysis(card, state)
+        except Unstable as err:
+            return f"{err.code} {doing}: {err}"
         except np.linalg.LinAlgError as err:
             return f"A501 the structure is a mechanism ({err})"
-        except scene.SceneError as err:
+        except (scene.SceneError, restart.RestartError) as err:
             return f"A505 {err}"
         except Stop as err:
             return f"{err.code} at t = {err.t:.9g} {self.model.units.time}: {err}"
@@ -93,11 +111,12 @@ class Course:
         w.table("elements", echo.elements(m))
         w.table("properties", echo.properties(m))
         w.table("masses", echo.masses(s))
-        w.table("loads", echo.loads(s.model))
+        w.table("loads", echo.loads(s.model), echo.let_go(s.model))
         w.table("member_loads", echo.member_loads(m))
         w.table("damping", echo.damping(s))
         w.table("contact_laws", echo.contact_laws(s))
         w.table("motions", echo.motions(self.motions))
+        w.table("forces", echo.forces(self.forces))
         contacts = sum(x.is_contact for x in s.laws)
         w.table(
             "size",
@@ -113,18 +132,21 @@ class Course:
         )
 
     def _static(self) -> static.StaticState:
-        asked = any(c.spec.name == "STATIC" for c in self.model.analyses)
-        histories = [c for c in self.model.analyses if c.spec.name == "HISTORY"]
-        s = self.structure
-        if not asked and all(c["FROM"] == "REST" for c in histories):
+        s, cards = self.structure, self.model.analyses
+        asked = any(c.spec.name == "STATIC" for c in cards)
+        needed = any(
+            c.spec.name == "PUSHOVER" or "STATIC" in (c.values.get("FROM"), c.values.get("AFTER"))
+            for c in cards
+        )
+        if not (asked or needed or s.geometric):
             return static.at_rest(s)
         state = static.solve(s)
         if asked:
-            self._static_tables(state)
+            self._static_tables(s.stressed(state.axial), state)
         return state
 
-    def _static_tables(self, state: static.StaticState) -> None:
-        s, w = self.structure, self.writer
+    def _static_tables(self, s: Structure, state: static.StaticState) -> None:
+        w = self.writer
         full = np.concatenate([state.u, np.zeros(len(s.freedoms.moved))])
         rows = []
         for node in self.model.nodes:
@@ -148,79 +170,125 @@ class Course:
                     x.element,
                     quantity,
                     x.force(law_state, d, 0.0),
-                    units.text("F*L" if x.component == "R" else "F"),
+                    units.text(x.unit),
                 )
             )
         w.table("static_force", sorted(forces, key=lambda r: r[0]), SIGNS)
-        w.table("reactions", self._reactions(state))
-
-    def _reactions(self, state: static.StaticState) -> list[tuple[Any, ...]]:
-        """Support reactions: what the elements and loads leave at fixed freedoms,
-        by assembling with them free.
-        """
-        fixed = {(n.id, d) for n in self.model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed}
-        whole = assemble(self.structure.model, fixed, self.structure.self_weight)
-        n = whole.n_free
-        u = np.zeros(whole.freedoms.size)
-        u[:n] = state.u
-        law = np.array(
-            [x.force(k, float(r @ u), 0.0) for x, k, r in zip(whole.laws, state.states, whole.law_rows)]
+        ground = Ground(self.structure, state.axial)
+        at = ground.reactions(state.u, state.states)
+        w.table(
+            "reactions",
+            [
+                (node, *(at.get((node, d), 0.0) for d in range(3)))
+                for node, x in self.model.nodes.items()
+                if x.fixed
+            ],
         )
-        r = whole.stiffness @ u - whole.loads
-        if len(law):
-            r = r + whole.law_rows.T @ law
-        at = {f: float(r[n + i]) for i, f in enumerate(whole.freedoms.moved)}
-        return [
-            (node, *(at.get((node, d), 0.0) for d in range(3)))
-            for node, x in self.model.nodes.items()
-            if x.fixed and any((node, d) in at for d in range(3))
-        ]
+        balance = ground.balance(state.u, state.states)
+        w.table("equilibrium", balance)
+        off = ground.imbalance(balance)
+        good = "good" if off < ROUNDING else "look: loads and reactions do not balance"
+        self.checks.append(
+            ("static forces and moments out of balance over the largest", f"{off:.2e}", good)
+        )
+        w.table("checks", self.checks)
+        course = [("changes of springs and contacts", str(state.events))]
+        if s.geometric:
+            course += [
+                ("rounds of P-Delta", str(state.rounds)),
+                ("buckling load factor", f"{state.buckling:.7g}"),
+            ]
+        w.table("static_run", course)
 
-    def _modal(self, card: Card) -> None:
-        rows = modal.rows(self.structure, card["MODES"])
+    def _modal(self, card: Card, state: static.StaticState) -> None:
+        s, note = self.structure, "Contacts are open in the free vibration."
+        if card["AFTER"] == "STATIC":
+            s, note = static.after(s, state), "Springs and contacts are as the static state leaves them."
+        rows = modal.rows(s, card["MODES"])
         if not rows:
             self.writer.table(
                 "scene", [("free vibration", "no modes", "no freedom that has mass has stiffness too")]
             )
-        self.writer.table("modes", rows)
+        self.writer.table("modes", rows, note)
         if card["SHAPES"] == "YES":
-            self.writer.table("mode_shapes", modal.shape_rows(self.structure, len(rows)))
+            self.writer.table("mode_shapes", modal.shape_rows(s, len(rows)))
+
+    def _pushover(self, card: Card, state: static.StaticState) -> None:
+        pushed = pushover.push(self.structure, state, card)
+        for name, rows in pushover.tables(self.structure, card, pushed).items():
+            self.writer.table(name, rows)
+        good = "good" if pushed.unbalanced < ROUNDING else "look: forces do not balance"
+        self.checks.append(
+            ("pushover, force out of balance over the largest", f"{pushed.unbalanced:.2e}", good)
+        )
+        self.writer.table("checks", self.checks)
+        if pushed.failed:
+            raise pushed.failed
 
     def _history(self, card: Card, state: static.StaticState) -> None:
         s, end = self.structure, float(card["T"])
         if card["FROM"] == "REST":
             state = static.at_rest(s)
         u0, v0 = history.initial(s)
-        u = state.u + u0
-        place = scene.build(s, self.motions, end, u, v0)
+        u, times = state.u + u0, self._times(end)
+        saved = restart.load(self.saved, s) if self.saved else None
+        if saved is not None:
+            u, v0 = saved.u, saved.v
+            times = np.concatenate([[saved.t], times[times > saved.t]])
+            if len(times) < 2:
+                raise restart.RestartError(
+                    f"the saved state is of t = {saved.t:g}, the history ends at {end:g}"
+                )
+        place = scene.build(s, self.motions, end, u, v0, self.forces)
         drifts = history.watch(s, place)
-        times = self._times(end)
-        start = history.begin(s, place, u, v0, state.states, state.u, times)
-        tell = self.progress or (lambda t, end: None)
-        recorder = history.Recorder(place, drifts, self.writer.append, lambda t: tell(t, end))
+        if saved is not None:
+            start = restart.resume(saved, place, times)
+        else:
+            start = history.begin(s, place, u, v0, state.states, state.u, times)
+        tell, first = self.progress or (lambda t, end: None), None if saved is None else saved.first
+        recorder = history.Recorder(place, drifts, self.writer.append, lambda t: tell(t, end), first)
         self.writer.start_history(recorder.layout())
         spec = card.laws["METHOD"][0]
+        options = {f.name: card[f.name] for f in spec.fields}
+        save = card["SAVE"] if card["SAVE"] is not None and times[0] < card["SAVE"] < end else end
         began = time.perf_counter()
         stop: Stop | None = None
-        outcome: Outcome | None = None
+        parts: list[Outcome] = []
         try:
-            outcome = spec.impl(place, start, drifts, {f.name: card[f.name] for f in spec.fields}, recorder)
+            while start.times[0] < end:
+                part = replace(start, times=_until(start.times, save if start.times[0] < save else end))
+                parts.append(spec.impl(place, part, drifts, options, recorder))
+                recorder.flush()
+                here = self._saved(place, recorder, parts[-1])
+                if recorder.reached == save:
+                    self.writer.restart(here.arrays(s))
+                start = restart.resume(here, place, np.append(here.t, times[times > here.t]))
         except Stop as err:
-            stop, outcome = err, err.outcome
+            stop = err
+            parts += [err.outcome] if err.outcome is not None else []
         self.solve_seconds += time.perf_counter() - began
         recorder.flush()
         self._scene_tables(place)
         self._sample_tables(place, recorder)
+        outcome = restart.join(parts) if parts else None
         if outcome is not None:
             self._peak_tables(recorder, outcome.peaks, EXACT if outcome.exact else STEPS)
             self._check_tables(place, recorder, outcome)
         if stop is not None:
             raise stop
 
+    def _saved(self, place: scene.Scene, recorder: history.Recorder, part: Outcome) -> restart.Saved:
+        """State at the end of a part of a history."""
+        t, (u, v, works) = recorder.reached, recorder.last
+        n = self.structure.n_free
+        whole_u, whole_v = (place.all_freedoms(x, t, order)[:n] for order, x in enumerate((u, v)))
+        return restart.Saved(t, whole_u, whole_v, part.states, works, recorder.first_energy)
+
     def _times(self, end: float) -> Array:
         every = self.model.output["EVERY"]
         if every is None:
-            steps = [dt for m in self.motions if (dt := m.info.get("dt"))]
+            told = [m.info for m in self.motions] + [f.info for f in self.forces]
+            steps = [dt for info in told if (dt := info.get("dt"))]
             every = min(steps, default=end / ROWS)
             every *= max(1, round(end / every / ROWS))
         if end / every > MOST_ROWS:
@@ -309,7 +377,7 @@ class Course:
         for i, x in enumerate(s.laws):
             d, f = peaks.deformation[i], peaks.force[i]
             if not x.is_contact:
-                force, length = ("F*L", "rad") if x.component == "R" else ("F", "L")
+                force, length = x.unit, "rad" if x.unit == "F*L" else "L"
                 plus, minus = x.yields or (np.nan, np.nan)
                 ductility = max(d.high / plus if plus else np.nan, d.low / minus if minus else np.nan)
                 spring_rows.append(
@@ -375,7 +443,8 @@ class Course:
         ratio = recorder.residual_peak / scale if scale else 0.0
         good = "good" if ratio < (1e-9 if outcome.exact else 1e-2) else "look: energy is lost or made"
         checks = [("largest energy residual over the largest energy", f"{ratio:.2e}", good)]
-        w.table("checks", checks + outcome.checks)
+        self.checks += checks + outcome.checks
+        w.table("checks", self.checks)
         w.table("run", [("unknowns", str(place.size)), *((k, str(v)) for k, v in outcome.figures.items())])
 
     def _figures(self) -> None:
@@ -386,3 +455,8 @@ class Course:
             ("Python, numpy", f"{platform.python_version()}, {np.__version__}"),
         ]
         self.writer.table("run_figures", rows)
+
+
+def _until(times: Array, end: float) -> Array:
+    """The times up to `end`, which is the last of them."""
+    return np.append(times[times < end * (1 - 1e-12)], end)

@@ -11,9 +11,16 @@ from typing import Any
 from pound_deck.model import Card, Model
 from pound_deck.schema import Field, Kind
 from pound_solve.assemble import Structure
+from pound_solve.forces.base import Force
 from pound_solve.motions.base import Motion
 
 Rows = list[tuple[Any, ...]]
+
+GEOMETRY = {
+    "SMALL": "small displacements",
+    "PDELTA": "axial forces act along the line between the nodes",
+    "PDELTA_MEMBER": "axial forces act along the bent member",
+}
 
 
 def text_of(value: Any) -> str:
@@ -50,6 +57,7 @@ def options(model: Model, overridden: set[str]) -> Rows:
         ("units", f"{u.force} {u.length} {u.time}", default("units"), "names only: nothing is converted"),
         ("gravity", f"{model.gravity:.10g}", default("gravity"), "mass = weight / gravity"),
         ("mass of members", model.mass, default("mass"), ""),
+        ("geometry", model.geometry, default("geometry"), GEOMETRY[model.geometry]),
     ]
     for name, value in model.params.items():
         rows.append(
@@ -123,6 +131,15 @@ def loads(model: Model) -> Rows:
     return [(node, c["FX"], c["FY"], c["MZ"]) for c in model.loads for node in c["NODES"]]
 
 
+def let_go(model: Model) -> str | None:
+    """Note of ``loads`` on those that are taken off where the history starts."""
+    cards = [c for c in model.loads if c["HELD"] == "NO" and c["NODES"]]
+    if not cards:
+        return None
+    each = "; ".join(f"{c['FX']:.6g} {c['FY']:.6g} {c['MZ']:.6g} on {text_of(c['NODES'])}" for c in cards)
+    return f"Taken off where the history starts (HELD=NO): {each}."
+
+
 def member_loads(model: Model) -> Rows:
     """Rows of ``member_loads``."""
     out = []
@@ -185,7 +202,7 @@ def motions(items: Sequence[Motion]) -> Rows:
         out.append(
             (
                 f"{n} {name}",
-                m.direction,
+                "R (rad)" if m.direction == "R" else m.direction,
                 "all" if m.supports is None else text_of(m.supports),
                 str(i.get("format") or i.get("kind") or ""),
                 int(i.get("npts") or 0),
@@ -200,4 +217,14 @@ def motions(items: Sequence[Motion]) -> Rows:
                 str(i.get("sha256") or ""),
             )
         )
+    return out
+
+
+def forces(items: Sequence[Force]) -> Rows:
+    """Rows of ``forces``."""
+    out = []
+    for n, f in enumerate(items, 1):
+        t_peak, peak = f.history.peak()
+        name = f"{n} {f.info.get('name', f.info['kind'])}"
+        out.append((name, text_of(f.nodes), *f.push, peak, t_peak, f.history.end))
     return out

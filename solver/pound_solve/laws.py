@@ -12,7 +12,7 @@ the very same source.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -209,7 +209,17 @@ class NoProgressError(Exception):
 
 
 def follow(law: Law, state: State, d0: float, d1: float, limit: int = 1000) -> State:
-    """Drive a law quasi-statically along a straight path from `d0` to `d1`.
+    """Drive a law quasi-statically along a straight path from `d0` to `d1`; see `changes`."""
+    after = state
+    for change in changes(law, state, d0, d1, limit=limit):
+        after = change[1]
+    return after
+
+
+def changes(
+    law: Law, state: State, d0: float, d1: float, rate: float = 0.0, limit: int = 1000
+) -> Iterator[tuple[float, State]]:
+    """Changes of branch along a straight path from `d0` to `d1`.
 
     Parameters
     ----------
@@ -218,13 +228,15 @@ def follow(law: Law, state: State, d0: float, d1: float, limit: int = 1000) -> S
         State at `d0`.
     d0, d1 : float
         Deformations [L] or [rad].
+    rate : float
+        Speed along the path; 0: infinitely slow, but its sign releases branches that end at a reversal.
     limit : int
         Most branch changes on the way.
 
-    Returns
-    -------
-    State
-        State at `d1`.
+    Yields
+    ------
+    tuple of float and State
+        Deformation at the change, and the state after it.
 
     Raises
     ------
@@ -232,25 +244,24 @@ def follow(law: Law, state: State, d0: float, d1: float, limit: int = 1000) -> S
         More than `limit` branch changes.
     """
     direction = 1.0 if d1 >= d0 else -1.0
-    at = d0
+    at, v = d0, direction * rate
     for _ in range(limit):
-        # the rate is infinitely slow, but its sign releases branches that end at a reversal
         first: tuple[float, int] | None = None
         for n, (a, b, c) in enumerate(law.branch(state).exits):
-            now = a * at + c
-            slope = a * direction
+            now, slope = a * at + b * v + c, a * direction
             if b and not a and not c:
                 where = at if b * direction > 0 else None
             elif now >= 0 and (slope > 0 or (slope == 0 and now > 0)):
                 where = at
-            elif slope > 0 and (a * d1 + c) > 0:
+            elif slope > 0 and a * d1 + b * v + c > 0:
                 where = at - now / slope * direction
             else:
                 where = None
             if where is not None and (first is None or (where - first[0]) * direction < 0):
                 first = (where, n)
         if first is None:
-            return state
+            return
         at = first[0]
         state = law.leave(state, first[1], at)
+        yield at, state
     raise NoProgressError("the law changed branch again and again")

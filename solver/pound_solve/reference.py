@@ -25,7 +25,8 @@ _FAMILIES: Final = {
     "contact": ("Contact laws", "LAW={name}", "LAW of a CONTACT in PROPS"),
     "damping": ("Damping", "{name}", "lines of DAMPING"),
     "motion": ("Ground motions", "{name}", "lines of EQUAKE"),
-    "record": ("Record formats", "FORMAT={name}", "FORMAT of a RECORD in EQUAKE"),
+    "force": ("Forces in time", "{name}", "lines of FORCES"),
+    "record": ("Record formats", "FORMAT={name}", "FORMAT of a RECORD in EQUAKE or FORCES"),
     "analysis": ("Analyses", "{name}", "lines of ANALYSIS"),
     "method": ("Methods of integration", "METHOD={name}", "METHOD of HISTORY in ANALYSIS"),
 }
@@ -75,7 +76,7 @@ def listing(family: str | None = None, name: str | None = None) -> str:
         raise KeyError(_no_family(known, family))
     members = known.family(key)
     if name is None:
-        return "\n".join(_members(key, members.values()))
+        return "\n".join(_with_items(key, members.values()))
     code = int(name) if name.isdecimal() else None
     spec = members.get(name.upper()) or (known.by_code(key, code) if code is not None else None)
     if spec is None:
@@ -122,6 +123,17 @@ def _members(family: str, members: Iterable[Spec]) -> list[str]:
     ]
 
 
+def _with_items(family: str, members: Iterable[Spec]) -> list[str]:
+    """Members with the names of their items."""
+    specs = list(members)
+    wide = max(len(_coded(s)) for s in specs)
+    out = [f"{family}: {_family(family)[2]}"]
+    for s in specs:
+        items = f" ({' '.join(f.name for f in s.fields)})" if s.fields else ""
+        out += _wrapped(f"   {_coded(s).ljust(wide)}   ", s.title + items)
+    return out
+
+
 def _coded(spec: Spec) -> str:
     return spec.name if spec.code is None else f"{spec.name} ({spec.code})"
 
@@ -132,6 +144,7 @@ def _sheet(spec: Spec) -> list[str]:
     out += _wrapped("write      ", usage(spec))
     out += [f"code       {spec.code}, in place of the name"] if spec.code is not None else []
     out += _wrapped("reference  ", spec.reference) if spec.reference else []
+    out += _wrapped("example    ", spec.sample) if spec.sample else []
     if not spec.fields:
         return [*out, "", "It has no items."]
     rows = [_HEADS, *(_row(f) for f in spec.fields)]
@@ -275,6 +288,7 @@ These cards stand anywhere, once each but for the last two:
 | `UNITS force length time` | names of the units | `kN m s` |
 | `GRAVITY g` | acceleration of gravity; mass = weight / gravity | by the unit of length |
 | `MASS LUMPED` or `MASS CONSISTENT` | mass of FRAME members that have a weight | `LUMPED` |
+| `GEOMETRY PDELTA` or `PDELTA_MEMBER` | axial forces act on the members that have moved | `SMALL` |
 | `PARAM name = value` | a name for a number or a text; several on a line are fine | |
 | `INCLUDE "file"` | reads another file here; its name counts from the folder of this one | |
 
@@ -318,7 +332,8 @@ s.
 
 X points to the right, Y upwards, rotations R turn anticlockwise. Forces, displacements and accelerations
 follow them. End forces of a FRAME member act on the member along its own axes (x from I to J, y to its
-left); its axial force is positive in tension. A spring's deformation is the displacement of J less that
+left); its axial force is positive in tension. Moments of its hinges (`hinge I`, `hinge J`) are positive
+where it sags, with tension on the right of the way from I to J. A spring's deformation is the displacement of J less that
 of I. A contact closes as I moves towards J, and its force is positive in compression.
 
 The tables give units in dimensions: `F` force, `L` length, `T` time, `-` a pure number. "must" means that
@@ -326,11 +341,11 @@ there is no default.
 """
 
 _SECTIONS: Final = """
-PROPS, DAMPING, EQUAKE and ANALYSIS hold lines of several kinds, each in a chapter of its own below:
-[elements](#elements), [damping](#damping), [ground motions](#ground-motions) and [analyses](#analyses). A
-line of PROPS starts with a label of your choice, the others with their kind. An item that takes "one of"
-a family (`RULE`, `LAW`, `FORMAT`, `METHOD`) brings the items of the chosen member into its line. The
-other sections have one kind of line each:
+PROPS, DAMPING, EQUAKE, FORCES and ANALYSIS hold lines of several kinds, each in a chapter of its own
+below: [elements](#elements), [damping](#damping), [ground motions](#ground-motions), [forces in
+time](#forces-in-time) and [analyses](#analyses). A line of PROPS starts with a label of your choice, the
+others with their kind. An item that takes "one of" a family (`RULE`, `LAW`, `FORMAT`, `METHOD`) brings
+the items of the chosen member into its line. The other sections have one kind of line each:
 """
 
 if __name__ == "__main__":

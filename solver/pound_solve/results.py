@@ -232,6 +232,15 @@ class Writer:
             dataset[len(dataset) - n :] = arrays[name]
         self._file.flush()
 
+    def restart(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Store the state that a later run can be taken up from; it replaces an earlier one."""
+        if "restart" in self._file:
+            del self._file["restart"]
+        group = self._file.create_group("restart")
+        for name, values in state.items():
+            group.create_dataset(name, data=np.asarray(values, float))
+        self._file.flush()
+
     def finish(self, status: str, message: str = "") -> None:
         """Say how the analysis ended: ``done``, or ``stopped`` with a message that says where and why."""
         if status not in STATUSES:
@@ -386,6 +395,11 @@ class Results:
         """All attributes of a history (``nodes``, ``element``, ``quantity``, ...), each as a list."""
         attrs = self._dataset(name).attrs
         return {key: [_plain(v) for v in np.atleast_1d(attrs[key])] for key in attrs}
+
+    def restart(self) -> dict[str, NDArray[np.float64]]:
+        """State that a later run can be taken up from; empty where the file has none."""
+        group = self._file.get("restart", {})
+        return {name: np.asarray(group[name], float) for name in group}
 
     def _table(self, name: str) -> h5py.Dataset:
         return _find(self._file["tables"], name, "table", name, self.tables)

@@ -1,13 +1,15 @@
 r"""The scene: what this deck needs of the structure, and why the rest is left out.
 
-Freedoms that nothing can set in motion are dropped, massless freedoms that only linear elements touch are
-condensed, and what is left is written as
+Freedoms that nothing can set in motion are dropped, and what is left is written as
 
 .. math:: M\ddot u + C\dot u + K u + \sum_i b_i f_i(d_i, \dot d_i) = F s(t) + p_0, \qquad
           d_i = b_i^T u + e_i^T s(t)
 
-with the laws' forces :math:`f_i`, the motions :math:`s(t)` (ground accelerations, or displacement,
-velocity and acceleration of moved supports) and constant loads :math:`p_0`.
+with the laws' forces :math:`f_i`, the inputs :math:`s(t)` (ground accelerations, or displacement,
+velocity and acceleration of moved supports; histories of forces) and constant loads :math:`p_0`.
+
+Massless freedoms that only linear elements touch can be condensed besides: few unknowns, but full matrices,
+which suits EXACT.  Stepping methods keep them, and with them the sparse matrices.
 
 With one motion for the whole base the displacements are relative to the ground;
 with motions of SUPPORTS they are total.
@@ -16,7 +18,7 @@ with motions of SUPPORTS they are total.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +26,7 @@ from numpy.typing import NDArray
 from pound_solve import polynomial
 from pound_solve.assemble import Structure
 from pound_solve.dofs import Freedom, label
+from pound_solve.forces.base import Force
 from pound_solve.modes import massless
 from pound_solve.motions.base import Motion, Piecewise, common_breaks
 
@@ -45,7 +48,7 @@ class Decision:
 
 @dataclass(frozen=True)
 class Excitation:
-    """The motions on common intervals.
+    """The motions and the histories of forces on common intervals.
 
     Attributes
     ----------
@@ -69,6 +72,14 @@ class Excitation:
     def local(self, piece: int, t: float) -> Array:
         """Coefficients about `t`, shape (degree + 1, n_inputs)."""
         return polynomial.shift(self.coefs[piece], t - float(self.breaks[piece]))
+
+    def jumps(self) -> NDArray[np.bool_]:
+        """Which inputs jump, from zero at t = 0 or between two pieces."""
+        powers = np.diff(self.breaks)[:, None] ** np.arange(self.degree + 1)
+        ends = np.einsum("pk,pkj->pj", powers, self.coefs)
+        before = np.concatenate([np.zeros((1, ends.shape[1])), ends[:-1]])
+        largest = np.abs(self.coefs[:, 0]).max(axis=0, initial=0.0)
+        return np.abs(self.coefs[:, 0] - before).max(axis=0, initial=0.0) > 1e-9 * largest
 
     def value(self, t: float, order: int = 0) -> Array:
         """Value of the inputs (or of their derivative of that order) at `t`, shape (n_inputs,)."""
@@ -107,8 +118,11 @@ class Scene:
         Prescribed displacements from s.
     total : bool
         Displacements are total (moved supports), not relative to the ground.
-    acceleration_inputs : ndarray, shape (2, n_inputs)
-        Ground acceleration along x and y from s; zero rows in the total form.
+    acceleration_inputs : ndarray, shape (3, n_inputs)
+        Acceleration of the ground along x and y at the origin, and of its turn, from s;
+        zero rows in the total form.
+    force_inputs : ndarray, shape (n_free, n_inputs)
+        Part of F on all unknown freedoms that is FORCES.
     decisions : list of Decision
     """
 
@@ -128,7 +142,9 @@ class Scene:
     support_inputs: Array
     total: bool
     acceleration_inputs: Array
+    force_inputs: Array
     motions: Sequence[Motion]
+    forces: Sequence[Force]
     decisions: list[Decision] = field(default_factory=list)
 
     def all_freedoms(self, u: Array, t: float, order: int = 0) -> Array:
@@ -147,6 +163,13 @@ class Scene:
             free = (free.T + self.expand_constant).T
         return np.concatenate([free, self.support_inputs @ s])
 
+    def applied(self, s: Array) -> Array:
+        """Held loads and FORCES on all unknown freedoms at inputs `s`; columns are instants
+        where there are several.
+        """
+        constant = self.structure.held[: self.structure.n_free]
+        return ((self.force_inputs @ s).T + constant).T
+
     @property
     def size(self) -> int:
         """Number of unknowns."""
@@ -162,12 +185,17 @@ def moved_supports(motions: Sequence[Motion], fixed: Sequence[Freedom]) -> tuple
     out: set[Freedom] = set()
     for m in motions:
         if m.supports is not None:
-            out |= {(node, "XY".index(m.direction)) for node in m.supports}
+            out |= {(node, d) for node in m.supports for d in m.directions}
     return tuple(sorted(out & set(fixed)))
 
 
 def build(
-    structure: Structure, motions: Sequence[Motion], t_end: float, start: Array, start_rate: Array
+    structure: Structure,
+    motions: Sequence[Motion],
+    t_end: float,
+    start: Array,
+    start_rate: Array,
+    forces: Sequence[Force] = (),
 ) -> Scene:
     """Reduce a structure to what its history needs.
 
@@ -179,20 +207,22 @@ def build(
         Length of the history [T].
     start, start_rate : ndarray, shape (n_free,)
         Displacement and velocity at t = 0: freedoms that start in motion stay.
+    forces : sequence of Force
 
     Raises
     ------
     SceneError
-        Mass on arms of slaved nodes leaves some motion without inertia.
+        Mass on arms of slaved nodes leaves some motion without inertia; or a force that jumps on a massless
+        freedom would throw a spring with memory from one place to another.
     """
     n, total = structure.n_free, bool(structure.freedoms.moved)
     decisions: list[Decision] = []
-    excitation, inputs, displacement_of, ground = _inputs(structure, motions, t_end)
+    excitation, inputs, displacement_of, ground, force_inputs = _inputs(structure, motions, forces, t_end)
     names = structure.freedoms.free
     k, c, m = (a[:n, :n] for a in (structure.stiffness, structure.damping, structure.mass))
     rows = structure.law_rows[:, :n]
     law_inputs = structure.law_rows[:, n:] @ displacement_of
-    load = structure.loads[:n]
+    load = structure.held[:n]
 
     live = _can_move(structure, inputs, excitation, start, start_rate)
     if not live.all():
@@ -202,12 +232,91 @@ def build(
                 f"{len(dead)} of {n} freedoms", "dropped", "nothing sets them in motion: " + _some(dead)
             )
         )
-    # massless freedoms on linear elements follow the others exactly, if what damps them is proportional to
-    # what holds them (C_ca + C_cc G = 0) or they are not damped at all
-    light = live & massless(m) & ~np.any(rows != 0.0, axis=0)
-    slave = _condensable(structure.stiffness, structure.damping, light, live)
+    keep = np.flatnonzero(live)
+    expand = np.eye(n)[:, keep]
+    mass = m[np.ix_(keep, keep)]
+    _all_inert(mass, [names[i] for i in keep])
+    _no_leap(structure, force_inputs[:, excitation.jumps()], live)
+    return Scene(
+        structure,
+        tuple(names[i] for i in keep),
+        mass,
+        c[np.ix_(keep, keep)],
+        k[np.ix_(keep, keep)],
+        inputs[keep],
+        load[keep],
+        rows[:, keep],
+        law_inputs,
+        excitation,
+        expand,
+        np.zeros(n),
+        np.zeros((n, inputs.shape[1])),
+        displacement_of,
+        total,
+        ground,
+        force_inputs,
+        motions,
+        forces,
+        decisions,
+    )
+
+
+@dataclass(frozen=True)
+class Condensed:
+    """A scene without the massless freedoms that follow the others, and the way back.
+
+    Attributes
+    ----------
+    scene : Scene
+    keep : ndarray, shape (n_left,)
+        Which unknowns are left.
+    expand, follow, constant : ndarray, shapes (n, n_left), (n, n_inputs), (n,)
+        All unknowns: ``expand u + follow s + constant``.
+    loads : ndarray, shape (n, n_inputs + 1)
+        FORCES, and held loads in the last column, on the condensed freedoms.
+    """
+
+    scene: Scene
+    keep: NDArray[np.intp]
+    expand: Array
+    follow: Array
+    constant: Array
+    loads: Array
+
+    def put_in(self, t: float) -> float:
+        """Work of the loads on condensed freedoms by that part of their displacements which follows
+        the loads at once, since these were zero [F L].
+        """
+        s = np.append(self.scene.excitation.value(t), 1.0)
+        own = np.column_stack([self.follow, self.constant]) @ s
+        return 0.5 * float(own @ self.loads @ s)
+
+    def all(self, u: Array, t: float, order: int = 0) -> Array:
+        """All unknowns from those that are left, shape (n,); `order` 1: velocities, 2: accelerations."""
+        out = self.expand @ u + self.follow @ self.scene.excitation.value(t, order)
+        return out + self.constant if order == 0 else out
+
+
+def condense(scene: Scene) -> Condensed:
+    """Condense massless freedoms on linear elements.
+
+    They follow the others exactly, if what damps them is proportional to what holds them
+    (C_ca + C_cc G = 0) or they are not damped at all; and what pushes them alone meets no dashpot.
+    """
+    structure, n = scene.structure, scene.size
+    k, support = scene.stiffness, scene.support_inputs
+    at = [structure.freedoms.free.index(f) for f in scene.freedoms]
+    to_supports = structure.stiffness[at, structure.n_free :]
+    pushed = scene.force_inputs[at]
+    light = massless(scene.mass) & ~np.any(scene.law_rows != 0.0, axis=0)
+    slave = _condensable(
+        np.hstack([k, to_supports]),
+        np.hstack([scene.damping, structure.damping[at, structure.n_free :]]),
+        np.column_stack([pushed, structure.released[at]]),
+        light,
+    )
     if slave.any():
-        decisions.append(
+        scene.decisions.append(
             Decision(
                 f"{int(slave.sum())} massless freedoms",
                 "condensed",
@@ -216,86 +325,76 @@ def build(
         )
     left = light & ~slave
     if left.any():
-        decisions.append(
+        scene.decisions.append(
             Decision(
                 f"{int(left.sum())} massless freedoms",
                 "kept",
-                "dashpots move them: " + _some([f for f, x in zip(names, left) if x]),
+                "dashpots move them: " + _some([f for f, x in zip(scene.freedoms, left) if x]),
             )
         )
-    keep = np.flatnonzero(live & ~slave)
-    s = np.flatnonzero(slave)
-    expand = np.zeros((n, len(keep)))
-    expand[keep, np.arange(len(keep))] = 1.0
-    constant, follow = np.zeros(n), np.zeros((n, inputs.shape[1]))
+    keep, s = np.flatnonzero(~slave), np.flatnonzero(slave)
+    expand = np.eye(n)[:, keep]
+    constant, follow = np.zeros(n), np.zeros((n, scene.inputs.shape[1]))
     if len(s):
         inverse = np.linalg.inv(k[np.ix_(s, s)])
         expand[s] = -inverse @ k[np.ix_(s, keep)]
-        constant[s] = inverse @ load[s]
-        follow[s] = -inverse @ (structure.stiffness[s, n:] @ displacement_of)
-    mass = expand.T @ m @ expand
-    _all_inert(mass, [names[i] for i in keep])
-    return Scene(
-        structure,
-        tuple(names[i] for i in keep),
-        mass,
-        expand.T @ c @ expand,
-        expand.T @ k @ expand,
-        expand.T @ inputs,
-        expand.T @ load,
-        rows @ expand,
-        law_inputs,
-        excitation,
-        expand,
-        constant,
-        follow,
-        displacement_of,
-        total,
-        ground,
-        motions,
-        decisions,
+        constant[s] = inverse @ scene.constant[s]
+        follow[s] = inverse @ (pushed[s] - to_supports[s] @ support)
+    inner = replace(
+        scene,
+        freedoms=tuple(scene.freedoms[i] for i in keep),
+        mass=expand.T @ scene.mass @ expand,
+        damping=expand.T @ scene.damping @ expand,
+        stiffness=expand.T @ k @ expand,
+        inputs=expand.T @ scene.inputs,
+        constant=expand.T @ scene.constant,
+        law_rows=scene.law_rows @ expand,
+        expand=scene.expand @ expand,
+        expand_constant=scene.expand @ constant,
+        expand_inputs=scene.expand @ follow,
     )
+    loads = np.zeros((n, scene.inputs.shape[1] + 1))
+    loads[s] = np.column_stack([pushed[s], scene.constant[s]])
+    return Condensed(inner, keep, expand, follow, constant, loads)
 
 
 def _inputs(
-    structure: Structure, motions: Sequence[Motion], t_end: float
-) -> tuple[Excitation, Array, Array, Array]:
+    structure: Structure, motions: Sequence[Motion], forces: Sequence[Force], t_end: float
+) -> tuple[Excitation, Array, Array, Array, Array]:
     """Excitation, its force on the unknowns, prescribed displacements from it,
-    ground acceleration from it.
+    ground acceleration from it, part of its force that is FORCES.
     """
-    n, moved = structure.n_free, structure.freedoms.moved
-    breaks = common_breaks(motions, t_end)
+    n, freedoms, nodes = structure.n_free, structure.freedoms, structure.model.nodes
     channels: list[Piecewise] = []
-    if not moved:
-        force = np.zeros((n, len(motions)))
-        ground = np.zeros((2, len(motions)))
-        for j, motion in enumerate(motions):
-            d = "XY".index(motion.direction)
-            force[:, j] = -structure.ground[d, :n]
-            ground[d, j] = 1.0
+    each = 3 if freedoms.moved else 1  # channels of a motion
+    count = each * len(motions) + len(forces)
+    push, own = np.zeros((n, count)), np.zeros((n, count))
+    ground, displacement_of = np.zeros((3, count)), np.zeros((len(freedoms.moved), count))
+    for j, motion in enumerate(motions):
+        at = each * j
+        if not freedoms.moved:
+            ground[:, at] = [motion.share(d, 0.0, 0.0) for d in range(3)]
+            push[:, at] = -ground[:, at] @ structure.ground[:, :n]
             channels.append(motion.acceleration)
-        displacement_of = np.zeros((0, len(motions)))
-    else:
-        force = np.zeros((n, 3 * len(motions)))
-        ground = np.zeros((2, 3 * len(motions)))
-        displacement_of = np.zeros((len(moved), 3 * len(motions)))
-        for j, motion in enumerate(motions):
-            columns = [
-                i
-                for i, (node, d) in enumerate(moved)
-                if "XY"[d] == motion.direction and motion.supports and node in motion.supports
-            ]
-            displacement_of[columns, 3 * j] = 1.0
-            at = [n + i for i in columns]
-            force[:, 3 * j] = -structure.stiffness[:n, at].sum(axis=1)
-            force[:, 3 * j + 1] = -structure.damping[:n, at].sum(axis=1)
-            force[:, 3 * j + 2] = -structure.mass[:n, at].sum(axis=1)
-            channels += [motion.displacement(t_end), motion.velocity(t_end), motion.acceleration]
+            continue
+        shares = [
+            motion.share(d, nodes[node].x, nodes[node].y) if node in (motion.supports or ()) else 0.0
+            for node, d in freedoms.moved
+        ]
+        displacement_of[:, at] = shares
+        for k, matrix in enumerate((structure.stiffness, structure.damping, structure.mass)):
+            push[:, at + k] = -matrix[:n, n:] @ shares
+        channels += [motion.displacement(t_end), motion.velocity(t_end), motion.acceleration]
+    for j, force in enumerate(forces, each * len(motions)):
+        for node in force.nodes:
+            own[:, j] += freedoms.row([(node, d) for d in range(3)], force.push)[:n]
+        channels.append(force.history)
+    breaks = common_breaks([*(m.acceleration for m in motions), *(f.history for f in forces)], t_end)
     degree = max((ch.degree for ch in channels), default=0)
     coefs = np.zeros((len(breaks) - 1, degree + 1, len(channels)))
     for j, ch in enumerate(channels):
         coefs[:, : ch.degree + 1, j] = ch.on(breaks).coefs.T
-    return Excitation(breaks, coefs), force, displacement_of, ground
+    return Excitation(breaks, coefs), push + own, displacement_of, ground, own
 
 
 def _can_move(
@@ -320,7 +419,7 @@ def _can_move(
 
     for i, j in zip(*np.nonzero(np.triu(linked, 1))):
         parent[root(int(i))] = root(int(j))
-    driven = (start != 0) | (start_rate != 0) | (structure.loads[:n] != 0)
+    driven = (start != 0) | (start_rate != 0) | (structure.held[:n] != 0)
     active = np.abs(excitation.coefs).max(axis=(0, 1), initial=0.0) > 0
     driven |= np.any(inputs[:, active] != 0, axis=1)
     for spring, row in zip(structure.laws, structure.law_rows):
@@ -336,11 +435,10 @@ def _can_move(
     return np.array([root(i) in awake for i in range(n)], bool) & real
 
 
-def _condensable(
-    k: Array, c: Array, light: NDArray[np.bool_], live: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
+def _condensable(k: Array, c: Array, push: Array, light: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Which massless freedoms follow the others exactly; those that do not are taken out
-    until the rest do.
+    until the rest do.  Columns of `k` and `c` beyond the unknowns are those of moved supports,
+    columns of `push` the forces that change in time.
     """
     none, candidates = np.zeros_like(light), light
     while candidates.any():
@@ -349,16 +447,20 @@ def _condensable(
         if values[0] <= 1e-13 * max(values[-1], 0.0):
             # a mechanism among them, or what only dashpots hold: leave it to the integrator,
             # which can name it
-            undamped = candidates & ~np.any(c[: len(light)] != 0.0, axis=1)
+            undamped = candidates & ~np.any(c != 0.0, axis=1)
             if (undamped == candidates).all():
                 return none
             candidates = undamped
             continue
         # prescribed freedoms are among the others that they follow
-        rest = np.concatenate([np.flatnonzero(live & ~candidates), np.arange(len(live), len(k))])
+        rest = np.concatenate([np.flatnonzero(~candidates), np.arange(len(light), k.shape[1])])
         g = -np.linalg.solve(k[np.ix_(s, s)], k[np.ix_(s, rest)])
         misfit = np.abs(c[np.ix_(s, rest)] + c[np.ix_(s, s)] @ g).max(axis=1, initial=0.0)
-        bad = misfit > 1e-11 * max(np.abs(c[s]).max(initial=0.0), 1e-300)
+        # what a force moves against a dashpot comes after it
+        yielded = np.linalg.solve(k[np.ix_(s, s)], push[s])
+        yielded /= np.maximum(np.abs(yielded).max(axis=0, initial=0.0), 1e-300)
+        lag = np.abs(c[np.ix_(s, s)] @ yielded).max(axis=1, initial=0.0)
+        bad = np.maximum(misfit, lag) > 1e-11 * max(np.abs(c[s]).max(initial=0.0), 1e-300)
         if not bad.any():
             return candidates
         candidates = candidates.copy()
@@ -382,6 +484,29 @@ def _all_inert(m: Array, names: Sequence[Freedom]) -> None:
             f"{worst} has no inertia of its own beside the mass on slaved nodes: "
             "give it a rotational weight WR"
         )
+
+
+def _no_leap(structure: Structure, pushes: Array, live: NDArray[np.bool_]) -> None:
+    """Raise where forces that jump, or loads that are let go, move springs with memory at once:
+    on freedoms with neither mass nor dashpot nothing says along which path.
+    """
+    n = structure.n_free
+    quick = live & massless(structure.mass[:n, :n]) & ~np.any(structure.damping[:n, :n], axis=1)
+    z = np.flatnonzero(quick)
+    pushes = np.column_stack([pushes, structure.released[:n]])[z]
+    if not pushes.any():
+        return
+    leap = np.linalg.lstsq(structure.initial_stiffness[np.ix_(z, z)], pushes, rcond=1e-12)[0]
+    for spring, row in zip(structure.laws, structure.law_rows[:, z]):
+        if not spring.is_contact and np.any(
+            np.abs(row @ leap) > 1e-9 * np.abs(row).max() * np.abs(leap).max()
+        ):
+            where = int(z[int(np.argmax(np.abs(pushes).max(axis=1)))])
+            raise SceneError(
+                f"a force jumps, or a load is let go, at {label(structure.freedoms.free[where])}, which "
+                f"has no mass, and throws the spring {spring.element} {spring.component} along: give it "
+                "weight, or let the force change within a short time (FORCES)"
+            )
 
 
 def _some(freedoms: Sequence[Freedom], most: int = 6) -> str:

@@ -255,7 +255,9 @@ _GROUND = (
         "Ground motions",
         (
             _MOTION,
-            Column("direction", "dir.", doc="direction of the motion"),
+            Column(
+                "direction", "dir.", doc="direction of the motion; a turn is in radians in place of lengths"
+            ),
             Column("supports", doc="supports that it moves"),
             Column("format", doc="format of the record"),
             Column(
@@ -273,6 +275,21 @@ _GROUND = (
         ),
         note="Velocity and displacement are integrals of the record as it stands, without baseline "
         "correction. The checksum is cut to its first 12 characters.",
+    ),
+    Table(
+        "forces",
+        "Forces in time",
+        (
+            Column("force", doc="number in the deck and kind or name of its history"),
+            Column("nodes", doc="nodes that get it"),
+            Column("fx", "force X", "F", "num", "force in X for a history of one"),
+            Column("fy", "force Y", "F", "num", "force in Y for a history of one"),
+            Column("mz", "moment", "F*L", "num", "moment for a history of one"),
+            Column("peak", "peak", "-", "short", "value of the history that is farthest from zero"),
+            _time("t_peak", "at time", "time of that value"),
+            _time("end", "end", "time at which the history ends"),
+        ),
+        note="Each node gets the force times the history.",
     ),
 )
 
@@ -321,6 +338,18 @@ _STATIC = (
         ),
         note="Forces of the supports on the structure.",
     ),
+    Table(
+        "equilibrium",
+        "Equilibrium of the static state",
+        (
+            _ITEM,
+            Column("fx", "force X", "F", "num", "sum of the forces in X"),
+            Column("fy", "force Y", "F", "num", "sum of the forces in Y"),
+            Column("mz", "moment", "F*L", "num", "sum of the moments about the origin"),
+        ),
+        note="All that acts on the structure, moments about the origin of the coordinates.",
+    ),
+    Table("static_run", "Course of the static analysis", (_ITEM, _VALUE)),
 )
 
 _MODAL = (
@@ -340,8 +369,8 @@ _MODAL = (
             Column("mass_y", "eff. mass\nY", "F*T^2/L", "short", "effective mass in Y"),
             Column("share_y", "share\nY", "%", "percent", "effective mass over the moving mass in Y"),
         ),
-        note="Contacts are open in the free vibration. Participation factors belong to modes of "
-        "unit modal mass: their squares are the effective masses.",
+        note="Participation factors belong to modes of unit modal mass: "
+        "their squares are the effective masses.",
     ),
     Table(
         "mode_shapes",
@@ -356,6 +385,48 @@ _MODAL = (
         note="Scaled to a largest translation of 1.",
         group="mode",
         limit=2000,
+    ),
+)
+
+_PUSHOVER = (
+    Table("pushover", "Pushover", (_ITEM, _VALUE)),
+    Table(
+        "push_pattern",
+        "Pattern of the pushing forces",
+        (
+            _NODE,
+            Column("direction", "dir.", doc="`X`, `Y` or `R`"),
+            Column("first", "at the start", "", "num", "force or moment for a load factor of one"),
+            Column("last", "at the end", "", "num", "force or moment for a load factor of one"),
+        ),
+        note="For a load factor of one. Forces on slaved freedoms stand at their masters.",
+    ),
+    Table(
+        "capacity_curve",
+        "Capacity curve",
+        (
+            Column("displacement", "control\ndispl.", "L", "num", "displacement of the control node"),
+            Column("base_shear", "base\nshear", "F", "num", "force on the ground"),
+            Column("factor", "load\nfactor", "-", "num", "factor on the pattern"),
+            Column("events", fmt="int", doc="changes of springs, hinges and contacts so far"),
+        ),
+        note="Displacements and base shears hold those of the static state.",
+        limit=500,
+    ),
+    Table(
+        "push_events",
+        "Events of the pushover",
+        (
+            Column("event", fmt="int", doc="number"),
+            Column("displacement", "control\ndispl.", "L", "num", "displacement of the control node"),
+            Column("base_shear", "base\nshear", "F", "num", "force on the ground"),
+            Column("factor", "load\nfactor", "-", "num", "factor on the pattern"),
+            _ELEMENT,
+            Column("component", "comp.", doc="spring, hinge or contact of the element"),
+            Column("before", "from", doc="branch that it left"),
+            Column("after", "to", doc="branch that it is on now"),
+        ),
+        limit=1000,
     ),
 )
 
@@ -397,7 +468,7 @@ _MEMBERS = (
         "Spring envelopes",
         (
             _ELEMENT,
-            Column("component", "comp.", doc="`X`, `Y` or `R`"),
+            Column("component", "comp.", doc="`X`, `Y` or `R` of a spring, `hinge I`, ... of a member"),
             Column("rule", doc="hysteresis rule"),
             Column("unit", "unit of\nforce", doc="unit of the forces in this row"),
             Column("force_max", "largest\nforce", "", "short", "largest force or moment"),
@@ -505,6 +576,7 @@ _PARTS = (
     ("Scene and problem size", _SCENE),
     ("Static analysis", _STATIC),
     ("Free vibration", _MODAL),
+    ("Pushover", _PUSHOVER),
     ("Envelopes of the time history", _ENVELOPES),
     ("Members and springs", _MEMBERS),
     ("Contacts and collisions", _CONTACTS),
@@ -538,6 +610,7 @@ HISTORIES: Final[Mapping[str, History]] = MappingProxyType(
             History("spring/deformation", "components", "deformations of the springs"),
             History("drift", "drifts", "drifts in the order of the deck"),
             History("ground", "motions", "ground accelerations, scaled"),
+            History("force", "forces", "histories of FORCES, in the order of the deck"),
             History("energy", "7 columns", "cumulative energies: " + ", ".join(ENERGIES)),
         )
     }

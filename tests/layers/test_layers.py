@@ -11,8 +11,8 @@ DECK, SOLVER = ROOT / "parser/pound_deck", ROOT / "solver/pound_solve"
 
 # from the bottom to the top: a module may import its own layer and those below
 LAYERS = (
-    ("laws", "jit", "dofs", "modes", "polynomial", "records"),
-    ("motions",),
+    ("laws", "jit", "dofs", "modes", "polynomial", "records", "sketch"),
+    ("motions", "forces"),
     ("hysteresis", "contact", "damping"),
     ("elements",),
     ("assemble",),
@@ -21,7 +21,7 @@ LAYERS = (
     ("analyses",),
     ("catalog", "tables"),
     ("results", "echo", "reference"),
-    ("report", "export"),
+    ("report", "export", "loop", "plot"),
     ("course",),
     ("app",),
     ("__init__",),
@@ -76,7 +76,7 @@ def test_the_solver_takes_the_model_from_the_parser_and_only_the_top_reads_decks
     for path in SOLVER.rglob("*.py"):
         taken = {n.split(".")[1] for n in imported(path) if n.startswith("pound_deck.")}
         allowed = {"model", "schema", "diagnostics"}
-        if path.name in ("app.py", "cli.py"):
+        if path.name in ("app.py", "cli.py", "loop.py"):
             allowed |= {"reader"}
         if path.name == "reference.py":
             allowed |= {"sections"}
@@ -96,9 +96,12 @@ def test_imports_go_down():
 
 
 def test_numerics_open_no_file_and_print_nothing():
-    folders = ("elements", "hysteresis", "contact", "damping", "integrate", "analyses")
+    folders = ("elements", "hysteresis", "contact", "damping", "forces", "integrate", "analyses")
     files = [p for f in folders for p in (SOLVER / f).rglob("*.py")]
-    files += [SOLVER / n for n in ("laws.py", "dofs.py", "modes.py", "assemble.py", "scene.py")]
+    files += [
+        SOLVER / n
+        for n in ("laws.py", "dofs.py", "modes.py", "assemble.py", "scene.py", "loop.py", "sketch.py")
+    ]
     for path in files:
         called = {
             n.func.id

@@ -119,6 +119,7 @@ def rows(seed: int = 1) -> dict[str, list[tuple[Any, ...]]]:
                 "9b0c5a1f3e77aa01" * 4,
             )
         ],
+        "forces": [("1 SINE", "300", 12.5, 0.0, -3.0, 1.0, 0.1, 2.5)],
         "scene": [
             (
                 "directions",
@@ -144,6 +145,12 @@ def rows(seed: int = 1) -> dict[str, list[tuple[Any, ...]]]:
             for quantity, unit in (("axial", "kN"), ("shear I", "kN"), ("moment I", "kN*m"))
         ],
         "reactions": [(n, some(12.0), abs(some(800.0)), some(40.0)) for n in (1, 2, 3, 4)],
+        "equilibrium": [("loads", 0.0, -some(800.0), 0.0), ("sum", 0.0, 1e-12, 0.0)],
+        "static_run": [("changes of springs and contacts", "3")],
+        "pushover": [("end", "the target displacement is reached")],
+        "push_pattern": [(n, "X", some(0.5), some(0.5)) for n in NODES[4:]],
+        "capacity_curve": [(0.01 * i, 310.0 * i / (1 + 0.1 * i), 310.0 * i, i // 3) for i in range(12)],
+        "push_events": [(1, 0.031, 712.5, 2.1, 11, "hinge I", "elastic", "yielding +")],
         "modes": [
             (
                 i + 1,
@@ -271,6 +278,7 @@ def layout() -> dict[str, Any]:
         "spring/force": ((0,), {"labels": (), "unit": "F"}),
         "drift": ((1,), {"labels": ("B1 storey 1",), "unit": "L"}),
         "ground": ((1,), {"labels": ("elcentro",), "unit": "L/T^2"}),
+        "force": ((1,), {"labels": ("1 SINE",)}),
         "energy": ((7,), {"labels": ENERGIES, "unit": "F*L"}),
     }
 

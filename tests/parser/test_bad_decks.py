@@ -38,7 +38,7 @@ def test_one_mistake_one_message_at_its_place(path, catalog):
 
 
 def test_every_parser_message_has_a_deck():
-    decks = {path.name[:4] for path in DECKS}
+    decks = {path.name[:4] for path in DECKS if path.name.startswith("P")}
     assert decks | ON_THE_FLY == {code for code in MESSAGES if code.startswith("P")}
 
 

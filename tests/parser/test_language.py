@@ -112,8 +112,14 @@ def test_a_range_of_one(read, codes):
 def test_lists_of_nodes(read):
     model = read(HEAD + "LOADS\n 1,2 TO 3 5\n 1 TO 3 BY 2 FY=-1\n")
     assert [card["NODES"] for card in model.loads] == [(1, 2, 3), (1, 3)]
-    assert model.loads[0].values == {"NODES": (1, 2, 3), "FX": 5, "FY": 0, "MZ": 0}
+    assert model.loads[0].values == {"NODES": (1, 2, 3), "FX": 5, "FY": 0, "MZ": 0, "HELD": "YES"}
     assert set(model.loads[0].spans) == {"NODES", "FX"}
+
+
+def test_weights_that_overlap_in_part_are_meant(codes):
+    """Elements that share an end put half their weight on each of theirs."""
+    assert codes(HEAD + "WEIGHTS\n 1 TO 2 5\n 2 TO 3 5\n") == []
+    assert codes(HEAD + "WEIGHTS\n 1 TO 2 5\n 3 5\n 1 TO 3 5\n 1 5\n") == ["P329", "P329"]
 
 
 def test_a_line_may_start_with_a_param(read):
@@ -178,12 +184,14 @@ def test_comments_continuations_and_quotes(read):
 
 def test_single_cards(read):
     model = read(
-        "title  Bob's two towers ! a comment\nUNITS N mm s\nMASS consistent\n" + HEAD + "END\n)))\n"
+        "title  Bob's two towers ! a comment\nUNITS N mm s\nMASS consistent\nGEOMETRY pdelta\n" + HEAD + "END\n)))\n"
     )
     assert model.title == "Bob's two towers" and model.units == Units("N", "mm", "s", True)
     assert model.gravity == 9810 and model.mass == "CONSISTENT" and model.defaults == {"gravity"}
+    assert model.geometry == "PDELTA" and read("GEOMETRY 1\n" + HEAD).geometry == "PDELTA"
     assert read("GRAVITY 2*5\n" + HEAD).gravity == 10
-    assert read(HEAD).defaults == {"units", "gravity", "mass"}
+    assert read(HEAD).defaults == {"units", "gravity", "mass", "geometry"}
+    assert read(HEAD).geometry == "SMALL"
 
 
 def test_sections_may_be_repeated_and_carry_a_number(read):
@@ -281,7 +289,7 @@ def test_ranges_shrink_to_nothing(read, codes, n):
     inner = tuple(range(101, 100 + n)) if n else ()
     assert [c["NODES"] for c in model.weights] == [inner, (1, *inner)]
     assert model.output["NODES"] == tuple(range(201, 201 + n))
-    assert codes(text, n=str(n)) == []
+    assert codes(text, n=str(n)) == ["P329"] * bool(inner)  # the second line of weights holds the first
 
 
 def test_what_is_lower_than_none_is_an_error(codes):

@@ -9,8 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pound_solve.motions import record, sine, synthetic
+from pound_solve.forces import record as force_record
+from pound_solve.forces import sine as force_sine
+from pound_solve.forces import table as force_table
+from pound_solve.motions import record, sine, synthetic, table
 from pound_solve.motions.base import METRE, Context, Motion
+from pound_solve.motions.wave import fronts
 from pound_solve.records.base import RecordError
 
 
@@ -251,10 +255,166 @@ class TestSynthetic:
         assert caught.value.code == "R405"
 
 
+class TestTable:
+    def test_lines_jumps_and_nothing_outside(self) -> None:
+        points = (0.5, 1.0, 1.0, 3.0, 1.0, -2.0, 2.0, 0.0)
+        motion = table.build({"POINTS": points, "SCALE": 2.0}, context())
+        t = [0.0, 0.49, 0.5, 0.75, 1.0, 1.5, 2.0, 2.01]
+        np.testing.assert_allclose(motion.acceleration.value(t), [0, 0, 2, 4, -4, -2, 0, 0], atol=1e-15)
+        assert motion.acceleration.start == 0
+        assert motion.info["pga"] == 6.0 and motion.info["t_pga"] == 1.0 and motion.info["npts"] == 4
+        # the velocity runs through the jump: areas of a trapezium and a triangle
+        np.testing.assert_allclose(
+            motion.velocity(3.0).value([0.5, 1.0, 2.0, 3.0]), [0, 2, 0, 0], atol=1e-15
+        )
+
+    def test_the_first_of_two_values_at_the_first_time_is_no_matter(self) -> None:
+        one, two = (table.lines(p) for p in ((0.0, 7.0, 0.0, 1.0, 2.0, 1.0), (0.0, 1.0, 2.0, 1.0)))
+        assert one.breaks.tolist() == two.breaks.tolist() and one.coefs.tolist() == two.coefs.tolist()
+
+    @pytest.mark.parametrize(
+        ("points", "why"),
+        [
+            ((0.0, 1.0, 2.0), "no whole pairs"),
+            ((0.0, 1.0, 2.0, 1.0, 1.0, 0.0), "descend from 2 to 1"),
+            ((-1.0, 1.0, 2.0, 1.0), "before the history"),
+            ((1.0, 0.0, 1.0, 2.0), "all its points are at time 1"),
+            ((0.0, 0.0, 1.0, 2.0, 1.0, 3.0, 1.0, 4.0), "three times"),
+        ],
+    )
+    def test_points_that_are_no_table(self, points: tuple[float, ...], why: str) -> None:
+        for build, card in ((table.build, {}), (force_table.build, {"NODES": (1,), "FX": 1.0})):
+            with pytest.raises(RecordError, match=why) as caught:
+                build({"POINTS": points, **card}, context())
+            assert (caught.value.code, caught.value.item) == ("R405", "POINTS")
+
+
+class TestTurn:
+    POINTS = (0.0, 0.0, 1.0, 20.0, 2.0, 0.0)
+
+    def test_the_ground_moves_on_circles(self) -> None:
+        motion = table.build({"POINTS": self.POINTS, "DIRECTION": "R", "ABOUT": (2.0, -1.0)}, context())
+        assert motion.directions == (0, 1, 2)
+        assert [motion.share(d, 5.0, 3.0) for d in range(3)] == [-4.0, 3.0, 1.0]
+        assert [motion.share(d, 2.0, -1.0) for d in range(3)] == [0.0, 0.0, 1.0]
+        assert motion.info["warnings"] == ()  # 20 rad/T^2 is no share of gravity
+
+    @pytest.mark.parametrize(("direction", "want"), [("X", [1.0, 0.0, 0.0]), ("Y", [0.0, 1.0, 0.0])])
+    def test_straight_motion_is_the_same_everywhere(self, direction: str, want: list[float]) -> None:
+        motion = table.build({"POINTS": self.POINTS, "DIRECTION": direction}, context())
+        assert [motion.share(d, 5.0, 3.0) for d in range(3)] == want
+
+    def test_a_record_of_a_turn_needs_its_unit(self, tmp_path: Path) -> None:
+        (tmp_path / "r.txt").write_text("0 0\n1 2\n")
+        card = {"FILE": "r.txt", "DIRECTION": "R"}
+        with pytest.raises(RecordError, match="no share of gravity") as caught:
+            record.build(card, context(tmp_path))
+        assert caught.value.code == "R405"
+        assert record.build({**card, "UNIT": "DECK"}, context(tmp_path)).info["pga"] == 2.0
+
+
+class TestWave:
+    def motion(self, **card: Any) -> Motion:
+        values = {"POINTS": (0.0, 1.0, 0.5, -1.0, 0.5, 2.0, 1.0, 0.0), "SUPPORTS": (1, 2, 3, 4), **card}
+        return table.build(values, context())
+
+    X = {1: 10.0, 2: 0.0, 3: 40.0, 4: 10.0, 9: -5.0}  # noqa: RUF012
+
+    @pytest.mark.parametrize(
+        ("speed", "delays"),
+        [
+            (20.0, [((2,), 0.0), ((1, 4), 0.5), ((3,), 2.0)]),
+            (-10.0, [((3,), 0.0), ((1, 4), 3.0), ((2,), 4.0)]),
+        ],
+    )
+    def test_one_motion_for_each_place(self, speed: float, delays: list[tuple[Any, float]]) -> None:
+        whole = self.motion(WAVE=speed)
+        out = fronts(whole, self.X)
+        assert [m.supports for m in out] == [nodes for nodes, _ in delays]
+        t = np.linspace(-1.0, 6.0, 701)
+        for motion, (_, delay) in zip(out, delays):
+            for part in ("velocity", "displacement"):
+                early = getattr(whole, part)(6.0).value(np.maximum(t - delay, 0.0))
+                np.testing.assert_allclose(
+                    getattr(motion, part)(6.0).value(t)[t >= 0], early[t >= 0], atol=1e-14
+                )
+            np.testing.assert_array_equal(
+                motion.acceleration.breaks[-3:], whole.acceleration.breaks + delay
+            )
+            assert motion.acceleration.start == 0.0 and motion.info["t_pga"] == 0.5 + delay
+
+    def test_without_a_wave_the_motion_is_itself(self) -> None:
+        motion = self.motion()
+        assert fronts(motion, self.X) == [motion]
+
+    def test_a_delayed_sine_keeps_its_closed_forms(self) -> None:
+        a, w, delay = 2.5, 7.0, 1.3
+        late = sine.build({"AMPLITUDE": a, "OMEGA": w}, context(duration=40.0)).delayed(delay)
+        t = np.linspace(0.0, 40.0, 4001)
+        s = t - delay
+        steady = -a / w**2 * np.sin(w * s)
+        want = np.where(s < 0, -a / w * s, steady)
+        np.testing.assert_allclose(late.displacement().value(t), want, rtol=0, atol=1e-13)
+        np.testing.assert_allclose(
+            late.velocity().value(t), np.where(s < 0, -a / w, -a / w * np.cos(w * s)), rtol=0, atol=1e-13
+        )
+        # the plain integral of the acceleration is the same motion
+        plain = late.acceleration.integral(late.velocity0).integral(late.displacement0)
+        np.testing.assert_allclose(plain.value(t), want, rtol=0, atol=1e-11)
+
+    @pytest.mark.parametrize(
+        ("card", "why"),
+        [
+            ({"WAVE": 0.0}, "arrives nowhere"),
+            ({"WAVE": 3.0, "SUPPORTS": None}, "needs SUPPORTS"),
+            ({"WAVE": 3.0, "DIRECTION": "R"}, "X or Y"),
+        ],
+    )
+    def test_waves_that_cannot_be(self, card: dict[str, Any], why: str) -> None:
+        with pytest.raises(RecordError, match=why) as caught:
+            self.motion(**card)
+        assert (caught.value.code, caught.value.item) == ("R405", "WAVE")
+
+
+class TestForces:
+    def test_sine_over_100_periods(self) -> None:
+        w, start = 2 * math.pi / 0.37, 0.8
+        card = {"NODES": (4,), "FX": 3.0, "OMEGA": w, "PHASE": 0.7, "START": start}
+        force = force_sine.build(card, context(duration=37.8))
+        assert (force.nodes, force.push) == ((4,), (3.0, 0.0, 0.0))
+        t = np.linspace(0, 37.8, 10007)
+        want = np.where(t < start, 0.0, np.sin(w * (t - start) + 0.7))
+        np.testing.assert_allclose(force.history.value(t), want, rtol=0, atol=1e-12)
+
+    def test_sine_that_never_begins(self) -> None:
+        card = {"NODES": (4,), "MZ": 3.0, "PERIOD": 1.0, "START": 9.0}
+        force = force_sine.build(card, context(duration=5.0))
+        assert force.history.peak()[1] == 0.0 and force.push == (0.0, 0.0, 3.0)
+
+    @pytest.mark.parametrize("card", [{}, {"PERIOD": 1.0, "OMEGA": 6.0}])
+    def test_period_or_omega(self, card: dict[str, float]) -> None:
+        with pytest.raises(RecordError, match="PERIOD or OMEGA"):
+            force_sine.build({"NODES": (1,), "FX": 1.0, **card}, context(duration=1.0))
+
+    def test_file_is_taken_as_it_stands(self, tmp_path: Path) -> None:
+        (tmp_path / "f.csv").write_text("t,a,b\n0.5,1,10\n1,2,30\n2,4,-20\n")
+        card = {"NODES": (1, 2), "FY": -2.0, "FILE": "f.csv", "COLUMN": 3, "START": 0.25, "TSCALE": 2.0}
+        force = force_record.build(card, context(tmp_path))
+        t = [0.0, 0.49, 0.5, 1.0, 1.5, 3.5, 3.6]
+        np.testing.assert_allclose(force.history.value(t), [0, 0, 10, 20, 30, -20, 0])
+        assert force.nodes == (1, 2) and force.push == (0.0, -2.0, 0.0)
+        with pytest.raises(RecordError, match=r"f\.csv"):
+            force_record.build({**card, "COLUMN": 9}, context(tmp_path))
+
+    def test_a_force_of_nothing(self) -> None:
+        with pytest.raises(RecordError, match="no component"):
+            force_table.build({"NODES": (1,), "POINTS": (0.0, 0.0, 1.0, 1.0)}, context())
+
+
 def test_specs_are_sound() -> None:
-    for module in (record, sine, synthetic):
+    for module in (record, sine, synthetic, table):
         names = [f.name for f in module.SPEC.fields]
         assert len(names) == len(set(names))
-        assert {"DIRECTION", "SCALE", "SUPPORTS"} <= set(names)
+        assert {"DIRECTION", "SCALE", "SUPPORTS", "WAVE", "ABOUT"} <= set(names)
         assert module.SPEC.family == "motion" and module.SPEC.impl is module.build
         assert all(f.doc and f.doc[-1] != "." for f in module.SPEC.fields)

@@ -105,7 +105,7 @@ def test_merged_keeps_both_ends_and_no_slivers() -> None:
 def test_common_breaks() -> None:
     a = Motion("X", None, Piecewise.from_samples(0.01 * np.arange(301), np.sin(np.arange(301.0))))
     b = Motion("Y", None, Piecewise.from_samples(0.005 * np.arange(1001), np.cos(np.arange(1001.0))))
-    breaks = common_breaks([a, b], 4.0)
+    breaks = common_breaks([a.acceleration, b.acceleration], 4.0)
     assert len(breaks) == 801 and (breaks[0], breaks[-1]) == (0.0, 4.0)
     t = 0.5 * (breaks[1:] + breaks[:-1])
     for motion in (a, b):

@@ -109,7 +109,9 @@ def test_the_deck_fills_nodes():
 
 
 def test_ground_moves_what_rides_on_a_slave():
-    """Mass on arms: the ground's pull has a moment about the master."""
+    """Mass on arms: the ground's pull has a moment about the master; a turn about the origin
+    moves the mass on a circle.
+    """
     s = structure_of("""
 NODES
  1 0 0
@@ -121,4 +123,4 @@ PROPS
 WEIGHTS
  2 9.81
 """)
-    assert s.ground == pytest.approx(np.array([[1, 0, -4], [0, 1, 3]]), abs=1e-14)
+    assert s.ground == pytest.approx(np.array([[1, 0, -4], [0, 1, 3], [-4, 3, 25]]), abs=1e-14)

@@ -27,6 +27,7 @@ def chapter(page: str, spec: Spec) -> str:
         "contact": "Contact laws",
         "damping": "Damping",
         "motion": "Ground motions",
+        "force": "Forces in time",
         "record": "Record formats",
         "analysis": "Analyses",
         "method": "Methods of integration",

@@ -327,7 +327,7 @@ def test_inputs_of_two_directions():
         PORTAL.format(weight="")
         + tail().replace("ANALYSIS", " SINE AMPLITUDE=1 PERIOD=0.3 DIRECTION=Y\nANALYSIS")
     )
-    assert place.acceleration_inputs.tolist() == [[1, 0], [0, 1]]
+    assert place.acceleration_inputs.tolist() == [[1, 0], [0, 1], [0, 0]]
     same_response(place)
 
 

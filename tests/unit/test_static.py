@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
@@ -9,7 +12,10 @@ from hypothesis import strategies as st
 
 from decks import solved, structure_of
 from pound_solve.analyses import static
+from pound_solve.analyses.equilibrium import Ground
+from pound_solve.analyses.path import Unstable
 from pound_solve.contact.kelvin_voigt import PRESSED
+from pound_solve.laws import TURNS_DOWN, TURNS_UP, Law, Rule, piece, remember
 
 
 def parallel(load: float, rules: str = "RULE=ELASTO_PLASTIC") -> str:
@@ -124,7 +130,7 @@ def test_elasto_plastic_portal():
 
 def test_the_collapse_of_a_portal_without_brace_is_named():
     deck = portal(91.0).replace(" BRACE SPRING KX=50", " BRACE SPRING KX=0")
-    with pytest.raises(static.Unstable, match=r"mechanism, worst at node \d ux"):
+    with pytest.raises(Unstable, match=r"mechanism, worst at node \d ux"):
         solved(deck)
     assert solved(deck.replace("5 91.0", "5 89.9")).state.events >= 2
 
@@ -261,7 +267,7 @@ def test_balanced_loads_on_a_loose_part_strain_it_only():
     ],
 )
 def test_a_loaded_mechanism_is_named(load, words):
-    with pytest.raises(static.Unstable, match=words):
+    with pytest.raises(Unstable, match=words):
         solved(LOOSE + load)
 
 
@@ -271,7 +277,7 @@ def test_a_turning_mechanism_is_named():
         "NODES\n 1 0 0 FIX=XY\n 2 4 0\nELEMENTS\n 1 B 1 2\n"
         "PROPS\n B FRAME E=2e8 A=0.01 I=1e-4\nLOADS\n 2 0 -1"
     )
-    with pytest.raises(static.Unstable, match="mechanism, worst at node 2 uy"):
+    with pytest.raises(Unstable, match="mechanism, worst at node 2 uy"):
         solved(deck)
 
 
@@ -290,7 +296,7 @@ PROPS
 LOADS
  3 0 -1
 """
-    with pytest.raises(static.Unstable, match="node 3 uy"):
+    with pytest.raises(Unstable, match="node 3 uy"):
         solved(deck)
 
 
@@ -309,27 +315,17 @@ LOADS
  301 0 0 1
 """
         assert solved(deck).u[301][2] == pytest.approx(30 / 2e4, rel=1e-5)
-        with pytest.raises(static.Unstable, match="mechanism"):
+        with pytest.raises(Unstable, match="mechanism"):
             solved(deck.replace("FIX=XYR", "FIX=XY"))
 
 
 def test_softening_beyond_collapse_is_told():
     deck = parallel(60.0, "RULE=BILINEAR R=-0.5").replace("KX=25", "KX=20")
-    with pytest.raises(static.Unstable, match="negative"):
+    with pytest.raises(Unstable, match="negative"):
         solved(deck)
 
 
-def test_a_closing_contact_turns_a_yielding_spring_back():
-    """A rigid bar on two spots with a load between; it meets a wall,
-    turns about it and unloads the yielded spring.
-
-    Deflections v(x) = v0 + r x downwards.  At x = 0 stand an elasto-plastic spring (100, yield 2)
-    and an elastic one (10), at x = 1 an elastic one (100); P stands at 0.8, the wall (1000) at 0.6.
-    Up to P = 11: v0 = 0.2 P/110, v1 = 0.8 P/100, then v0' = 0.2/10;
-    the gap of 0.0736 is shut at P = 12 with v0 = 0.04, v1 = 0.096.  Beyond, the bar goes up at x = 0:
-    the spring there follows its elastic branch.
-    """
-    s = solved("""
+TURNED_BACK = """
 NODES
  1 0 0 FIX=X
  2 1 0 SLAVED=XYR MASTER=1
@@ -347,7 +343,20 @@ PROPS
  WALL CONTACT GAP=0.0736 ANGLE=-90 LAW=LINEAR K=1000
 LOADS
  3 0 -20
-""")
+"""
+
+
+def test_a_closing_contact_turns_a_yielding_spring_back():
+    """A rigid bar on two spots with a load between; it meets a wall,
+    turns about it and unloads the yielded spring.
+
+    Deflections v(x) = v0 + r x downwards.  At x = 0 stand an elasto-plastic spring (100, yield 2)
+    and an elastic one (10), at x = 1 an elastic one (100); P stands at 0.8, the wall (1000) at 0.6.
+    Up to P = 11: v0 = 0.2 P/110, v1 = 0.8 P/100, then v0' = 0.2/10;
+    the gap of 0.0736 is shut at P = 12 with v0 = 0.04, v1 = 0.096.  Beyond, the bar goes up at x = 0:
+    the spring there follows its elastic branch.
+    """
+    s = solved(TURNED_BACK)
     k = np.zeros((2, 2))
     for stiffness, x in ((110, 0.0), (100, 1.0), (1000, 0.6)):
         k += stiffness * np.outer([1, x], [1, x])
@@ -363,3 +372,201 @@ def test_nothing_loaded_is_nothing_moved():
     s = structure_of(contact(0.1, 0.0))
     state = static.solve(s)
     assert not state.u.any() and state.events == 0
+
+
+# many springs at once
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    strengths=st.lists(st.floats(0.5, 5), min_size=9, max_size=9),
+    loads=st.lists(st.floats(-12, 12), min_size=4, max_size=4),
+    hard=st.sampled_from([0.02, 0.3]),
+)
+@example(strengths=[1.0] * 9, loads=[6.0] * 4, hard=0.02)  # all at once
+@example(strengths=[1.0, 2.0] * 4 + [1.0], loads=[-6.0, 6.0, -6.0, 6.0], hard=0.02)
+def test_a_net_of_yielding_springs_is_in_equilibrium(strengths, loads, hard):
+    """Four nodes, each joined to the ground and to all others: forces balance,
+    and no law stands beyond an exit.
+    """
+    pairs = [(1, ""), (2, ""), (3, ""), (4, ""), (1, 2), (1, 3), (2, 3), (2, 4), (3, 4)]
+    s = structure_of(
+        "NODES\n" + "".join(f" {n} 0 0 FIX=YR\n" for n in range(1, 5))
+        + "ELEMENTS\n" + "".join(f" {e} P{e} {i} {j}\n" for e, (i, j) in enumerate(pairs, 1))
+        + "PROPS\n"
+        + "".join(
+            f" P{e} SPRING KX={100 + 20 * e} FX={f!r} RULE=BILINEAR R={hard}\n"
+            for e, f in enumerate(strengths, 1)
+        )
+        + "LOADS\n" + "".join(f" {n} {f!r}\n" for n, f in enumerate(loads, 1))
+    )  # fmt: skip
+    state = static.solve(s)
+    d = s.law_rows @ state.u
+    force = [x.force(y, z, 0.0) for x, y, z in zip(s.laws, state.states, d)]
+    assert s.law_rows.T @ force == pytest.approx(loads, abs=1e-10)
+    for x, y, z in zip(s.laws, state.states, d):
+        assert all(a * z + c <= 1e-10 for a, _, c in x.law.branch(y).exits if a)
+
+
+# curved laws
+
+
+def saturating(p, at, m, d0, d, v):
+    """f approaches +-F exponentially from where the motion turned: f' = k (1 -+ f / F)."""
+    k, strength = p[:2]
+    side = 1.0 if at == 0 else -1.0
+    rest = (side * strength - m[0]) * math.exp(-side * k * (d - d0) / strength)
+    return side * strength - rest, side * rest * k / strength, 0.0, 0.0
+
+
+SATURATING = Rule(
+    ("loading", "unloading"),
+    lambda p: (0, remember()),
+    lambda p, at, m: piece(p[0], 0.0, TURNS_DOWN if at == 0 else TURNS_UP),
+    lambda p, at, m, way, d: (1 - at, remember(saturating(p, at, m, m[1], d, 0.0)[0], d)),
+    curve=saturating,
+)
+
+
+def curved(text: str, **laws: tuple[float, float]):
+    """Structure of a deck with the SATURATING law (k, strength) in the springs of some property sets."""
+    s = structure_of(text)
+    own = {p.upper(): Law(SATURATING, numbers) for p, numbers in laws.items()}
+    return replace(
+        s, laws=tuple(replace(x, law=own.get(s.model.elements[x.element].prop, x.law)) for x in s.laws)
+    )
+
+
+def test_curved_springs_in_a_row_and_beside_each_other():
+    """Two in a row carry the same: d_i = -F_i/k_i ln(1 - p/F_i); pulled or pushed."""
+    deck = """
+NODES
+ 1 0 0 FIX=YR
+ 2 0 0 FIX=YR
+ELEMENTS
+ 1 A 1
+ 2 B 1 2
+PROPS
+ A SPRING KX=100 FX=1 RULE=BILINEAR
+ B SPRING KX=50 FX=1 RULE=BILINEAR
+LOADS
+ 2 {}
+"""
+    for p in (1.0, 7.9, -7.9):
+        state = static.solve(curved(deck.format(p), A=(100, 10), B=(50, 8)))
+        size = abs(p)
+        one, two = (-f / k * math.log(1 - size / f) for f, k in ((10, 100), (8, 50)))
+        assert state.u == pytest.approx(np.sign(p) * np.array([one, one + two]), rel=1e-9)
+    with pytest.raises(Unstable, match=r"no equilibrium was found further on.*at load factor 0\.8"):
+        static.solve(curved(deck.format(10.0), A=(100, 10), B=(50, 8)))
+
+
+def test_a_closing_contact_turns_a_curved_spring_back():
+    """The bar of above with a saturating spring at x = 0 (k 100, strength 2):
+    forward until the wall is met, back after it.
+    """
+    from scipy.optimize import brentq, fsolve
+
+    s = curved(TURNED_BACK, PLASTIC=(100, 2))
+    state = static.solve(s)
+
+    def forward(v):
+        return 2 * (1 - math.exp(-50 * v))
+
+    def at_wall(v0):  # load at which 0.4 v0 + 0.6 v1 is the gap
+        v1 = (0.0736 - 0.4 * v0) / 0.6
+        return forward(v0) + 10 * v0 - 0.2 * (100 * v1 / 0.8)
+
+    v0 = brentq(at_wall, 0, 0.1, xtol=1e-15)
+    peak = forward(v0)
+
+    def rest(v):  # -2 + (2 + peak) exp(50 (v - v0)) going back; the bar's equilibrium under 20 at 0.8
+        spring = -2 + (2 + peak) * math.exp(50 * (v[0] - v0))
+        wall = 1000 * (0.4 * v[0] + 0.6 * v[1] - 0.0736)
+        return spring + 10 * v[0] + 0.4 * wall - 4, 100 * v[1] + 0.6 * wall - 16
+
+    a, b = fsolve(rest, (v0, 0.1), xtol=1e-12)
+    assert a < v0
+    assert [-state.u[0], -state.u[1]] == pytest.approx([a, b - a], rel=1e-9)
+    assert state.events == 3  # onto the branch downwards, the wall, back
+
+
+# equilibrium of all
+
+
+def test_springs_without_length_are_told():
+    """A storey spring between two heights carries a shear, but no moment: the sum names its couple."""
+    s = structure_of("""
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=YR
+ 3 0 6 FIX=YR
+ELEMENTS
+ 1 A 1 2
+ 2 A 2 3
+ 3 B 3
+PROPS
+ A SPRING KX=100
+ B SPRING KX=50
+LOADS
+ 3 8
+""")
+    state = static.solve(s)
+    rows = {r[0]: r[1:] for r in Ground(s, state.axial).balance(state.u, state.states)}
+    # 50 in a row, 50 beside it: 4 each
+    assert rows["loads"] == pytest.approx((8, 0, -48))
+    assert rows["reactions of the supports"] == pytest.approx((-4, 0, 0))
+    assert rows["ground below springs and walls with one node"] == pytest.approx((-4, 0, 24))
+    assert rows["couples that springs and contacts without length do not carry"] == pytest.approx(
+        (0, 0, 24)
+    )
+    assert rows["sum"] == pytest.approx((0, 0, 0), abs=1e-12)
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    seats=st.lists(st.floats(-3, 3), min_size=8, max_size=8),
+    loads=st.lists(st.floats(-50, 50), min_size=6, max_size=6),
+)
+def test_loads_and_reactions_balance(seats, loads):
+    """Members in any position, slaved nodes, self weight: three sums are zero, none by construction."""
+    x = [4 * i + dx / 2 for i, dx in enumerate(seats[:4])]
+    y = [3 * (i % 2) + dy / 3 for i, dy in enumerate(seats[4:])]
+    s = structure_of(f"""
+NODES
+ 1 {x[0]!r} {y[0]!r} FIX=XY
+ 2 {x[1]!r} {y[1]!r}
+ 3 {x[2]!r} {y[2]!r}
+ 4 {x[3]!r} {y[3]!r} FIX=XYR
+ 5 3 9 SLAVED=XYR MASTER=3
+ELEMENTS
+ 1 TO 3 B 1 TO 3 2 TO 4
+PROPS
+ B FRAME E=2e8 A=0.01 I=1e-4 WGT=3 END1=0.2
+LOADS
+ 2 {loads[0]!r} {loads[1]!r} {loads[2]!r}
+ 5 {loads[3]!r} {loads[4]!r}
+MEMBER_LOADS
+ 2 WX={loads[5]!r}
+""")
+    state = static.solve(s)
+    rows = Ground(s, state.axial).balance(state.u, state.states)
+    assert [r[0] for r in rows] == ["loads", "reactions of the supports", "sum"]
+    scale = np.abs(np.array([r[1:] for r in rows[:2]])).max()
+    assert np.abs(rows[2][1:]).max() < 1e-9 * scale
+    assert rows[0][1] == pytest.approx(
+        loads[0] + loads[3] + loads[5] * math.hypot(x[2] - x[1], y[2] - y[1]), abs=1e-9
+    )
+
+
+def test_a_frame_that_makes_forces_is_found_out():
+    """The check can fail: a stiffness that is not balanced."""
+    from pound_solve.analyses import equilibrium
+
+    s = structure_of(LOOSE + " 2 1")
+    state = static.solve(s)
+    ground = Ground(s, state.axial)
+    assert np.abs(ground.balance(state.u, state.states)[-1][1:]).max() < 1e-12
+    ground.structure.stiffness[ground.n :] *= 1.001
+    assert ground.balance(state.u, state.states)[-1][1] == pytest.approx(-0.001, rel=1e-6)
+    assert equilibrium.ROUNDING < 1e-6

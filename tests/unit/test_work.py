@@ -75,8 +75,8 @@ def test_against_dense_quadrature(kind: str, degree: int, tau: float) -> None:
         found = case.measure(tau)
         assert found.damping == pytest.approx(loss, rel=5e-11, abs=0.0)
         assert found.input == pytest.approx(done, rel=1e-11)
-        assert [law for law, _ in found.contacts] == [5]
-        assert found.contacts[0][1] == pytest.approx(contact, rel=5e-11)
+        assert [law for law, _ in found.laws] == [5]
+        assert found.laws[0][1] == pytest.approx(contact, rel=5e-11)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -88,7 +88,7 @@ def test_balance_of_energy(kind: str, tau: float) -> None:
         found = case.measure(tau)
         change = case.energy(tau) - case.energy(0.0)
         gross = max(abs(found.input), found.damping, case.energy(tau), case.energy(0.0))
-        assert abs(found.input - change - found.damping - found.contacts[0][1]) < 1e-12 * gross
+        assert abs(found.input - change - found.damping - found.laws[0][1]) < 1e-12 * gross
 
 
 def test_undamped_modes_among_damped_ones() -> None:
@@ -139,10 +139,10 @@ def test_many_intervals_at_once(kind: str, degree: int) -> None:
     qs = case.flow.march(case.q, gs, h)[:, :-1]
     several = case.meter.measures(qs, gs, h, coefs, case.constant)
     whole = case.measure(n * h)
-    assert several.damping.shape == several.input.shape == several.contacts[0][1].shape == (n,)
+    assert several.damping.shape == several.input.shape == several.laws[0][1].shape == (n,)
     assert several.damping.sum() == pytest.approx(whole.damping, rel=1e-12)
     assert several.input.sum() == pytest.approx(whole.input, rel=1e-12)
-    assert several.contacts[0][1].sum() == pytest.approx(whole.contacts[0][1], rel=1e-12)
+    assert several.laws[0][1].sum() == pytest.approx(whole.laws[0][1], rel=1e-12)
     for i in range(n):
         one = case.meter.measure(qs[:, i], gs[i], h, coefs[i], case.constant)
         assert one.damping == pytest.approx(several.damping[i], rel=1e-13)

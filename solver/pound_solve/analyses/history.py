@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from pound_deck.model import Model
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.assemble import Structure
-from pound_solve.integrate.base import ENERGIES, Extreme, Start, Watch, energies
+from pound_solve.integrate.base import ENERGIES, Extreme, LawValues, Start, Watch, energies
 from pound_solve.laws import State, follow, settle
 from pound_solve.scene import Scene
 
@@ -38,6 +38,20 @@ SPEC = Spec(
             words=("STATIC", "REST"),
             doc="start from the static state under the loads, "
             "or unloaded at rest with the loads put on at t = 0",
+        ),
+        Field(
+            "SAVE",
+            Kind.REAL,
+            "T",
+            default=None,
+            above=0,
+            doc="time whose state is kept in the results file for a RESTART; left out: the end",
+        ),
+        Field(
+            "RESTART",
+            Kind.TEXT,
+            default="",
+            doc="results file (.h5) whose saved state this history goes on from",
         ),
     ),
 )
@@ -124,10 +138,17 @@ class Recorder:
         Takes a block of histories, see `results.Writer.append`.
     progress : callable
         Told the time of every sample.
+    first_energy : ndarray, shape (6,), or None
+        Energies at the start of the history, if this run takes it up later; None: of the first sample.
     """
 
     def __init__(
-        self, scene: Scene, drifts: Watch, append: Append, progress: Callable[[float], None]
+        self,
+        scene: Scene,
+        drifts: Watch,
+        append: Append,
+        progress: Callable[[float], None],
+        first_energy: Array | None = None,
     ) -> None:
         structure = scene.structure
         model, freedoms = structure.model, structure.freedoms
@@ -135,6 +156,11 @@ class Recorder:
         chosen = model.output["NODES"]
         self.nodes = tuple(model.nodes) if chosen is None else tuple(dict.fromkeys(chosen))
         self.node_rows = freedoms.matrix([(n, d) for n in self.nodes for d in range(3)])
+        # motion of the nodes when they ride on the ground: x, y, and a turn about the origin
+        x, y = (np.array([getattr(model.nodes[n], c) for n in self.nodes]) for c in "xy")
+        self.ridden = np.zeros((3, len(self.nodes), 3))
+        self.ridden[0, :, 0] = self.ridden[1, :, 1] = self.ridden[2, :, 2] = 1.0
+        self.ridden[2, :, 0], self.ridden[2, :, 1] = -y, x
         elements = model.output["MEMBERS"]
         self.outputs = [o for o in structure.outputs if elements is None or o.element in elements]
         size = freedoms.size
@@ -147,11 +173,14 @@ class Recorder:
         self.contacts = [i for i, s in enumerate(structure.laws) if s.is_contact]
         self.node_extremes = {q: [Extreme() for _ in range(3 * len(self.nodes))] for q in "uva"}
         self.output_extremes = [Extreme() for _ in self.outputs]
-        self.first_energy = self.last_energy = np.zeros(len(ENERGIES))
+        self.first_energy = np.zeros(len(ENERGIES)) if first_energy is None else first_energy
+        self.last_energy = np.zeros(len(ENERGIES))
+        self._fresh = first_energy is None
         self.last_residual = self.residual_peak = self.energy_peak = 0.0
         self.losses = [0.0] * len(structure.laws)  # by slip and release, dashpots apart [F L]
-        self.reached = 0.0
-        self._rows: list[tuple[float, Array, Array, Array, Sequence[State], Array]] = []
+        self.reached = -1.0
+        self.last: tuple[Array, Array, Array] = (np.zeros(0), np.zeros(0), np.zeros(3))  # u, v, works
+        self._rows: list[tuple[Any, ...]] = []
 
     def layout(self) -> dict[str, tuple[tuple[int, ...], dict[str, Any]]]:
         """What `results.Writer.start_history` needs."""
@@ -159,12 +188,8 @@ class Recorder:
         model = self.scene.structure.model
         three = {"nodes": self.nodes, "labels": ["X", "Y", "R"]}
 
-        def springs(unit_of: Callable[[str], str]) -> dict[str, Any]:
-            chosen = [laws[i] for i in self.springs]
-            return {
-                "labels": [f"{s.element} {s.component}" for s in chosen],
-                "unit": [unit_of(s.component) for s in chosen],
-            }
+        springs = [laws[i] for i in self.springs]
+        components = [f"{s.element} {s.component}" for s in springs]
 
         names = [contact_name(model, laws[i].element) for i in self.contacts]
         return {
@@ -181,60 +206,66 @@ class Recorder:
             ),
             "contact/gap": ((len(names),), {"labels": names, "unit": "L"}),
             "contact/force": ((len(names),), {"labels": names, "unit": "F"}),
-            "spring/force": ((len(self.springs),), springs(lambda c: "F*L" if c == "R" else "F")),
-            "spring/deformation": ((len(self.springs),), springs(lambda c: "" if c == "R" else "L")),
+            "spring/force": (
+                (len(springs),),
+                {"labels": components, "unit": [s.unit for s in springs]},
+            ),
+            "spring/deformation": (
+                (len(springs),),
+                {"labels": components, "unit": ["" if s.unit == "F*L" else "L" for s in springs]},
+            ),
             "drift": ((len(self.drifts.names),), {"labels": list(self.drifts.names), "unit": "L"}),
             "ground": (
                 (len(self.scene.motions),),
                 {
                     "labels": [f"{i + 1} {m.direction}" for i, m in enumerate(self.scene.motions)],
-                    "unit": "L/T^2",
+                    "unit": ["1/T^2" if m.direction == "R" else "L/T^2" for m in self.scene.motions],
                 },
+            ),
+            "force": (
+                (len(self.scene.forces),),
+                {"labels": [f"{i + 1} {f.info['kind']}" for i, f in enumerate(self.scene.forces)]},
             ),
             "energy": ((7,), {"labels": [*ENERGIES, "residual"], "unit": "F*L"}),
         }
 
-    def sample(self, t: float, u: Array, v: Array, a: Array, states: Sequence[State], works: Array) -> None:
+    def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take one sample (see `integrate.base.Sink`)."""
-        self._rows.append((t, u, v, a, states, works))
+        if t <= self.reached:
+            return  # the start of a part, where another ended
+        self._rows.append((t, u, v, a, *laws, works))
+        self.last = u, v, works
         self.reached = t
         self._progress(t)
         if len(self._rows) >= BLOCK:
             self.flush()
+
+    def trial(self, t: float) -> None:
+        """Tell the progress of a run whose samples may not count (see `integrate.base.Sink`)."""
+        self._progress(t)
 
     def _residuals(self, energy: Array) -> Array:
         """Input less what it became, against the start [F L], for rows of energies."""
         change = energy - self.first_energy
         return 2.0 * change[:, 0] - change.sum(axis=1)
 
-    def _forces(self, d: Array, rate: Array, states: Sequence[Sequence[State]]) -> Array:
-        """Forces of all laws, shape of `d`."""
-        laws = self.scene.structure.laws
-        rows = [
-            [x.force(own, p, q) for x, own, p, q in zip(laws, state, *pair)]
-            for state, *pair in zip(states, d.tolist(), rate.tolist())
-        ]
-        return np.array(rows).reshape(d.shape)
-
     def flush(self) -> None:
         """Write the samples that are held."""
         if not self._rows:
             return
         scene, laws = self.scene, self.scene.structure.laws
-        states = [row[4] for row in self._rows]
-        t, u, v, a, works = (np.array([row[k] for row in self._rows]) for k in (0, 1, 2, 3, 5))
+        t, u, v, a, force, stored, lost, works = (np.array(column) for column in zip(*self._rows))
         self._rows = []
         s, s1, s2 = (scene.excitation.values(t, order) for order in range(3))
         d = u @ scene.law_rows.T + s @ scene.law_inputs.T
-        force = self._forces(d, v @ scene.law_rows.T + s1 @ scene.law_inputs.T, states)
-        energy = energies(scene, t, u, v, states, works)
-        if t[0] == 0.0:
-            self.first_energy = energy[0]
+        energy = energies(scene, t, u, v, stored, lost, works)
+        if self._fresh:
+            self.first_energy, self._fresh = energy[0], False
         residual = self._residuals(energy)
         self.last_energy, self.last_residual = energy[-1], float(residual[-1])
         self.energy_peak = max(self.energy_peak, float(np.abs(energy).max()))
         self.residual_peak = max(self.residual_peak, float(np.abs(residual).max()))
-        self.losses = [x.law.dissipated(own, at) for x, own, at in zip(laws, states[-1], d[-1].tolist())]
+        self.losses = lost[-1].tolist()
         full_u, full_v, full_a = (
             scene.expanded(x.T, y.T, order).T for order, (x, y) in enumerate(((u, s), (v, s1), (a, s2)))
         )
@@ -243,9 +274,9 @@ class Recorder:
             q: (full @ self.node_rows.T).reshape(shape)
             for q, full in (("u", full_u), ("v", full_v), ("a", full_a))
         }
-        ground = s @ scene.acceleration_inputs.T  # (nt, 2): accelerations of nodes are total
-        node["a"][:, :, 0] += ground[:, :1]
-        node["a"][:, :, 1] += ground[:, 1:]
+        node["a"] += np.einsum(
+            "tj,jnd->tnd", s @ scene.acceleration_inputs.T, self.ridden
+        )  # they are total
         out = full_u @ self.out_u.T + full_v @ self.out_v.T + self.constants
         gaps = np.array([laws[i].facts["gap"] for i in self.contacts])
         for q, values in node.items():
@@ -266,6 +297,7 @@ class Recorder:
                 "ground": np.array(
                     [[float(m.acceleration.value(x)) for m in scene.motions] for x in t]
                 ).reshape(len(t), -1),
+                "force": s[:, s.shape[1] - len(scene.forces) :],
                 "energy": np.column_stack([energy, residual]),
             }
         )

@@ -24,7 +24,7 @@ from pound_solve.dofs import Freedom
 SPEC = Spec(
     "analysis",
     "MODAL",
-    "natural modes of the initial structure",
+    "natural modes",
     (
         Field(
             "MODES",
@@ -35,6 +35,13 @@ SPEC = Spec(
             positional=True,
         ),
         Field("SHAPES", Kind.WORD, default="YES", words=("YES", "NO"), doc="print the mode shapes"),
+        Field(
+            "AFTER",
+            Kind.WORD,
+            default="REST",
+            words=("REST", "STATIC"),
+            doc="stiffness of the laws: initial with open contacts, or tangent in the static state",
+        ),
     ),
 )
 
@@ -54,7 +61,7 @@ def rows(structure: Structure, wanted: int | None) -> list[tuple[float, ...]]:
     # what rides on fixed freedoms only is no part of any mode:
     # the sum over all modes is the mass that can move
     total = ((structure.ground[:, :n] @ modes.shapes) ** 2).sum(axis=1)
-    c = structure.damping[:n, :n]
+    c = structure.initial_damping[:n, :n]
     for i in range(count):
         w, shape = float(modes.omega[i]), modes.shapes[:, i]
         damping = float(shape @ c @ shape) / (2 * w) if w > 0 else float("nan")

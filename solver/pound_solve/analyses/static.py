@@ -1,25 +1,32 @@
-r"""STATIC: displacements under the loads, event to event.
+r"""STATIC: displacements under the loads, event to event (see `path`), and what axial forces do to them.
 
-The laws are piecewise linear, so the path from the unloaded to the loaded structure is a chain
-of straight pieces: at each one the load is raised until the next spring yields or the next contact closes,
-exactly, and the stiffness is changed.  An initial overlap of a contact grows with the load too,
-so that the start is stress-free.
+Loads grow from nothing to their whole; an initial overlap of a contact grows with them, so that the start
+is free of stress.  With geometry PDELTA the members' axial forces N give the stiffness :math:`K_G(N)`; they
+are those of the static state itself, found by repeating the analysis until they do not change, and they
+act from the beginning of the loading on.  The loads may be multiplied by the *buckling load factor* until
+
+.. math:: \det\bigl(K_t + \lambda K_G(N)\bigr) = 0
+
+with the tangent stiffness and the axial forces that the loads cause without P-Delta.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve.analyses.path import Exit, Mark, Path, Unstable
 from pound_solve.assemble import Structure
-from pound_solve.dofs import label
 from pound_solve.laws import State
-from pound_solve.modes import deficiency, scaling
+from pound_solve.modes import scaling
 
 Array = NDArray[np.float64]
+
+MOST_ROUNDS = 100  #: of axial forces
 
 
 @dataclass(frozen=True)
@@ -34,11 +41,20 @@ class StaticState:
         State of every law.
     events : int
         Branch changes on the way.
+    axial : ndarray, shape (n_geometric,)
+        Axial forces that the geometric stiffness is made of, tension positive [F].
+    buckling : float
+        Buckling load factor; infinite if nothing is pressed, NaN where there is none.
+    rounds : int
+        How often the loads were put on until the axial forces were found.
     """
 
     u: Array
     states: tuple[State, ...]
     events: int
+    axial: Array = field(default_factory=lambda: np.zeros(0))
+    buckling: float = math.nan
+    rounds: int = 1
 
 
 def at_rest(structure: Structure) -> StaticState:
@@ -46,114 +62,83 @@ def at_rest(structure: Structure) -> StaticState:
     return StaticState(np.zeros(structure.n_free), tuple(s.law.start() for s in structure.laws), 0)
 
 
-class Unstable(Exception):
-    """The structure cannot carry the load: a mechanism, named by its worst freedom;
-    `code` is the message's number.
-    """
-
-    def __init__(self, why: str, code: str = "A501") -> None:
-        super().__init__(why)
-        self.code = code
-
-
-def solve(structure: Structure, most_events: int = 10_000) -> StaticState:
+def solve(structure: Structure) -> StaticState:
     """Load the structure from rest.
+
+    Parameters
+    ----------
+    structure : Structure
+        Without geometric stiffness: that of ``structure.stressed(result.axial)`` is in equilibrium.
 
     Raises
     ------
     Unstable
-        A loaded part is a mechanism, from the start or after yielding.
+        A loaded part is a mechanism or buckles, from the start or after yielding.
     """
+    state = loaded(structure)
+    if not structure.geometric:
+        return state
+    pad = np.zeros(len(structure.freedoms.moved))
+    axial = structure.axial(np.append(state.u, pad))
+    k = tangent(structure, state)
+    factor = buckling(k, tangent(structure.stressed(axial), state) - k)
+    if factor <= 1.0:
+        raise Unstable(f"the structure buckles: its buckling load factor is {factor:.6g}, which is below 1")
+    for rounds in range(2, MOST_ROUNDS):
+        state = loaded(structure.stressed(axial))
+        found = structure.axial(np.append(state.u, pad))
+        if np.abs(found - axial).max() <= 1e-12 * np.abs(found).max():
+            return replace(state, axial=axial, buckling=factor, rounds=rounds)
+        axial = found
+    raise Unstable(f"the axial forces did not settle within {MOST_ROUNDS} rounds of P-Delta", "A507")
+
+
+def loaded(structure: Structure) -> StaticState:
+    """Put the loads on a structure at rest."""
+    load = structure.loads[: structure.n_free]
+    rest = at_rest(structure)
+    # what presses or stretches a law at rest, an overlap or a prestress, is led in with the load
+    starts = [s.law.branch(x) for s, x in zip(structure.laws, rest.states)]
+    lead = np.array([-b.force0 / b.stiffness if b.force0 else 0.0 for b in starts])
+    if not load.any() and not lead.any():
+        return rest
+    path = Path(structure, rest.u, rest.states, 0.0 * load, load, lead=lead)
+    whole = Mark(0.0 * load, 1.0, 1.0)
+    while (hit := path.step([whole])) != 0:
+        if isinstance(hit, Exit):
+            path.leave(hit)
+    return StaticState(path.u, tuple(path.states), path.changes)
+
+
+def tangent(structure: Structure, state: StaticState) -> Array:
+    """Tangent stiffness of the unknowns in that state, shape (n_free, n_free)."""
+    nothing = np.zeros(structure.n_free)
+    return Path(structure, state.u, state.states, nothing, nothing).tangent()
+
+
+def after(structure: Structure, state: StaticState) -> Structure:
+    """The structure whose initial stiffness is the tangent one of that state (for MODAL AFTER=STATIC)."""
     n = structure.n_free
-    laws, rows = structure.laws, structure.law_rows[:, :n]
-    load = structure.loads[:n]
-    # the overlap of a contact is led in with the load: f = k (d - share * gap)
-    overlaps = np.array([min(s.facts["gap"], 0.0) if s.is_contact else 0.0 for s in laws])
-    if not load.any() and not overlaps.any():
-        return at_rest(structure)
-    states: list[State] = [s.law.start() for s in laws]
-    d, u = np.zeros(len(laws)), np.zeros(n)
-    share, events = 0.0, 0
-    while share < 1.0:
-        branches = [s.law.branch(x) for s, x in zip(laws, states)]
-        k = structure.stiffness[:n, :n] + (rows.T * [b.stiffness for b in branches]) @ rows
-        push = load + rows.T @ np.array([b.stiffness * o for b, o in zip(branches, overlaps)])
-        step = _solve(structure, k, push)
-        rate = rows @ step
-        best, which = 1.0 - share, None
-        for i, branch in enumerate(branches):
-            # exits move with the overlap that is led in: along a contact the effective deformation
-            # is d - (share-1) gap
-            effective, speed = d[i] - (share - 1.0) * overlaps[i], rate[i] - overlaps[i]
-            for e, (a, b, c) in enumerate(branch.exits):
-                if a == 0.0:  # leaves where the motion turns
-                    if b * rate[i] > 0 and best > 0.0:
-                        best, which = 0.0, (i, e)
-                    continue
-                now, slope = a * effective + c, a * speed
-                if slope > 1e-14 * (abs(a) * abs(speed) + 1e-300) and now + slope * best > 0:
-                    at = max(-now / slope, 0.0)
-                    if at < best:
-                        best, which = at, (i, e)
-        u, d, share = u + best * step, d + best * rate, share + best
-        if which is None:
-            break
-        i, e = which
-        states[i] = laws[i].law.leave(states[i], e, d[i] - (share - 1.0) * overlaps[i])
-        events += 1
-        if events > most_events:
-            raise Unstable(
-                f"more than {most_events} springs and contacts changed state under the static load", "A507"
-            )
-    return StaticState(u, tuple(states), events)
+    k = structure.initial_stiffness.copy()
+    k[:n, :n] = tangent(structure, state)
+    return replace(structure, initial_stiffness=k)
 
 
-def _solve(structure: Structure, k: Array, load: Array) -> Array:
-    """Solve K u = load; freedoms without stiffness stay at zero if nothing loads them."""
-    n = len(k)
-    held = np.any(k != 0.0, axis=1)
-    loose = ~held & (load != 0.0)
-    if loose.any():
-        first = int(np.flatnonzero(loose)[0])
-        touched = any(
-            s.is_contact and row[first] != 0.0 for s, row in zip(structure.laws, structure.law_rows)
-        )
-        hint = ": only an open contact could; HISTORY FROM=REST lets it come down" if touched else ""
-        raise Unstable(f"{_name(structure, first)} is loaded, but nothing holds it{hint}")
-    at = np.flatnonzero(held)
-    u = np.zeros(n)
+def buckling(k: Array, geometric: Array) -> float:
+    """Smallest positive factor that makes ``K + factor * geometric`` singular;
+    infinite if none does, NaN if K is not positive definite on the freedoms that it holds.
+    """
+    at = np.flatnonzero(np.any(k != 0.0, axis=1))
     if not len(at):
-        return u
+        return math.nan
     root = scaling(k[np.ix_(at, at)])
-    scaled, push = root[:, None] * k[np.ix_(at, at)] * root, root * load[at]
-    lacking = deficiency(scaled)
-    if not lacking:
-        u[at] = root * np.linalg.solve(scaled, push)
-        return u
-    values, vectors = np.linalg.eigh(scaled)
-    weak = np.arange(len(at)) < lacking
-    along = vectors.T @ push
-    if np.any(values < -1e-10):
-        worst = at[int(np.argmax(np.abs(vectors[:, 0])))]
-        raise Unstable(
-            "the stiffness is negative: the structure has collapsed, "
-            f"worst at {_name(structure, int(worst))}"
-        )
-    if np.any(np.abs(along[weak]) > 1e-10 * np.abs(along).max()):
-        worst = at[int(np.argmax(np.abs(vectors[:, weak] @ along[weak])))]
-        raise Unstable(
-            f"the loaded structure is a mechanism, worst at {_name(structure, int(worst))} (or parts of it "
-            "are so much stiffer than others that it cannot be told from one: END1, END2 or SLAVED make "
-            "parts rigid)"
-        )
-    # an unloaded mechanism (a free diaphragm) stays where it is
-    along[weak] = 0.0
-    u[at] = root * (vectors @ (along / np.where(weak, 1.0, values)))
-    return u
-
-
-def _name(structure: Structure, index: int) -> str:
-    return label(structure.freedoms.free[index])
+    try:
+        lower = np.linalg.cholesky(root[:, None] * k[np.ix_(at, at)] * root)
+    except np.linalg.LinAlgError:
+        return math.nan
+    half = np.linalg.solve(lower, root[:, None] * geometric[np.ix_(at, at)] * root)
+    least = float(np.linalg.eigvalsh(np.linalg.solve(lower, half.T))[0])
+    return -1.0 / least if least < -1e-12 else math.inf
 
 
 SPEC = Spec(

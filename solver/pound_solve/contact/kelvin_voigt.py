@@ -157,5 +157,6 @@ SPEC = Spec(
     ),
     code=1,
     reference="Anagnostopoulos 1988, 2004; no tension: Shakya, Wijeyewickrema & Ohmachi 2008",
+    sample="E=0.5",
     impl=build,
 )

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_deck.model import Card, Element, Node
+from pound_deck.schema import Spec
 from pound_solve.dofs import Freedom
 from pound_solve.laws import Branch, Law, State
 
@@ -34,13 +35,17 @@ class LawSpring:
     Attributes
     ----------
     component : str
-        ``X``, ``Y``, ``R`` or ``contact``.
+        Its name within the element: ``X``, ``Y``, ``R``, ``hinge I``, ... or ``contact``.
     rule : str
         Name of the law's Spec.
     k0 : float
         Initial stiffness for modes and damping [F/L] or [F L]; 0 for a contact.
+    unit : str
+        Dimension of the force, ``F`` or ``F*L``.
     beta : float
-        Dashpot as a multiple of the present stiffness [T] (damping models set it).
+        Dashpot as a multiple of the present stiffness, where that is positive [T] (damping models set it).
+    secant : float
+        Dashpot as a multiple of the secant stiffness [T]; not zero with a `SecantLaw` only.
     yields : tuple of float or None
         Deformations at first yield, positive and negative, for ductilities.
     facts : mapping
@@ -56,7 +61,9 @@ class LawSpring:
     k0: float = 0.0
     yields: tuple[float, float] | None = None
     facts: Mapping[str, Any] = field(default_factory=dict)
+    unit: str = "F"
     beta: float = 0.0
+    secant: float = 0.0
 
     @property
     def is_contact(self) -> bool:
@@ -64,14 +71,16 @@ class LawSpring:
         return self.component == "contact"
 
     def branch(self, state: State) -> Branch:
-        """Linear piece that the law is on, the dashpot of `beta` included."""
+        """Linear piece that the law is on, the dashpots of `beta` and `secant` included."""
         own = self.law.branch(state)
-        return own._replace(damping=own.damping + self.beta * own.stiffness) if self.beta else own
+        if not self.beta and not self.secant:
+            return own
+        follows = self.secant * state[3][-1] if self.secant else 0.0
+        return own._replace(damping=own.damping + self.beta * max(own.stiffness, 0.0) + follows)
 
     def force(self, state: State, d: float, v: float) -> float:
-        """Force at deformation `d` and rate `v`."""
-        f, k, _ = self.law.force(state, d, v)
-        return f + self.beta * k * v
+        """Force at deformation `d` and rate `v`; damping counts in a contact's force, not in a spring's."""
+        return self.law.force(state, d, v if self.is_contact else 0.0)[0]
 
 
 @dataclass(frozen=True)
@@ -90,11 +99,34 @@ class Output:
     constant: float = 0.0
 
 
+@dataclass(frozen=True)
+class Geometric:
+    """Stiffness of a member from its own axial force.
+
+    Attributes
+    ----------
+    matrix : ndarray, shape (n, n)
+        For an axial force of one (tension), on `freedoms` [1/L, -, L].
+    axial : ndarray, shape (n,)
+        The axial force is ``axial . u + constant``, tension positive [F].
+    forces : mapping of str to ndarray, shape (n,)
+        What an axial force of one adds to the rows of the member's outputs, by their quantity.
+    """
+
+    element: int
+    freedoms: tuple[Freedom, ...]
+    matrix: Matrix
+    axial: Matrix
+    constant: float
+    forces: Mapping[str, Matrix] = field(default_factory=dict)
+
+
 @dataclass
 class Parts:
     """Everything one element adds to the structure."""
 
     stiffness: list[Block] = field(default_factory=list)
+    geometric: list[Geometric] = field(default_factory=list)
     damping: list[Block] = field(default_factory=list)
     mass: list[Block] = field(default_factory=list)
     loads: list[tuple[tuple[Freedom, ...], Matrix]] = field(default_factory=list)
@@ -103,9 +135,29 @@ class Parts:
 
     def internal(self) -> tuple[Freedom, ...]:
         """Freedoms of the element's own, beside those of its nodes."""
-        touched = [b.freedoms for b in self.stiffness] + [s.freedoms for s in self.laws]
+        blocks = [*self.stiffness, *self.damping, *self.mass]
+        touched = [b.freedoms for b in blocks] + [s.freedoms for s in self.laws]
         used = [f for freedoms in touched for f in freedoms if f[1] > 2]
         return tuple(sorted(set(used)))
+
+    def initial(self) -> Block:
+        """Initial stiffness on the nodes' freedoms alone, the element's own following statically.
+
+        Damping in proportion to it acts on the member as a whole; on a hinge, whose initial stiffness is
+        large, it would add to the yield moment.
+        """
+        blocks = self.stiffness + [Block(s.freedoms, s.k0 * np.outer(s.row, s.row)) for s in self.laws]
+        freedoms = tuple(dict.fromkeys(f for b in blocks for f in b.freedoms))
+        place = {f: i for i, f in enumerate(freedoms)}
+        k = np.zeros((len(freedoms), len(freedoms)))
+        for b in blocks:
+            at = [place[f] for f in b.freedoms]
+            k[np.ix_(at, at)] += b.matrix
+        own = [i for f, i in place.items() if f[1] > 2 and k[i].any()]
+        nodes = [i for f, i in place.items() if f[1] < 3]
+        follow = np.linalg.solve(k[np.ix_(own, own)], k[np.ix_(own, nodes)])
+        left = k[np.ix_(nodes, nodes)] - k[np.ix_(nodes, own)] @ follow
+        return Block(tuple(freedoms[i] for i in nodes), left)
 
 
 @dataclass(frozen=True)
@@ -122,6 +174,8 @@ class Site:
         MEMBER_LOADS cards that name this element.
     self_weight : bool
         Whether member weight loads the structure.
+    geometry : str
+        Kind of geometric stiffness that members give: ``SMALL`` (none), ``PDELTA`` or ``PDELTA_MEMBER``.
     mass_along : callable
         ``mass_along(node, (nx, ny))``: translational mass [F T^2/L] of a node
         along a direction; contacts only.
@@ -135,6 +189,7 @@ class Site:
     consistent: bool
     member_loads: tuple[Card, ...]
     self_weight: bool
+    geometry: str
     mass_along: Callable[[int, tuple[float, float]], float]
 
 
@@ -144,6 +199,60 @@ class ElementError(Exception):
     def __init__(self, message: str, item: str = "") -> None:
         super().__init__(message)
         self.item = item
+
+
+def signed(values: tuple[float, ...], item: str) -> tuple[float, float]:
+    """Strengths in both directions, positive and negative; one value stands for both.
+
+    Raises
+    ------
+    ElementError
+        A strength has the wrong sign.
+    """
+    plus, minus = (values[0], -values[0]) if len(values) == 1 else values
+    if plus < 0 or minus > 0:
+        raise ElementError(f"{item} is written positive, then negative (signed)", item)
+    return plus, minus
+
+
+def hysteretic(
+    element: int,
+    component: str,
+    unit: str,
+    row: Mapping[Freedom, float],
+    card: Card,
+    rule: Spec,
+    k: float,
+    strength: tuple[float, float],
+) -> LawSpring:
+    """A component that follows a hysteresis rule.
+
+    Parameters
+    ----------
+    row : mapping of Freedom to float
+        Its deformation.
+    card : Card
+        Holds the rule's items.
+    rule : Spec
+        Of the family hysteresis, not ELASTIC.
+    k : float
+        Initial stiffness [F/L] or [F L].
+    strength : tuple of float
+        Forces at which it yields, positive and negative.
+
+    Raises
+    ------
+    ElementError
+        The rule does not take these values.
+    """
+    plus, minus = strength
+    try:
+        law = rule.impl(card.values, k, plus, minus)
+    except ValueError as err:
+        raise ElementError(str(err), "RULE") from None
+    freedoms, factors = zip(*((f, float(x)) for f, x in row.items() if x != 0.0))
+    yields = (plus / k, minus / k)
+    return LawSpring(element, component, rule.name, freedoms, factors, law, k, yields, unit=unit)
 
 
 def axes(angle: float) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -11,7 +11,16 @@ import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.dofs import Freedom
-from pound_solve.elements.base import Block, ElementError, LawSpring, Output, Parts, Site, axes
+from pound_solve.elements.base import (
+    Block,
+    ElementError,
+    Output,
+    Parts,
+    Site,
+    axes,
+    hysteretic,
+    signed,
+)
 
 
 def components(site: Site) -> list[tuple[str, tuple[Freedom, ...], tuple[float, ...]]]:
@@ -37,40 +46,32 @@ def components(site: Site) -> list[tuple[str, tuple[Freedom, ...], tuple[float, 
 def build(site: Site) -> Parts:
     """Build the components that have stiffness."""
     card, parts = site.prop, Parts()
-    rules = card.laws["RULE"]
+    names = card["RULE"]
+    if len(names) == 2:
+        raise ElementError("RULE takes one rule for all components, or three for x, y, rotation", "RULE")
+    specs = {spec.name: spec for spec in card.laws["RULE"]}
     for n, (name, freedoms, row) in enumerate(components(site)):
-        k, force = card["K" + name], card["F" + name if name != "R" else "MR"]
-        rule = rules[n] if len(rules) == 3 else rules[0]
+        k, item = card["K" + name], "F" + name if name != "R" else "MR"
+        force = card[item]
+        rule = specs[names[n] if len(names) == 3 else names[0]]
         if k == 0.0:
             continue
-        r = np.array(row)
         unit = "F*L" if name == "R" else "F"
-        yielding = "F" + name if name != "R" else "MR"
         if rule.impl is not None and force is None:
             raise ElementError(
-                f"{rule.name} along {name} needs the yield force {yielding}; "
+                f"{rule.name} along {name} needs the yield force {item}; "
                 "an elastic component has its own RULE=...,ELASTIC",
                 "RULE",
             )
         if rule.impl is None and force is not None:
-            raise ElementError(
-                f"{yielding} has no effect with RULE=ELASTIC: name a rule that yields", yielding
-            )
+            raise ElementError(f"{item} has no effect with RULE=ELASTIC: name a rule that yields", item)
         if rule.impl is None:
+            r = np.array(row)
             parts.stiffness.append(Block(freedoms, k * np.outer(r, r)))
             parts.outputs.append(Output(site.element.id, f"force {name}", unit, freedoms, k * r))
             continue
-        plus = force[0]
-        minus = force[1] if len(force) == 2 else -plus
-        if plus < 0 or minus > 0:
-            raise ElementError("yield forces are written positive, then negative (signed)", "F" + name)
-        try:
-            law = rule.impl(card.values, k, plus, minus)
-        except ValueError as err:
-            raise ElementError(str(err), "RULE") from None
-        parts.laws.append(
-            LawSpring(site.element.id, name, rule.name, freedoms, row, law, k, (plus / k, minus / k))
-        )
+        at = dict(zip(freedoms, row))
+        parts.laws.append(hysteretic(site.element.id, name, unit, at, card, rule, k, signed(force, item)))
     return parts
 
 

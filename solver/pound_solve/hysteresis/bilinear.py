@@ -74,5 +74,6 @@ SPEC = Spec(
     ),
     code=2,
     reference="Iwan 1966; Ruaumoko rule 2",
+    sample="R=0.1",
     impl=build,
 )

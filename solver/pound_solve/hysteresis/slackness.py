@@ -28,8 +28,10 @@ SLACK, ELASTIC_PLUS, ELASTIC_MINUS, YIELDING_PLUS, YIELDING_MINUS, BACK_PLUS, BA
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: in the slack."""
-    return SLACK, remember()
+    """Virgin: in the slack, or on a side that has none (or less than none, a prestress)."""
+    if p[3] <= 0.0:
+        return ELASTIC_PLUS, remember()
+    return (ELASTIC_MINUS if p[4] >= 0.0 else SLACK), remember()
 
 
 def line(p: Numbers, at: int) -> tuple[float, float, float]:
@@ -154,5 +156,6 @@ SPEC = Spec(
     ),
     code=5,
     reference="Ruaumoko rule 5",
+    sample="R=0.1 SLACK=0.5",
     impl=build,
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,12 +41,15 @@ class Watch:
 
 @dataclass(frozen=True)
 class Start:
-    """State at t = 0: displacement and velocity (n,), laws' states, output times (ascending, from 0)."""
+    """State at the start: displacement and velocity (n,), laws' states, output times (ascending,
+    the first is the start), works so far (3,) as in `Sink.sample`.
+    """
 
     u: Array
     v: Array
     states: tuple[State, ...]
     times: Array
+    works: Array = field(default_factory=lambda: np.zeros(3))
 
 
 @dataclass
@@ -124,24 +127,51 @@ class Peak(Protocol):
         ...
 
 
+class LawValues(NamedTuple):
+    """Forces [F] or [F L], recoverable and lost energies [F L] of all laws, shape (n_laws,) each."""
+
+    force: Array
+    stored: Array
+    lost: Array
+
+
+def law_values(scene: Scene, t: float, u: Array, v: Array, states: Sequence[State]) -> LawValues:
+    """Forces and energies of all laws from their states."""
+    d = (scene.law_rows @ u + scene.law_inputs @ scene.excitation.value(t)).tolist()
+    rate = (scene.law_rows @ v + scene.law_inputs @ scene.excitation.value(t, 1)).tolist()
+    laws = scene.structure.laws
+    return LawValues(
+        np.array([s.force(x, p, q) for s, x, p, q in zip(laws, states, d, rate)]),
+        np.array([s.law.stored(x, p) for s, x, p in zip(laws, states, d)]),
+        np.array([s.law.dissipated(x, p) for s, x, p in zip(laws, states, d)]),
+    )
+
+
 class Sink(Protocol):
     """Takes the samples of a history."""
 
-    def sample(self, t: float, u: Array, v: Array, a: Array, states: Sequence[State], works: Array) -> None:
-        """Take the motion and the laws' states at an output time.
+    def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take the motion and the laws' forces and energies at an output time.
 
         `works`, shape (3,), are the work put in, and that lost so far in the structure's
         and in the contacts' dashpots.
         """
         ...
 
+    def trial(self, t: float) -> None:
+        """Be told the time reached by a run whose samples may not count."""
+        ...
+
 
 @dataclass
 class Outcome:
-    """How an integration went: its peaks, whether they are exact, figures, self-checks."""
+    """How an integration went: its peaks, whether they are exact, figures, self-checks;
+    the laws' states at its end.
+    """
 
     peaks: Peaks
     figures: dict[str, Any]
+    states: tuple[State, ...]
     checks: list[tuple[str, str, str]] = field(default_factory=list)
     exact: bool = False
 
@@ -194,7 +224,7 @@ class Ledger:
     ) -> None:
         """Note that a law went from branch `before` to `after` at deformation `d`, rate `v`."""
         if not self.laws[law].is_contact:
-            if after.startswith("yielding"):
+            if after.startswith("yielding") and not before.startswith("yielding"):
                 self.peaks.yields[law] += 1
             return
         ended = [i for i, c in enumerate(self.peaks.collisions) if c.law == law]
@@ -246,10 +276,11 @@ class _Running:
 def goals(scene: Scene, times: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Return the times after 0 at which an integrator must arrive, and which of them are output times.
 
+    They come after the first of `times`, the start.
     Breaks of the excitation and output times that differ by rounding only are one: no interval is a sliver.
     """
     breaks, end = scene.excitation.breaks, float(times[-1])
-    inner = breaks[(breaks > 0) & (breaks < end)]
+    inner = breaks[(breaks > times[0]) & (breaks < end)]
     near = np.clip(np.searchsorted(times, inner), 1, len(times) - 1)
     apart = np.minimum(np.abs(inner - times[near]), np.abs(inner - times[near - 1])) > 1e-12 * end
     out = np.unique(np.concatenate([inner[apart], times[1:]]))
@@ -271,17 +302,16 @@ def cubic_top(f0: float, f1: float, s0: float, s1: float, h: float) -> tuple[flo
     return (0.0, f0) if f0 > f1 else (h, f1)
 
 
-def energies(
-    scene: Scene, t: Array, u: Array, v: Array, states: Sequence[Sequence[State]], works: Array
-) -> Array:
-    """Return all energies at some times: the works so far, and what the states hold and have lost.
+def energies(scene: Scene, t: Array, u: Array, v: Array, stored: Array, lost: Array, works: Array) -> Array:
+    """Return all energies at some times.
 
     Parameters
     ----------
     scene : Scene
     t : ndarray, shape (n_times,)
     u, v : ndarray, shape (n_times, n)
-    states : sequence of n_times sequences of State
+    stored, lost : ndarray, shape (n_times, n_laws)
+        What the laws hold and have lost.
     works : ndarray, shape (n_times, 3)
 
     Returns
@@ -289,19 +319,24 @@ def energies(
     ndarray, shape (n_times, 6)
         In the order of `ENERGIES` [F L].
     """
-    laws, mass, stiffness = scene.structure.laws, scene.mass, scene.stiffness
-    inputs = scene.excitation.values(t)
-    d = u @ scene.law_rows.T + inputs @ scene.law_inputs.T
+    mass, stiffness = scene.mass, scene.stiffness
     if scene.total:  # moved supports have mass and stretch elements too
         mass, stiffness = scene.structure.mass, scene.structure.stiffness
-        u = scene.expanded(u.T, inputs.T).T
+        u = scene.expanded(u.T, scene.excitation.values(t).T).T
         v = scene.expanded(v.T, scene.excitation.values(t, 1).T, 1).T
+    contact = np.array([s.is_contact for s in scene.structure.laws], bool)
     out = np.zeros((len(t), len(ENERGIES)))
     out[:, 0], out[:, 3], out[:, 5] = works.T
     out[:, 1] = 0.5 * (v * (v @ mass)).sum(axis=1)
-    out[:, 2] = 0.5 * (u * (u @ stiffness)).sum(axis=1)
-    for row, at, state in zip(out, d.tolist(), states):
-        for spring, x, own in zip(laws, at, state):
-            row[2] += spring.law.stored(own, x)
-            row[5 if spring.is_contact else 4] += spring.law.dissipated(own, x)
+    out[:, 2] = 0.5 * (u * (u @ stiffness)).sum(axis=1) + stored.sum(axis=1)
+    out[:, 4] = lost[:, ~contact].sum(axis=1)
+    out[:, 5] += lost[:, contact].sum(axis=1)
     return out
+
+
+def energy_at_start(scene: Scene, start: Start) -> float:
+    """Kinetic and recoverable energy [F L]: with the work put in since, all that the motion can hold."""
+    t, u, v = start.times[:1], start.u, start.v
+    laws = law_values(scene, float(t[0]), u, v, start.states)
+    whole = energies(scene, t, u[None], v[None], laws.stored[None], laws.lost[None], np.zeros((1, 3)))
+    return float(whole[0, 1] + whole[0, 2])

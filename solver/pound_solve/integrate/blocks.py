@@ -404,17 +404,15 @@ class Window:
             block.q = self.state(block, interval, tau)
 
     def works(self, intervals: slice, length: float) -> tuple[Array, Array, dict[int, Array]]:
-        """Dashpots' work, input, and losses in contacts' dashpots by law,
+        """Work in the structure's dashpots, input, and losses in the laws' dashpots by law,
         over `length` of some intervals each.
         """
         scene = self.partition.scene
         count = len(range(*intervals.indices(self.intervals)))
         damping, input_ = np.zeros(count), np.zeros(count)
-        contacts: dict[int, Array] = {}
+        laws: dict[int, Array] = {}
         for block in self.partition.blocks:
             r = block.regime
-            if scene.total and not r.meter.contacts:
-                continue
             ps = None if block.ps is None else block.ps[intervals]
             done = r.meter.measures(
                 block.qs[:, :-1][:, intervals],
@@ -425,8 +423,8 @@ class Window:
                 ps,
             )
             damping, input_ = damping + done.damping, input_ + done.input
-            contacts.update(done.contacts)
-        return damping, input_, contacts
+            laws.update(done.laws)
+        return damping, input_, laws
 
     def impulse(self, law: int, interval: int, tau: float) -> float:
         """Integral of a law's force over the first `tau` of an interval [F T]."""

@@ -18,6 +18,7 @@ Their sum against kinetic and strain energy is therefore a check of the whole in
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -28,19 +29,21 @@ from pound_solve.integrate import search, work
 from pound_solve.integrate.base import (
     INTERRUPTED,
     RUNAWAY,
+    LawValues,
     Ledger,
     Outcome,
     Sink,
     Start,
     Stop,
     Watch,
-    energies,
+    energy_at_start,
+    law_values,
 )
 from pound_solve.integrate.base import goals as goals_of
 from pound_solve.integrate.blocks import Partition, Window
 from pound_solve.integrate.flow import MOST_CONDITION, Mechanism, SeriesFlow
 from pound_solve.laws import Branch
-from pound_solve.scene import Decision, Scene
+from pound_solve.scene import Condensed, Decision, Scene, condense
 
 Array = NDArray[np.float64]
 
@@ -77,12 +80,13 @@ class Exact:
                 )
             )
         self.ledger = Ledger(scene, len(watch.names))
-        self.t, self.u, self.v = 0.0, start.u.copy(), start.v.copy()
-        self.works = np.zeros(3)  # input, dashpots of the structure, dashpots of contacts
+        self.t, self.u, self.v = float(start.times[0]), start.u.copy(), start.v.copy()
+        self.works = start.works.copy()  # input, dashpots of structure and springs, dashpots of contacts
         self.largest = np.zeros((2, n))  # |d|, |v| seen, the scale of the exits
         self.ahead = 1  # intervals of the next window
         self.events = self.windows = self.same_instant = self.pieces = 0
-        self.held = self.put_in = 0.0  # energy at the start, sum of all |input| since
+        self.held = energy_at_start(scene, start)
+        self.put_in = 0.0  # sum of all |input| since the start
 
     def run(self) -> Outcome:
         """Integrate to the last output time."""
@@ -92,11 +96,8 @@ class Exact:
                 self.ledger.switched(i, "open", "pressed", 0.0, d, v, self.branches[i].force(d, v))
         self._form()
         goals, self.is_output = goals_of(self.scene, self.times)
-        now = [self.states]
-        whole = energies(self.scene, np.zeros(1), self.u[None], self.v[None], now, self.works[None])
-        self.held = float(whole[0, 1] + whole[0, 2])
-        first = self._window(0.0, np.zeros(1))  # of no length: for the first sample only
-        self.sink.sample(0.0, *first.motion(0, 0.0), tuple(self.states), self.works)
+        first = self._window(0.0, np.array([self.t]))  # of no length: for the first sample only
+        self._hand_out(self.t, *first.motion(0, 0.0), self.works)
         cursor = 0
         while cursor < len(goals):
             cursor = self._advance(goals, cursor)
@@ -128,12 +129,7 @@ class Exact:
         if goals[cursor] - self.t <= 1e-14 * max(1.0, self.t):  # an event fell on the goal
             self.t = float(goals[cursor])
             if self.is_output[cursor]:
-                self.sink.sample(
-                    self.t,
-                    *self._window(0.0, np.array([self.t])).motion(0, 0.0),
-                    tuple(self.states),
-                    self.works,
-                )
+                self._hand_out(self.t, *self._window(0.0, np.array([self.t])).motion(0, 0.0), self.works)
             return cursor + 1
         # twelve digits: intervals of equal length share their exponentials,
         # whatever the rounding of the times
@@ -220,10 +216,12 @@ class Exact:
         kinetic = 0.5 * float(v[:, -1] @ self.scene.mass @ v[:, -1])
         if not kinetic <= 10.0 * (self.held + self.put_in) + 1e-300:
             raise self.stop("A504", RUNAWAY.format(kinetic))
-        states = tuple(self.states)
         for i in np.flatnonzero(self.is_output[cursor : cursor + count]).tolist():
-            self.sink.sample(float(goals[cursor + i]), u[:, i], v[:, i], a[:, i], states, works[i])
+            self._hand_out(float(goals[cursor + i]), u[:, i], v[:, i], a[:, i], works[i])
         self.works = works[-1]
+
+    def _hand_out(self, t: float, u: Array, v: Array, a: Array, works: Array) -> None:
+        self.sink.sample(t, u, v, a, law_values(self.scene, t, u, v, self.states), works)
 
     def _work(self, window: Window, interval: int, tau: float) -> None:
         """Add the work done over the first `tau` of an interval."""
@@ -233,12 +231,11 @@ class Exact:
     def _measure(self, window: Window, first: int, last: int, tau: float) -> Array:
         """Work put in and lost in dashpots over `tau` of some intervals, shape (last - first, 3).
 
-        Contacts' losses and impulses are noted on the way.
+        Laws' losses and contacts' impulses are noted on the way.
         """
-        damping, input_, contacts = window.works(slice(first, last), tau)
         if self.scene.total:
-            for i in range(first, last):
-                input_[i - first], damping[i - first] = work.total_work(
+            each = [
+                work.total_work(
                     self.scene,
                     tau,
                     self.partition.fastest,
@@ -246,11 +243,23 @@ class Exact:
                     lambda x, i=i: window.path(i, x),  # type: ignore[misc]
                     self.branches,
                 )
-        for law, loss in contacts.items():
+                for i in range(first, last)
+            ]
+            damping, input_ = np.array([w.damping for w in each]), np.array([w.input for w in each])
+            losses = {
+                law: np.array([w.laws[n][1] for w in each]) for n, (law, _) in enumerate(each[0].laws)
+            }
+        else:
+            damping, input_, losses = window.works(slice(first, last), tau)
+        lost = np.zeros(last - first)
+        for law, loss in losses.items():
             self.ledger.peaks.dashpot_losses[law] += float(loss.sum())
+            if self.laws[law].is_contact:
+                lost += loss
+            else:
+                damping = damping + loss
         for law, collision in self.ledger.open.items():
             collision.impulse += sum(window.impulse(law, i, tau) for i in range(first, last))
-        lost = sum(contacts.values(), np.zeros(last - first))
         return np.column_stack([input_, damping, lost])
 
     def _first_event(
@@ -275,7 +284,7 @@ class Exact:
         before = self.branches[law].name
         self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, d)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
-        force = after.force(d, v)
+        force = self.laws[law].force(self.states[law], d, v)
         self.events += 1
         self.ledger.switched(law, before, after.name, self.t, d, v, force)
         self.ledger.peaks.force[law].take(force, self.t)
@@ -303,6 +312,7 @@ class Exact:
             np.array([getattr(self.branches[i], x) for i in acting])[:, None]
             for x in ("stiffness", "damping", "force0")
         )
+        c *= np.array([[self.laws[i].is_contact] for i in acting])  # a spring's force is without damping
 
         def exact(i: int, tau: float) -> tuple[float, float]:
             d, v, w = window.at(acting[i], tau)
@@ -342,11 +352,29 @@ class Exact:
         ]
         if any(isinstance(f, SeriesFlow) for f in flows):
             checks.append(("defective modes", "met", "integrated by the exponential series"))
-        return Outcome(self.ledger.close(), figures, checks, exact=True)
+        return Outcome(self.ledger.close(), figures, tuple(self.states), checks, exact=True)
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""
         return Stop(code, self.t, why, self.outcome())
+
+
+class Whole:
+    """Hands samples on with all unknowns, condensed ones too."""
+
+    def __init__(self, sink: Sink, small: Condensed) -> None:
+        self.sink, self.small, self.at_start = sink, small, small.put_in(0.0)
+
+    def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take one sample (see `integrate.base.Sink`)."""
+        u, v, a = (self.small.all(x, t, order) for order, x in enumerate((u, v, a)))
+        if not self.small.scene.total:  # the total form counts the work on all freedoms
+            works = works + np.array([self.small.put_in(t) - self.at_start, 0.0, 0.0])
+        self.sink.sample(t, u, v, a, laws, works)
+
+    def trial(self, t: float) -> None:
+        """Pass it on."""
+        self.sink.trial(t)
 
 
 def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
@@ -357,7 +385,19 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     Stop
         Too many changes at one instant, a mechanism, numbers beyond all bounds, or an interrupt.
     """
-    run = Exact(scene, start, watch, options, sink)
+    small = condense(scene)
+    run = Exact(
+        small.scene,
+        replace(start, u=start.u[small.keep], v=start.v[small.keep]),
+        Watch(
+            watch.names,
+            watch.rows @ small.expand,
+            watch.input_rows + watch.rows @ small.follow,
+            watch.constants + watch.rows @ small.constant,
+        ),
+        options,
+        Whole(sink, small),
+    )
     try:
         return run.run()
     except KeyboardInterrupt:

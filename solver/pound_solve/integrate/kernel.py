@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 
 from pound_solve.integrate.ldl import Pattern, factor, solve, update
 from pound_solve.jit import Tables
+from pound_solve.laws import MEMORY
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -36,6 +37,7 @@ DONE, FULL, RUNAWAY, CHATTER, PIVOT, NEWTON, STEP_TOO_LONG = range(7)
 GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST = range(8)  #: the integers of `count`
 
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
+TURN = 1e-6  #: share of its largest rate that a law must move back with before it counts as turned
 CLOSE = 1e-13  #: share of a step to which an event is located
 REFRESH = 200  #: updates of rank one before a factor is made anew
 COLUMNS = 10  #: of the log: law, branches before and after, t, d, v, force; peak, its time, impulse
@@ -47,7 +49,8 @@ HIGH, T_HIGH, LOW, T_LOW, SLOPE, VALUE = range(6)  #: rows of `Motion.peak`
 WHOLE, PIECE, MASS = range(3)  #: rows of `Motion.l`, and of its pivots
 # columns of `Laws.f`: the linear piece, exits; entry of the state; motion; dashpot; what a contact counts
 K, C, F0, EXIT, D0, WORK = 0, 1, 2, 3, 12, 13
-LD, LV, LD1, LV1, MOST_D, MOST_V, BETA, DASHPOT, PEAK, T_PEAK, IMPULSE = range(14, 25)
+LD, LV, LD1, LV1, MOST_D, MOST_V, BETA, DASHPOT, PEAK, T_PEAK, IMPULSE, SECANT = range(14, 26)
+TURN, STIFFNESS = MEMORY, MEMORY + 1  #: columns of `Laws.memory` beside the rule's own (see `SecantLaw`)
 CODE, CURVED, CONTACT, AT, N_EXITS, SAVED = range(6)  #: columns of `Laws.i`
 
 
@@ -63,8 +66,14 @@ class Matrices(NamedTuple):
     pattern : Pattern
     a : ndarray, shape (3, n_entries)
         M, C and K on the pattern.
+    column : ndarray, shape (n_entries,)
+        Columns of the pattern's entries.
     heavy : ndarray, shape (n,)
         Which unknowns have mass.
+    inert : bool
+        Whether all have.
+    implicit : bool
+        Whether the stiffness is in the pattern.
     diagonal : bool
         Whether M is.
     explicit : bool
@@ -87,7 +96,10 @@ class Matrices(NamedTuple):
     constant: Array
     pattern: Pattern
     a: Array
+    column: Index
     heavy: NDArray[np.bool_]
+    inert: bool
+    implicit: bool
     diagonal: bool
     explicit: bool
     rows: tuple[Index, Index, Array]
@@ -110,10 +122,10 @@ class Laws(NamedTuple):
         Where each law's ``b b^T`` adds to A: pointers, positions in its pattern, products.
     supports : ndarray, shape (n_laws, n_moved)
     p : ndarray, shape (n_laws, PARAMETERS)
-    memory : ndarray, shape (n_laws, MEMORY)
-    f, i : ndarray, shapes (n_laws, 25), (n_laws, 6)
+    memory : ndarray, shape (n_laws, MEMORY + 2)
+    f, i : ndarray, shapes (n_laws, 26), (n_laws, 6)
         Columns as above.
-    saved : ndarray, shape (n_laws, 3 + MEMORY)
+    saved : ndarray, shape (n_laws, 5 + MEMORY)
         State at the start of a step that is not cut at events.
     """
 
@@ -237,10 +249,15 @@ def along(a: tuple[Index, Index, Array], i: int, q: Array, x: int) -> float:
     return total
 
 
+def follows(w: Laws, i: int, k: float) -> float:
+    """Dashpot that follows law `i`, whose tangent stiffness is `k`."""
+    return w.f[i, BETA] * max(k, 0.0) + w.f[i, SECANT] * w.memory[i, STIFFNESS]
+
+
 def enter(w: Laws, f: Tables, i: int) -> None:
     """Take over the branch that law `i` is on."""
     b = f.branch[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i))
-    w.f[i, K], w.f[i, C], w.f[i, F0] = b[0], b[1] + w.f[i, BETA] * b[0], b[2]
+    w.f[i, K], w.f[i, C], w.f[i, F0] = b[0], b[1] + follows(w, i, b[0]), b[2]
     count = 0
     for e in range(3):
         x, y, z = b[3 + 3 * e], b[4 + 3 * e], b[5 + 3 * e]
@@ -262,13 +279,15 @@ def law_force(w: Laws, f: Tables, i: int, d: float, v: float) -> float:
     """Force of law `i`."""
     if w.i[i, CURVED]:
         c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, v)
-        return c[0] + w.f[i, BETA] * c[1] * v
+        return c[0] + follows(w, i, c[1]) * v
     return w.f[i, K] * d + w.f[i, C] * v + w.f[i, F0]
 
 
 def leave(w: Laws, f: Tables, i: int, way: int, d: float) -> None:
     """Change the branch of law `i`."""
     done = law_work(w, f, i, d)
+    if w.f[i, EXIT + 3 * way] == 0.0 and w.f[i, EXIT + 3 * way + 2] == 0.0 and abs(d) > w.memory[i, TURN]:
+        w.memory[i, TURN], w.memory[i, STIFFNESS] = abs(d), max(law_force(w, f, i, d, 0.0) / d, 0.0)
     at, m = f.leave[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), way, d)
     w.i[i, AT], w.f[i, D0], w.f[i, WORK] = at, d, done
     for j in range(len(m)):
@@ -357,8 +376,8 @@ def attempt(
             c = f.curve[w.i[i, CODE]](
                 parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], dd, vv
             )
-            k, damp = c[1], c[2] + w.f[i, BETA] * c[1]
-            force = c[0] + w.f[i, BETA] * c[1] * vv
+            k, own = c[1], follows(w, i, c[1])
+            damp, force = c[2] + own, c[0] + own * vv
             guess = w.f[i, K] * dd + w.f[i, C] * vv + w.f[i, F0]
             size = max(abs(force), abs(k * w.f[i, MOST_D]), 1e-300)
             worst = max(worst, abs(force - guess) / size)
@@ -398,6 +417,8 @@ def first_exit(w: Laws, x: Motion, h: float) -> tuple[int, int, float]:
             fd, fv, fc = w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2]
             if fd == 0.0 and fv == 0.0:
                 continue
+            if fd == 0.0 and fc == 0.0:  # what hardly moves would turn again and again
+                fc = -TURN * abs(fv) * w.f[i, MOST_V]
             g1 = fd * d1 + fv * v1 + fc
             size = abs(fd) * w.f[i, MOST_D] + abs(fv) * w.f[i, MOST_V] + abs(fc)
             tol = STILL * max(size, abs(g1))
@@ -515,9 +536,10 @@ def note(m: Matrices, w: Laws, x: Motion, t: float, since: float) -> None:
             value, slope = w.f[i - rows, LD], w.f[i - rows, LV]
         else:
             law = i - rows - laws
-            value = w.f[law, K] * w.f[law, LD] + w.f[law, C] * w.f[law, LV] + w.f[law, F0]
+            value = w.f[law, K] * w.f[law, LD] + w.f[law, F0]
             slope = w.f[law, K] * w.f[law, LV]
-            if w.f[law, C] != 0.0:
+            if w.i[law, CONTACT] and w.f[law, C] != 0.0:  # damping is no part of a spring's force
+                value += w.f[law, C] * w.f[law, LV]
                 slope += w.f[law, C] * along(w.rows, law, x.q, A)
         take(w, x, i - rows - laws, i, value, t)
         if since > 0.0 and x.peak[SLOPE, i] * slope < 0.0:
@@ -594,8 +616,62 @@ def accept(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float) -> None:
         x.inputs[0, j], x.inputs[1, j] = x.inputs[2, j], x.inputs[3, j]
 
 
-def settle(m: Matrices, w: Laws, x: Motion) -> None:
-    """Make the acceleration consistent with the present branches."""
+def release(m: Matrices, w: Laws, x: Motion, h: float) -> None:
+    """Give massless unknowns the velocities that the present branches ask for.
+
+    They have jumped where a stiffness did.  An implicit step of a tiny length e finds them,
+    ``(C + e K) v = p - K u - f + e dp/dt`` over the massless unknowns, whether dashpots or springs rule.
+    """
+    e = 1e-6 * h
+    n, rate = x.q.shape[1], x.inputs[1]
+    times(m.k, x.q, U, BASE)
+    for i in range(n):  # heavy unknowns move as they do, the others are to be found
+        x.q[Y, i] = x.q[V, i] if m.heavy[i] else 0.0
+    times(m.k, x.q, Y, A1)
+    times(m.c, x.q, Y, V1)
+    for i in range(n):
+        change = 0.0
+        for j in range(len(rate)):
+            change += m.inputs[i, j] * rate[j]
+        x.q[A1, i] = x.q[P, i] - x.q[BASE, i] - x.q[V1, i] + e * (change - x.q[A1, i])
+    for q in range(len(x.ax)):
+        i, j = m.pattern.ai[q], m.column[q]
+        x.ax[q] = 0.0
+        if not m.heavy[i] and not m.heavy[j]:
+            x.ax[q] = m.a[1, q] + e * m.a[2, q]
+        elif i == j:
+            x.ax[q] = 1.0
+    for i in range(len(w.i)):
+        k, c = w.f[i, K], w.f[i, C]
+        moved = along(w.rows, i, x.q, Y)
+        for j in range(len(rate)):
+            moved += w.inputs[i, j] * rate[j]
+        force = k * w.f[i, LD] + w.f[i, F0] + (c + e * k) * moved
+        for q in range(w.rows[0][i], w.rows[0][i + 1]):
+            x.q[A1, w.rows[1][q]] -= w.rows[2][q] * force
+        for q in range(w.pairs[0][i], w.pairs[0][i + 1]):
+            at = w.pairs[1][q]
+            if not m.heavy[m.pattern.ai[at]] and not m.heavy[m.column[at]]:
+                x.ax[at] += (c + e * k) * w.pairs[2][q]
+    for i in range(n):
+        if m.heavy[i]:
+            x.q[A1, i] = x.q[V, i]
+    if factor(m.pattern, x.ax, x.l, PIECE, x.q, D + PIECE, W) >= 0:
+        return  # what nothing holds goes on as it did
+    solve(m.pattern, x.l, PIECE, x.q, D + PIECE, A1)
+    for i in range(n):
+        x.q[V, i] = x.q[A1, i]
+    times(m.c, x.q, V, CV)
+    for i in range(len(w.i)):
+        w.f[i, LV] = along(w.rows, i, x.q, V)
+        for j in range(len(rate)):
+            w.f[i, LV] += w.inputs[i, j] * rate[j]
+
+
+def settle(m: Matrices, w: Laws, x: Motion, h: float) -> None:
+    """Make velocities of massless unknowns and all accelerations consistent with the present branches."""
+    if m.implicit and not m.inert:
+        release(m, w, x, h)
     n = x.q.shape[1]
     times(m.k, x.q, U, BASE)
     for i in range(n):
@@ -661,9 +737,9 @@ def tangent(w: Laws, f: Tables, i: int) -> None:
 def bend(w: Laws, f: Tables, i: int, d: float, v: float) -> None:
     """Linearise a curved law at deformation `d` and rate `v`."""
     c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, v)
-    k, damp = c[1], c[2] + w.f[i, BETA] * c[1]
-    w.f[i, K], w.f[i, C] = k, damp
-    w.f[i, F0] = c[0] + w.f[i, BETA] * c[1] * v - k * d - damp * v
+    k, own = c[1], follows(w, i, c[1])
+    w.f[i, K], w.f[i, C] = k, c[2] + own
+    w.f[i, F0] = c[0] - k * d - c[2] * v
 
 
 def sample(w: Laws, x: Motion, z: Samples, f: Tables, count: Index, t: float) -> None:
@@ -675,10 +751,8 @@ def sample(w: Laws, x: Motion, z: Samples, f: Tables, count: Index, t: float) ->
             z.motion[at, j, i] = x.q[U + j, i]
     for i in range(len(w.i)):
         d = w.f[i, LD]
-        z.laws[at, 0, i] = law_force(w, f, i, d, w.f[i, LV])
-        still = z.laws[at, 0, i] - w.f[i, C] * w.f[i, LV]
-        if w.i[i, CURVED]:
-            still = law_force(w, f, i, d, 0.0)
+        still = law_force(w, f, i, d, 0.0)
+        z.laws[at, 0, i] = law_force(w, f, i, d, w.f[i, LV]) if w.i[i, CONTACT] else still
         held = f.recoverable[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), d, still)
         lost = law_work(w, f, i, d) - held
         size = max(abs(d), abs(w.f[i, D0]))
@@ -863,6 +937,8 @@ def whole_step(
                 w.f[law, EXIT + 3 * way + 1],
                 w.f[law, EXIT + 3 * way + 2],
             )
+            if fd == 0.0 and fc == 0.0:
+                fc = -TURN * abs(fv) * w.f[law, MOST_V]
             g = fd * w.f[law, LD1] + fv * w.f[law, LV1] + fc
             if last or abs(g) <= STILL * (
                 abs(fd) * w.f[law, MOST_D] + abs(fv) * w.f[law, MOST_V] + abs(fc)
@@ -884,7 +960,7 @@ def whole_step(
             if at > 1e-9 * h:
                 same = 0
         switch(m, w, x, z, f, scheme, count, clock[0], h, law, way)
-        settle(m, w, x)
+        settle(m, w, x, h)
         note(m, w, x, clock[0], 0.0)
         same += 1
         if same > most:

@@ -104,12 +104,12 @@ class Stepper:
         self.tables = jit.tables(self.rules or [bilinear.RULE])  # never empty, which compiles to nothing
         self._lay_out(start)
         self.count = np.zeros(8, np.int64)
-        self.clock = np.array([0.0, -1.0, energy_at_start(scene, start.u, start.v, start.states)])
+        self.clock = np.array([start.times[0], -1.0, energy_at_start(scene, start)])
 
     def _lay_out(self, start: Start) -> None:
         scene, watch, laws = self.scene, self.watch, self.laws
         n, count = scene.size, len(laws)
-        damps = np.array([bool(s.facts.get("c")) or s.beta != 0.0 or s.law.curved for s in laws], bool)
+        damps = np.array([bool(s.facts.get("c")) or s.beta != 0.0 or s.secant != 0.0 or s.law.curved for s in laws], bool)
         stiff = self.scheme.beta > 0.0
         linked = (scene.mass != 0) | (scene.damping != 0) | np.eye(n, dtype=bool)
         if stiff:
@@ -138,7 +138,10 @@ class Stepper:
             constant=scene.constant[o],
             pattern=pattern,
             a=np.array(on_pattern),
+            column=columns,
             heavy=heavy,
+            inert=bool(heavy.all()),
+            implicit=stiff,
             diagonal=not np.any(mass - np.diag(np.diag(mass))),
             explicit=not stiff and not len(pattern.li),
             rows=sparse(watch.rows[:, o]),
@@ -169,9 +172,9 @@ class Stepper:
                 for b in range(len(at))
                 if at[a] >= at[b]
             ]
-        total = scene.excitation
-        d = scene.law_rows @ start.u + scene.law_inputs @ total.value(0.0)
-        v = scene.law_rows @ start.v + scene.law_inputs @ total.value(0.0, 1)
+        t, inputs = float(start.times[0]), scene.excitation.value
+        d = scene.law_rows @ start.u + scene.law_inputs @ inputs(t)
+        v = scene.law_rows @ start.v + scene.law_inputs @ inputs(t, 1)
         self.w = w = kernel.Laws(
             rows=rows,
             inputs=np.ascontiguousarray(scene.law_inputs),
@@ -182,15 +185,16 @@ class Stepper:
             ),
             supports=np.ascontiguousarray(s.law_rows[:, nf:]),
             p=np.array([x.law.p for x in laws]).reshape(count, PARAMETERS),
-            memory=np.array([x[3] for x in start.states], float).reshape(count, MEMORY),
-            f=np.zeros((count, 25)),
+            memory=np.zeros((count, MEMORY + 2)),
+            f=np.zeros((count, 26)),
             i=np.zeros((count, 6), np.int64),
-            saved=np.zeros((count, 3 + MEMORY)),
+            saved=np.zeros((count, 5 + MEMORY)),
         )
         for i, (law, state) in enumerate(zip(laws, start.states)):
             w.i[i, :4] = self.rules.index(law.law.rule), law.law.curved, law.is_contact, state[0]
             w.f[i, [kernel.D0, kernel.WORK, kernel.BETA]] = state[1], state[2], law.beta
             w.f[i, [kernel.LD, kernel.LV]] = d[i], v[i]
+            w.f[i, kernel.SECANT], w.memory[i, : len(state[3])] = law.secant, state[3]
             w.f[i, [kernel.MOST_D, kernel.MOST_V]] = abs(d[i]), abs(v[i])
         self.x = x = kernel.Motion(
             np.zeros((18, n)),
@@ -202,6 +206,7 @@ class Stepper:
         )
         x.q[kernel.U], x.q[kernel.V] = start.u[o], start.v[o]
         x.q[kernel.CV] = damping @ start.v[o]
+        x.works[:3] = start.works
         x.peak[kernel.HIGH], x.peak[kernel.LOW] = -np.inf, np.inf
         padded = np.where((pattern.ai == columns) & ~heavy[columns], 1.0, on_pattern[0])
         ldl.factor(pattern, padded, x.l, kernel.MASS, x.q, kernel.D + kernel.MASS, kernel.W)
@@ -215,25 +220,6 @@ class Stepper:
             kernel.enter(w, self.tables, i)
             if w.i[i, kernel.CURVED]:
                 kernel.tangent(w, self.tables, i)
-        self._let_massless_go()
-
-    def _let_massless_go(self) -> None:
-        """Give damped massless unknowns the velocity that their forces ask for at the start."""
-        light, f, q = ~self.matrices.heavy, self.w.f, self.x.q
-        if not light.any():
-            return
-        scene, o, rows = self.scene, self.order, self.scene.law_rows[:, self.order]
-        c = scene.damping[np.ix_(o, o)] + (rows.T * f[:, kernel.C]) @ rows
-        force = self._force(0.0) - scene.stiffness[np.ix_(o, o)] @ q[kernel.U]
-        force -= rows.T @ (f[:, kernel.K] * f[:, kernel.LD] + f[:, kernel.F0])
-        czz, old = c[np.ix_(light, light)], q[kernel.V, light]
-        if not czz.any():
-            return
-        back = np.linalg.pinv(czz, rcond=1e-12)
-        to_heavy = c[np.ix_(light, ~light)] @ q[kernel.V, ~light]
-        q[kernel.V, light] = back @ (force[light] - to_heavy) + old - back @ (czz @ old)
-        q[kernel.CV] = scene.damping[np.ix_(o, o)] @ q[kernel.V]
-        f[:, kernel.LV] = rows @ q[kernel.V] + scene.law_inputs @ scene.excitation.value(0.0, 1)
 
     def _force(self, t: float) -> Array:
         """Loads on the unknowns, in the order of elimination."""
@@ -255,19 +241,20 @@ class Stepper:
 
     def _run(self) -> Outcome:
         m, w, x, z, scene = self.matrices, self.w, self.x, self.z, self.scene
+        t0 = float(self.times[0])
         for i, s in enumerate(self.laws):
             if s.is_contact and s.law.rule.branches[w.i[i, kernel.AT]] == "pressed":
                 d, v = w.f[i, [kernel.LD, kernel.LV]].tolist()
                 force = kernel.law_force(w, self.tables, i, d, v)
-                self.ledger.switched(i, "open", "pressed", 0.0, d, v, force)
+                self.ledger.switched(i, "open", "pressed", t0, d, v, force)
                 w.f[i, kernel.PEAK] = force
-        x.q[kernel.P] = self._force(0.0)
-        x.inputs[:2] = scene.excitation.value(0.0), scene.excitation.value(0.0, 1)
-        kernel.settle(m, w, x)
-        kernel.note(m, w, x, 0.0, 0.0)
-        kernel.sample(w, x, z, self.tables, self.count, 0.0)
+        x.q[kernel.P] = self._force(t0)
+        x.inputs[:2] = scene.excitation.value(t0), scene.excitation.value(t0, 1)
+        jit.compiled(kernel.settle)(m, w, x, self.dt)
+        kernel.note(m, w, x, t0, 0.0)
+        kernel.sample(w, x, z, self.tables, self.count, t0)
         ends, is_output = goals(scene, self.times)
-        lengths = np.diff(ends, prepend=0.0)
+        lengths = np.diff(ends, prepend=t0)
         steps = np.maximum(1, np.ceil(lengths / self.dt * (1 - 1e-9))).astype(np.int64)
         # twelve digits: steps of equal length share their factor, whatever the rounding of the times
         h = np.array([float(f"{x:.12e}") for x in lengths / steps])
@@ -346,7 +333,10 @@ class Stepper:
             "steps": int(self.count[kernel.STEPS]),
             "events": int(self.count[kernel.EVENTS]),
         }
-        return Outcome(peaks, figures)
+        f, i = self.w.f, self.w.i
+        states = zip(i[:, kernel.AT].tolist(), f[:, kernel.D0].tolist(), f[:, kernel.WORK].tolist(),
+                     map(tuple, self.w.memory.tolist()))  # fmt: skip
+        return Outcome(peaks, figures, tuple(states))
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""

@@ -37,11 +37,11 @@ MOST_SQUARED = 3e3  #: condition of the modes up to which their products are use
 
 
 class Work(NamedTuple):
-    """Dissipation in dashpots, input, and for each pressed contact (law, loss) [F L]."""
+    """Dissipation in the structure's dashpots, input, and for each law with a dashpot (law, loss) [F L]."""
 
     damping: float
     input: float
-    contacts: list[tuple[int, float]]
+    laws: list[tuple[int, float]]
 
 
 class Works(NamedTuple):
@@ -49,7 +49,7 @@ class Works(NamedTuple):
 
     damping: Array
     input: Array
-    contacts: list[tuple[int, Array]]
+    laws: list[tuple[int, Array]]
 
 
 class Meter:
@@ -59,10 +59,10 @@ class Meter:
     ----------
     flow : ModalFlow or SeriesFlow
     damping : ndarray, shape (n, n)
-        Of the structure, contacts apart.
+        Of the structure, laws apart.
     inputs : ndarray, shape (n, n_inputs)
-    contacts : list of (law, c, row)
-        Pressed contacts with dashpots.
+    laws : list of (law, c, row)
+        Laws that have dashpots at the time: pressed contacts, springs whose damping follows them.
     """
 
     def __init__(
@@ -70,9 +70,9 @@ class Meter:
         flow: ModalFlow | SeriesFlow,
         damping: Array,
         inputs: Array,
-        contacts: list[tuple[int, float, Array]],
+        laws: list[tuple[int, float, Array]],
     ) -> None:
-        self.flow, self.inputs, self.contacts, self.damping_matrix = flow, inputs, contacts, damping
+        self.flow, self.inputs, self.laws, self.damping_matrix = flow, inputs, laws, damping
         self.damped = bool(np.any(damping))
         # the quadratic forms lose the square of the modes' condition
         self.closed_form = (
@@ -83,7 +83,7 @@ class Meter:
         v = flow.v_q
         self.lam = flow.lam
         self.forms = [self._form(v, damping)] if self.damped else []
-        self.contact_forms = [self._form(row[None, :] @ v, np.array([[c]])) for _, c, row in contacts]
+        self.law_forms = [self._form(row[None, :] @ v, np.array([[c]])) for _, c, row in laws]
         self.power_rows = inputs.T @ v
         self._moments: dict[tuple[float, int], tuple[NDArray[np.bool_], Complex, Complex]] = {}
 
@@ -160,7 +160,7 @@ class Meter:
         return Work(
             float(out.damping[0]),
             float(out.input[0]),
-            [(law, float(loss[0])) for law, loss in out.contacts],
+            [(law, float(loss[0])) for law, loss in out.laws],
         )
 
     def measures(
@@ -188,17 +188,16 @@ class Meter:
                 for i in range(len(gs))
             ]
             losses = [
-                (law, np.array([w.contacts[n][1] for w in each]))
-                for n, (law, _, _) in enumerate(self.contacts)
+                (law, np.array([w.laws[n][1] for w in each])) for n, (law, _, _) in enumerate(self.laws)
             ]
             return Works(np.array([w.damping for w in each]), np.array([w.input for w in each]), losses)
         c0, c1, forced, moments = self._split(qs, gs, tau)
         loss = sum(
             (self._loss(form, c0, c1, forced, moments, tau) for form in self.forms), np.zeros(len(gs))
         )
-        contacts = [
+        losses = [
             (law, self._loss(form, c0, c1, forced, moments, tau))
-            for (law, _, _), form in zip(self.contacts, self.contact_forms)
+            for (law, _, _), form in zip(self.laws, self.law_forms)
         ]
         # input: sum over inputs j and powers k of coefs[k, j] * integral t^k F_j^T v
         total = np.zeros(len(gs))
@@ -209,7 +208,7 @@ class Meter:
             total += np.einsum("ij,ji->i", coefs[:, k], (self.power_rows @ integral).real)
             if k == 0 and constant.any():
                 total += constant @ (self.flow.v_q @ integral).real
-        return Works(loss, total, contacts)
+        return Works(loss, total, losses)
 
     def _loss(
         self,
@@ -246,8 +245,8 @@ class Meter:
             "kj,kt->jt", coefs, powers(points, len(coefs) - 1)
         )
         loss = float(np.einsum("it,ij,jt,t->", v, self.damping_matrix, v, w)) if self.damped else 0.0
-        contacts = [(law, float(c * (w @ (row @ v) ** 2))) for law, c, row in self.contacts]
-        return Work(loss, float(np.einsum("it,it,t->", v, force, w)), contacts)
+        losses = [(law, float(c * (w @ (row @ v) ** 2))) for law, c, row in self.laws]
+        return Work(loss, float(np.einsum("it,it,t->", v, force, w)), losses)
 
 
 def total_work(
@@ -257,11 +256,11 @@ def total_work(
     coefs: Array,
     path: Callable[[Array], tuple[Array, Array, Array]],
     branches: Sequence[Branch],
-) -> tuple[float, float]:
-    """Return input and dashpot work over a segment in the total form.
+) -> Work:
+    """Return the work over a segment in the total form.
 
     The input is the power of the supports, their reactions times their velocities,
-    and of the constant loads.
+    and of held loads and FORCES; dashpots of laws may reach to supports.
 
     Parameters
     ----------
@@ -285,14 +284,16 @@ def total_work(
         np.array([getattr(b, name) for b in branches])[:, None]
         for name in ("stiffness", "damping", "force0")
     )
-    law = (
-        k * (scene.law_rows @ u + scene.law_inputs @ inputs[0])
-        + c * (scene.law_rows @ v + scene.law_inputs @ inputs[1])
-        + f0
-    )
+    rate = scene.law_rows @ v + scene.law_inputs @ inputs[1]
+    law = k * (scene.law_rows @ u + scene.law_inputs @ inputs[0]) + c * rate + f0
     u, v, a = (scene.expanded(y, s, order) for order, (y, s) in enumerate(zip((u, v, a), inputs)))
     force = (
         structure.stiffness @ u + structure.damping @ v + structure.mass @ a + structure.law_rows.T @ law
     )
-    power = (force[n:] * v[n:]).sum(axis=0) + structure.loads[:n] @ v[:n]
-    return float(w @ power), float(w @ (v * (structure.damping @ v)).sum(axis=0))
+    power = (force[n:] * v[n:]).sum(axis=0) + (scene.applied(inputs[0]) * v[:n]).sum(axis=0)
+    losses = (c * rate**2) @ w
+    return Work(
+        float(w @ (v * (structure.damping @ v)).sum(axis=0)),
+        float(w @ power),
+        [(i, float(losses[i])) for i in np.flatnonzero(c).tolist()],
+    )

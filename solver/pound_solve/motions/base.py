@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Final
@@ -17,7 +17,13 @@ from pound_solve.records.base import RecordError
 __all__ = ("COMMON", "METRE", "Context", "Motion", "Piecewise", "RecordError", "common_breaks", "finish")
 
 COMMON: Final = (
-    Field("DIRECTION", Kind.WORD, default="X", words=("X", "Y"), doc="direction of the ground motion"),
+    Field(
+        "DIRECTION",
+        Kind.WORD,
+        default="X",
+        words=("X", "Y", "R"),
+        doc="direction of the ground motion; R turns the ground about the point ABOUT",
+    ),
     Field(
         "SCALE",
         Kind.REAL,
@@ -26,6 +32,22 @@ COMMON: Final = (
         doc="factor on the acceleration; a negative one turns it round",
     ),
     Field("SUPPORTS", Kind.NODES, default=None, doc="nodes moved by this motion; left out: the whole base"),
+    Field(
+        "WAVE",
+        Kind.REAL,
+        "L/T",
+        default=None,
+        doc="speed at which the motion runs along x from one of SUPPORTS to the next, below zero "
+        "towards -x; left out: all move at once",
+    ),
+    Field(
+        "ABOUT",
+        Kind.REAL,
+        "L",
+        default=(0.0, 0.0),
+        count=(2, 2),
+        doc="x,y of the point that stays in place where DIRECTION=R turns the ground",
+    ),
 )
 
 #: length of one metre in a deck's units of length
@@ -65,7 +87,7 @@ class Motion:
     Attributes
     ----------
     direction : str
-        ``X`` or ``Y``.
+        ``X``, ``Y``, or ``R``: a small turn about the point `about`, radians in place of lengths.
     supports : tuple of int, or None
         Nodes that it moves; None for the whole base.
     acceleration : Piecewise, [L/T^2]
@@ -77,6 +99,9 @@ class Motion:
         pgv pgd sha256 warnings`` and items of the kind's own.
     closed : pair of Piecewise, or None
         Velocity and displacement in closed form, where the kind has one.
+    about : tuple of two floats, [L]
+    wave : float or None, [L/T]
+        Speed of the wave that brings the motion to one support after the other; see `wave`.
     """
 
     direction: str
@@ -86,6 +111,34 @@ class Motion:
     displacement0: float = 0.0
     info: Mapping[str, Any] = field(default_factory=dict)
     closed: tuple[Piecewise, Piecewise] | None = None
+    about: tuple[float, float] = (0.0, 0.0)
+    wave: float | None = None
+
+    @property
+    def directions(self) -> tuple[int, ...]:
+        """Directions in which it may move a support: 0 x, 1 y, 2 rotation."""
+        return (0, 1, 2) if self.direction == "R" else ("XY".index(self.direction),)
+
+    def share(self, d: int, x: float, y: float) -> float:
+        """Displacement of the ground at (x, y) in direction `d` (0 x, 1 y, 2 rotation) per unit of it."""
+        if self.direction != "R":
+            return float(d in self.directions)
+        return (self.about[1] - y, x - self.about[0], 1.0)[d]
+
+    def delayed(self, by: float) -> Motion:
+        """The same motion `by` [T] later; until then the ground goes on with its velocity at t = 0."""
+        lead = self.displacement0 - by * self.velocity0
+        closed = self.closed
+        if closed:
+            v, d = closed
+            closed = v.delayed(by, (self.velocity0,)), d.delayed(by, (lead, self.velocity0))
+        info = dict(self.info)
+        if by:
+            info["name"] = f"{info['name']}, {by:.6g} later"
+            info["t_pga"] += by
+        return replace(
+            self, acceleration=self.acceleration.delayed(by), displacement0=lead, closed=closed, info=info
+        )
 
     def velocity(self, t_end: float = 0.0) -> Piecewise:
         """Ground velocity [L/T] up to `t_end` at least, constant where the acceleration has ended."""
@@ -125,16 +178,30 @@ def finish(
     velocity0, displacement0 : float, [L/T], [L]
     closed : pair of Piecewise, optional
         See `Motion`.
+
+    Raises
+    ------
+    RecordError
+        R405 for a WAVE that contradicts the other items.
     """
     scale = float(card.get("SCALE", 1.0))
     bare = Motion(
-        card.get("DIRECTION", "X"), card.get("SUPPORTS"), acceleration, velocity0, displacement0, {}, closed
+        card.get("DIRECTION", "X"),
+        card.get("SUPPORTS"),
+        acceleration,
+        velocity0,
+        displacement0,
+        {},
+        closed,
+        card.get("ABOUT", (0.0, 0.0)),
+        card.get("WAVE"),
     )
+    _check_wave(bare)
     t_pga, pga = acceleration.peak()
     warnings = list(info.get("warnings", ()))
     strength = abs(pga) / context.gravity
-    # a factor of zero is a motion switched off on purpose
-    if scale != 0 and not _WEAK <= strength <= _STRONG:
+    # a factor of zero is a motion switched off on purpose; a turn is no share of gravity
+    if scale != 0 and bare.direction != "R" and not _WEAK <= strength <= _STRONG:
         warnings.append(
             f"peak ground acceleration is {strength:.3g} g; check the unit of the record and SCALE"
         )
@@ -146,8 +213,21 @@ def finish(
         "pgv": abs(bare.velocity().peak()[1]),
         "pgd": abs(bare.displacement().peak()[1]),
     }
-    whole = {**_BLANK, **peaks, **info, "warnings": tuple(warnings)}
-    return Motion(bare.direction, bare.supports, acceleration, velocity0, displacement0, whole, closed)
+    return replace(bare, info={**_BLANK, **peaks, **info, "warnings": tuple(warnings)})
+
+
+def _check_wave(motion: Motion) -> None:
+    """Raise where a travelling wave has no speed, no supports to reach, or no direction."""
+    if motion.wave is None:
+        return
+    if motion.wave == 0.0:
+        raise RecordError("R405", "a wave of speed 0 arrives nowhere", "leave WAVE out", "WAVE")
+    if motion.supports is None:
+        raise RecordError(
+            "R405", "WAVE needs SUPPORTS that it reaches one after the other", "add SUPPORTS=", "WAVE"
+        )
+    if motion.direction == "R":
+        raise RecordError("R405", "WAVE goes with DIRECTION=X or Y", "leave WAVE out", "WAVE")
 
 
 _BLANK: Final[Mapping[str, Any]] = MappingProxyType(
@@ -155,12 +235,12 @@ _BLANK: Final[Mapping[str, Any]] = MappingProxyType(
 )
 
 
-def common_breaks(motions: Iterable[Motion], t_end: float) -> Array:
-    """Times from 0 to `t_end` between which every motion is one polynomial.
+def common_breaks(histories: Iterable[Piecewise], t_end: float) -> Array:
+    """Times from 0 to `t_end` between which every history is one polynomial.
 
     Parameters
     ----------
-    motions : iterable of Motion
+    histories : iterable of Piecewise
     t_end : float, [T]
 
     Returns
@@ -168,6 +248,6 @@ def common_breaks(motions: Iterable[Motion], t_end: float) -> Array:
     ndarray, shape (n,), [T]
         Begins with 0 and ends with `t_end`; no two are closer than 1e-12 of `t_end`.
     """
-    own = [m.acceleration.breaks for m in motions]
+    own = [h.breaks for h in histories]
     inside = np.concatenate([np.array([0.0, t_end]), *own])
     return merged(inside[(inside >= 0) & (inside <= t_end)], 1e-12 * t_end)

@@ -124,6 +124,25 @@ class Piecewise:
         span = np.concatenate(([start, end], self.breaks[(self.breaks > start) & (self.breaks < end)]))
         return self.on(merged(span, 1e-12 * (abs(start) + abs(end))))
 
+    def delayed(self, by: float, lead: ArrayLike = (0.0,)) -> Piecewise:
+        """The function `by` later; itself without a delay.
+
+        Parameters
+        ----------
+        by : float, [T]
+            Not below zero.
+        lead : array_like, shape (m,)
+            Coefficients before it, in powers of the time since the old beginning; zero if left out.
+        """
+        if by == 0.0:
+            return self
+        first = np.atleast_1d(np.asarray(lead, dtype=np.float64))
+        rows = max(len(self.coefs), len(first))
+        coefs = np.zeros((rows, len(self.breaks)))
+        coefs[: len(first), 0] = first
+        coefs[: len(self.coefs), 1:] = self.coefs
+        return Piecewise(np.concatenate(([self.start], self.breaks + by)), coefs)
+
     def extended(self, t_end: float, tail: ArrayLike = (0.0,)) -> Piecewise:
         """The function with one more interval up to `t_end`; itself when it reaches that far already.
 

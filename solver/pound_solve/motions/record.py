@@ -7,7 +7,8 @@ record, and after the cut, the acceleration is zero.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Final
+from pathlib import Path
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -22,13 +23,38 @@ _UNITS: Final = ("G", "M/S2", "CM/S2", "GAL", "MM/S2", "DECK")
 _PER_METRE: Final = {"M/S2": 1.0, "CM/S2": 100.0, "GAL": 100.0, "MM/S2": 1000.0}
 
 
-def build(card_values: Mapping[str, Any], context: Context) -> Motion:
-    """Motion of a RECORD card.
+class Samples(NamedTuple):
+    """What a card takes out of a record's file.
+
+    Attributes
+    ----------
+    t, values : ndarray, shape (n,)
+        Times from the start of the history, START, DURATION and TSCALE applied, and values as in the file.
+    raw : RawRecord
+    path : Path
+    sha256 : str
+    """
+
+    t: Array
+    values: Array
+    raw: RawRecord
+    path: Path
+    sha256: str
+
+    @property
+    def lines(self) -> Piecewise:
+        """Straight lines between the samples, from t = 0 on."""
+        lines = Piecewise.from_samples(self.t, self.values)
+        return lines if lines.start <= 0 else lines.slice(0.0, lines.end)
+
+
+def samples(card_values: Mapping[str, Any], context: Context) -> Samples:
+    """Read the record that a card names.
 
     Parameters
     ----------
     card_values : mapping
-        Bound values of the fields of this card and of its format.
+        Bound values of the card's `FIELDS` and of its format.
     context : Context
 
     Raises
@@ -36,28 +62,35 @@ def build(card_values: Mapping[str, Any], context: Context) -> Motion:
     RecordError
         Whatever keeps the record from being used; codes in :mod:`pound_solve.records.base`.
     """
-    name = str(card_values["FILE"])
-    path = find(name, context.search_path)
+    path = find(str(card_values["FILE"]), context.search_path)
     text, digest = load(path)
     try:
-        raw = _read(text, card_values)
-        unit, warnings = _unit(raw, card_values.get("UNIT"))
-        scale = float(card_values.get("SCALE", 1.0))
-        start = float(card_values.get("START", 0.0))
-        duration = card_values.get("DURATION")
-        tscale = float(card_values.get("TSCALE", 1.0))
-        t, a = _window(raw.t, _converted(raw.values, unit, context) * scale, start, duration)
+        raw: RawRecord = formats()[card_values.get("FORMAT", "AUTO")].impl.read(text, card_values)
+        start, duration = float(card_values.get("START", 0.0)), card_values.get("DURATION")
+        t, values = _window(raw.t, raw.values, start, duration)
     except RecordError as error:
         raise error.within(path.name) from None
+    return Samples(t * float(card_values.get("TSCALE", 1.0)), values, raw, path, digest)
 
+
+def build(card_values: Mapping[str, Any], context: Context) -> Motion:
+    """Motion of a RECORD card; raises as `samples` does."""
+    name = str(card_values["FILE"])
+    found = samples(card_values, context)
+    raw, path = found.raw, found.path
+    unit, warnings = _unit(raw, card_values.get("UNIT"))
+    if card_values.get("DIRECTION") == "R" and unit != "DECK":
+        message = f"a turn is no share of gravity and no length, but the record is taken to be in {unit}"
+        raise RecordError("R405", message, "write UNIT=DECK: radians per time squared", "DIRECTION")
+    factor = _factor(unit, context) * float(card_values.get("SCALE", 1.0))
     shipped = known(name)
-    if shipped and digest != shipped.sha256:
+    if shipped and found.sha256 != shipped.sha256:
         warnings.append(
             f"{path.name} differs from the file that {name} stood for when this program was released"
         )
     return finish(
         card_values,
-        _from_zero(t * tscale, a),
+        found.lines * factor,
         context,
         {
             "kind": SPEC.name,
@@ -67,20 +100,14 @@ def build(card_values: Mapping[str, Any], context: Context) -> Motion:
             "component": raw.component,
             "title": raw.title,
             "npts": len(raw.values),
-            "dt": _step(raw),
+            "dt": step(raw),
             "unit": unit,
-            "start": start,
-            "tscale": tscale,
-            "sha256": digest,
+            "start": float(card_values.get("START", 0.0)),
+            "tscale": float(card_values.get("TSCALE", 1.0)),
+            "sha256": found.sha256,
             "warnings": warnings,
         },
     )
-
-
-def _read(text: str, card: Mapping[str, Any]) -> RawRecord:
-    """Samples by the card's format."""
-    raw: RawRecord = formats()[card.get("FORMAT", "AUTO")].impl.read(text, card)
-    return raw
 
 
 def _unit(raw: RawRecord, wanted: str | None) -> tuple[str, list[str]]:
@@ -92,11 +119,11 @@ def _unit(raw: RawRecord, wanted: str | None) -> tuple[str, list[str]]:
     return wanted, []
 
 
-def _converted(values: Array, unit: str, context: Context) -> Array:
-    """Samples [L/T^2]."""
+def _factor(unit: str, context: Context) -> float:
+    """Factor from samples to [L/T^2]."""
     if unit == "DECK":
-        return values
-    return values * context.gravity if unit == "G" else values * context.metre / _PER_METRE[unit]
+        return 1.0
+    return context.gravity if unit == "G" else context.metre / _PER_METRE[unit]
 
 
 def _window(t: Array, a: Array, start: float, duration: float | None) -> tuple[Array, Array]:
@@ -115,13 +142,7 @@ def _window(t: Array, a: Array, start: float, duration: float | None) -> tuple[A
     return cut - start, np.concatenate(([np.interp(first, t, a)], a[inner], [np.interp(stop, t, a)]))
 
 
-def _from_zero(t: Array, a: Array) -> Piecewise:
-    """Lines between samples, with nothing from t = 0 to the first of them where that is later."""
-    lines = Piecewise.from_samples(t, a)
-    return lines if t[0] <= 0 else lines.slice(0.0, lines.end)
-
-
-def _step(raw: RawRecord) -> float | None:
+def step(raw: RawRecord) -> float | None:
     """Step of the samples [s], None for uneven ones; times printed with few digits count as even."""
     if raw.dt is not None:
         return raw.dt
@@ -131,13 +152,33 @@ def _step(raw: RawRecord) -> float | None:
     return float(f"{mean:.9g}") if np.abs(steps - mean).max() <= 0.01 * mean else None
 
 
+#: what of a file acts, and when
+FIELDS: Final = (
+    Field("FORMAT", Kind.FAMILY, default="AUTO", family="record", doc="how the file is written"),
+    Field(
+        "START",
+        Kind.REAL,
+        "T",
+        default=0.0,
+        doc="time of the record that acts at t = 0; below zero: a delay",
+    ),
+    Field(
+        "DURATION",
+        Kind.REAL,
+        "T",
+        default=None,
+        above=0,
+        doc="length of the part that acts; left out: to the end",
+    ),
+    Field("TSCALE", Kind.REAL, "-", default=1.0, above=0, doc="factor on the times of the part that acts"),
+)
+
 SPEC: Final = Spec(
     "motion",
     "RECORD",
     "recorded accelerogram",
     (
         Field("FILE", Kind.TEXT, doc="file of the record, or the name of a known record", positional=True),
-        Field("FORMAT", Kind.FAMILY, default="AUTO", family="record", doc="how the file is written"),
         Field(
             "UNIT",
             Kind.WORD,
@@ -145,24 +186,7 @@ SPEC: Final = Spec(
             words=_UNITS,
             doc="unit of the samples; left out: what the file says, else G; DECK: the deck's own",
         ),
-        Field(
-            "START",
-            Kind.REAL,
-            "T",
-            default=0.0,
-            doc="time of the record that acts at t = 0; below zero: a delay",
-        ),
-        Field(
-            "DURATION",
-            Kind.REAL,
-            "T",
-            default=None,
-            above=0,
-            doc="length of the part that acts; left out: to the end",
-        ),
-        Field(
-            "TSCALE", Kind.REAL, "-", default=1.0, above=0, doc="factor on the times of the part that acts"
-        ),
+        *FIELDS,
         *COMMON,
     ),
     impl=build,

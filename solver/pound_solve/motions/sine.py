@@ -40,12 +40,12 @@ def build(card_values: Mapping[str, Any], context: Context) -> Motion:
     RecordError
         R405 unless one of PERIOD and OMEGA is given, or where the sine has no end.
     """
-    w = _omega(card_values.get("PERIOD"), card_values.get("OMEGA"))
+    w = omega(card_values)
     scale = float(card_values.get("SCALE", 1.0))
     a = float(card_values["AMPLITUDE"]) * scale
     phase = float(card_values.get("PHASE", 0.0))
     start = float(card_values.get("START", 0.0))
-    end = _end(start, card_values.get("DURATION"), context.duration)
+    end = ending(card_values, context)
 
     steady_v, steady_d = -a / w * np.cos(_Long(phase)), -a / w**2 * np.sin(_Long(phase))
     v0 = steady_v if card_values.get("VELOCITY0") is None else _Long(card_values["VELOCITY0"])
@@ -57,19 +57,14 @@ def build(card_values: Mapping[str, Any], context: Context) -> Motion:
     )
 
     if end > start:
-        pieces = math.ceil((end - start) * float(w) / (2 * math.pi) * _PER_PERIOD)
-        if pieces > _MOST_PIECES:
-            raise RecordError(
-                "R405", f"a sine of {pieces // _PER_PERIOD} periods is too long", "check PERIOD or OMEGA"
-            )
-        breaks = np.linspace(start, end, pieces + 1)
+        breaks = intervals(w, start, end)
         since = breaks[:-1].astype(_Long) - start
         angle = w * since + _Long(phase)
         quarter = np.arccos(_Long(-1)) / 2
         drift, offset = v0 - steady_v, d0 + v0 * start - steady_d
-        acc = _taylor(a, w, angle)
-        vel = _taylor(-a / w, w, angle + quarter)
-        dis = _taylor(-a / w**2, w, angle)
+        acc = taylor(a, w, angle)
+        vel = taylor(-a / w, w, angle + quarter)
+        dis = taylor(-a / w**2, w, angle)
         vel[0] += drift
         dis[0] += offset + drift * since
         dis[1] += drift
@@ -100,22 +95,36 @@ def build(card_values: Mapping[str, Any], context: Context) -> Motion:
     )
 
 
-def _omega(period: float | None, omega: float | None) -> np.longdouble:
-    """Circular frequency [rad/T]."""
-    if (period is None) == (omega is None):
-        raise RecordError("R405", "a SINE needs PERIOD or OMEGA, one of the two")
-    return 2 * np.arccos(_Long(-1)) / _Long(period) if omega is None else _Long(omega)
+def omega(card_values: Mapping[str, Any]) -> np.longdouble:
+    """Circular frequency [rad/T] from PERIOD or OMEGA."""
+    period, given = card_values.get("PERIOD"), card_values.get("OMEGA")
+    if (period is None) == (given is None):
+        item = "FILE" if period is None else "OMEGA"
+        raise RecordError("R405", "a SINE needs PERIOD or OMEGA, one of the two", item=item)
+    return 2 * np.arccos(_Long(-1)) / _Long(period) if given is None else _Long(given)
 
 
-def _end(start: float, duration: float | None, analysis: float) -> float:
+def ending(card_values: Mapping[str, Any], context: Context) -> float:
     """Time at which the sine ends [T]: with the analysis at the latest."""
-    end = min(math.inf if duration is None else start + duration, analysis or math.inf)
+    duration = card_values.get("DURATION")
+    start = float(card_values.get("START", 0.0))
+    end = min(math.inf if duration is None else start + duration, context.duration or math.inf)
     if end == math.inf:
         raise RecordError("R405", "a SINE without an end", "give it a DURATION")
     return end
 
 
-def _taylor(amplitude: Any, w: np.longdouble, angle: Any) -> Any:
+def intervals(w: np.longdouble, start: float, end: float) -> Array:
+    """Breaks from `start` to `end` that are T/32 apart or closer, shape (n + 1,) [T]."""
+    pieces = math.ceil((end - start) * float(w) / (2 * math.pi) * _PER_PERIOD)
+    if pieces > _MOST_PIECES:
+        raise RecordError(
+            "R405", f"a sine of {pieces // _PER_PERIOD} periods is too long", "check PERIOD or OMEGA"
+        )
+    return np.linspace(start, end, pieces + 1)
+
+
+def taylor(amplitude: Any, w: np.longdouble, angle: Any) -> Any:
     """Taylor coefficients of ``amplitude sin(w s + angle)`` in s, shape (degree + 1, len(angle))."""
     turns = (np.sin(angle), np.cos(angle), -np.sin(angle), -np.cos(angle))
     return np.stack([amplitude * w**k / math.factorial(k) * turns[k % 4] for k in range(_DEGREE + 1)])
@@ -138,31 +147,36 @@ def _joined(parts: tuple[Piecewise, ...]) -> Piecewise:
     )
 
 
+#: frequency, phase and times
+FIELDS: Final = (
+    Field("PERIOD", Kind.REAL, "T", default=None, above=0, doc="period; give this or OMEGA"),
+    Field(
+        "OMEGA",
+        Kind.REAL,
+        "1/T",
+        default=None,
+        above=0,
+        doc="circular frequency in radians; give this or PERIOD",
+    ),
+    Field("PHASE", Kind.REAL, "-", default=0.0, doc="angle at START in radians"),
+    Field("START", Kind.REAL, "T", default=0.0, lo=0, doc="time at which the sine begins"),
+    Field(
+        "DURATION",
+        Kind.REAL,
+        "T",
+        default=None,
+        above=0,
+        doc="how long it lasts; left out: to the end of the analysis",
+    ),
+)
+
 SPEC: Final = Spec(
     "motion",
     "SINE",
     "sinusoidal ground acceleration",
     (
         Field("AMPLITUDE", Kind.REAL, "L/T^2", doc="amplitude of the acceleration"),
-        Field("PERIOD", Kind.REAL, "T", default=None, above=0, doc="period; give this or OMEGA"),
-        Field(
-            "OMEGA",
-            Kind.REAL,
-            "1/T",
-            default=None,
-            above=0,
-            doc="circular frequency in radians; give this or PERIOD",
-        ),
-        Field("PHASE", Kind.REAL, "-", default=0.0, doc="angle at START in radians"),
-        Field("START", Kind.REAL, "T", default=0.0, lo=0, doc="time at which the sine begins"),
-        Field(
-            "DURATION",
-            Kind.REAL,
-            "T",
-            default=None,
-            above=0,
-            doc="how long it lasts; left out: to the end of the analysis",
-        ),
+        *FIELDS,
         Field(
             "VELOCITY0",
             Kind.REAL,

@@ -35,20 +35,23 @@ class RecordError(Exception):
         What is wrong, with line and counts where they are known.
     hint : str
         What to do about it, or empty.
+    item : str
+        Item of the card that is at fault.
     """
 
-    def __init__(self, code: str, message: str, hint: str = "") -> None:
+    def __init__(self, code: str, message: str, hint: str = "", item: str = "FILE") -> None:
         super().__init__(code, message, hint)
         self.code = code
         self.message = message
         self.hint = hint
+        self.item = item
 
     def __str__(self) -> str:
         return f"{self.code}: {self.message}" + (f" ({self.hint})" if self.hint else "")
 
     def within(self, name: str) -> RecordError:
         """The same error, with the name of the file in front of its message."""
-        return RecordError(self.code, f"{name}: {self.message}", self.hint)
+        return RecordError(self.code, f"{name}: {self.message}", self.hint, self.item)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,0 +1,143 @@
+"""What the ground does to a structure: reactions, base shear, and whether all forces balance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.assemble import Structure, assemble
+from pound_solve.dofs import Freedom
+from pound_solve.laws import State
+
+Array = NDArray[np.float64]
+
+ROUNDING = 1e-9  #: share of the largest term below which a sum of forces is zero
+
+
+class Ground:
+    """A structure with its supports let go, so that it shows what holds it.
+
+    Parameters
+    ----------
+    structure : Structure
+    axial : ndarray, shape (n_geometric,)
+        Axial forces that its geometric stiffness is made of.
+
+    Attributes
+    ----------
+    rigid : ndarray, shape (3, n)
+        Motions of the whole along x and y, and its turn about the origin, over all columns.
+    """
+
+    def __init__(self, structure: Structure, axial: Array) -> None:
+        model = structure.model
+        self.fixed = [(n.id, d) for n in model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed]
+        bare = assemble(replace(model, damping=()), self.fixed, structure.self_weight)
+        self.structure, self.n = bare.stressed(axial), bare.n_free
+        self.laws = structure.laws  # with what damping has made of them
+        self.geometric = self.structure.stiffness - bare.stiffness
+        columns = bare.freedoms.free + bare.freedoms.moved
+        k = bare.initial_stiffness
+        inside = np.array([d > 2 for _, d in columns], bool) & k.any(axis=1)
+        self.rigid = np.array([_rigid(bare, f) for f in columns]).reshape(-1, 3).T
+        if inside.any():  # what is inside an element follows its nodes without strain
+            follow = np.linalg.lstsq(k[np.ix_(inside, inside)], k[np.ix_(inside, ~inside)], rcond=None)[0]
+            self.rigid[:, inside] = -self.rigid[:, ~inside] @ follow.T
+        self.linear, self.nonlinear = self._resistance()
+
+    def _at(self, u: Array, states: Sequence[State]) -> tuple[Array, Array]:
+        """Displacements of all columns, and the laws' forces."""
+        full = np.append(u, np.zeros(self.structure.freedoms.size - self.n))
+        d = (self.structure.law_rows @ full).tolist()
+        force = [s.force(x, at, 0.0) for s, x, at in zip(self.laws, states, d)]
+        return full, np.array(force)
+
+    def reactions(self, u: Array, states: Sequence[State]) -> dict[Freedom, float]:
+        """Forces of the supports on the structure [F], [F L].
+
+        Parameters
+        ----------
+        u : ndarray, shape (n_free,)
+        states : sequence of State
+            Of all laws.
+        """
+        s, (full, force) = self.structure, self._at(u, states)
+        whole = s.stiffness @ full + s.law_rows.T @ force - s.loads
+        return {f: float(x) for f, x in zip(s.freedoms.moved, whole[self.n :])}
+
+    def shear(self, u: Array, states: Sequence[State], d: int, nodes: Sequence[int] | None) -> float:
+        """Force on the ground along direction `d` [F]: at the supports `nodes`,
+        or at all supports and below all elements that end at the ground.
+        """
+        reactions = self.reactions(u, states)
+        if nodes is not None:
+            return -sum(reactions.get((node, d), 0.0) for node in nodes)
+        own, _ = self._held(*self._at(u, states))
+        return float(own[d]) - sum(r for (_, at), r in reactions.items() if at == d)
+
+    def balance(self, u: Array, states: Sequence[State]) -> list[tuple[Any, ...]]:
+        """Rows of the table ``equilibrium``: forces along x and y and moments about the origin."""
+        s, (full, force) = self.structure, self._at(u, states)
+        reactions = self.rigid[:, self.n :] @ np.array(list(self.reactions(u, states).values()))
+        grounded, couples = self._held(full, force)
+        rows = [("loads", self.rigid @ s.loads), ("reactions of the supports", reactions)]
+        if any(e.j is None for e in s.model.elements.values()):
+            rows.append(("ground below springs and walls with one node", -grounded))
+        if couples.any():
+            rows.append(("couples that springs and contacts without length do not carry", -couples))
+        if s.geometric:
+            rows.append(("axial forces on displaced members", -self.rigid @ (self.geometric @ full)))
+        rows.append(("sum", sum(x for _, x in rows)))
+        return [(name, *map(float, x)) for name, x in rows]
+
+    def imbalance(self, rows: Sequence[tuple[Any, ...]]) -> float:
+        """Sum of the rows of `balance` as a share of the largest of them; a moment counts beside
+        the largest force at the far end of the structure too.
+        """
+        values = np.abs(np.array([row[1:] for row in rows]))
+        force = values[:-1, :2].max()
+        moment = max(values[:-1, 2].max(), force * np.abs(self.rigid[2]).max(initial=0.0))
+        return float(max(values[-1, :2].max() / (force or 1.0), values[-1, 2] / (moment or 1.0)))
+
+    def _held(self, full: Array, force: Array) -> tuple[Array, Array]:
+        """Force and moment of the elements that resist a motion of the whole, shape (3,) each:
+        of those that end at the ground, and of those between nodes.
+        """
+        held = np.array([rows @ full + force @ laws for rows, laws in zip(self.linear, self.nonlinear)])
+        return held[0], held[1]
+
+    def _resistance(self) -> tuple[Array, Array]:
+        """Rows of those forces and moments, shape (2, 3, n), and what they take of each law's force,
+        shape (2, n_laws, 3).
+        """
+        s = self.structure
+        linear = np.zeros((2, *self.rigid.shape))
+        for number, parts in s.parts.items():
+            between = int(s.model.elements[number].j is not None)
+            for b in parts.stiffness:
+                at = s.freedoms.matrix(b.freedoms)
+                linear[between] += _above_rounding(self.rigid @ at.T, b.matrix) @ at
+        nonlinear = np.zeros((2, len(s.laws), 3))
+        for i, (x, row) in enumerate(zip(s.laws, s.law_rows)):
+            between = int(s.model.elements[x.element].j is not None)
+            nonlinear[between, i] = _above_rounding(self.rigid, row)
+        return linear, nonlinear
+
+
+def _above_rounding(a: Array, b: Array) -> Array:
+    """a @ b, with zeros where nothing but rounding is left of its terms."""
+    product = a @ b
+    return np.where(np.abs(product) > ROUNDING * (np.abs(a) @ np.abs(b)), product, 0.0)
+
+
+def _rigid(structure: Structure, freedom: Freedom) -> tuple[float, float, float]:
+    """Motion of a node's freedom when the whole moves along x, along y, and turns about the origin."""
+    owner, d = freedom
+    if d > 2:
+        return 0.0, 0.0, 0.0
+    node = structure.model.nodes[owner]
+    return ((1.0, 0.0, -node.y), (0.0, 1.0, node.x), (0.0, 0.0, 1.0))[d]

@@ -1,0 +1,397 @@
+r"""PUSHOVER: forces of a pattern that grow on the static state until a displacement or a factor is reached.
+
+The pattern has forces along one direction,
+
+.. math:: p_i = m_i \psi_i \Big/ \sum_j m_j \psi_j, \qquad \psi = 1,\quad \psi = h \quad\text{or}\quad
+          \psi = \phi
+
+(UNIFORM, TRIANGULAR with the height above the lowest support, MODE with the mode whose effective mass
+along the direction is largest), so that the load factor is the base shear that they cause; or it has the
+FORCES of the card, or it is the LOADS once more.  The path is followed event to event (see `path`), by the
+displacement of the control node, which gets past the largest base shear, or by the load factor, which ends
+there.
+
+With ADAPTIVE=YES the pattern is that of the present mode: after every change of a law and at every station
+:math:`dp = d\lambda\, p(\phi)` with :math:`\phi` of the tangent stiffness; the forces that act already stay
+(force-based adaptive pushover with incremental updating, Antoniou and Pinho 2004, in its form with one mode
+and no spectrum).  Once the tangent stiffness has a direction without resistance there is no such mode, and
+the last pattern is kept.
+
+References
+----------
+Antoniou S, Pinho R (2004), Advantages and limitations of adaptive and non-adaptive force-based pushover
+procedures, J. Earthquake Engng 8(4): 497-522.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Card
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve import modes
+from pound_solve.analyses.equilibrium import Ground
+from pound_solve.analyses.path import Change, Exit, Mark, Path, Unstable
+from pound_solve.analyses.static import StaticState
+from pound_solve.assemble import Structure
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point of the capacity curve: control displacement [L], base shear [F], load factor, changes."""
+
+    displacement: float
+    shear: float
+    factor: float
+    changes: int
+
+
+@dataclass
+class Pushed:
+    """What a pushover found.
+
+    Attributes
+    ----------
+    curve : list of Point
+        At the start, at the stations, and where laws changed.
+    ladder : list of (Point, Change)
+        Every change of a law.
+    first, last : ndarray, shape (n_free,)
+        Pattern at the start and at the end [F] or [-].
+    end : str
+        Why it ended.
+    failed : Unstable or None
+        Set where it ended before what was asked for.
+    unbalanced : float
+        Largest force out of balance at the end, as a share of the largest that acts.
+    """
+
+    curve: list[Point] = field(default_factory=list)
+    ladder: list[tuple[Point, Change]] = field(default_factory=list)
+    first: Array = field(default_factory=lambda: np.zeros(0))
+    last: Array = field(default_factory=lambda: np.zeros(0))
+    end: str = ""
+    failed: Unstable | None = None
+    unbalanced: float = 0.0
+
+
+def mistakes(structure: Structure) -> list[Diagnostic]:
+    """What is wrong with the PUSHOVER card of a deck: one message, or none."""
+    for card in structure.model.analyses:
+        if card.spec.name == "PUSHOVER" and (wrong := _wrong(structure, card)):
+            message, item, hint = wrong
+            return [Diagnostic("P335", message, card.place(item), hint)]
+    return []
+
+
+def _wrong(structure: Structure, card: Card) -> tuple[str, str, str] | None:
+    """Message, item of the card and hint."""
+    pattern, nodes, forces = card["PATTERN"], card["NODES"], card["FORCES"] or ()
+    wants = "TARGET" if card["CONTROL"] == "DISPLACEMENT" else "TARGET or FACTOR"
+    if card["TARGET"] is None and (card["FACTOR"] is None or wants == "TARGET"):
+        return f"PUSHOVER has no end: it needs {wants}", "CONTROL", "add TARGET=displacement"
+    if card["FACTOR"] == 0.0:
+        return "FACTOR is zero", "FACTOR", "give the load factor to go to, with its sign"
+    if not _control(structure, card).any():
+        message = f"the control node {card['NODE']} cannot move along {card['DIRECTION']}"
+        return message, "NODE", "name a node that is not fixed so"
+    if pattern == "FORCES" and (not forces or len(nodes or ()) != len(forces)):
+        hint = "PATTERN=FORCES takes one force for each node: NODES=3,5 FORCES=10,20"
+        return f"{len(nodes or ())} NODES, but {len(forces)} FORCES", "FORCES", hint
+    if pattern != "FORCES" and forces:
+        return (
+            f"FORCES do not go with PATTERN={pattern}",
+            "FORCES",
+            "write PATTERN=FORCES, or leave them out",
+        )
+    if pattern == "LOADS" and nodes is not None:
+        return (
+            "NODES do not go with PATTERN=LOADS",
+            "NODES",
+            "the loads stand where they are: leave NODES out",
+        )
+    if card["ADAPTIVE"] == "YES" and pattern != "MODE":
+        return f"PATTERN={pattern} cannot adapt", "ADAPTIVE", "ADAPTIVE=YES goes with PATTERN=MODE"
+    made = Pattern(structure, card)
+    if not (made.mass if made.by_mode else made.forces.any()):
+        hint = "the nodes that are pushed need forces, loads or WEIGHTS, and must be able to move so"
+        return f"PATTERN={pattern} has no force along {card['DIRECTION']}", "PATTERN", hint
+    return None
+
+
+def push(structure: Structure, state: StaticState, card: Card) -> Pushed:
+    """Push a structure from its static state.
+
+    Parameters
+    ----------
+    structure : Structure
+        With the geometric stiffness of that state.
+    state : StaticState
+    card : Card
+        Of `SPEC`.
+
+    Raises
+    ------
+    Unstable
+        Nothing could be done.
+    """
+    n, d = structure.n_free, "XY".index(card["DIRECTION"])
+    control = _control(structure, card)
+    target, factor, by_load = card["TARGET"], card["FACTOR"], card["CONTROL"] == "FORCE"
+    start = float(control @ state.u)
+    if target == start:
+        raise Unstable(f"the control node stands at its target {target:g} already", "A505")
+    pattern = Pattern(structure, card)
+    path = Path(
+        structure, state.u, state.states, structure.loads[:n], np.zeros(n), None if by_load else control
+    )
+    path.load = pattern.follow(path)
+    if not path.load.any():
+        raise Unstable("no mode of the static state moves the nodes that are pushed", "A505")
+    if not by_load:
+        path.sign = math.copysign(1.0, target - start)
+    elif factor is not None:
+        path.sign = math.copysign(1.0, factor)
+    else:  # the load grows or falls, whichever goes to the target
+        du = path.rates(path.deformations(path.u, 0.0))[0]
+        path.sign = math.copysign(1.0, (target - start) * float(control @ du))
+    ground = Ground(structure, state.axial)
+    out = Pushed(first=path.load)
+
+    def here() -> Point:
+        shear = ground.shear(path.u, path.states, d, card["BASE"])
+        return Point(float(control @ path.u), shear, path.factor, path.changes)
+
+    nothing = np.zeros(n)
+    ends: list[tuple[Mark, str]] = []
+    if target is not None:
+        way = math.copysign(1.0, target - start)
+        ends.append((Mark(way * control, 0.0, way * target), "the target displacement is reached"))
+    if factor is not None:
+        up = math.copysign(1.0, factor)
+        ends.append((Mark(nothing, up, up * factor), "the load factor is reached"))
+
+    def note(point: Point) -> None:
+        last = out.curve[-1:]
+        if last and (last[0].displacement, last[0].factor) == (point.displacement, point.factor):
+            out.curve.pop()
+        out.curve.append(point)
+
+    note(here())
+    station = 1
+    while not out.end:
+        # stations divide the way of whatever ends the pushover first on its list
+        part = station / card["STEPS"]
+        (row, share, value), _ = ends[0]
+        begin = float(row @ state.u)
+        at_station = Mark(row, share, begin + part * (value - begin))
+        try:
+            hit = path.step([*(m for m, _ in ends), at_station])
+            point = here()
+            if isinstance(hit, Exit):
+                change = path.leave(hit)
+                point = replace(point, changes=path.changes)
+                out.ladder.append((point, change))
+        except Unstable as err:
+            # by force that is the result: no more can be carried; by displacement the way goes on somewhere
+            out.end, out.failed = str(err), None if by_load and err.code == "A501" else err
+            note(here())
+            break
+        note(point)
+        if isinstance(hit, int):
+            if hit < len(ends):
+                out.end = ends[hit][1]
+            else:
+                station += 1
+        if card["ADAPTIVE"] == "YES":
+            path.load = pattern.follow(path)
+    out.last, out.unbalanced = path.load, path.unbalanced()
+    return out
+
+
+def tables(structure: Structure, card: Card, pushed: Pushed) -> dict[str, list[tuple[Any, ...]]]:
+    """Rows of the tables ``pushover``, ``push_pattern``, ``capacity_curve`` and ``push_events``."""
+    units, free = structure.model.units, structure.freedoms.free
+    length, force = units.text("L"), units.text("F")
+    curve = [replace(p, displacement=_clean(p.displacement, pushed.curve)) for p in pushed.curve]
+    top, end = max(curve, key=lambda x: abs(x.shear)), curve[-1]
+    own = card["PATTERN"] + (", adaptive" if card["ADAPTIVE"] == "YES" else "")
+    return {
+        "pushover": [
+            ("pattern", f"{own}, along {card['DIRECTION']}"),
+            ("control", f"{card['CONTROL'].lower()}, node {card['NODE']}"),
+            ("end", pushed.end),
+            (
+                "displacement and base shear at the end",
+                f"{end.displacement:.7g} {length}, {end.shear:.7g} {force}",
+            ),
+            ("largest base shear", f"{top.shear:.7g} {force} at {top.displacement:.7g} {length}"),
+            ("changes of springs, hinges and contacts", str(end.changes)),
+        ],
+        "push_pattern": [
+            (owner, "XYR"[d], float(a), float(b))
+            for (owner, d), a, b in zip(free, pushed.first, pushed.last)
+            if d < 3 and (a or b)
+        ],
+        "capacity_curve": [(p.displacement, p.shear, p.factor, p.changes) for p in curve],
+        "push_events": [
+            (
+                p.changes,
+                p.displacement,
+                p.shear,
+                p.factor,
+                structure.laws[c.law].element,
+                structure.laws[c.law].component,
+                c.before,
+                c.after,
+            )
+            for p, c in pushed.ladder
+        ],
+    }
+
+
+def _clean(displacement: float, curve: list[Point]) -> float:
+    """Zero for what is rounding beside the largest displacement."""
+    return displacement if abs(displacement) > 1e-13 * max(abs(p.displacement) for p in curve) else 0.0
+
+
+def _control(structure: Structure, card: Card) -> Array:
+    """Row of the control displacement, shape (n_free,)."""
+    at = (card["NODE"], "XY".index(card["DIRECTION"]))
+    return structure.freedoms.row([at], [1.0])[: structure.n_free]
+
+
+class Pattern:
+    """The forces per load factor.
+
+    Parameters
+    ----------
+    structure : Structure
+    card : Card
+
+    Attributes
+    ----------
+    forces : ndarray, shape (n_free,)
+        Present forces; zeros where the pattern has none, and before the first mode is known.
+    mass : float
+        Mass that is pushed [F T^2/L].
+    """
+
+    def __init__(self, structure: Structure, card: Card) -> None:
+        n, d = structure.n_free, "XY".index(card["DIRECTION"])
+        model, freedoms = structure.model, structure.freedoms
+        kind, nodes = card["PATTERN"], card["NODES"]
+        self.by_mode, self._stiff = kind == "MODE", 1
+        self.along = np.array([float(at == d) for _, at in freedoms.free])  # the whole moves by one
+        pushed = np.zeros(n)
+        for node in model.nodes if nodes is None else nodes:
+            pushed[[i for i, _ in freedoms.terms[node, d] if i < n]] = 1.0
+        self.structure_mass = structure.mass[:n, :n]
+        self.share = (pushed * self.along)[:, None] * self.structure_mass * self.along
+        self.mass = float(self.share.sum())
+        self.forces = np.zeros(n)
+        if kind == "LOADS":
+            self.forces = structure.loads[:n]
+        elif kind == "FORCES":
+            self.forces = freedoms.row([(node, d) for node in nodes], card["FORCES"])[:n]
+        elif kind == "UNIFORM":
+            self.forces = self._of(np.ones(n))
+        elif kind == "TRIANGULAR":
+            base = min((node.y for node in model.nodes.values() if node.fixed), default=0.0)
+            height = [model.nodes[owner].y - base if at == d else 0.0 for owner, at in freedoms.free]
+            self.forces = self._of(np.array(height))
+
+    def _of(self, shape: Array) -> Array:
+        """Forces of sum one by mass and shape."""
+        p = self.share @ shape
+        total = float(p.sum())
+        return p / total if abs(total) > 1e-12 * np.abs(p).sum() else 0.0 * p
+
+    def follow(self, path: Path) -> Array:
+        """Forces at the present point."""
+        if self.by_mode:
+            try:
+                found = modes.solve(path.tangent(), self.structure_mass)
+            except np.linalg.LinAlgError:
+                return self.forces  # a part without mass has become a mechanism
+            stiff = found.shapes[:, found.omega > 0.0]
+            if stiff.shape[1] >= self._stiff:  # else a motion has lost its resistance
+                self._stiff = stiff.shape[1]
+                effective = (self.share.sum(axis=0) @ stiff) ** 2
+                self.forces = self._of(stiff[:, int(np.argmax(effective))])
+        return self.forces
+
+
+SPEC = Spec(
+    "analysis",
+    "PUSHOVER",
+    "forces that grow on the static state",
+    (
+        Field("NODE", Kind.NODE, doc="control node", positional=True),
+        Field(
+            "TARGET",
+            Kind.REAL,
+            "L",
+            default=None,
+            doc="displacement of the control node to go to, the static one included",
+            positional=True,
+        ),
+        Field("DIRECTION", Kind.WORD, default="X", words=("X", "Y"), doc="direction of forces and control"),
+        Field(
+            "PATTERN",
+            Kind.WORD,
+            default="TRIANGULAR",
+            words=("UNIFORM", "TRIANGULAR", "MODE", "FORCES", "LOADS"),
+            doc="forces by mass, by mass and height, by mass and mode (all of sum 1), as FORCES says, "
+            "or the LOADS once more",
+        ),
+        Field("NODES", Kind.NODES, default=None, doc="nodes that are pushed; left out: all that have mass"),
+        Field(
+            "FORCES",
+            Kind.REAL,
+            "F",
+            default=None,
+            count=(1, 1000),
+            doc="forces on NODES, one for each, with PATTERN=FORCES",
+        ),
+        Field(
+            "CONTROL",
+            Kind.WORD,
+            default="DISPLACEMENT",
+            words=("DISPLACEMENT", "FORCE"),
+            doc="what grows: the displacement of NODE (past the largest load too) or the load factor",
+        ),
+        Field(
+            "FACTOR",
+            Kind.REAL,
+            "-",
+            default=None,
+            doc="ends at this load factor, if TARGET is not met before",
+        ),
+        Field(
+            "ADAPTIVE",
+            Kind.WORD,
+            default="NO",
+            words=("NO", "YES"),
+            doc="with PATTERN=MODE: take the mode anew after every event and at every station",
+        ),
+        Field(
+            "STEPS", Kind.INT, default=50, lo=1, hi=100_000, doc="number of stations on the capacity curve"
+        ),
+        Field(
+            "BASE",
+            Kind.NODES,
+            default=None,
+            doc="supports whose reactions make the base shear; left out: all that holds the structure",
+        ),
+    ),
+    reference="Antoniou & Pinho 2004 (adaptive)",
+)

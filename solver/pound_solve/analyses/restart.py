@@ -1,0 +1,147 @@
+"""Where a history can be taken up again, and how its parts are put together.
+
+A history with a SAVE time is integrated in two parts, the second from the state at the end of the first and
+from nothing else.  So a run that is taken up from the saved state gives the same numbers, to the last bit,
+as the whole run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.assemble import Structure
+from pound_solve.dofs import label
+from pound_solve.integrate.base import Extreme, Outcome, Peaks, Start
+from pound_solve.laws import MEMORY, State
+from pound_solve.scene import Scene
+
+Array = NDArray[np.float64]
+
+
+class RestartError(Exception):
+    """The saved state is of another structure."""
+
+
+@dataclass(frozen=True)
+class Saved:
+    """The state of a history at a time.
+
+    Attributes
+    ----------
+    t : float
+        [T]
+    u, v : ndarray, shape (n_free,)
+        Displacements and velocities of the structure's unknowns.
+    states : tuple of State
+    works : ndarray, shape (3,)
+        See `integrate.base.Sink`.
+    first : ndarray, shape (6,)
+        Energies at the start of the whole history.
+    """
+
+    t: float
+    u: Array
+    v: Array
+    states: tuple[State, ...]
+    works: Array
+    first: Array
+
+    def arrays(self, structure: Structure) -> dict[str, Array]:
+        """The state as arrays for a file, with what it belongs to."""
+        return {
+            "time": np.array([self.t]),
+            "u": self.u,
+            "v": self.v,
+            "works": self.works,
+            "first": self.first,
+            "branch": np.array([s[0] for s in self.states], float),
+            "entry": np.array([s[1:3] for s in self.states], float).reshape(-1, 2),
+            # a law that knows its secant stiffness has two numbers more than the others
+            "memory": np.array([(*s[3], 0.0, 0.0)[: MEMORY + 2] for s in self.states]).reshape(
+                -1, MEMORY + 2
+            ),
+            "freedoms": np.array(structure.freedoms.free, float).reshape(-1, 2),
+        }
+
+
+def load(arrays: Mapping[str, Array], structure: Structure) -> Saved:
+    """Return the state that `Saved.arrays` laid out.
+
+    Raises
+    ------
+    RestartError
+        It is not that of this structure.
+    """
+    own = np.array(structure.freedoms.free, float).reshape(-1, 2)
+    if arrays["freedoms"].shape != own.shape or np.any(arrays["freedoms"] != own):
+        strange = set(map(tuple, own.tolist())) ^ set(map(tuple, arrays["freedoms"].tolist()))
+        names = ", ".join(sorted(label((int(a), int(b))) for a, b in strange)[:4]) or "their order"
+        raise RestartError(f"the saved state is of a structure with other unknowns: {names}")
+    if len(arrays["branch"]) != len(structure.laws):
+        raise RestartError(
+            f"the saved state has {len(arrays['branch'])} springs and contacts with memory, "
+            f"the structure has {len(structure.laws)}"
+        )
+    states = tuple(
+        (int(at), entry[0], entry[1], tuple(memory[: len(s.law.start()[3])]))
+        for s, at, entry, memory in zip(
+            structure.laws, arrays["branch"].tolist(), arrays["entry"].tolist(), arrays["memory"].tolist()
+        )
+    )
+    return Saved(
+        float(arrays["time"][0]), arrays["u"], arrays["v"], states, arrays["works"], arrays["first"]
+    )
+
+
+def resume(saved: Saved, scene: Scene, times: Array) -> Start:
+    """Start of a part: the saved state over the scene's unknowns."""
+    index = {f: i for i, f in enumerate(scene.structure.freedoms.free)}
+    keep = [index[f] for f in scene.freedoms]
+    return Start(saved.u[keep], saved.v[keep], saved.states, times, saved.works)
+
+
+def join(parts: Sequence[Outcome]) -> Outcome:
+    """One outcome of parts that followed each other."""
+    whole = parts[-1]
+    for before in reversed(parts[:-1]):
+        figures = {
+            key: value + before.figures.get(key, 0) if isinstance(value, int) else value
+            for key, value in whole.figures.items()
+        }
+        checks = [*before.checks, *(c for c in whole.checks if c not in before.checks)]
+        whole = Outcome(_both(before.peaks, whole.peaks), figures, whole.states, checks, whole.exact)
+    return whole
+
+
+def _both(a: Peaks, b: Peaks) -> Peaks:
+    """Peaks of two parts; a collision that was going on between them is one."""
+    running = {c.law: c for c in a.collisions if not np.isfinite(c.t_end)}
+    later = []
+    for c in b.collisions:
+        first = running.pop(c.law, None)
+        if first is None:
+            later.append(c)
+            continue
+        first.t_end, first.separation = c.t_end, c.separation
+        first.impulse += c.impulse
+        if c.peak > first.peak:
+            first.peak, first.t_peak = c.peak, c.t_peak
+    return Peaks(
+        [_wider(x, y) for x, y in zip(a.watch, b.watch)],
+        [_wider(x, y) for x, y in zip(a.deformation, b.deformation)],
+        [_wider(x, y) for x, y in zip(a.force, b.force)],
+        [x + y for x, y in zip(a.yields, b.yields)],
+        [x + y for x, y in zip(a.dashpot_losses, b.dashpot_losses)],
+        [*a.collisions, *later],
+    )
+
+
+def _wider(a: Extreme, b: Extreme) -> Extreme:
+    out = Extreme(a.high, a.t_high, a.low, a.t_low)
+    out.take(b.high, b.t_high)
+    out.take(b.low, b.t_low)
+    return out

@@ -1,0 +1,39 @@
+"""Pictures by matplotlib (extra `plot`), which is imported within these functions only."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import fill
+
+from pound_solve.sketch import Curve
+
+
+def loop(curve: Curve, title: str, x_name: str, y_name: str, path: Path) -> None:
+    """Draw a force against its deformation into a file, whose ending names the format.
+
+    Parameters
+    ----------
+    curve : sequence of (deformation, force)
+        Corners, joined by straight lines.
+    title, x_name, y_name : str
+        Texts above the picture and at its axes.
+    path : Path
+
+    Raises
+    ------
+    ImportError
+        matplotlib is not installed.
+    OSError
+        The file cannot be written.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.4, 4.5), layout="constrained")
+    axes = figure.add_subplot(xlabel=x_name, ylabel=y_name)
+    axes.set_title(fill(title, 80), fontsize=9)
+    axes.axhline(0.0, color="0.4", linewidth=0.8)
+    axes.axvline(0.0, color="0.4", linewidth=0.8)
+    axes.grid(color="0.87")
+    axes.set_axisbelow(True)
+    axes.plot(*zip(*curve), color="#0b4f8a", linewidth=1.4)
+    figure.savefig(path, dpi=150)

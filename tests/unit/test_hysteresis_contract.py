@@ -1,0 +1,335 @@
+"""The contract that every hysteresis rule of the catalog keeps, along random paths.
+
+A new rule is held to it as soon as its file declares a SPEC; SAMPLES says with what parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import count
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import contract
+from contract import CLAUSES
+from paths import Walk, turning_points
+from pound_deck.schema import REQUIRED, Field, Spec
+from pound_solve import jit
+from pound_solve.catalog import catalog
+from pound_solve.hysteresis import bilinear
+from pound_solve.laws import (
+    TURNS_DOWN,
+    TURNS_UP,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    follow,
+    on_spring,
+    piece,
+    remember,
+)
+
+K = 800.0  #: initial stiffness
+PLUS, MINUS = 12.0, -8.0  #: yield forces: at +15 and -10 mm
+REACH = 0.1  #: paths run between plus and minus this
+
+LOSS = {"DUCT1": 1.5, "DUCT2": 5.0, "RDUCT": 0.3}
+DEGRADING: list[dict[str, Any]] = [
+    {},
+    {"R": 0.05, "ALFA": 0.4},
+    {"R": 0.3, "ALFA": 1.0},
+    {"R": 0.02, "ALFA": 0.5, "ILOS": "EACH", **LOSS},
+    {"ILOS": "LARGEST", **LOSS},
+    {"ALFA": 1.0, "ILOS": "EACH", "DUCT1": 1.0, "DUCT2": 2.0, "RDUCT": 0.2},
+]
+
+#: parameters to try for every rule; what is left out has its default
+SAMPLES: dict[str, list[dict[str, Any]]] = {
+    "BILINEAR": [{"R": r} for r in (-0.1, 0.0, 0.05, 0.4, 0.9)],
+    "BILINEAR_ELASTIC": [{"R": r} for r in (0.0, 0.1, 0.7)],
+    "BILINEAR_SLACK": [
+        {"R": r, "SLACK": slack, "GROW": grow}
+        for r, slack in ((0.0, (0.0,)), (0.05, (0.004, -0.002)), (0.4, (0.004,)), (0.9, (0.004, -0.002)))
+        for grow in ("YES", "NO")
+    ],
+    "CLOUGH": DEGRADING,
+    "DEGRADING_BILINEAR": DEGRADING,
+    "ELASTO_PLASTIC": [{}],
+    "ORIGIN_CENTRED": [{n: v for n, v in sample.items() if n != "ALFA"} for sample in DEGRADING],
+    "Q_HYST": DEGRADING,
+    "TAKEDA": [*DEGRADING, *({**sample, "BETA": beta} for sample in DEGRADING for beta in (0.6, 1.0))],
+    "TRILINEAR": [
+        {"R": 0.5, "F2": (1.3,)},
+        {"R": 0.3, "R2": 0.05, "F2": (1.5, 2.5)},
+        {"R": 0.2, "R2": -0.05, "F2": (1.1,)},
+    ],
+}
+
+RULES = {s.name: s for s in catalog().family("hysteresis").values() if s.impl is not None}
+
+
+def test_every_rule_has_samples() -> None:
+    assert set(SAMPLES) == set(RULES)
+
+
+def filled(spec: Spec, sample: dict[str, Any]) -> dict[str, Any]:
+    """Values of a card: the sample, and the defaults of the other fields."""
+    values = {f.name: f.default for f in spec.fields} | sample
+    assert set(values) == {f.name for f in spec.fields}, f"{spec.name} has no such fields"
+    assert REQUIRED not in values.values(), f"{spec.name}: the sample leaves out what must stand"
+    for f in spec.fields:
+        if values[f.name] is not None:
+            assert allowed(f, values[f.name]), (
+                f"{spec.name} {f.name}={values[f.name]}: a deck may not say so"
+            )
+    return values
+
+
+def allowed(f: Field, value: Any) -> bool:
+    """Whether the reader would accept a value."""
+    if f.words:
+        return value in f.words
+    numbers = value if isinstance(value, tuple) else (value,)
+    return f.count[0] <= len(numbers) <= f.count[1] and all(
+        (f.lo is None or x >= f.lo)
+        and (f.hi is None or x <= f.hi)
+        and (f.above is None or x > f.above)
+        and (f.below is None or x < f.below)
+        for x in numbers
+    )
+
+
+def cases(minus: float) -> Iterator[Any]:
+    for name in sorted(set(SAMPLES) & set(RULES)):
+        for sample in SAMPLES[name]:
+            law = RULES[name].impl(filled(RULES[name], sample), K, PLUS, minus)
+            yield pytest.param(law, sample, id=f"{name} {minus} {sample}")
+
+
+UNEQUAL, EQUAL = list(cases(MINUS)), list(cases(-PLUS))
+every = pytest.mark.parametrize(("law", "sample"), UNEQUAL)
+
+
+@pytest.mark.parametrize("clause", CLAUSES)
+@every
+def test_contract(law: Law, sample: dict[str, Any], clause: Callable[[Law, float], None]) -> None:
+    clause(law, REACH)
+
+
+@pytest.mark.parametrize(("law", "sample"), EQUAL)
+def test_symmetric_parameters_answer_symmetrically(law: Law, sample: dict[str, Any]) -> None:
+    if any(len(v) == 2 for v in sample.values() if isinstance(v, tuple)):
+        pytest.skip("two different sides")
+    for seed in range(3):
+        one, other = Walk(law), Walk(law)
+        for goal in turning_points(seed, REACH):
+            one.move(goal)
+            other.move(-goal)
+            assert other.force == pytest.approx(-one.force, abs=1e-10)
+            assert other.work == pytest.approx(one.work, abs=1e-10)
+
+
+# ---------------------------------------------------------------------- any history
+
+
+def envelope(law: Law, d: float) -> float:
+    """Largest force of the virgin rule on the way to `d`, with the sign of `d`."""
+    walk = Walk(law).move(d)
+    ends = [law.force(s, x)[0] for s, a, b in walk.visits for x in (a, b)]
+    return max(ends) if d > 0.0 else min(ends)
+
+
+def corner(sample: dict[str, Any], fy: float, which: int) -> float:
+    """Deformation of a side where the last yield line of the virgin rule begins."""
+    ratio = (sample["F2"][which] - 1.0) / sample["R"] if "F2" in sample else 0.0
+    slack = sample.get("SLACK", (0.0,))
+    gap = slack[which] if len(slack) == 2 else slack[0] * np.sign(fy)
+    return fy / K * (1.0 + ratio) + float(gap)
+
+
+def bounds(law: Law, sample: dict[str, Any], minus: float) -> Callable[[float, float], tuple[float, float]]:
+    """Limits of the force once the deformation has reached `low` and `high`: those of the virgin rule.
+
+    A kinematic rule may get to its last yield line sooner than the virgin one; where that line falls
+    (negative hardening) it is higher on the other side.
+    """
+    begin_plus, begin_minus = corner(sample, PLUS, 0), corner(sample, minus, -1)
+    fall = -min(sample.get("R", 0.0), sample.get("R2", 0.0), 0.0) * K
+
+    def at(low: float, high: float) -> tuple[float, float]:
+        low, high = min(low, begin_minus), max(high, begin_plus)
+        over = fall * (high - low)
+        return envelope(law, low) - over, envelope(law, high) + over
+
+    return at
+
+
+numbers = st.lists(st.floats(-REACH, REACH), min_size=1, max_size=30)
+
+
+@settings(max_examples=12, derandomize=True, deadline=None)
+@given(path=numbers)
+@every
+def test_any_history_keeps_within_the_backbone(law: Law, sample: dict[str, Any], path: list[float]) -> None:
+    """No NaN, no force beyond the backbone, no branch changes without motion (`pieces` counts them)."""
+    walk, limits = Walk(law), bounds(law, sample, MINUS)
+    low = high = 0.0
+    for goal in path:
+        walk.move(goal)
+        low, high = min(low, goal), max(high, goal)
+    bottom, top = limits(low, high)
+    for state, a, b in walk.visits:
+        for d in (a, b):
+            assert bottom - 1e-10 <= law.force(state, d)[0] <= top + 1e-10
+    assert np.isfinite(walk.work) and law.stored(walk.state, walk.d) <= walk.work + 1e-10
+
+
+@every
+def test_a_long_history(law: Law, sample: dict[str, Any]) -> None:
+    """Two thousand turns, most of them small, as in a long earthquake."""
+    rng = np.random.default_rng(11)
+    state, d, most = law.start(), 0.0, 0.0
+    bottom, top = bounds(law, sample, MINUS)(-REACH, REACH)
+    for goal in (REACH * np.sin(np.arange(400) * 0.7) * rng.uniform(-0.2, 1.0, 400)).tolist():
+        for x in (goal, *(goal + 1e-3 * rng.uniform(-1.0, 1.0, 4)).clip(-REACH, REACH).tolist()):
+            state = follow(law, state, d, x, limit=60)
+            d = x
+            f = law.force(state, d)[0]
+            assert bottom - 1e-10 <= f <= top + 1e-10
+            most = max(most, abs(f))
+            assert np.isfinite(law.work(state, d))
+    assert most > 0.3 * PLUS
+
+
+# ---------------------------------------------------------------------- compiled
+
+
+@pytest.mark.skipif(jit.numba() is None, reason="numba is not installed")
+@pytest.mark.parametrize("name", sorted(set(SAMPLES) & set(RULES)))
+def test_compiled_functions_give_the_same_numbers(name: str) -> None:
+    laws = [p.values[0] for p in UNEQUAL if p.id.startswith(f"{name} ")]
+    branch, leave, recoverable, curve = (f[0] for f in jit.tables([laws[0].rule]))
+    for law in laws:
+        rule, p = law.rule, law.p
+        walk = Walk(law).move(*turning_points(3, REACH))
+        for n, (state, _, d) in enumerate(walk.visits):
+            at, d0, m = state[0], state[1], state[3]
+            assert branch(p, at, m) == pytest.approx(rule.branch(p, at, m), rel=1e-13, abs=1e-13)
+            f = law.force(state, d)[0]
+            assert recoverable(p, at, m, d, f) == pytest.approx(rule.recoverable(p, at, m, d, f), rel=1e-13)
+            if rule.curve is not None:
+                expected = rule.curve(p, at, m, d0, d, 0.0)
+                assert curve(p, at, m, d0, d, 0.0) == pytest.approx(expected, rel=1e-12, abs=1e-13)
+            if n + 1 < len(walk.visits) and walk.visits[n + 1][0] is not state:
+                for way in range(len(law.branch(state).exits)):
+                    there, memory = leave(p, at, m, way, d)
+                    expected = rule.leave(p, at, m, way, d)
+                    assert (there, memory) == (
+                        expected[0],
+                        pytest.approx(expected[1], rel=1e-12, abs=1e-13),
+                    )
+
+
+# ---------------------------------------------------------------------- the contract can fail
+
+
+def jumps(p: Numbers, at: int, m: Numbers) -> Numbers:
+    k, c, f0, *exits = bilinear.branch(p, at, m)
+    return (k, c, 1.01 * f0 if at == bilinear.YIELDING_PLUS else f0, *exits)
+
+
+def too_stiff(p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float) -> tuple[float, ...]:
+    """A curve with the right force and work, and a wrong tangent."""
+    k, _, f0 = bilinear.branch(p, at, m)[:3]
+    return k * d + f0, 1.01 * k, 0.0, (0.5 * k * (d + d0) + f0) * (d - d0)
+
+
+def idle(p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float) -> tuple[float, ...]:
+    """A curve with the right force, and a wrong work."""
+    f, k, c, work = too_stiff(p, at, m, d0, d, v)
+    return f, k / 1.01, c, 0.99 * work
+
+
+def elsewhere(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+    """Unloads along a line that does not pass through the point where the motion turned."""
+    there, memory = bilinear.leave(p, at, m, way, d)
+    return there, remember(0.5 * memory[0]) if at != bilinear.ELASTIC else memory
+
+
+def backward(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Once it has slipped, it yields at a force that is exceeded already where it unloads."""
+    k, c, f0, *exits = bilinear.branch(p, at, m)
+    if at == bilinear.ELASTIC and m[0] != 0.0:
+        exits[2] += 0.2 * p[1]
+    return (k, c, f0, *exits)
+
+
+def more(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    return 1.01 * on_spring(p, at, m, d, f)
+
+
+def less(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    return 0.99 * on_spring(p, at, m, d, f)
+
+
+def forgetful() -> Callable[[Numbers, int, Numbers], Numbers]:
+    """A branch that softens a little with every question."""
+    asked = count()
+
+    def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+        k, *others = bilinear.branch(p, at, m)
+        return (k * (1.0 - 1e-9 * next(asked)), *others)
+
+    return branch
+
+
+@pytest.mark.parametrize(
+    ("clause", "wrong", "says"),
+    [
+        (contract.trying_changes_nothing, {"branch": forgetful()}, "asking changed the law"),
+        (contract.force_is_continuous, {"branch": jumps}, "the force jumps"),
+        (contract.force_is_continuous, {"leave": elsewhere}, "the force jumps"),
+        (contract.branches_begin_clear_of_their_exits, {"branch": backward}, "an exit is above zero"),
+        (contract.tangent_is_the_slope_of_the_force, {"curve": too_stiff}, "the tangent"),
+        (contract.work_is_the_area_below_the_force, {"curve": idle}, "the work"),
+        (contract.stored_energy_comes_back, {"recoverable": more}, "more is stored"),
+        (contract.stored_energy_comes_back, {"recoverable": less}, "less is stored"),
+    ],
+)
+def test_the_contract_tells_a_wrong_rule(
+    clause: Callable[[Law, float], None], wrong: dict[str, Any], says: str
+) -> None:
+    numbers = (K, PLUS, MINUS, 0.3)
+    clause(Law(bilinear.RULE, numbers), REACH)
+    with pytest.raises(AssertionError, match=says):
+        clause(Law(bilinear.RULE._replace(**wrong), numbers), REACH)
+
+
+def test_the_contract_tells_a_rule_that_gives_energy() -> None:
+    """A loop run the wrong way round: low on the way up, high on the way down, without a jump."""
+
+    def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+        k = (1.0 if at == 0 else 2.0) * p[0]
+        return piece(k, m[0] - k * m[1], TURNS_DOWN if at == 0 else TURNS_UP)
+
+    def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+        f = m[0] + (1.0 if at == 0 else 2.0) * p[0] * (d - m[1])
+        return 1 - at, remember(f, d)
+
+    law = Law(Rule(("up", "down"), lambda p: (0, remember()), branch, leave), (K,))
+    with pytest.raises(AssertionError, match="gives energy"):
+        contract.closed_loops_dissipate(law, REACH)
+
+
+def test_a_rule_that_cycles_is_told() -> None:
+    def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+        return piece(p[0], 0.0, above(0.5 * REACH))
+
+    law = Law(Rule(("one", "other"), bilinear.start, branch, lambda p, at, m, w, d: (1 - at, m)), (K,))
+    with pytest.raises(AssertionError, match="without moving"):
+        Walk(law).move(REACH)
