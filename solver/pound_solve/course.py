@@ -326,6 +326,7 @@ class Course:
         """Envelopes of nodes and members and the energies: what the samples tell."""
         w, units = self.writer, self.model.units
         rows: list[tuple[Any, ...]] = []
+        found = {q: e.rows() for q, e in recorder.node_envelopes.items()}
         for i, node in enumerate(recorder.nodes):
             for axis in range(3):
                 for q, word, dimension in (
@@ -333,25 +334,29 @@ class Course:
                     ("v", "velocity", "L/T"),
                     ("a", "acceleration", "L/T^2"),
                 ):
-                    e = recorder.node_extremes[q][3 * i + axis]
-                    if e.high != 0.0 or e.low != 0.0:
+                    extremes = found[q][3 * i + axis]
+                    if extremes[0] != 0.0 or extremes[2] != 0.0:
                         unit = units.text(dimension if axis < 2 else dimension.replace("L", "rad"))
-                        rows.append((node, "XYR"[axis], word, unit, e.high, e.t_high, e.low, e.t_low))
-        relative = "displacements and velocities are relative to the ground, accelerations are total."
-        w.table(
-            "node_envelope",
-            rows,
-            f"At the output times, every {self.every:.6g} {units.time}: peaks between them are not seen, "
-            "a smaller OUTPUT EVERY finds them; " + ("all are total." if place.total else relative),
-        )
+                        rows.append((node, "XYR"[axis], word, unit, *extremes))
+        if recorder.seen:
+            how = (
+                f"Seen at {recorder.seen} instants, at most {recorder.apart:.3g} {units.time} apart, "
+                "and at the output times; peaks between them are not. "
+            )
+        else:
+            how = (
+                f"At the output times, every {self.every:.6g} {units.time}: peaks between them are not seen, "
+                "a smaller OUTPUT EVERY finds them. "
+            )
+        relative = "Displacements and velocities are relative to the ground, accelerations are total."
+        w.table("node_envelope", rows, how + ("All are total." if place.total else relative))
         w.table(
             "member_envelope",
             [
-                (o.element, o.quantity, units.text(o.unit), e.high, e.t_high, e.low, e.t_low)
-                for o, e in zip(recorder.outputs, recorder.output_extremes)
+                (o.element, o.quantity, units.text(o.unit), *extremes)
+                for o, extremes in zip(recorder.outputs, recorder.output_envelope.rows())
             ],
-            f"At the output times, every {self.every:.6g} {units.time}: peaks between them are not seen. "
-            + SIGNS,
+            how + SIGNS,
         )
         first, input_ = recorder.first_energy, float(recorder.last_energy[0])
         changes = [*(recorder.last_energy - first * (np.arange(len(ENERGIES)) > 0)), recorder.last_residual]

@@ -291,10 +291,12 @@ class Condensed:
         own = np.column_stack([self.follow, self.constant]) @ s
         return 0.5 * float(own @ self.loads @ s)
 
-    def all(self, u: Array, t: float, order: int = 0) -> Array:
-        """All unknowns from those that are left, shape (n,); `order` 1: velocities, 2: accelerations."""
-        out = self.expand @ u + self.follow @ self.scene.excitation.value(t, order)
-        return out + self.constant if order == 0 else out
+    def all(self, u: Array, s: Array, order: int = 0) -> Array:
+        """All unknowns from those that are left and the inputs `s`, shape (n,); `order` 1: velocities,
+        2: accelerations.  Columns are instants where there are several.
+        """
+        out = self.expand @ u + self.follow @ s
+        return (out.T + self.constant).T if order == 0 else out
 
 
 def condense(scene: Scene) -> Condensed:

@@ -47,6 +47,20 @@ DEGRADING: list[dict[str, Any]] = [
     {"ILOS": "LARGEST", **LOSS},
     {"ALFA": 1.0, "ILOS": "EACH", "DUCT1": 1.0, "DUCT2": 2.0, "RDUCT": 0.2},
 ]
+#: at 0.045 (or 0.025) the cap; capacities that make the component fail on some paths, and not on others
+CAPPED: list[dict[str, Any]] = [
+    {"DP": (0.03,), "DPC": (0.1,)},
+    {"R": 0.05, "DP": (0.03,), "DPC": (0.1,), "RESIDUAL": 0.2, "LAMBDA": (1.0,)},
+    {
+        "R": 0.1,
+        "DP": (0.04, 0.02),
+        "DPC": (0.05, 0.1),
+        "RESIDUAL": 0.1,
+        "LAMBDA": (1.0, 0.8, 1.0),
+        "C": 1.5,
+    },
+    {"R": 0.02, "DP": (0.01,), "DPC": (0.03,), "LAMBDA": (0.5, 0.0, 2.0)},
+]
 
 #: parameters to try for every rule; what is left out has its default
 SAMPLES: dict[str, list[dict[str, Any]]] = {
@@ -57,18 +71,36 @@ SAMPLES: dict[str, list[dict[str, Any]]] = {
         for r, slack in ((0.0, (0.0,)), (0.05, (0.004, -0.002)), (0.4, (0.004,)), (0.9, (0.004, -0.002)))
         for grow in ("YES", "NO")
     ],
+    "BOUC_WEN": [{"R": 0.0, "N": 1.0}, {"R": 0.1, "N": 2.0}, {"R": 0.05, "N": 1.5, "BETA": 0.7}],
     "CLOUGH": DEGRADING,
     "DEGRADING_BILINEAR": DEGRADING,
     "ELASTO_PLASTIC": [{}],
+    "FLAG_SHAPED": [{"R": r, "BETA": beta} for r, beta in ((0.0, 1.0), (0.1, 0.5), (0.4, 0.9), (0.9, 0.1))],
+    "IMK_BILINEAR": CAPPED,
+    "IMK_PEAK_ORIENTED": CAPPED,
+    "IMK_PINCHING": [
+        {**sample, "KAPPAF": f, "KAPPAD": d} for sample in CAPPED for f, d in ((0.3, 0.5), (0.7, 0.0))
+    ],
     "ORIGIN_CENTRED": [{n: v for n, v in sample.items() if n != "ALFA"} for sample in DEGRADING],
     "Q_HYST": DEGRADING,
+    "RAMBERG_OSGOOD": [{"N": 5.0}, {"N": 1.7, "ALPHA": 0.4}, {"N": 15.0, "ALPHA": 2.0}],
     "TAKEDA": [*DEGRADING, *({**sample, "BETA": beta} for sample in DEGRADING for beta in (0.6, 1.0))],
     "TRILINEAR": [
         {"R": 0.5, "F2": (1.3,)},
         {"R": 0.3, "R2": 0.05, "F2": (1.5, 2.5)},
         {"R": 0.2, "R2": -0.05, "F2": (1.1,)},
     ],
+    "WAYNE_STEWART": [
+        {"R": 0.1, "FU": (16.0,), "FI": 2.0, "PTRI": -0.05, "PUNL": 1.5, "BETA": 1.1, "ALPHA": 0.6},
+        {
+            **{"R": 0.2, "FU": (20.0, -12.0), "FI": 0.0, "PTRI": -0.02, "ALPHA": 0.9},
+            **{"SLACK": (0.005, -0.003), "RPINCH": 0.0},
+        },
+        {"R": 0.1, "FU": (15.0,), "FI": 4.0, "PUNL": 2.0, "ALPHA": 0.3, "SLACK": (0.004,), "RPINCH": 0.0},
+    ],
 }
+
+SAME_BOTH_WAYS = {"RAMBERG_OSGOOD"}  #: rules that take no unequal yield forces
 
 RULES = {s.name: s for s in catalog().family("hysteresis").values() if s.impl is not None}
 
@@ -107,7 +139,8 @@ def allowed(f: Field, value: Any) -> bool:
 def cases(minus: float) -> Iterator[Any]:
     for name in sorted(set(SAMPLES) & set(RULES)):
         for sample in SAMPLES[name]:
-            law = RULES[name].impl(filled(RULES[name], sample), K, PLUS, minus)
+            side = -PLUS if name in SAME_BOTH_WAYS else minus
+            law = RULES[name].impl(filled(RULES[name], sample), K, PLUS, side)
             yield pytest.param(law, sample, id=f"{name} {minus} {sample}")
 
 
@@ -156,9 +189,12 @@ def bounds(law: Law, sample: dict[str, Any], minus: float) -> Callable[[float, f
     """Limits of the force once the deformation has reached `low` and `high`: those of the virgin rule.
 
     A kinematic rule may get to its last yield line sooner than the virgin one; where that line falls
-    (negative hardening) it is higher on the other side.
+    (negative hardening) it is higher on the other side.  A curve comes to its yield line far out.
     """
-    begin_plus, begin_minus = corner(sample, PLUS, 0), corner(sample, minus, -1)
+    if law.curved:
+        begin_plus, begin_minus = 10.0 * REACH, -10.0 * REACH
+    else:
+        begin_plus, begin_minus = corner(sample, PLUS, 0), corner(sample, minus, -1)
     fall = -min(sample.get("R", 0.0), sample.get("R2", 0.0), 0.0) * K
 
     def at(low: float, high: float) -> tuple[float, float]:

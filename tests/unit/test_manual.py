@@ -111,7 +111,7 @@ def test_dependencies_are_those_of_the_package():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
     asked = [*project["project"]["dependencies"], *project["build-system"]["requires"]]
     asked += [x for extra in project["project"]["optional-dependencies"].values() for x in extra]
-    names = {re.match(r"[\w-]+", x)[0] for x in asked}
+    names = {re.match(r"[\w-]+", x)[0] for x in asked} - {"pound-solve"}  # an extra of its own
     page = (MANUAL / "dependencies.md").read_text("utf-8")
     assert set(re.findall(r"^\| (?:`\w+` \| )?`([\w-]+)` \|", page, re.M)) == names
 
@@ -206,11 +206,11 @@ def test_table_of_convergence_is_what_the_methods_do(tmp_path):
 
     exact = force(method="EXACT")
     rows = table("theory-integration.md", "convergence")
-    for n, method in enumerate(("NEWMARK", "CENTRAL"), 1):
+    for n, method in enumerate(("NEWMARK", "HHT", "GENERALISED_ALPHA", "CENTRAL"), 1):
         errors = [abs(force(method=method, dt=float(row[0])) / exact - 1) for row in rows]
         assert errors == pytest.approx([float(row[n]) for row in rows], rel=0.01)
         order = math.log(errors[0] / errors[1]) / math.log(float(rows[0][0]) / float(rows[1][0]))
-        assert order == pytest.approx(2.0, abs=0.05)
+        assert order == pytest.approx(2.0, abs=0.2 if method == "HHT" else 0.05)
 
 
 # ---------------------------------------------------------------- the developer guide's examples

@@ -297,6 +297,13 @@ def test_snap_back_is_a_statement(tmp_path):
     assert len(results.table("capacity_curve")) > 10  # what was found is kept
 
 
+def test_a_control_node_that_is_left_behind():
+    """Storey 2 has become a mechanism: the forces on it cannot move the first floor on."""
+    p = pushed(STOREYS.format(fa=50, ra=0, fb=3, rb=0), "2 0.5 PATTERN=FORCES NODES=3 FORCES=1")
+    assert p.curve[-1].shear == pytest.approx(3.0, rel=1e-12)
+    assert p.failed is not None and "no longer move the control displacement" in p.end
+
+
 def bell(p, at, m, d0, d, v):
     """f = k d exp(-d / c): largest at d = c."""
     k, c = p[:2]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from pound_deck.model import Model
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.assemble import Structure
-from pound_solve.integrate.base import ENERGIES, Extreme, LawValues, Start, Watch, energies
+from pound_solve.integrate.base import ENERGIES, LawValues, Start, Watch, energies
 from pound_solve.laws import State, follow, settle
 from pound_solve.scene import Scene
 
@@ -127,6 +127,30 @@ def heights(model: Model) -> list[float]:
     return out
 
 
+class Envelope:
+    """Largest and smallest values of n quantities, and their times, shape (n,) each."""
+
+    def __init__(self, n: int) -> None:
+        self.high, self.low = np.full(n, -np.inf), np.full(n, np.inf)
+        self.t_high, self.t_low = np.zeros(n), np.zeros(n)
+
+    def take(self, values: Array, t: Array) -> None:
+        """Count in values, shape (n_times, n), at some times."""
+        for new, best in (
+            (np.flatnonzero(values.max(axis=0) > self.high), (self.high, self.t_high, np.argmax)),
+            (np.flatnonzero(values.min(axis=0) < self.low), (self.low, self.t_low, np.argmin)),
+        ):
+            value, time, place = best
+            at = place(values[:, new], axis=0)
+            value[new], time[new] = values[at, new], t[at]
+
+    def rows(self) -> list[tuple[float, float, float, float]]:
+        """Largest value and its time, smallest value and its time, of each quantity."""
+        return list(
+            zip(self.high.tolist(), self.t_high.tolist(), self.low.tolist(), self.t_low.tolist())
+        )
+
+
 class Recorder:
     """Takes the method's samples, writes histories in blocks and keeps envelopes.
 
@@ -171,14 +195,16 @@ class Recorder:
         self.constants = np.array([o.constant for o in self.outputs])
         self.springs = [i for i, s in enumerate(structure.laws) if not s.is_contact]
         self.contacts = [i for i, s in enumerate(structure.laws) if s.is_contact]
-        self.node_extremes = {q: [Extreme() for _ in range(3 * len(self.nodes))] for q in "uva"}
-        self.output_extremes = [Extreme() for _ in self.outputs]
+        self.node_envelopes = {q: Envelope(3 * len(self.nodes)) for q in "uva"}
+        self.output_envelope = Envelope(len(self.outputs))
         self.first_energy = np.zeros(len(ENERGIES)) if first_energy is None else first_energy
         self.last_energy = np.zeros(len(ENERGIES))
         self._fresh = first_energy is None
         self.last_residual = self.residual_peak = self.energy_peak = 0.0
         self.losses = [0.0] * len(structure.laws)  # by slip and release, dashpots apart [F L]
         self.reached = -1.0
+        # between the samples: number of instants seen, the last of them, longest time from one to the next
+        self.seen, self.last_seen, self.apart = 0, 0.0, 0.0
         self.last: tuple[Array, Array, Array] = (np.zeros(0), np.zeros(0), np.zeros(3))  # u, v, works
         self._rows: list[tuple[Any, ...]] = []
 
@@ -240,6 +266,13 @@ class Recorder:
         if len(self._rows) >= BLOCK:
             self.flush()
 
+    def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
+        """Widen the envelopes only (see `integrate.base.Sink`)."""
+        s = [self.scene.excitation.values(t, order) for order in range(3)]
+        self._envelopes(t, u.T, v.T, a.T, s)
+        self.apart = max(self.apart, float(np.diff(t, prepend=self.last_seen if self.seen else t[0]).max()))
+        self.seen, self.last_seen = self.seen + len(t), float(t[-1])
+
     def trial(self, t: float) -> None:
         """Tell the progress of a run whose samples may not count (see `integrate.base.Sink`)."""
         self._progress(t)
@@ -249,6 +282,29 @@ class Recorder:
         change = energy - self.first_energy
         return 2.0 * change[:, 0] - change.sum(axis=1)
 
+    def _envelopes(
+        self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]
+    ) -> tuple[dict[str, Array], Array]:
+        """Count some instants into the envelopes; return the motion of the nodes, shape (nt, n_nodes, 3),
+        and the members' forces, shape (nt, n_outputs), from unknowns and inputs, shape (nt, n) each.
+        """
+        full_u, full_v, full_a = (
+            self.scene.expanded(x.T, y.T, order).T for order, (x, y) in enumerate(zip((u, v, a), s))
+        )
+        shape = (len(t), len(self.nodes), 3)
+        node = {
+            q: (full @ self.node_rows.T).reshape(shape)
+            for q, full in (("u", full_u), ("v", full_v), ("a", full_a))
+        }
+        node["a"] += np.einsum(
+            "tj,jnd->tnd", s[0] @ self.scene.acceleration_inputs.T, self.ridden
+        )  # they are total
+        out = full_u @ self.out_u.T + full_v @ self.out_v.T + self.constants
+        for q, values in node.items():
+            self.node_envelopes[q].take(values.reshape(len(t), -1), t)
+        self.output_envelope.take(out, t)
+        return node, out
+
     def flush(self) -> None:
         """Write the samples that are held."""
         if not self._rows:
@@ -256,7 +312,8 @@ class Recorder:
         scene, laws = self.scene, self.scene.structure.laws
         t, u, v, a, force, stored, lost, works = (np.array(column) for column in zip(*self._rows))
         self._rows = []
-        s, s1, s2 = (scene.excitation.values(t, order) for order in range(3))
+        inputs = [scene.excitation.values(t, order) for order in range(3)]
+        s = inputs[0]
         d = u @ scene.law_rows.T + s @ scene.law_inputs.T
         energy = energies(scene, t, u, v, stored, lost, works)
         if self._fresh:
@@ -266,22 +323,8 @@ class Recorder:
         self.energy_peak = max(self.energy_peak, float(np.abs(energy).max()))
         self.residual_peak = max(self.residual_peak, float(np.abs(residual).max()))
         self.losses = lost[-1].tolist()
-        full_u, full_v, full_a = (
-            scene.expanded(x.T, y.T, order).T for order, (x, y) in enumerate(((u, s), (v, s1), (a, s2)))
-        )
-        shape = (len(t), len(self.nodes), 3)
-        node = {
-            q: (full @ self.node_rows.T).reshape(shape)
-            for q, full in (("u", full_u), ("v", full_v), ("a", full_a))
-        }
-        node["a"] += np.einsum(
-            "tj,jnd->tnd", s @ scene.acceleration_inputs.T, self.ridden
-        )  # they are total
-        out = full_u @ self.out_u.T + full_v @ self.out_v.T + self.constants
+        node, out = self._envelopes(t, u, v, a, inputs)
         gaps = np.array([laws[i].facts["gap"] for i in self.contacts])
-        for q, values in node.items():
-            _widen(self.node_extremes[q], values.reshape(len(t), -1), t)
-        _widen(self.output_extremes, out, t)
         self._append(
             {
                 "time": t,
@@ -301,16 +344,6 @@ class Recorder:
                 "energy": np.column_stack([energy, residual]),
             }
         )
-
-
-def _widen(extremes: Sequence[Extreme], values: Array, t: Array) -> None:
-    """Count a block of samples, shape (nt, n), into n extremes."""
-    if not len(extremes):
-        return
-    high, low = values.argmax(axis=0), values.argmin(axis=0)
-    for i, e in enumerate(extremes):
-        e.take(float(values[high[i], i]), float(t[high[i]]))
-        e.take(float(values[low[i], i]), float(t[low[i]]))
 
 
 def contact_name(model: Model, element: int) -> str:

@@ -27,6 +27,7 @@ Murty KG (1974), Note on a Bard-type scheme for solving the complementarity prob
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -45,6 +46,7 @@ JUMP = 1e-9  #: share of its terms above which a force has changed at once
 NEAR = 1e-13  #: share of its terms below which an exit is reached
 PIECES = 20  #: Newton steps to the first mark, at least, where laws are curved
 MOST_CHANGES = 10_000
+MOST_RETURNS = 5  #: of all laws to the same branches in one place
 
 
 class Unstable(Exception):
@@ -128,12 +130,13 @@ class Path:
         law, i, j = np.array(pairs, int).reshape(-1, 3).T
         self._outer = law, i, j, self.rows[law, i] * self.rows[law, j]
         self.lead = np.zeros(len(self.laws)) if lead is None else lead
-        self.factor, self.changes, self._stalled = 0.0, 0, 0
+        self.factor, self.changes = 0.0, 0
+        self._here: Counter[tuple[int, ...]] = Counter()  # branches of all laws since the last move
         self.curved = any(s.law.curved for s in self.laws)
         self.branches = [s.law.branch(x) for s, x in zip(self.laws, self.states)]
         self._lost = np.zeros(n)  # what laws have let go, not yet handed over
         self._most = float(np.abs(applied).max(initial=0.0))
-        self._stride = np.inf
+        self._longest = self._stride = np.inf
 
     def deformations(self, u: Array, factor: float) -> Array:
         """Deformation of every law, shape (n_laws,)."""
@@ -191,13 +194,15 @@ class Path:
         if abs(let_go) > JUMP * (abs(held) + abs(law.p[0] * d)):
             self._lost = self._lost + let_go * self.rows[i]
         self.changes += 1
-        self._stalled += 1
         if self.changes > MOST_CHANGES:
             raise Unstable(f"more than {MOST_CHANGES} changes of state of springs and contacts", "A507")
-        if self._stalled > 4 * len(self.laws) + 20:
+        same = tuple(state[0] for state in self.states)
+        self._here[same] += 1
+        if self._here[same] > MOST_RETURNS:
             raise Unstable(
-                f"there is no way on without a jump: element {self.laws[i].element} and others "
-                f"change state again and again in the same place; at load factor {self.factor:.6g}",
+                f"there is no way on without a jump: element {self.laws[i].element} loses its strength "
+                "faster than what it is joined to gives way, and changes state again and again in the "
+                f"same place; at load factor {self.factor:.6g}",
                 "A507",
             )
         return Change(i, before, self.branches[i].name)
@@ -238,6 +243,8 @@ class Path:
                 at = max((value - float(row @ self.u) - share * self.factor) / slope, 0.0)
                 if at < best:
                     best, found = at, j
+        if np.isfinite(best) and not np.isfinite(self._longest):
+            self._longest = self._stride = best / PIECES
         for i, (branch, di, vi, least) in enumerate(
             zip(self.branches, d.tolist(), rate.tolist(), noise.tolist())
         ):
@@ -264,7 +271,8 @@ class Path:
 
     def _move(self, u: Array, factor: float) -> None:
         self.applied = self.applied + (factor - self.factor) * self.load
-        self.u, self.factor, self._stalled = u, factor, 0
+        self.u, self.factor = u, factor
+        self._here.clear()
         self._most = max(self._most, float(np.abs(self.applied).max(initial=0.0)))
 
     def _bent(self, marks: Sequence[Mark]) -> Exit | int | None:
@@ -272,17 +280,16 @@ class Path:
         du, rise, best, found = self._ahead(marks)
         if best == 0.0:
             return found
-        if not np.isfinite(self._stride):
-            if not np.isfinite(best):
-                raise Unstable("nothing lies ahead: the end of this analysis moves away", "A507")
-            self._stride = best / PIECES
-        span, least = min(best, self._stride), 1e-9 * min(best, self._stride)
+        span = min(best, self._stride)
+        if not np.isfinite(span):
+            raise Unstable("nothing lies ahead: the end of this analysis moves away", "A507")
         while (found_there := self._point(span, du, rise, marks)) is None:
-            span *= 0.5
-            if span < least:
+            span = self._stride = 0.5 * span
+            if span < 1e-9 * self._longest:
                 # with the load as control there is none; a displacement could go on somehow
                 code = "A501" if self.control is None else "A507"
                 raise Unstable("no equilibrium was found further on: the strength is used up", code)
+        self._stride = min(2.0 * self._stride, self._longest)
         end, values = found_there
         start = self._values(self.u, self.factor, marks)
         if not (crossed := _crossed(start, values)):
@@ -330,7 +337,7 @@ class Path:
         """
         u, factor = self.u + span * du, self.factor + span * rise
         last = np.inf
-        for _ in range(30):
+        for _ in range(15):
             rest, size = self._rest(u, factor)
             error = _share(rest, size)
             if not np.isfinite(error):
@@ -460,7 +467,7 @@ def controlled(k: Array, push: Array, control: Array, force: Array, go: float) -
     except np.linalg.LinAlgError:
         x = np.full(m + 1, np.nan)
     if not np.all(np.isfinite(x)) or np.abs(x).max() > 1e13 * max(abs(go) / c_size, np.abs(f).max()):
-        raise Unstable("a part that the control displacement does not hold has become a mechanism")
+        raise Unstable("the forces no longer move the control displacement: other parts give way")
     u = np.zeros(len(k))
     u[at] = root * x[:m]
     return u, float(x[m]) / p_size

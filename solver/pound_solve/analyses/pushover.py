@@ -204,6 +204,7 @@ def push(structure: Structure, state: StaticState, card: Card) -> Pushed:
             # by force that is the result: no more can be carried; by displacement the way goes on somewhere
             out.end, out.failed = str(err), None if by_load and err.code == "A501" else err
             note(here())
+            out.ladder = _once(out.ladder)
             break
         note(point)
         if isinstance(hit, int):
@@ -215,6 +216,14 @@ def push(structure: Structure, state: StaticState, card: Card) -> Pushed:
             path.load = pattern.follow(path)
     out.last, out.unbalanced = path.load, path.unbalanced()
     return out
+
+
+def _once(ladder: list[tuple[Point, Change]]) -> list[tuple[Point, Change]]:
+    """The ladder without what was done again and again in one place."""
+    found: dict[tuple[float, float, Change], tuple[Point, Change]] = {}
+    for point, change in ladder:
+        found.setdefault((point.displacement, point.factor, change), (point, change))
+    return list(found.values())
 
 
 def tables(structure: Structure, card: Card, pushed: Pushed) -> dict[str, list[tuple[Any, ...]]]:

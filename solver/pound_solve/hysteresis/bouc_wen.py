@@ -28,7 +28,7 @@ Bouc R (1967), Forced vibration of mechanical systems with hysteresis, Proc. 4th
 Oscillation, Prague.  Wen YK (1976), Method for random vibration of hysteretic systems, J. Eng. Mech. Div.
 ASCE 102(EM2): 249-263.  Erlicher S, Point N (2004), Thermodynamic admissibility of Bouc-Wen type hysteresis
 models, C. R. Mecanique 332(1): 51-57 (closed loops dissipate for :math:`-\beta \le \gamma \le \beta`).
-Series: NIST Handbook of Mathematical Functions (2010), 15.4.6, 15.8.1 and 15.8.10.
+Series: NIST Handbook of Mathematical Functions (2010), 8.17.7, 15.8.1 and 15.8.10.
 """
 
 from __future__ import annotations

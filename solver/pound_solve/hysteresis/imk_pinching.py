@@ -25,9 +25,9 @@ Memory beyond that of `imk`: deformation of the peak, deformation and force of t
 References
 ----------
 Beside those of `imk`: Clough RW, Johnston SB (1966), Effect of stiffness degradation on earthquake
-ductility requirements, Proc. Japan Earthquake Engng Symp., Tokyo; Mahin SA, Bertero VV (1976), Problems in
-establishing and predicting ductility in aseismic design, Proc. Int. Symp. Earthquake Struct. Engng, St.
-Louis (the local peak).
+ductility requirements, Proc. Japan Earthquake Engng Symp., Tokyo; Mahin SA, Bertero VV (1975), An
+evaluation of some methods for predicting seismic behavior of reinforced concrete buildings, EERC 75-5,
+Univ. of California, Berkeley (the local peak).
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ without either, the deformations of all springs in the same way as drifts.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -45,24 +45,28 @@ def why_not_exact(scene: Scene) -> str:
 
 
 class Replay:
-    """Keeps the samples of a run, to hand them on if it is the last."""
+    """Keeps what a run tells its sink, to hand it on if it is the last."""
 
     def __init__(self, sink: Sink) -> None:
-        self.sink, self.rows = sink, list[tuple[Any, ...]]()
+        self.sink, self.told = sink, list[tuple[Callable[..., None], tuple[Any, ...]]]()
 
     def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take one sample (see `integrate.base.Sink`)."""
-        self.rows.append((t, u, v, a, laws, works))
+        self.told.append((self.sink.sample, (t, u, v, a, laws, works)))
         self.sink.trial(t)
+
+    def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
+        """Take the motion between samples (see `integrate.base.Sink`)."""
+        self.told.append((self.sink.between, (t, u, v, a)))
 
     def trial(self, t: float) -> None:
         """Pass on how far a trial has come."""
         self.sink.trial(t)
 
     def hand_on(self) -> None:
-        """Give all samples to the sink."""
-        for row in self.rows:
-            self.sink.sample(*row)
+        """Tell the sink all of it."""
+        for tell, what in self.told:
+            tell(*what)
 
 
 def figures(scene: Scene, peaks: Peaks) -> tuple[Array, Array]:

@@ -158,6 +158,10 @@ class Sink(Protocol):
         """
         ...
 
+    def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
+        """Take the motion at times between the samples, shapes (n_times,), (n, n_times): for envelopes."""
+        ...
+
     def trial(self, t: float) -> None:
         """Be told the time reached by a run whose samples may not count."""
         ...

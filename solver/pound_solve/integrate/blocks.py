@@ -4,7 +4,7 @@ a window of time.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -61,6 +61,8 @@ class Block:
         States at the starts of the window's intervals and forcing within them.
     ps : ndarray, shape (n_intervals, degree + 1, n) or None
         Force polynomials, where massless freedoms or moved supports need them.
+    samples : ndarray, shape (n_q, n_intervals, n_times)
+        States on the grid of `Window.functionals`.
     """
 
     key: Key
@@ -70,6 +72,7 @@ class Block:
     qs: NDArray[Any] = field(default_factory=lambda: np.zeros((0, 0)))
     gs: NDArray[Any] = field(default_factory=lambda: np.zeros((0, 0, 0)))
     ps: Array | None = None
+    samples: NDArray[Any] = field(default_factory=lambda: np.zeros((0, 0, 0)))
 
 
 class Partition:
@@ -268,9 +271,9 @@ class Window:
                 out[:, -1] += polynomial.value(offset[-1], self.length, order)
         for block in part.blocks:
             flow, w, m = block.regime.flow, block.regime.watched, len(block.regime.watched)
+            block.samples = samples = flow.samples(block.qs[:, :-1], block.gs, h, count)
             if not m:
                 continue
-            samples = flow.samples(block.qs[:, :-1], block.gs, h, count)
             flat = samples.reshape(len(samples), -1)
             last = block.qs[:, -1]
             both = (block.regime.uv_rows @ np.concatenate([flat, last[:, None]], axis=1)).real
@@ -350,41 +353,54 @@ class Window:
 
     def path(self, interval: int, times: Array) -> tuple[Array, Array, Array]:
         """`motion` at several times within an interval, shape (n, n_times) each."""
-        size = self.partition.scene.size
-        u, v, a = (np.zeros((size, len(times))) for _ in range(3))
-        for block in self.partition.blocks:
-            flow, index, g = block.regime.flow, block.regime.index, block.gs[interval]
+        one = slice(interval, interval + 1)
+
+        def states(block: Block) -> NDArray[Any]:
             if len(times) == 1:  # the ends of intervals are known, other times recur
-                q = self.state(block, interval, float(times[0]))[:, None]
-            else:
-                q = flow.path(block.qs[:, interval], g, times)
-            u[index] = (flow.u_q @ q).real
-            v[index] = (flow.v_q @ q).real
-            a[index] = (flow.v_q @ flow.rate(q, g, times)).real
-            if block.ps is not None and flow.u_p is not None:
-                p, u_p, v_p = block.ps[interval], flow.u_p, flow.space.v_p
-                force, slope, bend = (
-                    np.array([polynomial.value(p, float(x), k) for x in times]).T for k in range(3)
-                )
-                u[index] += u_p @ force
-                v[index] += v_p @ force + u_p @ slope
-                a[index] += v_p @ slope + u_p @ bend
-        return u, v, a
+                return self.state(block, interval, float(times[0]))[:, None, None]
+            return block.regime.flow.path(block.qs[:, interval], block.gs[interval], times)[:, None]
+
+        return self._motions(one, times, states)
 
     def ends(self, count: int) -> tuple[Array, Array, Array]:
         """`motion` at the ends of the first `count` intervals, shape (n, count) each."""
-        size = self.partition.scene.size
-        u, v, a = (np.zeros((size, count)) for _ in range(3))
         t = np.array([self.length])
+        return self._motions(slice(count), t, lambda block: block.qs[:, 1 : count + 1, None])
+
+    def between(self, h: float, each: int, end: float) -> tuple[Array, Array, Array, Array]:
+        """Local times and `motion` at every `each`-th point of an interval's grid, up to `end`;
+        shape (n_times,) and (n, n_times).
+
+        `functionals` was asked on this grid.
+        """
+        count = int(np.ceil(self.length / h * (1 - 1e-12)))
+        chosen, within = slice(self.place(end)[0] + 1), h * np.arange(0, count, each)
+        starts = self.length * np.arange(self.intervals)[chosen]
+        t = (starts[:, None] + within).ravel()
+        motion = self._motions(chosen, within, lambda block: block.samples[:, chosen, ::each])
+        u, v, a = (x[:, t <= end] for x in motion)
+        return t[t <= end], u, v, a
+
+    def _motions(
+        self, intervals: slice, t: Array, states: Callable[[Block], NDArray[Any]]
+    ) -> tuple[Array, Array, Array]:
+        """`motion` at local times `t` within each of some intervals, shape (n, n_intervals * n_times) each.
+
+        `states` gives a block's q there, shape (n_q, n_intervals, n_times).
+        """
+        n = len(range(*intervals.indices(self.intervals)))
+        u, v, a = (np.zeros((self.partition.scene.size, n * len(t))) for _ in range(3))
         for block in self.partition.blocks:
-            flow, index, q = block.regime.flow, block.regime.index, block.qs[:, 1 : count + 1]
-            u[index] = (flow.u_q @ q).real
-            v[index] = (flow.v_q @ q).real
-            a[index] = (flow.v_q @ flow.rates(q[:, :, None], block.gs[:count], t)[:, :, 0]).real
+            flow, index, q = block.regime.flow, block.regime.index, states(block)
+            rate = flow.rates(q, block.gs[intervals], t)
+            u[index], v[index], a[index] = (
+                (x @ y.reshape(len(y), -1)).real
+                for x, y in ((flow.u_q, q), (flow.v_q, q), (flow.v_q, rate))
+            )
             if block.ps is not None and flow.u_p is not None:
                 u_p, v_p = flow.u_p, flow.space.v_p
                 force, slope, bend = (
-                    np.array([polynomial.value(p, self.length, k) for p in block.ps[:count]]).T
+                    np.array([polynomial.value(p, float(x), k) for p in block.ps[intervals] for x in t]).T
                     for k in range(3)
                 )
                 u[index] += u_p @ force

@@ -51,6 +51,7 @@ MOST_POINTS = 1024  #: grid points of one window
 MOST_PIECES = 20_000  #: windows within one interval of the excitation
 MOST_INTERVALS = 32  #: intervals of one window
 GRID = 1.0  #: grid interval times the fastest eigenvalue
+EACH = 4  #: grid points from one that envelopes of nodes and members are taken at to the next
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 
 
@@ -155,6 +156,7 @@ class Exact:
         event = self._first_event(window, t, value, rate, second) if self.n_laws else None
         if event is None:
             self._peaks(window, t, value, rate, second)
+            self._between(window, h, window.length * window.intervals)
             self._sample(window, goals, cursor, window.intervals if whole else 0)
             if whole:
                 self.pieces = 0
@@ -173,6 +175,7 @@ class Exact:
         now = window.all_at(tau)
         points = [np.append(a[:, cut], x[:, None], axis=1) for a, x in zip((value, rate, second), now)]
         self._peaks(window, np.append(t[cut], tau), *points)
+        self._between(window, h, tau)
         self._sample(window, goals, cursor, interval)
         self._work(window, interval, within)
         self.u, self.v, _ = window.motion(interval, within)
@@ -219,6 +222,11 @@ class Exact:
         for i in np.flatnonzero(self.is_output[cursor : cursor + count]).tolist():
             self._hand_out(float(goals[cursor + i]), u[:, i], v[:, i], a[:, i], works[i])
         self.works = works[-1]
+
+    def _between(self, window: Window, h: float, end: float) -> None:
+        """Show the sink the motion between the samples, up to the local time `end`."""
+        tau, *motion = window.between(h, EACH, end)
+        self.sink.between(self.t + tau, *motion)
 
     def _hand_out(self, t: float, u: Array, v: Array, a: Array, works: Array) -> None:
         self.sink.sample(t, u, v, a, law_values(self.scene, t, u, v, self.states), works)
@@ -367,10 +375,18 @@ class Whole:
 
     def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take one sample (see `integrate.base.Sink`)."""
-        u, v, a = (self.small.all(x, t, order) for order, x in enumerate((u, v, a)))
+        ex = self.small.scene.excitation
+        u, v, a = (self.small.all(x, ex.value(t, order), order) for order, x in enumerate((u, v, a)))
         if not self.small.scene.total:  # the total form counts the work on all freedoms
             works = works + np.array([self.small.put_in(t) - self.at_start, 0.0, 0.0])
         self.sink.sample(t, u, v, a, laws, works)
+
+    def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
+        """Take the motion between samples (see `integrate.base.Sink`)."""
+        ex = self.small.scene.excitation
+        self.sink.between(
+            t, *(self.small.all(x, ex.values(t, order).T, order) for order, x in enumerate((u, v, a)))
+        )
 
     def trial(self, t: float) -> None:
         """Pass it on."""

@@ -37,8 +37,8 @@ DONE, FULL, RUNAWAY, CHATTER, PIVOT, NEWTON, STEP_TOO_LONG = range(7)
 GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST = range(8)  #: the integers of `count`
 
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
-TURN = 1e-6  #: share of its largest rate that a law must move back with before it counts as turned
-CLOSE = 1e-13  #: share of a step to which an event is located
+BACK = 1e-6  #: share of its largest rate that a law must move back with before it counts as turned
+CLOSE = 1e-9  #: share of a step within which two events are at one instant
 REFRESH = 200  #: updates of rank one before a factor is made anew
 COLUMNS = 10  #: of the log: law, branches before and after, t, d, v, force; peak, its time, impulse
 
@@ -62,6 +62,8 @@ class Matrices(NamedTuple):
     k, c, m : tuples of ndarray
         Stiffness, damping and mass.
     inputs : ndarray, shape (n, n_inputs)
+    pushed : ndarray, shape (n, n_inputs)
+        The part of `inputs` that is forces on nodes.
     constant : ndarray, shape (n,)
     pattern : Pattern
     a : ndarray, shape (3, n_entries)
@@ -77,7 +79,7 @@ class Matrices(NamedTuple):
     diagonal : bool
         Whether M is.
     explicit : bool
-        Whether a step needs no factor: no stiffness in it, and a diagonal M + gamma h C.
+        Whether a step needs no factor: M + gamma h C is diagonal and never changes.
     rows : tuple of ndarray
         Quantities whose peaks are kept, over the unknowns.
     row_inputs : ndarray, shape (n_rows, n_inputs)
@@ -93,6 +95,7 @@ class Matrices(NamedTuple):
     c: tuple[Index, Index, Array]
     m: tuple[Index, Index, Array]
     inputs: Array
+    pushed: Array
     constant: Array
     pattern: Pattern
     a: Array
@@ -418,7 +421,7 @@ def first_exit(w: Laws, x: Motion, h: float) -> tuple[int, int, float]:
             if fd == 0.0 and fv == 0.0:
                 continue
             if fd == 0.0 and fc == 0.0:  # what hardly moves would turn again and again
-                fc = -TURN * abs(fv) * w.f[i, MOST_V]
+                fc = -BACK * abs(fv) * w.f[i, MOST_V]
             g1 = fd * d1 + fv * v1 + fc
             size = abs(fd) * w.f[i, MOST_D] + abs(fv) * w.f[i, MOST_V] + abs(fc)
             tol = STILL * max(size, abs(g1))
@@ -573,7 +576,11 @@ def accept(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float) -> None:
         loss += x.q[CV, i] * (x.q[V, i] + x.q[V1, i]) + x.q[Y, i] * x.q[V1, i]
     if len(m.support_c) > 0:
         for i in range(n):
-            work += 3.0 * m.constant[i] * (x.q[V, i] + x.q[V1, i])
+            pushed0, pushed1 = m.constant[i], m.constant[i]
+            for j in range(x.inputs.shape[1]):
+                pushed0 += m.pushed[i, j] * x.inputs[0, j]
+                pushed1 += m.pushed[i, j] * x.inputs[2, j]
+            work += 3.0 * (pushed0 * x.q[V, i] + pushed1 * x.q[V1, i])
         put0, lost0 = power(m, w, x, 0)
         put1, lost1 = power(m, w, x, 2)
         work += 3.0 * (put0 + put1)
@@ -682,7 +689,9 @@ def settle(m: Matrices, w: Laws, x: Motion, h: float) -> None:
             for q in range(w.rows[0][i], w.rows[0][i + 1]):
                 x.q[R, w.rows[1][q]] -= w.rows[2][q] * force
     for i in range(n):
-        x.q[A, i] = x.q[R, i] if m.heavy[i] else 0.0
+        if not m.heavy[i]:
+            x.q[R, i] = 0.0  # in balance, but for rounding that the alphas would take for a load
+        x.q[A, i] = x.q[R, i]
     if m.diagonal:
         for i in range(n):
             x.q[A, i] /= x.q[D + MASS, i]
@@ -938,7 +947,7 @@ def whole_step(
                 w.f[law, EXIT + 3 * way + 2],
             )
             if fd == 0.0 and fc == 0.0:
-                fc = -TURN * abs(fv) * w.f[law, MOST_V]
+                fc = -BACK * abs(fv) * w.f[law, MOST_V]
             g = fd * w.f[law, LD1] + fv * w.f[law, LV1] + fc
             if last or abs(g) <= STILL * (
                 abs(fd) * w.f[law, MOST_D] + abs(fv) * w.f[law, MOST_V] + abs(fc)
@@ -996,7 +1005,15 @@ def advance(
         begin = breaks[pieces[goal]]
         if count[STEP] == 0:
             motions(coefs[pieces[goal]], clock[0] - begin, x.inputs, 0)
-            load(m, x.inputs[0], x.q, P)
+            load(m, x.inputs[0], x.q, Y)
+            leap = 0.0
+            for i in range(x.q.shape[1]):
+                if abs(x.q[Y, i] - x.q[P, i]) > STILL * (abs(x.q[Y, i]) + abs(x.q[P, i])):
+                    leap = 1.0
+                x.q[P, i] = x.q[Y, i]
+            if leap != 0.0:  # a load that jumps, and with it the acceleration
+                settle(m, w, x, h)
+                note(m, w, x, clock[0], 0.0)
         while count[STEP] < steps[goal]:
             if len(z.log) - count[LOGGED] < room:
                 return FULL

@@ -109,7 +109,9 @@ class Stepper:
     def _lay_out(self, start: Start) -> None:
         scene, watch, laws = self.scene, self.watch, self.laws
         n, count = scene.size, len(laws)
-        damps = np.array([bool(s.facts.get("c")) or s.beta != 0.0 or s.secant != 0.0 or s.law.curved for s in laws], bool)
+        damps = np.array(
+            [bool(s.facts.get("c") or s.beta or s.secant) or s.law.curved for s in laws], bool
+        )
         stiff = self.scheme.beta > 0.0
         linked = (scene.mass != 0) | (scene.damping != 0) | np.eye(n, dtype=bool)
         if stiff:
@@ -135,6 +137,7 @@ class Stepper:
             c=sparse(damping),
             m=sparse(mass),
             inputs=np.ascontiguousarray(scene.inputs[o]),
+            pushed=np.ascontiguousarray(scene.force_inputs[free]),
             constant=scene.constant[o],
             pattern=pattern,
             a=np.array(on_pattern),
@@ -143,7 +146,7 @@ class Stepper:
             inert=bool(heavy.all()),
             implicit=stiff,
             diagonal=not np.any(mass - np.diag(np.diag(mass))),
-            explicit=not stiff and not len(pattern.li),
+            explicit=not (stiff or len(pattern.li) or damps.any()),
             rows=sparse(watch.rows[:, o]),
             row_inputs=np.ascontiguousarray(watch.input_rows),
             row_constants=np.ascontiguousarray(watch.constants),

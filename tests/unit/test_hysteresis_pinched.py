@@ -1,0 +1,194 @@
+"""Wayne Stewart's rule and the flag: paths by hand, limits, and OpenSees beside them.
+
+Stiffness 10, yield forces of 20 both ways, so that yield is at 2.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from paths import Walk
+from pound_solve.catalog import catalog
+from pound_solve.laws import Law
+
+RULES = catalog().family("hysteresis")
+
+
+def rule(name: str, minus: float = -20.0, /, **values: Any) -> Law:
+    base = {f.name: f.default for f in RULES[name].fields}
+    return RULES[name].impl(base | values, 10.0, 20.0, minus)  # type: ignore[no-any-return]
+
+
+def forces(law: Law, goals: list[float]) -> list[float]:
+    walk = Walk(law)
+    return [walk.move(goal).force for goal in goals]
+
+
+def table(text: str) -> tuple[list[float], list[float]]:
+    numbers = list(map(float, text.split()))
+    return numbers[::2], numbers[1::2]
+
+
+# ---------------------------------------------------------------------- flag-shaped
+
+
+@pytest.mark.parametrize(("r", "beta", "d"), [(0.0, 1.0, 5.0), (0.1, 0.5, 3.0), (0.4, 0.2, 30.0)])
+def test_a_flag_dissipates_its_area(r: float, beta: float, d: float) -> None:
+    law = rule("FLAG_SHAPED", -10.0, R=r, BETA=beta)
+    walk = Walk(law)
+    for n in range(1, 4):
+        walk.move(d, 0.0)
+        assert walk.force == 0.0
+        assert walk.work == pytest.approx(n * beta * (1.0 - r) * 20.0 * (d - 2.0), rel=1e-13)
+    before = walk.work
+    walk.move(-d, 0.0)  # the other side yields at -1
+    assert walk.work - before == pytest.approx(beta * (1.0 - r) * 10.0 * (d - 1.0), rel=1e-13)
+
+
+@settings(deadline=None)
+@given(
+    st.lists(st.floats(-9.0, 9.0), min_size=1, max_size=20),
+    st.sampled_from([0.0, 0.2]),
+    st.floats(0.05, 1.0),
+)
+def test_a_flag_centres_itself(path: list[float], r: float, beta: float) -> None:
+    """Between its two lines, and never a force against the deformation."""
+    walk = Walk(rule("FLAG_SHAPED", R=r, BETA=beta)).move(*path)
+    for state, a, b in walk.visits:
+        for d in (a, b):
+            f, x = walk.law.force(state, d)[0], abs(d)
+            upper = min(10.0 * x, 20.0 + 10.0 * r * (x - 2.0))
+            lower = min(10.0 * x, 20.0 * (1.0 - beta) + 10.0 * r * (x - 2.0 * (1.0 - beta)))
+            assert lower - 1e-9 <= (f if d > 0.0 else -f) <= upper + 1e-9
+    assert walk.move(0.0).force == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("beta", "frozen"),
+    [
+        # uniaxialMaterial SelfCentering k1 10, k2 1, sigAct 20 of OpenSees 3.7.1 (exact at any step)
+        (0.5, "3 21 2 11 1 10 0.5 5 0 0 -3 -21 -1.5 -10.5 -2 -15.5 0 0 5 23 3.5 12.5 4.5 22.5 0 0"),
+        (1.0, "3 21 2 11 1 1 0.5 0.5 0 0 -3 -21 -1.5 -6 -2 -11 0 0 5 23 3.5 8 4.5 18 0 0"),
+    ],
+)
+def test_flag_as_opensees(beta: float, frozen: str) -> None:
+    path, expected = table(frozen)
+    assert forces(rule("FLAG_SHAPED", R=0.1, BETA=beta), path) == pytest.approx(expected, abs=1e-12)
+
+
+# ---------------------------------------------------------------------- Wayne Stewart
+
+PLAIN: dict[str, Any] = {"R": 0.1, "FU": (26.0,), "FI": 4.0, "PTRI": -0.1, "PUNL": 2.0, "RPINCH": 0.0}
+
+
+def test_softening_aims_beyond_the_largest_deformation() -> None:
+    # BETA = 1.5: from 4 (22) it aims at 6 (24) with 10 (2 / 6)^1: 4 is reached at 6 - 20 / (10 / 3) = 0
+    law = rule("WAYNE_STEWART", **PLAIN, BETA=1.5, ALPHA=1.0)
+    walk = Walk(law).move(4.0, -4.0, 3.0)
+    assert walk.force == pytest.approx(14.0, rel=1e-14)
+    assert walk.move(6.0, 6.5).force == pytest.approx(24.5, rel=1e-14)  # on the backbone again
+    # straight back to the backbone from an unloading line that has not reached the pinched line
+    assert forces(law, [4.0, 3.5, 4.5]) == pytest.approx([22.0, 12.0, 22.5], rel=1e-14)
+
+
+def test_reloading_is_not_flatter_than_from_the_intercept() -> None:
+    # ALPHA = 1, from 8 (26): 10 * 2 / 8 = 2.5 would be flatter than (26 - 4) / 8 = 2.75
+    law = rule("WAYNE_STEWART", **PLAIN, ALPHA=1.0)
+    assert forces(law, [8.0, -1.0, 0.0, 4.0]) == pytest.approx([26.0, -10.0, 4.0, 15.0], rel=1e-14)
+
+
+def test_slackness_is_there_until_the_first_yield() -> None:
+    law = rule("WAYNE_STEWART", **PLAIN, SLACK=(1.0, -0.5))
+    got = forces(law, [0.9, 2.0, 0.0, -0.6, 2.9, 0.5, 4.0, 0.0, -0.2, -2.5])
+    # yields at 3: 21 at 4, -4 at 2.75; the other side takes hold at -0.5: -4 until -0.9, -20 at -2.5
+    assert got == pytest.approx([0.0, 10.0, 0.0, -1.0, 19.0, 0.0, 21.0, -4.0, -4.0, -20.0], abs=1e-13)
+
+
+def test_unequal_sides_and_slope_of_the_pinched_lines() -> None:
+    law = rule("WAYNE_STEWART", -10.0, R=0.1, FU=(26.0, -16.0), FI=2.0, PTRI=-0.1, RPINCH=0.05)
+    # down: -16 at -7, falls; -12 at -11.  Back: foot -9.8, 2 - 0.5 * 9.8... meets 2 + 0.5 d
+    walk = Walk(law).move(-11.0)
+    assert walk.force == pytest.approx(-12.0, rel=1e-14)
+    # -12 + 10 (d + 11) = 2 + 0.5 d at d = -96 / 9.5
+    assert walk.move(-96.0 / 9.5).force == pytest.approx(2.0 - 48.0 / 9.5, rel=1e-13)
+    assert walk.move(0.0).force == pytest.approx(2.0, rel=1e-14)
+    # the pinched line meets 10 d at 2 / 9.5, and the virgin side goes on to its yield point
+    assert walk.move(1.0, 2.0, 3.0).force == pytest.approx(21.0, rel=1e-14)
+
+
+def test_the_falling_branch_is_met_before_the_target() -> None:
+    # at 31 the backbone has 26 - 23 = 3, less than FI: the pinched line ends on it at 30 with 4
+    law = rule("WAYNE_STEWART", **PLAIN, ALPHA=0.5)
+    walk = Walk(law).move(31.0, 0.0, 20.0)
+    assert walk.force == pytest.approx(4.0, rel=1e-14)
+    assert walk.move(30.5).force == pytest.approx(3.5, rel=1e-13)
+
+
+def test_it_fails_at_zero_force() -> None:
+    walk = Walk(rule("WAYNE_STEWART", **PLAIN)).move(33.0)
+    assert walk.force == pytest.approx(1.0, rel=1e-13)
+    assert walk.move(35.0, 20.0, -20.0).force == 0.0 == walk.law.stored(walk.state, walk.d)
+    # 20 to yield, 6 * 23 to the ultimate force, 26^2 / 2 beyond
+    assert walk.law.dissipated(walk.state, walk.d) == pytest.approx(20.0 + 138.0 + 338.0, rel=1e-13)
+
+
+def test_it_fails_on_the_pinched_line_of_the_other_side() -> None:
+    # the falling branch is 34 - d, that line is 0.5 d - 4: both are 8.667 at 25.33
+    law = rule("WAYNE_STEWART", **(PLAIN | {"RPINCH": 0.05}))
+    at = 38.0 / 1.5
+    assert forces(law, [at - 1e-9])[0] == pytest.approx(34.0 - at, rel=1e-8)
+    assert forces(law, [at + 1e-9, 0.0]) == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("values", "says"),
+    [
+        ({"FU": (18.0,)}, "FU is not less than"),
+        ({"FU": (26.0, 26.0)}, "FU is not less than"),
+        ({"R": 0.0}, "without hardening"),
+        ({"SLACK": (-1.0,)}, "SLACK is written positive"),
+        ({"FI": 20.0}, "FI and RPINCH"),
+        ({"RPINCH": 0.3}, "FI and RPINCH"),  # 4 + 3 * 8 = 28 at the ultimate force of 26
+    ],
+)
+def test_bad_parameters(values: dict[str, Any], says: str) -> None:
+    with pytest.raises(ValueError, match=says):
+        rule("WAYNE_STEWART", **(PLAIN | values))
+    for name in ("WAYNE_STEWART", "FLAG_SHAPED"):
+        with pytest.raises(ValueError, match="both sides"):
+            rule(name, 0.0, **(PLAIN | {"BETA": 1.0}))
+
+
+# uniaxialMaterial SAWS of OpenSees 3.7.1: F0 20, FI 4, DU 150, S0 10, R1 1e-9, R2 -0.004, R3 1.5, R4 0.004,
+# alpha 0.6, beta 1.1.  It is the modified Stewart model (Folz & Filiatrault 2001), whose exponential
+# backbone runs into ours after some twenty yield deformations.
+SAWS = (
+    "60 20.000001 50 -2 40 -2.4 -60 -20.000001 -50 2 0 4 55 6.501538 65 18.772868 70 20.000001 "
+    "100 20.000001 98 -0.08 -80 -20.000001 -120 -20.000001 -110 -0.4 0 4 90 7.6 110 20.000001 "
+    "150 20.000001 0 -4 -150 -20.000001 -200 -18.000001 -250 -16.000001",
+    "60 20.000001 -60 -20.000001 30 5.2 29.8 2.2 29.4 -2.824 30.5 5.22 60 12.637203 59.9 11.137203 "
+    "60.2 12.882629 59.7 5.382629 59 -1.64 58 -1.68 61 13.864336 65 18.772868 66 20.000001 65.5 12.500001 "
+    "66.2 20.000001 90 20.000001 40 -2.4 40.2 0.6 41 5.64 30 -2.8 -30 -5.2 -30.1 -5.204 -61 -13.864336 "
+    "-60.5 -6.364336 -62 -15.091469 -100 -20.000001",
+)
+
+
+@pytest.mark.parametrize("frozen", SAWS)
+def test_stewart_as_opensees(frozen: str) -> None:
+    path, expected = table(frozen)
+    law = rule(
+        "WAYNE_STEWART",
+        R=1e-9,
+        FU=(20.0 + 148e-8,),
+        FI=4.0,
+        PTRI=-0.004,
+        PUNL=1.5,
+        BETA=1.1,
+        ALPHA=0.6,
+        RPINCH=0.004,
+    )
+    assert forces(law, path) == pytest.approx(expected, abs=2e-6)

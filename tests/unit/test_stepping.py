@@ -1,0 +1,233 @@
+"""The stepping methods: order, events, Newton's iterations, compiled and interpreted, AUTO's tolerance."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+import pound_solve
+from pound_solve import jit
+from pound_solve.integrate import auto, ldl
+
+# two one-bay frames of which the left one yields at its hinges, slabs that meet with a dashpot
+POUNDING = """UNITS kN m s
+NODES
+ 1  0 0 FIX=XYR
+ 2  6 0 FIX=XYR
+ 3  0 3
+ 4  6 3
+ 11 6.02 0 FIX=XYR
+ 12 12 0 FIX=XYR
+ 13 6.02 3
+ 14 12 3
+ELEMENTS
+ 1 COL 1 3
+ 2 COL 2 4
+ 3 BEAM 3 4
+ 11 STIFF 11 13
+ 12 STIFF 12 14
+ 13 BEAM 13 14
+ 99 MEET 4 13
+PROPS
+ COL   FRAME E=2E7 A=0.16 I=0.002 {hinge}
+ STIFF FRAME E=2E7 A=0.16 I=0.004
+ BEAM  FRAME E=2E7 A=0.2 I=0.004
+ MEET  CONTACT GAP=0.02 ANGLE=0 LAW=KELVIN_VOIGT K=60000 E=0.6
+WEIGHTS
+ 3,4 200 200 {turn}
+ 13,14 300 300 {turn}
+DAMPING
+ RAYLEIGH ALPHA=0.4 BETA=0.001
+DRIFT
+ "left"  1 3
+ "right" 11 13
+EQUAKE
+ SINE AMPLITUDE=6 PERIOD=0.4 DURATION=1.2
+ANALYSIS
+ HISTORY 1.2 METHOD={method}
+OUTPUT
+ EVERY=0.1
+"""
+HINGED = "RULE=BILINEAR R=0.05 MI=60 MJ=60 KH=2E5"
+
+
+def run(folder, method, hinge=HINGED, turn="0.5"):
+    deck = folder / "frames.inp"
+    deck.write_text(POUNDING.format(method=method, hinge=hinge, turn=turn))
+    return pound_solve.run(deck)
+
+
+def figures(results):
+    drift = results.table("drift_envelope")
+    return np.array([*drift["max"], *drift["min"], *results.table("contact_summary")["peak_force"]])
+
+
+@pytest.mark.parametrize(
+    ("method", "steps"),
+    [
+        ("NEWMARK DT={}", (2e-3, 1e-3, 5e-4)),
+        ("HHT DT={} ALPHA=-0.05", (1e-3, 5e-4, 2.5e-4)),
+        ("GENERALISED_ALPHA DT={} RHO=0.8", (1e-3, 5e-4, 2.5e-4)),
+    ],
+)
+@pytest.mark.parametrize("turn", ["0.5", "0"])
+def test_implicit_methods_are_of_order_two_on_frames_that_yield_and_pound(tmp_path, method, steps, turn):
+    exact = run(tmp_path, "EXACT", turn=turn)
+    assert exact.table("contact_summary")["closures"][0] >= 1
+    assert exact.table("spring_envelope")["yield_events"].sum() >= 4
+    errors = []
+    for h in steps:
+        own = run(tmp_path, method.format(h), turn=turn)
+        assert own.table("contact_summary")["closures"][0] == exact.table("contact_summary")["closures"][0]
+        errors.append(np.abs(figures(own) / figures(exact) - 1.0).max())
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert np.all((orders > 1.8) & (orders < 2.3)), (errors, orders)
+    assert errors[-1] < 5e-4
+
+
+def test_central_differences_are_of_order_two_on_frames_that_pound(tmp_path):
+    exact = run(tmp_path, "EXACT", hinge="")
+    errors = [
+        np.abs(figures(run(tmp_path, f"CENTRAL DT={h}", hinge="")) / figures(exact) - 1.0).max()
+        for h in (2e-4, 1e-4, 5e-5)
+    ]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert np.all((orders > 1.8) & (orders < 2.3)), (errors, orders)
+
+
+def test_energy_residual_falls_with_the_square_of_the_step(tmp_path):
+    found = [
+        float(run(tmp_path, f"NEWMARK DT={h}").table("checks")["value"][0]) for h in (2e-3, 1e-3, 5e-4)
+    ]
+    assert all(3.2 < a / b < 5.0 for a, b in itertools.pairwise(found)), found
+
+
+def test_steps_without_cuts_go_to_the_same_answer(tmp_path):
+    exact = figures(run(tmp_path, "EXACT"))
+    errors = [
+        np.abs(figures(run(tmp_path, f"NEWMARK DT={h} EVENTS=STEPPED")) / exact - 1.0).max()
+        for h in (1e-3, 2.5e-4)
+    ]
+    assert errors[1] < 0.5 * errors[0] < 0.1, errors
+    located = np.abs(figures(run(tmp_path, "NEWMARK DT=1e-3")) / exact - 1.0).max()
+    assert located < 0.2 * errors[0]  # the jump of the contact's dashpot is what the cuts are for
+
+
+@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
+@pytest.mark.parametrize("method", ["NEWMARK DT=0.01", "HHT DT=0.01 EVENTS=STEPPED", "CENTRAL DT=4e-4"])
+def test_interpreted_kernels_give_the_same_numbers(tmp_path, monkeypatch, method):
+    hinge = "" if method.startswith("CENTRAL") else HINGED
+    fast = run(tmp_path, method, hinge)
+    kept = {name: fast.history(name) for name in fast.histories}
+    fast.close()
+    monkeypatch.setenv("POUND_COMPILE", "0")
+    for cached in (jit.numba, jit.compiled):
+        cached.cache_clear()
+    assert jit.name() == "interpreted"
+    try:
+        slow = run(tmp_path, method, hinge)
+        for name, values in kept.items():
+            size = np.abs(values).max(initial=1e-300)
+            assert np.abs(slow.history(name) - values).max(initial=0.0) < 1e-10 * size, name
+    finally:
+        monkeypatch.delenv("POUND_COMPILE")
+        for cached in (jit.numba, jit.compiled):
+            cached.cache_clear()
+
+
+@pytest.mark.parametrize("tol", [1e-2, 1e-3, 1e-4])
+def test_auto_keeps_its_tolerance_and_its_estimate_holds(tmp_path, monkeypatch, tol):
+    exact = run(tmp_path, "AUTO")
+    assert "EXACT" in exact.table("scene")["decision"].tolist()
+    truth, closed = figures(exact), exact.table("contact_summary")["closures"][0]
+    monkeypatch.setattr(auto, "MOST_LAWS", 1)
+    found = run(tmp_path, f"AUTO TOL={tol}")
+    assert found.table("contact_summary")["closures"][0] == closed
+    drift = np.abs(truth[:4]).reshape(2, 2).max(axis=0)
+    against = np.concatenate([drift, drift, truth[4:]])
+    error = float(np.abs((figures(found) - truth) / against).max())
+    (check,) = [c for c in found.table("checks") if "estimated error" in c["check"]]
+    assert check["verdict"] == "met"
+    assert error <= float(check["value"]) <= tol
+
+
+CURVED = """UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=YR
+ELEMENTS
+ 1 COL 1 2
+PROPS
+ COL SPRING KX=2000 FX=30 RULE=BOUC_WEN {items}
+WEIGHTS
+ 2 98.1
+EQUAKE
+ SINE AMPLITUDE=6 PERIOD=0.5 DURATION=2
+ANALYSIS
+ HISTORY 2 METHOD=NEWMARK DT={dt}
+OUTPUT
+ EVERY=0.02
+"""
+
+
+def test_a_curved_law_against_an_ode_solver(tmp_path):
+    """Bouc-Wen, N=2: the hysteretic part is an ODE of its own; scipy's DOP853 takes all three."""
+    k, fy, r, m = 2000.0, 30.0, 0.1, 10.0
+    dy = fy / k
+
+    def rate(t, y):
+        u, v, z = y
+        force = r * k * u + (1 - r) * fy * z
+        dz = (v - 0.5 * abs(v) * abs(z) * z - 0.5 * v * z * z) / dy
+        return [v, -6.0 * np.sin(2 * np.pi * t / 0.5) - force / m, dz]
+
+    times = np.arange(101) * 0.02
+    ode = solve_ivp(rate, (0, 2), [0, 0, 0], "DOP853", times, rtol=1e-10, atol=1e-12, max_step=1e-3)
+    errors = []
+    for dt in (4e-3, 2e-3, 1e-3):
+        deck = tmp_path / "curved.inp"
+        deck.write_text(CURVED.format(dt=dt, items=f"R={r} N=2"))
+        u = pound_solve.run(deck).history("node/u")[:, 1, 0]
+        errors.append(np.abs(u - ode.y[0]).max() / np.abs(ode.y[0]).max())
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert np.all(orders > 1.8) and errors[-1] < 1e-3, (errors, orders)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10_000), st.integers(1, 40))
+def test_the_sparse_factor_and_its_updates(seed, n):
+    rng = np.random.default_rng(seed)
+    half = rng.random((n, n)) < 2.0 / n
+    linked = half | half.T | np.eye(n, dtype=bool)
+    order = ldl.order(linked)
+    assert sorted(order) == list(range(n))
+    linked = linked[np.ix_(order, order)]
+    a = np.where(linked, rng.standard_normal((n, n)), 0.0)
+    a = a + a.T + np.diag(4.0 + np.abs(a).sum(axis=1))
+    s = ldl.analyse(linked)
+    columns = np.repeat(np.arange(n), np.diff(s.ap))
+    l, q = np.zeros((1, len(s.li))), np.zeros((3, n))  # noqa: E741
+    assert ldl.factor(s, a[s.ai, columns], l, 0, q, 0, 1) == -1
+    for _ in range(3):
+        b = rng.standard_normal(n)
+        q[2] = b
+        ldl.solve(s, l, 0, q, 0, 2)
+        assert np.abs(a @ q[2] - b).max() < 1e-10
+        first = int(rng.integers(n))
+        rest = np.flatnonzero(linked[first] & (np.arange(n) > first))[:1]
+        row = np.zeros(n)
+        row[first], row[rest] = 1.0, -1.0
+        q[1] = row
+        assert ldl.update(s, l, 0, q, 0, 1, first, 2.5)
+        assert not q[1].any()
+        a += 2.5 * np.outer(row, row)
+
+
+def test_a_singular_matrix_names_its_unknown():
+    s = ldl.analyse(np.ones((3, 3), bool))
+    a = np.array([[2.0, 1.0, 1.0], [1.0, 1.0, 0.0], [1.0, 0.0, 1.0]])  # its last pivot is zero
+    columns = np.repeat(np.arange(3), np.diff(s.ap))
+    assert ldl.factor(s, a[s.ai, columns], np.zeros((1, 3)), 0, np.zeros((2, 3)), 0, 1) == 2
