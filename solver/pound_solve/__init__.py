@@ -21,6 +21,7 @@ def run(
     records: Sequence[str | Path] = (),
     method: str | None = None,
     dt: float | None = None,
+    tol: float | None = None,
 ) -> Results:
     """Run a deck and return its results.
 
@@ -38,6 +39,8 @@ def run(
         Replaces METHOD of HISTORY.
     dt : float, optional
         Replaces DT of HISTORY [T].
+    tol : float, optional
+        Replaces TOL of HISTORY.
 
     Returns
     -------
@@ -58,4 +61,5 @@ def run(
 
     texts = {name: str(value) for name, value in (params or {}).items()}
     folders = tuple(Path(r) for r in records)
-    return execute(Request(str(deck), texts, None if out is None else Path(out), folders, method, dt))[1]
+    folder = None if out is None else Path(out)
+    return execute(Request(str(deck), texts, folder, folders, method, dt, tol))[1]

@@ -57,8 +57,8 @@ class Request:
         Folder of report and results; None for the deck's.
     records : tuple of Path
         Folders where records are looked for, after the deck's own.
-    method, dt : str or None, float or None
-        Replace METHOD and DT of every HISTORY.
+    method, dt, tol : str or None, float or None
+        Replace METHOD, DT and TOL of every HISTORY.
     """
 
     deck: str
@@ -67,6 +67,7 @@ class Request:
     records: tuple[Path, ...] = ()
     method: str | None = None
     dt: float | None = None
+    tol: float | None = None
 
     def path(self, suffix: str) -> Path:
         """Path of an output file."""
@@ -211,8 +212,9 @@ def _weighed(model: Model) -> Model:
 
 
 def _override(model: Model, request: Request, found: list[Diagnostic]) -> Model:
-    """Put ``--method`` and ``--dt`` into the HISTORY cards."""
-    if request.method is None and request.dt is None:
+    """Put ``--method``, ``--dt`` and ``--tol`` into the HISTORY cards."""
+    given = {"DT": request.dt, "TOL": request.tol}
+    if request.method is None and set(given.values()) == {None}:
         return model
     methods = catalog().family("method")
     cards = []
@@ -229,19 +231,19 @@ def _override(model: Model, request: Request, found: list[Diagnostic]) -> Model:
             own = {f.name: card.values.get(f.name, f.default) for f in methods[name].fields}
             # an item of the deck's own method that was left out there may be one that this method must have
             own |= {f.name: f.default for f in methods[name].fields if own[f.name] is None}
-            if request.dt is not None and "DT" in own:
-                own["DT"] = request.dt
-            elif request.dt is not None:
-                found.append(
-                    Diagnostic("P211", f"--dt: {name} takes no time step", None, severity="warning")
-                )
+            for item, value in given.items():
+                if value is not None and item in own:
+                    own[item] = value
+                elif value is not None:
+                    message = f"--{item.lower()}: {name} has no item {item}"
+                    found.append(Diagnostic("P211", message, None, severity="warning"))
             missing = [key for key, value in own.items() if value is REQUIRED]
             if missing:
                 found.append(
                     Diagnostic("P213", f"--method {name} needs {', '.join(missing)}: give --dt", None)
                 )
                 return model
-            spans = dict(card.spans) | {k: Span("--method/--dt", 1, 1, 2) for k in ("METHOD", "DT")}
+            spans = dict(card.spans) | {k: Span("--method/--dt", 1, 1, 2) for k in ("METHOD", *given)}
             card = replace(
                 card,
                 values={**card.values, **own, "METHOD": name},

@@ -36,6 +36,7 @@ def parser() -> argparse.ArgumentParser:
         )
         p.add_argument("--method", help="replace METHOD of HISTORY")
         p.add_argument("--dt", type=float, help="replace DT of HISTORY")
+        p.add_argument("--tol", type=float, help="replace TOL of HISTORY")
         return p
 
     run = deck("run", "run a deck (the verb may be left out)")
@@ -128,7 +129,8 @@ def _request(args: argparse.Namespace) -> object:
         if not equals or not name.strip():
             raise SystemExit(_complain(f"--set {item}: write NAME=VALUE", 2))
         params[name.strip()] = value.strip()
-    return Request(args.deck, params, getattr(args, "out", None), tuple(args.records), args.method, args.dt)
+    out, records = getattr(args, "out", None), tuple(args.records)
+    return Request(args.deck, params, out, records, args.method, args.dt, args.tol)
 
 
 def _run(args: argparse.Namespace) -> int:

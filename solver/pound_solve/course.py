@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from pound_deck.model import Card, Model
 from pound_solve import __version__, echo, scene
-from pound_solve.analyses import history, modal, pushover, restart, static
+from pound_solve.analyses import damage, history, modal, pushover, restart, static
 from pound_solve.analyses.equilibrium import ROUNDING, Ground
 from pound_solve.analyses.path import Unstable
 from pound_solve.assemble import Structure
@@ -273,6 +273,7 @@ class Course:
         outcome = restart.join(parts) if parts else None
         if outcome is not None:
             self._peak_tables(recorder, outcome.peaks, EXACT if outcome.exact else STEPS)
+            self._spring_tables(recorder, outcome, stop is None)
             self._check_tables(place, recorder, outcome)
         if stop is not None:
             raise stop
@@ -345,8 +346,8 @@ class Course:
             )
         else:
             how = (
-                f"At the output times, every {self.every:.6g} {units.time}: peaks between them are not seen, "
-                "a smaller OUTPUT EVERY finds them. "
+                f"At the output times, every {self.every:.6g} {units.time}: peaks between them are not "
+                "seen, a smaller OUTPUT EVERY finds them. "
             )
         relative = "Displacements and velocities are relative to the ground, accelerations are total."
         w.table("node_envelope", rows, how + ("All are total." if place.total else relative))
@@ -368,8 +369,8 @@ class Course:
         )
 
     def _peak_tables(self, recorder: history.Recorder, peaks: Peaks, how: str) -> None:
-        """Drifts, springs, contacts and collisions: what the method found on its way; `how` it found it."""
-        m, s, w, units = self.model, self.structure, self.writer, self.model.units
+        """Drifts, contacts and collisions: what the method found on its way; `how` it found it."""
+        m, s, w = self.model, self.structure, self.writer
         w.table(
             "drift_envelope",
             [
@@ -378,30 +379,11 @@ class Course:
             ],
             how,
         )
-        spring_rows, contact_rows = [], []
+        contact_rows = []
         for i, x in enumerate(s.laws):
-            d, f = peaks.deformation[i], peaks.force[i]
             if not x.is_contact:
-                force, length = x.unit, "rad" if x.unit == "F*L" else "L"
-                plus, minus = x.yields or (np.nan, np.nan)
-                ductility = max(d.high / plus if plus else np.nan, d.low / minus if minus else np.nan)
-                spring_rows.append(
-                    (
-                        x.element,
-                        x.component,
-                        x.rule,
-                        units.text(force),
-                        f.high,
-                        f.low,
-                        units.text(length),
-                        d.high,
-                        d.low,
-                        peaks.yields[i],
-                        ductility,
-                        recorder.losses[i],
-                    )
-                )
                 continue
+            d = peaks.deformation[i]
             own = [c for c in peaks.collisions if c.law == i]
             best = max(own, key=lambda c: c.peak, default=None)
             closed = sum((c.t_end if np.isfinite(c.t_end) else recorder.reached) - c.t_start for c in own)
@@ -419,7 +401,6 @@ class Course:
                     closed,
                 )
             )
-        w.table("spring_envelope", spring_rows, how)
         w.table("contact_summary", contact_rows, how + " A closure that has not ended counts.")
         ordered = sorted(peaks.collisions, key=lambda c: (c.t_start, c.law))
         w.table(
@@ -437,6 +418,57 @@ class Course:
                     c.impulse,
                 )
                 for c in ordered
+            ],
+        )
+
+    def _spring_tables(self, recorder: history.Recorder, outcome: Outcome, ended: bool) -> None:
+        """What springs and hinges went through; damage where the ultimate ductility is given."""
+        m, s, units, peaks = self.model, self.structure, self.model.units, outcome.peaks
+        rows, plastic, damaged = [], [], []
+        for i, x in enumerate(s.laws):
+            if x.is_contact:
+                continue
+            d, f, loss = peaks.deformation[i], peaks.force[i], recorder.losses[i]
+            rows.append(
+                (
+                    x.element,
+                    x.component,
+                    x.rule,
+                    units.text(x.unit),
+                    f.high,
+                    f.low,
+                    units.text("rad" if x.unit == "F*L" else "L"),
+                    d.high,
+                    d.low,
+                    peaks.yields[i],
+                    damage.ductility((d.high, d.low), x.yields),
+                    loss,
+                )
+            )
+            if loss:
+                last, unit = recorder.deformations[i], rows[-1][6]
+                left = damage.residual(x.law, outcome.states[i], last) if ended else np.nan
+                path = damage.plastic_path(loss, x.k0, x.yields)
+                plastic.append((x.element, x.component, unit, last, left, *path))
+            card = m.props[m.elements[x.element].prop]
+            ultimate = card.values.get("DUCTU")
+            if ultimate is not None and x.yields is not None:
+                sides = (ultimate[0], ultimate[-1])
+                found = damage.park_ang((d.high, d.low), loss, x.k0, x.yields, sides, card["PA_BETA"])
+                damaged.append((x.element, x.component, found, loss))
+        how = EXACT if outcome.exact else STEPS
+        self.writer.table("spring_envelope", rows, how)
+        self.writer.table("spring_plastic", plastic)
+        if not damaged:
+            return
+        losses = [loss for *_, loss in damaged]
+        total = sum(losses) or np.nan
+        whole = damage.overall([found.total for _, _, found, _ in damaged], losses)
+        self.writer.table(
+            "damage",
+            [
+                *((e, name, *found, found.total, loss / total) for e, name, found, loss in damaged),
+                (0, "", *[np.nan] * 4, whole, sum(losses) / total),
             ],
         )
 

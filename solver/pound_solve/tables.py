@@ -492,6 +492,48 @@ _MEMBERS = (
             Column("plastic_work", "plastic\nwork", "F*L", "short", "energy lost in hysteresis"),
         ),
     ),
+    Table(
+        "spring_plastic",
+        "Plastic deformation of springs",
+        (
+            _ELEMENT,
+            Column("component", "comp.", doc="as in the spring envelopes"),
+            Column("unit", doc="unit of the deformations in this row"),
+            Column("last", "at the\nend", "", "short", "deformation at the end"),
+            Column(
+                "residual",
+                "residual",
+                "",
+                "short",
+                "left when the force is taken off; NaN for a run that stopped",
+            ),
+            Column("path", "plastic\npath", "", "short", "plastic work over the yield force"),
+            Column("path_ratio", "path over\nyield", "-", "short", "path over the deformation at yield"),
+        ),
+        note="Springs that have lost energy. The plastic path is the plastic work over the mean of both "
+        "yield forces: the sum of all plastic deformations of an elastic, perfectly plastic spring.",
+    ),
+    Table(
+        "damage",
+        "Damage index of Park and Ang",
+        (
+            Column("element", fmt="int", doc="element number, 0 for the whole structure", zero="all"),
+            Column("component", "comp.", doc="as in the spring envelopes"),
+            Column("ultimate", "ultimate\nductility", "-", "short", "of the side that counts"),
+            Column("ductility", "ductility", "-", "short", "largest of that side"),
+            Column("by_deformation", "by\ndeform.", "-", "short", "largest over ultimate deformation"),
+            Column(
+                "by_energy",
+                "by\nenergy",
+                "-",
+                "short",
+                "beta times plastic work, over yield force times ultimate deformation",
+            ),
+            Column("index", "index", "-", "short", "the sum of both"),
+            Column("weight", "weight", "-", "short", "share of the plastic work of all rows"),
+        ),
+        note="1 is failure; beyond about 0.4 a member is not worth repair. All: the mean by the weights.",
+    ),
 )
 
 _CONTACTS = (

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from pound_solve import jit
 from pound_solve.app import Prepared, Request, execute
 from pound_solve.results import Results
 
@@ -28,6 +29,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
         key = (deck, tuple(sorted((params or {}).items())), method, dt)
         if key not in done:
             needs_records(deck)
+            needs_compiler(deck)
             out = tmp_path_factory.mktemp(deck.stem)
             done[key] = execute(Request(str(deck), dict(params or {}), out, (), method, dt))
         return done[key]
@@ -35,6 +37,12 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
     yield once
     for _, results, _ in done.values():
         results.close()
+
+
+def needs_compiler(deck: Path) -> None:
+    """Skip the test where a deck would take minutes without the extra `fast`."""
+    if deck.parent.name == "frames" and jit.numba() is None:
+        pytest.skip("needs the extra `fast`")
 
 
 def needs_records(deck: Path) -> None:

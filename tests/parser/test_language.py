@@ -184,7 +184,9 @@ def test_comments_continuations_and_quotes(read):
 
 def test_single_cards(read):
     model = read(
-        "title  Bob's two towers ! a comment\nUNITS N mm s\nMASS consistent\nGEOMETRY pdelta\n" + HEAD + "END\n)))\n"
+        "title  Bob's two towers ! a comment\nUNITS N mm s\nMASS consistent\nGEOMETRY pdelta\n"
+        + HEAD
+        + "END\n)))\n"
     )
     assert model.title == "Bob's two towers" and model.units == Units("N", "mm", "s", True)
     assert model.gravity == 9810 and model.mass == "CONSISTENT" and model.defaults == {"gravity"}

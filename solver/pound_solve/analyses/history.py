@@ -146,9 +146,7 @@ class Envelope:
 
     def rows(self) -> list[tuple[float, float, float, float]]:
         """Largest value and its time, smallest value and its time, of each quantity."""
-        return list(
-            zip(self.high.tolist(), self.t_high.tolist(), self.low.tolist(), self.t_low.tolist())
-        )
+        return list(zip(self.high.tolist(), self.t_high.tolist(), self.low.tolist(), self.t_low.tolist()))
 
 
 class Recorder:
@@ -202,6 +200,7 @@ class Recorder:
         self._fresh = first_energy is None
         self.last_residual = self.residual_peak = self.energy_peak = 0.0
         self.losses = [0.0] * len(structure.laws)  # by slip and release, dashpots apart [F L]
+        self.deformations = [0.0] * len(structure.laws)  # at the last sample
         self.reached = -1.0
         # between the samples: number of instants seen, the last of them, longest time from one to the next
         self.seen, self.last_seen, self.apart = 0, 0.0, 0.0
@@ -322,7 +321,7 @@ class Recorder:
         self.last_energy, self.last_residual = energy[-1], float(residual[-1])
         self.energy_peak = max(self.energy_peak, float(np.abs(energy).max()))
         self.residual_peak = max(self.residual_peak, float(np.abs(residual).max()))
-        self.losses = lost[-1].tolist()
+        self.losses, self.deformations = lost[-1].tolist(), d[-1].tolist()
         node, out = self._envelopes(t, u, v, a, inputs)
         gaps = np.array([laws[i].facts["gap"] for i in self.contacts])
         self._append(

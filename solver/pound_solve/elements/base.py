@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_deck.model import Card, Element, Node
-from pound_deck.schema import Spec
+from pound_deck.schema import Field, Kind, Spec
 from pound_solve.dofs import Freedom
 from pound_solve.laws import Branch, Law, State
 
@@ -199,6 +199,22 @@ class ElementError(Exception):
     def __init__(self, message: str, item: str = "") -> None:
         super().__init__(message)
         self.item = item
+
+
+#: Fields of the damage index of Park and Ang, for elements that yield
+DAMAGE = (
+    Field(
+        "DUCTU",
+        Kind.REAL,
+        "-",
+        default=None,
+        above=1,
+        count=(1, 2),
+        doc="ultimate ductility under monotonic loading, positive and negative side; one value: both; "
+        "asks for the damage index",
+    ),
+    Field("PA_BETA", Kind.REAL, "-", default=0.05, lo=0, doc="weight of the energy in the damage index"),
+)
 
 
 def signed(values: tuple[float, ...], item: str) -> tuple[float, float]:

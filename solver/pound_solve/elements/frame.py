@@ -22,7 +22,7 @@ import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.elements import beam
-from pound_solve.elements.base import ElementError, Parts, Site, hysteretic, signed
+from pound_solve.elements.base import DAMAGE, ElementError, Parts, Site, hysteretic, signed
 from pound_solve.elements.beam import pair
 
 ENDS = ((2, "I", "MI"), (5, "J", "MJ"))  #: local freedom, name and strength of the hinges
@@ -63,8 +63,9 @@ def _consistent(site: Site, strengths: list[str]) -> None:
     if not strengths:
         if rule.impl is not None:
             raise ElementError(f"{rule.name} needs a yield moment: MI, MJ or both", "RULE")
-        if given:
-            raise ElementError(f"{given[0]} has no effect without a yield moment MI or MJ", given[0])
+        idle = [*given, *(["DUCTU"] if p["DUCTU"] is not None else [])]
+        if idle:
+            raise ElementError(f"{idle[0]} has no effect without a yield moment MI or MJ", idle[0])
         return
     if rule.impl is None:
         raise ElementError(
@@ -117,6 +118,7 @@ SPEC = Spec(
             count=(1, 2),
             doc="length of the hinges at I and J, out of the beam, in place of KH; one value: both",
         ),
+        *DAMAGE,
     ),
     reference="Przemieniecki 1968; Giberson 1967",
     impl=build,

@@ -12,6 +12,7 @@ import numpy as np
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.dofs import Freedom
 from pound_solve.elements.base import (
+    DAMAGE,
     Block,
     ElementError,
     Output,
@@ -72,6 +73,8 @@ def build(site: Site) -> Parts:
             continue
         at = dict(zip(freedoms, row))
         parts.laws.append(hysteretic(site.element.id, name, unit, at, card, rule, k, signed(force, item)))
+    if card["DUCTU"] is not None and not parts.laws:
+        raise ElementError("DUCTU has no effect where nothing yields: name a rule that yields", "DUCTU")
     return parts
 
 
@@ -102,6 +105,7 @@ SPEC = Spec(
             family="hysteresis",
             doc="hysteresis rule: one for all components, or three for x, y, rotation",
         ),
+        *DAMAGE,
     ),
     reference="",
     impl=build,

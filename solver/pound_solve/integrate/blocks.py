@@ -382,7 +382,7 @@ class Window:
         return t[t <= end], u, v, a
 
     def _motions(
-        self, intervals: slice, t: Array, states: Callable[[Block], NDArray[Any]]
+        self, intervals: slice, t: NDArray[Any], states: Callable[[Block], NDArray[Any]]
     ) -> tuple[Array, Array, Array]:
         """`motion` at local times `t` within each of some intervals, shape (n, n_intervals * n_times) each.
 

@@ -788,14 +788,16 @@ def restore(w: Laws, f: Tables, i: int) -> None:
     enter(w, f, i)
 
 
-def next_exit(w: Laws, i: int, at: float, to: float) -> tuple[int, float]:
-    """First exit on the straight path from `at` to `to` at an infinitely slow rate, and where
+def next_exit(w: Laws, i: int, at: float, to: float, rate: float) -> tuple[int, float]:
+    """First exit on the straight path from `at` to `to` with the rate at its end, and where
     (see `laws.follow`); -1 where there is none.
     """
     way = 1.0 if to >= at else -1.0
     best, where = -1, 0.0
     for e in range(w.i[i, N_EXITS]):
         a, b, c = w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2]
+        if a != 0.0:
+            c += b * rate
         now, slope = a * at + c, a * way
         if b != 0.0 and a == 0.0 and c == 0.0:
             if b * way <= 0.0 or to == at:
@@ -828,7 +830,7 @@ def uncut_step(
         changed, driven = False, 0
         for i in range(laws):
             d, d1 = w.f[i, LD], w.f[i, LD1]
-            if w.i[i, SAVED] == 0 and next_exit(w, i, d, d1)[0] < 0:
+            if w.i[i, SAVED] == 0 and next_exit(w, i, d, d1, w.f[i, LV1])[0] < 0:
                 continue
             k, c, f0 = w.f[i, K], w.f[i, C], w.f[i, F0]
             if w.i[i, SAVED] == 0:
@@ -836,7 +838,7 @@ def uncut_step(
             else:
                 restore(w, f, i)
             for _ in range(100):
-                way, where = next_exit(w, i, d, d1)
+                way, where = next_exit(w, i, d, d1, w.f[i, LV1])
                 if way < 0:
                     break
                 leave(w, f, i, way, where)

@@ -109,9 +109,7 @@ class Stepper:
     def _lay_out(self, start: Start) -> None:
         scene, watch, laws = self.scene, self.watch, self.laws
         n, count = scene.size, len(laws)
-        damps = np.array(
-            [bool(s.facts.get("c") or s.beta or s.secant) or s.law.curved for s in laws], bool
-        )
+        damps = np.array([bool(s.facts.get("c") or s.beta or s.secant) or s.law.curved for s in laws], bool)
         stiff = self.scheme.beta > 0.0
         linked = (scene.mass != 0) | (scene.damping != 0) | np.eye(n, dtype=bool)
         if stiff:

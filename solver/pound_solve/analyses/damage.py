@@ -1,0 +1,117 @@
+r"""What a motion has done to springs and hinges: ductility, plastic path, what is left, damage.
+
+With yield deformation :math:`d_y` and yield force :math:`F_y = k d_y` of a side, ultimate deformation
+:math:`d_u = \mu_u d_y` under monotonic loading, largest deformation :math:`d_m` and dissipated energy
+:math:`E_h` the index of Park and Ang is
+
+.. math:: D = \frac{d_m}{d_u} + \beta\,\frac{E_h}{F_y d_u}
+
+Each side is taken by itself, with the whole of the energy; the larger index counts.  The index of the
+structure is the mean of all, weighted by the energies: :math:`\sum E_i D_i / \sum E_i`.
+
+References
+----------
+Park YJ, Ang AHS (1985), Mechanistic seismic damage model for reinforced concrete, J. Struct. Eng. ASCE
+111(4): 722-739; Park YJ, Ang AHS, Wen YK (1985), Seismic damage analysis of reinforced concrete buildings,
+J. Struct. Eng. ASCE 111(4): 740-757 (weights by energy); Mahin SA, Bertero VV (1981), An evaluation of
+inelastic seismic design spectra, J. Struct. Div. ASCE 107(ST9): 1777-1795 (energy as a plastic path).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from pound_solve.laws import Law, State, changes
+
+Sides = tuple[float, float]  #: positive and negative side
+
+FAR = 10.0  #: how far a force that is taken off is followed, in deformations and elastic deformations
+
+
+class Damage(NamedTuple):
+    """Damage index of a component on the side where it is larger."""
+
+    ultimate: float  #: ultimate ductility
+    ductility: float
+    by_deformation: float  #: first term of the index
+    by_energy: float  #: second term
+
+    @property
+    def total(self) -> float:
+        """The index D."""
+        return self.by_deformation + self.by_energy
+
+
+def ductility(largest: Sides, yields: Sides | None) -> float:
+    """Largest deformation over that at first yield, of the side where it is larger; NaN without yield.
+
+    Parameters
+    ----------
+    largest, yields : tuple of float
+        Signed deformations, [L] or [rad].
+    """
+    return max((d / y for d, y in zip(largest, yields or (0.0, 0.0)) if y), default=math.nan)
+
+
+def plastic_path(loss: float, k: float, yields: Sides | None) -> tuple[float, float]:
+    """Plastic path [L] or [rad] on which yielding at the mean of both strengths loses `loss`,
+    and its ratio to the mean deformation at yield.
+
+    Of an elastic, perfectly plastic spring it is the sum of all plastic deformations, if these return to
+    where they began or both strengths are equal.
+    """
+    at_yield = 0.5 * (yields[0] - yields[1]) if yields else 0.0
+    if not at_yield:
+        return math.nan, math.nan
+    path = loss / (k * at_yield)
+    return path, path / at_yield
+
+
+def residual(law: Law, state: State, d: float) -> float:
+    """Deformation that is left when the force at `d` is taken off slowly, [L] or [rad].
+
+    NaN where the force does not come to zero.
+    """
+    force = law.force(state, d)[0]
+    if force == 0.0:
+        return d
+    end = d - math.copysign(FAR * (abs(d) + abs(force) / law.p[0]), force)
+    for at, after in [*changes(law, state, d, end), (end, state)]:
+        if force * law.force(state, at)[0] <= 0.0:
+            while (middle := 0.5 * (d + at)) not in (d, at):
+                d, at = (middle, at) if force * law.force(state, middle)[0] > 0.0 else (d, middle)
+            return at
+        d, state = at, after
+    return math.nan
+
+
+def park_ang(largest: Sides, loss: float, k: float, yields: Sides, ultimate: Sides, beta: float) -> Damage:
+    """Damage index of one component.
+
+    Parameters
+    ----------
+    largest, yields : tuple of float
+        Signed deformations, [L] or [rad].
+    loss : float
+        Dissipated energy [F L].
+    k : float
+        Initial stiffness, [F/L] or [F L].
+    ultimate : tuple of float
+        Ultimate ductilities of both sides.
+    beta : float
+        Weight of the energy.
+    """
+    sides = []
+    for d, y, most in zip(largest, yields, ultimate):
+        if y:
+            reached = max(d / y, 0.0)
+            sides.append(Damage(most, reached, reached / most, beta * loss / (k * y * y * most)))
+    return max(sides, key=lambda side: side.total, default=Damage(*[math.nan] * 4))
+
+
+def overall(indices: Sequence[float], losses: Sequence[float]) -> float:
+    """Index of the whole: the mean weighted by dissipated energies; NaN where nothing was dissipated."""
+    total = sum(losses)
+    return sum(d * e for d, e in zip(indices, losses)) / total if total else math.nan
