@@ -205,7 +205,7 @@ def growth(args, folder):
     rows = []
     for storeys in STOREYS:
         params = {"storeys": storeys, "pga": 3, "every": 1, "events": '"STEPPED"'}
-        us = per_step(deck, folder, params, 5.0, args.repeat)
+        us = per_step(deck, folder, params, 200.0, args.repeat)
         tracemalloc.start()
         ours(deck, folder, params={**params, "t": SHORT, "every": SHORT})[2].close()
         size = tracemalloc.get_traced_memory()[1] / 1e6

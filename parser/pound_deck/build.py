@@ -24,7 +24,7 @@ _GEOMETRY: Final = Field(
     "GEOMETRY",
     Kind.WORD,
     doc="what displacements do to equilibrium",
-    words=("SMALL", "PDELTA", "PDELTA_MEMBER", "LARGE"),
+    words=("SMALL", "PDELTA", "PDELTA_MEMBER", "PDELTA_VARYING", "LARGE"),
     codes={"SMALL": 0, "PDELTA": 1, "LARGE": 2},
     positional=True,
 )
@@ -49,10 +49,6 @@ def build(
     gravity = _single(Spec("card", "GRAVITY", "gravity", (_GRAVITY,)), outline, binder)
     mass = _single(Spec("card", "MASS", "mass of members", (_MASS,)), outline, binder)
     geometry = _single(Spec("card", "GEOMETRY", "displacements", (_GEOMETRY,)), outline, binder)
-    if geometry == "LARGE":
-        message = "large displacements (GEOMETRY LARGE) cannot be analysed yet"
-        hint = "PDELTA takes axial forces into account, PDELTA_MEMBER along bent members too"
-        report.append(Diagnostic("P328", message, outline.single["GEOMETRY"].span, hint))
     output = bound["OUTPUT"] or (_default_output(),)
     nodes: dict[int, Node] = {}
     for card in bound["NODES"]:

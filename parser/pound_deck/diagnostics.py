@@ -368,11 +368,6 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "INITIAL gives a displacement or velocity to a direction that is fixed or follows a master. "
         "Give it to a free direction, or to the master.",
     ),
-    "P328": (
-        "kind of geometry not built",
-        "GEOMETRY takes SMALL, PDELTA (axial forces act along the line between the nodes) or PDELTA_MEMBER "
-        "(along the bent member). Large displacements cannot be analysed yet.",
-    ),
     "P329": (
         "node with two weights (warning)",
         "All nodes of a line under WEIGHTS have a weight from another line, or a node stands twice in a "
@@ -429,8 +424,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "R406": (
         "there is no saved state to restart from",
-        "Name the .h5 file of a run of the same structure that ended or had a SAVE time; its path is counted "
-        "from the deck's folder.",
+        "Name the .h5 file of a run of the same structure that ended or had a SAVE time; its path is "
+        "counted from the deck's folder.",
     ),
     "A501": (
         "unstable structure",

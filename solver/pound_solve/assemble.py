@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
 from pound_solve import modes
+from pound_solve.chords import Chords
 from pound_solve.damping.base import DampingError, Ground
 from pound_solve.damping.secant import SecantLaw
 from pound_solve.dofs import DIRECTIONS, Freedom, Freedoms, label, number
@@ -50,6 +51,8 @@ class Structure:
         Quantities of the elements outside laws.
     geometric : tuple of Geometric
         Stiffness of the members from their axial forces; empty for small displacements.
+    chords : Chords
+        Of the members whose forces follow their displaced line; over all columns.
     nodal_mass : mapping of Freedom to float
         Diagonal mass by node and direction, weights and members.
     self_weight : bool
@@ -73,6 +76,7 @@ class Structure:
     law_rows: Array
     outputs: tuple[Output, ...]
     geometric: tuple[Geometric, ...]
+    chords: Chords
     nodal_mass: dict[Freedom, float]
     self_weight: bool
     parts: dict[int, Parts]
@@ -118,6 +122,23 @@ class Structure:
             initial_stiffness=self.initial_stiffness + matrix,
             outputs=outputs,
         )
+
+    def displaced(self, u: Array) -> Structure:
+        """The structure whose initial stiffness is that at displacements `u` of the unknowns."""
+        if not self.chords:
+            return self
+        n, k = self.n_free, self.initial_stiffness.copy()
+        k[:n, :n] += self.chords.on(slice(n)).stiffness(u)
+        return replace(self, initial_stiffness=k)
+
+    def member_forces(self, u: Array) -> Array:
+        """All of `outputs` at displacements `u` of all columns and no velocity, shape (n_outputs,)."""
+        linear = [float(self.freedoms.row(o.freedoms, o.u_row) @ u) + o.constant for o in self.outputs]
+        if not self.chords:
+            return np.array(linear)
+        at, share = self.chords.shares([(o.element, o.quantity) for o in self.outputs])
+        found = self.chords.survey((self.chords.rows @ u)[None])[0]
+        return np.array(linear) + (share * found[at, 1:]).sum(axis=1)
 
     def influence(self) -> Array:
         """Quasi-static motion of the unknowns for unit prescribed motions, shape (n_free, n_moved)."""
@@ -201,13 +222,9 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
             mass_along,
         )
         if site.member_loads and prop.spec.name not in ("FRAME", "BEAM_COLUMN"):
-            problems.append(
-                Diagnostic(
-                    "P331",
-                    f"element {element.id} is a {prop.spec.name}: only FRAME and BEAM_COLUMN take member loads",
-                    site.member_loads[0].span,
-                )
-            )
+            wrong = f"element {element.id} is a {prop.spec.name}"
+            message = f"{wrong}: only FRAME and BEAM_COLUMN take member loads"
+            problems.append(Diagnostic("P331", message, site.member_loads[0].span))
         try:
             parts[element.id] = prop.spec.impl(site)
         except ElementError as err:
@@ -254,6 +271,8 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
         for d in range(3):
             ground[d] += freedoms.row(at, matrix @ [_ridden(model, f, d) for f in at])
     k0 = k_linear + (rows.T * [s.k0 for s in laws]) @ rows
+    chords = [c for p in ordered for c in p.chords]
+    quantities = [c.rows @ freedoms.matrix(c.freedoms) for c in chords]
 
     structure = Structure(
         model,
@@ -270,6 +289,7 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
         rows,
         tuple(o for p in ordered for o in p.outputs),
         tuple(g for p in ordered for g in p.geometric),
+        Chords(chords, np.array(quantities).reshape(len(chords), 6, n)),
         nodal_mass,
         self_weight,
         parts,

@@ -79,7 +79,7 @@ class Course:
         try:
             state = self._static()
             # from here on with the stiffness that the axial forces of the static state give
-            self.structure = self.structure.stressed(state.axial)
+            self.structure = self.structure.stressed(state.axial).displaced(state.u)
             for name, analysis in (
                 ("MODAL", self._modal),
                 ("PUSHOVER", self._pushover),
@@ -154,13 +154,8 @@ class Course:
         w.table("static_displacement", rows)
         units = self.model.units
         forces: list[tuple[Any, ...]] = [
-            (
-                o.element,
-                o.quantity,
-                float(s.freedoms.row(o.freedoms, o.u_row) @ full) + o.constant,
-                units.text(o.unit),
-            )
-            for o in s.outputs
+            (o.element, o.quantity, float(force), units.text(o.unit))
+            for o, force in zip(s.outputs, s.member_forces(full))
         ]
         for x, law_state, row in zip(s.laws, state.states, s.law_rows):
             d = float(row @ full)

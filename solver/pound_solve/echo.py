@@ -18,8 +18,10 @@ Rows = list[tuple[Any, ...]]
 
 GEOMETRY = {
     "SMALL": "small displacements",
-    "PDELTA": "axial forces act along the line between the nodes",
-    "PDELTA_MEMBER": "axial forces act along the bent member",
+    "PDELTA": "axial forces of the static state act along the line between the nodes",
+    "PDELTA_MEMBER": "axial forces of the static state act along the bent member",
+    "PDELTA_VARYING": "the present axial forces act along the line between the nodes",
+    "LARGE": "members turn and lengthen as their nodes move",
 }
 
 

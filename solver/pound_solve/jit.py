@@ -50,6 +50,7 @@ def folder() -> Path:
     sources = [
         here / "laws.py",
         here / "jit.py",
+        here / "chords.py",
         *sorted(p for f in ("hysteresis", "contact", "integrate") for p in (here / f).glob("*.py")),
     ]
     key = hashlib.sha256(b"".join(p.read_bytes() for p in sources)).hexdigest()[:16]

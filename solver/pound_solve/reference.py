@@ -288,7 +288,7 @@ These cards stand anywhere, once each but for the last two:
 | `UNITS force length time` | names of the units | `kN m s` |
 | `GRAVITY g` | acceleration of gravity; mass = weight / gravity | by the unit of length |
 | `MASS LUMPED` or `MASS CONSISTENT` | mass of FRAME members that have a weight | `LUMPED` |
-| `GEOMETRY PDELTA` or `PDELTA_MEMBER` | axial forces act on the members that have moved | `SMALL` |
+| `GEOMETRY word` | `PDELTA`, `PDELTA_MEMBER`, `PDELTA_VARYING` or `LARGE` displacements | `SMALL` |
 | `PARAM name = value` | a name for a number or a text; several on a line are fine | |
 | `INCLUDE "file"` | reads another file here; its name counts from the folder of this one | |
 
@@ -333,8 +333,8 @@ s.
 X points to the right, Y upwards, rotations R turn anticlockwise. Forces, displacements and accelerations
 follow them. End forces of a FRAME member act on the member along its own axes (x from I to J, y to its
 left); its axial force is positive in tension. Moments of its hinges (`hinge I`, `hinge J`) are positive
-where it sags, with tension on the right of the way from I to J. A spring's deformation is the displacement of J less that
-of I. A contact closes as I moves towards J, and its force is positive in compression.
+where it sags, with tension on the right of the way from I to J. A spring's deformation is the displacement
+of J less that of I. A contact closes as I moves towards J, and its force is positive in compression.
 
 The tables give units in dimensions: `F` force, `L` length, `T` time, `-` a pure number. "must" means that
 there is no default.

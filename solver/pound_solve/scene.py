@@ -19,12 +19,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pound_solve import polynomial
 from pound_solve.assemble import Structure
+from pound_solve.chords import Chords
 from pound_solve.dofs import Freedom, label
 from pound_solve.forces.base import Force
 from pound_solve.modes import massless
@@ -169,6 +171,27 @@ class Scene:
         """
         constant = self.structure.held[: self.structure.n_free]
         return ((self.force_inputs @ s).T + constant).T
+
+    @cached_property
+    def chords(self) -> Chords:
+        """The members' chords over the unknowns."""
+        return self.structure.chords.on(self._columns)
+
+    @cached_property
+    def chord_inputs(self) -> Array:
+        """Their quantities from the inputs, shape (n_chords, 6, n_inputs)."""
+        of_supports = self.structure.chords.rows[:, :, self.structure.n_free :]
+        return np.asarray(of_supports @ self.support_inputs, float)
+
+    def quantities(self, u: Array, s: Array) -> Array:
+        """Quantities of the chords, shape (n_times, n_chords, 6), for rows of unknowns and of inputs."""
+        own = np.einsum("tn,cjn->tcj", u, self.chords.rows)
+        return np.asarray(own + np.einsum("ti,cji->tcj", s, self.chord_inputs), float)
+
+    @property
+    def _columns(self) -> list[int]:
+        column = {f: i for i, f in enumerate(self.structure.freedoms.free)}
+        return [column[f] for f in self.freedoms]
 
     @property
     def size(self) -> int:
@@ -421,6 +444,10 @@ def _can_move(
 
     for i, j in zip(*np.nonzero(np.triu(linked, 1))):
         parent[root(int(i))] = root(int(j))
+    for rows in structure.chords.rows[:, :, :n]:
+        touched = np.flatnonzero(rows.any(axis=0))
+        for i in touched[1:]:
+            parent[root(int(touched[0]))] = root(int(i))
     driven = (start != 0) | (start_rate != 0) | (structure.held[:n] != 0)
     active = np.abs(excitation.coefs).max(axis=(0, 1), initial=0.0) > 0
     driven |= np.any(inputs[:, active] != 0, axis=1)

@@ -66,7 +66,7 @@ class Ground:
             Of all laws.
         """
         s, (full, force) = self.structure, self._at(u, states)
-        whole = s.stiffness @ full + s.law_rows.T @ force - s.loads
+        whole = s.stiffness @ full + s.chords.forces(full) + s.law_rows.T @ force - s.loads
         return {f: float(x) for f, x in zip(s.freedoms.moved, whole[self.n :])}
 
     def shear(self, u: Array, states: Sequence[State], d: int, nodes: Sequence[int] | None) -> float:
@@ -89,8 +89,9 @@ class Ground:
             rows.append(("ground below springs and walls with one node", -grounded))
         if couples.any():
             rows.append(("couples that springs and contacts without length do not carry", -couples))
-        if s.geometric:
-            rows.append(("axial forces on displaced members", -self.rigid @ (self.geometric @ full)))
+        if s.geometric or s.chords:
+            turned = self.geometric @ full + s.chords.forces(full)
+            rows.append(("axial forces on displaced members", -self.rigid @ turned))
         rows.append(("sum", sum(x for _, x in rows)))
         return [(name, *map(float, x)) for name, x in rows]
 

@@ -191,6 +191,7 @@ class Recorder:
             [np.zeros(size) if o.v_row is None else freedoms.row(o.freedoms, o.v_row) for o in self.outputs]
         ).reshape(-1, size)
         self.constants = np.array([o.constant for o in self.outputs])
+        self.shares = scene.chords.shares([(o.element, o.quantity) for o in self.outputs])
         self.springs = [i for i, s in enumerate(structure.laws) if not s.is_contact]
         self.contacts = [i for i, s in enumerate(structure.laws) if s.is_contact]
         self.node_envelopes = {q: Envelope(3 * len(self.nodes)) for q in "uva"}
@@ -299,6 +300,9 @@ class Recorder:
             "tj,jnd->tnd", s[0] @ self.scene.acceleration_inputs.T, self.ridden
         )  # they are total
         out = full_u @ self.out_u.T + full_v @ self.out_v.T + self.constants
+        if self.scene.chords:
+            at, share = self.shares
+            out += (share * self.scene.chords.survey(self.scene.quantities(u, s[0]))[:, at, 1:]).sum(axis=2)
         for q, values in node.items():
             self.node_envelopes[q].take(values.reshape(len(t), -1), t)
         self.output_envelope.take(out, t)

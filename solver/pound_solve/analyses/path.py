@@ -132,7 +132,8 @@ class Path:
         self.lead = np.zeros(len(self.laws)) if lead is None else lead
         self.factor, self.changes = 0.0, 0
         self._here: Counter[tuple[int, ...]] = Counter()  # branches of all laws since the last move
-        self.curved = any(s.law.curved for s in self.laws)
+        self.chords = structure.chords.on(slice(n))
+        self.curved = len(self.chords) > 0 or any(s.law.curved for s in self.laws)
         self.branches = [s.law.branch(x) for s, x in zip(self.laws, self.states)]
         self._lost = np.zeros(n)  # what laws have let go, not yet handed over
         self._most = float(np.abs(applied).max(initial=0.0))
@@ -150,7 +151,7 @@ class Path:
 
     def tangent(self) -> Array:
         """Tangent stiffness, shape (n_free, n_free)."""
-        return self._stiffness(self.forces(self.deformations(self.u, self.factor))[1])
+        return self._stiffness(self.u, self.forces(self.deformations(self.u, self.factor))[1])
 
     def unbalanced(self) -> float:
         """Largest force out of balance, as a share of the largest that acts, or did on the way."""
@@ -234,7 +235,7 @@ class Path:
     def _ahead(self, marks: Sequence[Mark]) -> tuple[Array, float, float, Exit | int | None]:
         """Rates of displacements and load factor, distance to what comes first, and what that is."""
         d = self.deformations(self.u, self.factor)
-        du, rise, rate, noise = self.rates(d)
+        du, rise, rate, noise = self.rates(self.u, self.factor)
         best = np.inf
         found: Exit | int | None = None
         for j, (row, share, value) in enumerate(marks):
@@ -262,10 +263,10 @@ class Path:
                     best, found = at, Exit(i, way)
         return du, rise, best, found
 
-    def rates(self, d: Array) -> tuple[Array, float, Array, Array]:
+    def rates(self, u: Array, factor: float) -> tuple[Array, float, Array, Array]:
         """Rates of displacements, load factor and deformations, and what of the last is rounding."""
-        stiffness = self.forces(d)[1]
-        du, rise = self._linear(stiffness, self._lost, 0.0 if self._lost.any() else self.sign)
+        stiffness = self.forces(self.deformations(u, factor))[1]
+        du, rise = self._linear(u, stiffness, self._lost, 0.0 if self._lost.any() else self.sign)
         rate = self.rows @ du - self.lead * rise
         return du, rise, rate, NOISE * (np.abs(self.rows) @ np.abs(du) + np.abs(self.lead * rise))
 
@@ -319,7 +320,7 @@ class Path:
     def _values(self, u: Array, factor: float, marks: Sequence[Mark]) -> list[float]:
         """What rises to zero at the marks, then at the exits of all laws; rounding counts as zero."""
         d = self.deformations(u, factor)
-        _, _, rate, noise = self.rates(d)
+        _, _, rate, noise = self.rates(u, factor)
         out = [float(row @ u) + share * factor - value for row, share, value in marks]
         for branch, di, vi, least in zip(self.branches, d.tolist(), rate.tolist(), noise.tolist()):
             for a, b, c in branch.exits:
@@ -346,7 +347,7 @@ class Path:
                 if error <= 1e-15 or 0.25 * last <= error <= 1e-11:
                     return (u, factor), self._values(u, factor, marks)
                 stiffness = self.forces(self.deformations(u, factor))[1]
-                more, up = self._linear(stiffness, -rest, 0.0)
+                more, up = self._linear(u, stiffness, -rest, 0.0)
             except Unstable:
                 return None
             last, u, factor = error, u + more, factor + up
@@ -357,17 +358,18 @@ class Path:
         force = self.forces(self.deformations(u, factor))[0]
         applied = self.applied + (factor - self.factor) * self.load
         size = np.abs(self.k) @ np.abs(u) + np.abs(self.rows.T) @ np.abs(force) + np.abs(applied)
-        return self.k @ u + self.rows.T @ force - applied, size
+        turned = self.chords.forces(u)
+        return self.k @ u + turned + self.rows.T @ force - applied, size + np.abs(turned)
 
-    def _stiffness(self, stiffness: Array) -> Array:
+    def _stiffness(self, u: Array, stiffness: Array) -> Array:
         law, i, j, product = self._outer
-        k = self.k.copy()
+        k = self.k + self.chords.stiffness(u) if self.chords else self.k.copy()
         np.add.at(k, (i, j), stiffness[law] * product)
         return k
 
-    def _linear(self, stiffness: Array, force: Array, go: float) -> tuple[Array, float]:
+    def _linear(self, u: Array, stiffness: Array, force: Array, go: float) -> tuple[Array, float]:
         """Change of displacements and load factor by a further `force`, while the control goes by `go`."""
-        k = self._stiffness(stiffness)
+        k = self._stiffness(u, stiffness)
         push = self.load + self.rows.T @ (stiffness * self.lead)
         if self.control is None:
             return solve(self.structure, k, force + go * push, push), go

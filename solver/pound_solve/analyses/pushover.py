@@ -161,7 +161,7 @@ def push(structure: Structure, state: StaticState, card: Card) -> Pushed:
     elif factor is not None:
         path.sign = math.copysign(1.0, factor)
     else:  # the load grows or falls, whichever goes to the target
-        du = path.rates(path.deformations(path.u, 0.0))[0]
+        du = path.rates(path.u, 0.0)[0]
         path.sign = math.copysign(1.0, (target - start) * float(control @ du))
     ground = Ground(structure, state.axial)
     out = Pushed(first=path.load)

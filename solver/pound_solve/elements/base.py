@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from pound_deck.model import Card, Element, Node
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve.chords import Chord
 from pound_solve.dofs import Freedom
 from pound_solve.laws import Branch, Law, State
 
@@ -127,6 +128,7 @@ class Parts:
 
     stiffness: list[Block] = field(default_factory=list)
     geometric: list[Geometric] = field(default_factory=list)
+    chords: list[Chord] = field(default_factory=list)
     damping: list[Block] = field(default_factory=list)
     mass: list[Block] = field(default_factory=list)
     loads: list[tuple[tuple[Freedom, ...], Matrix]] = field(default_factory=list)
@@ -175,7 +177,8 @@ class Site:
     self_weight : bool
         Whether member weight loads the structure.
     geometry : str
-        Kind of geometric stiffness that members give: ``SMALL`` (none), ``PDELTA`` or ``PDELTA_MEMBER``.
+        What displacements do to members: ``SMALL`` (nothing), ``PDELTA``, ``PDELTA_MEMBER`` (a geometric
+        stiffness), ``PDELTA_VARYING`` or ``LARGE`` (a chord).
     mass_along : callable
         ``mass_along(node, (nx, ny))``: translational mass [F T^2/L] of a node
         along a direction; contacts only.

@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind
+from pound_solve.chords import STRING, TURNING, Chord
 from pound_solve.dofs import Freedom
 from pound_solve.elements.base import Block, ElementError, Geometric, Output, Parts, Site, direction
 
@@ -256,9 +257,22 @@ def build(site: Site, hinged: tuple[int, ...] = (), taken: Array | None = None) 
             continue
         u_row, c0 = sign * force_rows[row], sign * float(constant[row])
         parts.outputs.append(Output(site.element.id, name, unit, freedoms, u_row, None, c0))
-    if site.geometry != "SMALL":
-        axial = 0.5 * (force_rows[3] - force_rows[0])
-        mean = 0.5 * float(constant[3] - constant[0])
+    axial = 0.5 * (force_rows[3] - force_rows[0])
+    mean = 0.5 * float(constant[3] - constant[0])
+    if site.geometry in ("PDELTA_VARYING", "LARGE"):
+        quantities = np.zeros((6, len(freedoms)))
+        quantities[0], quantities[1] = axial, -force_rows[2] - force_rows[5]
+        quantities[2:4, :6] = at_nodes[3:5] - at_nodes[:2]
+        quantities[4, 2] = quantities[5, 5] = 1.0
+        if site.geometry == "LARGE":
+            initial = _initial(p, length)
+            held = initial - k @ (flexibility @ initial)
+            held[pins] = 0.0
+            chord = _turning(p, length, forces, held)
+        else:
+            chord = (STRING, full, 0.0, 0.0, 0.5, float(forces[3, 3]), 0.0, 0.0, mean, 0.0), {}
+        parts.chords.append(Chord(site.element.id, freedoms, quantities, *chord))
+    elif site.geometry != "SMALL":
         rows: dict[str, Array] = {}
         if site.geometry == "PDELTA":
             across = np.zeros(len(freedoms))
@@ -288,14 +302,46 @@ def _loads(site: Site, length: float, phi: float, turn: Array) -> tuple[Array, A
         equivalent += w * length * shapes(xi, length, phi).T @ (turn @ uniform)
     for at, force in points:
         equivalent += shapes(at, length, phi).T @ (turn @ force)
-    at_i, at_j = -pair(p["M0"])[0], pair(p["M0"])[1]  # on the ends, anticlockwise
-    shear = (at_i + at_j) / length
-    equivalent -= (-p["N0"], shear, at_i, p["N0"], -shear, at_j)
+    equivalent -= _initial(p, length)
     for end, block, sign in ((0, p["END1"], 1.0), (3, p["END2"], -1.0)):
         arm = sign * block / 2 * turn[0]
         nodal[end : end + 2] += uniform * block
         nodal[end + 2] += (arm[0] * uniform[1] - arm[1] * uniform[0]) * block
     return equivalent, nodal
+
+
+def _initial(p: Card, length: float) -> Array:
+    """Initial forces on the beam's ends, local, shape (6,)."""
+    at_i, at_j = -pair(p["M0"])[0], pair(p["M0"])[1]  # on the ends, anticlockwise
+    shear = (at_i + at_j) / length
+    return np.array([-p["N0"], shear, at_i, p["N0"], -shear, at_j])
+
+
+def _turning(
+    p: Card, length: float, forces: Array, held: Array
+) -> tuple[tuple[float, ...], dict[str, Array]]:
+    """Parameters of a chord that turns and lengthens (see `chords`), and what it adds to the end forces.
+
+    Parameters
+    ----------
+    forces : ndarray, shape (6, 6)
+        Local end forces of the beam for unit end displacements.
+    held : ndarray, shape (6,)
+        End forces of the undisplaced beam, those of member loads apart, which keep their direction.
+    """
+    ends = [3, 2, 5]
+    d = np.array([[1.0, 0.0], [0.0, -1.0], [0.0, -1.0]])
+    own = forces[np.ix_(ends, ends)] @ d  # axial force and end moments for unit eta and rho
+    k = d.T @ own
+    pins = pinned(p)
+    # a pinned end does not turn with the member
+    lean = {2: 0.0, 5: 1.0}[pins[0]] if len(pins) == 1 else 0.5
+    n0, t0 = d.T @ held[ends]
+    parameters = (TURNING, length, p["END1"], p["END2"], lean, k[0, 0], k[0, 1], k[1, 1], n0, t0)
+    axial, at_i, at_j = (np.append(row, 0.0) for row in own)
+    shear = (at_i + at_j) / length + (0.0, 0.0, 1.0)
+    adds = {"axial I": axial, "axial J": axial, "moment I": at_i, "moment J": at_j}
+    return tuple(map(float, parameters)), adds | {"shear I": shear, "shear J": -shear}
 
 
 def _bowed(

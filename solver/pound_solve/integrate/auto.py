@@ -34,6 +34,8 @@ MARGIN = 0.6  #: of the tolerance that the next step aims at
 def why_not_exact(scene: Scene) -> str:
     """Reason why EXACT cannot solve the scene, or does not pay; empty where it does."""
     laws = scene.structure.laws
+    if scene.structure.chords:
+        return f"GEOMETRY {scene.structure.model.geometry}: the members' stiffness changes as they move"
     curved = next((s for s in laws if s.law.curved), None)
     if curved is not None:
         return f"the law {curved.rule} of element {curved.element} is curved"

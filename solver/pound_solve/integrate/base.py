@@ -323,7 +323,9 @@ def energies(scene: Scene, t: Array, u: Array, v: Array, stored: Array, lost: Ar
     ndarray, shape (n_times, 6)
         In the order of `ENERGIES` [F L].
     """
-    mass, stiffness = scene.mass, scene.stiffness
+    mass, stiffness, turning = scene.mass, scene.stiffness, np.zeros(len(t))
+    if scene.chords:
+        turning = scene.chords.survey(scene.quantities(u, scene.excitation.values(t)))[:, :, 0].sum(axis=1)
     if scene.total:  # moved supports have mass and stretch elements too
         mass, stiffness = scene.structure.mass, scene.structure.stiffness
         u = scene.expanded(u.T, scene.excitation.values(t).T).T
@@ -332,7 +334,7 @@ def energies(scene: Scene, t: Array, u: Array, v: Array, stored: Array, lost: Ar
     out = np.zeros((len(t), len(ENERGIES)))
     out[:, 0], out[:, 3], out[:, 5] = works.T
     out[:, 1] = 0.5 * (v * (v @ mass)).sum(axis=1)
-    out[:, 2] = 0.5 * (u * (u @ stiffness)).sum(axis=1) + stored.sum(axis=1)
+    out[:, 2] = 0.5 * (u * (u @ stiffness)).sum(axis=1) + stored.sum(axis=1) + turning
     out[:, 4] = lost[:, ~contact].sum(axis=1)
     out[:, 5] += lost[:, contact].sum(axis=1)
     return out

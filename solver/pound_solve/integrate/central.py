@@ -16,6 +16,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve import modes
@@ -24,13 +25,15 @@ from pound_solve.integrate.kernel import Scheme
 from pound_solve.integrate.stepping import Stepper
 from pound_solve.scene import Scene
 
+Array = NDArray[np.float64]
 
-def limit(scene: Scene) -> float:
+
+def limit(scene: Scene, u: Array) -> float:
     """Largest stable step [T]: 2 over the highest frequency with all contacts pressed
-    and all springs elastic.
+    and all springs elastic, members as they are at displacements `u`.
     """
     stiffest = [s.facts["k"] if s.is_contact else s.k0 for s in scene.structure.laws]
-    k = scene.stiffness + (scene.law_rows.T * stiffest) @ scene.law_rows
+    k = scene.stiffness + scene.chords.stiffness(u) + (scene.law_rows.T * stiffest) @ scene.law_rows
     omega = modes.solve(k, scene.mass).omega
     return 2.0 / float(omega[-1]) if len(omega) and omega[-1] > 0 else float("inf")
 
@@ -52,7 +55,7 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
             f"CENTRAL needs mass at {scene.name(int(np.argmax(light)))}: "
             "give it weight, or use EXACT or NEWMARK",
         )
-    longest = limit(scene)
+    longest = limit(scene, start.u)
     if options["DT"] > longest:
         raise Stop(
             "A502",

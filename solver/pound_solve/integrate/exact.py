@@ -401,6 +401,9 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     Stop
         Too many changes at one instant, a mechanism, numbers beyond all bounds, or an interrupt.
     """
+    if scene.structure.chords:
+        why = "members that change their stiffness as they move (GEOMETRY {}) need steps: AUTO takes them"
+        raise Stop("A505", float(start.times[0]), why.format(scene.structure.model.geometry))
     small = condense(scene)
     run = Exact(
         small.scene,

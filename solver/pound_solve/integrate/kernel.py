@@ -24,6 +24,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_solve.chords import KIND, KNN, KTT, LENGTH, STRING, push
+from pound_solve.chords import bend as bend_chord
 from pound_solve.integrate.ldl import Pattern, factor, solve, update
 from pound_solve.jit import Tables
 from pound_solve.laws import MEMORY
@@ -52,6 +54,12 @@ K, C, F0, EXIT, D0, WORK = 0, 1, 2, 3, 12, 13
 LD, LV, LD1, LV1, MOST_D, MOST_V, BETA, DASHPOT, PEAK, T_PEAK, IMPULSE, SECANT = range(14, 26)
 TURN, STIFFNESS = MEMORY, MEMORY + 1  #: columns of `Laws.memory` beside the rule's own (see `SecantLaw`)
 CODE, CURVED, CONTACT, AT, N_EXITS, SAVED = range(6)  #: columns of `Laws.i`
+# columns of `Turning.s`: quantities and forces at the start and the end of a step, quantities at the end
+# but for the acceleration there, forces at no quantities of the line that stands for the chord
+S0, S1, G0, G1, AHEAD, REST = range(0, 36, 6)
+CLEAR = 1e-12  #: share of the largest force that the chords' forces are found to
+ROUNDING = 1e-15  #: share of a chord's axial stiffness that its forces are rounded to
+SLOW = 0.05  #: part of an error that an iteration may leave before the factor is made anew
 
 
 class Matrices(NamedTuple):
@@ -113,6 +121,47 @@ class Matrices(NamedTuple):
     support_c: Array
 
 
+class Turning(NamedTuple):
+    """Members whose forces follow their displaced line (see `chords`).
+
+    Attributes
+    ----------
+    p : ndarray, shape (n_chords, 10)
+    at : ndarray, shape (n_chords + 1,)
+        Pointers into the unknowns that each touches.
+    unknown : ndarray, shape (n_touched,)
+    rows : ndarray, shape (n_touched, 6)
+        Their share in the six quantities.
+    pairs : ndarray, shape (n_chords + 1,)
+        Pointers into the pairs of unknowns.
+    pair : ndarray, shape (n_pairs, 3)
+        Position in the pattern of A, and the two touched ones.
+    inputs : ndarray, shape (n_chords, 6, n_inputs)
+    supports : ndarray, shape (n_chords, 6, n_moved)
+    s : ndarray, shape (n_chords, 36)
+        Columns as above.
+    h : ndarray, shape (2 n_chords, 36)
+        Tangents: those in the factor, those of the present.
+    product : ndarray, shape (most touched, 6)
+        Scratch.
+    most : ndarray, shape (1,)
+        Largest force so far.
+    """
+
+    p: Array
+    at: Index
+    unknown: Index
+    rows: Array
+    pairs: Index
+    pair: Index
+    inputs: Array
+    supports: Array
+    s: Array
+    h: Array
+    product: Array
+    most: Array
+
+
 class Laws(NamedTuple):
     """The laws: what they are, and the state they are in.
 
@@ -130,6 +179,7 @@ class Laws(NamedTuple):
         Columns as above.
     saved : ndarray, shape (n_laws, 5 + MEMORY)
         State at the start of a step that is not cut at events.
+    chords : Turning
     """
 
     rows: tuple[Index, Index, Array]
@@ -141,6 +191,7 @@ class Laws(NamedTuple):
     f: Array
     i: Index
     saved: Array
+    chords: Turning
 
 
 class Motion(NamedTuple):
@@ -298,6 +349,115 @@ def leave(w: Laws, f: Tables, i: int, way: int, d: float) -> None:
     enter(w, f, i)
 
 
+def locate(b: Turning, q: Array, row: int, s: Array, to: int) -> None:
+    """Quantities of the chords at row `row` of `q` and the inputs `s`."""
+    for c in range(len(b.p)):
+        for j in range(6):
+            total = 0.0
+            for y in range(b.at[c], b.at[c + 1]):
+                total += b.rows[y, j] * q[row, b.unknown[y]]
+            for i in range(len(s)):
+                total += b.inputs[c, j, i] * s[i]
+            b.s[c, to + j] = total
+
+
+def resist(b: Turning, c: int, q: Array, row: int, of: int) -> None:
+    """Take the forces of chord `c` off row `row` of `q`."""
+    for y in range(b.at[c], b.at[c + 1]):
+        total = 0.0
+        for j in range(6):
+            total += b.rows[y, j] * b.s[c, of + j]
+        q[row, b.unknown[y]] -= total
+
+
+def straight_force(b: Turning, c: int, h: int, s: int, to: int, sign: float) -> None:
+    """Add the force of the tangent in row `h` at the quantities in columns `s` to columns `to`."""
+    for i in range(6):
+        total = 0.0
+        for j in range(6):
+            total += b.h[h, 6 * i + j] * b.s[c, s + j]
+        b.s[c, to + i] += sign * total
+
+
+def stiffen(m: Matrices, b: Turning, x: Motion, c: int, h: int, factor: float, light: bool) -> None:
+    """Add `factor` times the tangent of chord `c` in row `h` to A, with `light` where massless only."""
+    first = b.at[c]
+    for y in range(first, b.at[c + 1]):
+        for i in range(6):
+            total = 0.0
+            for j in range(6):
+                total += b.h[h, 6 * i + j] * b.rows[y, j]
+            b.product[y - first, i] = factor * total
+    for y in range(b.pairs[c], b.pairs[c + 1]):
+        at = b.pair[y, 0]
+        if light and (m.heavy[m.pattern.ai[at]] or m.heavy[m.column[at]]):
+            continue
+        for j in range(6):
+            x.ax[at] += b.rows[b.pair[y, 1], j] * b.product[b.pair[y, 2] - first, j]
+
+
+def turn_start(w: Laws, x: Motion, s: Array) -> None:
+    """Quantities and forces of the chords at the start of a step."""
+    b = w.chords
+    locate(b, x.q, U, s, S0)
+    for c in range(len(b.p)):
+        push(b.p, c, b.s, S0, b.s, G0)
+
+
+def aim(w: Laws, x: Motion, s: Array) -> None:
+    """Begin the chords' iterations: a line through their forces where the step leads without its end."""
+    b = w.chords
+    locate(b, x.q, U1, s, AHEAD)
+    for c in range(len(b.p)):
+        push(b.p, c, b.s, AHEAD, b.s, REST)
+        straight_force(b, c, c, AHEAD, REST, -1.0)
+
+
+def miss(w: Laws, x: Motion, bk: float) -> float:
+    """Find the chords' forces for the accelerations tried, and their largest distance from the line,
+    over that allowed; lead the line through them.
+    """
+    b, worst = w.chords, 0.0
+    size = b.most[0]
+    for c in range(len(b.p)):
+        for j in range(6):
+            total = 0.0
+            for y in range(b.at[c], b.at[c + 1]):
+                total += b.rows[y, j] * x.q[A1, b.unknown[y]]
+            b.s[c, S1 + j] = b.s[c, AHEAD + j] + bk * total
+        push(b.p, c, b.s, S1, b.s, G1)
+        size = max(size, chord_force(b, c))
+    for c in range(len(b.p)):
+        length, knn = b.p[c, LENGTH], b.p[c, KNN]
+        allowed = CLEAR * size + ROUNDING * knn * (length + abs(b.s[c, S1 + 2]) + abs(b.s[c, S1 + 3]))
+        straight_force(b, c, c, S1, REST, 1.0)
+        for j in range(6):
+            off = abs(b.s[c, G1 + j] - b.s[c, REST + j])
+            if j == 0:
+                off *= knn
+            elif j == 1:
+                off *= b.p[c, KTT] / length
+            elif j > 3:
+                off /= length
+            worst = off / allowed if not off <= worst * allowed else worst
+            b.s[c, REST + j] = b.s[c, G1 + j]
+        straight_force(b, c, c, S1, REST, -1.0)
+    return worst
+
+
+def chord_force(b: Turning, c: int) -> float:
+    """Size of the forces of chord `c` at the end of the step."""
+    return max(
+        abs(b.s[c, S1]), abs(b.s[c, S1 + 1]) / b.p[c, LENGTH], abs(b.s[c, G1 + 2]), abs(b.s[c, G1 + 3])
+    )
+
+
+def linearise(b: Turning, s: int) -> None:
+    """Take the chords' tangents at the quantities in columns `s` for the factor to come."""
+    for c in range(len(b.p)):
+        bend_chord(b.p, c, b.s, s, b.h, c)
+
+
 def refactor(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float, at: int) -> int:
     """Factorise A for steps of length `h`; return -1 or the unknown whose pivot vanishes."""
     sm = (1.0 - scheme.alpha_m) / (1.0 - scheme.alpha_f)
@@ -309,6 +469,9 @@ def refactor(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float, at: int)
         if change != 0.0:
             for q in range(w.pairs[0][i], w.pairs[0][i + 1]):
                 x.ax[w.pairs[1][q]] += change * w.pairs[2][q]
+    if sk != 0.0:
+        for c in range(len(w.chords.p)):
+            stiffen(m, w.chords, x, c, c, sk, False)
     bad = factor(m.pattern, x.ax, x.l, at, x.q, D + at, W)
     if m.explicit:
         for i in range(x.q.shape[1]):
@@ -355,7 +518,9 @@ def attempt(
             dd += w.inputs[i, j] * s[j]
             vv += w.inputs[i, j] * rate[j]
         w.f[i, LD1], w.f[i, LV1] = dd, vv
-    any_curved = False
+    b = w.chords
+    aim(w, x, s)
+    last = np.inf
     for _ in range(50):
         for i in range(n):
             x.q[A1, i] = x.q[BASE, i]
@@ -364,6 +529,11 @@ def attempt(
             if force != 0.0:
                 for q in range(w.rows[0][i], w.rows[0][i + 1]):
                     x.q[A1, w.rows[1][q]] -= w.rows[2][q] * force
+        for c in range(len(b.p)):
+            for j in range(6):
+                b.s[c, G1 + j] = b.s[c, REST + j]
+            straight_force(b, c, c, AHEAD, G1, 1.0)
+            resist(b, c, x.q, A1, G1)
         if m.explicit:
             for i in range(n):
                 x.q[A1, i] *= x.q[D + at, i]
@@ -373,7 +543,6 @@ def attempt(
         for i in range(laws):
             if not w.i[i, CURVED]:
                 continue
-            any_curved = True
             acc = along(w.rows, i, x.q, A1)
             dd, vv = w.f[i, LD1] + bk * acc, w.f[i, LV1] + gk * acc
             c = f.curve[w.i[i, CODE]](
@@ -391,10 +560,24 @@ def attempt(
                 continue
             if refactor(m, w, x, scheme, h, at) >= 0:
                 return False
-        if worst <= 1e-12:
+        error = miss(w, x, bk)
+        if worst <= 1e-12 and error <= 1.0:
             break
+        if not error < np.inf:
+            return False
+        if error > 1.0 and error > SLOW * last:
+            linearise(b, S1)
+            for c in range(len(b.p)):
+                for j in range(6):
+                    b.s[c, REST + j] = b.s[c, G1 + j]
+                straight_force(b, c, c, S1, REST, -1.0)
+            if refactor(m, w, x, scheme, h, at) >= 0:
+                return False
+            if at != WHOLE:
+                count[UPDATES] = REFRESH + 1
+        last = error
     else:
-        return not any_curved
+        return False
     for i in range(n):
         x.q[U1, i] += bk * x.q[A1, i]
         x.q[V1, i] += gk * x.q[A1, i]
@@ -515,6 +698,9 @@ def power(m: Matrices, w: Laws, x: Motion, at: int) -> tuple[float, float]:
         for i in range(len(w.i)):
             if w.supports[i, q] != 0.0:
                 force += w.supports[i, q] * (w.f[i, K] * w.f[i, d] + w.f[i, C] * w.f[i, rate] + w.f[i, F0])
+        for c in range(len(w.chords.p)):
+            for j in range(6):
+                force += w.chords.supports[c, j, q] * w.chords.s[c, (G0 if at == 0 else G1) + j]
         put += (force + drag) * speed
         lost += 2.0 * drag * speed
         for z in range(moved):
@@ -588,6 +774,14 @@ def accept(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float) -> None:
     else:
         for i in range(n):
             work += (2.0 * x.q[P, i] + x.q[P1, i]) * x.q[V, i] + (x.q[P, i] + 2.0 * x.q[P1, i]) * x.q[V1, i]
+    b = w.chords
+    for c in range(len(b.p)):
+        if b.p[c, KIND] == STRING:  # what its axial force does on the way that a string leaves out
+            y0, y1 = b.s[c, S0 + 3], b.s[c, S1 + 3]
+            x.works[0] += 0.25 * (y0 * y0 + y1 * y1) / b.p[c, LENGTH] * (b.s[c, S1] - b.s[c, S0])
+        b.most[0] = max(b.most[0], chord_force(b, c))
+        for j in range(6):
+            b.s[c, S0 + j], b.s[c, G0 + j] = b.s[c, S1 + j], b.s[c, G1 + j]
     x.works[0] += work * h / 6.0
     x.works[1] += loss * h / 3.0
     x.works[3] += abs(x.works[0] - before)
@@ -660,6 +854,17 @@ def release(m: Matrices, w: Laws, x: Motion, h: float) -> None:
             at = w.pairs[1][q]
             if not m.heavy[m.pattern.ai[at]] and not m.heavy[m.column[at]]:
                 x.ax[at] += (c + e * k) * w.pairs[2][q]
+    b = w.chords
+    locate(b, x.q, Y, rate, AHEAD)
+    for c in range(len(b.p)):
+        present = len(b.p) + c
+        bend_chord(b.p, c, b.s, S0, b.h, present)
+        for j in range(6):
+            b.s[c, G1 + j] = b.s[c, G0 + j]
+            b.s[c, AHEAD + j] *= e
+        straight_force(b, c, present, AHEAD, G1, 1.0)
+        resist(b, c, x.q, A1, G1)
+        stiffen(m, b, x, c, present, e, True)
     for i in range(n):
         if m.heavy[i]:
             x.q[A1, i] = x.q[V, i]
@@ -677,6 +882,7 @@ def release(m: Matrices, w: Laws, x: Motion, h: float) -> None:
 
 def settle(m: Matrices, w: Laws, x: Motion, h: float) -> None:
     """Make velocities of massless unknowns and all accelerations consistent with the present branches."""
+    turn_start(w, x, x.inputs[0])
     if m.implicit and not m.inert:
         release(m, w, x, h)
     n = x.q.shape[1]
@@ -688,6 +894,8 @@ def settle(m: Matrices, w: Laws, x: Motion, h: float) -> None:
         if force != 0.0:
             for q in range(w.rows[0][i], w.rows[0][i + 1]):
                 x.q[R, w.rows[1][q]] -= w.rows[2][q] * force
+    for c in range(len(w.chords.p)):
+        resist(w.chords, c, x.q, R, G0)
     for i in range(n):
         if not m.heavy[i]:
             x.q[R, i] = 0.0  # in balance, but for rounding that the alphas would take for a load
@@ -907,6 +1115,7 @@ def whole_step(
             for i in range(len(w.i)):
                 if w.i[i, CURVED]:
                     tangent(w, f, i)
+            linearise(w.chords, S0)
             if refactor(m, w, x, scheme, piece, PIECE) >= 0:
                 return NEWTON
         law, way, tau = first_exit(w, x, piece)

@@ -117,6 +117,10 @@ class Stepper:
         for row in scene.law_rows[damps | stiff]:
             touched = np.flatnonzero(row)
             linked[np.ix_(touched, touched)] = True
+        if stiff:
+            for rows in scene.chords.rows:
+                touched = np.flatnonzero(rows.any(axis=0))
+                linked[np.ix_(touched, touched)] = True
         self.order = ldl.order(linked)
         o, grid = self.order, np.ix_(self.order, self.order)
         pattern = ldl.analyse(linked[grid])
@@ -190,6 +194,7 @@ class Stepper:
             f=np.zeros((count, 26)),
             i=np.zeros((count, 6), np.int64),
             saved=np.zeros((count, 5 + MEMORY)),
+            chords=self._turning(position if stiff else {}),
         )
         for i, (law, state) in enumerate(zip(laws, start.states)):
             w.i[i, :4] = self.rules.index(law.law.rule), law.law.curved, law.is_contact, state[0]
@@ -221,6 +226,39 @@ class Stepper:
             kernel.enter(w, self.tables, i)
             if w.i[i, kernel.CURVED]:
                 kernel.tangent(w, self.tables, i)
+        kernel.turn_start(w, x, inputs(t))
+        kernel.linearise(w.chords, kernel.S0)
+
+    def _turning(self, position: Mapping[tuple[int, int], int]) -> kernel.Turning:
+        """The members' chords; `position` of pairs of unknowns in A, none if that needs no stiffness."""
+        scene, chords = self.scene, self.scene.chords
+        whole = scene.structure.chords.rows
+        own = chords.rows[:, :, self.order]
+        touched = [np.flatnonzero(rows.any(axis=0)) for rows in own]
+        at = np.concatenate([[0], np.cumsum([len(x) for x in touched])]).astype(np.int64)
+        pairs = [
+            [
+                (position[i, j], first + a, first + b)
+                for a, i in enumerate(x)
+                for b, j in enumerate(x)
+                if (i, j) in position
+            ]
+            for first, x in zip(at.tolist(), (x.tolist() for x in touched))
+        ]
+        return kernel.Turning(
+            p=chords.p,
+            at=at,
+            unknown=np.concatenate([*touched, np.zeros(0)]).astype(np.int64),
+            rows=np.concatenate([*(rows[:, x].T for rows, x in zip(own, touched)), np.zeros((0, 6))]),
+            pairs=np.concatenate([[0], np.cumsum([len(x) for x in pairs])]).astype(np.int64),
+            pair=np.array([x for p in pairs for x in p], np.int64).reshape(-1, 3),
+            inputs=np.ascontiguousarray(scene.chord_inputs),
+            supports=np.ascontiguousarray(whole[:, :, scene.structure.n_free :]),
+            s=np.zeros((len(own), 36)),
+            h=np.zeros((2 * len(own), 36)),
+            product=np.zeros((max((len(x) for x in touched), default=1), 6)),
+            most=np.zeros(1),
+        )
 
     def _force(self, t: float) -> Array:
         """Loads on the unknowns, in the order of elimination."""
