@@ -419,6 +419,36 @@ PROPS
     assert [x.shear for x, _ in p.ladder[:3]] == pytest.approx([-11, -12, -12], rel=1e-12)
 
 
+@pytest.mark.parametrize("geometry", ["SMALL", "PDELTA"])
+def test_a_wall_rocks_over_its_corner(geometry):
+    """Weight 100, foot 2 m, height 4 m, on 20 stiff springs without tension: they open one by one, with
+    rounding all about zero, until V = 100 (1 - u) / 4 about the corner (without P-Delta 25).
+    """
+    p = pushed(
+        f"""
+GEOMETRY {geometry}
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 0 FIX=X
+ 3 0 4
+ELEMENTS
+ 1 BED 1 2
+ 2 WALL 2 3
+PROPS
+ BED MULTISPRING KX=1e8 WIDTH=2 COUNT=20 TENSION=NO
+ WALL FRAME E=2e8 A=1 I=10
+LOADS
+ 3 0 -100
+""",
+        "3 0.6 PATTERN=FORCES NODES=3 FORCES=1 STEPS=6",
+    )
+    assert sorted(c.law for _, c in p.ladder) in (list(range(19)), list(range(1, 20)))  # a corner is left
+    assert p.unbalanced < 1e-12 and p.failed is None
+    for x in p.curve[-6:]:
+        arm = 1.0 - (x.displacement if geometry == "PDELTA" else 0.0)
+        assert x.shear == pytest.approx(25 * arm, rel=1e-5)
+
+
 def test_two_buildings_meet():
     """Left (100) is pushed over its gap against right (200): base shears of each by BASE."""
     deck = """

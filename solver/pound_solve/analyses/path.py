@@ -42,7 +42,7 @@ from pound_solve.modes import deficiency, scaling
 Array = NDArray[np.float64]
 
 NOISE = 1e-12  #: share of its terms below which a rate is rounding
-JUMP = 1e-9  #: share of its terms above which a force has changed at once
+JUMP = 1e-12  #: share of its terms above which a force has changed at once
 NEAR = 1e-13  #: share of its terms below which an exit is reached
 PIECES = 20  #: Newton steps to the first mark, at least, where laws are curved
 MOST_CHANGES = 10_000
@@ -143,6 +143,10 @@ class Path:
         """Deformation of every law, shape (n_laws,)."""
         return self.rows @ u + (1.0 - factor) * self.lead
 
+    def _terms(self, u: Array) -> Array:
+        """Absolute terms that the deformations are made of; a share of them is rounding."""
+        return np.asarray(np.abs(self.rows) @ np.abs(u) + np.abs(self.lead))
+
     def forces(self, d: Array) -> tuple[Array, Array]:
         """Force and tangent stiffness of every law at deformations `d`."""
         pairs = [s.law.force(x, at)[:2] for s, x, at in zip(self.laws, self.states, d.tolist())]
@@ -192,7 +196,7 @@ class Path:
         self.states[i] = law.leave(self.states[i], exit_.way, d)
         self.branches[i] = law.branch(self.states[i])
         let_go = held - law.force(self.states[i], d)[0]
-        if abs(let_go) > JUMP * (abs(held) + abs(law.p[0] * d)):
+        if abs(let_go) > JUMP * (abs(held) + abs(law.p[0]) * float(self._terms(self.u)[i])):
             self._lost = self._lost + let_go * self.rows[i]
         self.changes += 1
         if self.changes > MOST_CHANGES:
@@ -246,8 +250,8 @@ class Path:
                     best, found = at, j
         if np.isfinite(best) and not np.isfinite(self._longest):
             self._longest = self._stride = best / PIECES
-        for i, (branch, di, vi, least) in enumerate(
-            zip(self.branches, d.tolist(), rate.tolist(), noise.tolist())
+        for i, (branch, di, vi, least, size) in enumerate(
+            zip(self.branches, d.tolist(), rate.tolist(), noise.tolist(), self._terms(self.u).tolist())
         ):
             for way, (a, b, c) in enumerate(branch.exits):
                 if a == 0.0:  # where the motion turns
@@ -258,7 +262,7 @@ class Path:
                     continue
                 else:
                     now = a * di + c
-                    at = 0.0 if now > -NEAR * (abs(a * di) + abs(c)) else -now / (a * vi)
+                    at = 0.0 if now > -NEAR * (abs(a) * size + abs(c)) else -now / (a * vi)
                 if at < best:
                     best, found = at, Exit(i, way)
         return du, rise, best, found
@@ -322,12 +326,15 @@ class Path:
         d = self.deformations(u, factor)
         _, _, rate, noise = self.rates(u, factor)
         out = [float(row @ u) + share * factor - value for row, share, value in marks]
-        for branch, di, vi, least in zip(self.branches, d.tolist(), rate.tolist(), noise.tolist()):
+        for branch, di, vi, least, size in zip(
+            self.branches, d.tolist(), rate.tolist(), noise.tolist(), self._terms(u).tolist()
+        ):
             for a, b, c in branch.exits:
-                now, size = (
-                    (b * vi, abs(b) * least) if a == 0.0 else (a * di + c, NEAR * (abs(a * di) + abs(c)))
+                turns = a == 0.0
+                now, small = (
+                    (b * vi, abs(b) * least) if turns else (a * di + c, NEAR * (abs(a) * size + abs(c)))
                 )
-                out.append(0.0 if abs(now) <= size else now)
+                out.append(0.0 if abs(now) <= small else now)
         return out
 
     def _point(
