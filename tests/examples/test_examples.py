@@ -17,7 +17,7 @@ import pytest
 
 from pound_solve.app import Request, prepare
 
-WORDS = {"deck", "table", "key", "columns", "set", "times", "rtol"}
+WORDS = {"deck", "table", "key", "columns", "set", "times", "rtol", "only"}
 MARK = re.compile(r"<!-- expected:(.*?)-->", re.DOTALL)
 
 
@@ -35,6 +35,7 @@ class Expected:
     rows: tuple[tuple[str, ...], ...]
     params: dict[str, str] = field(default_factory=dict)
     rtol: float | None = None
+    only: tuple[str, str] | None = None
 
     def __str__(self) -> str:
         return f"{self.readme.parent.name}:{self.line}-{self.deck.stem}-{self.table}"
@@ -42,6 +43,9 @@ class Expected:
     def differences(self, rows: Any) -> list[str]:
         """Every number that differs from a table of results (a structured array)."""
         out = []
+        if self.only is not None:
+            column, value = self.only
+            rows = [r for r in rows if str(r[column]) == value]
         for cells in self.rows:
             mine = [
                 r for n, r in enumerate(rows, 1) if cells[0] == str(n if self.key == "#" else r[self.key])
@@ -107,7 +111,14 @@ def read(readme: Path) -> Iterator[Expected]:
             rows,
             dict(item.partition("=")[::2] for item in words["set"].split(";")) if "set" in words else {},
             float(words["rtol"]) if "rtol" in words else None,
+            only_of(words["only"]) if "only" in words else None,
         )
+
+
+def only_of(text: str) -> tuple[str, str]:
+    """Column and value of the rows that count; _ stands for a blank."""
+    column, _, value = text.partition("=")
+    return column, value.replace("_", " ")
 
 
 def table_after(text: str) -> list[list[str]]:
@@ -229,6 +240,18 @@ def test_a_relative_tolerance(tmp_path: Path):
     assert e.differences(rows) == []
     rows["b"] = -1979.0, 7.08
     assert len(e.differences(rows)) == 2
+
+
+def test_only_some_rows_count(tmp_path: Path):
+    (e,) = page(tmp_path, PAGE.replace("key=name", "key=name only=kind=the_right_one"))
+    rows = np.array(
+        [("one", 0.001504, -2499.0, "the right one"), ("one", 7.0, 7.0, "another")]
+        + [("two", 4.4e-6, np.nan, "the right one")],
+        dtype=[("name", "O"), ("a", "f8"), ("b", "f8"), ("kind", "O")],
+    )
+    assert e.differences(rows) == []
+    rows["kind"][0] = "another"
+    assert len(e.differences(rows)) == 1
 
 
 @pytest.mark.parametrize(

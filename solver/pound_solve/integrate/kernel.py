@@ -40,6 +40,7 @@ GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST = range(8)  #: the integ
 
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 BACK = 1e-6  #: share of its largest rate that a law must move back with before it counts as turned
+NEAR = 1e-6  #: share of its largest value within which an exit is taken where it cannot be met better
 CLOSE = 1e-9  #: share of a step within which two events are at one instant
 REFRESH = 200  #: updates of rank one before a factor is made anew
 COLUMNS = 10  #: of the log: law, branches before and after, t, d, v, force; peak, its time, impulse
@@ -1160,10 +1161,11 @@ def whole_step(
             if fd == 0.0 and fc == 0.0:
                 fc = -BACK * abs(fv) * w.f[law, MOST_V]
             g = fd * w.f[law, LD1] + fv * w.f[law, LV1] + fc
-            if last or abs(g) <= STILL * (
-                abs(fd) * w.f[law, MOST_D] + abs(fv) * w.f[law, MOST_V] + abs(fc)
-            ):
+            size = abs(fd) * w.f[law, MOST_D] + abs(fv) * w.f[law, MOST_V] + abs(fc)
+            if last or abs(g) <= STILL * size:
                 at = tau
+                if abs(g) > NEAR * size:
+                    law = -1  # it was no exit: rates of massless unknowns may mislead
                 break
             low = tau
             slope = fd * w.f[law, LV1]
@@ -1179,6 +1181,8 @@ def whole_step(
             note(m, w, x, clock[0], at)
             if at > 1e-9 * h:
                 same = 0
+        if law < 0:
+            continue
         switch(m, w, x, z, f, scheme, count, clock[0], h, law, way)
         settle(m, w, x, h)
         note(m, w, x, clock[0], 0.0)
