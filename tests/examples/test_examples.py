@@ -245,8 +245,11 @@ def test_a_relative_tolerance(tmp_path: Path):
 def test_only_some_rows_count(tmp_path: Path):
     (e,) = page(tmp_path, PAGE.replace("key=name", "key=name only=kind=the_right_one"))
     rows = np.array(
-        [("one", 0.001504, -2499.0, "the right one"), ("one", 7.0, 7.0, "another")]
-        + [("two", 4.4e-6, np.nan, "the right one")],
+        [
+            ("one", 0.001504, -2499.0, "the right one"),
+            ("one", 7.0, 7.0, "another"),
+            ("two", 4.4e-6, np.nan, "the right one"),
+        ],
         dtype=[("name", "O"), ("a", "f8"), ("b", "f8"), ("kind", "O")],
     )
     assert e.differences(rows) == []

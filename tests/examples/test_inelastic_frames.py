@@ -26,7 +26,7 @@ class Frame:
         self.m = np.zeros(3 * len(at))
 
     def add(self, i: int, j: int, ea: float, ei: float, n: float = 0.0, soft: tuple[float, float] = (0, 0)):
-        """Add a member with axial force n (the string) and joints of rotation `soft` per moment at its ends."""
+        """Add a member with axial force n (the string) and joints that turn by `soft` per moment."""
         (x0, y0), (x1, y1) = self.at[i], self.at[j]
         length = np.hypot(x1 - x0, y1 - y0)
         c, s = (x1 - x0) / length, (y1 - y0) / length
@@ -145,11 +145,11 @@ def test_one_unequal_frame_does_not_know_of_the_other_without_pounding(run):
     _, close, _ = run(UNEQUAL)
     assert not apart.table("contact_summary")["closures"].any()
     assert (close.table("contact_summary")["closures"] >= 2).all()
-    # the impulse of a collision is what the reduced mass changes its speed by, at the least: the columns push too
+    # the impulse changes the speed of the reduced mass, and holds against what bends behind it
     laws = {r["contact"]: r for r in close.table("contact_laws")}
     for row in close.table("collisions"):
         change = row["approach_velocity"] + row["separation_velocity"]
-        assert row["impulse"] > 0.8 * laws[row["contact"]]["mass"] * change
+        assert row["impulse"] > laws[row["contact"]]["mass"] * change
 
 
 @pytest.mark.parametrize(

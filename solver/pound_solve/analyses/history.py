@@ -17,6 +17,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.assemble import Structure
 from pound_solve.integrate.base import ENERGIES, LawValues, Start, Watch, energies
 from pound_solve.laws import State, follow, settle
+from pound_solve.modes import massless
 from pound_solve.scene import Scene
 
 Array = NDArray[np.float64]
@@ -85,6 +86,7 @@ def begin(
     index = {f: i for i, f in enumerate(structure.freedoms.free)}
     keep = [index[f] for f in scene.freedoms]
     u0, v0 = u[keep], v[keep]
+    _lead_massless(scene, u0, u0 - u_static[keep])
     before = structure.law_rows[:, : structure.n_free] @ u_static
     after = scene.law_rows @ u0 + scene.law_inputs @ scene.excitation.value(0.0)
     rates = scene.law_rows @ v0 + scene.law_inputs @ scene.excitation.value(0.0, 1)
@@ -95,6 +97,19 @@ def begin(
         )
     )
     return Start(u0, v0, led, times)
+
+
+def _lead_massless(scene: Scene, u: Array, pushed: Array) -> None:
+    """Let massless undamped unknowns that INITIAL leaves alone follow those that it pushes,
+    on the stiffness at rest: nothing could hold them back.
+    """
+    laws = scene.structure.laws
+    idle = massless(scene.mass) & (pushed == 0.0) & ~np.any(scene.damping != 0.0, axis=1)
+    idle &= ~np.any(scene.law_rows[[s.beta != 0.0 or s.is_contact for s in laws]] != 0.0, axis=0)
+    if idle.any() and pushed.any():
+        k = scene.stiffness + (scene.law_rows.T * [s.k0 for s in laws]) @ scene.law_rows
+        away = k[np.ix_(idle, ~idle)] @ pushed[~idle]
+        u[idle] -= np.linalg.lstsq(k[np.ix_(idle, idle)], away, rcond=None)[0]
 
 
 def watch(structure: Structure, scene: Scene) -> Watch:
