@@ -26,7 +26,7 @@ from pound_solve.scene import Decision, Scene
 Array = NDArray[np.float64]
 
 MOST_UNKNOWNS = 1000  #: at 800 unknowns a run of EXACT like the paper's takes a minute
-MOST_LAWS = 60  #: more springs that yield change branch too often for EXACT to pay
+MOST_LAWS = 32  #: more springs that yield change branch too often for EXACT to pay
 MOST_STEPS = 50_000_000  #: of one run
 MARGIN = 0.6  #: of the tolerance that the next step aims at
 

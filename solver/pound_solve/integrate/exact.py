@@ -359,7 +359,7 @@ class Exact:
             ),
         ]
         if any(isinstance(f, SeriesFlow) for f in flows):
-            checks.append(("defective modes", "met", "integrated by the exponential series"))
+            checks.append(("defective modes, integrated by the exponential series", "present", "good"))
         return Outcome(self.ledger.close(), figures, tuple(self.states), checks, exact=True)
 
     def stop(self, code: str, why: str) -> Stop:
