@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve import modes
+from pound_solve.integrate.arrays import Scheme
 from pound_solve.integrate.base import Outcome, Sink, Start, Stop, Watch
-from pound_solve.integrate.kernel import Scheme
 from pound_solve.integrate.stepping import Stepper
 from pound_solve.scene import Scene
 

@@ -15,8 +15,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve.integrate.arrays import Scheme
 from pound_solve.integrate.base import Outcome, Sink, Start, Watch
-from pound_solve.integrate.kernel import Scheme
 from pound_solve.integrate.stepping import COMMON, Stepper
 from pound_solve.scene import Scene
 

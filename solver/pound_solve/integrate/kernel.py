@@ -19,444 +19,123 @@ Everything here works on arrays in the order of elimination (see `ldl`); `jit` c
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.chords import KIND, KNN, KTT, LENGTH, STRING, push
+from pound_solve.chords import KIND, LENGTH, STRING
 from pound_solve.chords import bend as bend_chord
-from pound_solve.integrate.ldl import Pattern, factor, solve, update
+from pound_solve.integrate.arrays import (
+    A1,
+    AHEAD,
+    AT,
+    BACK,
+    BASE,
+    CA,
+    CA1,
+    CHATTER,
+    CLOSE,
+    CODE,
+    CONTACT,
+    CURVED,
+    CV,
+    D0,
+    DASHPOT,
+    DONE,
+    EVENTS,
+    EXIT,
+    F0,
+    FULL,
+    G0,
+    G1,
+    GOAL,
+    HIGH,
+    IMPULSE,
+    KEPT,
+    LD,
+    LD1,
+    LOGGED,
+    LOW,
+    LV,
+    LV1,
+    MASS,
+    MOST_D,
+    MOST_V,
+    NEAR,
+    NEWTON,
+    P1,
+    PEAK,
+    PIECE,
+    PIVOT,
+    REFRESH,
+    REST,
+    RUNAWAY,
+    S0,
+    S1,
+    SAVED,
+    SLOPE,
+    SLOW,
+    STEP,
+    STEPS,
+    STILL,
+    T_HIGH,
+    T_LOW,
+    T_PEAK,
+    U1,
+    UPDATES,
+    V1,
+    VALUE,
+    WHOLE,
+    WORST,
+    A,
+    C,
+    D,
+    K,
+    Laws,
+    Matrices,
+    Motion,
+    P,
+    R,
+    Samples,
+    Scheme,
+    U,
+    V,
+    W,
+    Y,
+)
+from pound_solve.integrate.exits import first_exit, summit
+from pound_solve.integrate.ldl import factor, solve, update
+from pound_solve.integrate.states import (
+    along,
+    bend,
+    follows,
+    law_force,
+    law_work,
+    leave,
+    load,
+    memory,
+    motions,
+    next_exit,
+    parameters,
+    restore,
+    save,
+    tangent,
+    times,
+)
+from pound_solve.integrate.turning import (
+    aim,
+    chord_force,
+    linearise,
+    locate,
+    miss,
+    resist,
+    stiffen,
+    straight_force,
+    turn_start,
+)
 from pound_solve.jit import Tables
-from pound_solve.laws import MEMORY
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
-
-# why `advance` came back
-DONE, FULL, RUNAWAY, CHATTER, PIVOT, NEWTON, STEP_TOO_LONG = range(7)
-
-GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST = range(8)  #: the integers of `count`
-
-STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
-BACK = 1e-6  #: share of its largest rate that a law must move back with before it counts as turned
-NEAR = 1e-6  #: share of its largest value within which an exit is taken where it cannot be met better
-CLOSE = 1e-9  #: share of a step within which two events are at one instant
-REFRESH = 200  #: updates of rank one before a factor is made anew
-COLUMNS = 10  #: of the log: law, branches before and after, t, d, v, force; peak, its time, impulse
-
-
-# rows of `Motion.q`: at the start (0) and the end (1) of a step; loads; residual; scratch; pivots
-U, V, A, U1, V1, A1, CV, CA, CA1, P, P1, R, BASE, Y, W, D = range(16)
-HIGH, T_HIGH, LOW, T_LOW, SLOPE, VALUE = range(6)  #: rows of `Motion.peak`
-WHOLE, PIECE, MASS = range(3)  #: rows of `Motion.l`, and of its pivots
-# columns of `Laws.f`: the linear piece, exits; entry of the state; motion; dashpot; what a contact counts
-K, C, F0, EXIT, D0, WORK = 0, 1, 2, 3, 12, 13
-LD, LV, LD1, LV1, MOST_D, MOST_V, BETA, DASHPOT, PEAK, T_PEAK, IMPULSE, SECANT = range(14, 26)
-TURN, STIFFNESS = MEMORY, MEMORY + 1  #: columns of `Laws.memory` beside the rule's own (see `SecantLaw`)
-CODE, CURVED, CONTACT, AT, N_EXITS, SAVED = range(6)  #: columns of `Laws.i`
-# columns of `Turning.s`: quantities and forces at the start and the end of a step, quantities at the end
-# but for the acceleration there, forces at no quantities of the line that stands for the chord
-S0, S1, G0, G1, AHEAD, REST = range(0, 36, 6)
-CLEAR = 1e-12  #: share of the largest force that the chords' forces are found to
-ROUNDING = 1e-15  #: share of a chord's axial stiffness that its forces are rounded to
-SLOW = 0.05  #: part of an error that an iteration may leave before the factor is made anew
-
-
-class Matrices(NamedTuple):
-    """The linear part, constant through a run; sparse rows as (pointers, columns, values).
-
-    Attributes
-    ----------
-    k, c, m : tuples of ndarray
-        Stiffness, damping and mass.
-    inputs : ndarray, shape (n, n_inputs)
-    pushed : ndarray, shape (n, n_inputs)
-        The part of `inputs` that is forces on nodes.
-    constant : ndarray, shape (n,)
-    pattern : Pattern
-    a : ndarray, shape (3, n_entries)
-        M, C and K on the pattern.
-    column : ndarray, shape (n_entries,)
-        Columns of the pattern's entries.
-    heavy : ndarray, shape (n,)
-        Which unknowns have mass.
-    inert : bool
-        Whether all have.
-    implicit : bool
-        Whether the stiffness is in the pattern.
-    diagonal : bool
-        Whether M is.
-    explicit : bool
-        Whether a step needs no factor: M + gamma h C is diagonal and never changes.
-    rows : tuple of ndarray
-        Quantities whose peaks are kept, over the unknowns.
-    row_inputs : ndarray, shape (n_rows, n_inputs)
-    row_constants : ndarray, shape (n_rows,)
-    reactions : ndarray, shape (3, n_moved, n)
-        Of moved supports from displacements, velocities, accelerations; empty with one motion for the base.
-    supports : ndarray, shape (2, n_moved, n_inputs)
-        Reactions from the inputs, and the supports' velocities.
-    support_c : ndarray, shape (n_moved, n_moved)
-    """
-
-    k: tuple[Index, Index, Array]
-    c: tuple[Index, Index, Array]
-    m: tuple[Index, Index, Array]
-    inputs: Array
-    pushed: Array
-    constant: Array
-    pattern: Pattern
-    a: Array
-    column: Index
-    heavy: NDArray[np.bool_]
-    inert: bool
-    implicit: bool
-    diagonal: bool
-    explicit: bool
-    rows: tuple[Index, Index, Array]
-    row_inputs: Array
-    row_constants: Array
-    reactions: Array
-    supports: Array
-    support_c: Array
-
-
-class Turning(NamedTuple):
-    """Members whose forces follow their displaced line (see `chords`).
-
-    Attributes
-    ----------
-    p : ndarray, shape (n_chords, 10)
-    at : ndarray, shape (n_chords + 1,)
-        Pointers into the unknowns that each touches.
-    unknown : ndarray, shape (n_touched,)
-    rows : ndarray, shape (n_touched, 6)
-        Their share in the six quantities.
-    pairs : ndarray, shape (n_chords + 1,)
-        Pointers into the pairs of unknowns.
-    pair : ndarray, shape (n_pairs, 3)
-        Position in the pattern of A, and the two touched ones.
-    inputs : ndarray, shape (n_chords, 6, n_inputs)
-    supports : ndarray, shape (n_chords, 6, n_moved)
-    s : ndarray, shape (n_chords, 36)
-        Columns as above.
-    h : ndarray, shape (2 n_chords, 36)
-        Tangents: those in the factor, those of the present.
-    product : ndarray, shape (most touched, 6)
-        Scratch.
-    most : ndarray, shape (1,)
-        Largest force so far.
-    """
-
-    p: Array
-    at: Index
-    unknown: Index
-    rows: Array
-    pairs: Index
-    pair: Index
-    inputs: Array
-    supports: Array
-    s: Array
-    h: Array
-    product: Array
-    most: Array
-
-
-class Laws(NamedTuple):
-    """The laws: what they are, and the state they are in.
-
-    Attributes
-    ----------
-    rows : tuple of ndarray
-        Their deformations over the unknowns.
-    inputs : ndarray, shape (n_laws, n_inputs)
-    pairs : tuple of ndarray
-        Where each law's ``b b^T`` adds to A: pointers, positions in its pattern, products.
-    supports : ndarray, shape (n_laws, n_moved)
-    p : ndarray, shape (n_laws, PARAMETERS)
-    memory : ndarray, shape (n_laws, MEMORY + 2)
-    f, i : ndarray, shapes (n_laws, 26), (n_laws, 6)
-        Columns as above.
-    saved : ndarray, shape (n_laws, 5 + MEMORY)
-        State at the start of a step that is not cut at events.
-    chords : Turning
-    """
-
-    rows: tuple[Index, Index, Array]
-    inputs: Array
-    pairs: tuple[Index, Index, Array]
-    supports: Array
-    p: Array
-    memory: Array
-    f: Array
-    i: Index
-    saved: Array
-    chords: Turning
-
-
-class Motion(NamedTuple):
-    """The motion, and scratch space.
-
-    Attributes
-    ----------
-    q : ndarray, shape (18, n)
-        Rows as above; `W` is zero between uses.
-    l : ndarray, shape (3, n_entries of L)
-        Factors for the nominal step, for a piece of one, and of M (with ones for massless unknowns).
-    ax : ndarray
-        Values of A.
-    peak : ndarray, shape (6, n_rows + 2 n_laws)
-        Of the rows, the deformations and the forces.
-    works : ndarray, shape (4,)
-        Work put in; lost in the structure's, in the contacts' dashpots; sum of all \\|input\\|.
-    inputs : ndarray, shape (4, n_inputs)
-        The motions and their rates, at the start and at the end of a step.
-    """
-
-    q: Array
-    l: Array  # noqa: E741
-    ax: Array
-    peak: Array
-    works: Array
-    inputs: Array
-
-
-class Samples(NamedTuple):
-    """What is kept until Python fetches it.
-
-    Attributes
-    ----------
-    motion : ndarray, shape (n_samples, 3, n)
-    laws : ndarray, shape (n_samples, 3, n_laws)
-        Forces, recoverable and lost energies.
-    works : ndarray, shape (n_samples, 4)
-        Time, and the first three works.
-    log : ndarray, shape (n_log, COLUMNS)
-    """
-
-    motion: Array
-    laws: Array
-    works: Array
-    log: Array
-
-
-class Scheme(NamedTuple):
-    """Parameters of the method, and whether events are located."""
-
-    beta: float
-    gamma: float
-    alpha_m: float = 0.0
-    alpha_f: float = 0.0
-    locate: bool = True
-
-
-def parameters(p: Array, i: int) -> tuple[float, ...]:
-    """Row of parameters as a tuple."""
-    return (
-        p[i, 0], p[i, 1], p[i, 2], p[i, 3], p[i, 4], p[i, 5], p[i, 6], p[i, 7], p[i, 8], p[i, 9],
-        p[i, 10], p[i, 11], p[i, 12], p[i, 13], p[i, 14], p[i, 15], p[i, 16], p[i, 17], p[i, 18], p[i, 19],
-    )  # fmt: skip
-
-
-def memory(m: Array, i: int) -> tuple[float, ...]:
-    """Row of a memory as a tuple."""
-    return (
-        m[i, 0], m[i, 1], m[i, 2], m[i, 3], m[i, 4], m[i, 5], m[i, 6], m[i, 7],
-        m[i, 8], m[i, 9], m[i, 10], m[i, 11], m[i, 12], m[i, 13], m[i, 14], m[i, 15],
-    )  # fmt: skip
-
-
-def motions(coefs: Array, s: float, out: Array, at: int) -> None:
-    """Inputs and their rates at the local time `s` of a piece, into rows `at` and `at + 1`."""
-    top, n = coefs.shape
-    for j in range(n):
-        value, rate = coefs[top - 1, j], 0.0
-        for k in range(top - 2, -1, -1):
-            rate = rate * s + value
-            value = value * s + coefs[k, j]
-        out[at, j], out[at + 1, j] = value, rate
-
-
-def load(m: Matrices, s: Array, q: Array, out: int) -> None:
-    """Loads for the inputs `s`, into row `out`."""
-    for i in range(q.shape[1]):
-        total = m.constant[i]
-        for j in range(len(s)):
-            total += m.inputs[i, j] * s[j]
-        q[out, i] = total
-
-
-def times(a: tuple[Index, Index, Array], q: Array, x: int, out: int) -> None:
-    """Product of sparse rows with row `x` of `q`, into row `out`."""
-    for i in range(q.shape[1]):
-        total = 0.0
-        for j in range(a[0][i], a[0][i + 1]):
-            total += a[2][j] * q[x, a[1][j]]
-        q[out, i] = total
-
-
-def along(a: tuple[Index, Index, Array], i: int, q: Array, x: int) -> float:
-    """One sparse row times row `x` of `q`."""
-    total = 0.0
-    for j in range(a[0][i], a[0][i + 1]):
-        total += a[2][j] * q[x, a[1][j]]
-    return total
-
-
-def follows(w: Laws, i: int, k: float) -> float:
-    """Dashpot that follows law `i`, whose tangent stiffness is `k`."""
-    return w.f[i, BETA] * max(k, 0.0) + w.f[i, SECANT] * w.memory[i, STIFFNESS]
-
-
-def enter(w: Laws, f: Tables, i: int) -> None:
-    """Take over the branch that law `i` is on."""
-    b = f.branch[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i))
-    w.f[i, K], w.f[i, C], w.f[i, F0] = b[0], b[1] + follows(w, i, b[0]), b[2]
-    count = 0
-    for e in range(3):
-        x, y, z = b[3 + 3 * e], b[4 + 3 * e], b[5 + 3 * e]
-        w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2] = x, y, z
-        if x != 0.0 or y != 0.0:
-            count = e + 1
-    w.i[i, N_EXITS] = count
-
-
-def law_work(w: Laws, f: Tables, i: int, d: float) -> float:
-    """Work done on law `i` so far, dashpots apart."""
-    if w.i[i, CURVED]:
-        c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, 0.0)
-        return w.f[i, WORK] + c[3]
-    return w.f[i, WORK] + (0.5 * w.f[i, K] * (d + w.f[i, D0]) + w.f[i, F0]) * (d - w.f[i, D0])
-
-
-def law_force(w: Laws, f: Tables, i: int, d: float, v: float) -> float:
-    """Force of law `i`."""
-    if w.i[i, CURVED]:
-        c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, v)
-        return c[0] + follows(w, i, c[1]) * v
-    return w.f[i, K] * d + w.f[i, C] * v + w.f[i, F0]
-
-
-def leave(w: Laws, f: Tables, i: int, way: int, d: float) -> None:
-    """Change the branch of law `i`."""
-    done = law_work(w, f, i, d)
-    if w.f[i, EXIT + 3 * way] == 0.0 and w.f[i, EXIT + 3 * way + 2] == 0.0 and abs(d) > w.memory[i, TURN]:
-        w.memory[i, TURN], w.memory[i, STIFFNESS] = abs(d), max(law_force(w, f, i, d, 0.0) / d, 0.0)
-    at, m = f.leave[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), way, d)
-    w.i[i, AT], w.f[i, D0], w.f[i, WORK] = at, d, done
-    for j in range(len(m)):
-        w.memory[i, j] = m[j]
-    enter(w, f, i)
-
-
-def locate(b: Turning, q: Array, row: int, s: Array, to: int) -> None:
-    """Quantities of the chords at row `row` of `q` and the inputs `s`."""
-    for c in range(len(b.p)):
-        for j in range(6):
-            total = 0.0
-            for y in range(b.at[c], b.at[c + 1]):
-                total += b.rows[y, j] * q[row, b.unknown[y]]
-            for i in range(len(s)):
-                total += b.inputs[c, j, i] * s[i]
-            b.s[c, to + j] = total
-
-
-def resist(b: Turning, c: int, q: Array, row: int, of: int) -> None:
-    """Take the forces of chord `c` off row `row` of `q`."""
-    for y in range(b.at[c], b.at[c + 1]):
-        total = 0.0
-        for j in range(6):
-            total += b.rows[y, j] * b.s[c, of + j]
-        q[row, b.unknown[y]] -= total
-
-
-def straight_force(b: Turning, c: int, h: int, s: int, to: int, sign: float) -> None:
-    """Add the force of the tangent in row `h` at the quantities in columns `s` to columns `to`."""
-    for i in range(6):
-        total = 0.0
-        for j in range(6):
-            total += b.h[h, 6 * i + j] * b.s[c, s + j]
-        b.s[c, to + i] += sign * total
-
-
-def stiffen(m: Matrices, b: Turning, x: Motion, c: int, h: int, factor: float, light: bool) -> None:
-    """Add `factor` times the tangent of chord `c` in row `h` to A, with `light` where massless only."""
-    first = b.at[c]
-    for y in range(first, b.at[c + 1]):
-        for i in range(6):
-            total = 0.0
-            for j in range(6):
-                total += b.h[h, 6 * i + j] * b.rows[y, j]
-            b.product[y - first, i] = factor * total
-    for y in range(b.pairs[c], b.pairs[c + 1]):
-        at = b.pair[y, 0]
-        if light and (m.heavy[m.pattern.ai[at]] or m.heavy[m.column[at]]):
-            continue
-        for j in range(6):
-            x.ax[at] += b.rows[b.pair[y, 1], j] * b.product[b.pair[y, 2] - first, j]
-
-
-def turn_start(w: Laws, x: Motion, s: Array) -> None:
-    """Quantities and forces of the chords at the start of a step."""
-    b = w.chords
-    locate(b, x.q, U, s, S0)
-    for c in range(len(b.p)):
-        push(b.p, c, b.s, S0, b.s, G0)
-
-
-def aim(w: Laws, x: Motion, s: Array) -> None:
-    """Begin the chords' iterations: a line through their forces where the step leads without its end."""
-    b = w.chords
-    locate(b, x.q, U1, s, AHEAD)
-    for c in range(len(b.p)):
-        push(b.p, c, b.s, AHEAD, b.s, REST)
-        straight_force(b, c, c, AHEAD, REST, -1.0)
-
-
-def miss(w: Laws, x: Motion, bk: float) -> float:
-    """Find the chords' forces for the accelerations tried, and their largest distance from the line,
-    over that allowed; lead the line through them.
-    """
-    b, worst = w.chords, 0.0
-    size = b.most[0]
-    for c in range(len(b.p)):
-        for j in range(6):
-            total = 0.0
-            for y in range(b.at[c], b.at[c + 1]):
-                total += b.rows[y, j] * x.q[A1, b.unknown[y]]
-            b.s[c, S1 + j] = b.s[c, AHEAD + j] + bk * total
-        push(b.p, c, b.s, S1, b.s, G1)
-        size = max(size, chord_force(b, c))
-    for c in range(len(b.p)):
-        length, knn = b.p[c, LENGTH], b.p[c, KNN]
-        allowed = CLEAR * size + ROUNDING * knn * (length + abs(b.s[c, S1 + 2]) + abs(b.s[c, S1 + 3]))
-        straight_force(b, c, c, S1, REST, 1.0)
-        for j in range(6):
-            off = abs(b.s[c, G1 + j] - b.s[c, REST + j])
-            if j == 0:
-                off *= knn
-            elif j == 1:
-                off *= b.p[c, KTT] / length
-            elif j > 3:
-                off /= length
-            worst = off / allowed if not off <= worst * allowed else worst
-            b.s[c, REST + j] = b.s[c, G1 + j]
-        straight_force(b, c, c, S1, REST, -1.0)
-    return worst
-
-
-def chord_force(b: Turning, c: int) -> float:
-    """Size of the forces of chord `c` at the end of the step."""
-    return max(
-        abs(b.s[c, S1]), abs(b.s[c, S1 + 1]) / b.p[c, LENGTH], abs(b.s[c, G1 + 2]), abs(b.s[c, G1 + 3])
-    )
-
-
-def linearise(b: Turning, s: int) -> None:
-    """Take the chords' tangents at the quantities in columns `s` for the factor to come."""
-    for c in range(len(b.p)):
-        bend_chord(b.p, c, b.s, s, b.h, c)
 
 
 def refactor(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float, at: int) -> int:
@@ -587,95 +266,6 @@ def attempt(
         w.f[i, LD1] += bk * acc
         w.f[i, LV1] += gk * acc
     return True
-
-
-def first_exit(w: Laws, x: Motion, h: float) -> tuple[int, int, float]:
-    """The first exit that is passed in the step of length `h` that was tried.
-
-    Returns
-    -------
-    law, exit, time : int, int, float
-        Law -1 where there is none; the time is that of the cubic through values and slopes at both ends.
-    """
-    best, best_law, best_exit = np.inf, -1, -1
-    for i in range(len(w.i)):
-        d, v, d1, v1 = w.f[i, LD], w.f[i, LV], w.f[i, LD1], w.f[i, LV1]
-        for e in range(w.i[i, N_EXITS]):
-            fd, fv, fc = w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2]
-            if fd == 0.0 and fv == 0.0:
-                continue
-            if fd == 0.0 and fc == 0.0:  # what hardly moves would turn again and again
-                fc = -BACK * abs(fv) * w.f[i, MOST_V]
-            g1 = fd * d1 + fv * v1 + fc
-            size = abs(fd) * w.f[i, MOST_D] + abs(fv) * w.f[i, MOST_V] + abs(fc)
-            tol = STILL * max(size, abs(g1))
-            s0, s1 = fd * v, fd * v1
-            if g1 <= tol and not (s0 > 0.0 and s1 < 0.0):
-                continue
-            if fv != 0.0:
-                s0 += fv * along(w.rows, i, x.q, A)
-                s1 += fv * along(w.rows, i, x.q, A1)
-            g0 = min(fd * d + fv * v + fc, 0.0)  # a branch holds when it is entered
-            if g1 > tol:
-                at = root(g0, g1, s0, s1, h)
-            else:
-                at, top = summit(g0, g1, s0, s1, h)
-                if top <= tol:
-                    continue
-                at = root(g0, top, s0, 0.0, at)
-            if at < best:
-                best, best_law, best_exit = at, i, e
-    return best_law, best_exit, best
-
-
-def summit(g0: float, g1: float, s0: float, s1: float, h: float) -> tuple[float, float]:
-    """Place and value of the maximum of a cubic that rises at 0 and falls at `h`."""
-    a = 2.0 * (g0 - g1) / h**3 + (s0 + s1) / h**2
-    b = 3.0 * (g1 - g0) / h**2 - (2.0 * s0 + s1) / h
-    q = b * b - 3.0 * a * s0
-    at = -1.0
-    if q >= 0.0:
-        # of the two forms of the root the one without cancellation
-        if b < 0.0:
-            at = s0 / (np.sqrt(q) - b)
-        elif a != 0.0:
-            at = -(b + np.sqrt(q)) / (3.0 * a)
-    if 0.0 <= at <= h:
-        return at, ((a * at + b) * at + s0) * at + g0
-    return (0.0, g0) if g0 > g1 else (h, g1)
-
-
-def root(g0: float, g1: float, s0: float, s1: float, h: float) -> float:
-    """First place where a cubic that is not above zero at 0 and above it at `h` rises through zero."""
-    if g0 >= 0.0 and s0 > 0.0:
-        return 0.0
-    a = 2.0 * (g0 - g1) / h**3 + (s0 + s1) / h**2
-    b = 3.0 * (g1 - g0) / h**2 - (2.0 * s0 + s1) / h
-    low, high = 0.0, h
-    if g0 >= 0.0:  # it falls from zero first
-        at = h
-        for _ in range(60):
-            at *= 0.5
-            if ((a * at + b) * at + s0) * at + g0 < 0.0:
-                low = at
-                break
-    at = 0.5 * (low + high)
-    if g0 < 0.0:
-        at = h * g0 / (g0 - g1)
-    for _ in range(60):
-        g = ((a * at + b) * at + s0) * at + g0
-        if g > 0.0:
-            high = at
-        else:
-            low = at
-        s = (3.0 * a * at + 2.0 * b) * at + s0
-        new = at - g / s if s > 0.0 else -1.0
-        if not low < new < high:
-            new = 0.5 * (low + high)
-        if abs(new - at) <= 1e-15 * h:
-            break
-        at = new
-    return at
 
 
 def power(m: Matrices, w: Laws, x: Motion, at: int) -> tuple[float, float]:
@@ -947,19 +537,6 @@ def write(w: Laws, z: Samples, count: Index, i: int, before: int, t: float, forc
         w.f[i, PEAK], w.f[i, T_PEAK], w.f[i, IMPULSE] = force, t, 0.0
 
 
-def tangent(w: Laws, f: Tables, i: int) -> None:
-    """Linearise a curved law where it is."""
-    bend(w, f, i, w.f[i, LD], w.f[i, LV])
-
-
-def bend(w: Laws, f: Tables, i: int, d: float, v: float) -> None:
-    """Linearise a curved law at deformation `d` and rate `v`."""
-    c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, v)
-    k, own = c[1], follows(w, i, c[1])
-    w.f[i, K], w.f[i, C] = k, c[2] + own
-    w.f[i, F0] = c[0] - k * d - c[2] * v
-
-
 def sample(w: Laws, x: Motion, z: Samples, f: Tables, count: Index, t: float) -> None:
     """Keep the motion, the laws' forces and energies."""
     at = count[KEPT]
@@ -979,48 +556,6 @@ def sample(w: Laws, x: Motion, z: Samples, f: Tables, count: Index, t: float) ->
     for i in range(3):
         z.works[at, 1 + i] = x.works[i]
     count[KEPT] += 1
-
-
-def save(w: Laws, i: int) -> None:
-    """Keep the state of law `i`."""
-    w.i[i, SAVED] = 1
-    w.saved[i, 0], w.saved[i, 1], w.saved[i, 2] = w.i[i, AT], w.f[i, D0], w.f[i, WORK]
-    for j in range(w.memory.shape[1]):
-        w.saved[i, 3 + j] = w.memory[i, j]
-
-
-def restore(w: Laws, f: Tables, i: int) -> None:
-    """Put law `i` back into the state that was kept."""
-    w.i[i, AT], w.f[i, D0], w.f[i, WORK] = int(w.saved[i, 0]), w.saved[i, 1], w.saved[i, 2]
-    for j in range(w.memory.shape[1]):
-        w.memory[i, j] = w.saved[i, 3 + j]
-    enter(w, f, i)
-
-
-def next_exit(w: Laws, i: int, at: float, to: float, rate: float) -> tuple[int, float]:
-    """First exit on the straight path from `at` to `to` with the rate at its end, and where
-    (see `laws.follow`); -1 where there is none.
-    """
-    way = 1.0 if to >= at else -1.0
-    best, where = -1, 0.0
-    for e in range(w.i[i, N_EXITS]):
-        a, b, c = w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2]
-        if a != 0.0:
-            c += b * rate
-        now, slope = a * at + c, a * way
-        if b != 0.0 and a == 0.0 and c == 0.0:
-            if b * way <= 0.0 or to == at:
-                continue
-            place = at
-        elif now >= 0.0 and (slope > 0.0 or (slope == 0.0 and now > 0.0)):
-            place = at
-        elif slope > 0.0 and a * to + c > 0.0:
-            place = at - now / slope * way
-        else:
-            continue
-        if best < 0 or (place - where) * way < 0.0:
-            best, where = e, place
-    return best, where
 
 
 def uncut_step(

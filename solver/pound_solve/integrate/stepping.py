@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from pound_deck.schema import Field, Kind
 from pound_solve import jit
 from pound_solve.hysteresis import bilinear
-from pound_solve.integrate import kernel, ldl
+from pound_solve.integrate import arrays, kernel, ldl, states, turning
 from pound_solve.integrate.base import (
     INTERRUPTED,
     RUNAWAY,
@@ -91,7 +91,7 @@ class Stepper:
         watch: Watch,
         sink: Sink,
         options: Mapping[str, Any],
-        scheme: kernel.Scheme,
+        scheme: arrays.Scheme,
         name: str,
     ) -> None:
         self.scene, self.watch, self.sink = scene, watch, sink
@@ -134,7 +134,7 @@ class Stepper:
         nf = s.n_free
         rate_of, bend_of = np.zeros_like(moved), np.zeros_like(moved)
         rate_of[:, 1:], bend_of[:, 2:] = moved[:, :-1], moved[:, :-2]
-        self.matrices = kernel.Matrices(
+        self.matrices = arrays.Matrices(
             k=sparse(stiffness),
             c=sparse(damping),
             m=sparse(mass),
@@ -180,7 +180,7 @@ class Stepper:
         t, inputs = float(start.times[0]), scene.excitation.value
         d = scene.law_rows @ start.u + scene.law_inputs @ inputs(t)
         v = scene.law_rows @ start.v + scene.law_inputs @ inputs(t, 1)
-        self.w = w = kernel.Laws(
+        self.w = w = arrays.Laws(
             rows=rows,
             inputs=np.ascontiguousarray(scene.law_inputs),
             pairs=(
@@ -198,11 +198,11 @@ class Stepper:
         )
         for i, (law, state) in enumerate(zip(laws, start.states)):
             w.i[i, :4] = self.rules.index(law.law.rule), law.law.curved, law.is_contact, state[0]
-            w.f[i, [kernel.D0, kernel.WORK, kernel.BETA]] = state[1], state[2], law.beta
-            w.f[i, [kernel.LD, kernel.LV]] = d[i], v[i]
-            w.f[i, kernel.SECANT], w.memory[i, : len(state[3])] = law.secant, state[3]
-            w.f[i, [kernel.MOST_D, kernel.MOST_V]] = abs(d[i]), abs(v[i])
-        self.x = x = kernel.Motion(
+            w.f[i, [arrays.D0, arrays.WORK, arrays.BETA]] = state[1], state[2], law.beta
+            w.f[i, [arrays.LD, arrays.LV]] = d[i], v[i]
+            w.f[i, arrays.SECANT], w.memory[i, : len(state[3])] = law.secant, state[3]
+            w.f[i, [arrays.MOST_D, arrays.MOST_V]] = abs(d[i]), abs(v[i])
+        self.x = x = arrays.Motion(
             np.zeros((18, n)),
             np.zeros((3, len(pattern.li))),
             np.zeros(len(columns)),
@@ -210,26 +210,26 @@ class Stepper:
             np.zeros(4),
             np.zeros((4, scene.inputs.shape[1])),
         )
-        x.q[kernel.U], x.q[kernel.V] = start.u[o], start.v[o]
-        x.q[kernel.CV] = damping @ start.v[o]
+        x.q[arrays.U], x.q[arrays.V] = start.u[o], start.v[o]
+        x.q[arrays.CV] = damping @ start.v[o]
         x.works[:3] = start.works
-        x.peak[kernel.HIGH], x.peak[kernel.LOW] = -np.inf, np.inf
+        x.peak[arrays.HIGH], x.peak[arrays.LOW] = -np.inf, np.inf
         padded = np.where((pattern.ai == columns) & ~heavy[columns], 1.0, on_pattern[0])
-        ldl.factor(pattern, padded, x.l, kernel.MASS, x.q, kernel.D + kernel.MASS, kernel.W)
-        self.z = kernel.Samples(
+        ldl.factor(pattern, padded, x.l, arrays.MASS, x.q, arrays.D + arrays.MASS, arrays.W)
+        self.z = arrays.Samples(
             np.zeros((SAMPLES, 3, n)),
             np.zeros((SAMPLES, 3, count)),
             np.zeros((SAMPLES, 4)),
-            np.zeros((LOG + 16 * count, kernel.COLUMNS)),
+            np.zeros((LOG + 16 * count, arrays.COLUMNS)),
         )
         for i in range(count):
-            kernel.enter(w, self.tables, i)
-            if w.i[i, kernel.CURVED]:
-                kernel.tangent(w, self.tables, i)
-        kernel.turn_start(w, x, inputs(t))
-        kernel.linearise(w.chords, kernel.S0)
+            states.enter(w, self.tables, i)
+            if w.i[i, arrays.CURVED]:
+                states.tangent(w, self.tables, i)
+        turning.turn_start(w, x, inputs(t))
+        turning.linearise(w.chords, arrays.S0)
 
-    def _turning(self, position: Mapping[tuple[int, int], int]) -> kernel.Turning:
+    def _turning(self, position: Mapping[tuple[int, int], int]) -> arrays.Turning:
         """The members' chords; `position` of pairs of unknowns in A, none if that needs no stiffness."""
         scene, chords = self.scene, self.scene.chords
         whole = scene.structure.chords.rows
@@ -245,7 +245,7 @@ class Stepper:
             ]
             for first, x in zip(at.tolist(), (x.tolist() for x in touched))
         ]
-        return kernel.Turning(
+        return arrays.Turning(
             p=chords.p,
             at=at,
             unknown=np.concatenate([*touched, np.zeros(0)]).astype(np.int64),
@@ -282,12 +282,12 @@ class Stepper:
         m, w, x, z, scene = self.matrices, self.w, self.x, self.z, self.scene
         t0 = float(self.times[0])
         for i, s in enumerate(self.laws):
-            if s.is_contact and s.law.rule.branches[w.i[i, kernel.AT]] == "pressed":
-                d, v = w.f[i, [kernel.LD, kernel.LV]].tolist()
-                force = kernel.law_force(w, self.tables, i, d, v)
+            if s.is_contact and s.law.rule.branches[w.i[i, arrays.AT]] == "pressed":
+                d, v = w.f[i, [arrays.LD, arrays.LV]].tolist()
+                force = states.law_force(w, self.tables, i, d, v)
                 self.ledger.switched(i, "open", "pressed", t0, d, v, force)
-                w.f[i, kernel.PEAK] = force
-        x.q[kernel.P] = self._force(t0)
+                w.f[i, arrays.PEAK] = force
+        x.q[arrays.P] = self._force(t0)
         x.inputs[:2] = scene.excitation.value(t0), scene.excitation.value(t0, 1)
         jit.compiled(kernel.settle)(m, w, x, self.dt)
         kernel.note(m, w, x, t0, 0.0)
@@ -308,26 +308,26 @@ class Stepper:
                     pieces, self.count, self.clock,
                 )  # fmt: skip
             self._fetch()
-            if why == kernel.DONE:
+            if why == arrays.DONE:
                 return self.outcome()
-            if why != kernel.FULL:
+            if why != arrays.FULL:
                 raise self._trouble(why)
 
     def _fetch(self) -> None:
         """Take in the samples and the changes of branches that were kept."""
         z, count, laws = self.z, self.count, self.laws
         back = np.argsort(self.order)
-        for row in z.log[: count[kernel.LOGGED]].tolist():
+        for row in z.log[: count[arrays.LOGGED]].tolist():
             law, before, after = (int(x) for x in row[:3])
             names = laws[law].law.rule.branches
             if law in self.ledger.open:
                 self._count(self.ledger.open[law], row[7:])
             self.ledger.switched(law, names[before], names[after], *row[3:7])
-        for i in range(count[kernel.KEPT]):
+        for i in range(count[arrays.KEPT]):
             u, v, a = z.motion[i][:, back]
             t, *works = z.works[i].tolist()
             self.sink.sample(t, u, v, a, LawValues(*z.laws[i].copy()), np.array(works))
-        count[kernel.LOGGED] = count[kernel.KEPT] = 0
+        count[arrays.LOGGED] = count[arrays.KEPT] = 0
 
     @staticmethod
     def _count(collision: Collision, running: list[float]) -> None:
@@ -338,15 +338,15 @@ class Stepper:
             collision.peak, collision.t_peak = peak, t_peak
 
     def _trouble(self, why: int) -> Stop:
-        worst = int(self.count[kernel.WORST])
-        if why == kernel.RUNAWAY:
+        worst = int(self.count[arrays.WORST])
+        if why == arrays.RUNAWAY:
             return self.stop("A504", RUNAWAY.format(self.clock[2]))
-        if why == kernel.PIVOT:
+        if why == arrays.PIVOT:
             name = self.scene.name(int(self.order[worst]))
             return self.stop("A501", f"{name} has no mass and nothing holds it")
         s = self.laws[worst] if self.laws else None
-        if why == kernel.CHATTER and s is not None:
-            branch = s.law.rule.branches[self.w.i[worst, kernel.AT]]
+        if why == arrays.CHATTER and s is not None:
+            branch = s.law.rule.branches[self.w.i[worst, arrays.AT]]
             return self.stop(
                 "A503",
                 f"too many changes within one step, the last in element {s.element} ({s.rule}): {branch}",
@@ -356,24 +356,24 @@ class Stepper:
     def outcome(self) -> Outcome:
         """What the run gathered."""
         for law, collision in self.ledger.open.items():
-            self._count(collision, self.w.f[law, kernel.PEAK : kernel.IMPULSE + 1].tolist())
+            self._count(collision, self.w.f[law, arrays.PEAK : arrays.IMPULSE + 1].tolist())
         peaks, x, n = self.ledger.close(), self.x, len(self.laws)
-        found = [Extreme(*e) for e in x.peak[: kernel.SLOPE].T.tolist()]
+        found = [Extreme(*e) for e in x.peak[: arrays.SLOPE].T.tolist()]
         rest = len(found) - 2 * n
         peaks.watch, peaks.deformation, peaks.force = (
             found[:rest],
             found[rest : rest + n],
             found[rest + n :],
         )
-        peaks.dashpot_losses = self.w.f[:, kernel.DASHPOT].tolist()
+        peaks.dashpot_losses = self.w.f[:, arrays.DASHPOT].tolist()
         figures: dict[str, Any] = {
             "method": self.name,
             "time step": f"{self.dt:.6g}",
-            "steps": int(self.count[kernel.STEPS]),
-            "events": int(self.count[kernel.EVENTS]),
+            "steps": int(self.count[arrays.STEPS]),
+            "events": int(self.count[arrays.EVENTS]),
         }
         f, i = self.w.f, self.w.i
-        states = zip(i[:, kernel.AT].tolist(), f[:, kernel.D0].tolist(), f[:, kernel.WORK].tolist(),
+        states = zip(i[:, arrays.AT].tolist(), f[:, arrays.D0].tolist(), f[:, arrays.WORK].tolist(),
                      map(tuple, self.w.memory.tolist()))  # fmt: skip
         return Outcome(peaks, figures, tuple(states))
 

@@ -1,0 +1,112 @@
+"""Kernels that find where a law leaves its branch within a step."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.integrate.arrays import (
+    A1,
+    BACK,
+    EXIT,
+    LD,
+    LD1,
+    LV,
+    LV1,
+    MOST_D,
+    MOST_V,
+    N_EXITS,
+    STILL,
+    A,
+    Laws,
+    Motion,
+)
+from pound_solve.integrate.states import along
+
+
+def first_exit(w: Laws, x: Motion, h: float) -> tuple[int, int, float]:
+    """The first exit that is passed in the step of length `h` that was tried.
+
+    Returns
+    -------
+    law, exit, time : int, int, float
+        Law -1 where there is none; the time is that of the cubic through values and slopes at both ends.
+    """
+    best, best_law, best_exit = np.inf, -1, -1
+    for i in range(len(w.i)):
+        d, v, d1, v1 = w.f[i, LD], w.f[i, LV], w.f[i, LD1], w.f[i, LV1]
+        for e in range(w.i[i, N_EXITS]):
+            fd, fv, fc = w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2]
+            if fd == 0.0 and fv == 0.0:
+                continue
+            if fd == 0.0 and fc == 0.0:  # what hardly moves would turn again and again
+                fc = -BACK * abs(fv) * w.f[i, MOST_V]
+            g1 = fd * d1 + fv * v1 + fc
+            size = abs(fd) * w.f[i, MOST_D] + abs(fv) * w.f[i, MOST_V] + abs(fc)
+            tol = STILL * max(size, abs(g1))
+            s0, s1 = fd * v, fd * v1
+            if g1 <= tol and not (s0 > 0.0 and s1 < 0.0):
+                continue
+            if fv != 0.0:
+                s0 += fv * along(w.rows, i, x.q, A)
+                s1 += fv * along(w.rows, i, x.q, A1)
+            g0 = min(fd * d + fv * v + fc, 0.0)  # a branch holds when it is entered
+            if g1 > tol:
+                at = root(g0, g1, s0, s1, h)
+            else:
+                at, top = summit(g0, g1, s0, s1, h)
+                if top <= tol:
+                    continue
+                at = root(g0, top, s0, 0.0, at)
+            if at < best:
+                best, best_law, best_exit = at, i, e
+    return best_law, best_exit, best
+
+
+def summit(g0: float, g1: float, s0: float, s1: float, h: float) -> tuple[float, float]:
+    """Place and value of the maximum of a cubic that rises at 0 and falls at `h`."""
+    a = 2.0 * (g0 - g1) / h**3 + (s0 + s1) / h**2
+    b = 3.0 * (g1 - g0) / h**2 - (2.0 * s0 + s1) / h
+    q = b * b - 3.0 * a * s0
+    at = -1.0
+    if q >= 0.0:
+        # of the two forms of the root the one without cancellation
+        if b < 0.0:
+            at = s0 / (np.sqrt(q) - b)
+        elif a != 0.0:
+            at = -(b + np.sqrt(q)) / (3.0 * a)
+    if 0.0 <= at <= h:
+        return at, ((a * at + b) * at + s0) * at + g0
+    return (0.0, g0) if g0 > g1 else (h, g1)
+
+
+def root(g0: float, g1: float, s0: float, s1: float, h: float) -> float:
+    """First place where a cubic that is not above zero at 0 and above it at `h` rises through zero."""
+    if g0 >= 0.0 and s0 > 0.0:
+        return 0.0
+    a = 2.0 * (g0 - g1) / h**3 + (s0 + s1) / h**2
+    b = 3.0 * (g1 - g0) / h**2 - (2.0 * s0 + s1) / h
+    low, high = 0.0, h
+    if g0 >= 0.0:  # it falls from zero first
+        at = h
+        for _ in range(60):
+            at *= 0.5
+            if ((a * at + b) * at + s0) * at + g0 < 0.0:
+                low = at
+                break
+    at = 0.5 * (low + high)
+    if g0 < 0.0:
+        at = h * g0 / (g0 - g1)
+    for _ in range(60):
+        g = ((a * at + b) * at + s0) * at + g0
+        if g > 0.0:
+            high = at
+        else:
+            low = at
+        s = (3.0 * a * at + 2.0 * b) * at + s0
+        new = at - g / s if s > 0.0 else -1.0
+        if not low < new < high:
+            new = 0.5 * (low + high)
+        if abs(new - at) <= 1e-15 * h:
+            break
+        at = new
+    return at

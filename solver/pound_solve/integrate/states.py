@@ -1,0 +1,186 @@
+"""Kernels of the laws: their branches, forces and states, and products with sparse rows."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.integrate.arrays import (
+    AT,
+    BETA,
+    CODE,
+    CURVED,
+    D0,
+    EXIT,
+    F0,
+    LD,
+    LV,
+    N_EXITS,
+    SAVED,
+    SECANT,
+    STIFFNESS,
+    TURN,
+    WORK,
+    C,
+    K,
+    Laws,
+    Matrices,
+)
+from pound_solve.jit import Tables
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+def parameters(p: Array, i: int) -> tuple[float, ...]:
+    """Row of parameters as a tuple."""
+    return (
+        p[i, 0], p[i, 1], p[i, 2], p[i, 3], p[i, 4], p[i, 5], p[i, 6], p[i, 7], p[i, 8], p[i, 9],
+        p[i, 10], p[i, 11], p[i, 12], p[i, 13], p[i, 14], p[i, 15], p[i, 16], p[i, 17], p[i, 18], p[i, 19],
+    )  # fmt: skip
+
+
+def memory(m: Array, i: int) -> tuple[float, ...]:
+    """Row of a memory as a tuple."""
+    return (
+        m[i, 0], m[i, 1], m[i, 2], m[i, 3], m[i, 4], m[i, 5], m[i, 6], m[i, 7],
+        m[i, 8], m[i, 9], m[i, 10], m[i, 11], m[i, 12], m[i, 13], m[i, 14], m[i, 15],
+    )  # fmt: skip
+
+
+def motions(coefs: Array, s: float, out: Array, at: int) -> None:
+    """Inputs and their rates at the local time `s` of a piece, into rows `at` and `at + 1`."""
+    top, n = coefs.shape
+    for j in range(n):
+        value, rate = coefs[top - 1, j], 0.0
+        for k in range(top - 2, -1, -1):
+            rate = rate * s + value
+            value = value * s + coefs[k, j]
+        out[at, j], out[at + 1, j] = value, rate
+
+
+def load(m: Matrices, s: Array, q: Array, out: int) -> None:
+    """Loads for the inputs `s`, into row `out`."""
+    for i in range(q.shape[1]):
+        total = m.constant[i]
+        for j in range(len(s)):
+            total += m.inputs[i, j] * s[j]
+        q[out, i] = total
+
+
+def times(a: tuple[Index, Index, Array], q: Array, x: int, out: int) -> None:
+    """Product of sparse rows with row `x` of `q`, into row `out`."""
+    for i in range(q.shape[1]):
+        total = 0.0
+        for j in range(a[0][i], a[0][i + 1]):
+            total += a[2][j] * q[x, a[1][j]]
+        q[out, i] = total
+
+
+def along(a: tuple[Index, Index, Array], i: int, q: Array, x: int) -> float:
+    """One sparse row times row `x` of `q`."""
+    total = 0.0
+    for j in range(a[0][i], a[0][i + 1]):
+        total += a[2][j] * q[x, a[1][j]]
+    return total
+
+
+def follows(w: Laws, i: int, k: float) -> float:
+    """Dashpot that follows law `i`, whose tangent stiffness is `k`."""
+    return w.f[i, BETA] * max(k, 0.0) + w.f[i, SECANT] * w.memory[i, STIFFNESS]
+
+
+def enter(w: Laws, f: Tables, i: int) -> None:
+    """Take over the branch that law `i` is on."""
+    b = f.branch[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i))
+    w.f[i, K], w.f[i, C], w.f[i, F0] = b[0], b[1] + follows(w, i, b[0]), b[2]
+    count = 0
+    for e in range(3):
+        x, y, z = b[3 + 3 * e], b[4 + 3 * e], b[5 + 3 * e]
+        w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2] = x, y, z
+        if x != 0.0 or y != 0.0:
+            count = e + 1
+    w.i[i, N_EXITS] = count
+
+
+def law_work(w: Laws, f: Tables, i: int, d: float) -> float:
+    """Work done on law `i` so far, dashpots apart."""
+    if w.i[i, CURVED]:
+        c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, 0.0)
+        return w.f[i, WORK] + c[3]
+    return w.f[i, WORK] + (0.5 * w.f[i, K] * (d + w.f[i, D0]) + w.f[i, F0]) * (d - w.f[i, D0])
+
+
+def law_force(w: Laws, f: Tables, i: int, d: float, v: float) -> float:
+    """Force of law `i`."""
+    if w.i[i, CURVED]:
+        c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, v)
+        return c[0] + follows(w, i, c[1]) * v
+    return w.f[i, K] * d + w.f[i, C] * v + w.f[i, F0]
+
+
+def leave(w: Laws, f: Tables, i: int, way: int, d: float) -> None:
+    """Change the branch of law `i`."""
+    done = law_work(w, f, i, d)
+    if w.f[i, EXIT + 3 * way] == 0.0 and w.f[i, EXIT + 3 * way + 2] == 0.0 and abs(d) > w.memory[i, TURN]:
+        w.memory[i, TURN], w.memory[i, STIFFNESS] = abs(d), max(law_force(w, f, i, d, 0.0) / d, 0.0)
+    at, m = f.leave[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), way, d)
+    w.i[i, AT], w.f[i, D0], w.f[i, WORK] = at, d, done
+    for j in range(len(m)):
+        w.memory[i, j] = m[j]
+    enter(w, f, i)
+
+
+def tangent(w: Laws, f: Tables, i: int) -> None:
+    """Linearise a curved law where it is."""
+    bend(w, f, i, w.f[i, LD], w.f[i, LV])
+
+
+def bend(w: Laws, f: Tables, i: int, d: float, v: float) -> None:
+    """Linearise a curved law at deformation `d` and rate `v`."""
+    c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, v)
+    k, own = c[1], follows(w, i, c[1])
+    w.f[i, K], w.f[i, C] = k, c[2] + own
+    w.f[i, F0] = c[0] - k * d - c[2] * v
+
+
+def save(w: Laws, i: int) -> None:
+    """Keep the state of law `i`."""
+    w.i[i, SAVED] = 1
+    w.saved[i, 0], w.saved[i, 1], w.saved[i, 2] = w.i[i, AT], w.f[i, D0], w.f[i, WORK]
+    for j in range(w.memory.shape[1]):
+        w.saved[i, 3 + j] = w.memory[i, j]
+
+
+def restore(w: Laws, f: Tables, i: int) -> None:
+    """Put law `i` back into the state that was kept."""
+    w.i[i, AT], w.f[i, D0], w.f[i, WORK] = int(w.saved[i, 0]), w.saved[i, 1], w.saved[i, 2]
+    for j in range(w.memory.shape[1]):
+        w.memory[i, j] = w.saved[i, 3 + j]
+    enter(w, f, i)
+
+
+def next_exit(w: Laws, i: int, at: float, to: float, rate: float) -> tuple[int, float]:
+    """First exit on the straight path from `at` to `to` with the rate at its end, and where
+    (see `laws.follow`); -1 where there is none.
+    """
+    way = 1.0 if to >= at else -1.0
+    best, where = -1, 0.0
+    for e in range(w.i[i, N_EXITS]):
+        a, b, c = w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2]
+        if a != 0.0:
+            c += b * rate
+        now, slope = a * at + c, a * way
+        if b != 0.0 and a == 0.0 and c == 0.0:
+            if b * way <= 0.0 or to == at:
+                continue
+            place = at
+        elif now >= 0.0 and (slope > 0.0 or (slope == 0.0 and now > 0.0)):
+            place = at
+        elif slope > 0.0 and a * to + c > 0.0:
+            place = at - now / slope * way
+        else:
+            continue
+        if best < 0 or (place - where) * way < 0.0:
+            best, where = e, place
+    return best, where
