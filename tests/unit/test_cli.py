@@ -134,7 +134,7 @@ def test_a_mechanism_under_load_is_named(deck, capsys):
     assert "node 2 uy" in capsys.readouterr().err
 
 
-LONG = DECK.replace("HISTORY 3", "HISTORY 1000 METHOD=NEWMARK DT=0.001").replace(
+LONG = DECK.replace("HISTORY 3", "HISTORY 1000 METHOD=NEWMARK DT=0.00001").replace(
     "ANALYSIS", "OUTPUT\n EVERY=0.01\nANALYSIS"
 )
 

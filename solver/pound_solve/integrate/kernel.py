@@ -63,6 +63,7 @@ from pound_solve.integrate.arrays import (
     NEAR,
     NEWTON,
     P1,
+    PAUSE,
     PEAK,
     PIECE,
     PIVOT,
@@ -748,7 +749,7 @@ def advance(
     clock : ndarray, shape (3,)
         Time, length that the factor at hand is for, energy at the start.
     """
-    room = 108 + 8 * len(w.i)
+    room, pause = 108 + 8 * len(w.i), count[STEPS] + PAUSE
     while count[GOAL] < len(goals):
         goal = count[GOAL]
         h = lengths[goal]
@@ -765,7 +766,7 @@ def advance(
                 settle(m, w, x, h)
                 note(m, w, x, clock[0], 0.0)
         while count[STEP] < steps[goal]:
-            if len(z.log) - count[LOGGED] < room:
+            if len(z.log) - count[LOGGED] < room or count[STEPS] >= pause:
                 return FULL
             if clock[1] != h or count[UPDATES] > REFRESH:
                 bad = refactor(m, w, x, scheme, h, WHOLE)
