@@ -10,9 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_deck.model import Card
+from pound_deck.schema import Field, Kind
 from pound_solve.modes import Modes
 
 Matrix = NDArray[np.float64]
+
+
+BUILDING = Field(
+    "NODES",
+    Kind.NODES,
+    default=None,
+    doc="all nodes of one building, whose own modes are meant; left out: the whole structure",
+)  #: of the models that are made of modes
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,7 @@ import numpy as np
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.damping.base import (
+    BUILDING,
     DampingError,
     Ground,
     Group,
@@ -105,12 +106,7 @@ SPEC = Spec(
             doc="circular frequencies that have XI, as many as the series has terms",
         ),
         Field("MODES", Kind.INT, default=None, count=(1, 12), lo=1, doc="the same by modes"),
-        Field(
-            "NODES",
-            Kind.NODES,
-            default=None,
-            doc="all nodes of one building, whose own modes are meant; left out: the whole structure",
-        ),
+        BUILDING,
     ),
     reference="Caughey 1960",
     impl=build,

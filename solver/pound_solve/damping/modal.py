@@ -22,6 +22,7 @@ import numpy as np
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.damping.base import (
+    BUILDING,
     DampingError,
     Ground,
     Group,
@@ -129,12 +130,7 @@ SPEC = Spec(
             words=("FREQUENCY", "MODE"),
             doc="what the ratio is linear in: the frequency, or the number of the mode",
         ),
-        Field(
-            "NODES",
-            Kind.NODES,
-            default=None,
-            doc="all nodes of one building, whose own modes are meant; left out: the whole structure",
-        ),
+        BUILDING,
     ),
     code=4,
     reference="Wilson & Penzien 1972",

@@ -32,7 +32,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind
-from pound_solve.hysteresis.mirror import need_both_sides, outward, turns_inward
+from pound_solve.hysteresis.mirror import need_both_sides, outward, pair, side, turns_inward
 from pound_solve.laws import Numbers, piece, remember
 
 # branches of the positive side; those of the negative side are one more
@@ -99,16 +99,6 @@ def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: fl
     return k, fy_plus, fy_minus, r, alpha, begin, end, left, float(values["ILOS"] == "LARGEST")
 
 
-def side(at: int) -> float:
-    """Side of a branch: +1 or -1."""
-    return 1.0 if at % 2 == 1 else -1.0
-
-
-def on(at: int, s: float) -> int:
-    """Branch of side `s` that corresponds to `at` of the positive side."""
-    return at if s > 0.0 else at + 1
-
-
 def yield_force(p: Numbers, s: float) -> float:
     """Yield force of a side, positive."""
     return p[1] if s > 0.0 else -p[2]
@@ -155,7 +145,7 @@ def enter(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
     plus, minus = grown(m, s, x)
     m = remember(plus, minus)
     falls = p[5] <= x < p[6] and worst(p, m, s) <= x
-    return on(WEAKENING if falls else YIELDING, s), m
+    return pair(WEAKENING if falls else YIELDING, s), m
 
 
 def yield_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float]:
@@ -165,7 +155,7 @@ def yield_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float]:
     k, r, begin, end, left = p[0], p[3], p[5], p[6], p[7]
     s = side(at)
     fy, mu = yield_force(p, s), worst(p, m, s)
-    if at == on(WEAKENING, s):
+    if at == pair(WEAKENING, s):
         fall = (1.0 - left) / (end - begin)
         return (r - fall) * k, fy * (1.0 + fall * begin - r), end
     until = max(mu, begin)
@@ -184,7 +174,7 @@ def yield_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 def next_piece(p: Numbers, at: int, m: Numbers) -> tuple[int, Numbers]:
     """State after the end of a piece of the backbone."""
     s = side(at)
-    return (on(WEAKENING, s), m) if at == on(YIELDING, s) else enter(p, m, s, p[6])
+    return (pair(WEAKENING, s), m) if at == pair(YIELDING, s) else enter(p, m, s, p[6])
 
 
 def turn(p: Numbers, at: int, m: Numbers, d: float) -> Numbers:

@@ -31,12 +31,12 @@ from pound_solve.hysteresis.backbone import (
     meets,
     next_piece,
     parameters,
-    side,
     turn,
     unloading,
     yield_branch,
     yield_force,
 )
+from pound_solve.hysteresis.mirror import side
 from pound_solve.laws import Law, Numbers, Rule, above, below, piece, remember
 
 

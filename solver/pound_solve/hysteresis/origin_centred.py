@@ -25,15 +25,13 @@ from pound_solve.hysteresis.backbone import (
     backbone,
     enter,
     next_piece,
-    on,
     parameters,
     reached,
-    side,
     turn,
     yield_branch,
     yield_force,
 )
-from pound_solve.hysteresis.mirror import inward, outward
+from pound_solve.hysteresis.mirror import inward, outward, pair, side
 from pound_solve.laws import Law, Numbers, Rule, above, below, piece, remember
 
 SECANT = 5
@@ -62,8 +60,8 @@ def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Num
         return enter(p, m, 1.0 if way == 0 else -1.0, 1.0)
     s = side(at)
     if at < SECANT:
-        return next_piece(p, at, m) if way == 1 else (on(SECANT, s), turn(p, at, m, d))
-    return enter(p, m, s, reached(m, s)) if way == 0 else (on(SECANT, -s), m)
+        return next_piece(p, at, m) if way == 1 else (pair(SECANT, s), turn(p, at, m, d))
+    return enter(p, m, s, reached(m, s)) if way == 0 else (pair(SECANT, -s), m)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:

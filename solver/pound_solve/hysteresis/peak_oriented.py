@@ -24,15 +24,13 @@ from pound_solve.hysteresis.backbone import (
     enter,
     meets,
     next_piece,
-    on,
     reached,
-    side,
     turn,
     unloading,
     yield_branch,
     yield_force,
 )
-from pound_solve.hysteresis.mirror import inward, outward, turns_inward
+from pound_solve.hysteresis.mirror import inward, outward, pair, side, turns_inward
 from pound_solve.laws import Numbers, Rule, above, below, piece, remember
 
 UNLOADING, RELOADING = 5, 7
@@ -82,17 +80,17 @@ def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Num
         plus, minus, d, f = turn(p, at, m, d)[:4]
         if p[MIRRORED] != 0.0:
             plus = minus = max(plus, minus)
-        return on(UNLOADING, s), remember(plus, minus, d, f)
+        return pair(UNLOADING, s), remember(plus, minus, d, f)
     plus, minus, d0, f0 = m[:4]
     if at < RELOADING:
         if way == 1:
-            return on(RELOADING, -s), remember(plus, minus, d0 - f0 / unloading(p, reached(m, s)))
+            return pair(RELOADING, -s), remember(plus, minus, d0 - f0 / unloading(p, reached(m, s)))
         # a turn on the backbone too: the line from there ends where it begins
-        return on(RELOADING, s), m
+        return pair(RELOADING, s), m
     k, end = aim(p, m, s)
     if way == 1:
         return enter(p, m, s, end)
-    return on(UNLOADING, s), remember(plus, minus, d, f0 + k * (d - d0))
+    return pair(UNLOADING, s), remember(plus, minus, d, f0 + k * (d - d0))
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
