@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 import math
 import os
+import signal
 import sys
+import threading
 import time
 from collections.abc import Sequence
 from difflib import get_close_matches
@@ -140,7 +142,7 @@ def _run(args: argparse.Namespace) -> int:
 
     request = _request(args)
     assert isinstance(request, app.Request)
-    progress = None if args.quiet else _Progress()
+    progress = _Progress(args.quiet)
     try:
         status, results, ready = app.execute(request, progress)
     except app.DeckError as err:
@@ -148,8 +150,7 @@ def _run(args: argparse.Namespace) -> int:
         return app.MISTAKES
     except ResultsError as err:
         return _complain(str(err))
-    if progress is not None:
-        progress.end()
+    progress.end()
     if ready.warnings and not args.quiet:
         print(render(ready.warnings, ready.files), file=sys.stderr)
     with results:
@@ -165,13 +166,27 @@ def _run(args: argparse.Namespace) -> int:
 
 
 class _Progress:
-    """One line on a terminal, rewritten at most ten times a second; silent in a pipe."""
+    """One line on a terminal, rewritten at most ten times a second; silent in a pipe.
 
-    def __init__(self) -> None:
-        self.live = sys.stderr.isatty()
+    Remembers an interrupt too: one that falls into a library's clean-up is swallowed there.
+    """
+
+    def __init__(self, quiet: bool) -> None:
+        self.live = sys.stderr.isatty() and not quiet
         self.began = self.told = time.monotonic()
+        self.interrupted = False
+        self.main = threading.current_thread() is threading.main_thread()  # only there are handlers set
+        if self.main:
+            self.before = signal.signal(signal.SIGINT, self._interrupt)
+
+    def _interrupt(self, *_: object) -> None:
+        self.interrupted = True
+        raise KeyboardInterrupt
 
     def __call__(self, t: float, end: float) -> None:
+        if self.interrupted:
+            self.interrupted = False
+            raise KeyboardInterrupt
         now = time.monotonic()
         if not self.live or now - self.told < 0.1:
             return
@@ -185,7 +200,9 @@ class _Progress:
         )
 
     def end(self) -> None:
-        """Clear the line."""
+        """Clear the line, and let interrupts be as they were."""
+        if self.main:
+            signal.signal(signal.SIGINT, self.before)
         if self.live:
             print("\r" + " " * 70 + "\r", end="", file=sys.stderr, flush=True)
 
