@@ -80,12 +80,6 @@ def numba() -> Any:
     return found
 
 
-def name() -> str:
-    """How kernels run, for the report."""
-    found = numba()
-    return f"compiled, numba {found.__version__}" if found else "interpreted"
-
-
 @contextmanager
 def quiet() -> Iterator[None]:
     """Keep numba's notice to itself that functions as values are new."""

@@ -291,21 +291,6 @@ def goals(scene: Scene, times: Array) -> tuple[Array, NDArray[np.bool_]]:
     return out, np.isin(out, times[1:])
 
 
-def cubic_top(f0: float, f1: float, s0: float, s1: float, h: float) -> tuple[float, float]:
-    """Place in (0, h) and value of the maximum of the cubic with these end values
-    and slopes, rising, then falling.
-    """
-    a = 2 * (f0 - f1) / h**3 + (s0 + s1) / h**2
-    b = 3 * (f1 - f0) / h**2 - (2 * s0 + s1) / h
-    root = b * b - 3 * a * s0
-    if root >= 0:
-        # of the two forms of the root the one without cancellation
-        x = s0 / (np.sqrt(root) - b) if b < 0 else -(b + np.sqrt(root)) / (3 * a) if a else -1.0
-        if 0 <= x <= h:
-            return float(x), float(((a * x + b) * x + s0) * x + f0)
-    return (0.0, f0) if f0 > f1 else (h, f1)
-
-
 def energies(scene: Scene, t: Array, u: Array, v: Array, stored: Array, lost: Array, works: Array) -> Array:
     """Return all energies at some times.
 

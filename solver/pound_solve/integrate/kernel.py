@@ -571,7 +571,7 @@ def uncut_step(
         w.i[i, SAVED] = 0
     for _ in range(50):
         if not attempt(m, w, x, scheme, f, coefs, clock[0] + length - begin, length, WHOLE, count):
-            return NEWTON
+            break
         changed, driven = False, 0
         for i in range(laws):
             d, d1 = w.f[i, LD], w.f[i, LD1]

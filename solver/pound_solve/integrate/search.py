@@ -10,7 +10,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.base import Peak, cubic_top
+from pound_solve.integrate.base import Peak
+from pound_solve.integrate.exits import summit
 
 Array = NDArray[np.float64]
 Exact = Callable[[int, float], tuple[float, float]]  #: value and slope of function n at time t
@@ -152,7 +153,7 @@ def widen(peaks: Sequence[Peak], t0: float, t: Array, value: Array, rate: Array,
             sign * float(x) for x in (f0[i, j], value[i, j + 1], s0[i, j], s1[i, j])
         )
         # the cubic through both ends tells whether it can win; only then is it polished
-        top = cubic_top(f_low, f_high, s_low, s_high, float(t[j + 1] - t[j]))[1]
+        top = summit(f_low, f_high, s_low, s_high, float(t[j + 1] - t[j]))[1]
         if top + 0.02 * (top - max(f_low, f_high)) <= best:
             continue
 
