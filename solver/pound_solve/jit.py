@@ -139,7 +139,7 @@ def tables(rules: Sequence[Rule]) -> Tables:
     t = found.types
     f8, i8 = t.float64, t.int64
     p, m = t.UniTuple(f8, PARAMETERS), t.UniTuple(f8, MEMORY)
-    branch, leave = t.UniTuple(f8, 3 + 3 * EXITS)(p, i8, m), t.Tuple((i8, m))(p, i8, m, i8, f8)
+    branch, leave = t.UniTuple(f8, 3 + 3 * EXITS)(p, i8, m), t.Tuple((i8, m))(p, i8, m, i8, f8, f8)
     recoverable, curve = f8(p, i8, m, f8, f8), t.UniTuple(f8, 4)(p, i8, m, f8, f8, f8)
     return Tables(
         tuple(compiled(r.branch, branch) for r in rules),

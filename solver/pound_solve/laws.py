@@ -86,7 +86,8 @@ class Rule(NamedTuple):
     branch : callable
         ``branch(p, at, m) -> piece(...)``.
     leave : callable
-        ``leave(p, at, m, way, d) -> (at, m)``: the state after exit `way` was reached at deformation `d`.
+        ``leave(p, at, m, way, d, v) -> (at, m)``: the state after exit `way` was reached at deformation `d`
+        and rate `v`.
         The force must be the same on both sides, unless a dashpot or a release makes it jump.
     recoverable : callable
         ``recoverable(p, at, m, d, f) -> energy`` that comes back when the force `f` is taken off.
@@ -98,7 +99,7 @@ class Rule(NamedTuple):
     branches: tuple[str, ...]
     start: Callable[[Numbers], tuple[int, Numbers]]
     branch: Callable[[Numbers, int, Numbers], Numbers]
-    leave: Callable[[Numbers, int, Numbers, int, float], tuple[int, Numbers]]
+    leave: Callable[[Numbers, int, Numbers, int, float, float], tuple[int, Numbers]]
     recoverable: Callable[[Numbers, int, Numbers, float, float], float] = on_spring
     curve: (
         Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]] | None
@@ -175,9 +176,9 @@ class Law:
         k, _, f0 = self.rule.branch(self.p, at, m)[:3]
         return before + (0.5 * k * (d + d0) + f0) * (d - d0)
 
-    def leave(self, state: State, exit_index: int, d: float) -> State:
-        """Return the state after that exit of the branch was reached at deformation `d`."""
-        at, m = self.rule.leave(self.p, state[0], state[3], exit_index, d)
+    def leave(self, state: State, exit_index: int, d: float, v: float = 0.0) -> State:
+        """Return the state after that exit of the branch was reached at deformation `d` and rate `v`."""
+        at, m = self.rule.leave(self.p, state[0], state[3], exit_index, d, v)
         return at, d, self.work(state, d), m
 
     def stored(self, state: State, d: float) -> float:
@@ -200,7 +201,7 @@ def settle(law: Law, state: State, d: float, v: float) -> State:
         passed = [n for n, e in enumerate(exits) if e.d_factor * d + e.v_factor * v + e.constant > 0.0]
         if not passed:
             break
-        state = law.leave(state, passed[0], d)
+        state = law.leave(state, passed[0], d, v)
     return state
 
 
@@ -262,6 +263,6 @@ def changes(
         if first is None:
             return
         at = first[0]
-        state = law.leave(state, first[1], at)
+        state = law.leave(state, first[1], at, v)
         yield at, state
     raise NoProgressError("the law changed branch again and again")

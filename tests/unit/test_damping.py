@@ -703,7 +703,7 @@ CURVED = Rule(
     ("loading", "unloading"),
     lambda p: (0, remember()),
     lambda p, at, m: piece(p[0], 0.0, TURNS_DOWN if at == 0 else TURNS_UP),
-    lambda p, at, m, way, d: (1 - at, remember(d, bend(p[0], d))),
+    lambda p, at, m, way, d, v: (1 - at, remember(d, bend(p[0], d))),
     curve=lambda p, at, m, d0, d, v: (bend(p[0], d), p[0] / np.cosh(d) ** 2, 0.0, 0.0),
 )
 

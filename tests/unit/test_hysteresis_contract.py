@@ -263,8 +263,8 @@ def test_compiled_functions_give_the_same_numbers(name: str) -> None:
                 assert curve(p, at, m, d0, d, 0.0) == pytest.approx(expected, rel=1e-12, abs=1e-13)
             if n + 1 < len(walk.visits) and walk.visits[n + 1][0] is not state:
                 for way in range(len(law.branch(state).exits)):
-                    there, memory = leave(p, at, m, way, d)
-                    expected = rule.leave(p, at, m, way, d)
+                    there, memory = leave(p, at, m, way, d, 0.0)
+                    expected = rule.leave(p, at, m, way, d, 0.0)
                     assert (there, memory) == (
                         expected[0],
                         pytest.approx(expected[1], rel=1e-12, abs=1e-13),
@@ -291,9 +291,9 @@ def idle(p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float) -> tupl
     return f, k / 1.01, c, 0.99 * work
 
 
-def elsewhere(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def elsewhere(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Unloads along a line that does not pass through the point where the motion turned."""
-    there, memory = bilinear.leave(p, at, m, way, d)
+    there, memory = bilinear.leave(p, at, m, way, d, v)
     return there, remember(0.5 * memory[0]) if at != bilinear.ELASTIC else memory
 
 
@@ -353,7 +353,7 @@ def test_the_contract_tells_a_rule_that_gives_energy() -> None:
         k = (1.0 if at == 0 else 2.0) * p[0]
         return piece(k, m[0] - k * m[1], TURNS_DOWN if at == 0 else TURNS_UP)
 
-    def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+    def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
         f = m[0] + (1.0 if at == 0 else 2.0) * p[0] * (d - m[1])
         return 1 - at, remember(f, d)
 
@@ -366,6 +366,6 @@ def test_a_rule_that_cycles_is_told() -> None:
     def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
         return piece(p[0], 0.0, above(0.5 * REACH))
 
-    law = Law(Rule(("one", "other"), bilinear.start, branch, lambda p, at, m, w, d: (1 - at, m)), (K,))
+    law = Law(Rule(("one", "other"), bilinear.start, branch, lambda p, at, m, w, d, v: (1 - at, m)), (K,))
     with pytest.raises(AssertionError, match="without moving"):
         Walk(law).move(REACH)

@@ -56,7 +56,7 @@ def stair_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     return piece(0.0, height, TURNS_DOWN)
 
 
-def stair_leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def stair_leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     if at == STAIR:
         return (FLAT, m) if way == 0 else (STAIR, remember(d))
     return STAIR, remember(d - p[1] / p[0])

@@ -340,7 +340,7 @@ BRITTLE = Rule(
     ("whole", "broken"),
     lambda p: (0, remember()),
     lambda p, at, m: piece(p[0], 0.0, above(p[1])) if at == 0 else piece(0.0, 0.0),
-    lambda p, at, m, way, d: (1, m),
+    lambda p, at, m, way, d, v: (1, m),
 )
 
 

@@ -423,7 +423,7 @@ SATURATING = Rule(
     ("loading", "unloading"),
     lambda p: (0, remember()),
     lambda p, at, m: piece(p[0], 0.0, TURNS_DOWN if at == 0 else TURNS_UP),
-    lambda p, at, m, way, d: (1 - at, remember(saturating(p, at, m, m[1], d, 0.0)[0], d)),
+    lambda p, at, m, way, d, v: (1 - at, remember(saturating(p, at, m, m[1], d, 0.0)[0], d)),
     curve=saturating,
 )
 

@@ -42,7 +42,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     return piece(k, -k * gap, below(gap) if tension != 0.0 else (-k, -c, k * gap), c=c)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, let go, or part."""
     if at == OPEN or (at == RELEASED and way == 0):
         return PRESSED, m

@@ -42,7 +42,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     return piece(r * k, (1.0 - r) * minus, TURNS_UP)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield out of the elastic branch, or unload where the motion turns."""
     k, plus, minus = p[:3]
     if at == ELASTIC:

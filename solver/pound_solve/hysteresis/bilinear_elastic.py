@@ -35,7 +35,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     return piece(r * k, (1.0 - r) * minus, above(minus / k))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Soften, or come back."""
     if at == STIFF:
         return (SOFT_PLUS if way == 0 else SOFT_MINUS), m

@@ -198,7 +198,7 @@ def curve(
     return k * (r * d + (1.0 - r) * s * z), k * (r + (1.0 - r) * slope), 0.0, work
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Turn."""
     s = 1.0 if at == LOADING else -1.0
     x, done = position(p, -s, -along(p, s, m[0] + s * (d - m[1]))[0])

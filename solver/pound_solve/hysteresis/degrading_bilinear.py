@@ -55,7 +55,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     return piece(k, f - k * d, above(up * p[1] / p[0]), below(down * p[2] / p[0]))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield out of the elastic branch, or unload where the motion turns."""
     if at == ELASTIC:
         s = 1.0 if way == 0 else -1.0

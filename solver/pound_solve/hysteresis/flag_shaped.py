@@ -58,7 +58,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     return piece(r * k, s * (1.0 - r) * low, turns_outward(s), inward(s, low / k))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield, unload from a line where the motion turns, reach a line, or be elastic again."""
     k, plus, minus, r, beta = p[:5]
     if at == ELASTIC:

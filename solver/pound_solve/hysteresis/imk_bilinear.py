@@ -119,7 +119,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     return piece(k, s * f0, turns_inward(s), outward(s, to) if to < FAR else NEVER)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield, pass to the next piece of the bound, fail, turn, or end an excursion."""
     s = side(at)
     kind = at if s > 0.0 else at - 1

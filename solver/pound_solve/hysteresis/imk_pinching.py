@@ -219,7 +219,7 @@ def enter(p: Numbers, m: Numbers, s: float, d: float) -> tuple[int, Numbers]:
     return pair(FOOT_LOCAL if by_local(p, s, m, s * d, 0.0) else FOOT_PEAK, s), m
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Go on to the next piece of a path, fail, turn, or end an excursion."""
     s = side(at)
     kind = at if s > 0.0 else at - 1

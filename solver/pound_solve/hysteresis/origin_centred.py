@@ -54,7 +54,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     return piece(backbone(p, m, s, mu) / peak, 0.0, outward(s, peak), inward(s, 0.0))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield; turn; arrive at the peak, or pass through the origin."""
     if at == ELASTIC:
         return enter(p, m, 1.0 if way == 0 else -1.0, 1.0)

@@ -69,7 +69,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     return piece(k, f - k * d, turns_inward(s), outward(s, end * yield_force(p, s) / p[0]))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield; turn; come back to the last turn, or lose the force; arrive at the backbone."""
     if at == ELASTIC:
         return enter(p, m, 1.0 if way == 0 else -1.0, 1.0)

@@ -153,7 +153,7 @@ def close(m: Numbers) -> Numbers:
     return (m[0] - 2.0, m[1], *m[6:16], 0.0, 0.0, 0.0, 0.0)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Turn, or go on along the curve that the branch came from."""
     if way == 1:
         return at, close(m)

@@ -77,7 +77,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     return piece(slope, f0, turn, (-side * slope, 0.0, -side * f0))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Take hold, yield, let go, or unload where the motion turns."""
     k, grow = p[0], p[6]
     if at == SLACK:

@@ -50,7 +50,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     return piece(r2 * k, first * d1_minus + second * d2_minus, TURNS_UP)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Slip, slip more, or unload where the motion turns."""
     d1_plus, d1_minus, d2_plus, d2_minus = p[3:7]
     if at == ELASTIC:

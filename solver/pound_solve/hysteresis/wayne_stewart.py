@@ -156,7 +156,7 @@ def unload(p: Numbers, at: int, m: Numbers, s: float, d: float, f: float) -> tup
     return UNLOADING, remember(m[0], m[1], foot, other, end, float(at), d)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Take hold, yield, let go, pass the ultimate force, fail, turn, or reach the next line of a path."""
     if at == SLACK:
         return (ELASTIC if way == 0 else ELASTIC + 1), m

@@ -290,7 +290,7 @@ class Exact:
 
     def _switch(self, law: int, exit_index: int, d: float, v: float) -> None:
         before = self.branches[law].name
-        self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, d)
+        self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, d, v)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
         force = self.laws[law].force(self.states[law], d, v)
         self.events += 1

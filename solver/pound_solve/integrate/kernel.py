@@ -506,7 +506,7 @@ def switch(
 ) -> None:  # fmt: skip
     """Let law `i` leave its branch; `h` is the nominal step, whose factor follows."""
     before, k, c = w.i[i, AT], w.f[i, K], w.f[i, C]
-    leave(w, f, i, way, w.f[i, LD])
+    leave(w, f, i, way, w.f[i, LD], w.f[i, LV])
     if w.i[i, CURVED]:
         tangent(w, f, i)
     change = scheme.gamma * h * (w.f[i, C] - c) + scheme.beta * h * h * (w.f[i, K] - k)
@@ -586,7 +586,7 @@ def uncut_step(
                 way, where = next_exit(w, i, d, d1, w.f[i, LV1])
                 if way < 0:
                     break
-                leave(w, f, i, way, where)
+                leave(w, f, i, way, where, w.f[i, LV1])
                 driven += 1
                 d = where
             if w.i[i, CURVED]:
