@@ -129,7 +129,7 @@ def test_a_law_that_never_settles_is_stopped() -> None:
     def restless(p: Numbers, at: int, m: Numbers) -> Numbers:
         return piece(1.0, 0.0, above(-1.0))
 
-    def stay(p: Numbers, at: int, m: Numbers, way: int, d: float) -> tuple[int, Numbers]:
+    def stay(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
         return at, m
 
     law = Law(Rule(("here",), stair_start, restless, stay), (1.0,))
