@@ -15,7 +15,10 @@ from pathlib import Path
 
 from pound_solve import __version__
 
-VERBS = ("run", "check", "report", "export", "list", "loop")
+PICTURES = (
+    "frame", "modes", "deformed", "envelopes", "histories", "energy", "loops", "contacts", "collisions",
+)  # fmt: skip
+VERBS = ("run", "check", "report", "export", "plot", "list", "loop")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -53,6 +56,14 @@ def parser() -> argparse.ArgumentParser:
     export = verbs.add_parser("export", help="write the tables and histories of a results file as CSV")
     export.add_argument("results", help="results file (.h5)")
     export.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: beside the file)")
+    text = "draw pictures of a results file (needs matplotlib: the extra plot)"
+    plot = verbs.add_parser("plot", help=text, description=text)
+    plot.add_argument("results", help="results file (.h5)")
+    plot.add_argument(
+        "pictures", nargs="*", metavar="PICTURE", help=f"{', '.join(PICTURES)} (default: all)"
+    )
+    plot.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: the file's)")
+    plot.add_argument("--as", dest="ending", default="svg", choices=("svg", "png", "pdf"), help="format")
     listing = verbs.add_parser("list", help="list what a deck may use")
     listing.add_argument(
         "family",
@@ -95,6 +106,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             "check": _check,
             "report": _report,
             "export": _export,
+            "plot": _plot,
             "list": _list,
             "loop": _loop,
         }[args.verb](args)
@@ -251,6 +263,30 @@ def _export(args: argparse.Namespace) -> int:
                 print(path)
     except ResultsError as err:
         return _complain(str(err))
+    return 0
+
+
+def _plot(args: argparse.Namespace) -> int:
+    from pound_solve import plot
+    from pound_solve.results import Results, ResultsError
+
+    unknown = [name for name in args.pictures if name not in PICTURES]
+    if unknown:
+        return _complain(f"there is no picture {unknown[0]}: choose from {', '.join(PICTURES)}", 2)
+    try:
+        with Results.open(args.results) as results:
+            can = plot.possible(results)
+            if lacking := [name for name in args.pictures if name not in can]:
+                needs = ", ".join(plot.PICTURES[lacking[0]][1])
+                return _complain(f"{args.results} lacks what the picture {lacking[0]} needs: {needs}", 2)
+            for path in plot.draw(
+                results, args.pictures or can, args.out or results.path.parent, args.ending
+            ):
+                print(path)
+    except ResultsError as err:
+        return _complain(str(err))
+    except ImportError:
+        return _complain('pictures need matplotlib: pip install "pound-solve[plot]"', 2)
     return 0
 
 

@@ -34,7 +34,7 @@ ONLY_IN = {
     "lark": {"cards.py"},
     "h5py": {"results.py"},
     "tabulate": {"report.py"},
-    "matplotlib": {"plot.py"},
+    "matplotlib": {"style.py"},
     "numba": {"jit.py"},
 }
 

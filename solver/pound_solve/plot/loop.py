@@ -1,10 +1,11 @@
-"""Pictures by matplotlib (extra `plot`), which is imported within these functions only."""
+"""Loop of a law as the verb ``loop`` drives it."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from textwrap import fill
 
+from pound_solve.plot import style
 from pound_solve.sketch import Curve
 
 
@@ -26,14 +27,10 @@ def loop(curve: Curve, title: str, x_name: str, y_name: str, path: Path) -> None
     OSError
         The file cannot be written.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.4, 4.5), layout="constrained")
-    axes = figure.add_subplot(xlabel=x_name, ylabel=y_name)
+    figure = style.figure(6.4, 4.5)
+    axes = style.grid(figure.add_subplot(), x_name, y_name)
     axes.set_title(fill(title, 80), fontsize=9)
     axes.axhline(0.0, color="0.4", linewidth=0.8)
     axes.axvline(0.0, color="0.4", linewidth=0.8)
-    axes.grid(color="0.87")
-    axes.set_axisbelow(True)
-    axes.plot(*zip(*curve), color="#0b4f8a", linewidth=1.4)
-    figure.savefig(path, dpi=150)
+    axes.plot(*zip(*curve), color=style.BLUE, linewidth=1.4)
+    style.save(figure, path)

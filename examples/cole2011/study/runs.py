@@ -1,0 +1,149 @@
+"""Runs of the study's decks, side by side in some processes, and what is kept of each."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from cases import DISTRIBUTED, Record, Test, Variant
+
+import pound_solve
+from pound_solve.app import DeckError
+from pound_solve.records import known
+from pound_solve.records.base import RecordError
+
+PLACES = tuple(f"B{b} storey {s} {end}" for b in (1, 2) for s in (1, 2) for end in ("left", "right"))
+
+
+@dataclass(frozen=True)
+class Hit:
+    """One collision: floor, time [s], approach speed [m/s], peak force and plateau of the force [kN]."""
+
+    floor: int
+    t: float
+    approach: float
+    peak: float
+    plateau: float
+
+
+@dataclass(frozen=True)
+class Run:
+    """What is kept of one run.
+
+    Attributes
+    ----------
+    right, left : dict of str to float
+        Largest drift of every place rightward and leftward [mm], both positive.
+    hits : tuple of Hit
+    forces, closures : tuple
+        Peak force [kN] and number of closures of every floor.
+    residual : float
+        Energy residual as a share of the input.
+    seconds : float
+        Time of the history's solution.
+    """
+
+    record: str
+    test: str
+    variant: str
+    right: dict[str, float]
+    left: dict[str, float]
+    hits: tuple[Hit, ...]
+    forces: tuple[float, ...]
+    closures: tuple[int, ...]
+    residual: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run to be made."""
+
+    record: Record
+    test: Test
+    variant: Variant
+    folders: tuple[Path, ...]
+    method: str | None = None
+    dt: float | None = None
+
+
+def deck_text(job: Job) -> str:
+    """The deck of a job: the example's, with the variant's changes."""
+    text = job.test.deck.read_text(encoding="utf-8")
+    if job.variant.rebuild and job.test.deck == DISTRIBUTED:
+        text = job.variant.rebuild(text)
+    for old, new in job.variant.edits:
+        text = text.replace(old, new)
+    return text.replace("RECORD  record  SCALE", f"RECORD  record  {job.record.items}  SCALE")
+
+
+def solve(job: Job) -> Run:
+    """Run one job in a folder of its own."""
+    name = f"{job.record.name}, {job.variant.name}, test {job.test.name}"
+    with tempfile.TemporaryDirectory() as folder:
+        deck = Path(folder) / job.test.deck.name
+        deck.write_text(deck_text(job), encoding="utf-8")
+        params = {**job.test.params, **job.record.params, **job.variant.params}
+        try:
+            results = pound_solve.run(deck, params, records=job.folders, method=job.method, dt=job.dt)
+        except DeckError as err:
+            raise RuntimeError(f"{name}: {err}") from None
+        with results:
+            if results.status != "done":
+                raise RuntimeError(f"{name}: {results.message}")
+            return gather(job, results)
+
+
+def gather(job: Job, results: pound_solve.results.Results) -> Run:
+    """Keep what the study needs of a results file."""
+    drifts = {row["name"]: row for row in results.table("drift_envelope")}
+    rows = {place: drifts.get(place, drifts.get(place.rsplit(" ", 1)[0])) for place in PLACES}
+    summary = results.table("contact_summary")
+    hits = tuple(
+        Hit(
+            int(str(row["contact"])[-1]),
+            float(row["t_start"]),
+            float(row["approach_velocity"]),
+            float(row["peak_force"]),
+            float(row["peak_force"]),
+        )
+        for row in results.table("collisions")
+    )
+    energy = {row["item"]: row for row in results.table("energy")}
+    figures = {row["item"]: row["value"] for row in results.table("run_figures")}
+    return Run(
+        job.record.name,
+        job.test.name,
+        job.variant.name,
+        {place: 1e3 * float(row["max"]) for place, row in rows.items()},
+        {place: -1e3 * float(row["min"]) for place, row in rows.items()},
+        hits,
+        tuple(float(row["peak_force"]) for row in summary),
+        tuple(int(row["closures"]) for row in summary),
+        abs(float(energy["residual"]["share"])) / 100,
+        float(str(figures["solve seconds"])),
+    )
+
+
+def found(record: Record, folders: Sequence[Path]) -> bool:
+    """Whether the record is at hand."""
+    try:
+        known.find(record.file, [Path(), *folders])
+    except RecordError:
+        return False
+    return True
+
+
+def solve_all(jobs: Iterable[Job], tell: Callable[[int, int], None]) -> list[Run]:
+    """Run jobs on all cores; `tell` is called with how many are done, of how many."""
+    jobs = list(jobs)
+    out = []
+    with ProcessPoolExecutor(max_workers=os.cpu_count()) as pool:
+        for run in pool.map(solve, jobs):
+            out.append(run)
+            tell(len(out), len(jobs))
+    return out

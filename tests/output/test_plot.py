@@ -1,0 +1,93 @@
+"""Pictures of a results file: which can be drawn, what they show, and that they repeat to the byte."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pound_solve
+from pound_solve.cli import PICTURES, main
+
+pytest.importorskip("matplotlib")
+
+from pound_solve import plot
+from pound_solve.plot import course, structure
+from pound_solve.results import Results
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: Any) -> Any:
+    deck = ROOT / "examples" / "01_two_oscillators" / "two_oscillators.inp"
+    with pound_solve.run(deck, out=tmp_path_factory.mktemp("run")) as out:
+        yield out
+
+
+def lines(axes: Any) -> list[np.ndarray]:
+    return [np.column_stack(line.get_data()) for line in axes.get_lines()]
+
+
+def test_the_command_line_knows_every_picture() -> None:
+    assert tuple(plot.PICTURES) == PICTURES
+
+
+def test_every_picture_is_drawn_and_repeats(results: Results, tmp_path: Path) -> None:
+    names = plot.possible(results)
+    assert {"frame", "histories", "energy", "contacts", "collisions"} <= set(names)
+    for ending in ("svg", "png", "pdf"):
+        first = plot.draw(results, names, tmp_path / "a", ending)
+        again = plot.draw(results, names, tmp_path / "b", ending)
+        assert len(first) == len(names)
+        for a, b in zip(first, again):
+            assert a.read_bytes() == b.read_bytes()
+            assert a.stat().st_size > 5000
+
+
+def test_the_frame_has_all_nodes_and_contacts(results: Results) -> None:
+    figure = structure.frame(results)
+    texts = {t.get_text() for t in figure.axes[0].texts}
+    nodes = results.table("nodes")
+    assert {str(n) for n in nodes["node"]} <= texts
+    contacts = [e for e in results.table("elements") if e["kind"] == "CONTACT"]
+    assert {str(e["name"] or e["element"]) for e in contacts} <= texts
+
+
+def test_histories_are_those_of_the_file(results: Results) -> None:
+    figure = course.histories(results)
+    drawn = [lines(axes) for axes in figure.axes]
+    for name, curves in zip(("ground", "drift", "contact/force"), drawn):
+        values = results.history(name)
+        assert len(curves) == values.shape[1]
+        for curve, column in zip(curves, values.T):
+            assert np.array_equal(curve, np.column_stack([results.time, column]))
+
+
+def test_energies_pile_up_to_the_input(results: Results) -> None:
+    axes = course.energy(results).axes[0]
+    top = axes.collections[-1].get_paths()[0].vertices[:, 1].max()
+    assert top == pytest.approx(results.history("energy")[:, 0].max(), rel=1e-6)
+
+
+def test_every_collision_is_marked(results: Results) -> None:
+    figure = course.collisions(results)
+    marked = np.concatenate([c for c in lines(figure.axes[0]) if len(c)])
+    table = results.table("collisions")
+    assert sorted(marked[:, 0]) == pytest.approx(sorted(table["t_start"]))
+    assert sorted(marked[:, 1]) == pytest.approx(sorted(table["peak_force"]))
+
+
+def test_what_cannot_be_drawn_is_said(results: Results, tmp_path: Path, capsys: Any) -> None:
+    file = str(results.path)
+    assert main(["plot", file, "nonsense"]) == 2
+    assert "nonsense" in capsys.readouterr().err
+    lacking = [name for name in PICTURES if name not in plot.possible(results)]
+    if lacking:
+        assert main(["plot", file, lacking[0]]) == 2
+        assert "lacks" in capsys.readouterr().err
+    assert main(["plot", str(tmp_path / "none.h5")]) == 3
+    assert main(["plot", file, "energy", "-o", str(tmp_path / "pictures"), "--as", "png"]) == 0
+    assert (tmp_path / "pictures" / "two_oscillators_energy.png").exists()
