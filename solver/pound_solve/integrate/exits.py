@@ -56,7 +56,7 @@ def first_exit(w: Laws, x: Motion, h: float) -> tuple[int, int, float]:
                 s0 += fv * along(w.rows, i, x.q, A)
                 s1 += fv * along(w.rows, i, x.q, A1)
             g0 = min(excess(w, i, e, d, v)[0], 0.0)  # a branch holds when it is entered
-            if g1 > tol and fd == 0.0:  # accelerations of massless unknowns would mislead
+            if g1 > tol and g0 < 0.0 and fd == 0.0:  # accelerations of massless unknowns would mislead
                 at = h * g0 / (g0 - g1)
             elif g1 > tol:
                 at = root(g0, g1, s0, s1, h)
