@@ -23,25 +23,31 @@ from pound_solve.integrate.arrays import (
 from pound_solve.integrate.states import along
 
 
+def excess(w: Laws, i: int, e: int, d: float, v: float) -> tuple[float, float]:
+    """How far law `i` is beyond its exit `e` at deformation `d` and rate `v`, and the size of the terms."""
+    fd, fv, fc = w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2]
+    if fd == 0.0 and fc == 0.0:  # what hardly moves would turn again and again
+        fc = -BACK * abs(fv) * w.f[i, MOST_V]
+    return fd * d + fv * v + fc, abs(fd) * w.f[i, MOST_D] + abs(fv) * w.f[i, MOST_V] + abs(fc)
+
+
 def first_exit(w: Laws, x: Motion, h: float) -> tuple[int, int, float]:
     """The first exit that is passed in the step of length `h` that was tried.
 
     Returns
     -------
     law, exit, time : int, int, float
-        Law -1 where there is none; the time is that of the cubic through values and slopes at both ends.
+        Law -1 where there is none; the time is that of the cubic through values and slopes at both ends,
+        for an exit at a rate that of the straight line.
     """
     best, best_law, best_exit = np.inf, -1, -1
     for i in range(len(w.i)):
         d, v, d1, v1 = w.f[i, LD], w.f[i, LV], w.f[i, LD1], w.f[i, LV1]
         for e in range(w.i[i, N_EXITS]):
-            fd, fv, fc = w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2]
+            fd, fv = w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1]
             if fd == 0.0 and fv == 0.0:
                 continue
-            if fd == 0.0 and fc == 0.0:  # what hardly moves would turn again and again
-                fc = -BACK * abs(fv) * w.f[i, MOST_V]
-            g1 = fd * d1 + fv * v1 + fc
-            size = abs(fd) * w.f[i, MOST_D] + abs(fv) * w.f[i, MOST_V] + abs(fc)
+            g1, size = excess(w, i, e, d1, v1)
             tol = STILL * max(size, abs(g1))
             s0, s1 = fd * v, fd * v1
             if g1 <= tol and not (s0 > 0.0 and s1 < 0.0):
@@ -49,8 +55,10 @@ def first_exit(w: Laws, x: Motion, h: float) -> tuple[int, int, float]:
             if fv != 0.0:
                 s0 += fv * along(w.rows, i, x.q, A)
                 s1 += fv * along(w.rows, i, x.q, A1)
-            g0 = min(fd * d + fv * v + fc, 0.0)  # a branch holds when it is entered
-            if g1 > tol:
+            g0 = min(excess(w, i, e, d, v)[0], 0.0)  # a branch holds when it is entered
+            if g1 > tol and g0 < 0.0 and fd == 0.0:  # accelerations of massless unknowns would mislead
+                at = h * g0 / (g0 - g1)
+            elif g1 > tol:
                 at = root(g0, g1, s0, s1, h)
             else:
                 at, top = summit(g0, g1, s0, s1, h)
@@ -60,6 +68,16 @@ def first_exit(w: Laws, x: Motion, h: float) -> tuple[int, int, float]:
             if at < best:
                 best, best_law, best_exit = at, i, e
     return best_law, best_exit, best
+
+
+def between(a: float, b: float, c: float, ga: float, gb: float, gc: float) -> float:
+    """Next trial for a zero of g between `a` and `b`, where its signs differ, by inverse quadratic
+    interpolation with `c`, tried before; by the secant where `gc` is not known.
+    """
+    share = ga / (ga - gb)
+    if gc == gc:
+        share = ga / (gb - ga) * gc / (gb - gc) + (c - a) / (b - a) * ga / (gc - ga) * gb / (gc - gb)
+    return a + share * (b - a)
 
 
 def summit(g0: float, g1: float, s0: float, s1: float, h: float) -> tuple[float, float]:

@@ -28,7 +28,6 @@ from pound_solve.integrate.arrays import (
     A1,
     AHEAD,
     AT,
-    BACK,
     BASE,
     CA,
     CA1,
@@ -42,7 +41,6 @@ from pound_solve.integrate.arrays import (
     DASHPOT,
     DONE,
     EVENTS,
-    EXIT,
     F0,
     FULL,
     G0,
@@ -103,7 +101,7 @@ from pound_solve.integrate.arrays import (
     W,
     Y,
 )
-from pound_solve.integrate.exits import first_exit, summit
+from pound_solve.integrate.exits import between, excess, first_exit, summit
 from pound_solve.integrate.ldl import factor, solve, update
 from pound_solve.integrate.states import (
     along,
@@ -619,6 +617,71 @@ def uncut_step(
     return NEWTON
 
 
+def cut(
+    m: Matrices, w: Laws, x: Motion, scheme: Scheme, f: Tables, coefs: Array, s0: float, piece: float,
+    h: float, law: int, way: int, tau: float, count: Index,
+) -> tuple[int, int, int, float]:  # fmt: skip
+    """Shorten a step from the local time `s0`, in which exits are passed, to the first of them.
+
+    Parameters
+    ----------
+    piece, h : float
+        Its length as it was tried, and the nominal one.
+    law, way, tau : int, int, float
+        What `first_exit` said of it.
+
+    Returns
+    -------
+    why, law, way, at : int, int, int, float
+        DONE or what failed; the law and its exit, law -1 where none is met after all; the length, which was
+        tried last, or 0 where the exit is met at once.
+    """
+    low, high, third = 0.0, piece, np.nan
+    g_low = excess(w, law, way, w.f[law, LD], w.f[law, LV])[0]
+    g_high, g_third = excess(w, law, way, w.f[law, LD1], w.f[law, LV1])[0], np.nan
+    for turn in range(100):
+        if tau <= CLOSE * h:
+            return DONE, law, way, 0.0
+        last = high - low <= CLOSE * h
+        if last:
+            tau = high
+        elif turn > 12:
+            tau = 0.5 * (low + high)
+        bad = refactor(m, w, x, scheme, tau, PIECE)
+        if bad >= 0:
+            count[WORST] = bad
+            return PIVOT, law, way, 0.0
+        if not attempt(m, w, x, scheme, f, coefs, s0 + tau, tau, PIECE, count):
+            return NEWTON, law, way, 0.0
+        passed, exit2, tau2 = first_exit(w, x, tau)
+        other = passed >= 0 and (passed != law or exit2 != way)
+        if other:
+            law, way, g_low, g_third = passed, exit2, np.nan, np.nan
+            if low == 0.0:
+                g_low = excess(w, law, way, w.f[law, LD], w.f[law, LV])[0]
+        g, size = excess(w, law, way, w.f[law, LD1], w.f[law, LV1])
+        if abs(g) <= STILL * size or last or 0.0 <= tau - tau2 <= CLOSE * h:
+            if passed < 0 and abs(g) > NEAR * size:
+                law = -1  # it was no exit: rates of massless unknowns may mislead
+            return DONE, law, way, tau
+        if passed >= 0:
+            third, g_third, high, g_high = high, g_high, tau, g
+        elif g_high <= 0.0:
+            return DONE, -1, way, tau  # no exit up to here; the rest of the step may have one
+        else:
+            third, g_third, low, g_low = low, g_low, tau, g
+        if passed >= 0 and g_low != g_low:
+            tau = tau2
+        elif passed >= 0:
+            tau = between(high, low, third, g_high, g_low, g_third)
+        else:
+            tau = between(low, high, third, g_low, g_high, g_third)
+        tau += 0.5 * CLOSE * h  # a trial just beyond the exit ends the search, one before it does not
+        if not low < tau < high:
+            tau = 0.5 * (low + high)
+    return NEWTON, law, way, 0.0
+
+
 def whole_step(
     m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, scheme: Scheme, coefs: Array, begin: float,
     count: Index, clock: Array, length: float, h: float,
@@ -665,51 +728,10 @@ def whole_step(
             continue
         if curved:  # what is tried from here on moves the tangents away from the factor at hand
             count[UPDATES] = REFRESH + 1
-        first, low, high, at = False, 0.0, piece, -1.0
-        for turn in range(100):
-            if tau <= CLOSE * h:
-                at = 0.0
-                break
-            last = high - low <= CLOSE * h
-            if last:
-                tau = high
-            elif turn > 8:
-                tau = 0.5 * (low + high)
-            bad = refactor(m, w, x, scheme, tau, PIECE)
-            if bad >= 0:
-                count[WORST] = bad
-                return PIVOT
-            if not attempt(m, w, x, scheme, f, coefs, t + tau - begin, tau, PIECE, count):
-                return NEWTON
-            law2, way2, tau2 = first_exit(w, x, tau)
-            if law2 >= 0:
-                law, way, high = law2, way2, tau
-                if tau - tau2 <= CLOSE * h or last:
-                    at = tau
-                    break
-                tau = tau2
-                continue
-            fd, fv, fc = (
-                w.f[law, EXIT + 3 * way],
-                w.f[law, EXIT + 3 * way + 1],
-                w.f[law, EXIT + 3 * way + 2],
-            )
-            if fd == 0.0 and fc == 0.0:
-                fc = -BACK * abs(fv) * w.f[law, MOST_V]
-            g = fd * w.f[law, LD1] + fv * w.f[law, LV1] + fc
-            size = abs(fd) * w.f[law, MOST_D] + abs(fv) * w.f[law, MOST_V] + abs(fc)
-            if last or abs(g) <= STILL * size:
-                at = tau
-                if abs(g) > NEAR * size:
-                    law = -1  # it was no exit: rates of massless unknowns may mislead
-                break
-            low = tau
-            slope = fd * w.f[law, LV1]
-            if fv != 0.0:
-                slope += fv * along(w.rows, law, x.q, A1)
-            tau = tau - g / slope if slope > 0.0 else high
-            if not low < tau < high:
-                tau = 0.5 * (low + high)
+        first = False
+        why, law, way, at = cut(m, w, x, scheme, f, coefs, t - begin, piece, h, law, way, tau, count)
+        if why != DONE:
+            return why
         if at > 0.0:
             accept(m, w, x, scheme, at)
             left -= at
