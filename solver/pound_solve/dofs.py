@@ -76,11 +76,7 @@ class Freedoms:
             for freedom, value in zip(freedoms, values)
             for column, factor in self.terms[freedom]
         ]
-        return (
-            gathered((len(sums), self.size), *zip(*terms))
-            if terms
-            else gathered((len(sums), self.size), [], [], [])
-        )
+        return gathered((len(sums), self.size), *np.array(terms).reshape(-1, 3).T)
 
     def matrix(self, freedoms: Collection[Freedom]) -> Matrix:
         """Rows of several freedoms, shape (len(freedoms), size)."""
@@ -105,12 +101,12 @@ def number(
     """Number the freedoms of `nodes` and the `internal` ones of elements;
     those in `moved` (fixed ones) get prescribed columns.
     """
-    moved = tuple(sorted(moved))
+    moved, prescribed = tuple(sorted(moved)), frozenset(moved)
     free = tuple(
         (n.id, d)
         for n in nodes.values()
         for d in range(3)
-        if DIRECTIONS[d] not in n.fixed and DIRECTIONS[d] not in n.slaved and (n.id, d) not in moved
+        if DIRECTIONS[d] not in n.fixed and DIRECTIONS[d] not in n.slaved and (n.id, d) not in prescribed
     ) + tuple(internal)
     column = {f: i for i, f in enumerate(free + moved)}
     terms: dict[Freedom, tuple[tuple[int, float], ...]] = {f: ((column[f], 1.0),) for f in internal}

@@ -105,15 +105,18 @@ class Held:
                 self.slack = self._vectors[:, :lacking]
                 self.negative = self._vectors[:, 0] if self._values[0] < -1e-10 else None
             return
+        n = k.shape[0]
         try:
             self._factor = Factor(k)
+            pivots, least = self._factor.pivots, 0.0
         except np.linalg.LinAlgError:
-            # hold what has no pivot: to let go of it again is a motion that K does not resist
-            n = k.shape[0]
-            pivots = Factor(k + TINY * matrices.selection(n, np.arange(n)), 0.0).pivots
-            weak = np.flatnonzero(np.abs(pivots) < 1e-14 * max(n, 10))
+            tiny = TINY * matrices.selection(n, np.arange(n))
+            pivots, least = Factor(k + tiny, 0.0).pivots, 10 * TINY * max(n, 10)
+        weak = np.flatnonzero((pivots < least) & (pivots > -1e-10))
+        if len(weak):  # to let go of what is held there is a motion that K does not resist
             self._factor = Factor(k + matrices.gathered(k.shape, weak, weak, np.ones(len(weak))))
             self.slack = np.linalg.qr(self._factor.solve(dense(matrices.selection(n, weak))))[0]
+        assert self._factor is not None
         if self._factor.negative:
             x = _generic(k.shape[0])
             for _ in range(20):  # what is near to zero, as a structure is that has just collapsed

@@ -342,8 +342,14 @@ def condense(scene: Scene) -> Condensed:
     (C_ca + C_cc G = 0) or they are not damped at all; and what pushes them alone meets no dashpot.
     """
     structure, n = scene.structure, scene.size
-    names = ("mass", "damping", "stiffness", "law_rows", "expand")
-    scene = replace(scene, **{name: dense(getattr(scene, name)) for name in names})
+    scene = replace(
+        scene,
+        mass=dense(scene.mass),
+        damping=dense(scene.damping),
+        stiffness=dense(scene.stiffness),
+        law_rows=dense(scene.law_rows),
+        expand=dense(scene.expand),
+    )
     k, support = scene.stiffness, scene.support_inputs
     at = scene.columns
     to_supports = dense(structure.stiffness[at, structure.n_free :])

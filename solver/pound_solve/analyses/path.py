@@ -418,7 +418,7 @@ def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
     root = _root(k[np.ix_(at, at)])
     whole, push = Held(scaled(k[np.ix_(at, at)], root)), root * load[at]
     if whole.negative is not None:
-        worst = at[int(np.argmax(np.abs(whole.negative)))]
+        worst = at[_largest(whole.negative)]
         raise Unstable(
             "the stiffness is negative: the structure has collapsed, "
             f"worst at {name_of(structure, int(worst))}"
@@ -426,7 +426,7 @@ def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
     along = whole.slack.T @ push
     size = max(float(np.linalg.norm(push)), float(np.abs(root * usual[at]).max()))
     if np.any(np.abs(along) > 1e-10 * size):
-        worst = at[int(np.argmax(np.abs(whole.slack @ along)))]
+        worst = at[_largest(whole.slack @ along)]
         raise Unstable(
             f"the loaded structure is a mechanism, worst at {name_of(structure, int(worst))} "
             "(or parts of it are so much stiffer than others that it cannot be told from one: END1, END2 "
@@ -435,6 +435,12 @@ def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
     # an unloaded mechanism (a free diaphragm) stays where it is
     u[at] = root * whole.solve(push)
     return u
+
+
+def _largest(motion: Array) -> int:
+    """First of the unknowns that move most, to a hair."""
+    size = np.abs(motion)
+    return int(np.argmax(size > (1.0 - 1e-9) * size.max()))
 
 
 def controlled(k: Matrix, push: Array, control: Array, force: Array, go: float) -> tuple[Array, float]:
