@@ -242,7 +242,7 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
     shift = 0.0
     try:
         if Factor(k).negative:
-            raise np.linalg.LinAlgError("negative stiffness: it has no modes")
+            raise np.linalg.LinAlgError("negative stiffness")
     except np.linalg.LinAlgError:  # rigid bodies: a little stiffness where mass is makes them slow modes
         shift = 1e-8 / float(diagonal(m).max())
     factor = Factor(k + shift * m)

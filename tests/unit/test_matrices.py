@@ -1,4 +1,4 @@
-"""Plain and sparse matrices: the same numbers, modes and messages, and memory that grows with the structure."""
+"""Plain and sparse matrices: the same numbers, modes and messages; memory that grows with the structure."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def test_what_resists_nothing_is_found_and_left_out():
 
 
 def test_slow_modes_of_a_long_chain():
-    """omega_j = 2 sin((2j-1) pi / (2 (2n+1))), Chopra 2012 has the shear building; shapes are orthonormal."""
+    """omega_j = 2 sin((2j-1) pi / (2 (2n+1))) of n equal masses and springs, held at one end."""
     n, count = 3000, 6
     k, m = chain(n)
     found = modes.solve(k, m, count)
@@ -167,7 +167,7 @@ def test_a_mechanism_has_the_same_name(monkeypatch):
     deck = "NODES\n 1 TO 3 0 TO 2 0 FIX=YR\nELEMENTS\n 1 TO 2 A 1 TO 2 2 TO 3\nPROPS\n A SPRING KX=100\n"
 
     def said():
-        with pytest.raises(Unstable, match="mechanism, worst at node 1 ux") as err:
+        with pytest.raises(Unstable, match="mechanism, worst at node 2 ux") as err:
             static.solve(assemble(model_of(deck + "LOADS\n 3 1\nANALYSIS\n STATIC\n")))
         return str(err.value)
 
@@ -177,15 +177,16 @@ def test_a_mechanism_has_the_same_name(monkeypatch):
 
 
 def test_memory_grows_with_the_storeys(tmp_path):
-    """Peak of what Python and numpy hold in a run of the steel frame: a straight line, not a parabola."""
+    """Peak of what Python and numpy hold in a run of the steel frame: it doubles with the storeys."""
     deck = tmp_path / "frame.inp"  # P-Delta would make the tall ones buckle
     deck.write_text(FRAME.read_text(encoding="utf-8").replace("GEOMETRY PDELTA", "GEOMETRY SMALL"))
     sizes = []
-    for storeys in (20, 20, 40, 80):  # the first loads and compiles
+    for storeys in (5, 40, 80):  # the first loads and compiles
         params = {"pga": 3, "every": 0.05, "t": 0.05, "dt": 0.025, "storeys": storeys}
-        tracemalloc.start()
+        if storeys > 5:
+            tracemalloc.start()
         run(deck, out=tmp_path, params=params).close()
-        sizes.append(tracemalloc.get_traced_memory()[1])
-        tracemalloc.stop()
-    _, a, b, c = sizes
-    assert c - b < 2.6 * (b - a), sizes  # full matrices make it 4
+        if storeys > 5:
+            sizes.append(tracemalloc.get_traced_memory()[1])
+            tracemalloc.stop()
+    assert sizes[1] < 2.3 * sizes[0], sizes  # full matrices make it 4
