@@ -29,7 +29,7 @@ FRAMES = HERE.parent / "examples" / "frames"
 DT = 0.005  # of the frames [s]
 CHAIN_DT = 1e-4  # below the stability limit of the chain with 20 elements a diaphragm [s]
 SHORT = 0.05  # length of the run that is taken off [s]
-STOREYS = 5, 10, 20, 40  # of the growth, three bays
+STOREYS = 5, 10, 20, 40, 80, 160  # of the growth, three bays
 
 
 class Case(NamedTuple):

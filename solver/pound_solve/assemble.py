@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -16,26 +16,28 @@ from pound_solve.chords import Chords
 from pound_solve.damping.base import DampingError, Ground
 from pound_solve.damping.secant import SecantLaw
 from pound_solve.dofs import DIRECTIONS, Freedom, Freedoms, label, number
-from pound_solve.elements.base import ElementError, Geometric, LawSpring, Output, Parts, Site
+from pound_solve.elements.base import Block, ElementError, Geometric, LawSpring, Output, Parts, Site
+from pound_solve.matrices import Matrix, entries, gathered, least_squares, weighted
 
 Array = NDArray[np.float64]
 
 
 @dataclass
 class Structure:
-    """The assembled structure; arrays run over `freedoms` columns (unknowns, then prescribed).
+    """The assembled structure; arrays run over `freedoms` columns (unknowns, then prescribed),
+    matrices are plain or sparse (see `matrices`).
 
     Attributes
     ----------
-    stiffness : ndarray, shape (n, n)
+    stiffness : Matrix, shape (n, n)
         Linear stiffness, laws apart [F/L].
-    initial_stiffness : ndarray, shape (n, n)
+    initial_stiffness : Matrix, shape (n, n)
         The same with the initial stiffness of all hysteretic laws.
-    mass : ndarray, shape (n, n)
+    mass : Matrix, shape (n, n)
         [F T^2/L]
-    damping : ndarray, shape (n, n)
+    damping : Matrix, shape (n, n)
         Dashpots of laws apart [F T/L].
-    initial_damping : ndarray, shape (n, n)
+    initial_damping : Matrix, shape (n, n)
         The same with the dashpots of hysteretic laws, at their initial stiffness.
     loads : ndarray, shape (n,)
         Static loads [F].
@@ -45,7 +47,7 @@ class Structure:
         ``M r`` for a unit acceleration of the ground along x and y and in a turn about the origin,
         supports included [F T^2/L], [F T^2].
     laws : tuple of LawSpring
-    law_rows : ndarray, shape (n_laws, n)
+    law_rows : Matrix, shape (n_laws, n)
         Deformation of each law from the freedoms.
     outputs : tuple of Output
         Quantities of the elements outside laws.
@@ -64,16 +66,16 @@ class Structure:
 
     model: Model
     freedoms: Freedoms
-    stiffness: Array
-    initial_stiffness: Array
-    mass: Array
-    damping: Array
-    initial_damping: Array
+    stiffness: Matrix
+    initial_stiffness: Matrix
+    mass: Matrix
+    damping: Matrix
+    initial_damping: Matrix
     loads: Array
     released: Array
     ground: Array
     laws: tuple[LawSpring, ...]
-    law_rows: Array
+    law_rows: Matrix
     outputs: tuple[Output, ...]
     geometric: tuple[Geometric, ...]
     chords: Chords
@@ -94,13 +96,19 @@ class Structure:
 
     @cached_property
     def free_vibration(self) -> modes.Modes:
-        """Modes of the initial structure, contacts open."""
+        """All modes of the initial structure, contacts open."""
+        return self.vibration(None)
+
+    def vibration(self, count: int | None) -> modes.Modes:
+        """Its `count` slowest modes, or more; None: all."""
+        if "free_vibration" in self.__dict__:
+            return self.free_vibration
         n = self.n_free
-        return modes.solve(self.initial_stiffness[:n, :n], self.mass[:n, :n])
+        return modes.solve(self.initial_stiffness[:n, :n], self.mass[:n, :n], count)
 
     def axial(self, u: Array) -> Array:
         """Axial forces of the members of `geometric` at displacements `u` of all columns [F]."""
-        return np.array([self.freedoms.row(g.freedoms, g.axial) @ u + g.constant for g in self.geometric])
+        return np.array([self.freedoms.value(g.freedoms, g.axial, u) + g.constant for g in self.geometric])
 
     def stressed(self, axial: Array) -> Structure:
         """The structure whose members carry these axial forces, shape (n_geometric,):
@@ -108,11 +116,13 @@ class Structure:
         """
         if not len(axial):
             return self
-        matrix = np.zeros_like(self.stiffness)
         rows: dict[tuple[int, str], Array] = {}
+        blocks: list[Block] = []
         for g, force in zip(self.geometric, axial.tolist()):
-            _scatter(matrix, self.freedoms, g.freedoms, force * g.matrix)
-            rows |= {(g.element, quantity): force * row for quantity, row in g.forces.items()}
+            blocks.append(Block(g.freedoms, force * g.matrix))
+            for quantity, row in g.forces.items():
+                rows[g.element, quantity] = force * row
+        matrix = _sum(self.freedoms, blocks)
         outputs = tuple(
             replace(o, u_row=o.u_row + rows.get((o.element, o.quantity), 0.0)) for o in self.outputs
         )
@@ -127,24 +137,30 @@ class Structure:
         """The structure whose initial stiffness is that at displacements `u` of the unknowns."""
         if not self.chords:
             return self
-        n, k = self.n_free, self.initial_stiffness.copy()
-        k[:n, :n] += self.chords.on(slice(n)).stiffness(u)
+        pad = np.zeros(len(self.freedoms.moved))
+        k = self.initial_stiffness + self.framed(self.chords.stiffness(np.append(u, pad)))
         return replace(self, initial_stiffness=k)
+
+    def framed(self, k: Matrix) -> Matrix:
+        """The part of a matrix over all columns, or over the unknowns, that is theirs; zeros elsewhere."""
+        (i, j, x), n = entries(k), self.n_free
+        own = (i < n) & (j < n)
+        return gathered(self.stiffness.shape, i[own], j[own], x[own])
 
     def member_forces(self, u: Array) -> Array:
         """All of `outputs` at displacements `u` of all columns and no velocity, shape (n_outputs,)."""
-        linear = [float(self.freedoms.row(o.freedoms, o.u_row) @ u) + o.constant for o in self.outputs]
+        linear = [self.freedoms.value(o.freedoms, o.u_row, u) + o.constant for o in self.outputs]
         if not self.chords:
             return np.array(linear)
         at, share = self.chords.shares([(o.element, o.quantity) for o in self.outputs])
-        found = self.chords.survey((self.chords.rows @ u)[None])[0]
+        found = self.chords.survey(self.chords.quantities(u)[None])[0]
         return np.array(linear) + (share * found[at, 1:]).sum(axis=1)
 
     def influence(self) -> Array:
         """Quasi-static motion of the unknowns for unit prescribed motions, shape (n_free, n_moved)."""
         n = self.n_free
         k = self.initial_stiffness
-        return -np.asarray(np.linalg.lstsq(k[:n, :n], k[:n, n:], rcond=None)[0], float)
+        return -least_squares(k[:n, :n], k[:n, n:])
 
 
 class AssemblyError(Exception):
@@ -248,31 +264,26 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
     n = freedoms.size
 
     laws = tuple(s for p in ordered for s in p.laws)
-    rows = np.array([freedoms.row(s.freedoms, s.row) for s in laws]).reshape(len(laws), n)
-    k_linear, c = np.zeros((n, n)), np.zeros((n, n))
+    rows = freedoms.rows([(s.freedoms, s.row) for s in laws])
+    k_linear = _sum(freedoms, (b for p in ordered for b in p.stiffness))
+    c = _sum(freedoms, (b for p in ordered for b in p.damping))
     loads, released = np.zeros(n), np.zeros(n)
     for p in ordered:
-        for b in p.stiffness:
-            _scatter(k_linear, freedoms, b.freedoms, b.matrix)
-        for b in p.damping:
-            _scatter(c, freedoms, b.freedoms, b.matrix)
         for at, vector in p.loads:
-            loads += freedoms.row(at, vector)
+            freedoms.add(loads, at, vector)
     for card in model.loads:
         for node in card["NODES"]:
-            row = freedoms.row([(node, d) for d in range(3)], [card["FX"], card["FY"], card["MZ"]])
-            loads += row
+            at, push = tuple((node, d) for d in range(3)), (card["FX"], card["FY"], card["MZ"])
+            freedoms.add(loads, at, push)
             if card["HELD"] == "NO":
-                released += row
-    mass = np.zeros((n, n))
+                freedoms.add(released, at, push)
+    mass = _sum(freedoms, (Block(at, matrix) for _, at, matrix in mass_terms))
     ground = np.zeros((3, n))
     for _, at, matrix in mass_terms:
-        _scatter(mass, freedoms, at, matrix)
         for d in range(3):
-            ground[d] += freedoms.row(at, matrix @ [_ridden(model, f, d) for f in at])
-    k0 = k_linear + (rows.T * [s.k0 for s in laws]) @ rows
+            freedoms.add(ground[d], at, matrix @ [_ridden(model, f, d) for f in at])
+    k0 = k_linear + weighted(rows, [s.k0 for s in laws])
     chords = [c for p in ordered for c in p.chords]
-    quantities = [c.rows @ freedoms.matrix(c.freedoms) for c in chords]
 
     structure = Structure(
         model,
@@ -289,7 +300,7 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
         rows,
         tuple(o for p in ordered for o in p.outputs),
         tuple(g for p in ordered for g in p.geometric),
-        Chords(chords, np.array(quantities).reshape(len(chords), 6, n)),
+        Chords(chords, freedoms.rows([(c.freedoms, row) for c in chords for row in c.rows])),
         nodal_mass,
         self_weight,
         parts,
@@ -329,16 +340,20 @@ def _add_diagonals(
             out[master, d] = out.get((master, d), 0.0) + out.get((node.id, d), 0.0)
 
 
-def _scatter(out: Array, freedoms: Freedoms, at: tuple[Freedom, ...], matrix: Array) -> None:
-    """Add a small matrix at its freedoms, through slaving."""
-    columns = [freedoms.terms[f] for f in at]
-    for a, row in enumerate(columns):
-        for b, col in enumerate(columns):
-            value = matrix[a, b]
-            if value != 0.0:
-                for i, fi in row:
-                    for j, fj in col:
-                        out[i, j] += value * fi * fj
+def _sum(freedoms: Freedoms, blocks: Iterable[Block]) -> Matrix:
+    """Sum of small matrices at their freedoms, through slaving, shape (n, n)."""
+    rows, columns, values = [], [], []
+    for block in blocks:
+        terms = [freedoms.terms[f] for f in block.freedoms]
+        for own, line in zip(terms, block.matrix.tolist()):
+            for other, value in zip(terms, line):
+                if value != 0.0:
+                    for i, fi in own:
+                        for j, fj in other:
+                            rows.append(i)
+                            columns.append(j)
+                            values.append(value * fi * fj)
+    return gathered((freedoms.size, freedoms.size), rows, columns, values)
 
 
 def _add_damping(
@@ -349,37 +364,33 @@ def _add_damping(
 ) -> None:
     model, freedoms, n = structure.model, structure.freedoms, structure.n_free
 
-    def mass_of(nodes: Collection[int] | None) -> Array:
+    def mass_of(nodes: Collection[int] | None) -> Matrix:
         if nodes is None:
             return structure.mass
-        out, chosen = np.zeros_like(structure.mass), frozenset(nodes)
+        blocks, chosen = list[Block](), frozenset(nodes)
         for where, at, matrix in mass_terms:
             inside = np.array([f[1] < 3 and f[0] in chosen for f in at])
             if not matrix[np.ix_(inside, ~inside)].any():  # lumped: each node takes its own
-                _scatter(out, freedoms, at, np.where(inside[:, None] & inside, matrix, 0.0))
+                blocks.append(Block(at, np.where(inside[:, None] & inside, matrix, 0.0)))
             else:  # a consistent matrix is shared evenly by the nodes that can move
                 loose = {k for k in where if len(set(model.nodes[k].fixed)) < 3}
-                _scatter(out, freedoms, at, matrix * (len(loose & chosen) / max(len(loose), 1)))
-        return out
+                blocks.append(Block(at, matrix * (len(loose & chosen) / max(len(loose), 1))))
+        return _sum(freedoms, blocks)
 
-    def stiffness_of(labels: Collection[str] | None, laws: bool) -> Array:
-        out = np.zeros_like(structure.stiffness)
-        for e in model.elements.values():
-            if labels is None or e.prop in labels:
-                for b in [parts[e.id].initial()] if laws else parts[e.id].stiffness:
-                    _scatter(out, freedoms, b.freedoms, b.matrix)
-        return out
+    def stiffness_of(labels: Collection[str] | None, laws: bool) -> Matrix:
+        chosen = [parts[e.id] for e in model.elements.values() if labels is None or e.prop in labels]
+        return _sum(freedoms, (b for p in chosen for b in ([p.initial()] if laws else p.stiffness)))
 
-    def modes_of(nodes: Collection[int] | None) -> modes.Modes:
+    def modes_of(nodes: Collection[int] | None, count: int | None) -> modes.Modes:
         if nodes is None:
-            return structure.free_vibration
+            return structure.vibration(count)
         k, m = structure.initial_stiffness[:n, :n], structure.mass[:n, :n]
         named = np.zeros(n, bool)
         named[[i for k in nodes for d in range(3) for i, _ in freedoms.terms[k, d] if i < n]] = True
         if not named.any():
             raise DampingError("none of these nodes can move", "NODES")
-        linked, inside = (k != 0.0) | (m != 0.0), named
-        while (more := inside | linked[inside].any(axis=0)).sum() > inside.sum():
+        linked, inside = abs(k) + abs(m), named
+        while (more := inside | (linked @ inside > 0.0)).sum() > inside.sum():
             inside = more
         strange = [f for f, x in zip(freedoms.free, inside & ~named) if x and f[1] < 3]
         if strange:
@@ -387,7 +398,8 @@ def _add_damping(
                 f"{label(strange[0])} hangs together with these nodes: only a whole building has modes",
                 "NODES",
             )
-        own = modes.solve(k[np.ix_(inside, inside)], m[np.ix_(inside, inside)])
+        at = np.flatnonzero(inside)
+        own = modes.solve(k[np.ix_(at, at)], m[np.ix_(at, at)], count)
         shapes = np.zeros((n, len(own.omega)))
         shapes[inside] = own.shapes
         return modes.Modes(own.omega, shapes)
@@ -409,15 +421,11 @@ def _add_damping(
             )
             continue
         if group.relative is not None:
-            free = group.relative[:n, :n]
-            structure.damping[:n, :n] += free
+            structure.damping = structure.damping + structure.framed(group.relative)
             if len(freedoms.moved):
-                follow = structure.influence()
-                structure.damping[:n, n:] -= free @ follow
-                structure.damping[n:, :n] -= follow.T @ free
-                structure.damping[n:, n:] += follow.T @ free @ follow
+                structure.damping = structure.damping + _against(structure, group.relative[:n, :n])
         if group.between is not None:
-            structure.damping += group.between
+            structure.damping = structure.damping + group.between
         if group.dashpots is not None:
             labels, beta, by_secant = group.dashpots
             for i, s in enumerate(structure.laws):
@@ -426,9 +434,22 @@ def _add_damping(
         structure.damping_texts.append((card, group.text))
     structure.initial_damping = structure.damping
     if betas.any():
-        rows, k0 = structure.law_rows, [s.k0 for s in structure.laws]
-        structure.initial_damping = structure.damping + (rows.T * (betas.sum(axis=0) * k0)) @ rows
+        follow = betas.sum(axis=0) * [s.k0 for s in structure.laws]
+        structure.initial_damping = structure.damping + weighted(structure.law_rows, follow)
         structure.laws = tuple(
             replace(s, beta=beta, secant=secant, law=SecantLaw(s.law.rule, s.law.p) if secant else s.law)
             for s, beta, secant in zip(structure.laws, *betas.tolist())
         )
+
+
+def _against(structure: Structure, c: Matrix) -> Matrix:
+    """What a damping of the unknowns adds at moved supports, if it acts on the motion relative to the
+    quasi-static one, shape (n, n).
+    """
+    n, follow = structure.n_free, structure.influence()
+    pull = c @ follow
+    out = []
+    for corner, i, j in ((-pull, 0, n), (-pull.T, n, 0), (follow.T @ pull, n, n)):
+        rows, columns, values = entries(np.asarray(corner))
+        out.append((rows + i, columns + j, values))
+    return gathered(structure.stiffness.shape, *(np.concatenate(part) for part in zip(*out)))

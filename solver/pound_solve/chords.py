@@ -40,6 +40,7 @@ from numpy.typing import NDArray
 
 from pound_solve import jit
 from pound_solve.dofs import Freedom
+from pound_solve.matrices import Matrix, by_rows, gathered
 
 Array = NDArray[np.float64]
 
@@ -181,43 +182,60 @@ class Chords:
     Parameters
     ----------
     own : sequence of Chord
-    rows : ndarray, shape (n_chords, 6, n)
-        Their quantities over the columns of the displacements.
+    rows : Matrix, shape (6 n_chords, n)
+        Their quantities over the columns of the displacements, six rows for each.
 
     Attributes
     ----------
     p : ndarray, shape (n_chords, 10)
     """
 
-    def __init__(self, own: Sequence[Chord], rows: Array) -> None:
+    def __init__(self, own: Sequence[Chord], rows: Matrix) -> None:
         self.own, self.rows = tuple(own), rows
-        self.p = np.array([c.p for c in own]).reshape(len(rows), 10)
+        self.p = np.array([c.p for c in own]).reshape(len(own), 10)
 
     def __len__(self) -> int:
         return len(self.own)
 
     def on(self, columns: list[int] | slice) -> Chords:
         """The same over some of the columns, the others at rest."""
-        return Chords(self.own, self.rows[:, :, columns])
+        return Chords(self.own, self.rows[:, columns])
+
+    def quantities(self, u: Array) -> Array:
+        """The six quantities of every chord at displacements `u`, shape (n_chords, 6)."""
+        return np.asarray(self.rows @ u, float).reshape(-1, QUANTITIES)
+
+    def touched(self) -> list[tuple[NDArray[np.int64], Array]]:
+        """Columns that each chord touches, ascending, and its six quantities over them, (6, n_touched)."""
+        rows, out = by_rows(self.rows), []
+        for c in range(len(self)):
+            six = rows[QUANTITIES * c : QUANTITIES * (c + 1)]
+            at = np.unique(np.concatenate([columns for columns, _ in six]))
+            own = np.zeros((QUANTITIES, len(at)))
+            for j, (columns, values) in enumerate(six):
+                own[j, np.searchsorted(at, columns)] = values
+            out.append((at, own))
+        return out
 
     def forces(self, u: Array) -> Array:
         """Forces beyond those of the linear stiffness, shape (n,)."""
         out = np.zeros((len(self), QUANTITIES))
-        s = self.rows @ u
+        s = self.quantities(u)
         for c in range(len(self)):
             push(self.p, c, s, 0, out, 0)
-        return np.asarray(np.tensordot(out, self.rows, 2), float)
+        return np.asarray(out.ravel() @ self.rows, float)
 
-    def stiffness(self, u: Array) -> Array:
+    def stiffness(self, u: Array) -> Matrix:
         """Their tangent, shape (n, n); see `bend`."""
-        s, h = self.rows @ u, np.zeros((len(self), QUANTITIES**2))
-        out = np.zeros((self.rows.shape[2],) * 2)
-        for c, rows in enumerate(self.rows):
+        s, h = self.quantities(u), np.zeros((len(self), QUANTITIES**2))
+        i, j, x = [np.zeros(0, int)], [np.zeros(0, int)], [np.zeros(0)]
+        for c, (at, own) in enumerate(self.touched()):
             bend(self.p, c, s, 0, h, c)
-            at = np.flatnonzero(rows.any(axis=0))
-            own = rows[:, at]
-            out[np.ix_(at, at)] += own.T @ h[c].reshape(QUANTITIES, QUANTITIES) @ own
-        return out
+            i.append(np.repeat(at, len(at)))
+            j.append(np.tile(at, len(at)))
+            x.append((own.T @ h[c].reshape(QUANTITIES, QUANTITIES) @ own).ravel())
+        n = self.rows.shape[1]
+        return gathered((n, n), np.concatenate(i), np.concatenate(j), np.concatenate(x))
 
     def survey(self, s: Array) -> Array:
         """`survey` at the quantities `s`, shape (n_times, n_chords, 6) to (n_times, n_chords, 4)."""

@@ -148,17 +148,17 @@ class Course:
     def _static_tables(self, s: Structure, state: static.StaticState) -> None:
         w = self.writer
         full = np.concatenate([state.u, np.zeros(len(s.freedoms.moved))])
-        rows = []
-        for node in self.model.nodes:
-            rows.append((node, *map(float, s.freedoms.matrix([(node, d) for d in range(3)]) @ full)))
-        w.table("static_displacement", rows)
+        moved = s.freedoms.matrix([(node, d) for node in self.model.nodes for d in range(3)]) @ full
+        w.table(
+            "static_displacement",
+            [(node, *three) for node, three in zip(self.model.nodes, moved.reshape(-1, 3).tolist())],
+        )
         units = self.model.units
         forces: list[tuple[Any, ...]] = [
             (o.element, o.quantity, float(force), units.text(o.unit))
             for o, force in zip(s.outputs, s.member_forces(full))
         ]
-        for x, law_state, row in zip(s.laws, state.states, s.law_rows):
-            d = float(row @ full)
+        for x, law_state, d in zip(s.laws, state.states, (s.law_rows @ full).tolist()):
             quantity = "contact force" if x.is_contact else f"force {x.component}"
             forces.append(
                 (

@@ -8,13 +8,14 @@ Columns of every assembled matrix are the unknowns first, then the prescribed fr
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pound_deck.model import Node
+from pound_solve.matrices import Matrix, gathered
 
 DIRECTIONS = "XYR"
 NAMES = ("ux", "uy", "rz")
@@ -53,17 +54,45 @@ class Freedoms:
         """Number of columns."""
         return len(self.free) + len(self.moved)
 
-    def row(self, freedoms: Collection[Freedom], values: Collection[float]) -> NDArray[np.float64]:
-        """Sum of `values` times `freedoms` as a row over the columns, shape (size,)."""
-        out = np.zeros(self.size)
+    def add(
+        self, out: NDArray[np.float64], freedoms: Collection[Freedom], values: Collection[float]
+    ) -> None:
+        """Add `values` times `freedoms` to a row over the columns, shape (size,)."""
         for freedom, value in zip(freedoms, values):
             for column, factor in self.terms[freedom]:
                 out[column] += value * factor
+
+    def row(self, freedoms: Collection[Freedom], values: Collection[float]) -> NDArray[np.float64]:
+        """Sum of `values` times `freedoms` as a row over the columns, shape (size,)."""
+        out = np.zeros(self.size)
+        self.add(out, freedoms, values)
         return out
 
-    def matrix(self, freedoms: Collection[Freedom]) -> NDArray[np.float64]:
+    def rows(self, sums: Sequence[tuple[Collection[Freedom], Collection[float]]]) -> Matrix:
+        """Several such rows, shape (len(sums), size)."""
+        terms = [
+            (i, column, value * factor)
+            for i, (freedoms, values) in enumerate(sums)
+            for freedom, value in zip(freedoms, values)
+            for column, factor in self.terms[freedom]
+        ]
+        return gathered((len(sums), self.size), *np.array(terms).reshape(-1, 3).T)
+
+    def matrix(self, freedoms: Collection[Freedom]) -> Matrix:
         """Rows of several freedoms, shape (len(freedoms), size)."""
-        return np.array([self.row([f], [1.0]) for f in freedoms]).reshape(len(freedoms), self.size)
+        return self.rows([((f,), (1.0,)) for f in freedoms])
+
+    def value(
+        self, freedoms: Collection[Freedom], values: Collection[float], u: NDArray[np.float64]
+    ) -> float:
+        """Sum of `values` times `freedoms` at displacements `u` of all columns."""
+        return float(
+            sum(
+                value * factor * u[column]
+                for freedom, value in zip(freedoms, values)
+                for column, factor in self.terms[freedom]
+            )
+        )
 
 
 def number(
@@ -72,12 +101,12 @@ def number(
     """Number the freedoms of `nodes` and the `internal` ones of elements;
     those in `moved` (fixed ones) get prescribed columns.
     """
-    moved = tuple(sorted(moved))
+    moved, prescribed = tuple(sorted(moved)), frozenset(moved)
     free = tuple(
         (n.id, d)
         for n in nodes.values()
         for d in range(3)
-        if DIRECTIONS[d] not in n.fixed and DIRECTIONS[d] not in n.slaved and (n.id, d) not in moved
+        if DIRECTIONS[d] not in n.fixed and DIRECTIONS[d] not in n.slaved and (n.id, d) not in prescribed
     ) + tuple(internal)
     column = {f: i for i, f in enumerate(free + moved)}
     terms: dict[Freedom, tuple[tuple[int, float], ...]] = {f: ((column[f], 1.0),) for f in internal}

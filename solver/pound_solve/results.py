@@ -6,6 +6,7 @@ This is the only module that knows HDF5.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from numbers import Integral, Real
@@ -26,9 +27,9 @@ STATUSES: Final = (
     "done",
     "stopped",
 )  #: what :meth:`Writer.finish` takes; before that a file says "running"
-BLOCK: Final = (
-    256  #: rows of a chunk; a block of as many steps costs little to write, and little is lost by a kill
-)
+#: rows of a chunk, and numbers in it, at most (one row in any case); a block of as many steps costs little
+#: to write, and little is lost by a kill
+BLOCK, WIDEST = 256, 2**17
 
 #: Of each history: shape of one row, and its attributes.
 Layout: TypeAlias = Mapping[str, tuple[tuple[int, ...], Mapping[str, Any]]]
@@ -195,7 +196,11 @@ class Writer:
             raise ValueError(f"history {name!r}: one unit or {width} are needed")
         attributes["unit"] = [self._units.text(u) for u in units]
         dataset = self._file["history"].create_dataset(
-            name, shape=(0, *shape), maxshape=(None, *shape), chunks=(BLOCK, *shape), dtype="f8"
+            name,
+            shape=(0, *shape),
+            maxshape=(None, *shape),
+            chunks=(min(BLOCK, max(WIDEST // math.prod(shape), 1)), *shape),
+            dtype="f8",
         )
         for key, value in attributes.items():
             items = np.asarray(value)

@@ -26,10 +26,22 @@ from numpy.typing import NDArray
 
 from pound_solve import polynomial
 from pound_solve.assemble import Structure
-from pound_solve.chords import Chords
+from pound_solve.chords import QUANTITIES, Chords
 from pound_solve.dofs import Freedom, label
 from pound_solve.forces.base import Force
-from pound_solve.modes import massless
+from pound_solve.matrices import (
+    Matrix,
+    by_rows,
+    dense,
+    diagonal,
+    entries,
+    is_diagonal,
+    least_squares,
+    scaled,
+    selection,
+    used_rows,
+)
+from pound_solve.modes import massless, softest
 from pound_solve.motions.base import Motion, Piecewise, common_breaks
 
 Array = NDArray[np.float64]
@@ -102,17 +114,17 @@ class Scene:
     ----------
     freedoms : tuple of Freedom
         The n unknowns that are left.
-    mass, damping, stiffness : ndarray, shape (n, n)
+    mass, damping, stiffness : Matrix, shape (n, n)
     inputs : ndarray, shape (n, n_inputs)
         F.
     constant : ndarray, shape (n,)
         p_0.
-    law_rows : ndarray, shape (n_laws, n)
+    law_rows : Matrix, shape (n_laws, n)
         b.
     law_inputs : ndarray, shape (n_laws, n_inputs)
         e.
     excitation : Excitation
-    expand : ndarray, shape (n_free, n)
+    expand : Matrix, shape (n_free, n)
     expand_constant : ndarray, shape (n_free,)
     expand_inputs : ndarray, shape (n_free, n_inputs)
         All unknown freedoms: ``expand u + expand_constant + expand_inputs s``.
@@ -130,15 +142,15 @@ class Scene:
 
     structure: Structure
     freedoms: tuple[Freedom, ...]
-    mass: Array
-    damping: Array
-    stiffness: Array
+    mass: Matrix
+    damping: Matrix
+    stiffness: Matrix
     inputs: Array
     constant: Array
-    law_rows: Array
+    law_rows: Matrix
     law_inputs: Array
     excitation: Excitation
-    expand: Array
+    expand: Matrix
     expand_constant: Array
     expand_inputs: Array
     support_inputs: Array
@@ -175,21 +187,23 @@ class Scene:
     @cached_property
     def chords(self) -> Chords:
         """The members' chords over the unknowns."""
-        return self.structure.chords.on(self._columns)
+        return self.structure.chords.on(self.columns)
 
     @cached_property
     def chord_inputs(self) -> Array:
         """Their quantities from the inputs, shape (n_chords, 6, n_inputs)."""
-        of_supports = self.structure.chords.rows[:, :, self.structure.n_free :]
-        return np.asarray(of_supports @ self.support_inputs, float)
+        chords = self.structure.chords
+        own = chords.rows[:, self.structure.n_free :] @ self.support_inputs
+        return np.asarray(own, float).reshape(len(chords), QUANTITIES, own.shape[1])
 
     def quantities(self, u: Array, s: Array) -> Array:
         """Quantities of the chords, shape (n_times, n_chords, 6), for rows of unknowns and of inputs."""
-        own = np.einsum("tn,cjn->tcj", u, self.chords.rows)
+        own = (u @ self.chords.rows.T).reshape(len(u), len(self.chords), QUANTITIES)
         return np.asarray(own + np.einsum("ti,cji->tcj", s, self.chord_inputs), float)
 
     @property
-    def _columns(self) -> list[int]:
+    def columns(self) -> list[int]:
+        """Columns of the structure's matrices that the unknowns stand at."""
         column = {f: i for i, f in enumerate(self.structure.freedoms.free)}
         return [column[f] for f in self.freedoms]
 
@@ -256,7 +270,6 @@ def build(
             )
         )
     keep = np.flatnonzero(live)
-    expand = np.eye(n)[:, keep]
     mass = m[np.ix_(keep, keep)]
     _all_inert(mass, [names[i] for i in keep])
     _no_leap(structure, force_inputs[:, excitation.jumps()], live)
@@ -271,7 +284,7 @@ def build(
         rows[:, keep],
         law_inputs,
         excitation,
-        expand,
+        selection(n, keep),
         np.zeros(n),
         np.zeros((n, inputs.shape[1])),
         displacement_of,
@@ -329,14 +342,22 @@ def condense(scene: Scene) -> Condensed:
     (C_ca + C_cc G = 0) or they are not damped at all; and what pushes them alone meets no dashpot.
     """
     structure, n = scene.structure, scene.size
+    scene = replace(
+        scene,
+        mass=dense(scene.mass),
+        damping=dense(scene.damping),
+        stiffness=dense(scene.stiffness),
+        law_rows=dense(scene.law_rows),
+        expand=dense(scene.expand),
+    )
     k, support = scene.stiffness, scene.support_inputs
-    at = [structure.freedoms.free.index(f) for f in scene.freedoms]
-    to_supports = structure.stiffness[at, structure.n_free :]
+    at = scene.columns
+    to_supports = dense(structure.stiffness[at, structure.n_free :])
     pushed = scene.force_inputs[at]
     light = massless(scene.mass) & ~np.any(scene.law_rows != 0.0, axis=0)
     slave = _condensable(
         np.hstack([k, to_supports]),
-        np.hstack([scene.damping, structure.damping[at, structure.n_free :]]),
+        np.hstack([scene.damping, dense(structure.damping[at, structure.n_free :])]),
         np.column_stack([pushed, structure.released[at]]),
         light,
     )
@@ -412,7 +433,10 @@ def _inputs(
         channels += [motion.displacement(t_end), motion.velocity(t_end), motion.acceleration]
     for j, force in enumerate(forces, each * len(motions)):
         for node in force.nodes:
-            own[:, j] += freedoms.row([(node, d) for d in range(3)], force.push)[:n]
+            for d, share in enumerate(force.push):
+                for column, factor in freedoms.terms[node, d]:
+                    if column < n:
+                        own[column, j] += share * factor
         channels.append(force.history)
     breaks = common_breaks([*(m.acceleration for m in motions), *(f.history for f in forces)], t_end)
     degree = max((ch.degree for ch in channels), default=0)
@@ -429,11 +453,7 @@ def _can_move(
     or not at zero.
     """
     n = structure.n_free
-    linked = (
-        (structure.stiffness[:n, :n] != 0)
-        | (structure.damping[:n, :n] != 0)
-        | (structure.mass[:n, :n] != 0)
-    )
+    linked = [entries(a[:n, :n])[:2] for a in (structure.stiffness, structure.damping, structure.mass)]
     parent = list(range(n))
 
     def root(i: int) -> int:
@@ -442,24 +462,28 @@ def _can_move(
             i = parent[i]
         return i
 
-    for i, j in zip(*np.nonzero(np.triu(linked, 1))):
-        parent[root(int(i))] = root(int(j))
-    for rows in structure.chords.rows[:, :, :n]:
-        touched = np.flatnonzero(rows.any(axis=0))
-        for i in touched[1:]:
-            parent[root(int(touched[0]))] = root(int(i))
+    def join(touched: NDArray[np.int64]) -> None:
+        for i in touched[1:].tolist():
+            parent[root(int(touched[0]))] = root(i)
+
+    real = np.zeros(n, bool)  # a freedom without mass, stiffness, dashpot or law takes part in nothing
+    for rows, columns in linked:
+        real[rows] = True
+        for i, j in zip(rows.tolist(), columns.tolist()):
+            if i < j:
+                parent[root(i)] = root(j)
+    for touched, _ in structure.chords.on(slice(n)).touched():
+        join(touched)
     driven = (start != 0) | (start_rate != 0) | (structure.held[:n] != 0)
     active = np.abs(excitation.coefs).max(axis=(0, 1), initial=0.0) > 0
     driven |= np.any(inputs[:, active] != 0, axis=1)
-    for spring, row in zip(structure.laws, structure.law_rows):
-        touched = np.flatnonzero(row[:n])
-        for i in touched[1:]:
-            parent[root(int(touched[0]))] = root(int(i))
+    for spring, (row, _) in zip(structure.laws, by_rows(structure.law_rows)):
+        touched = row[row < n]
+        join(touched)
+        real[touched] = True
         branch = spring.law.branch(spring.law.start())
-        if branch.force(0.0, 0.0) != 0 or np.any(row[n:] != 0):
+        if branch.force(0.0, 0.0) != 0 or np.any(row >= n):
             driven[touched] = True
-    # a freedom without mass, stiffness, dashpot or law takes part in nothing
-    real = linked.any(axis=1) | np.any(structure.law_rows[:, :n] != 0, axis=0)
     awake = {root(int(i)) for i in np.flatnonzero(driven)}
     return np.array([root(i) in awake for i in range(n)], bool) & real
 
@@ -497,17 +521,16 @@ def _condensable(k: Array, c: Array, push: Array, light: NDArray[np.bool_]) -> N
     return none
 
 
-def _all_inert(m: Array, names: Sequence[Freedom]) -> None:
+def _all_inert(m: Matrix, names: Sequence[Freedom]) -> None:
     """Raise where mass on arms of slaved nodes leaves some motion without inertia: no method takes that."""
     heavy = np.flatnonzero(~massless(m))
     part = m[np.ix_(heavy, heavy)]
-    if not np.any(part - np.diag(np.diag(part))):
+    if is_diagonal(part):
         return
-    root = 1.0 / np.sqrt(np.diag(part))
-    values, vectors = np.linalg.eigh(root[:, None] * part * root)
-    if values[0] < 1e-13 * len(values):
+    value, vector = softest(scaled(part, 1.0 / np.sqrt(diagonal(part))))
+    if value < 1e-13 * len(heavy):
         # the rotation at the other end of the arms, where one takes part
-        share = np.abs(vectors[:, 0]) * [2.0 if names[int(i)][1] == 2 else 1.0 for i in heavy]
+        share = np.abs(vector) * [2.0 if names[int(i)][1] == 2 else 1.0 for i in heavy]
         worst = label(names[int(heavy[int(np.argmax(share))])])
         raise SceneError(
             f"{worst} has no inertia of its own beside the mass on slaved nodes: "
@@ -520,15 +543,15 @@ def _no_leap(structure: Structure, pushes: Array, live: NDArray[np.bool_]) -> No
     on freedoms with neither mass nor dashpot nothing says along which path.
     """
     n = structure.n_free
-    quick = live & massless(structure.mass[:n, :n]) & ~np.any(structure.damping[:n, :n], axis=1)
+    quick = live & massless(structure.mass[:n, :n]) & ~used_rows(structure.damping[:n, :n])
     z = np.flatnonzero(quick)
     pushes = np.column_stack([pushes, structure.released[:n]])[z]
     if not pushes.any():
         return
-    leap = np.linalg.lstsq(structure.initial_stiffness[np.ix_(z, z)], pushes, rcond=1e-12)[0]
-    for spring, row in zip(structure.laws, structure.law_rows[:, z]):
+    leap = least_squares(structure.initial_stiffness[np.ix_(z, z)], pushes, 1e-12)
+    for spring, (at, row) in zip(structure.laws, by_rows(structure.law_rows[:, z])):
         if not spring.is_contact and np.any(
-            np.abs(row @ leap) > 1e-9 * np.abs(row).max() * np.abs(leap).max()
+            np.abs(row @ leap[at]) > 1e-9 * np.abs(row).max(initial=0.0) * np.abs(leap).max()
         ):
             where = int(z[int(np.argmax(np.abs(pushes).max(axis=1)))])
             raise SceneError(

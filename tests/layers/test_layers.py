@@ -11,7 +11,7 @@ DECK, SOLVER = ROOT / "parser/pound_deck", ROOT / "solver/pound_solve"
 
 # from the bottom to the top: a module may import its own layer and those below
 LAYERS = (
-    ("laws", "jit", "dofs", "chords", "modes", "polynomial", "records", "sketch"),
+    ("laws", "jit", "matrices", "dofs", "chords", "modes", "polynomial", "records", "sketch"),
     ("motions", "forces"),
     ("hysteresis", "contact", "damping"),
     ("elements",),
@@ -100,7 +100,16 @@ def test_numerics_open_no_file_and_print_nothing():
     files = [p for f in folders for p in (SOLVER / f).rglob("*.py")]
     files += [
         SOLVER / n
-        for n in ("laws.py", "dofs.py", "modes.py", "assemble.py", "scene.py", "loop.py", "sketch.py")
+        for n in (
+            "laws.py",
+            "matrices.py",
+            "dofs.py",
+            "modes.py",
+            "assemble.py",
+            "scene.py",
+            "loop.py",
+            "sketch.py",
+        )
     ]
     for path in files:
         called = {

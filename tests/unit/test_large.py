@@ -87,11 +87,11 @@ def test_forces_are_the_gradient_of_the_potential_and_the_tangent_that_of_the_fo
     s = structure_of(member("LARGE", section, "N0=100 M0=20,30"))
     c = s.chords
     u = 0.4 * np.random.default_rng(seed).normal(size=s.n_free)
-    if np.abs((c.rows @ u)[0, 2:4]).max() > 2.0:  # near to no length at all differences mean nothing
+    if np.abs(c.quantities(u)[0, 2:4]).max() > 2.0:  # near to no length at all differences mean nothing
         u *= 0.3
 
     def potential(x):
-        return float(c.survey((c.rows @ x)[None])[0, 0, 0])
+        return float(c.survey(c.quantities(x)[None])[0, 0, 0])
 
     steps = 1e-5 * np.eye(len(u))
     slope = np.array([potential(u + e) - potential(u - e) for e in steps]) / 2e-5

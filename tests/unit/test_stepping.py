@@ -205,12 +205,12 @@ def test_the_sparse_factor_and_its_updates(seed, n):
     rng = np.random.default_rng(seed)
     half = rng.random((n, n)) < 2.0 / n
     linked = half | half.T | np.eye(n, dtype=bool)
-    order = ldl.order(linked)
+    order = ldl.order(n, *np.nonzero(linked))
     assert sorted(order) == list(range(n))
     linked = linked[np.ix_(order, order)]
     a = np.where(linked, rng.standard_normal((n, n)), 0.0)
     a = a + a.T + np.diag(4.0 + np.abs(a).sum(axis=1))
-    s = ldl.analyse(linked)
+    s = ldl.analyse(n, *np.nonzero(linked))
     columns = np.repeat(np.arange(n), np.diff(s.ap))
     l, q = np.zeros((1, len(s.li))), np.zeros((3, n))  # noqa: E741
     assert ldl.factor(s, a[s.ai, columns], l, 0, q, 0, 1) == -1
@@ -230,7 +230,7 @@ def test_the_sparse_factor_and_its_updates(seed, n):
 
 
 def test_a_singular_matrix_names_its_unknown():
-    s = ldl.analyse(np.ones((3, 3), bool))
+    s = ldl.analyse(3, *np.nonzero(np.ones((3, 3))))
     a = np.array([[2.0, 1.0, 1.0], [1.0, 1.0, 0.0], [1.0, 0.0, 1.0]])  # its last pivot is zero
     columns = np.repeat(np.arange(3), np.diff(s.ap))
     assert ldl.factor(s, a[s.ai, columns], np.zeros((1, 3)), 0, np.zeros((2, 3)), 0, 1) == 2

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pound_solve.assemble import Structure, assemble
 from pound_solve.dofs import Freedom
 from pound_solve.laws import State
+from pound_solve.matrices import by_rows, least_squares, used_rows
 
 Array = NDArray[np.float64]
 
@@ -42,11 +43,12 @@ class Ground:
         self.geometric = self.structure.stiffness - bare.stiffness
         columns = bare.freedoms.free + bare.freedoms.moved
         k = bare.initial_stiffness
-        inside = np.array([d > 2 for _, d in columns], bool) & k.any(axis=1)
+        inside = np.array([d > 2 for _, d in columns], bool) & used_rows(k)
         self.rigid = np.array([_rigid(bare, f) for f in columns]).reshape(-1, 3).T
         if inside.any():  # what is inside an element follows its nodes without strain
-            follow = np.linalg.lstsq(k[np.ix_(inside, inside)], k[np.ix_(inside, ~inside)], rcond=None)[0]
-            self.rigid[:, inside] = -self.rigid[:, ~inside] @ follow.T
+            own, others = np.flatnonzero(inside), np.flatnonzero(~inside)
+            pull = k[np.ix_(own, others)] @ self.rigid[:, others].T
+            self.rigid[:, own] = -least_squares(k[np.ix_(own, own)], pull).T
         self.linear, self.nonlinear = self._resistance()
 
     def _at(self, u: Array, states: Sequence[State]) -> tuple[Array, Array]:
@@ -120,12 +122,13 @@ class Ground:
         for number, parts in s.parts.items():
             between = int(s.model.elements[number].j is not None)
             for b in parts.stiffness:
-                at = s.freedoms.matrix(b.freedoms)
-                linear[between] += _above_rounding(self.rigid @ at.T, b.matrix) @ at
+                moved = [[s.freedoms.value([f], [1.0], line) for f in b.freedoms] for line in self.rigid]
+                for way, force in enumerate(_above_rounding(np.array(moved), b.matrix)):
+                    s.freedoms.add(linear[between, way], b.freedoms, force)
         nonlinear = np.zeros((2, len(s.laws), 3))
-        for i, (x, row) in enumerate(zip(s.laws, s.law_rows)):
+        for i, (x, (at, row)) in enumerate(zip(s.laws, by_rows(s.law_rows))):
             between = int(s.model.elements[x.element].j is not None)
-            nonlinear[between, i] = _above_rounding(self.rigid, row)
+            nonlinear[between, i] = _above_rounding(self.rigid[:, at], row)
         return linear, nonlinear
 
 

@@ -17,13 +17,14 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.assemble import Structure
 from pound_solve.integrate.base import ENERGIES, LawValues, Start, Watch, energies
 from pound_solve.laws import State, follow, settle
+from pound_solve.matrices import least_squares, used_columns, used_rows, weighted
 from pound_solve.modes import massless
 from pound_solve.scene import Scene
 
 Array = NDArray[np.float64]
 Append = Callable[[Mapping[str, Array]], None]
 
-BLOCK = 256  #: samples kept before they are written
+BLOCK, HELD = 256, 2**20  #: samples kept before they are written, and numbers of one kind in them, at most
 
 SPEC = Spec(
     "analysis",
@@ -83,8 +84,7 @@ def begin(
     times: Array,
 ) -> Start:
     """State at t = 0: the static one, plus INITIAL, the laws led along from the one to the other."""
-    index = {f: i for i, f in enumerate(structure.freedoms.free)}
-    keep = [index[f] for f in scene.freedoms]
+    keep = scene.columns
     u0, v0 = u[keep], v[keep]
     _lead_massless(scene, u0, u0 - u_static[keep])
     before = structure.law_rows[:, : structure.n_free] @ u_static
@@ -104,26 +104,24 @@ def _lead_massless(scene: Scene, u: Array, pushed: Array) -> None:
     on the stiffness at rest: nothing could hold them back.
     """
     laws = scene.structure.laws
-    idle = massless(scene.mass) & (pushed == 0.0) & ~np.any(scene.damping != 0.0, axis=1)
-    idle &= ~np.any(scene.law_rows[[s.beta != 0.0 or s.is_contact for s in laws]] != 0.0, axis=0)
+    idle = massless(scene.mass) & (pushed == 0.0) & ~used_rows(scene.damping)
+    damped = [i for i, s in enumerate(laws) if s.beta != 0.0 or s.is_contact]
+    idle &= ~used_columns(scene.law_rows[damped])
     if idle.any() and pushed.any():
-        k = scene.stiffness + (scene.law_rows.T * [s.k0 for s in laws]) @ scene.law_rows
-        away = k[np.ix_(idle, ~idle)] @ pushed[~idle]
-        u[idle] -= np.linalg.lstsq(k[np.ix_(idle, idle)], away, rcond=None)[0]
+        k = scene.stiffness + weighted(scene.law_rows, [s.k0 for s in laws])
+        own, others = np.flatnonzero(idle), np.flatnonzero(~idle)
+        away = k[np.ix_(own, others)] @ pushed[others]
+        u[own] -= least_squares(k[np.ix_(own, own)], away)
 
 
 def watch(structure: Structure, scene: Scene) -> Watch:
     """Rows of the DRIFT cards over the scene's unknowns."""
     cards = structure.model.drifts
     n = structure.n_free
-    rows = np.array(
-        [
-            structure.freedoms.row(
-                [(c["J"], "XY".index(c["DIRECTION"])), (c["I"], "XY".index(c["DIRECTION"]))], [1.0, -1.0]
-            )
-            for c in cards
-        ]
-    ).reshape(len(cards), structure.freedoms.size)
+    ways = ["XY".index(c["DIRECTION"]) for c in cards]
+    rows = structure.freedoms.rows(
+        [(((c["J"], way), (c["I"], way)), (1.0, -1.0)) for c, way in zip(cards, ways)]
+    )
     return Watch(
         [c["NAME"] for c in cards],
         rows[:, :n] @ scene.expand,
@@ -200,11 +198,10 @@ class Recorder:
         self.ridden[2, :, 0], self.ridden[2, :, 1] = -y, x
         elements = model.output["MEMBERS"]
         self.outputs = [o for o in structure.outputs if elements is None or o.element in elements]
-        size = freedoms.size
-        self.out_u = np.array([freedoms.row(o.freedoms, o.u_row) for o in self.outputs]).reshape(-1, size)
-        self.out_v = np.array(
-            [np.zeros(size) if o.v_row is None else freedoms.row(o.freedoms, o.v_row) for o in self.outputs]
-        ).reshape(-1, size)
+        self.out_u = freedoms.rows([(o.freedoms, o.u_row.tolist()) for o in self.outputs])
+        self.out_v = freedoms.rows(
+            [(o.freedoms, () if o.v_row is None else o.v_row.tolist()) for o in self.outputs]
+        )
         self.constants = np.array([o.constant for o in self.outputs])
         self.shares = scene.chords.shares([(o.element, o.quantity) for o in self.outputs])
         self.springs = [i for i, s in enumerate(structure.laws) if not s.is_contact]
@@ -222,6 +219,8 @@ class Recorder:
         self.seen, self.last_seen, self.apart = 0, 0.0, 0.0
         self.last: tuple[Array, Array, Array] = (np.zeros(0), np.zeros(0), np.zeros(3))  # u, v, works
         self._rows: list[tuple[Any, ...]] = []
+        widest = max(freedoms.size, 3 * len(self.nodes), len(self.outputs), len(structure.laws), 1)
+        self._most = min(BLOCK, max(HELD // widest, 1))
 
     def layout(self) -> dict[str, tuple[tuple[int, ...], dict[str, Any]]]:
         """What `results.Writer.start_history` needs."""
@@ -278,7 +277,7 @@ class Recorder:
         self.last = u, v, works
         self.reached = t
         self._progress(t)
-        if len(self._rows) >= BLOCK:
+        if len(self._rows) >= self._most:
             self.flush()
 
     def between(self, t: Array, u: Array, v: Array, a: Array) -> None:

@@ -19,7 +19,7 @@ import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.assemble import Structure
-from pound_solve.dofs import Freedom
+from pound_solve.modes import moving_mass
 
 SPEC = Spec(
     "analysis",
@@ -55,12 +55,13 @@ def rows(structure: Structure, wanted: int | None) -> list[tuple[float, ...]]:
     wanted : int or None
         Number of modes.
     """
-    n, modes = structure.n_free, structure.free_vibration
-    count = min(len(modes.omega), 12 if wanted is None else wanted)
+    n, sought = structure.n_free, 12 if wanted is None else wanted
+    modes = structure.vibration(sought)
+    count = min(len(modes.omega), sought)
     out: list[tuple[float, ...]] = []
-    # what rides on fixed freedoms only is no part of any mode:
-    # the sum over all modes is the mass that can move
-    total = ((structure.ground[:, :n] @ modes.shapes) ** 2).sum(axis=1)
+    total = moving_mass(
+        structure.initial_stiffness[:n, :n], structure.mass[:n, :n], structure.ground[:, :n]
+    )
     c = structure.initial_damping[:n, :n]
     for i in range(count):
         w, shape = float(modes.omega[i]), modes.shapes[:, i]
@@ -76,15 +77,15 @@ def rows(structure: Structure, wanted: int | None) -> list[tuple[float, ...]]:
 
 def shape_rows(structure: Structure, count: int) -> list[tuple[float, ...]]:
     """Rows of the table ``mode_shapes``: every node, largest component 1."""
-    shapes = structure.free_vibration.shapes
-    freedoms: list[list[Freedom]] = [[(node, d) for d in range(3)] for node in structure.model.nodes]
+    shapes = structure.vibration(count).shapes
+    nodes = list(structure.model.nodes)
+    every = structure.freedoms.matrix([(node, d) for node in nodes for d in range(3)])
     pad = len(structure.freedoms.moved)
     out: list[tuple[float, ...]] = []
     for i in range(count):
         full = np.concatenate([shapes[:, i], np.zeros(pad)])
         scale = np.abs(shapes[:, i]).max()
-        for at in freedoms:
-            x = structure.freedoms.matrix(at) @ full / scale
-            x[np.abs(x) < 1e-12] = 0.0  # rounding
-            out.append((i + 1, at[0][0], *map(float, x)))
+        x = every @ full / scale
+        x[np.abs(x) < 1e-12] = 0.0  # rounding
+        out += [(i + 1, node, *three) for node, three in zip(nodes, x.reshape(-1, 3).tolist())]
     return out

@@ -37,7 +37,8 @@ from numpy.typing import NDArray
 from pound_solve.assemble import Structure
 from pound_solve.dofs import label
 from pound_solve.laws import State
-from pound_solve.modes import deficiency, scaling
+from pound_solve.matrices import Matrix, bordered, by_rows, dense, gathered, scaled, used_rows
+from pound_solve.modes import Held, scaling
 
 Array = NDArray[np.float64]
 
@@ -125,10 +126,12 @@ class Path:
         self.u, self.states, self.applied, self.load = u.copy(), list(states), applied.copy(), load
         self.control, self.sign = control, sign
         # b b^T of every law, entry by entry: a row touches few unknowns
-        touched = [np.flatnonzero(row) for row in self.rows]
-        pairs = [(x, *p) for x, at in enumerate(touched) for p in itertools.product(at, at)]
-        law, i, j = np.array(pairs, int).reshape(-1, 3).T
-        self._outer = law, i, j, self.rows[law, i] * self.rows[law, j]
+        pairs = [
+            (law, i, j, x * y)
+            for law, row in enumerate(by_rows(self.rows))
+            for (i, x), (j, y) in itertools.product(list(zip(*row)), repeat=2)
+        ]
+        *self._outer, self._product = np.array(pairs).reshape(-1, 4).T
         self.lead = np.zeros(len(self.laws)) if lead is None else lead
         self.factor, self.changes = 0.0, 0
         self._here: Counter[tuple[int, ...]] = Counter()  # branches of all laws since the last move
@@ -153,7 +156,7 @@ class Path:
         both = np.array(pairs).reshape(len(self.laws), 2)
         return both[:, 0], both[:, 1]
 
-    def tangent(self) -> Array:
+    def tangent(self) -> Matrix:
         """Tangent stiffness, shape (n_free, n_free)."""
         return self._stiffness(self.u, self.forces(self.deformations(self.u, self.factor))[1])
 
@@ -368,11 +371,10 @@ class Path:
         turned = self.chords.forces(u)
         return self.k @ u + turned + self.rows.T @ force - applied, size + np.abs(turned)
 
-    def _stiffness(self, u: Array, stiffness: Array) -> Array:
-        law, i, j, product = self._outer
-        k = self.k + self.chords.stiffness(u) if self.chords else self.k.copy()
-        np.add.at(k, (i, j), stiffness[law] * product)
-        return k
+    def _stiffness(self, u: Array, stiffness: Array) -> Matrix:
+        law, i, j = (x.astype(int) for x in self._outer)
+        k = self.k + gathered(self.k.shape, i, j, stiffness[law] * self._product)
+        return k + self.chords.stiffness(u) if self.chords else k
 
     def _linear(self, u: Array, stiffness: Array, force: Array, go: float) -> tuple[Array, float]:
         """Change of displacements and load factor by a further `force`, while the control goes by `go`."""
@@ -392,7 +394,7 @@ def _crossed(before: Sequence[float], after: Sequence[float]) -> list[int]:
     return [j for j, (a, b) in enumerate(zip(before, after)) if a <= 0.0 < b]
 
 
-def solve(structure: Structure, k: Array, load: Array, usual: Array) -> Array:
+def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
     """Solve K u = load; freedoms without stiffness stay at zero if nothing loads them.
 
     What is small beside the `usual` load counts as nothing.
@@ -402,48 +404,46 @@ def solve(structure: Structure, k: Array, load: Array, usual: Array) -> Array:
     Unstable
         K is not positive definite on what the load moves.
     """
-    held = np.any(k != 0.0, axis=1)
+    held = used_rows(k)
     loose = ~held & (load != 0.0)
     if loose.any():
         first = int(np.flatnonzero(loose)[0])
-        touched = any(
-            s.is_contact and row[first] != 0.0 for s, row in zip(structure.laws, structure.law_rows)
-        )
+        own = dense(structure.law_rows[:, [first]]).ravel()
+        touched = any(s.is_contact and x != 0.0 for s, x in zip(structure.laws, own))
         hint = ": only an open contact could; HISTORY FROM=REST lets it come down" if touched else ""
         raise Unstable(f"{name_of(structure, first)} is loaded, but nothing holds it{hint}")
-    at, u = np.flatnonzero(held), np.zeros(len(k))
+    at, u = np.flatnonzero(held), np.zeros(len(load))
     if not len(at):
         return u
     root = _root(k[np.ix_(at, at)])
-    scaled, push = root[:, None] * k[np.ix_(at, at)] * root, root * load[at]
-    lacking = deficiency(scaled)
-    if not lacking:
-        u[at] = root * np.linalg.solve(scaled, push)
-        return u
-    values, vectors = np.linalg.eigh(scaled)
-    weak = np.arange(len(at)) < lacking
-    along = vectors.T @ push
-    if np.any(values < -1e-10):
-        worst = at[int(np.argmax(np.abs(vectors[:, 0])))]
+    whole, push = Held(scaled(k[np.ix_(at, at)], root)), root * load[at]
+    if whole.negative is not None:
+        worst = at[_largest(whole.negative)]
         raise Unstable(
             "the stiffness is negative: the structure has collapsed, "
             f"worst at {name_of(structure, int(worst))}"
         )
-    size = max(np.abs(along).max(), np.abs(root * usual[at]).max())
-    if np.any(np.abs(along[weak]) > 1e-10 * size):
-        worst = at[int(np.argmax(np.abs(vectors[:, weak] @ along[weak])))]
+    along = whole.slack.T @ push
+    size = max(float(np.linalg.norm(push)), float(np.abs(root * usual[at]).max()))
+    if np.any(np.abs(along) > 1e-10 * size):
+        worst = at[_largest(whole.slack @ along)]
         raise Unstable(
             f"the loaded structure is a mechanism, worst at {name_of(structure, int(worst))} "
             "(or parts of it are so much stiffer than others that it cannot be told from one: END1, END2 "
             "or SLAVED make parts rigid)"
         )
     # an unloaded mechanism (a free diaphragm) stays where it is
-    along[weak] = 0.0
-    u[at] = root * (vectors @ (along / np.where(weak, 1.0, values)))
+    u[at] = root * whole.solve(push)
     return u
 
 
-def controlled(k: Array, push: Array, control: Array, force: Array, go: float) -> tuple[Array, float]:
+def _largest(motion: Array) -> int:
+    """First of the unknowns that move most, to a hair."""
+    size = np.abs(motion)
+    return int(np.argmax(size > (1.0 - 1e-9) * size.max()))
+
+
+def controlled(k: Matrix, push: Array, control: Array, force: Array, go: float) -> tuple[Array, float]:
     """Solve ``K u - push y = force`` with ``control . u = go`` for u and the load factor y;
     K may be singular or indefinite.
 
@@ -452,37 +452,36 @@ def controlled(k: Array, push: Array, control: Array, force: Array, go: float) -
     Unstable
         The control does not fix the motion.
     """
-    at = np.flatnonzero(np.any(k != 0.0, axis=1) | (push != 0.0) | (control != 0.0))
+    at = np.flatnonzero(used_rows(k) | (push != 0.0) | (control != 0.0))
     root = _root(k[np.ix_(at, at)])
-    scaled = root[:, None] * k[np.ix_(at, at)] * root
+    whole = scaled(k[np.ix_(at, at)], root)
     p, c, f = root * push[at], root * control[at], root * force[at]
     p_size, c_size = float(np.linalg.norm(p)), float(np.linalg.norm(c))
     if p_size == 0.0:
         raise Unstable("the pattern loads nothing that can move", "A505")
-    if deficiency(scaled):
-        # a mechanism that neither the load nor the control moves (a free diaphragm) stays where it is
-        values, vectors = np.linalg.eigh(scaled)
-        idle = (
-            (np.abs(values) < 1e-13 * len(at))
-            & (np.abs(p @ vectors) < 1e-10 * p_size)
-            & (np.abs(c @ vectors) < 1e-10 * c_size)
-        )
-        scaled = scaled + vectors[:, idle] @ vectors[:, idle].T
-    m = len(at)
-    whole = np.zeros((m + 1, m + 1))
-    whole[:m, :m], whole[:m, m], whole[m, :m] = scaled, -p / p_size, c / c_size
-    try:
-        x = np.linalg.solve(whole, np.append(f, go / c_size))
-    except np.linalg.LinAlgError:
-        x = np.full(m + 1, np.nan)
+    # a mechanism that neither the load nor the control moves (a free diaphragm) stays where it is
+    m, slack = len(at), Held(whole).slack
+    idle = slack[
+        :,
+        (np.abs((slack * (whole @ slack)).sum(axis=0)) < 1e-13 * m)
+        & (np.abs(p @ slack) < 1e-10 * p_size)
+        & (np.abs(c @ slack) < 1e-10 * c_size),
+    ]
+    x = bordered(
+        whole,
+        np.column_stack([-p / p_size, idle]),
+        np.column_stack([c / c_size, idle]),
+        np.concatenate([f, [go / c_size], np.zeros(idle.shape[1])]),
+    )
+    x = x[: m + 1]
     if not np.all(np.isfinite(x)) or np.abs(x).max() > 1e13 * max(abs(go) / c_size, np.abs(f).max()):
         raise Unstable("the forces no longer move the control displacement: other parts give way")
-    u = np.zeros(len(k))
+    u = np.zeros(k.shape[0])
     u[at] = root * x[:m]
     return u, float(x[m]) / p_size
 
 
-def _root(k: Array) -> Array:
+def _root(k: Matrix) -> Array:
     """`scaling`, but what has next to no stiffness is left as it is."""
     root = scaling(k)
     return np.minimum(root, 1e12 * root.min(initial=np.inf))

@@ -43,6 +43,8 @@ from pound_solve.assemble import Structure
 
 Array = NDArray[np.float64]
 
+SOUGHT = 12  #: slowest modes of a large structure among which the pattern is chosen
+
 
 @dataclass(frozen=True)
 class Point:
@@ -304,8 +306,8 @@ class Pattern:
         for node in model.nodes if nodes is None else nodes:
             pushed[[i for i, _ in freedoms.terms[node, d] if i < n]] = 1.0
         self.structure_mass = structure.mass[:n, :n]
-        self.share = (pushed * self.along)[:, None] * self.structure_mass * self.along
-        self.mass = float(self.share.sum())
+        self.pushed = pushed * self.along
+        self.mass = float(self._share(np.ones(n)).sum())
         self.forces = np.zeros(n)
         if kind == "LOADS":
             self.forces = structure.loads[:n]
@@ -318,9 +320,13 @@ class Pattern:
             height = [model.nodes[owner].y - base if at == d else 0.0 for owner, at in freedoms.free]
             self.forces = self._of(np.array(height))
 
+    def _share(self, shape: Array) -> Array:
+        """Mass times a shape, of what is pushed; the mass is symmetric."""
+        return np.asarray(self.pushed * (self.structure_mass @ (self.along * shape)))
+
     def _of(self, shape: Array) -> Array:
         """Forces of sum one by mass and shape."""
-        p = self.share @ shape
+        p = self._share(shape)
         total = float(p.sum())
         return p / total if abs(total) > 1e-12 * np.abs(p).sum() else 0.0 * p
 
@@ -328,13 +334,13 @@ class Pattern:
         """Forces at the present point."""
         if self.by_mode:
             try:
-                found = modes.solve(path.tangent(), self.structure_mass)
+                found = modes.solve(path.tangent(), self.structure_mass, SOUGHT)
             except np.linalg.LinAlgError:
                 return self.forces  # a part without mass has become a mechanism
             stiff = found.shapes[:, found.omega > 0.0]
             if stiff.shape[1] >= self._stiff:  # else a motion has lost its resistance
                 self._stiff = stiff.shape[1]
-                effective = (self.share.sum(axis=0) @ stiff) ** 2
+                effective = ((self.along * (self.structure_mass @ self.pushed)) @ stiff) ** 2
                 self.forces = self._of(stiff[:, int(np.argmax(effective))])
         return self.forces
 

@@ -99,8 +99,7 @@ def load(arrays: Mapping[str, Array], structure: Structure) -> Saved:
 
 def resume(saved: Saved, scene: Scene, times: Array) -> Start:
     """Start of a part: the saved state over the scene's unknowns."""
-    index = {f: i for i, f in enumerate(scene.structure.freedoms.free)}
-    keep = [index[f] for f in scene.freedoms]
+    keep = scene.columns
     return Start(saved.u[keep], saved.v[keep], saved.states, times, saved.works)
 
 

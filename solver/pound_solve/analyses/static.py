@@ -22,6 +22,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.analyses.path import Exit, Mark, Path, Unstable
 from pound_solve.assemble import Structure
 from pound_solve.laws import State
+from pound_solve.matrices import Factor, Matrix, scaled, used_rows
 from pound_solve.modes import scaling
 
 Array = NDArray[np.float64]
@@ -110,7 +111,7 @@ def loaded(structure: Structure) -> StaticState:
     return StaticState(path.u, tuple(path.states), path.changes)
 
 
-def tangent(structure: Structure, state: StaticState) -> Array:
+def tangent(structure: Structure, state: StaticState) -> Matrix:
     """Tangent stiffness of the unknowns in that state, shape (n_free, n_free)."""
     nothing = np.zeros(structure.n_free)
     return Path(structure, state.u, state.states, nothing, nothing).tangent()
@@ -118,27 +119,46 @@ def tangent(structure: Structure, state: StaticState) -> Array:
 
 def after(structure: Structure, state: StaticState) -> Structure:
     """The structure whose initial stiffness is the tangent one of that state (for MODAL AFTER=STATIC)."""
-    n = structure.n_free
-    k = structure.initial_stiffness.copy()
-    k[:n, :n] = tangent(structure, state)
+    initial = structure.initial_stiffness
+    k = initial - structure.framed(initial) + structure.framed(tangent(structure, state))
     return replace(structure, initial_stiffness=k)
 
 
-def buckling(k: Array, geometric: Array) -> float:
+def buckling(k: Matrix, geometric: Matrix) -> float:
     """Smallest positive factor that makes ``K + factor * geometric`` singular;
     infinite if none does, NaN if K is not positive definite on the freedoms that it holds.
     """
-    at = np.flatnonzero(np.any(k != 0.0, axis=1))
+    at = np.flatnonzero(used_rows(k))
     if not len(at):
         return math.nan
     root = scaling(k[np.ix_(at, at)])
     try:
-        lower = np.linalg.cholesky(root[:, None] * k[np.ix_(at, at)] * root)
+        least = _least(*(scaled(x[np.ix_(at, at)], root) for x in (geometric, k)))
     except np.linalg.LinAlgError:
         return math.nan
-    half = np.linalg.solve(lower, root[:, None] * geometric[np.ix_(at, at)] * root)
-    least = float(np.linalg.eigvalsh(np.linalg.solve(lower, half.T))[0])
     return -1.0 / least if least < -1e-12 else math.inf
+
+
+def _least(g: Matrix, k: Matrix) -> float:
+    """Least eigenvalue of ``g x = value k x``.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        K is not positive definite.
+    """
+    if isinstance(k, np.ndarray):
+        lower = np.linalg.cholesky(k)
+        half = np.linalg.solve(lower, g)
+        return float(np.linalg.eigvalsh(np.linalg.solve(lower, half.T))[0])
+    from scipy.sparse.linalg import LinearOperator, eigsh
+
+    factor = Factor(k)
+    if factor.negative:
+        raise np.linalg.LinAlgError("not positive definite")
+    start = factor.solve(np.random.default_rng(0).standard_normal(k.shape[0]))
+    inverse = LinearOperator(k.shape, factor.solve)
+    return float(eigsh(g, 1, k, which="SA", v0=start, Minv=inverse, return_eigenvectors=False)[0])
 
 
 SPEC = Spec(

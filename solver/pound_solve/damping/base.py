@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind
+from pound_solve import matrices
 from pound_solve.modes import Modes
 
 Matrix = NDArray[np.float64]
@@ -36,16 +37,16 @@ class Ground:
         ``stiffness(property labels or None, laws)``: initial stiffness of their elements, same shape;
         `laws` False: without that of hysteretic laws.
     modes : callable
-        ``modes(nodes or None)``: modes of the initial structure, or of the building that these nodes make
-        up, over all unknowns.
+        ``modes(nodes or None, count)``: the `count` slowest modes, or more (None: all), of the initial
+        structure, or of the building that these nodes make up, over all unknowns.
     """
 
-    mass: Callable[[Collection[int] | None], Matrix]
-    stiffness: Callable[[Collection[str] | None, bool], Matrix]
-    modes: Callable[[Collection[int] | None], Modes]
+    mass: Callable[[Collection[int] | None], matrices.Matrix]
+    stiffness: Callable[[Collection[str] | None, bool], matrices.Matrix]
+    modes: Callable[[Collection[int] | None, int | None], Modes]
 
-    def from_modes(self, modes: Modes, rates: Matrix) -> Matrix:
-        r"""Return :math:`M \Phi\,\mathrm{diag}(2\xi_n\omega_n)\,\Phi^T M`, shape (n_columns, n_columns).
+    def from_modes(self, modes: Modes, rates: Matrix) -> matrices.Matrix:
+        r"""Return :math:`M \Phi\,\mathrm{diag}(2\xi_n\omega_n)\,\Phi^T M`, shape (n_free, n_free): full.
 
         Parameters
         ----------
@@ -62,9 +63,7 @@ class Ground:
         mass = self.mass(None)
         n = len(modes.shapes)
         weighted = mass[:n, :n] @ modes.shapes
-        out = np.zeros_like(mass)
-        out[:n, :n] = (weighted * rates) @ weighted.T
-        return out
+        return np.asarray((weighted * rates) @ weighted.T)
 
 
 class Dashpots(NamedTuple):
@@ -86,8 +85,8 @@ class Group:
     `dashpots` follow the laws.
     """
 
-    relative: Matrix | None
-    between: Matrix | None
+    relative: matrices.Matrix | None
+    between: matrices.Matrix | None
     text: str
     dashpots: Dashpots | None = None
 

@@ -53,7 +53,7 @@ def rates(omega: Matrix, at: Matrix, xi: Matrix) -> Matrix:
 
 def build(card: Card, ground: Ground) -> Group:
     """Damping of the whole structure, or of one building of several."""
-    modes = ground.modes(card["NODES"])
+    modes = ground.modes(card["NODES"], None)
     at = frequencies(card, lambda: modes.omega)
     xi = ratios(card, len(at))
     apart(at, "OMEGA" if card["OMEGA"] is not None else "MODES")

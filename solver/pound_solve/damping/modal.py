@@ -86,7 +86,7 @@ def interpolated(card: Card, omega: Matrix) -> tuple[Matrix, str]:
 
 def build(card: Card, ground: Ground) -> Group:
     """Damping of the whole structure, or of one building of several."""
-    modes = ground.modes(card["NODES"])
+    modes = ground.modes(card["NODES"], None)
     points = card["OMEGA"] is not None or card["MODES"] is not None
     xi, text = (interpolated if points else listed)(card, modes.omega)
     return Group(ground.from_modes(modes, 2.0 * xi * modes.omega), None, text)

@@ -23,6 +23,7 @@ from pound_solve import modes
 from pound_solve.integrate.arrays import Scheme
 from pound_solve.integrate.base import Outcome, Sink, Start, Stop, Watch
 from pound_solve.integrate.stepping import Stepper
+from pound_solve.matrices import weighted
 from pound_solve.scene import Scene
 
 Array = NDArray[np.float64]
@@ -33,9 +34,9 @@ def limit(scene: Scene, u: Array) -> float:
     and all springs elastic, members as they are at displacements `u`.
     """
     stiffest = [s.facts["k"] if s.is_contact else s.k0 for s in scene.structure.laws]
-    k = scene.stiffness + scene.chords.stiffness(u) + (scene.law_rows.T * stiffest) @ scene.law_rows
-    omega = modes.solve(k, scene.mass).omega
-    return 2.0 / float(omega[-1]) if len(omega) and omega[-1] > 0 else float("inf")
+    k = scene.stiffness + scene.chords.stiffness(u) + weighted(scene.law_rows, stiffest)
+    omega = modes.fastest(k, scene.mass)
+    return 2.0 / omega if omega > 0.0 else float("inf")
 
 
 def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:

@@ -43,52 +43,56 @@ class Pattern(NamedTuple):
     rq: Index
 
 
-def order(linked: NDArray[np.bool_]) -> Index:
+def order(n: int, i: Index, j: Index) -> Index:
     """Order of elimination with little fill, shape (n,): minimum degree.
 
     Parameters
     ----------
-    linked : ndarray, shape (n, n)
-        Which unknowns are coupled.
+    n : int
+    i, j : ndarray, shape (n_pairs,)
+        Which of the unknowns are coupled; each pair may come once or often.
     """
-    n = len(linked)
     if n < 3:
         return np.arange(n)
-    from scipy.sparse import csc_matrix
+    from scipy.sparse import csc_array
     from scipy.sparse.linalg import splu
 
-    a = csc_matrix(linked | linked.T, dtype=float)
+    every = np.arange(n)
+    rows, columns = np.concatenate([i, j, every]), np.concatenate([j, i, every])
+    a = csc_array((np.ones(len(rows)), (rows, columns)), (n, n))
+    a.data[:] = 1.0
     a.setdiag(n + 1.0)  # the values do not matter: no pivot is ever exchanged
     found = splu(a, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     return np.argsort(found.perm_c).astype(np.int64)
 
 
-def analyse(linked: NDArray[np.bool_]) -> Pattern:
-    """Pattern of a matrix in its order of elimination, and of its factor."""
-    n = len(linked)
+def analyse(n: int, i: Index, j: Index) -> Pattern:
+    """Pattern of a matrix in its order of elimination, and of its factor; see `order`."""
+    under: list[set[int]] = [set() for _ in range(n)]
+    for a, b in zip(np.maximum(i, j).tolist(), np.minimum(i, j).tolist()):
+        if a != b:
+            under[b].add(a)
     below: list[list[int]] = [[] for _ in range(n)]
     children: list[list[int]] = [[] for _ in range(n)]
-    for j in range(n):
-        rows = set((np.flatnonzero(linked[j + 1 :, j] | linked[j, j + 1 :]) + j + 1).tolist())
-        for child in children[j]:
+    for column in range(n):
+        rows = set(under[column])
+        for child in children[column]:
             rows.update(below[child][1:])
-        below[j] = sorted(rows)
-        if below[j]:
-            children[below[j][0]].append(j)
+        below[column] = sorted(rows)
+        if below[column]:
+            children[below[column][0]].append(column)
     lp = np.concatenate([[0], np.cumsum([len(b) for b in below])]).astype(np.int64)
-    li = np.array([i for b in below for i in b], np.int64)
+    li = np.array([row for b in below for row in b], np.int64)
     columns: list[list[tuple[int, int]]] = [[] for _ in range(n)]
-    for j in range(n):
-        for q in range(lp[j], lp[j + 1]):
-            columns[li[q]].append((j, q))
+    for column in range(n):
+        for q in range(lp[column], lp[column + 1]):
+            columns[li[q]].append((column, q))
     rp = np.concatenate([[0], np.cumsum([len(c) for c in columns])]).astype(np.int64)
     rk = np.array([k for c in columns for k, _ in c], np.int64)
     rq = np.array([q for c in columns for _, q in c], np.int64)
-    lower = [
-        [j, *(np.flatnonzero(linked[j + 1 :, j] | linked[j, j + 1 :]) + j + 1).tolist()] for j in range(n)
-    ]
+    lower = [[column, *sorted(rows)] for column, rows in enumerate(under)]
     ap = np.concatenate([[0], np.cumsum([len(x) for x in lower])]).astype(np.int64)
-    return Pattern(ap, np.array([i for x in lower for i in x], np.int64), lp, li, rp, rk, rq)
+    return Pattern(ap, np.array([row for x in lower for row in x], np.int64), lp, li, rp, rk, rq)
 
 
 def factor(s: Pattern, ax: Array, l: Array, at: int, q: Array, d: int, w: int) -> int:  # noqa: E741

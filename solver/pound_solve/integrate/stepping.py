@@ -16,7 +16,7 @@ dissipation: the generalized-alpha method, J. Appl. Mech. 60(2): 371-375.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -42,6 +42,7 @@ from pound_solve.integrate.base import (
     goals,
 )
 from pound_solve.laws import MEMORY, PARAMETERS
+from pound_solve.matrices import Matrix, at, by_rows, dense, entries, is_diagonal
 from pound_solve.modes import massless
 from pound_solve.scene import Scene
 
@@ -60,13 +61,22 @@ COMMON = (
 )  #: fields of every implicit method
 
 SAMPLES, LOG = 64, 4096  #: samples and changes of branches kept between two visits of Python
+HELD = 2**20  #: numbers in those samples, at most, but for a single one
 
 
-def sparse(a: Array) -> tuple[Index, Index, Array]:
+def sparse(a: Matrix) -> tuple[Index, Index, Array]:
     """Rows of a matrix as pointers, columns and values."""
-    rows, columns = np.nonzero(a)
-    pointers = np.searchsorted(rows, np.arange(len(a) + 1)).astype(np.int64)
-    return pointers, columns.astype(np.int64), np.ascontiguousarray(a[rows, columns], float)
+    rows, columns, values = entries(a)
+    return np.searchsorted(rows, np.arange(a.shape[0] + 1)).astype(np.int64), columns, values
+
+
+def coupled(touched: Iterable[Index]) -> tuple[Index, Index]:
+    """All pairs among the unknowns that each of some laws or members touches."""
+    nothing, sets = np.zeros(0, np.int64), list(touched)
+    return (
+        np.concatenate([nothing, *(np.repeat(x, len(x)) for x in sets)]),
+        np.concatenate([nothing, *(np.tile(x, len(x)) for x in sets)]),
+    )
 
 
 class Stepper:
@@ -111,26 +121,22 @@ class Stepper:
         n, count = scene.size, len(laws)
         damps = np.array([bool(s.facts.get("c") or s.beta or s.secant) or s.law.curved for s in laws], bool)
         stiff = self.scheme.beta > 0.0
-        linked = (scene.mass != 0) | (scene.damping != 0) | np.eye(n, dtype=bool)
+        linked = [entries(a)[:2] for a in (scene.mass, scene.damping, *[scene.stiffness] * stiff)]
+        touched = [row for (row, _), acts in zip(by_rows(scene.law_rows), damps | stiff) if acts]
         if stiff:
-            linked |= scene.stiffness != 0
-        for row in scene.law_rows[damps | stiff]:
-            touched = np.flatnonzero(row)
-            linked[np.ix_(touched, touched)] = True
-        if stiff:
-            for rows in scene.chords.rows:
-                touched = np.flatnonzero(rows.any(axis=0))
-                linked[np.ix_(touched, touched)] = True
-        self.order = ldl.order(linked)
-        o, grid = self.order, np.ix_(self.order, self.order)
-        pattern = ldl.analyse(linked[grid])
+            touched += [columns for columns, _ in scene.chords.touched()]
+        linked.append(coupled(touched))
+        one, other = (np.concatenate(part) for part in zip(*linked))
+        self.order = ldl.order(n, one, other)
+        o, grid, place = self.order, np.ix_(self.order, self.order), np.argsort(self.order)
+        pattern = ldl.analyse(n, place[one], place[other])
         mass, damping, stiffness = (a[grid] for a in (scene.mass, scene.damping, scene.stiffness))
         columns = np.repeat(np.arange(n), np.diff(pattern.ap))
         heavy = ~massless(mass)
-        on_pattern = [a[pattern.ai, columns] for a in (mass, damping, stiffness * stiff)]
+        on_pattern = [at(a, pattern.ai, columns) for a in (mass, damping, stiffness * stiff)]
         moved = scene.support_inputs
         s = scene.structure
-        free = [s.freedoms.free.index(scene.freedoms[i]) for i in o]
+        free = np.array(scene.columns, int)[o]
         nf = s.n_free
         rate_of, bend_of = np.zeros_like(moved), np.zeros_like(moved)
         rate_of[:, 1:], bend_of[:, 2:] = moved[:, :-1], moved[:, :-2]
@@ -147,12 +153,12 @@ class Stepper:
             heavy=heavy,
             inert=bool(heavy.all()),
             implicit=stiff,
-            diagonal=not np.any(mass - np.diag(np.diag(mass))),
+            diagonal=is_diagonal(mass),
             explicit=not (stiff or len(pattern.li) or damps.any()),
             rows=sparse(watch.rows[:, o]),
             row_inputs=np.ascontiguousarray(watch.input_rows),
             row_constants=np.ascontiguousarray(watch.constants),
-            reactions=np.array([a[nf:, free] for a in (s.stiffness, s.damping, s.mass)]),
+            reactions=np.array([dense(a[nf:][:, free]) for a in (s.stiffness, s.damping, s.mass)]),
             supports=np.array(
                 [
                     s.stiffness[nf:, nf:] @ moved
@@ -161,7 +167,7 @@ class Stepper:
                     rate_of,
                 ]
             ),
-            support_c=np.ascontiguousarray(s.damping[nf:, nf:]),
+            support_c=np.ascontiguousarray(dense(s.damping[nf:, nf:])),
         )
         rows = sparse(scene.law_rows[:, o])
         position = {(int(i), int(j)): q for q, (i, j) in enumerate(zip(pattern.ai, columns))}
@@ -170,12 +176,12 @@ class Stepper:
             if not (stiff or damps[i]):
                 continue
             span = range(rows[0][i], rows[0][i + 1])
-            at, own = [int(rows[1][q]) for q in span], [float(rows[2][q]) for q in span]
+            on, own = [int(rows[1][q]) for q in span], [float(rows[2][q]) for q in span]
             pairs[i] = [
-                (position[at[a], at[b]], own[a] * own[b])
-                for a in range(len(at))
-                for b in range(len(at))
-                if at[a] >= at[b]
+                (position[on[a], on[b]], own[a] * own[b])
+                for a in range(len(on))
+                for b in range(len(on))
+                if on[a] >= on[b]
             ]
         t, inputs = float(start.times[0]), scene.excitation.value
         d = scene.law_rows @ start.u + scene.law_inputs @ inputs(t)
@@ -188,7 +194,7 @@ class Stepper:
                 np.array([q for p in pairs for q, _ in p], np.int64),
                 np.array([x for p in pairs for _, x in p], float),
             ),
-            supports=np.ascontiguousarray(s.law_rows[:, nf:]),
+            supports=np.ascontiguousarray(dense(s.law_rows[:, nf:])),
             p=np.array([x.law.p for x in laws]).reshape(count, PARAMETERS),
             memory=np.zeros((count, MEMORY + 2)),
             f=np.zeros((count, 26)),
@@ -216,10 +222,11 @@ class Stepper:
         x.peak[arrays.HIGH], x.peak[arrays.LOW] = -np.inf, np.inf
         padded = np.where((pattern.ai == columns) & ~heavy[columns], 1.0, on_pattern[0])
         ldl.factor(pattern, padded, x.l, arrays.MASS, x.q, arrays.D + arrays.MASS, arrays.W)
+        samples = min(SAMPLES, max(HELD // (3 * max(n, count, 1)), 1))
         self.z = arrays.Samples(
-            np.zeros((SAMPLES, 3, n)),
-            np.zeros((SAMPLES, 3, count)),
-            np.zeros((SAMPLES, 4)),
+            np.zeros((samples, 3, n)),
+            np.zeros((samples, 3, count)),
+            np.zeros((samples, 4)),
             np.zeros((LOG + 16 * count, arrays.COLUMNS)),
         )
         for i in range(count):
@@ -232,9 +239,9 @@ class Stepper:
     def _turning(self, position: Mapping[tuple[int, int], int]) -> arrays.Turning:
         """The members' chords; `position` of pairs of unknowns in A, none if that needs no stiffness."""
         scene, chords = self.scene, self.scene.chords
-        whole = scene.structure.chords.rows
-        own = chords.rows[:, :, self.order]
-        touched = [np.flatnonzero(rows.any(axis=0)) for rows in own]
+        whole = scene.structure.chords.rows[:, scene.structure.n_free :]
+        found = chords.on(self.order.tolist()).touched()
+        touched = [x for x, _ in found]
         at = np.concatenate([[0], np.cumsum([len(x) for x in touched])]).astype(np.int64)
         pairs = [
             [
@@ -249,13 +256,13 @@ class Stepper:
             p=chords.p,
             at=at,
             unknown=np.concatenate([*touched, np.zeros(0)]).astype(np.int64),
-            rows=np.concatenate([*(rows[:, x].T for rows, x in zip(own, touched)), np.zeros((0, 6))]),
+            rows=np.concatenate([*(rows.T for _, rows in found), np.zeros((0, 6))]),
             pairs=np.concatenate([[0], np.cumsum([len(x) for x in pairs])]).astype(np.int64),
             pair=np.array([x for p in pairs for x in p], np.int64).reshape(-1, 3),
             inputs=np.ascontiguousarray(scene.chord_inputs),
-            supports=np.ascontiguousarray(whole[:, :, scene.structure.n_free :]),
-            s=np.zeros((len(own), 36)),
-            h=np.zeros((2 * len(own), 36)),
+            supports=dense(whole).reshape(len(chords), 6, whole.shape[1]),
+            s=np.zeros((len(chords), 36)),
+            h=np.zeros((2 * len(chords), 36)),
             product=np.zeros((max((len(x) for x in touched), default=1), 6)),
             most=np.zeros(1),
         )
