@@ -10,6 +10,7 @@ from cases import TESTS
 from errors import Prediction, benchmark_of, drifts, predictions
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from pound_solve.pounding import Diaphragm, Pair
 from runs import PLACES, Run
 
 COLOURS = {"El Centro": "#0b4f8a", "Mexico City": "#b3541e", "Loma Prieta": "#3d7a3d"}
@@ -106,3 +107,61 @@ def figure_14(group: Sequence[Run], per_speed: float, of: str, path: Path) -> No
     force_errors(
         found, f"Eq. 11 in all tests, El Centro, recorded force: {of}; -100 %: no such collision", path
     )
+
+
+def pair(mass_ratio: float, period_ratio: float) -> Pair:
+    """Two diaphragms of these ratios; the second has unit mass and period."""
+    return Pair(Diaphragm(mass_ratio, 4 * mass_ratio / period_ratio**2), Diaphragm(1.0, 4.0))
+
+
+def figure_6(path: Path) -> None:
+    """Influence coefficients over the mass ratio: lumped, and distributed by the paper and exact."""
+    figure = Figure(figsize=(9, 4.2), layout="constrained")
+    for n, axes in enumerate(axes_of(figure, 1, 2, sharey=True)):
+        for colour, tau in zip(["0.1", *COLOURS.values(), "#7a3d7a"], PERIODS):
+            pairs = [pair(mu, tau) for mu in RATIOS]
+            label = f"T1/T2 = {tau:g}" + (" (lumped)" if tau == 1.0 else "")
+            axes.semilogx(RATIOS, [p.alpha[n] for p in pairs], color=colour, linewidth=1.3, label=label)
+            axes.semilogx(RATIOS, [p.alpha_paper[n] for p in pairs], ":", color=colour, linewidth=1.3)
+        axes.set_xlabel("m1 / m2")
+        axes.set_title(f"alpha {n + 1}: lines exact, dots by the paper", fontsize=9)
+    axes.legend(fontsize=7)
+    save(figure, path)
+
+
+def figure_7(path: Path) -> None:
+    """Effective restitution over the mass ratio, exact and by Eq. 14, and its share r (Eq. 22)."""
+    figure = Figure(figsize=(7, 4.6), layout="constrained")
+    axes = axes_of(figure)[0]
+    for colour, tau in zip(["0.1", *COLOURS.values(), "#7a3d7a"], PERIODS):
+        pairs = [pair(mu, tau) for mu in RATIOS]
+        axes.semilogx(RATIOS, [p.e for p in pairs], color=colour, linewidth=1.4, label=f"T1/T2 = {tau:g}")
+        axes.semilogx(RATIOS, [p.e_paper for p in pairs], ":", color=colour, linewidth=1.2)
+        axes.semilogx(RATIOS, [0.5 * p.e for p in pairs], color=colour, linewidth=0.5)
+    axes.axhline(0, color="0.4", linewidth=0.8)
+    axes.set_ylim(-1, 1.05)
+    axes.set_xlabel("m1 / m2")
+    axes.set_ylabel("effective restitution")
+    axes.set_title("lines exact (thin: r = 0.5), dots Eq. 14", fontsize=9)
+    axes.legend(fontsize=7)
+    save(figure, path)
+
+
+def theory_map(path: Path) -> None:
+    """Error of Eq. 14 over mass and period ratio; none right of the line Z1 = Z2."""
+    ratios, periods = np.geomspace(0.05, 20, 161), np.linspace(0.02, 1.0, 99)
+    error = np.array([[(p := pair(mu, tau)).e_paper - p.e for mu in ratios] for tau in periods])
+    figure = Figure(figsize=(7, 4.6), layout="constrained")
+    axes = axes_of(figure)[0]
+    levels = (-2.0, -1.5, -1.0, -0.75, -0.5, -0.25, -0.1, -0.02)
+    filled = axes.contourf(ratios, periods, error, levels=(*levels, 1e-9), cmap="YlOrBr_r")
+    axes.plot(ratios, np.where(ratios <= 1, ratios, np.nan), color="0.2", linewidth=1.2)
+    axes.annotate("Z1 = Z2: the paper holds above", (0.35, 0.4), fontsize=8, rotation=38)
+    axes.plot(1600 / 3000, 0.018622 / 0.040318, "o", color="#b3301e")
+    axes.annotate("Table IV", (1600 / 3000, 0.43), fontsize=8, color="#b3301e", ha="left")
+    axes.set_xscale("log")
+    axes.set_xlabel("m1 / m2")
+    axes.set_ylabel("T1 / T2")
+    axes.set_title("e_eff by Eq. 14 less the exact one", fontsize=9)
+    figure.colorbar(filled)
+    save(figure, path)
