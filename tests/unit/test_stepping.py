@@ -189,10 +189,9 @@ def test_auto_takes_one_way_and_the_same_again(tmp_path, monkeypatch, few):
     assert np.abs(np.array(rounds[0][1]) / truth - 1.0).max() < 1e-3
 
 
-def test_auto_takes_steps_where_stiffnesses_do_not_return(tmp_path, monkeypatch):
+def test_auto_takes_steps_where_stiffnesses_do_not_return(tmp_path):
     """Takeda's hinges unload with another stiffness each time, those of a bilinear spring do not."""
-    monkeypatch.setattr(auto, "FEW", 12)
-    takeda = "RULE=TAKEDA MI=60 MJ=60 R=0.05 ALPHA=0.4 BETA=0 KH=2E5"
+    takeda = "RULE=TAKEDA MI=60 MJ=60 R=0.05 ALFA=0.4 BETA=0 KH=2E5"
     for hinge, method in ((HINGED, "EXACT"), (takeda, "NEWMARK")):
         found = run(tmp_path, "AUTO TOL=1e-2", hinge)
         assert method in found.table("scene")["decision"].tolist()

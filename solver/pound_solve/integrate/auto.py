@@ -108,7 +108,7 @@ class Rival:
         except Stop:
             replay.hand_on()
             raise
-        why = "all laws are piecewise linear, and no time step is needed: it costs less than steps"
+        why = "all laws are piecewise linear, and it costs less than steps: no time step is needed"
         decisions.insert(known, Decision("method", "EXACT", why))
         replay.hand_on()
         return outcome

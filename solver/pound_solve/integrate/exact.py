@@ -54,7 +54,7 @@ GRID = 1.0  #: grid interval times the fastest eigenvalue
 EACH = 4  #: grid points from one that envelopes of nodes and members are taken at to the next
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 # what it costs, in seconds of some machine: counted, not measured, so that a choice by it repeats
-WINDOW, POINT = 1.5e-3, 2e-8  #: a window; each of its grid points times each unknown
+WINDOW, POINT = 1e-3, 2e-8  #: a window; each of its grid points times each unknown
 
 
 class CostlyError(Exception):
