@@ -240,7 +240,8 @@ class Chords:
     def survey(self, s: Array) -> Array:
         """`survey` at the quantities `s`, shape (n_times, n_chords, 6) to (n_times, n_chords, 4)."""
         out = np.zeros((*s.shape[:2], 4))
-        jit.compiled(survey)(self.p, np.ascontiguousarray(s), out)
+        with jit.compiling():
+            jit.compiled(survey)(self.p, np.ascontiguousarray(s), out)
         return out
 
     def shares(self, outputs: Sequence[tuple[int, str]]) -> tuple[NDArray[np.intp], Array]:

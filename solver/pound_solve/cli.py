@@ -18,6 +18,7 @@ from pound_solve import __version__
 PICTURES = (
     "frame", "modes", "deformed", "envelopes", "histories", "energy", "loops", "contacts", "collisions",
 )  # fmt: skip
+WIDTH = 69  #: of the line that tells the progress
 VERBS = ("run", "check", "report", "export", "plot", "list", "loop")
 
 
@@ -195,28 +196,24 @@ class _Progress:
         self.interrupted = True
         raise KeyboardInterrupt
 
-    def __call__(self, t: float, end: float) -> None:
+    def __call__(self, t: float, end: float, doing: str) -> None:
         if self.interrupted:
             self.interrupted = False
             raise KeyboardInterrupt
         now = time.monotonic()
-        if not self.live or now - self.told < 0.1:
+        if not self.live or (now - self.told < 0.1 and not doing):
             return
         self.told = now
         left = (now - self.began) * (end / t - 1.0) if t > 0 else 0.0
-        print(
-            f"\r t = {t:10.4f} of {end:g}   {100 * t / end:5.1f} %   {left:6.0f} s to go ",
-            end="",
-            file=sys.stderr,
-            flush=True,
-        )
+        line = doing or f"t = {t:10.4f} of {end:g}   {100 * t / end:5.1f} %   {left:6.0f} s to go"
+        print(f"\r {line:{WIDTH}}", end="", file=sys.stderr, flush=True)
 
     def end(self) -> None:
         """Clear the line, and let interrupts be as they were."""
         if self.main:
             signal.signal(signal.SIGINT, self.before)
         if self.live:
-            print("\r" + " " * 70 + "\r", end="", file=sys.stderr, flush=True)
+            print("\r" + " " * (WIDTH + 1) + "\r", end="", file=sys.stderr, flush=True)
 
 
 def _check(args: argparse.Namespace) -> int:

@@ -24,7 +24,8 @@ from pound_solve.motions.base import Motion
 from pound_solve.results import Writer
 
 Array = NDArray[np.float64]
-Progress = Callable[[float, float], None]  #: told the time reached and the time to reach
+#: told the time reached, the time to reach, and what keeps the run waiting there, if anything
+Progress = Callable[[float, float, str], None]
 
 SIGNS = (
     "End forces act on the member along its own axes; axial tension and contact compression are positive, "
@@ -240,8 +241,10 @@ class Course:
             start = restart.resume(saved, place, times)
         else:
             start = history.begin(s, place, u, v0, state.states, state.u, times)
-        tell, first = self.progress or (lambda t, end: None), None if saved is None else saved.first
-        recorder = history.Recorder(place, drifts, self.writer.append, lambda t: tell(t, end), first)
+        tell, first = self.progress or (lambda t, end, doing: None), None if saved is None else saved.first
+        recorder = history.Recorder(
+            place, drifts, self.writer.append, lambda t, doing: tell(t, end, doing), first
+        )
         self.writer.start_history(recorder.layout())
         spec = card.laws["METHOD"][0]
         options = {f.name: card[f.name] for f in spec.fields}

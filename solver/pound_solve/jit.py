@@ -20,12 +20,15 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from pound_solve.laws import EXITS, MEMORY, PARAMETERS, Rule
 
 Function = Callable[..., Any]
 
 
 SHORT = 700  #: bytes of Python's code up to which a function is put into its callers
+ROOM = 8  #: rules that tables have room for, or a multiple of it
 
 
 class Tables(NamedTuple):
@@ -81,15 +84,28 @@ def numba() -> Any:
 
 
 @contextmanager
-def quiet() -> Iterator[None]:
-    """Keep numba's notice to itself that functions as values are new."""
+def compiling() -> Iterator[None]:
+    """Settings of numba while a kernel is called that may have to be compiled."""
     found = numba()
     if found is None:
         yield
         return
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", found.core.errors.NumbaExperimentalFeatureWarning)
-        yield
+    config = found.config
+    before = config.OPT
+    # rows of a sparse matrix are loops of one or two turns: unrolled, as higher levels do, they run slower
+    config.OPT = type(before)(1)
+    try:
+        with warnings.catch_warnings():  # that functions as values are new
+            warnings.simplefilter("ignore", found.core.errors.NumbaExperimentalFeatureWarning)
+            yield
+    finally:
+        config.OPT = before
+
+
+def cold(function: Function) -> bool:
+    """Whether a kernel, which is compiled in one version only, has still to be compiled."""
+    found = numba()
+    return found is not None and not any(Path(found.config.CACHE_DIR).rglob(f"*.{function.__name__}-*.nbc"))
 
 
 @cache
@@ -117,33 +133,39 @@ def compiled(function: Function, signature: Any = None, inner: bool = False) -> 
     for used in {i.argval for i in dis.get_instructions(function) if i.opname == "LOAD_GLOBAL"}:
         value = scope.get(used)
         if isinstance(value, types.FunctionType) and value.__module__.startswith("pound_solve"):
-            scope[used] = compiled(value, inner=len(value.__code__.co_code) < SHORT)
+            scope[used] = compiled(value, inner=True)
+        elif type(value) is int:  # of a kind of its own each, for which numba would compile a callee anew
+            scope[used] = np.int64(value)
     twin = types.FunctionType(function.__code__, scope, function.__name__, function.__defaults__)
     twin.__qualname__, twin.__module__ = function.__qualname__, function.__module__
     # arrays belong to the caller of a kernel: they need not be counted, which would cost more than the work
-    how = {"cache": True, "forceinline": inner, "error_model": "numpy", "_nrt": False}
-    with quiet():
+    how = {"cache": True, "error_model": "numpy", "_nrt": False}
+    if inner:  # no Python calls it, so that it needs no door to it; kept by a name of its own
+        twin.__qualname__ += "_inner"
+        how |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+        how["forceinline"] = len(function.__code__.co_code) < SHORT
+    with compiling():
         return found.njit(*([] if signature is None else [signature]), **how)(twin)
 
 
 def tables(rules: Sequence[Rule]) -> Tables:
-    """Functions of the rules, compiled to be called by number."""
+    """Functions of the rules, compiled to be called by number.
+
+    The last rule fills the tables up to a length that hardly a deck exceeds: numba compiles the kernels
+    anew for every length.
+    """
     found = numba()
-    if found is None:
-        return Tables(
-            tuple(r.branch for r in rules),
-            tuple(r.leave for r in rules),
-            tuple(r.recoverable for r in rules),
-            tuple(r.curve or straight for r in rules),
-        )
-    t = found.types
-    f8, i8 = t.float64, t.int64
-    p, m = t.UniTuple(f8, PARAMETERS), t.UniTuple(f8, MEMORY)
-    branch, leave = t.UniTuple(f8, 3 + 3 * EXITS)(p, i8, m), t.Tuple((i8, m))(p, i8, m, i8, f8, f8)
-    recoverable, curve = f8(p, i8, m, f8, f8), t.UniTuple(f8, 4)(p, i8, m, f8, f8, f8)
-    return Tables(
-        tuple(compiled(r.branch, branch) for r in rules),
-        tuple(compiled(r.leave, leave) for r in rules),
-        tuple(compiled(r.recoverable, recoverable) for r in rules),
-        tuple(compiled(r.curve or straight, curve) for r in rules),
-    )
+    signatures = [None] * len(Tables._fields)
+    if found is not None:
+        t = found.types
+        f8, i8 = t.float64, t.int64
+        p, m = t.UniTuple(f8, PARAMETERS), t.UniTuple(f8, MEMORY)
+        signatures = [
+            t.UniTuple(f8, 3 + 3 * EXITS)(p, i8, m),
+            t.Tuple((i8, m))(p, i8, m, i8, f8, f8),
+            f8(p, i8, m, f8, f8),
+            t.UniTuple(f8, 4)(p, i8, m, f8, f8, f8),
+        ]
+    own = [(r.branch, r.leave, r.recoverable, r.curve or straight) for r in rules]
+    own += own[-1:] * (-len(own) % ROOM)
+    return Tables(*(tuple(compiled(f, s) for f in column) for column, s in zip(zip(*own), signatures)))

@@ -147,7 +147,7 @@ def test_deck_runs_to_its_end_without_a_warning(deck: Path, run):
     assert prepared.warnings == ()
     # what a reader of the report would look at first
     if "checks" in results.tables:
-        assert {str(v) for v in results.table("checks")["verdict"]} == {"good"}
+        assert {str(v) for v in results.table("checks")["verdict"]} <= {"good", "met"}
 
 
 @pytest.mark.parametrize("deck", ALL_DECKS, ids=lambda d: f"{d.parent.name}/{d.name}")

@@ -1,5 +1,6 @@
 """The command line: verbs, exit statuses, output streams, and runs that end early."""
 
+import io
 import os
 import signal
 import subprocess
@@ -11,7 +12,7 @@ import pytest
 
 from pound_solve import run
 from pound_solve.app import DeckError
-from pound_solve.cli import main
+from pound_solve.cli import _Progress, main
 from pound_solve.results import Results
 
 DECK = """TITLE  A mass between two walls
@@ -208,3 +209,16 @@ def test_a_linear_run_imports_only_what_it_needs(deck):
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.strip() == "[]", done.stderr
+
+
+@pytest.mark.parametrize(("terminal", "quiet"), [(True, False), (True, True), (False, False)])
+def test_what_keeps_a_run_waiting_is_told_on_a_terminal_only(monkeypatch, terminal, quiet):
+    stream = io.StringIO()
+    stream.isatty = lambda: terminal
+    monkeypatch.setattr(sys, "stderr", stream)
+    progress = _Progress(quiet)
+    progress(0.0, 5.0, "compiling the kernels")
+    progress(0.1, 5.0, "")  # too soon after the last
+    progress.end()
+    lines = [line.strip() for line in stream.getvalue().split("\r")]
+    assert lines == (["", "compiling the kernels", "", ""] if terminal and not quiet else [""])

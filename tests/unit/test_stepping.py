@@ -10,7 +10,8 @@ from scipy.integrate import solve_ivp
 
 import pound_solve
 from pound_solve import jit
-from pound_solve.integrate import auto, ldl
+from pound_solve.hysteresis import bilinear, imk_bilinear
+from pound_solve.integrate import auto, exits, kernel, ldl
 
 # two one-bay frames of which the left one yields at its hinges, slabs that meet with a dashpot
 POUNDING = """UNITS kN m s
@@ -49,15 +50,15 @@ EQUAKE
 ANALYSIS
  HISTORY 1.2 METHOD={method}
 OUTPUT
- EVERY=0.1
+ EVERY={every}
 """
 HINGED = "RULE=BILINEAR R=0.05 MI=60 MJ=60 KH=2E5"
 
 
-def run(folder, method, hinge=HINGED, turn="0.5"):
+def run(folder, method, hinge=HINGED, turn="0.5", every=0.1):
     deck = folder / "frames.inp"
     gap = 0.02 if hinge else 0.008
-    deck.write_text(POUNDING.format(method=method, hinge=hinge, turn=turn, gap=gap))
+    deck.write_text(POUNDING.format(method=method, hinge=hinge, turn=turn, gap=gap, every=every))
     return pound_solve.run(deck)
 
 
@@ -146,15 +147,93 @@ def test_auto_keeps_its_tolerance_and_its_estimate_holds(tmp_path, monkeypatch, 
     exact = run(tmp_path, "AUTO")
     assert "EXACT" in exact.table("scene")["decision"].tolist()
     truth, closed = figures(exact), exact.table("contact_summary")["closures"][0]
-    monkeypatch.setattr(auto, "MOST_LAWS", 1)
+    monkeypatch.setattr(auto, "why_not_exact", lambda scene: "steps are asked for")
     found = run(tmp_path, f"AUTO TOL={tol}")
     assert found.table("contact_summary")["closures"][0] == closed
+    assert error_against(found, truth) <= estimate(found) <= tol
+
+
+def estimate(results):
+    (check,) = [c for c in results.table("checks") if "estimated error" in c["check"]]
+    assert check["verdict"] == "met"
+    return float(check["value"])
+
+
+def error_against(results, truth):
     drift = np.abs(truth[:4]).reshape(2, 2).max(axis=0)
     against = np.concatenate([drift, drift, truth[4:]])
-    error = float(np.abs((figures(found) - truth) / against).max())
-    (check,) = [c for c in found.table("checks") if "estimated error" in c["check"]]
-    assert check["verdict"] == "met"
-    assert error <= float(check["value"]) <= tol
+    return float(np.abs((figures(results) - truth) / against).max())
+
+
+def test_auto_learns_nothing_from_two_runs_with_the_same_steps(tmp_path, monkeypatch):
+    """Output times cut the steps of both: a difference of zero between them is no accuracy."""
+    truth = figures(run(tmp_path, "EXACT"))
+    monkeypatch.setattr(auto, "why_not_exact", lambda scene: "steps are asked for")
+    found = run(tmp_path, "AUTO TOL=1e-3", every=0.004)
+    assert error_against(found, truth) <= estimate(found) <= 1e-3
+
+
+@pytest.mark.parametrize("few", [0, 3, 10**6])
+def test_auto_takes_one_way_and_the_same_again(tmp_path, monkeypatch, few):
+    """EXACT given up at once, on its way, or never: one method is named, and all figures return."""
+    monkeypatch.setattr(auto, "FEW", few)
+    truth = figures(run(tmp_path, "EXACT"))
+    rounds = []
+    for _ in range(2):
+        found = run(tmp_path, "AUTO TOL=1e-3")
+        (method,) = [d for d in found.table("scene") if d["subject"] == "method"]
+        rounds.append((method["decision"], figures(found).tolist(), found.history("energy").tolist()))
+        found.close()
+    assert rounds[0] == rounds[1]
+    assert few < 10**6 or rounds[0][0] == "EXACT"
+    assert np.abs(np.array(rounds[0][1]) / truth - 1.0).max() < 1e-3
+
+
+def test_auto_takes_steps_where_stiffnesses_do_not_return(tmp_path):
+    """Takeda's hinges unload with another stiffness each time, those of a bilinear spring do not."""
+    takeda = "RULE=TAKEDA MI=60 MJ=60 R=0.05 ALFA=0.4 BETA=0 KH=2E5"
+    for hinge, method in ((HINGED, "EXACT"), (takeda, "NEWMARK")):
+        found = run(tmp_path, "AUTO TOL=1e-2", hinge)
+        assert method in found.table("scene")["decision"].tolist()
+
+
+def test_auto_without_drifts_and_laws_compares_displacements(tmp_path):
+    deck = tmp_path / "large.inp"
+    text = POUNDING.format(method="{method}", hinge="", turn="0.5", gap=0.02, every=0.01)
+    text = text.replace(" 99 MEET 4 13\n", "").replace(" MEET  CONTACT", "! MEET  CONTACT")
+    text = text.split("DRIFT")[0] + "EQUAKE" + text.split("EQUAKE")[1]
+    text = text.replace("UNITS kN m s", "UNITS kN m s\nGEOMETRY PDELTA_VARYING")
+    ends = []
+    for method in ("AUTO TOL=1e-4", "NEWMARK DT=5e-5"):
+        deck.write_text(text.replace("{method}", method))
+        found = pound_solve.run(deck)
+        if method.startswith("AUTO"):
+            told = estimate(found)
+        ends.append(np.array(found.history("node/u")))
+        found.close()
+    most = np.abs(ends[1]).max(axis=(0, 1))
+    error = (np.abs(ends[0].max(axis=0) - ends[1].max(axis=0)) / most).max()
+    assert 0.0 < error <= told <= 1e-4
+
+
+@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
+def test_decks_with_any_number_of_rules_share_one_compiled_version(tmp_path):
+    for hinge in ("", HINGED, HINGED.replace("BILINEAR", "ELASTO_PLASTIC").replace("R=0.05 ", "")):
+        run(tmp_path, "NEWMARK DT=0.01", hinge)
+    assert len(jit.compiled(kernel.advance).signatures) == 1
+    rules = [imk_bilinear.RULE, bilinear.RULE]
+    assert [len(f) for f in jit.tables(rules)] == [jit.ROOM] * 4
+    assert jit.tables(rules).leave[:2] == tuple(jit.tables([r]).leave[0] for r in rules)
+
+
+@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
+def test_a_kernel_is_cold_until_it_is_compiled(tmp_path, monkeypatch):
+    monkeypatch.setattr(jit.numba().config, "CACHE_DIR", str(tmp_path))
+    assert jit.cold(exits.root) and jit.cold(exits.summit)
+    summit = jit.compiled.__wrapped__(exits.summit)
+    assert jit.cold(exits.summit)
+    assert summit(0.0, 0.0, 1.0, -1.0, 1.0) == exits.summit(0.0, 0.0, 1.0, -1.0, 1.0) == (0.5, 0.25)
+    assert jit.cold(exits.root) and not jit.cold(exits.summit)
 
 
 CURVED = """UNITS kN m s

@@ -172,7 +172,7 @@ class Recorder:
     append : callable
         Takes a block of histories, see `results.Writer.append`.
     progress : callable
-        Told the time of every sample.
+        Told the time of every sample, or what keeps the run waiting there.
     first_energy : ndarray, shape (6,), or None
         Energies at the start of the history, if this run takes it up later; None: of the first sample.
     """
@@ -182,7 +182,7 @@ class Recorder:
         scene: Scene,
         drifts: Watch,
         append: Append,
-        progress: Callable[[float], None],
+        progress: Callable[[float, str], None],
         first_energy: Array | None = None,
     ) -> None:
         structure = scene.structure
@@ -276,7 +276,7 @@ class Recorder:
         self._rows.append((t, u, v, a, *laws, works))
         self.last = u, v, works
         self.reached = t
-        self._progress(t)
+        self._progress(t, "")
         if len(self._rows) >= self._most:
             self.flush()
 
@@ -287,9 +287,9 @@ class Recorder:
         self.apart = max(self.apart, float(np.diff(t, prepend=self.last_seen if self.seen else t[0]).max()))
         self.seen, self.last_seen = self.seen + len(t), float(t[-1])
 
-    def trial(self, t: float) -> None:
+    def trial(self, t: float, doing: str = "") -> None:
         """Tell the progress of a run whose samples may not count (see `integrate.base.Sink`)."""
-        self._progress(t)
+        self._progress(t, doing)
 
     def _residuals(self, energy: Array) -> Array:
         """Input less what it became, against the start [F L], for rows of energies."""

@@ -1,13 +1,20 @@
 r"""AUTO: EXACT where it pays, else NEWMARK with the step that meets a tolerance.
 
-EXACT needs no step, but linear pieces and few events.  Elsewhere the whole run is repeated with a shorter
-step until the peaks no longer change: between two runs with steps h and h/r the peaks differ by
+EXACT needs no step, but linear pieces, and every combination of stiffnesses that is new costs it a
+decomposition.  The whole run by steps is repeated with a shorter step until the peaks no longer change:
+between two runs of which the second takes r times the steps of the first the peaks differ by
 :math:`\Delta`, and the error left in the second is estimated as :math:`\Delta/(r-1)`, as if the method
 were of first order only.  It is of second order, so that the estimate errs on the safe side.
 
+Which of the two pays shows on the way.  EXACT may begin with a little; if that does not last, steps are
+taken, and before every run of them EXACT may go as far as that run's cost, if by what it has shown it
+would get to the end.  Costs are counted from windows, decompositions, steps and unknowns, and not measured,
+so that a deck takes the same way whenever it is run.
+
 What is compared: the largest and smallest value of every drift, against the larger of the two; the peak
 force of every contact, against itself (but no less than a twentieth of the largest contact force);
-without either, the deformations of all springs in the same way as drifts.
+without either, the deformations of all springs in the same way as drifts; without any, all displacements,
+against the largest in their direction.
 """
 
 from __future__ import annotations
@@ -19,51 +26,58 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve import jit
 from pound_solve.integrate import exact, newmark
-from pound_solve.integrate.base import Extreme, LawValues, Outcome, Peaks, Sink, Start, Stop, Watch
+from pound_solve.integrate.base import Extreme, LawValues, Outcome, Peaks, Sink, Start, Stop, Watch, goals
 from pound_solve.scene import Decision, Scene
 
 Array = NDArray[np.float64]
 
-MOST_UNKNOWNS = 1000  #: at 800 unknowns a run of EXACT like the paper's takes a minute
-MOST_LAWS = 32  #: more springs that yield change branch too often for EXACT to pay
 MOST_STEPS = 50_000_000  #: of one run
 MARGIN = 0.6  #: of the tolerance that the next step aims at
+FREE = 1.0  #: what EXACT may cost before steps are thought of: loading their kernels costs as much
+FEW = 24  #: combinations of stiffnesses that it may meet by then: where they do not return, more will come
+STEP, EACH = 3e-7, 2.5e-8  #: cost of a step and of each of its unknowns, of a law twice, as `exact.WINDOW`
+PLAIN = 100  #: times as much where nothing compiles the kernels
 
 
 def why_not_exact(scene: Scene) -> str:
-    """Reason why EXACT cannot solve the scene, or does not pay; empty where it does."""
-    laws = scene.structure.laws
+    """Reason why EXACT cannot solve the scene; empty where it can."""
     if scene.structure.chords:
         return f"GEOMETRY {scene.structure.model.geometry}: the members' stiffness changes as they move"
-    curved = next((s for s in laws if s.law.curved), None)
+    curved = next((s for s in scene.structure.laws if s.law.curved), None)
     if curved is not None:
         return f"the law {curved.rule} of element {curved.element} is curved"
-    if scene.size > MOST_UNKNOWNS:
-        return f"{scene.size} unknowns are too many for EXACT (up to {MOST_UNKNOWNS})"
-    if len(laws) > MOST_LAWS:
-        return f"{len(laws)} springs and contacts change too often for EXACT to pay (up to {MOST_LAWS})"
     return ""
 
 
+def stepped(scene: Scene) -> Decision:
+    """Why steps were taken."""
+    reason = why_not_exact(scene) or "the stiffness changes so often that EXACT would cost more"
+    return Decision("method", "NEWMARK", f"{reason}; steps are shortened until the peaks stand still")
+
+
 class Replay:
-    """Keeps what a run tells its sink, to hand it on if it is the last."""
+    """Keeps what a run tells its sink, to hand it on if it is the last; knows the extremes of u."""
 
     def __init__(self, sink: Sink) -> None:
         self.sink, self.told = sink, list[tuple[Callable[..., None], tuple[Any, ...]]]()
+        self.high: Array | float = -np.inf
+        self.low: Array | float = np.inf
 
     def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take one sample (see `integrate.base.Sink`)."""
         self.told.append((self.sink.sample, (t, u, v, a, laws, works)))
+        self.high, self.low = np.maximum(self.high, u), np.minimum(self.low, u)
         self.sink.trial(t)
 
     def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
         """Take the motion between samples (see `integrate.base.Sink`)."""
         self.told.append((self.sink.between, (t, u, v, a)))
 
-    def trial(self, t: float) -> None:
+    def trial(self, t: float, doing: str = "") -> None:
         """Pass on how far a trial has come."""
-        self.sink.trial(t)
+        self.sink.trial(t, doing)
 
     def hand_on(self) -> None:
         """Tell the sink all of it."""
@@ -71,7 +85,36 @@ class Replay:
             tell(*what)
 
 
-def figures(scene: Scene, peaks: Peaks) -> tuple[Array, Array]:
+class Rival:
+    """EXACT, tried for no more than a cost."""
+
+    def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Sink) -> None:
+        self.scene, self.start, self.watch, self.sink = scene, start, watch, sink
+        self.whole = np.inf if why_not_exact(scene) else 0.0  # least cost of the whole run, so far as known
+
+    def run(self, cost: float, regimes: float = np.inf) -> Outcome | None:
+        """Its run, if that costs no more and meets no more linear regimes; None where it would."""
+        if self.whole >= cost:
+            return None
+        replay, decisions = Replay(self.sink), self.scene.decisions
+        known, limits = len(decisions), {"COST": cost, "REGIMES": regimes}
+        try:
+            outcome = exact.integrate(self.scene, self.start, self.watch, limits, replay)
+        except exact.CostlyError as err:
+            del decisions[known:]
+            begin, *_, end = self.start.times
+            self.whole = err.spent * ((end - begin) / (err.t - begin) if err.t > begin else 1.0)
+            return None
+        except Stop:
+            replay.hand_on()
+            raise
+        why = "all laws are piecewise linear, and it costs less than steps: no time step is needed"
+        decisions.insert(known, Decision("method", "EXACT", why))
+        replay.hand_on()
+        return outcome
+
+
+def figures(scene: Scene, peaks: Peaks, replay: Replay) -> tuple[Array, Array]:
     """Peaks that are compared between runs, and what their differences are measured against."""
     laws = scene.structure.laws
     contact = [i for i, s in enumerate(laws) if s.is_contact]
@@ -81,21 +124,30 @@ def figures(scene: Scene, peaks: Peaks) -> tuple[Array, Array]:
         swings = peaks.deformation
     values = [(e.high, e.low) for e in swings]
     sizes = [(max(abs(e.high), abs(e.low)),) * 2 for e in swings]
+    if not laws and not swings:
+        values = list(zip(np.ravel(replay.high), np.ravel(replay.low)))
+        ways = np.array([d for _, d in scene.freedoms])
+        most = [np.abs(np.array(values)[ways == d]).max(initial=0.0) for d in range(3)]
+        sizes = [(most[d],) * 2 for d in ways]
     against = np.maximum(force, 0.05 * force.max(initial=0.0))
     return np.concatenate([np.ravel(values), force]), np.concatenate([np.ravel(sizes), against])
 
 
 def to_tolerance(
-    scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink
+    scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink, rival: Rival
 ) -> Outcome:
-    """Repeat the run with shorter steps until the peaks stand still."""
+    """Repeat the run with shorter steps until the peaks stand still, or the rival costs less."""
     tol, length = options["TOL"], float(start.times[-1] - start.times[0])
-    breaks = scene.excitation.breaks
-    steps = np.diff(breaks[(breaks >= start.times[0]) & (breaks <= start.times[-1])])
-    h = float(np.median(steps)) if len(steps) > 1 else length / 1000
-    before: tuple[float, Array] | None = None
+    intervals = np.diff(goals(scene, start.times)[0], prepend=start.times[0])
+    h = min(float(np.median(intervals)), length / 1000)
+    each = STEP + EACH * (scene.size + 2 * len(scene.structure.laws))
+    if jit.numba() is None:
+        each *= PLAIN
+    before: tuple[int, Array] | None = None
     runs, error = 0, np.inf
     while True:
+        if (exactly := rival.run(each * length / h)) is not None:
+            return exactly
         replay = Replay(sink)
         try:
             outcome = newmark.integrate(scene, start, watch, {"DT": h, "BETA": 0.25, "GAMMA": 0.5}, replay)
@@ -103,19 +155,22 @@ def to_tolerance(
             if before is None and h > 1e-6 * length:  # too coarse to go on says nothing of the structure
                 h *= 0.25
                 continue
+            scene.decisions.append(stepped(scene))
             replay.hand_on()
             raise
         runs += 1
-        now, against = figures(scene, outcome.peaks)
-        if before is not None:
+        now, against = figures(scene, outcome.peaks, replay)
+        steps = outcome.figures["steps"]
+        if before is not None and steps > before[0]:
             change = float(
                 (np.abs(now - before[1]) / np.where(against > 0.0, against, 1.0)).max(initial=0.0)
             )
-            error = change / (before[0] / h - 1.0)
+            error = change / (steps / before[0] - 1.0)
             if error <= tol or length / h * 2.0 > MOST_STEPS:
                 break
-        before = h, now
-        h *= 0.5 if not np.isfinite(error) else float(np.clip(np.sqrt(MARGIN * tol / error), 1 / 8, 1 / 2))
+        before = steps, now
+        h *= 0.5 if not np.isfinite(error) else float(np.clip(np.sqrt(MARGIN * tol / error), 1 / 4, 1 / 2))
+    scene.decisions.append(stepped(scene))
     replay.hand_on()
     outcome.figures = {**outcome.figures, "runs": runs}
     outcome.checks.append(
@@ -130,14 +185,9 @@ def to_tolerance(
 
 def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
     """Choose a method, note why, and run it."""
-    reason = why_not_exact(scene)
-    if not reason:
-        why = "all laws are piecewise linear, unknowns and laws are few: no time step is needed"
-        scene.decisions.append(Decision("method", "EXACT", why))
-        return exact.integrate(scene, start, watch, {}, sink)
-    how = f"{reason}; steps are shortened until the peaks stand still"
-    scene.decisions.append(Decision("method", "NEWMARK", how))
-    return to_tolerance(scene, start, watch, options, sink)
+    rival = Rival(scene, start, watch, sink)
+    outcome = rival.run(FREE, FEW)
+    return outcome or to_tolerance(scene, start, watch, options, sink, rival)
 
 
 SPEC = Spec(

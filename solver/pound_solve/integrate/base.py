@@ -162,8 +162,8 @@ class Sink(Protocol):
         """Take the motion at times between the samples, shapes (n_times,), (n, n_times): for envelopes."""
         ...
 
-    def trial(self, t: float) -> None:
-        """Be told the time reached by a run whose samples may not count."""
+    def trial(self, t: float, doing: str = "") -> None:
+        """Be told the time reached by a run whose samples may not count, or what keeps it waiting there."""
         ...
 
 

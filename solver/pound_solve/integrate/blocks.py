@@ -20,6 +20,9 @@ from pound_solve.scene import Scene
 Array = NDArray[np.float64]
 Key = tuple[Any, ...]
 
+#: cost of a regime, as `exact.WINDOW`; of its tables for each unknown; of its modes over the unknowns' cube
+REGIME, TABLE, MODES = 2e-3, 2e-4, 3e-8
+
 
 @dataclass(frozen=True)
 class Regime:
@@ -120,9 +123,9 @@ class Partition:
                 return labels
             labels = lowest
 
-    def form(self, branches: Sequence[Branch], u: Array, v: Array) -> None:
+    def form(self, branches: Sequence[Branch], u: Array, v: Array, spend: Callable[[float], None]) -> None:
         """Form the blocks that the branches ask for at displacement `u`, velocity `v`;
-        keep those that go on.
+        keep those that go on, and tell `spend` what a new one costs before it is made.
 
         Raises
         ------
@@ -155,6 +158,7 @@ class Partition:
                 blocks.append(old[key])
                 continue
             if key not in self.regimes:
+                spend(REGIME + TABLE * len(index) + MODES * len(index) ** 3)
                 self.regimes[key] = self._regime(index, laws, branches)
             regime = self.regimes[key]
             blocks.append(Block(key, regime, constant, regime.flow.enter(u[index], v[index])))

@@ -53,6 +53,16 @@ MOST_INTERVALS = 32  #: intervals of one window
 GRID = 1.0  #: grid interval times the fastest eigenvalue
 EACH = 4  #: grid points from one that envelopes of nodes and members are taken at to the next
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
+# what it costs, in seconds of some machine: counted, not measured, so that a choice by it repeats
+WINDOW, POINT = 1e-3, 2e-8  #: a window; each of its grid points times each unknown
+
+
+class CostlyError(Exception):
+    """A run has used up what it may cost; `spent` brought it to time `t`."""
+
+    def __init__(self, spent: float, t: float) -> None:
+        super().__init__(f"more than {spent:g}, at {t:g}")
+        self.spent, self.t = spent, t
 
 
 class Exact:
@@ -63,6 +73,11 @@ class Exact:
     ) -> None:
         self.scene, self.sink, self.times = scene, sink, start.times
         self.refine = 2.0 ** -int(options.get("REFINE") or 0)
+        self.spent, self.most, self.most_regimes = (
+            0.0,
+            options.get("COST", np.inf),
+            options.get("REGIMES", np.inf),
+        )
         self.laws = scene.structure.laws
         n = self.n_laws = len(self.laws)
         self.states = list(start.states)
@@ -104,10 +119,16 @@ class Exact:
             cursor = self._advance(goals, cursor)
         return self.outcome()
 
+    def _spend(self, cost: float) -> None:
+        """Take something from what the run may cost."""
+        self.spent += cost
+        if self.spent > self.most or len(self.partition.regimes) > self.most_regimes:
+            raise CostlyError(self.spent, self.t)
+
     def _form(self) -> None:
         """Form the blocks for the present branches and gather their exits."""
         try:
-            self.partition.form(self.branches, self.u, self.v)
+            self.partition.form(self.branches, self.u, self.v, self._spend)
         except Mechanism as err:
             worst = int(np.argmax(np.abs(err.shape)))
             raise self.stop("A501", f"{self.scene.name(worst)} has no mass and nothing holds it") from None
@@ -153,6 +174,7 @@ class Exact:
         if not np.isfinite(value).all() or not np.isfinite(rate).all():
             raise self.stop("A504", "the motion grew beyond all numbers")
         self.windows += 1
+        self._spend(WINDOW + POINT * len(t) * len(self.u))
         event = self._first_event(window, t, value, rate, second) if self.n_laws else None
         if event is None:
             self._peaks(window, t, value, rate, second)
@@ -388,9 +410,9 @@ class Whole:
             t, *(self.small.all(x, ex.values(t, order).T, order) for order, x in enumerate((u, v, a)))
         )
 
-    def trial(self, t: float) -> None:
+    def trial(self, t: float, doing: str = "") -> None:
         """Pass it on."""
-        self.sink.trial(t)
+        self.sink.trial(t, doing)
 
 
 def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
@@ -400,6 +422,8 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     ------
     Stop
         Too many changes at one instant, a mechanism, numbers beyond all bounds, or an interrupt.
+    CostlyError
+        It costs more than COST, or takes more than REGIMES, of the options; no deck sets them.
     """
     if scene.structure.chords:
         why = "members that change their stiffness as they move (GEOMETRY {}) need steps: AUTO takes them"

@@ -296,7 +296,10 @@ class Stepper:
                 w.f[i, arrays.PEAK] = force
         x.q[arrays.P] = self._force(t0)
         x.inputs[:2] = scene.excitation.value(t0), scene.excitation.value(t0, 1)
-        jit.compiled(kernel.settle)(m, w, x, self.dt)
+        if jit.cold(kernel.advance):
+            self.sink.trial(t0, "compiling the kernels, once for this version: some 20 s")
+        with jit.compiling():
+            jit.compiled(kernel.settle)(m, w, x, self.dt)
         kernel.note(m, w, x, t0, 0.0)
         kernel.sample(w, x, z, self.tables, self.count, t0)
         ends, is_output = goals(scene, self.times)
@@ -309,7 +312,7 @@ class Stepper:
         coefs = np.ascontiguousarray(ex.coefs)
         advance = jit.compiled(kernel.advance)
         while True:
-            with np.errstate(all="ignore"), jit.quiet():  # a runaway is told in words
+            with np.errstate(all="ignore"), jit.compiling():  # a runaway is told in words
                 why = advance(
                     m, w, x, z, self.tables, self.scheme, coefs, ex.breaks, ends, steps, h, is_output,
                     pieces, self.count, self.clock,
