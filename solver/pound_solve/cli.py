@@ -15,7 +15,7 @@ from pathlib import Path
 
 from pound_solve import __version__
 
-VERBS = ("run", "check", "report", "export", "list", "loop")
+VERBS = ("run", "check", "report", "export", "separation", "list", "loop")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -53,6 +53,15 @@ def parser() -> argparse.ArgumentParser:
     export = verbs.add_parser("export", help="write the tables and histories of a results file as CSV")
     export.add_argument("results", help="results file (.h5)")
     export.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: beside the file)")
+    text = "separation of the buildings by ABS, SRSS and DDC from the peaks of a results file"
+    separation = verbs.add_parser("separation", help=text, description=text)
+    separation.add_argument("results", help="results file (.h5)")
+    separation.add_argument(
+        "--periods", type=_two, default=(), metavar="T1,T2", help="of the buildings, in place of the modes'"
+    )
+    separation.add_argument(
+        "--damping", type=_two, default=(), metavar="X1,X2", help="in percent, in place of the modes'"
+    )
     listing = verbs.add_parser("list", help="list what a deck may use")
     listing.add_argument(
         "family",
@@ -95,6 +104,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             "check": _check,
             "report": _report,
             "export": _export,
+            "separation": _separation,
             "list": _list,
             "loop": _loop,
         }[args.verb](args)
@@ -250,6 +260,29 @@ def _export(args: argparse.Namespace) -> int:
             for path in export_csv(results, folder):
                 print(path)
     except ResultsError as err:
+        return _complain(str(err))
+    return 0
+
+
+def _two(word: str) -> tuple[float, float]:
+    """Two positive numbers of an option."""
+    try:
+        first, second = (float(x) for x in word.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{word[:60]}: write two numbers, as 0.2,0.3") from None
+    if not (0.0 < first < math.inf and 0.0 < second < math.inf):
+        raise argparse.ArgumentTypeError(f"{word[:60]}: both must be above 0")
+    return first, second
+
+
+def _separation(args: argparse.Namespace) -> int:
+    from pound_solve import separation
+    from pound_solve.results import Results, ResultsError
+
+    try:
+        with Results.open(args.results) as results:
+            print(separation.text(results, args.periods, args.damping))
+    except (ResultsError, separation.SeparationError) as err:
         return _complain(str(err))
     return 0
 

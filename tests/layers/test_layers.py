@@ -22,6 +22,7 @@ LAYERS = (
     ("catalog", "tables"),
     ("results", "echo", "reference"),
     ("report", "export", "loop", "plot"),
+    ("separation",),
     ("course",),
     ("app",),
     ("__init__",),

@@ -90,6 +90,6 @@ SPEC = Spec(
         TENSION,
     ),
     reference="Cole, Dhakal, Carr & Bull 2011; exact: manual/theory-pounding.md",
-    sample="DIAPHRAGMS=2,2 MASSES=1,2",
+    sample="MODEL=EXACT",
     impl=build,
 )
