@@ -121,7 +121,7 @@ def _behind(
         if math.isinf(own):
             return None
         mass += own
-        stiffness = _straight_on(structure, members[node], node, way)
+        stiffness = _straight_on(structure, members.get(node, ()), node, way)
         if not stiffness:
             return Diaphragm(mass, 1.0 / flexibility) if flexibility else None
         here = nodes[node]

@@ -68,6 +68,11 @@ def test_the_order_of_the_nodes_and_a_wall() -> None:
     assert first.mass == 10.0 and math.isinf(second.mass)
 
 
+def test_a_lone_mass_on_a_wall() -> None:
+    deck = "NODES\n 1 0 0\nELEMENTS\n 1 HIT 1\nPROPS\n HIT CONTACT GAP=0 K=1\nGRAVITY 1\nWEIGHTS\n 1 3\n"
+    assert chain(deck=deck) == (Diaphragm(3.0), Diaphragm(math.inf))
+
+
 def test_a_held_chain_is_no_free_bar() -> None:
     deck = CHAIN.replace(" 1 -3*c -3*s", " 1 -3*c -3*s FIX=XYR")
     assert chain(deck=deck)[0] == Diaphragm(4.0)

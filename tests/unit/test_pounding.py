@@ -206,6 +206,18 @@ def test_a_wall_and_a_rigid_mass() -> None:
         Pair(Diaphragm(1.0), Diaphragm(2.0))
 
 
+def test_the_table_of_the_manual() -> None:
+    page = (Path(__file__).parents[2] / "manual" / "theory-pounding.md").read_text("utf-8")
+    table = page.split("<!-- table: restitution of bars -->")[1].split("<!-- end -->")[0]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.strip().splitlines()]
+    head, _, *lines = rows
+    across = [float(cell.split("=")[-1]) for cell in head[1:]]
+    assert len(lines) == 9 and len(across) == 7
+    for mass_ratio, *cells in lines:
+        pairs = [bars(float(mass_ratio), t) for t in across]
+        assert cells == [f"{pair.e_paper:.3f} / {pair.e:.3f}" for pair in pairs]
+
+
 # ---------------------------------------------------------------------- the equivalent contact
 
 

@@ -115,10 +115,8 @@ def test_along_an_inclined_direction(tmp_path: Path) -> None:
 
 
 def test_a_node_that_is_not_stored(tmp_path: Path) -> None:
-    deck = tmp_path / "walls.inp"
-    deck.write_text(
-        WALLS.format(ends="2 4", angle="0").replace(" EVERY=0.001", " EVERY=0.001 NODES=2"), encoding="utf-8"
-    )
+    deck, words = tmp_path / "walls.inp", WALLS.replace(" EVERY=0.001", " EVERY=0.001 NODES=2")
+    deck.write_text(words.format(ends="2 4", angle="0"), encoding="utf-8")
     with run(deck, out=tmp_path) as results:
         (row,) = rows(results)
     assert row[1] == pytest.approx(0.03) and math.isnan(row[2]) and math.isnan(row[7])
