@@ -31,7 +31,7 @@ class Meeting:
     sides : tuple of Diaphragm
         Behind I and J.
     pair : Pair or None
-        The theory; None where both are rigid or one has no mass.
+        The theory; None where a mass is zero, or rigid without the card saying so.
     lumped_error : float
         By how much lumped masses get the changes of velocity wrong [-].
     note : str
@@ -47,9 +47,9 @@ class Meeting:
 
         The impulse is spread over the duration, but over no longer than the first force of the theory
         would take for its impulse: the weak second phase of a staircase and the tail of a coarse mesh are
-        no plateau.
+        no plateau.  A contact of more than twice the duration of the theory is no such collision.
         """
-        if self.pair is not None:
+        if self.pair is not None and duration <= 2.0 * self.pair.duration:
             duration = min(duration, self.pair.impulse / self.pair.force)
         return impulse / duration if duration > 0.0 else math.nan
 
@@ -88,11 +88,15 @@ def _meeting(structure: Structure, spring: LawSpring) -> Meeting:
     if 0.0 in (first.mass, second.mass):
         return Meeting(both, None, math.nan, "no theory: a diaphragm has no mass")
     prop = structure.model.props[structure.model.elements[spring.element].prop]
-    if math.isinf(first.stiffness) and math.isinf(second.stiffness):
-        return Meeting(both, None, math.nan, "rigid: no theory without DIAPHRAGMS on the contact's card")
+    given = prop["DIAPHRAGMS"] is not None
+    rigid = [n for n, d in zip("IJ", both) if math.isinf(d.stiffness) and not math.isinf(d.mass)]
+    if rigid and not given:
+        # a mass at a column is no floor: what holds it matters, and the theory does not know it
+        what = f"{' and '.join(rigid)} rigid: no theory without DIAPHRAGMS on the contact's card"
+        return Meeting(both, None, math.nan, what)
     pair = Pair(first, second)
     plasticity = prop["R"] if spring.rule == "EQUIVALENT" else 1.0
-    lumped = prop["DIAPHRAGMS"] is not None and math.isfinite(spring.facts["e_given"])
+    lumped = given and math.isfinite(spring.facts["e_given"])
     e = spring.facts["e_given"] if lumped else 1.0
     error = (1.0 + e) / (1.0 + plasticity * pair.e) - 1.0
     notes = [] if pair.paper_holds else ["Z of the shorter period is the larger: Eqs 7, 8, 14-17 fail"]

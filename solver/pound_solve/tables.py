@@ -631,7 +631,8 @@ _CONTACTS = (
                 "F",
                 "short",
                 "impulse over the duration, or over the shorter time that the predicted force would take "
-                "for the predicted impulse; NaN when still closed at the end",
+                "for the predicted impulse (where contact lasts up to twice as long as predicted): of a "
+                "coarse mesh it may exceed the peak; NaN when still closed at the end",
             ),
             Column(
                 "predicted_force",

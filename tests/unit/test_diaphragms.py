@@ -91,6 +91,14 @@ def test_the_card_comes_before_what_stands_in_the_model() -> None:
     assert chain(more="DIAPHRAGMS=7")[1] == Diaphragm(5.0)
 
 
+def test_a_bar_on_a_mass_has_a_theory_only_where_the_card_says_so() -> None:
+    for more, known in (("", False), ("DIAPHRAGMS=2", True)):
+        structure = structure_of(CHAIN.format(turn=0, ends="4 9", more=more))
+        (found,) = meetings(structure).values()
+        assert (found.pair is not None) == known
+        assert known or found.note.startswith("J rigid: no theory")
+
+
 # ---------------------------------------------------------------------- the report
 
 TWO_BARS = ROOT / "examples" / "verification" / "two_bars" / "two_bars.inp"
@@ -126,6 +134,18 @@ def test_the_collision_beside_its_prediction(unequal) -> None:
     assert first["force_error"] == pytest.approx(100 * (first["predicted_force"] / first["peak_force"] - 1))
     assert -35 < first["force_error"] < -10  # the peak of a mesh overshoots
     assert "WHAT COLLISIONS OF THESE DIAPHRAGMS DO" in render(unequal)
+
+
+def test_the_plateau_of_short_and_of_long_contacts() -> None:
+    """m1/m2 = 1, T1/T2 = 0.5: the first force 2/3, the impulse 8/9 take 4/3; the contact lasts 2."""
+    nothing = "NODES\n 1 0 0\n 2 1 0\n 3 1.1 0\n 4 2 0\nELEMENTS\n 1 A 1 2\n 2 B 3 4\n 3 HIT 2 3\nPROPS\n"
+    bars = " A FRAME E=4 A=1\n B FRAME E=0.9 A=1\n HIT CONTACT GAP=0 K=1\nGRAVITY 1\nWEIGHTS\n 1 TO 4 0.5\n"
+    (found,) = meetings(structure_of(nothing + bars)).values()
+    assert found.pair is not None and found.pair.impulse / found.pair.force == pytest.approx(4 / 3)
+    assert found.plateau(6.0, 1.0) == 6.0
+    assert found.plateau(6.0, 1.9) == pytest.approx(4.5)
+    assert found.plateau(6.0, 5.0) == 1.2
+    assert math.isnan(found.plateau(6.0, math.nan)) and math.isnan(found.plateau(6.0, 0.0))
 
 
 def test_equal_bars_need_no_warning_and_rigid_masses_have_no_theory(tmp_path: Path) -> None:
