@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -202,19 +202,6 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
             loads_of.setdefault(e, []).append(card)
     nodal_mass: dict[Freedom, float] = {}
 
-    def mass_along(node: int, normal: tuple[float, float]) -> float:
-        # mass felt along an oblique direction: 1/m = sum n_d^2 / m_d over directions that can move
-        inverse = 0.0
-        for d, component in enumerate(normal):
-            own = model.nodes[node]
-            at = (own.slaved.get(DIRECTIONS[d], node), d)
-            if component == 0.0 or DIRECTIONS[d] in own.fixed or DIRECTIONS[d] in model.nodes[at[0]].fixed:
-                continue
-            if nodal_mass.get(at, 0.0) == 0.0:
-                return 0.0
-            inverse += component**2 / nodal_mass[at]
-        return np.inf if inverse == 0.0 else 1.0 / inverse
-
     parts: dict[int, Parts] = {}
     contacts_last = sorted(
         model.elements.values(), key=lambda e: model.props[e.prop].spec.name == "CONTACT"
@@ -235,7 +222,7 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
             tuple(loads_of.pop(element.id, ())),
             self_weight,
             model.geometry,
-            mass_along,
+            partial(mass_along, model, nodal_mass),
         )
         if site.member_loads and prop.spec.name not in ("FRAME", "BEAM_COLUMN"):
             wrong = f"element {element.id} is a {prop.spec.name}"
@@ -309,6 +296,24 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
     if problems:
         raise AssemblyError(problems)
     return structure
+
+
+def mass_along(
+    model: Model, nodal_mass: Mapping[Freedom, float], node: int, normal: tuple[float, float]
+) -> float:
+    """Mass of a node felt along an oblique direction, 1/m = sum n_d^2 / m_d over directions that can move;
+    infinite where none can [F T^2/L].
+    """
+    inverse = 0.0
+    for d, component in enumerate(normal):
+        own = model.nodes[node]
+        at = (own.slaved.get(DIRECTIONS[d], node), d)
+        if component == 0.0 or DIRECTIONS[d] in own.fixed or DIRECTIONS[d] in model.nodes[at[0]].fixed:
+            continue
+        if nodal_mass.get(at, 0.0) == 0.0:
+            return 0.0
+        inverse += component**2 / nodal_mass[at]
+    return np.inf if inverse == 0.0 else 1.0 / inverse
 
 
 def _ridden(model: Model, freedom: Freedom, d: int) -> float:

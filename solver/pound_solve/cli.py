@@ -19,7 +19,7 @@ PICTURES = (
     "frame", "modes", "deformed", "envelopes", "histories", "energy", "loops", "contacts", "collisions",
 )  # fmt: skip
 WIDTH = 69  #: of the line that tells the progress
-VERBS = ("run", "check", "report", "export", "plot", "list", "loop")
+VERBS = ("run", "check", "report", "export", "plot", "separation", "list", "loop")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -65,6 +65,15 @@ def parser() -> argparse.ArgumentParser:
     )
     plot.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: the file's)")
     plot.add_argument("--as", dest="ending", default="svg", choices=("svg", "png", "pdf"), help="format")
+    text = "separation of the buildings by ABS, SRSS and DDC from the peaks of a results file"
+    separation = verbs.add_parser("separation", help=text, description=text)
+    separation.add_argument("results", help="results file (.h5)")
+    separation.add_argument(
+        "--periods", type=_two, default=(), metavar="T1,T2", help="of the buildings, in place of the modes'"
+    )
+    separation.add_argument(
+        "--damping", type=_two, default=(), metavar="X1,X2", help="in percent, in place of the modes'"
+    )
     listing = verbs.add_parser("list", help="list what a deck may use")
     listing.add_argument(
         "family",
@@ -108,6 +117,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             "report": _report,
             "export": _export,
             "plot": _plot,
+            "separation": _separation,
             "list": _list,
             "loop": _loop,
         }[args.verb](args)
@@ -284,6 +294,29 @@ def _plot(args: argparse.Namespace) -> int:
         return _complain(str(err))
     except ImportError:
         return _complain('pictures need matplotlib: pip install "pound-solve[plot]"', 2)
+    return 0
+
+
+def _two(word: str) -> tuple[float, float]:
+    """Two positive numbers of an option."""
+    try:
+        first, second = (float(x) for x in word.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{word[:60]}: write two numbers, as 0.2,0.3") from None
+    if not (0.0 < first < math.inf and 0.0 < second < math.inf):
+        raise argparse.ArgumentTypeError(f"{word[:60]}: both must be above 0")
+    return first, second
+
+
+def _separation(args: argparse.Namespace) -> int:
+    from pound_solve import separation
+    from pound_solve.results import Results, ResultsError
+
+    try:
+        with Results.open(args.results) as results:
+            print(separation.text(results, args.periods, args.damping))
+    except (ResultsError, separation.SeparationError) as err:
+        return _complain(str(err))
     return 0
 
 

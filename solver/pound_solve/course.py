@@ -18,6 +18,7 @@ from pound_solve.analyses import damage, history, modal, pushover, restart, stat
 from pound_solve.analyses.equilibrium import ROUNDING, Ground
 from pound_solve.analyses.path import Unstable
 from pound_solve.assemble import Structure
+from pound_solve.diaphragms import meetings
 from pound_solve.forces.base import Force
 from pound_solve.integrate.base import ENERGIES, Outcome, Peaks, Stop
 from pound_solve.motions.base import Motion
@@ -71,6 +72,7 @@ class Course:
         self.overridden, self.writer, self.progress = overridden, writer, progress
         self.began, self.solve_seconds, self.every = began, 0.0, 0.0
         self.saved = saved
+        self.meetings = meetings(structure)
         self.checks: list[tuple[str, str, str]] = []
 
     def all(self) -> str:
@@ -116,6 +118,8 @@ class Course:
         w.table("member_loads", echo.member_loads(m))
         w.table("damping", echo.damping(s))
         w.table("contact_laws", echo.contact_laws(s))
+        w.table("diaphragms", echo.diaphragms(s, self.meetings))
+        w.table("collision_theory", echo.collision_theory(s, self.meetings))
         w.table("motions", echo.motions(self.motions))
         w.table("forces", echo.forces(self.forces))
         contacts = sum(x.is_contact for x in s.laws)
@@ -414,6 +418,9 @@ class Course:
                     c.peak,
                     c.t_peak,
                     c.impulse,
+                    self.meetings[c.law].plateau(c.impulse, c.t_end - c.t_start),
+                    predicted := self.meetings[c.law].predicted(c.approach),
+                    100.0 * (predicted / c.peak - 1.0) if c.peak > 0.0 else float("nan"),
                 )
                 for c in ordered
             ],

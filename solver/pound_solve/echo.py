@@ -5,12 +5,14 @@ and what follows from it at once.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from pound_deck.model import Card, Model
 from pound_deck.schema import Field, Kind
+from pound_solve.analyses.history import contact_name
 from pound_solve.assemble import Structure
+from pound_solve.diaphragms import Meeting
 from pound_solve.forces.base import Force
 from pound_solve.motions.base import Motion
 
@@ -173,7 +175,7 @@ def contact_laws(structure: Structure) -> Rows:
     for s in structure.laws:
         if s.is_contact:
             f = s.facts
-            name = model.elements[s.element].name or str(s.element)
+            name = contact_name(model, s.element)
             k = f"{f['k']:.7g} {model.units.text('F/L')}"
             mass = f["reduced_mass"] or math.nan
             xi = f["xi"] if math.isfinite(f["xi"]) else math.nan
@@ -192,6 +194,33 @@ def contact_laws(structure: Structure) -> Rows:
                     f["note"],
                 )
             )
+    return out
+
+
+def diaphragms(structure: Structure, meetings: Mapping[int, Meeting]) -> Rows:
+    """Rows of ``diaphragms``: both sides of every contact; `meetings` by the number of the law."""
+    out = []
+    for i, m in meetings.items():
+        name = contact_name(structure.model, structure.laws[i].element)
+        nothing = (math.nan, math.nan)
+        alphas = (m.pair.alpha_lumped, m.pair.alpha_paper, m.pair.alpha) if m.pair else (nothing,) * 3
+        for n, (side, d) in enumerate(zip("IJ", m.sides)):
+            finite = [x if math.isfinite(x) else math.nan for x in (d.stiffness, d.impedance, d.period)]
+            period = finite[2] or math.nan
+            out.append((name, side, d.mass, finite[0], finite[1], period, *(a[n] for a in alphas)))
+    return out
+
+
+def collision_theory(structure: Structure, meetings: Mapping[int, Meeting]) -> Rows:
+    """Rows of ``collision_theory``: what the theory of two diaphragms says of every contact."""
+    out: Rows = []
+    for i, m in meetings.items():
+        name = contact_name(structure.model, structure.laws[i].element)
+        if m.pair is None:
+            out.append((name, *[math.nan] * 5, m.note))
+            continue
+        p = m.pair
+        out.append((name, p.e_paper, p.e, p.duration, p.force, 100.0 * m.lumped_error, m.note))
     return out
 
 

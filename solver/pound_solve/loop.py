@@ -24,7 +24,10 @@ from pound_solve.sketch import svg
 #: start of the specimen's card; items that it is given where the user gives none, and fields that want them
 _CARDS: Final = {
     "hysteresis": ("SPRING RULE", {"KX=1": "", "FX=1": ""}),
-    "contact": ("CONTACT LAW", {"GAP=0": "", "MASSES=2,2": "E", "K=1": "K"}),
+    "contact": (
+        "CONTACT LAW",
+        {"GAP=0": "", "MASSES=2,2": "E", "K=1": "K", "MASSES=1,1": "MODEL", "DIAPHRAGMS=2,1": "MODEL"},
+    ),
 }
 DUCTILITIES: Final = (0.5, 1.0, 2.0, 4.0, 6.0)  #: of the cycles that a hysteresis rule goes through
 CLOSURES: Final = (1.0, -0.5, 2.0, -0.5)  #: beyond the gap, that a contact goes through

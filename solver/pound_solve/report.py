@@ -103,15 +103,29 @@ def _warning(results: Results) -> Iterator[str]:
 
 
 def _block(results: Results, table: Table, limit: int | None) -> list[str]:
-    """Lines of one table with its notes; none when it has no rows."""
+    """Lines of one table of the file with its notes; none when it has no rows."""
     rows = results.table(table.name)
     most = table.limit if limit is None or not table.limit else limit
-    shown = rows[:most] if most else rows
-    lines = _body(results, table, shown)
-    if len(shown) < len(rows):
+    more = ""
+    if most and len(rows) > most:
         more = f"... and {len(rows) - most} more rows: table '{table.name}' of the results file"
+    return block(results, table, rows[:most] if most else rows, results.note(table.name), more)
+
+
+def block(results: Results, table: Table, rows: NDArray[Any], note: str = "", more: str = "") -> list[str]:
+    """Lines of a table with its notes, in the units of `results`; none where there is nothing to show.
+
+    Parameters
+    ----------
+    rows : ndarray, structured
+        Fields are the table's columns.
+    note, more : str
+        A further note, and a line on what is left out.
+    """
+    lines = _body(results, table, rows)
+    if more:
         lines += ["", _INDENT + more]
-    notes = " ".join(_plain(note) for note in (table.note, results.note(table.name)) if note)
+    notes = " ".join(_plain(text) for text in (table.note, note) if text)
     if lines and notes:
         lines += ["", *(_INDENT + line for line in textwrap.wrap(notes, WIDTH - len(_INDENT)))]
     return lines

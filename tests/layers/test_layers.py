@@ -11,17 +11,18 @@ DECK, SOLVER = ROOT / "parser/pound_deck", ROOT / "solver/pound_solve"
 
 # from the bottom to the top: a module may import its own layer and those below
 LAYERS = (
-    ("laws", "jit", "matrices", "dofs", "chords", "modes", "polynomial", "records", "sketch"),
+    ("laws", "jit", "matrices", "dofs", "chords", "modes", "polynomial", "pounding", "records", "sketch"),
     ("motions", "forces"),
     ("hysteresis", "contact", "damping"),
     ("elements",),
     ("assemble",),
-    ("scene",),
+    ("diaphragms", "scene"),
     ("integrate",),
     ("analyses",),
     ("catalog", "tables"),
     ("results", "echo", "reference"),
     ("report", "export", "loop", "plot"),
+    ("separation",),
     ("course",),
     ("app",),
     ("__init__",),

@@ -101,6 +101,16 @@ def rows(seed: int = 1) -> dict[str, list[tuple[Any, ...]]]:
             ),
             ("903", "LINEAR", "15050400 kN/m", 0.0, 0.0, NAN, 1.0, 40.7886, 180.0, 0.01, ""),
         ],
+        "diaphragms": [
+            ("floor 1", "I", 163.1, 1881300.0, 17516.8, 0.018622, 0.65217, 0.4641, 0.49782),
+            ("floor 1", "J", 305.81, 752520.0, 15170.0, 0.040318, 0.34783, 0.24752, 0.2655),
+            ("903", "I", 163.1, NAN, NAN, NAN, NAN, NAN, NAN),
+            ("903", "J", math.inf, NAN, NAN, NAN, NAN, NAN, NAN),
+        ],
+        "collision_theory": [
+            ("floor 1", 0.42324, 0.52664, 0.040318, 8129.57, 31.0066, "the equations of the paper fail"),
+            ("903", NAN, NAN, NAN, NAN, NAN, "rigid: no theory"),
+        ],
         "motions": [
             (
                 "elcentro_1940_ew_270_peer",
@@ -242,6 +252,9 @@ def rows(seed: int = 1) -> dict[str, list[tuple[Any, ...]]]:
                 18204.731 * v,
                 2.0023719 + i * 0.0503713,
                 40.7886 * 1.65 * v,
+                16000.0 * v,
+                15320.4 * v if i % 7 else NAN,
+                -15.84 if i % 7 else NAN,
             )
             for i in range(120)
         ],

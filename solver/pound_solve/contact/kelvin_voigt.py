@@ -115,6 +115,15 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     return Built(Law(RULE, (k, c, values["GAP"], float(tension))), k, c, xi, e_asked, e_given, note)
 
 
+TENSION = Field(
+    "TENSION",
+    Kind.WORD,
+    default="NO",
+    words=("NO", "YES"),
+    codes={"NO": 0, "YES": 1},
+    doc="hold until the overlap is gone",
+)
+
 SPEC = Spec(
     "contact",
     "KELVIN_VOIGT",
@@ -146,14 +155,7 @@ SPEC = Spec(
             words=("EXACT", "PUBLISHED"),
             doc="how E becomes XI: exact for the form chosen, or Anagnostopoulos 2004",
         ),
-        Field(
-            "TENSION",
-            Kind.WORD,
-            default="NO",
-            words=("NO", "YES"),
-            codes={"NO": 0, "YES": 1},
-            doc="hold until the overlap is gone",
-        ),
+        TENSION,
     ),
     code=1,
     reference="Anagnostopoulos 1988, 2004; no tension: Shakya, Wijeyewickrema & Ohmachi 2008",

@@ -34,15 +34,20 @@ def sticky_ratio(e: float) -> float:
     return -log / math.sqrt(math.pi**2 + log * log)
 
 
-def no_tension(xi: float) -> float:
-    """Restitution [-] for damping ratio `xi` [-] when the contact lets go at zero force."""
+def no_tension_time(xi: float) -> float:
+    """Time of release at zero force for damping ratio `xi`, times the undamped frequency [-]."""
     off = xi - 1.0
     if abs(off) < 1e-6:
         # acos(xi)/sqrt(1-xi^2) and its continuation beyond 1 share the series 1 - off/3 + 2 off^2/15
-        return math.exp(-2.0 * xi * (1.0 - off / 3.0 + 2.0 * off * off / 15.0))
+        return 2.0 * (1.0 - off / 3.0 + 2.0 * off * off / 15.0)
     if xi < 1.0:
-        return math.exp(-2.0 * xi * math.acos(xi) / math.sqrt((1.0 - xi) * (1.0 + xi)))
-    return math.exp(-2.0 * xi * math.acosh(xi) / math.sqrt((xi - 1.0) * (xi + 1.0)))
+        return 2.0 * math.acos(xi) / math.sqrt((1.0 - xi) * (1.0 + xi))
+    return 2.0 * math.acosh(xi) / math.sqrt((xi - 1.0) * (xi + 1.0))
+
+
+def no_tension(xi: float) -> float:
+    """Restitution [-] for damping ratio `xi` [-] when the contact lets go at zero force."""
+    return math.exp(-xi * no_tension_time(xi))
 
 
 def no_tension_ratio(e: float) -> float:

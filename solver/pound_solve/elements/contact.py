@@ -32,16 +32,16 @@ def build(site: Site) -> Parts:
     card, (nx, ny) = site.prop, direction(site)
     ends = [(site.i.id, 1.0)] + ([(site.j.id, -1.0)] if site.j is not None else [])
     pairs = [((node, d), sign * n) for node, sign in ends for d, n in ((0, nx), (1, ny)) if n != 0.0]
-    if card["MASSES"] is not None:
-        inverse = sum(1.0 / m for m in card["MASSES"])
-    else:
-        masses = [site.mass_along(node, (nx, ny)) for node, _ in ends]
-        inverse = math.inf if 0.0 in masses else sum(1.0 / m for m in masses)
+    masses = card["MASSES"] or tuple(site.mass_along(node, (nx, ny)) for node, _ in ends)
+    masses = (*masses, math.inf)[:2]
+    if card["DIAPHRAGMS"] is not None and len(card["DIAPHRAGMS"]) == 2 and site.j is None:
+        raise ElementError("a wall has no diaphragm: give the one stiffness of node I", "DIAPHRAGMS")
+    inverse = math.inf if 0.0 in masses else sum(1.0 / m for m in masses)
     if inverse == 0.0:
         raise ElementError("nothing that it joins can move along its direction", "ANGLE")
     reduced = 0.0 if math.isinf(inverse) else 1.0 / inverse
     try:
-        built = card.laws["LAW"][0].impl(card.values, reduced)
+        built = card.laws["LAW"][0].impl({**card.values, "MASSES": masses}, reduced)
     except ValueError as err:
         raise ElementError(str(err), "LAW") from None
     facts = {
@@ -53,6 +53,7 @@ def build(site: Site) -> Parts:
         "e_given": built.e_given,
         "note": built.note,
         "reduced_mass": reduced,
+        "masses": masses,
         "angle": math.degrees(math.atan2(ny, nx)),
     }
     spring = LawSpring(
@@ -89,6 +90,16 @@ SPEC = Spec(
             count=(1, 2),
             above=0,
             doc="colliding masses for E and XI; left out: the nodes' own (a wall: infinite)",
+        ),
+        Field(
+            "DIAPHRAGMS",
+            Kind.REAL,
+            "F/L",
+            default=None,
+            count=(1, 2),
+            above=0,
+            doc="axial stiffness EA/L of the diaphragms that the nodes I and J stand for; one value: "
+            "that of I, the other is rigid; left out: the members behind the nodes are looked at",
         ),
     ),
     impl=build,

@@ -1,0 +1,181 @@
+r"""Collision of two diaphragms in closed form: uniform elastic bars of finite length that meet end to end.
+
+A diaphragm of mass :math:`m` and axial stiffness :math:`k_D` has the collision period
+:math:`T = 2\sqrt{m/k_D}` (there and back of a wave) and the impedance :math:`Z = \sqrt{k_D m} = 2m/T`.
+Index 1 is the diaphragm of the shorter period; :math:`\Delta v = v_1 - v_2` is the approach speed.
+
+Cole, Dhakal, Carr and Bull (2011), Earthquake Engng Struct. Dyn. 40: 641-659, let the bars part at
+:math:`T_1` (Eqs 3-22).  That is right for :math:`Z_1 \le Z_2`.  Else the wave that comes back from the far
+end of bar 1 does not turn its motion: contact lasts to :math:`T_2` with the force
+
+.. math:: F_j = F_0 \rho^j,\quad jT_1 < t < (j+1)T_1,\qquad
+          F_0 = \frac{Z_1 Z_2}{Z_1 + Z_2}\Delta v,\quad \rho = \frac{Z_1 - Z_2}{Z_1 + Z_2}
+
+``manual/theory-pounding.md`` derives it.  With :math:`T_2/T_1 = n + s` (n whole; for :math:`\rho \le 0`
+n = 1, s = 0) bar 1 leaves with the mean velocity :math:`v_2 + \kappa\Delta v`,
+:math:`\kappa = \rho^n(1 - s(1-\rho))`, and everything else follows from momentum.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+
+@dataclass(frozen=True)
+class Diaphragm:
+    """A uniform bar; without `stiffness` a rigid one, with infinite mass a wall.
+
+    Attributes
+    ----------
+    mass : float
+        [F T^2/L]
+    stiffness : float
+        Axial stiffness EA/L of its whole length [F/L].
+    """
+
+    mass: float
+    stiffness: float = math.inf
+
+    @property
+    def period(self) -> float:
+        """Collision period, Eqs 3-5 [T]: 0 of a rigid mass, infinite of a wall."""
+        return math.inf if math.isinf(self.mass) else 2.0 * math.sqrt(self.mass / self.stiffness)
+
+    @property
+    def impedance(self) -> float:
+        """Force for a unit jump of the end's velocity [F T/L]."""
+        return math.sqrt(self.stiffness * self.mass)
+
+
+def mean_speed(first: Diaphragm, second: Diaphragm, v1: float, v2: float) -> float:
+    """Speed of the ends in contact while the first waves run, Eq 6 [L/T]."""
+    return v1 - (v1 - v2) / (1.0 + first.impedance / second.impedance)
+
+
+def strain(v: float, v_c: float, wave_speed: float) -> float:
+    """Compression of a diaphragm behind the wave front, Eq 10 [-]."""
+    return (v - v_c) / wave_speed
+
+
+def after(v1: float, v2: float, alpha1: float, e: float = 1.0) -> float:
+    """Velocity of a diaphragm after the collision, Eqs 12, 13 and 19 [L/T].
+
+    `alpha1` is its influence coefficient: of the theory chosen with ``e = 1``, or the lumped one with a
+    coefficient of restitution.
+    """
+    return v1 - (1.0 + e) * alpha1 * (v1 - v2)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two diaphragms that collide; forces and impulses are for an approach speed of one.
+
+    Parameters
+    ----------
+    first, second : Diaphragm
+        In any order, one of them not rigid; tuples of results keep this order.
+
+    Raises
+    ------
+    ValueError
+        Both are rigid.
+    """
+
+    first: Diaphragm
+    second: Diaphragm
+
+    def __post_init__(self) -> None:
+        if math.isinf(self.first.stiffness) and math.isinf(self.second.stiffness):
+            raise ValueError("two rigid diaphragms have no collision period")
+
+    @cached_property
+    def _ordered(self) -> tuple[Diaphragm, Diaphragm]:
+        """Bars 1 and 2 of the theory; of equal periods it is all the same."""
+        one, two = sorted((self.first, self.second), key=lambda d: (d.period, d.impedance))
+        return one, two
+
+    def _in_order(self, one: float, two: float) -> tuple[float, float]:
+        return (one, two) if self._ordered[0] is self.first else (two, one)
+
+    @property
+    def mass(self) -> float:
+        """Reduced mass m1 m2 / (m1 + m2) [F T^2/L]."""
+        return 1.0 / (1.0 / self.first.mass + 1.0 / self.second.mass)
+
+    @property
+    def force(self) -> float:
+        """First and largest contact force, Eq 11 [F T/L]."""
+        return 1.0 / (1.0 / self.first.impedance + 1.0 / self.second.impedance)
+
+    @property
+    def paper_holds(self) -> bool:
+        """Whether the bars part at the shorter period, as Eqs 7, 8 and 14 to 17 assume."""
+        one, two = self._ordered
+        return one.impedance <= two.impedance
+
+    @property
+    def alpha_lumped(self) -> tuple[float, float]:
+        """Influence coefficients of lumped masses, Table III [-]."""
+        return self.mass / self.first.mass, self.mass / self.second.mass
+
+    @property
+    def alpha_paper(self) -> tuple[float, float]:
+        """Influence coefficients of distributed masses, Table III [-]."""
+        one, two = self._ordered
+        alpha = 1.0 / (1.0 + one.impedance / two.impedance)
+        return self._in_order(alpha, alpha * one.mass / two.mass)
+
+    @property
+    def e_paper(self) -> float:
+        """Effective restitution, Eq 14; may be negative where the equation does not hold [-]."""
+        one, two = self._ordered
+        return 2.0 * (1.0 + one.mass / two.mass) / (1.0 + one.impedance / two.impedance) - 1.0
+
+    @property
+    def reflection(self) -> float:
+        """Ratio rho of the contact forces in successive intervals of the shorter period [-]."""
+        one, two = self._ordered
+        return self.force * (1.0 / two.impedance - 1.0 / one.impedance)
+
+    @property
+    def duration(self) -> float:
+        """How long the contact lasts [T]."""
+        one, two = self._ordered
+        return one.period if self.paper_holds else two.period
+
+    def force_at(self, t: float) -> float:
+        """Contact force at time `t` after the touch [F T/L]."""
+        if not 0.0 <= t < self.duration:
+            return 0.0
+        one, two = self._ordered
+        if one.period == 0.0:
+            return two.impedance * math.exp(-two.impedance * t / one.mass)
+        return self.force * self.reflection ** math.floor(t / one.period)
+
+    @property
+    def _kept(self) -> float:
+        """Mean velocity of bar 1 afterwards over the approach speed, bar 2 being at rest before."""
+        one, two = self._ordered
+        if one.period == 0.0:
+            return math.exp(-2.0 * two.mass / one.mass)
+        whole, rest = divmod(self.duration / one.period if not self.paper_holds else 1.0, 1.0)
+        rho = self.reflection
+        return rho**whole * (1.0 - rest * (1.0 - rho))
+
+    @property
+    def impulse(self) -> float:
+        """Integral of the contact force [F T^2/L]."""
+        return self._ordered[0].mass * (1.0 - self._kept)
+
+    @property
+    def alpha(self) -> tuple[float, float]:
+        """Influence coefficients of distributed masses, exact everywhere [-]."""
+        half = 0.5 * self.impulse
+        return half / self.first.mass, half / self.second.mass
+
+    @property
+    def e(self) -> float:
+        """Effective restitution of the centres of mass, exact everywhere [-]."""
+        return self.impulse / self.mass - 1.0
