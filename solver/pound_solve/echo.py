@@ -174,7 +174,7 @@ def contact_laws(structure: Structure) -> Rows:
         if s.is_contact:
             f = s.facts
             name = model.elements[s.element].name or str(s.element)
-            k = f"{f['k']:.7g} {model.units.text('F/L')}"
+            k = f"{f['k']:.7g} {model.units.text(f['k_unit'])}"
             mass = f["reduced_mass"] or math.nan
             xi = f["xi"] if math.isfinite(f["xi"]) else math.nan
             out.append(

@@ -80,7 +80,8 @@ class Rule(NamedTuple):
     Attributes
     ----------
     branches : tuple of str
-        Their names; ``at`` counts them from 0.  Names that begin with "yielding" count as yield.
+        Their names; ``at`` counts them from 0.  Names that begin with "yielding" count as yield,
+        of a contact's those with "pressed" as closed.
     start : callable
         ``start(p) -> (at, m)``: virgin, at zero deformation.
     branch : callable

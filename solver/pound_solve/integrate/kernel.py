@@ -342,7 +342,7 @@ def take(w: Laws, x: Motion, law: int, i: int, value: float, t: float) -> None:
         w.f[law, PEAK], w.f[law, T_PEAK] = value, t
 
 
-def accept(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float) -> None:
+def accept(m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, h: float) -> None:
     """Make the end of the step that was tried the start of the next."""
     n = x.q.shape[1]
     before = x.works[0]
@@ -379,19 +379,19 @@ def accept(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float) -> None:
     x.works[3] += abs(x.works[0] - before)
     for i in range(len(w.i)):
         k, c, f0 = w.f[i, K], w.f[i, C], w.f[i, F0]
-        if c != 0.0:
-            lost = (
-                h
-                / 3.0
-                * c
-                * (w.f[i, LV] * w.f[i, LV] + w.f[i, LV] * w.f[i, LV1] + w.f[i, LV1] * w.f[i, LV1])
-            )
+        v0, v1 = w.f[i, LV], w.f[i, LV1]
+        drag0, drag1 = c * v0, c * v1
+        force0, force1 = k * w.f[i, LD] + f0 + drag0, k * w.f[i, LD1] + f0 + drag1
+        if w.i[i, CONTACT] and w.i[i, CURVED]:  # its damping is what the rate adds to the force
+            force0, force1 = law_force(w, f, i, w.f[i, LD], v0), law_force(w, f, i, w.f[i, LD1], v1)
+            drag0 = force0 - law_force(w, f, i, w.f[i, LD], 0.0)
+            drag1 = force1 - law_force(w, f, i, w.f[i, LD1], 0.0)
+        if drag0 != 0.0 or drag1 != 0.0:
+            lost = h / 6.0 * (drag0 * (2.0 * v0 + v1) + drag1 * (v0 + 2.0 * v1))
             w.f[i, DASHPOT] += lost
             x.works[2 if w.i[i, CONTACT] else 1] += lost
-        if w.i[i, CONTACT] and (k != 0.0 or c != 0.0):
-            w.f[i, IMPULSE] += (
-                0.5 * h * (k * (w.f[i, LD] + w.f[i, LD1]) + c * (w.f[i, LV] + w.f[i, LV1]) + 2.0 * f0)
-            )
+        if w.i[i, CONTACT]:
+            w.f[i, IMPULSE] += 0.5 * h * (force0 + force1)
         w.f[i, LD], w.f[i, LV] = w.f[i, LD1], w.f[i, LV1]
         w.f[i, MOST_D] = max(w.f[i, MOST_D], abs(w.f[i, LD]))
         w.f[i, MOST_V] = max(w.f[i, MOST_V], abs(w.f[i, LV]))
@@ -603,7 +603,7 @@ def uncut_step(
                             return PIVOT
         if changed:
             continue
-        accept(m, w, x, scheme, length)
+        accept(m, w, x, f, scheme, length)
         clock[0] += length
         count[EVENTS] += driven
         for i in range(laws):
@@ -657,7 +657,7 @@ def whole_step(
                 return NEWTON
         law, way, tau = first_exit(w, x, piece)
         if law < 0:
-            accept(m, w, x, scheme, piece)
+            accept(m, w, x, f, scheme, piece)
             left -= piece
             clock[0] = t + piece
             note(m, w, x, clock[0], piece)
@@ -711,7 +711,7 @@ def whole_step(
             if not low < tau < high:
                 tau = 0.5 * (low + high)
         if at > 0.0:
-            accept(m, w, x, scheme, at)
+            accept(m, w, x, f, scheme, at)
             left -= at
             clock[0] = t + at
             note(m, w, x, clock[0], at)
