@@ -81,7 +81,7 @@ class Rule(NamedTuple):
     ----------
     branches : tuple of str
         Their names; ``at`` counts them from 0.  Names that begin with "yielding" count as yield,
-        of a contact's those with "pressed" as closed.
+        those of a contact that begin with "pressed" as touch.
     start : callable
         ``start(p) -> (at, m)``: virgin, at zero deformation.
     branch : callable

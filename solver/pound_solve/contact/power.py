@@ -46,13 +46,21 @@ def drag_slope(k: float, n: float, mass: float, x: float, v: float, c: float) ->
 def stiffness_field(n: float) -> Field:
     """K of a law with that exponent."""
     return Field(
-        "K", Kind.REAL, stiffness_unit(n), above=0, doc="contact stiffness, force at an overlap of one"
+        "K", Kind.REAL, stiffness_unit(n), above=0, doc="contact stiffness: force at an overlap of one"
     )
 
 
-def power_fields(n: float) -> tuple[Field, Field]:
-    """K and N of a law whose exponent is free."""
+def power_fields(n: float, linear: bool = True) -> tuple[Field, Field]:
+    """K and N of a law whose exponent is free, by default `n`; `linear`: N may be 1."""
     return (
         Field("K", Kind.REAL, "F/L^N", above=0, doc="contact stiffness: force at an overlap of one"),
-        Field("N", Kind.REAL, "-", default=n, lo=1, doc="exponent of the overlap"),
+        Field(
+            "N",
+            Kind.REAL,
+            "-",
+            default=n,
+            lo=1 if linear else None,
+            above=None if linear else 1,
+            doc="exponent of the overlap",
+        ),
     )

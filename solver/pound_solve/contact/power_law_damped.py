@@ -48,7 +48,8 @@ def curve(
     force = spring + c * v
     if x <= 0.0 or (force < 0.0 and tension == 0.0):
         return 0.0, 0.0, 0.0, work
-    return force, n * spring / x + drag_slope(k, n, mass, x, v, c), c, work
+    # the pull of a sticky release falls to zero with an infinite slope, which an iteration must not follow
+    return force, max(n * spring / x + drag_slope(k, n, mass, x, v, c), 0.0), c, work
 
 
 RULE = Rule(("open", "pressed"), start, branch, leave, recoverable, curve)
@@ -87,7 +88,7 @@ SPEC = Spec(
     "POWER_LAW_DAMPED",
     "power of the overlap, restitution independent of the speed",
     (
-        *power_fields(1.5),
+        *power_fields(1.5, linear=False),
         *constants.fields("ALPHA", "damping constant", "the one with tension"),
         TENSION,
     ),

@@ -122,6 +122,6 @@ SPEC = Spec(
         *constants.fields("D", "damping constant d", "their fit"),
     ),
     reference="Polycarpou, Komodromos & Polycarpou 2013",
-    sample="E=0.5 THICKNESS=1 KU=10",
+    sample="E=0.5",
     impl=build,
 )

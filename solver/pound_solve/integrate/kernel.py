@@ -44,6 +44,7 @@ from pound_solve.integrate.arrays import (
     EVENTS,
     EXIT,
     F0,
+    FIRST,
     FULL,
     G0,
     G1,
@@ -619,11 +620,23 @@ def uncut_step(
     return NEWTON
 
 
+def start_again(w: Laws, f: Tables) -> None:
+    """Linearise all that is curved at the start of the step."""
+    for i in range(len(w.i)):
+        if w.i[i, CURVED]:
+            tangent(w, f, i)
+    linearise(w.chords, S0)
+
+
 def whole_step(
     m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, scheme: Scheme, coefs: Array, begin: float,
     count: Index, clock: Array, length: float, h: float,
 ) -> int:  # fmt: skip
-    """Advance by `length`, in pieces where events cut it; the factor at hand is for the step `h`."""
+    """Advance by `length`, in pieces where events cut it; the factor at hand is for the step `h`.
+
+    After the touch of a curved contact the pieces grow from a short one: forces like the fourth root
+    of time begin there.
+    """
     left, first, same = length, True, 0
     most = 100 + 8 * len(w.i)
     curved = False
@@ -633,6 +646,8 @@ def whole_step(
     while left > 0.0:
         t = clock[0]
         piece = left
+        if clock[3] < left:
+            piece, first = clock[3], False
         slot = WHOLE if first else PIECE
         if not first:
             bad = refactor(m, w, x, scheme, piece, PIECE)
@@ -649,15 +664,13 @@ def whole_step(
                 return NEWTON
             first, piece, count[UPDATES] = False, 0.5 * piece, REFRESH + 1
             slot = PIECE
-            for i in range(len(w.i)):
-                if w.i[i, CURVED]:
-                    tangent(w, f, i)
-            linearise(w.chords, S0)
+            start_again(w, f)
             if refactor(m, w, x, scheme, piece, PIECE) >= 0:
                 return NEWTON
         law, way, tau = first_exit(w, x, piece)
         if law < 0:
             accept(m, w, x, f, scheme, piece)
+            clock[3] *= 2.0
             left -= piece
             clock[0] = t + piece
             note(m, w, x, clock[0], piece)
@@ -673,14 +686,18 @@ def whole_step(
             last = high - low <= CLOSE * h
             if last:
                 tau = high
-            elif turn > 8:
+            elif turn > 8 or not low <= tau <= high:
                 tau = 0.5 * (low + high)
             bad = refactor(m, w, x, scheme, tau, PIECE)
             if bad >= 0:
                 count[WORST] = bad
                 return PIVOT
             if not attempt(m, w, x, scheme, f, coefs, t + tau - begin, tau, PIECE, count):
-                return NEWTON
+                if last:
+                    return NEWTON
+                start_again(w, f)  # at `high` there was a solution: look for the exit nearer to it
+                low, tau = tau, 0.5 * (tau + high)
+                continue
             law2, way2, tau2 = first_exit(w, x, tau)
             if law2 >= 0:
                 law, way, high = law2, way2, tau
@@ -720,6 +737,8 @@ def whole_step(
         if law < 0:
             continue
         switch(m, w, x, z, f, scheme, count, clock[0], h, law, way)
+        if w.i[law, CURVED] and w.i[law, CONTACT] and w.f[law, LV] > 0.0:
+            clock[3] = FIRST * h
         settle(m, w, x, h)
         note(m, w, x, clock[0], 0.0)
         same += 1
@@ -746,8 +765,8 @@ def advance(
     count : ndarray, shape (8,)
         Goal, step on the way to it, samples and log rows kept, steps, events, updates of the factor,
         unknown or law at fault.
-    clock : ndarray, shape (3,)
-        Time, length that the factor at hand is for, energy at the start.
+    clock : ndarray, shape (4,)
+        Time, length that the factor at hand is for, energy at the start, longest piece for now.
     """
     room, pause = 108 + 8 * len(w.i), count[STEPS] + PAUSE
     while count[GOAL] < len(goals):

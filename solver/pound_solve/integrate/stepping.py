@@ -104,7 +104,7 @@ class Stepper:
         self.tables = jit.tables(self.rules or [bilinear.RULE])  # never empty, which compiles to nothing
         self._lay_out(start)
         self.count = np.zeros(8, np.int64)
-        self.clock = np.array([start.times[0], -1.0, energy_at_start(scene, start)])
+        self.clock = np.array([start.times[0], -1.0, energy_at_start(scene, start), np.inf])
 
     def _lay_out(self, start: Start) -> None:
         scene, watch, laws = self.scene, self.watch, self.laws
