@@ -112,8 +112,8 @@ def dashpot(
     if chosen(values, ("C", "XI", "E"), reduced_mass, "C") == "C":
         xi = values["C"] / root if root else math.inf
         return Dashpot(values["C"], xi, math.nan, given_back(xi) if root else math.nan, "C given")
-    xi, *rest = constant(values, "XI", given_back, exact, published)
-    return Dashpot(xi * root, xi, *rest)
+    found = constant(values, "XI", given_back, exact, published)
+    return Dashpot(found.value * root, *found)
 
 
 def linear_fields(published: str) -> tuple[Field, ...]:
