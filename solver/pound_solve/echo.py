@@ -176,7 +176,7 @@ def contact_laws(structure: Structure) -> Rows:
         if s.is_contact:
             f = s.facts
             name = contact_name(model, s.element)
-            k = f"{f['k']:.7g} {model.units.text('F/L')}"
+            k = f"{f['k']:.7g} {model.units.text(f['k_unit'])}"
             mass = f["reduced_mass"] or math.nan
             xi = f["xi"] if math.isfinite(f["xi"]) else math.nan
             out.append(

@@ -279,3 +279,61 @@ def test_overlap_that_is_let_go_at_once_may_be_pressed_again() -> None:
     # until then it moves under the load of 3 N alone: k d + c v = 1 + x + 5 v = 0 with v = -1 + 3 t
     t = (-14 + np.sqrt(14**2 + 4 * 1.5 * 4)) / (2 * 1.5)
     assert c["t_start"][0] == pytest.approx(t, rel=1e-10)
+
+
+# ---------------------------------------------------------------------- the same in the other contact laws
+
+CURVED = ["HERTZ", "JANKOWSKI", "HUNT_CROSSLEY", "HERTZDAMP", "POWER_LAW_DAMPED", "RUBBER_BUMPER"]
+STOP = """UNITS kN m s
+NODES
+   1  0 0  FIX=YR
+ELEMENTS
+   1  WALL 1
+   2  PUSH 1
+PROPS
+   WALL CONTACT GAP={gap} LAW={law}
+   PUSH SPRING KX=1E-9
+WEIGHTS
+   1  9.81
+{start}
+ANALYSIS
+   HISTORY {length} METHOD=NEWMARK DT={dt}
+OUTPUT
+   EVERY={length}/200
+"""
+
+
+def stop(law: str, dt: float, gap: float = 0.0, start: str = "INITIAL\n 1 VX=1", length: float = 0.4):
+    card = f"{law} K=1E4" + ("" if law == "HERTZ" else " E=0.5")
+    return run_text(STOP.format(law=card, dt=dt, gap=gap, start=start, length=length))
+
+
+@pytest.mark.parametrize("law", CURVED)
+def test_other_laws_touch_at_zero_gap_with_the_speed_of_touch_whatever_the_step(law: str) -> None:
+    """The approach speed is that of the located instant, so that the damping is none of the step's."""
+    e = 1.0 if law == "HERTZ" else 0.5
+    for gap in (0.0, 0.0337):
+        coarse, fine = (stop(law, dt, gap) for dt in (2e-3, 5e-4))
+        for r in (coarse, fine):
+            (hit,) = r.tables["collisions"]
+            assert hit["t_start"] == pytest.approx(gap, abs=1e-11)
+            assert hit["approach_velocity"] == pytest.approx(1.0, rel=1e-9)
+            assert hit["restitution"] == pytest.approx(e, abs=1e-2)
+            assert r.force.min() >= 0.0
+        peak = [r.tables["collisions"]["peak_force"][0] for r in (coarse, fine)]
+        assert peak[0] == pytest.approx(peak[1], rel=2e-2)
+
+
+@pytest.mark.parametrize("law", CURVED)
+def test_other_laws_bear_an_overlap_from_the_start(law: str) -> None:
+    """Pressed at rest, they push the mass off; it leaves with what their spring held, less the damping."""
+    n = 2.65 if law == "RUBBER_BUMPER" else 1.5
+    r = stop(law, 5e-4, gap=-0.02, start="INITIAL\n 1 VX=1E-9", length=4.0)
+    (hit,) = r.tables["collisions"]
+    held = 1e4 * 0.02 ** (n + 1.0) / (n + 1.0)
+    assert 0.0 < hit["separation_velocity"] <= np.sqrt(2.0 * held) * (1 + 1e-3)
+    if law in ("HERTZ", "JANKOWSKI"):  # undamped in restitution
+        assert hit["separation_velocity"] == pytest.approx(np.sqrt(2.0 * held), rel=2e-3)
+    assert r.force.min() >= 0.0
+    assert r.force[0] == pytest.approx(1e4 * 0.02**n)
+    assert abs(r.check()) < 1e-2

@@ -15,12 +15,12 @@ release loses :math:`\tfrac12 k\delta_r^2` as the contact element relaxes alone.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.contact import restitution
+from pound_solve.contact.constants import dashpot, linear_fields
 from pound_solve.laws import Law, Numbers, Rule, above, below, piece, remember
 
 OPEN, PRESSED, RELEASED = 0, 1, 2
@@ -58,7 +58,7 @@ RULE = Rule(("open", "pressed", "released"), start, branch, leave, recoverable)
 
 
 class Built(NamedTuple):
-    """A contact law with what the report says of it."""
+    """A contact law with what the report says of it; `unit` is that of its stiffness `k`."""
 
     law: Law
     k: float
@@ -67,6 +67,7 @@ class Built(NamedTuple):
     e_asked: float
     e_given: float
     note: str
+    unit: str = "F/L"
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
@@ -84,35 +85,15 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     ValueError
         None or several of C, XI, E; or XI or E where there is no mass.
     """
-    given = [name for name in ("C", "XI", "E") if values[name] is not None]
-    if len(given) != 1:
-        raise ValueError(
-            "give the dashpot once: as C, as XI or as E" + (", not " + " and ".join(given) if given else "")
-        )
-    k, tension = values["K"], values["TENSION"] == "YES"
-    exact, ratio = (
+    tension = values["TENSION"] == "YES"
+    given_back, exact = (
         (restitution.sticky, restitution.sticky_ratio)
         if tension
         else (restitution.no_tension, restitution.no_tension_ratio)
     )
-    e_asked, note = math.nan, "C given"
-    root = 2.0 * math.sqrt(k * reduced_mass)
-    if given[0] == "C":
-        c = values["C"]
-        xi = c / root if root else math.inf
-    else:
-        if root == 0.0:
-            raise ValueError(f"{given[0]} needs colliding masses: give the nodes weight, or MASSES, or C")
-        if given[0] == "XI":
-            xi, note = values["XI"], "XI given"
-        else:
-            e_asked = values["E"]
-            published = values["RELATION"] == "PUBLISHED"
-            xi = restitution.sticky_ratio(e_asked) if published else ratio(e_asked)
-            note = "published relation of E to XI" if published else "exact relation of E to XI"
-        c = xi * root
-    e_given = exact(xi) if math.isfinite(xi) else math.nan
-    return Built(Law(RULE, (k, c, values["GAP"], float(tension))), k, c, xi, e_asked, e_given, note)
+    found = dashpot(values, reduced_mass, given_back, exact, restitution.sticky_ratio)
+    p = (values["K"], found.c, values["GAP"], float(tension))
+    return Built(Law(RULE, p), values["K"], *found)
 
 
 TENSION = Field(
@@ -129,32 +110,7 @@ SPEC = Spec(
     "KELVIN_VOIGT",
     "spring and dashpot while pressed",
     (
-        Field("K", Kind.REAL, "F/L", above=0, doc="contact stiffness"),
-        Field("C", Kind.REAL, "F*T/L", default=None, lo=0, doc="dashpot (one of C, XI, E)"),
-        Field(
-            "XI",
-            Kind.REAL,
-            "-",
-            default=None,
-            lo=0,
-            doc="damping ratio on the colliding masses (one of C, XI, E)",
-        ),
-        Field(
-            "E",
-            Kind.REAL,
-            "-",
-            default=None,
-            above=0,
-            hi=1,
-            doc="coefficient of restitution (one of C, XI, E)",
-        ),
-        Field(
-            "RELATION",
-            Kind.WORD,
-            default="EXACT",
-            words=("EXACT", "PUBLISHED"),
-            doc="how E becomes XI: exact for the form chosen, or Anagnostopoulos 2004",
-        ),
+        *linear_fields("Anagnostopoulos 2004"),
         TENSION,
     ),
     code=1,

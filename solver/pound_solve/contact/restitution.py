@@ -1,7 +1,8 @@
-r"""Restitution of a free impact against the damping ratio of the linear viscoelastic contact.
+r"""Restitution of a free impact against the damping constant of a contact law.
 
-Two masses meet, reduced mass :math:`m`, contact :math:`f = k\delta + c\dot\delta`,
-:math:`\xi = c / (2\sqrt{k m})`.
+Two masses meet with the speed :math:`v_0`, reduced mass :math:`m`.
+
+**Spring and dashpot**, :math:`f = k\delta + c\dot\delta`, :math:`\xi = c / (2\sqrt{k m})`.
 
 *Sticky* (released at :math:`\delta = 0`, tension allowed): :math:`e = \exp(-\pi\xi/\sqrt{1-\xi^2})`,
 Anagnostopoulos (2004), Earthquake Engng Struct. Dyn. 33: 897-902; Cole et al. (2011), Eqs 15-17.
@@ -14,11 +15,32 @@ the motion is :math:`\delta = (v_0/\omega_d) e^{-\xi\omega t}\sin\omega_d t`;
           e = \exp\!\left(-\frac{2\xi\,\mathrm{arcosh}\,\xi}{\sqrt{\xi^2-1}}\right)\ (\xi > 1)
 
 (Schwager and Poeschel 2007, Granular Matter 9: 465-469, give the same result); e = exp(-2) at xi = 1.
+
+*One-sided* (the dashpot acts in approach only): the motion turns at half that time,
+:math:`\arccos(\xi)/\omega_d`, and the spring gives back what it holds there, so that this restitution is
+the root of the one above.
+
+**Power laws** :math:`f = k\delta^n + c\,\delta^{(n-1)/2}\dot\delta`: with :math:`x = \delta^{(n+1)/2}` the
+path in the plane of :math:`x` and :math:`\dot\delta` is that of the linear contact with the mass
+:math:`(n+1)m/2`, so that all three hold with :math:`\xi = c / \sqrt{2(n+1) k m}`.
+
+**Damping that grows with the spring's force** :math:`F(\delta)`, whatever that is: with
+:math:`u = \dot\delta/v_0`
+
+.. math:: \frac{u\,du}{1 + d u} = -\frac{F\,d\delta}{m v_0^2}, \qquad
+          \int_0^u \frac{s\,ds}{1 + d s} = u^2 \varphi(d u), \qquad
+          \varphi(x) = \frac{x - \ln(1 + x)}{x^2}
+
+*Throughout*, :math:`f = F(1 + d\dot\delta/v_0)`: approach and restitution pass the same work of the spring,
+:math:`\varphi(d) = e^2 \varphi(-d e)`, which is :math:`\ln\frac{1 + d}{1 - d e} = d (1 + e)`.
+
+*In restitution only*: :math:`\tfrac12 = e^2 \varphi(-d e)`.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 
 def sticky(xi: float) -> float:
@@ -54,15 +76,66 @@ def no_tension_ratio(e: float) -> float:
     """Damping ratio [-] that gives restitution `e` in (0, 1] with a contact that lets go at zero force."""
     if e == 1.0:
         return 0.0
-    low, high = 0.0, 1.0
+    high = 1.0
     while no_tension(high) > e:
         high *= 2.0
-    # the function falls monotonically; bisection to the last bit
+    return _root(lambda xi: no_tension(xi) - e, 0.0, high)
+
+
+def one_sided(xi: float) -> float:
+    """Restitution [-] for damping ratio `xi` [-] of a dashpot that acts in approach only."""
+    return math.sqrt(no_tension(xi))
+
+
+def one_sided_ratio(e: float) -> float:
+    """Damping ratio [-] that gives restitution `e` in (0, 1] with a dashpot in approach only."""
+    return no_tension_ratio(e * e)
+
+
+def share(x: float) -> float:
+    """Return ``(x - ln(1 + x)) / x^2``, 1/2 at zero; it falls, from infinity at -1."""
+    if x <= -1.0:
+        return math.inf
+    if abs(x) > 0.1:
+        return (x - math.log1p(x)) / (x * x)
+    return math.fsum((-x) ** j / (j + 2) for j in range(18))
+
+
+def throughout(d: float) -> float:
+    """Restitution [-] for the constant `d` [-] of damping that grows with the spring's force."""
+    if d == 0.0:
+        return 1.0
+    return _root(lambda e: share(d) - e * e * share(-d * e), 0.0, min(1.0, 1.0 / d))
+
+
+def throughout_constant(e: float) -> float:
+    """Constant [-] of damping that grows with the spring's force, for restitution `e` in (0, 1]."""
+    if e == 1.0:
+        return 0.0
+    return _root(lambda d: share(d) - e * e * share(-d * e), 0.0, 1.0 / e)
+
+
+def in_restitution(d: float) -> float:
+    """Restitution [-] for the constant `d` [-] of such damping in restitution only."""
+    if d == 0.0:
+        return 1.0
+    return _root(lambda e: 0.5 - e * e * share(-d * e), 0.0, min(1.0, 1.0 / d))
+
+
+def in_restitution_constant(e: float) -> float:
+    """Constant [-] of such damping in restitution only, for restitution `e` in (0, 1]."""
+    if e == 1.0:
+        return 0.0
+    return _root(lambda d: 0.5 - e * e * share(-d * e), 0.0, 1.0 / e)
+
+
+def _root(of: Callable[[float], float], low: float, high: float) -> float:
+    """Root of a falling function, by bisection to the last bit."""
     while True:
         middle = 0.5 * (low + high)
         if middle in (low, high):
             return middle
-        if no_tension(middle) > e:
+        if of(middle) > 0.0:
             low = middle
         else:
             high = middle

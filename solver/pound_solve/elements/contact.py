@@ -46,6 +46,7 @@ def build(site: Site) -> Parts:
         raise ElementError(str(err), "LAW") from None
     facts = {
         "k": built.k,
+        "k_unit": built.unit,
         "c": built.c,
         "gap": card["GAP"],
         "xi": built.xi,

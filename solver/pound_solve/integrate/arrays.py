@@ -21,6 +21,7 @@ BACK = 1e-6  #: share of its largest rate that a law must move back with before 
 NEAR = 1e-6  #: share of its largest value within which an exit is taken where it cannot be met better
 CLOSE = 1e-9  #: share of a step within which two events are at one instant
 PAUSE = 100_000  #: steps after which Python may look whether the user wants to stop
+FIRST = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
 REFRESH = 200  #: updates of rank one before a factor is made anew
 COLUMNS = 10  #: of the log: law, branches before and after, t, d, v, force; peak, its time, impulse
 # rows of `Motion.q`: at the start (0) and the end (1) of a step; loads; residual; scratch; pivots

@@ -42,6 +42,7 @@ from pound_solve.integrate.arrays import (
     DONE,
     EVENTS,
     F0,
+    FIRST,
     FULL,
     G0,
     G1,
@@ -340,7 +341,7 @@ def take(w: Laws, x: Motion, law: int, i: int, value: float, t: float) -> None:
         w.f[law, PEAK], w.f[law, T_PEAK] = value, t
 
 
-def accept(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float) -> None:
+def accept(m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, h: float) -> None:
     """Make the end of the step that was tried the start of the next."""
     n = x.q.shape[1]
     before = x.works[0]
@@ -377,19 +378,19 @@ def accept(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float) -> None:
     x.works[3] += abs(x.works[0] - before)
     for i in range(len(w.i)):
         k, c, f0 = w.f[i, K], w.f[i, C], w.f[i, F0]
-        if c != 0.0:
-            lost = (
-                h
-                / 3.0
-                * c
-                * (w.f[i, LV] * w.f[i, LV] + w.f[i, LV] * w.f[i, LV1] + w.f[i, LV1] * w.f[i, LV1])
-            )
+        v0, v1 = w.f[i, LV], w.f[i, LV1]
+        drag0, drag1 = c * v0, c * v1
+        force0, force1 = k * w.f[i, LD] + f0 + drag0, k * w.f[i, LD1] + f0 + drag1
+        if w.i[i, CONTACT] and w.i[i, CURVED]:  # its damping is what the rate adds to the force
+            force0, force1 = law_force(w, f, i, w.f[i, LD], v0), law_force(w, f, i, w.f[i, LD1], v1)
+            drag0 = force0 - law_force(w, f, i, w.f[i, LD], 0.0)
+            drag1 = force1 - law_force(w, f, i, w.f[i, LD1], 0.0)
+        if drag0 != 0.0 or drag1 != 0.0:
+            lost = h / 6.0 * (drag0 * (2.0 * v0 + v1) + drag1 * (v0 + 2.0 * v1))
             w.f[i, DASHPOT] += lost
             x.works[2 if w.i[i, CONTACT] else 1] += lost
-        if w.i[i, CONTACT] and (k != 0.0 or c != 0.0):
-            w.f[i, IMPULSE] += (
-                0.5 * h * (k * (w.f[i, LD] + w.f[i, LD1]) + c * (w.f[i, LV] + w.f[i, LV1]) + 2.0 * f0)
-            )
+        if w.i[i, CONTACT]:
+            w.f[i, IMPULSE] += 0.5 * h * (force0 + force1)
         w.f[i, LD], w.f[i, LV] = w.f[i, LD1], w.f[i, LV1]
         w.f[i, MOST_D] = max(w.f[i, MOST_D], abs(w.f[i, LD]))
         w.f[i, MOST_V] = max(w.f[i, MOST_V], abs(w.f[i, LV]))
@@ -601,7 +602,7 @@ def uncut_step(
                             return PIVOT
         if changed:
             continue
-        accept(m, w, x, scheme, length)
+        accept(m, w, x, f, scheme, length)
         clock[0] += length
         count[EVENTS] += driven
         for i in range(laws):
@@ -615,6 +616,14 @@ def uncut_step(
             restore(w, f, i)
     count[UPDATES] = REFRESH + 1
     return NEWTON
+
+
+def start_again(w: Laws, f: Tables) -> None:
+    """Linearise all that is curved at the start of the step."""
+    for i in range(len(w.i)):
+        if w.i[i, CURVED]:
+            tangent(w, f, i)
+    linearise(w.chords, S0)
 
 
 def cut(
@@ -652,7 +661,12 @@ def cut(
             count[WORST] = bad
             return PIVOT, law, way, 0.0
         if not attempt(m, w, x, scheme, f, coefs, s0 + tau, tau, PIECE, count):
-            return NEWTON, law, way, 0.0
+            if last:
+                return NEWTON, law, way, 0.0
+            start_again(w, f)  # at `high` there was a solution: look for the exit nearer to it
+            low, g_low, third, g_third = tau, np.nan, np.nan, np.nan
+            tau = 0.5 * (tau + high)
+            continue
         passed, exit2, tau2 = first_exit(w, x, tau)
         other = passed >= 0 and (passed != law or exit2 != way)
         if other:
@@ -686,7 +700,11 @@ def whole_step(
     m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, scheme: Scheme, coefs: Array, begin: float,
     count: Index, clock: Array, length: float, h: float,
 ) -> int:  # fmt: skip
-    """Advance by `length`, in pieces where events cut it; the factor at hand is for the step `h`."""
+    """Advance by `length`, in pieces where events cut it; the factor at hand is for the step `h`.
+
+    After the touch of a curved contact the pieces grow from a short one: forces like the fourth root
+    of time begin there.
+    """
     left, first, same = length, True, 0
     most = 100 + 8 * len(w.i)
     curved = False
@@ -696,6 +714,8 @@ def whole_step(
     while left > 0.0:
         t = clock[0]
         piece = left
+        if clock[3] < left:
+            piece, first = clock[3], False
         slot = WHOLE if first else PIECE
         if not first:
             bad = refactor(m, w, x, scheme, piece, PIECE)
@@ -712,15 +732,13 @@ def whole_step(
                 return NEWTON
             first, piece, count[UPDATES] = False, 0.5 * piece, REFRESH + 1
             slot = PIECE
-            for i in range(len(w.i)):
-                if w.i[i, CURVED]:
-                    tangent(w, f, i)
-            linearise(w.chords, S0)
+            start_again(w, f)
             if refactor(m, w, x, scheme, piece, PIECE) >= 0:
                 return NEWTON
         law, way, tau = first_exit(w, x, piece)
         if law < 0:
-            accept(m, w, x, scheme, piece)
+            accept(m, w, x, f, scheme, piece)
+            clock[3] *= 2.0
             left -= piece
             clock[0] = t + piece
             note(m, w, x, clock[0], piece)
@@ -733,7 +751,7 @@ def whole_step(
         if why != DONE:
             return why
         if at > 0.0:
-            accept(m, w, x, scheme, at)
+            accept(m, w, x, f, scheme, at)
             left -= at
             clock[0] = t + at
             note(m, w, x, clock[0], at)
@@ -742,6 +760,8 @@ def whole_step(
         if law < 0:
             continue
         switch(m, w, x, z, f, scheme, count, clock[0], h, law, way)
+        if w.i[law, CURVED] and w.i[law, CONTACT] and w.f[law, LV] > 0.0:
+            clock[3] = FIRST * h
         settle(m, w, x, h)
         note(m, w, x, clock[0], 0.0)
         same += 1
@@ -768,8 +788,8 @@ def advance(
     count : ndarray, shape (8,)
         Goal, step on the way to it, samples and log rows kept, steps, events, updates of the factor,
         unknown or law at fault.
-    clock : ndarray, shape (3,)
-        Time, length that the factor at hand is for, energy at the start.
+    clock : ndarray, shape (4,)
+        Time, length that the factor at hand is for, energy at the start, longest piece for now.
     """
     room, pause = 108 + 8 * len(w.i), count[STEPS] + PAUSE
     while count[GOAL] < len(goals):

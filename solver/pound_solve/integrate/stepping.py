@@ -114,7 +114,7 @@ class Stepper:
         self.tables = jit.tables(self.rules or [bilinear.RULE])  # never empty, which compiles to nothing
         self._lay_out(start)
         self.count = np.zeros(8, np.int64)
-        self.clock = np.array([start.times[0], -1.0, energy_at_start(scene, start)])
+        self.clock = np.array([start.times[0], -1.0, energy_at_start(scene, start), np.inf])
 
     def _lay_out(self, start: Start) -> None:
         scene, watch, laws = self.scene, self.watch, self.laws
@@ -289,7 +289,7 @@ class Stepper:
         m, w, x, z, scene = self.matrices, self.w, self.x, self.z, self.scene
         t0 = float(self.times[0])
         for i, s in enumerate(self.laws):
-            if s.is_contact and s.law.rule.branches[w.i[i, arrays.AT]] == "pressed":
+            if s.is_contact and s.law.rule.branches[w.i[i, arrays.AT]].startswith("pressed"):
                 d, v = w.f[i, [arrays.LD, arrays.LV]].tolist()
                 force = states.law_force(w, self.tables, i, d, v)
                 self.ledger.switched(i, "open", "pressed", t0, d, v, force)

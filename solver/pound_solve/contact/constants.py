@@ -1,0 +1,131 @@
+"""The damping constant of a contact law from its card: given itself, or as the restitution E."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from pound_deck.schema import Field, Kind
+
+Relation = Callable[[float], float]
+
+
+class Constant(NamedTuple):
+    """A damping constant, the restitution asked for (NaN: none) and the one that it gives; a note."""
+
+    value: float
+    e_asked: float
+    e_given: float
+    note: str
+
+
+def fields(name: str, doc: str, published: str) -> tuple[Field, Field, Field]:
+    """Fields of the constant `name`, of E, and of the relation between them."""
+    return (
+        Field(name, Kind.REAL, "-", default=None, lo=0, doc=f"{doc} ({name} or E)"),
+        Field(
+            "E",
+            Kind.REAL,
+            "-",
+            default=None,
+            above=0,
+            hi=1,
+            doc=f"coefficient of restitution ({name} or E)",
+        ),
+        Field(
+            "RELATION",
+            Kind.WORD,
+            default="EXACT",
+            words=("EXACT", "PUBLISHED"),
+            doc=f"how E becomes {name}: exact, or {published}",
+        ),
+    )
+
+
+def chosen(values: Mapping[str, Any], names: tuple[str, ...], reduced_mass: float, free: str = "") -> str:
+    """Name of the one of several items that is given; all but `free` need masses.
+
+    Raises
+    ------
+    ValueError
+        None or several; or no mass.
+    """
+    given = [name for name in names if values[name] is not None]
+    if len(given) != 1:
+        ways = " or ".join([", ".join(f"as {name}" for name in names[:-1]), f"as {names[-1]}"])
+        raise ValueError(
+            f"give the damping once: {ways}" + (", not " + " and ".join(given) if given else "")
+        )
+    if given[0] != free and reduced_mass == 0.0:
+        instead = f", or {free}" if free else ""
+        raise ValueError(f"{given[0]} needs colliding masses: give the nodes weight, or MASSES{instead}")
+    return given[0]
+
+
+def constant(
+    values: Mapping[str, Any], name: str, given_back: Relation, exact: Relation, published: Relation
+) -> Constant:
+    """Constant `name` of a law, from itself or from E.
+
+    Parameters
+    ----------
+    values : mapping
+        Holds `name`, E and RELATION.
+    given_back : callable
+        Restitution that a constant gives.
+    exact, published : callable
+        Constant for a restitution.
+    """
+    if (value := values[name]) is not None:
+        return Constant(value, math.nan, given_back(value), f"{name} given")
+    e, word = values["E"], values["RELATION"]
+    value = (published if word == "PUBLISHED" else exact)(e)
+    return Constant(value, e, given_back(value), f"{word.lower()} relation of E to {name}")
+
+
+class Dashpot(NamedTuple):
+    """A linear dashpot: its coefficient [F T/L], damping ratio, and what `Constant` says."""
+
+    c: float
+    xi: float
+    e_asked: float
+    e_given: float
+    note: str
+
+
+def dashpot(
+    values: Mapping[str, Any],
+    reduced_mass: float,
+    given_back: Relation,
+    exact: Relation,
+    published: Relation,
+) -> Dashpot:
+    """Dashpot of a linear law, given as C, XI or E (see `constant`) beside the stiffness K.
+
+    Raises
+    ------
+    ValueError
+        None or several of C, XI, E; or XI or E where there is no mass.
+    """
+    root = 2.0 * math.sqrt(values["K"] * reduced_mass)
+    if chosen(values, ("C", "XI", "E"), reduced_mass, "C") == "C":
+        xi = values["C"] / root if root else math.inf
+        return Dashpot(values["C"], xi, math.nan, given_back(xi) if root else math.nan, "C given")
+    found = constant(values, "XI", given_back, exact, published)
+    return Dashpot(found.value * root, *found)
+
+
+def linear_fields(published: str) -> tuple[Field, ...]:
+    """Fields of a linear spring with a dashpot."""
+    relation = fields("XI", "", published)[2]
+    which = "(one of C, XI, E)"
+    return (
+        Field("K", Kind.REAL, "F/L", above=0, doc="contact stiffness"),
+        Field("C", Kind.REAL, "F*T/L", default=None, lo=0, doc=f"dashpot {which}"),
+        Field(
+            "XI", Kind.REAL, "-", default=None, lo=0, doc=f"damping ratio on the colliding masses {which}"
+        ),
+        Field("E", Kind.REAL, "-", default=None, above=0, hi=1, doc=f"coefficient of restitution {which}"),
+        relation,
+    )

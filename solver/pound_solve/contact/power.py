@@ -1,0 +1,66 @@
+r"""Spring and dashpot that grow with powers of the overlap: what the curved contact laws share.
+
+.. math:: f = k x^n, \qquad c\,x^{(n-1)/2}\dot x, \qquad x = \delta \ge 0
+"""
+
+from __future__ import annotations
+
+from pound_deck.schema import Field, Kind
+
+#: share of a law's kinetic scale below which its spring counts as just touched
+TOUCH = 1e-20
+
+
+def stiffness_unit(n: float) -> str:
+    """Unit of the stiffness."""
+    return "F/L" if n == 1.0 else f"F/L^{n:g}"
+
+
+def spring_force(k: float, n: float, x: float) -> float:
+    """Force of the spring."""
+    return k * x**n if x > 0.0 else 0.0
+
+
+def spring_energy(k: float, n: float, x: float) -> float:
+    """Energy of the spring."""
+    return k / (n + 1.0) * x ** (n + 1.0) if x > 0.0 else 0.0
+
+
+def drag(c: float, n: float, x: float) -> float:
+    """Coefficient of the dashpot."""
+    return c * x ** (0.5 * (n - 1.0)) if x > 0.0 else 0.0
+
+
+def drag_slope(k: float, n: float, mass: float, x: float, v: float, c: float) -> float:
+    """Derivative by the overlap `x` of the dashpot's force ``c v`` with the present coefficient `c`.
+
+    With n < 3 it is infinite at touch, where rounding alone decides what `x` is: an iteration that follows
+    it there goes astray.  As long as the spring holds next to nothing of the energy of the motion, nought
+    is the better guide.
+    """
+    if x <= 0.0 or k * x ** (n + 1.0) <= TOUCH * mass * v * v:
+        return 0.0
+    return 0.5 * (n - 1.0) * c * v / x
+
+
+def stiffness_field(n: float) -> Field:
+    """K of a law with that exponent."""
+    return Field(
+        "K", Kind.REAL, stiffness_unit(n), above=0, doc="contact stiffness: force at an overlap of one"
+    )
+
+
+def power_fields(n: float, linear: bool = True) -> tuple[Field, Field]:
+    """K and N of a law whose exponent is free, by default `n`; `linear`: N may be 1."""
+    return (
+        Field("K", Kind.REAL, "F/L^N", above=0, doc="contact stiffness: force at an overlap of one"),
+        Field(
+            "N",
+            Kind.REAL,
+            "-",
+            default=n,
+            lo=1 if linear else None,
+            above=None if linear else 1,
+            doc="exponent of the overlap",
+        ),
+    )
