@@ -678,7 +678,7 @@ def whole_step(
             continue
         if curved:  # what is tried from here on moves the tangents away from the factor at hand
             count[UPDATES] = REFRESH + 1
-        first, low, high, at = False, 0.0, piece, -1.0
+        first, low, high, at, stuck = False, 0.0, piece, -1.0, False
         for turn in range(100):
             if tau <= CLOSE * h:
                 at = 0.0
@@ -686,7 +686,7 @@ def whole_step(
             last = high - low <= CLOSE * h
             if last:
                 tau = high
-            elif turn > 8 or not low <= tau <= high:
+            elif turn > 8 or stuck:
                 tau = 0.5 * (low + high)
             bad = refactor(m, w, x, scheme, tau, PIECE)
             if bad >= 0:
@@ -696,7 +696,7 @@ def whole_step(
                 if last:
                     return NEWTON
                 start_again(w, f)  # at `high` there was a solution: look for the exit nearer to it
-                low, tau = tau, 0.5 * (tau + high)
+                low, stuck = tau, True
                 continue
             law2, way2, tau2 = first_exit(w, x, tau)
             if law2 >= 0:
