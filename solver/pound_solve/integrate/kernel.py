@@ -645,7 +645,7 @@ def cut(
         DONE or what failed; the law and its exit, law -1 where none is met after all; the length, which was
         tried last, or 0 where the exit is met at once.
     """
-    low, high, third = 0.0, piece, np.nan
+    low, high, third, stuck = 0.0, piece, np.nan, False
     g_low = excess(w, law, way, w.f[law, LD], w.f[law, LV])[0]
     g_high, g_third = excess(w, law, way, w.f[law, LD1], w.f[law, LV1])[0], np.nan
     for turn in range(100):
@@ -654,7 +654,7 @@ def cut(
         last = high - low <= CLOSE * h
         if last:
             tau = high
-        elif turn > 12:
+        elif turn > 12 or stuck:
             tau = 0.5 * (low + high)
         bad = refactor(m, w, x, scheme, tau, PIECE)
         if bad >= 0:
@@ -664,8 +664,7 @@ def cut(
             if last:
                 return NEWTON, law, way, 0.0
             start_again(w, f)  # at `high` there was a solution: look for the exit nearer to it
-            low, g_low, third, g_third = tau, np.nan, np.nan, np.nan
-            tau = 0.5 * (tau + high)
+            low, g_low, third, g_third, stuck = tau, np.nan, np.nan, np.nan, True
             continue
         passed, exit2, tau2 = first_exit(w, x, tau)
         other = passed >= 0 and (passed != law or exit2 != way)
