@@ -80,7 +80,8 @@ class Rule(NamedTuple):
     Attributes
     ----------
     branches : tuple of str
-        Their names; ``at`` counts them from 0.  Names that begin with "yielding" count as yield.
+        Their names; ``at`` counts them from 0.  Names that begin with "yielding" count as yield,
+        those of a contact that begin with "pressed" as touch.
     start : callable
         ``start(p) -> (at, m)``: virgin, at zero deformation.
     branch : callable

@@ -231,15 +231,16 @@ class Ledger:
             if after.startswith("yielding") and not before.startswith("yielding"):
                 self.peaks.yields[law] += 1
             return
+        was, now = before.startswith("pressed"), after.startswith("pressed")
         ended = [i for i, c in enumerate(self.peaks.collisions) if c.law == law]
-        if before == "released" and after == "pressed" and ended:
+        if before == "released" and now and ended:
             # the bodies never parted: the collision goes on
             again = self.peaks.collisions.pop(ended[-1])
             again.t_end = again.separation = np.nan
             self.open[law] = again
-        elif after == "pressed" and law not in self.open:
+        elif now and not was and law not in self.open:
             self.open[law] = Collision(law, t, v, peak=force_after, t_peak=t)
-        elif before == "pressed" and law in self.open:
+        elif was and not now and law in self.open:
             done = self.open.pop(law)
             done.t_end, done.separation = t, -v
             self.peaks.collisions.append(done)

@@ -92,7 +92,7 @@ class Exact:
     def run(self) -> Outcome:
         """Integrate to the last output time."""
         for i, s in enumerate(self.laws):
-            if s.is_contact and self.branches[i].name == "pressed":
+            if s.is_contact and self.branches[i].name.startswith("pressed"):
                 d, v = float(self.scene.law_rows[i] @ self.u), float(self.scene.law_rows[i] @ self.v)
                 self.ledger.switched(i, "open", "pressed", 0.0, d, v, self.branches[i].force(d, v))
         self._form()

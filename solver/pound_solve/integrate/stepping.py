@@ -282,7 +282,7 @@ class Stepper:
         m, w, x, z, scene = self.matrices, self.w, self.x, self.z, self.scene
         t0 = float(self.times[0])
         for i, s in enumerate(self.laws):
-            if s.is_contact and s.law.rule.branches[w.i[i, arrays.AT]] == "pressed":
+            if s.is_contact and s.law.rule.branches[w.i[i, arrays.AT]].startswith("pressed"):
                 d, v = w.f[i, [arrays.LD, arrays.LV]].tolist()
                 force = states.law_force(w, self.tables, i, d, v)
                 self.ledger.switched(i, "open", "pressed", t0, d, v, force)
