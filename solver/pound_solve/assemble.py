@@ -199,6 +199,25 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
             inverse += component**2 / nodal_mass[at]
         return np.inf if inverse == 0.0 else 1.0 / inverse
 
+    def stiffness_along(node: int, normal: tuple[float, float]) -> dict[int, float]:
+        # that of a rod, EA/L, times the squared cosine; what has no length is a rod along the direction
+        out = {}
+        for number, own in parts.items():
+            e, initial = model.elements[number], own.initial()
+            at = [i for i, f in enumerate(initial.freedoms) if f in ((node, 0), (node, 1))]
+            if not at:
+                continue
+            way, length = np.array(normal), 0.0
+            if e.j is not None:
+                line = np.subtract(*((model.nodes[k].x, model.nodes[k].y) for k in (e.j, e.i)))
+                length = float(np.hypot(*line))
+                way = line / length if length else way
+            t = way[[initial.freedoms[i][1] for i in at]]
+            k = float(t @ initial.matrix[np.ix_(at, at)] @ t) * float(way @ normal) ** 2
+            if k > 1e-12 * np.abs(initial.matrix).max():  # a column's cosine may be rounding
+                out[number] = k
+        return out
+
     parts: dict[int, Parts] = {}
     contacts_last = sorted(
         model.elements.values(), key=lambda e: model.props[e.prop].spec.name == "CONTACT"
@@ -220,6 +239,7 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
             self_weight,
             model.geometry,
             mass_along,
+            stiffness_along,
         )
         if site.member_loads and prop.spec.name not in ("FRAME", "BEAM_COLUMN"):
             wrong = f"element {element.id} is a {prop.spec.name}"

@@ -75,7 +75,7 @@ def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tupl
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Area below the way back."""
-    k1, k2, dy, gap = p[:4]
+    k2, dy, gap = p[1:4]
     if at == OPEN:
         return 0.0
     overlap = d - gap

@@ -120,7 +120,7 @@ SPEC = Spec(
     "KELVIN_VOIGT",
     "spring and dashpot while pressed",
     (
-        Field("K", Kind.REAL, "F/L", above=0, doc="contact stiffness"),
+        Field("K", Kind.REAL, "F/L", above=0, words=("ADJACENT",), doc="contact stiffness"),
         Field("C", Kind.REAL, "F*T/L", default=None, lo=0, doc="dashpot (one of C, XI, E)"),
         Field(
             "XI",

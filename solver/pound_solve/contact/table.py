@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
@@ -108,7 +109,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         raise ValueError(f"DEPTHS has {len(depths)} values and FORCES {len(forces)}: they go in pairs")
     path = [(0.0, 0.0), *zip(depths, forces)]
     slopes = []
-    for (d0, f0), (d1, f1) in zip(path, path[1:]):
+    for (d0, f0), (d1, f1) in pairwise(path):
         if d1 <= d0:
             raise ValueError(f"DEPTHS must ascend from above 0: {d1:g} follows {d0:g}")
         slopes.append((f1 - f0) / (d1 - d0))
@@ -124,7 +125,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         if ku < steepest:
             raise ValueError(f"KU {ku:g} is below the steepest slope of the table, {steepest:g}")
         given = math.nan
-        brought = sum(0.5 * (f0 + f1) * (d1 - d0) for (d0, f0), (d1, f1) in zip(path, path[1:]))
+        brought = sum(0.5 * (f0 + f1) * (d1 - d0) for (d0, f0), (d1, f1) in pairwise(path))
         back = 0.5 * forces[-1] ** 2 / ku
         at = math.sqrt(2.0 * brought / reduced_mass) if reduced_mass else math.inf
         note = (

@@ -182,6 +182,9 @@ class Site:
     mass_along : callable
         ``mass_along(node, (nx, ny))``: translational mass [F T^2/L] of a node
         along a direction; contacts only.
+    stiffness_along : callable
+        ``stiffness_along(node, (nx, ny))``: elements that meet a node, and their axial stiffness along a
+        direction [F/L], where they have any; contacts only.
     """
 
     element: Element
@@ -194,6 +197,7 @@ class Site:
     self_weight: bool
     geometry: str
     mass_along: Callable[[int, tuple[float, float]], float]
+    stiffness_along: Callable[[int, tuple[float, float]], dict[int, float]]
 
 
 class ElementError(Exception):

@@ -3,6 +3,11 @@
 The closure is the displacement of I less that of J along the direction (the wall does not move);
 the contact touches when it reaches GAP.  The direction points from I to J (or to the wall): along the line
 between the nodes, or at ANGLE.  A negative GAP is an overlap from the start.  Compression is positive.
+
+K=ADJACENT takes the stiffness of the neighbours: the axial stiffness EA/L of the elements that meet a node of
+the contact, along its direction, as Watanabe and Kawashima (2004, 13th World Conf. Earthquake Engng,
+Vancouver) and Cole et al. (2011) do; ADJACENT says which, of the two nodes' stiffnesses, or their
+harmonic mean :math:`2 k_1 k_2 / (k_1 + k_2)`.  A wall is rigid.
 """
 
 from __future__ import annotations
@@ -27,6 +32,29 @@ def direction(site: Site) -> tuple[float, float]:
     return base.direction(dx, dy)
 
 
+def adjacent(site: Site, nodes: list[int], normal: tuple[float, float]) -> tuple[float, str]:
+    """Stiffness that a contact takes from its neighbours [F/L], and whose it is."""
+    choice, found = site.prop["ADJACENT"], []
+    for node in nodes:
+        own = site.stiffness_along(node, normal)
+        if not own:
+            raise ElementError(
+                f"K=ADJACENT, but no element that meets node {node} is stiff axially along the contact's "
+                "direction: give K a number",
+                "K",
+            )
+        found.append((sum(own.values()), f"element{'s' * (len(own) > 1)} {', '.join(map(str, own))}"))
+    found.sort()
+    (soft, softer), (stiff, stiffer) = found[0], found[-1] if len(found) > 1 else (math.inf, "the wall")
+    if choice == "HARMONIC":
+        return 2.0 / (1.0 / soft + 1.0 / stiff), f"K: harmonic mean of {softer} and {stiffer}"
+    if choice == "SOFTER":
+        return soft, f"K of {softer}, the softer"
+    if math.isinf(stiff):
+        raise ElementError("the stiffer of node and wall is the wall, which is rigid", "ADJACENT")
+    return stiff, f"K of {stiffer}, the stiffer"
+
+
 def build(site: Site) -> Parts:
     """Build the contact's one component."""
     card, (nx, ny) = site.prop, direction(site)
@@ -40,8 +68,16 @@ def build(site: Site) -> Parts:
     if inverse == 0.0:
         raise ElementError("nothing that it joins can move along its direction", "ANGLE")
     reduced = 0.0 if math.isinf(inverse) else 1.0 / inverse
+    values, note = card.values, ""
+    if values.get("K") == "ADJACENT":
+        k, whose = adjacent(site, [node for node, _ in ends], (nx, ny))
+        values, note = {**values, "K": k}, f"; {whose}"
+    elif "ADJACENT" in card.spans:
+        raise ElementError(
+            "ADJACENT chooses among the neighbours for K=ADJACENT: write that, too", "ADJACENT"
+        )
     try:
-        built = card.laws["LAW"][0].impl(card.values, reduced)
+        built = card.laws["LAW"][0].impl(values, reduced)
     except ValueError as err:
         raise ElementError(str(err), "LAW") from None
     facts = {
@@ -51,7 +87,7 @@ def build(site: Site) -> Parts:
         "xi": built.xi,
         "e_asked": built.e_asked,
         "e_given": built.e_given,
-        "note": built.note,
+        "note": built.note + note,
         "reduced_mass": reduced,
         "angle": math.degrees(math.atan2(ny, nx)),
     }
@@ -79,6 +115,13 @@ SPEC = Spec(
             "deg",
             default=None,
             doc="direction from I towards J or the wall; left out: the line I-J, or +x for a wall",
+        ),
+        Field(
+            "ADJACENT",
+            Kind.WORD,
+            default="SOFTER",
+            words=("SOFTER", "STIFFER", "HARMONIC"),
+            doc="which neighbour's stiffness K=ADJACENT takes, or the harmonic mean of both",
         ),
         Field("LAW", Kind.FAMILY, default="LINEAR", family="contact", doc="contact law"),
         Field(
