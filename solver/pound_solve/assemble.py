@@ -202,20 +202,21 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
     def stiffness_along(node: int, normal: tuple[float, float]) -> dict[int, float]:
         # that of a rod, EA/L, times the squared cosine; what has no length is a rod along the direction
         out = {}
-        for number, own in parts.items():
-            e, initial = model.elements[number], own.initial()
-            at = [i for i, f in enumerate(initial.freedoms) if f in ((node, 0), (node, 1))]
+        for name, own in parts.items():
+            e, initial = model.elements[name], own.initial()
+            at = [n for n, f in enumerate(initial.freedoms) if f in ((node, 0), (node, 1))]
             if not at:
                 continue
             way, length = np.array(normal), 0.0
             if e.j is not None:
-                line = np.subtract(*((model.nodes[k].x, model.nodes[k].y) for k in (e.j, e.i)))
+                i, j = model.nodes[e.i], model.nodes[e.j]
+                line = np.array([j.x - i.x, j.y - i.y])
                 length = float(np.hypot(*line))
                 way = line / length if length else way
-            t = way[[initial.freedoms[i][1] for i in at]]
+            t = way[[initial.freedoms[n][1] for n in at]]
             k = float(t @ initial.matrix[np.ix_(at, at)] @ t) * float(way @ normal) ** 2
             if k > 1e-12 * np.abs(initial.matrix).max():  # a column's cosine may be rounding
-                out[number] = k
+                out[name] = k
         return out
 
     parts: dict[int, Parts] = {}
@@ -441,7 +442,11 @@ def _add_damping(
         if group.dashpots is not None:
             labels, beta, by_secant = group.dashpots
             for i, s in enumerate(structure.laws):
-                if not s.is_contact and (labels is None or model.elements[s.element].prop in labels):
+                if (
+                    not s.is_contact
+                    and not s.normal
+                    and (labels is None or model.elements[s.element].prop in labels)
+                ):
                     betas[int(by_secant), i] += beta
         structure.damping_texts.append((card, group.text))
     structure.initial_damping = structure.damping

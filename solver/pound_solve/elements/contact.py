@@ -4,10 +4,12 @@ The closure is the displacement of I less that of J along the direction (the wal
 the contact touches when it reaches GAP.  The direction points from I to J (or to the wall): along the line
 between the nodes, or at ANGLE.  A negative GAP is an overlap from the start.  Compression is positive.
 
-K=ADJACENT takes the stiffness of the neighbours: the axial stiffness EA/L of the elements that meet a node of
-the contact, along its direction, as Watanabe and Kawashima (2004, 13th World Conf. Earthquake Engng,
+K=ADJACENT takes the stiffness of the neighbours: the axial stiffness EA/L of the elements that meet a node
+of the contact, along its direction, as Watanabe and Kawashima (2004, 13th World Conf. Earthquake Engng,
 Vancouver) and Cole et al. (2011) do; ADJACENT says which, of the two nodes' stiffnesses, or their
 harmonic mean :math:`2 k_1 k_2 / (k_1 + k_2)`.  A wall is rigid.
+
+With MU there is a second component, the friction across the direction (see `contact.friction`).
 """
 
 from __future__ import annotations
@@ -15,6 +17,8 @@ from __future__ import annotations
 import math
 
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve.contact import friction
+from pound_solve.dofs import Freedom
 from pound_solve.elements import base
 from pound_solve.elements.base import ElementError, LawSpring, Parts, Site, axes
 
@@ -55,11 +59,40 @@ def adjacent(site: Site, nodes: list[int], normal: tuple[float, float]) -> tuple
     return stiff, f"K of {stiffer}, the stiffer"
 
 
+def rubbing(
+    site: Site, ends: list[tuple[int, float]], normal: tuple[float, float]
+) -> tuple[list[LawSpring], str]:
+    """Friction of the contact, if it has any, and what the report says of it."""
+    card, (nx, ny) = site.prop, normal
+    if card["MU"] is None:
+        for item in ("MUD", "KT"):
+            if card[item] is not None:
+                raise ElementError(f"{item} belongs to friction: give MU, too", item)
+        return [], ""
+    if card["KT"] is None:
+        raise ElementError("friction needs KT, the tangential stiffness while it sticks", "MU")
+    mud = card["MU"] if card["MUD"] is None else card["MUD"]
+    try:
+        law = friction.build(card["KT"], card["MU"], mud)
+    except ValueError as err:
+        raise ElementError(str(err), "MUD") from None
+    row, facts = across(ends, (-ny, nx)), {"k": card["KT"]}
+    spring = LawSpring(site.element.id, "friction", "COULOMB", *row, law, facts=facts, normal="contact")
+    return [spring], f"; friction {card['MU']:g}, {mud:g} while it slips"
+
+
+def across(
+    ends: list[tuple[int, float]], way: tuple[float, float]
+) -> tuple[tuple[Freedom, ...], tuple[float, ...]]:
+    """Freedoms of the nodes, and their share in the displacement of I against J along a unit vector."""
+    pairs = [((node, d), sign * n) for node, sign in ends for d, n in enumerate(way) if n != 0.0]
+    return tuple(f for f, _ in pairs), tuple(x for _, x in pairs)
+
+
 def build(site: Site) -> Parts:
-    """Build the contact's one component."""
+    """Build the contact's component, and that of its friction."""
     card, (nx, ny) = site.prop, direction(site)
     ends = [(site.i.id, 1.0)] + ([(site.j.id, -1.0)] if site.j is not None else [])
-    pairs = [((node, d), sign * n) for node, sign in ends for d, n in ((0, nx), (1, ny)) if n != 0.0]
     if card["MASSES"] is not None:
         inverse = sum(1.0 / m for m in card["MASSES"])
     else:
@@ -80,6 +113,7 @@ def build(site: Site) -> Parts:
         built = card.laws["LAW"][0].impl(values, reduced)
     except ValueError as err:
         raise ElementError(str(err), "LAW") from None
+    rubbed, rubs = rubbing(site, ends, (nx, ny))
     facts = {
         "k": built.k,
         "c": built.c,
@@ -87,7 +121,7 @@ def build(site: Site) -> Parts:
         "xi": built.xi,
         "e_asked": built.e_asked,
         "e_given": built.e_given,
-        "note": built.note + note,
+        "note": built.note + note + rubs,
         "reduced_mass": reduced,
         "angle": math.degrees(math.atan2(ny, nx)),
     }
@@ -95,12 +129,11 @@ def build(site: Site) -> Parts:
         site.element.id,
         "contact",
         card["LAW"],
-        tuple(f for f, _ in pairs),
-        tuple(v for _, v in pairs),
+        *across(ends, (nx, ny)),
         built.law,
         facts=facts,
     )
-    return Parts(laws=[spring])
+    return Parts(laws=[spring, *rubbed])
 
 
 SPEC = Spec(
@@ -124,6 +157,18 @@ SPEC = Spec(
             doc="which neighbour's stiffness K=ADJACENT takes, or the harmonic mean of both",
         ),
         Field("LAW", Kind.FAMILY, default="LINEAR", family="contact", doc="contact law"),
+        Field("MU", Kind.REAL, "-", default=None, above=0, doc="coefficient of friction; left out: none"),
+        Field(
+            "MUD",
+            Kind.REAL,
+            "-",
+            default=None,
+            lo=0,
+            doc="coefficient of friction while it slips; left out: MU",
+        ),
+        Field(
+            "KT", Kind.REAL, "F/L", default=None, above=0, doc="tangential stiffness while friction sticks"
+        ),
         Field(
             "MASSES",
             Kind.REAL,

@@ -32,7 +32,7 @@ def limit(scene: Scene, u: Array) -> float:
     """Largest stable step [T]: 2 over the highest frequency with all contacts pressed
     and all springs elastic, members as they are at displacements `u`.
     """
-    stiffest = [s.facts["k"] if s.is_contact else s.k0 for s in scene.structure.laws]
+    stiffest = [s.facts.get("k", s.k0) for s in scene.structure.laws]
     k = scene.stiffness + scene.chords.stiffness(u) + (scene.law_rows.T * stiffest) @ scene.law_rows
     omega = modes.solve(k, scene.mass).omega
     return 2.0 / float(omega[-1]) if len(omega) and omega[-1] > 0 else float("inf")

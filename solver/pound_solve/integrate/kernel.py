@@ -48,6 +48,7 @@ from pound_solve.integrate.arrays import (
     G0,
     G1,
     GOAL,
+    HELD,
     HIGH,
     IMPULSE,
     KEPT,
@@ -62,6 +63,7 @@ from pound_solve.integrate.arrays import (
     MOST_V,
     NEAR,
     NEWTON,
+    NORMAL,
     P1,
     PAUSE,
     PEAK,
@@ -86,6 +88,7 @@ from pound_solve.integrate.arrays import (
     V1,
     VALUE,
     WHOLE,
+    WORK,
     WORST,
     A,
     C,
@@ -108,9 +111,12 @@ from pound_solve.integrate.ldl import factor, solve, update
 from pound_solve.integrate.states import (
     along,
     bend,
+    enter,
     follows,
+    grip,
     law_force,
     law_work,
+    lean,
     leave,
     load,
     memory,
@@ -224,6 +230,10 @@ def attempt(
         for i in range(laws):
             if not w.i[i, CURVED]:
                 continue
+            j = w.i[i, NORMAL]
+            if j >= 0:
+                acc = along(w.rows, j, x.q, A1)
+                lean(w, i, w.f[j, LD1] + bk * acc, w.f[j, LV1] + gk * acc, acc)
             acc = along(w.rows, i, x.q, A1)
             dd, vv = w.f[i, LD1] + bk * acc, w.f[i, LV1] + gk * acc
             c = f.curve[w.i[i, CODE]](
@@ -266,6 +276,10 @@ def attempt(
         acc = along(w.rows, i, x.q, A1)
         w.f[i, LD1] += bk * acc
         w.f[i, LV1] += gk * acc
+        j = w.i[i, NORMAL]
+        if j >= 0:  # its limits move with the other, which comes before it
+            lean(w, i, w.f[j, LD1], w.f[j, LV1], along(w.rows, j, x.q, A1))
+            enter(w, f, i)
     return True
 
 
@@ -392,6 +406,9 @@ def accept(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float) -> None:
             w.f[i, IMPULSE] += (
                 0.5 * h * (k * (w.f[i, LD] + w.f[i, LD1]) + c * (w.f[i, LV] + w.f[i, LV1]) + 2.0 * f0)
             )
+        if w.i[i, NORMAL] >= 0 and k == 0.0:
+            held, w.f[i, HELD], w.f[i, D0] = w.f[i, HELD], f0, w.f[i, LD1]
+            w.f[i, WORK] += h / 6.0 * ((2.0 * held + f0) * w.f[i, LV] + (held + 2.0 * f0) * w.f[i, LV1])
         w.f[i, LD], w.f[i, LV] = w.f[i, LD1], w.f[i, LV1]
         w.f[i, MOST_D] = max(w.f[i, MOST_D], abs(w.f[i, LD]))
         w.f[i, MOST_V] = max(w.f[i, MOST_V], abs(w.f[i, LV]))
@@ -506,6 +523,8 @@ def switch(
 ) -> None:  # fmt: skip
     """Let law `i` leave its branch; `h` is the nominal step, whose factor follows."""
     before, k, c = w.i[i, AT], w.f[i, K], w.f[i, C]
+    if w.i[i, NORMAL] >= 0:
+        grip(w, f, x.q, i)
     leave(w, f, i, way, w.f[i, LD], w.f[i, LV])
     if w.i[i, CURVED]:
         tangent(w, f, i)
@@ -518,6 +537,13 @@ def switch(
     if before != w.i[i, AT]:
         write(w, z, count, i, before, t, force)
     count[EVENTS] += 1
+    for j in range(len(w.i)):
+        if w.i[j, NORMAL] >= 0:
+            before = w.i[j, AT]
+            grip(w, f, x.q, j)
+            if before != w.i[j, AT]:
+                write(w, z, count, j, before, t, w.f[j, HELD])
+                count[UPDATES] = REFRESH + 1
 
 
 def write(w: Laws, z: Samples, count: Index, i: int, before: int, t: float, force: float) -> None:
@@ -749,7 +775,7 @@ def advance(
     clock : ndarray, shape (3,)
         Time, length that the factor at hand is for, energy at the start.
     """
-    room, pause = 108 + 8 * len(w.i), count[STEPS] + PAUSE
+    room, pause = 216 + 16 * len(w.i), count[STEPS] + PAUSE
     while count[GOAL] < len(goals):
         goal = count[GOAL]
         h = lengths[goal]

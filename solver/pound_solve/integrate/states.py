@@ -13,20 +13,25 @@ from pound_solve.integrate.arrays import (
     D0,
     EXIT,
     F0,
+    HELD,
     LD,
     LV,
     N_EXITS,
+    NORMAL,
+    PRESSED,
     SAVED,
     SECANT,
     STIFFNESS,
     TURN,
     WORK,
+    A,
     C,
     K,
     Laws,
     Matrices,
 )
 from pound_solve.jit import Tables
+from pound_solve.laws import PUSH, PUSH_RATE
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -129,6 +134,24 @@ def leave(w: Laws, f: Tables, i: int, way: int, d: float, v: float) -> None:
     for j in range(len(m)):
         w.memory[i, j] = m[j]
     enter(w, f, i)
+
+
+def lean(w: Laws, i: int, d: float, v: float, a: float) -> None:
+    """Tell law `i` the force of the one that it leans on, and its rate, at the motion of that one."""
+    j = w.i[i, NORMAL]
+    k, c = w.f[j, K], w.f[j, C]
+    w.memory[i, PUSH], w.memory[i, PUSH_RATE] = max(k * d + c * v + w.f[j, F0], 0.0), k * v + c * a
+
+
+def grip(w: Laws, f: Tables, q: Array, i: int) -> None:
+    """Let law `i` touch or let go with the one that it leans on, and take over what that does now."""
+    j = w.i[i, NORMAL]
+    lean(w, i, w.f[j, LD], w.f[j, LV], along(w.rows, j, q, A))
+    pressed = (w.i[i, PRESSED] >> w.i[j, AT]) & 1
+    if pressed != (w.i[i, AT] != 0):
+        leave(w, f, i, 0 if pressed else 2, w.f[i, LD], w.f[i, LV])
+    enter(w, f, i)
+    w.f[i, HELD] = w.f[i, K] * w.f[i, LD] + w.f[i, F0]
 
 
 def tangent(w: Laws, f: Tables, i: int) -> None:
