@@ -1,5 +1,6 @@
 """Coulomb friction across a contact: closed forms, an independent integration, energies, what it refuses."""
 
+import itertools
 import math
 
 import numpy as np
@@ -57,7 +58,7 @@ def test_a_ball_that_slides_throughout(tmp_path, angle, mud, vt):
     # the loss is the friction's, and stands in its row
     (row,) = results.table("spring_envelope")
     assert (row["component"], row["rule"]) == ("friction", "COULOMB")
-    assert row["dissipated"] == pytest.approx(0.5 * 2.0 * (1.0 - after**2), rel=1e-6)
+    assert row["plastic_work"] == pytest.approx(0.5 * 2.0 * (1.0 - after**2), rel=1e-6)
     assert float(results.table("checks")["value"][0]) < 1e-6
 
 
@@ -66,10 +67,12 @@ def test_restitution_and_friction(tmp_path, e):
     """1 + e with a dashpot; the force of touch sticks first, for a time that goes with 1/KT."""
     errors = []
     for kt in (1e6, 1e8):
-        vn, after, _ = ball(tmp_path, f"MU=0.3 KT={kt}", law=f"LAW=KELVIN_VOIGT K=5000 E={e}")
+        vn, after, results = ball(tmp_path, f"MU=0.3 KT={kt}", law=f"LAW=KELVIN_VOIGT K=5000 E={e}")
         assert vn == pytest.approx(e, rel=1e-4)
         errors.append(after - (1.0 - 0.3 * (1.0 + e)))
-    assert 0.0 < errors[1] < 3e-5 and errors[0] > 30.0 * (errors[1] - 1e-5), errors
+    # what is missing of the impulse: half of mu c v_0 for the time in which the spring takes that up, over m
+    missing = (0.3 * results.table("contact_laws")["c"][0]) ** 2 / (2.0 * 1e6 * 2.0)
+    assert errors == pytest.approx([missing, missing / 100.0], rel=0.03, abs=5e-7)
 
 
 @pytest.mark.parametrize("vt", [0.5, -0.5])
@@ -80,7 +83,7 @@ def test_a_ball_that_sticks_goes_back_the_way_it_came(tmp_path, vt):
     (row,) = results.table("spring_envelope")
     most = 0.5 * math.sqrt(5000.0 * 2.0)
     assert max(row["force_max"], -row["force_min"]) == pytest.approx(most, rel=1e-4)
-    assert abs(row["dissipated"]) < 1e-12
+    assert abs(row["plastic_work"]) < 1e-12
     # a hair above mu it slips all the way
     _, after, _ = ball(tmp_path, "MU=0.49 KT=5000", vt=vt)
     assert after == pytest.approx(vt * (1.0 - 2.0 * 0.49 / 0.5), rel=1e-6)
@@ -95,7 +98,7 @@ ELEMENTS
  1 FLOOR 1
  2 DRAG 2 1
 PROPS
- FLOOR CONTACT GAP=0 ANGLE=-90 LAW=LINEAR K=1E5 MU={mu} MUD={mud} KT={kt}
+ FLOOR CONTACT GAP=-1E-4 ANGLE=-90 LAW=LINEAR K=1E5 MU={mu} MUD={mud} KT={kt}
  DRAG SPRING KX={k}
 WEIGHTS
  1 2
@@ -135,15 +138,15 @@ def block(
 
 def test_a_sliding_block_comes_to_rest(tmp_path):
     """Pressed by 10 on a floor, mass 2: it slows down by mu 10/2 and stops after v^2 / (2 a)."""
-    results = block(tmp_path, 1.0, 0.05, v=2.0, mu=0.6, mud=0.5)
+    results = block(tmp_path, 1.0, 0.05, v=2.0, mu=0.6, mud=0.5, kt=1e6)
     t, x = results.time, results.history("node/u")[:, 0, 0]
     a = 0.5 * 10.0 / 2.0
     moving = t < 2.0 / a
-    assert x[moving] == pytest.approx(2.0 * t[moving] - 0.5 * a * t[moving] ** 2, rel=1e-9)
-    assert x[~moving] == pytest.approx(2.0**2 / (2.0 * a), abs=2.0 * 5.0 / 1e6)  # held by the stiff spring
+    assert x[moving] == pytest.approx(2.0 * t[moving] - 0.5 * a * t[moving] ** 2, abs=6.0 / 1e6)
+    assert x[~moving] == pytest.approx(2.0**2 / (2.0 * a), abs=2.0 * 5.0 / 1e6)  # held by a spring
     (row,) = [r for r in results.table("spring_envelope") if r["component"] == "friction"]
-    assert row["dissipated"] == pytest.approx(0.5 * 2.0 * 2.0**2, rel=1e-5)
-    assert row["force_max"] == pytest.approx(5.0, rel=1e-9)
+    assert row["plastic_work"] == pytest.approx(0.5 * 2.0 * 2.0**2, rel=1e-5)
+    assert row["force_max"] == pytest.approx(6.0, rel=1e-6)
 
 
 def reference(t_end, times, m, k, kt, mu, mud, n, drive):
@@ -187,18 +190,19 @@ def test_stick_and_slip_of_a_dragged_block(tmp_path):
     """Coefficients 0.5 and 0.3: a saw tooth.  A heavy body moves the spring's end on at constant speed."""
     m, k, kt, drive, n = 2.0, 50.0, 4e4, 0.2, 10.0
     results = block(
-        tmp_path, 1.2, 0.01, drive=drive, driver=1e12, k=k, mu=0.5, mud=0.3, kt=kt, method="NEWMARK DT=1e-4"
+        tmp_path, 3.2, 0.02, drive=drive, driver=1e12, k=k, mu=0.5, mud=0.3, kt=kt, method="NEWMARK DT=2e-4"
     )
     times, x = results.time, results.history("node/u")[:, 0, 0]
-    wanted, slips = reference(1.2, times, m, k, kt, 0.5, 0.3, n, drive)
+    wanted, slips = reference(3.2, times, m, k, kt, 0.5, 0.3, n, drive)
     assert len(slips) >= 2
     assert x == pytest.approx(wanted, abs=2e-5)
     # the first slip in closed form, for a spring that is stiff: it begins where k V t = mu_s N, and lasts
     # (2 pi - 2 atan(A w / V)) / w with A = (mu_s - mu_d) N / k, while the block goes 2 A + V t ahead
     w, a = math.sqrt(k / m), 0.2 * n / k
     begins, lasts = 0.5 * n / (k * drive), (2.0 * math.pi - 2.0 * math.atan(a * w / drive)) / w
-    assert slips[0][0] == pytest.approx(begins, rel=2e-3)
-    assert slips[0][1] - slips[0][0] == pytest.approx(lasts, rel=2e-3)
+    # while it sticks, the block trembles on the spring by V w k / k_t
+    assert slips[0][0] == pytest.approx(begins, abs=math.sqrt(m / kt))
+    assert slips[0][1] - slips[0][0] == pytest.approx(lasts, rel=2e-2)
     held = np.flatnonzero(times > slips[0][1])[0]
     assert x[held] == pytest.approx(2.0 * a + drive * lasts, rel=2e-2)
     (row,) = [r for r in results.table("spring_envelope") if r["component"] == "friction"]
@@ -246,13 +250,14 @@ def test_a_body_on_rods_against_an_inclined_wall_converges(tmp_path, law):
             results.table("contact_summary")["peak_force"][0],
             row["force_max"],
             row["force_min"],
-            row["dissipated"],
+            row["plastic_work"],
         ]
         found.append((np.array(peaks), float(results.table("checks")["value"][0]), results))
     assert found[0][2].table("contact_summary")["closures"][0] >= 2
     assert found[0][0][1] > 0.0 > found[0][0][2]  # it slips both ways
     errors = [np.abs(p / found[-1][0] - 1.0).max() for p, _, _ in found[:-1]]
-    assert errors[2] < 0.5 * errors[1] < 0.25 * errors[0] * 1.5 and errors[2] < 3e-3, errors
+    # 3.1, 3.1; 7.2, 3.6; 4.0, 4.2 were found
+    assert all(x > 2.5 * y for x, y in itertools.pairwise(errors)) and errors[-1] < 1e-4, errors
     assert found[2][1] < 1e-3 and found[2][1] < 0.4 * found[1][1], [r for _, r, _ in found]
 
 
