@@ -1,4 +1,4 @@
-"""Coulomb friction across a contact: closed forms, an independent integration, energies, what it refuses."""
+"""Coulomb friction across a contact: closed forms, an independent integration, what it refuses."""
 
 import itertools
 import math
@@ -70,7 +70,7 @@ def test_restitution_and_friction(tmp_path, e):
         vn, after, results = ball(tmp_path, f"MU=0.3 KT={kt}", law=f"LAW=KELVIN_VOIGT K=5000 E={e}")
         assert vn == pytest.approx(e, rel=1e-4)
         errors.append(after - (1.0 - 0.3 * (1.0 + e)))
-    # what is missing of the impulse: half of mu c v_0 for the time in which the spring takes that up, over m
+    # missing of the impulse: half of mu c v_0 for the time in which the spring takes that up
     missing = (0.3 * results.table("contact_laws")["c"][0]) ** 2 / (2.0 * 1e6 * 2.0)
     assert errors == pytest.approx([missing, missing / 100.0], rel=0.03, abs=5e-7)
 
@@ -286,10 +286,20 @@ def test_methods_that_do_not(tmp_path, method, words):
     assert results.status != "done" and words in results.message
 
 
+CARD = """NODES
+ 1 0 0 FIX=R
+ELEMENTS
+ 1 HIT 1
+PROPS
+ HIT CONTACT GAP=0 LAW=LINEAR K=1 {}
+WEIGHTS
+ 1 1
+"""
+
+
 def test_without_mu_there_is_none():
-    text = "NODES\n 1 0 0 FIX=R\nELEMENTS\n 1 HIT 1\nPROPS\n HIT CONTACT GAP=0 LAW=LINEAR K=1 {}\nWEIGHTS\n 1 1\n"
-    assert [s.component for s in structure_of(text.format("")).laws] == ["contact"]
-    contact, rubs = structure_of(text.format("MU=0.5 KT=3")).laws
+    assert [s.component for s in structure_of(CARD.format("")).laws] == ["contact"]
+    contact, rubs = structure_of(CARD.format("MU=0.5 KT=3")).laws
     assert contact.facts["note"] == "elastic; friction 0.5, 0.5 while it slips"
     assert (rubs.normal, rubs.freedoms, rubs.row) == ("contact", ((1, 1),), (1.0,))
 
@@ -299,9 +309,8 @@ def test_without_mu_there_is_none():
     [("MU=0.5", "needs KT"), ("KT=1", "give MU, too"), ("MU=0.5 MUD=0.6 KT=1", "MUD 0.6 is above MU 0.5")],
 )
 def test_half_said(items, words):
-    text = f"NODES\n 1 0 0 FIX=R\nELEMENTS\n 1 HIT 1\nPROPS\n HIT CONTACT GAP=0 LAW=LINEAR K=1 {items}\nWEIGHTS\n 1 1\n"
     with pytest.raises(AssemblyError, match=words):
-        structure_of(text)
+        structure_of(CARD.format(items))
 
 
 def test_the_rule_walked_by_hand():
