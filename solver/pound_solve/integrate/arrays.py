@@ -159,6 +159,8 @@ class Laws(NamedTuple):
         Columns as above.
     saved : ndarray, shape (n_laws, 5 + MEMORY)
         State at the start of a step that is not cut at events.
+    leans : ndarray, shape (n_leaning,)
+        The laws that lean on another, which comes before them.
     chords : Turning
     """
 
@@ -171,6 +173,7 @@ class Laws(NamedTuple):
     f: Array
     i: Index
     saved: Array
+    leans: Index
     chords: Turning
 
 

@@ -88,7 +88,6 @@ from pound_solve.integrate.arrays import (
     V1,
     VALUE,
     WHOLE,
-    WORK,
     WORST,
     A,
     C,
@@ -111,13 +110,13 @@ from pound_solve.integrate.ldl import factor, solve, update
 from pound_solve.integrate.states import (
     along,
     bend,
-    enter,
     follows,
     grip,
     law_force,
     law_work,
     lean,
     leave,
+    limit,
     load,
     memory,
     motions,
@@ -125,6 +124,7 @@ from pound_solve.integrate.states import (
     parameters,
     restore,
     save,
+    slide,
     tangent,
     times,
 )
@@ -276,10 +276,8 @@ def attempt(
         acc = along(w.rows, i, x.q, A1)
         w.f[i, LD1] += bk * acc
         w.f[i, LV1] += gk * acc
-        j = w.i[i, NORMAL]
-        if j >= 0:  # its limits move with the other, which comes before it
-            lean(w, i, w.f[j, LD1], w.f[j, LV1], along(w.rows, j, x.q, A1))
-            enter(w, f, i)
+    if len(w.leans) > 0:
+        limit(w, f, x.q)
     return True
 
 
@@ -388,6 +386,8 @@ def accept(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float) -> None:
         b.most[0] = max(b.most[0], chord_force(b, c))
         for j in range(6):
             b.s[c, S0 + j], b.s[c, G0 + j] = b.s[c, S1 + j], b.s[c, G1 + j]
+    if len(w.leans) > 0:
+        slide(w, h)
     x.works[0] += work * h / 6.0
     x.works[1] += loss * h / 3.0
     x.works[3] += abs(x.works[0] - before)
@@ -406,9 +406,6 @@ def accept(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float) -> None:
             w.f[i, IMPULSE] += (
                 0.5 * h * (k * (w.f[i, LD] + w.f[i, LD1]) + c * (w.f[i, LV] + w.f[i, LV1]) + 2.0 * f0)
             )
-        if w.i[i, NORMAL] >= 0 and k == 0.0:
-            held, w.f[i, HELD], w.f[i, D0] = w.f[i, HELD], f0, w.f[i, LD1]
-            w.f[i, WORK] += h / 6.0 * ((2.0 * held + f0) * w.f[i, LV] + (held + 2.0 * f0) * w.f[i, LV1])
         w.f[i, LD], w.f[i, LV] = w.f[i, LD1], w.f[i, LV1]
         w.f[i, MOST_D] = max(w.f[i, MOST_D], abs(w.f[i, LD]))
         w.f[i, MOST_V] = max(w.f[i, MOST_V], abs(w.f[i, LV]))
@@ -537,13 +534,12 @@ def switch(
     if before != w.i[i, AT]:
         write(w, z, count, i, before, t, force)
     count[EVENTS] += 1
-    for j in range(len(w.i)):
-        if w.i[j, NORMAL] >= 0:
-            before = w.i[j, AT]
-            grip(w, f, x.q, j)
-            if before != w.i[j, AT]:
-                write(w, z, count, j, before, t, w.f[j, HELD])
-                count[UPDATES] = REFRESH + 1
+    for j in w.leans:
+        before = w.i[j, AT]
+        grip(w, f, x.q, j)
+        if before != w.i[j, AT]:
+            write(w, z, count, j, before, t, w.f[j, HELD])
+            count[UPDATES] = REFRESH + 1
 
 
 def write(w: Laws, z: Samples, count: Index, i: int, before: int, t: float, force: float) -> None:

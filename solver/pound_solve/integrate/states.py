@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_solve.integrate.arrays import (
+    A1,
     AT,
     BETA,
     CODE,
@@ -15,7 +16,9 @@ from pound_solve.integrate.arrays import (
     F0,
     HELD,
     LD,
+    LD1,
     LV,
+    LV1,
     N_EXITS,
     NORMAL,
     PRESSED,
@@ -141,6 +144,25 @@ def lean(w: Laws, i: int, d: float, v: float, a: float) -> None:
     j = w.i[i, NORMAL]
     k, c = w.f[j, K], w.f[j, C]
     w.memory[i, PUSH], w.memory[i, PUSH_RATE] = max(k * d + c * v + w.f[j, F0], 0.0), k * v + c * a
+
+
+def limit(w: Laws, f: Tables, q: Array) -> None:
+    """Limits of the laws that lean on others, at the end of a step."""
+    for i in w.leans:
+        j = w.i[i, NORMAL]
+        lean(w, i, w.f[j, LD1], w.f[j, LV1], along(w.rows, j, q, A1))
+        enter(w, f, i)
+
+
+def slide(w: Laws, h: float) -> None:
+    """Add up the work of the laws that lean on others and slip, over a step of length `h`."""
+    for i in w.leans:
+        if w.f[i, K] == 0.0:
+            before, after = w.f[i, HELD], w.f[i, F0]
+            w.f[i, WORK] += (
+                h / 6.0 * ((2.0 * before + after) * w.f[i, LV] + (before + 2.0 * after) * w.f[i, LV1])
+            )
+            w.f[i, HELD], w.f[i, D0] = after, w.f[i, LD1]
 
 
 def grip(w: Laws, f: Tables, q: Array, i: int) -> None:

@@ -195,6 +195,7 @@ class Stepper:
             f=np.zeros((count, 27)),
             i=np.zeros((count, 8), np.int64),
             saved=np.zeros((count, 5 + MEMORY)),
+            leans=np.flatnonzero([bool(s.normal) for s in laws]).astype(np.int64),
             chords=self._turning(position if stiff else {}),
         )
         for i, (law, state) in enumerate(zip(laws, start.states)):
@@ -302,7 +303,7 @@ class Stepper:
                 w.f[i, arrays.PEAK] = force
         x.q[arrays.P] = self._force(t0)
         x.inputs[:2] = scene.excitation.value(t0), scene.excitation.value(t0, 1)
-        for i in np.flatnonzero(w.i[:, arrays.NORMAL] >= 0).tolist():
+        for i in w.leans.tolist():
             states.grip(w, self.tables, x.q, i)
         jit.compiled(kernel.settle)(m, w, x, self.dt)
         kernel.note(m, w, x, t0, 0.0)
