@@ -20,7 +20,7 @@ from typing import Any, Final
 class Kind(Enum):
     """What a field holds."""
 
-    REAL = "real"  #: a finite number or an expression
+    REAL = "real"  #: a finite number or an expression; or one of ``Field.words``
     INT = "int"  #: a whole number or an expression with a whole value
     WORD = "word"  #: one of ``Field.words``; its old numeric code is accepted too
     TEXT = "text"  #: a name or quoted text, free
@@ -65,7 +65,8 @@ class Field:
     count : tuple of two ints
         Least and most number of comma-separated values; ``(1, 1)`` binds a scalar, all else a tuple.
     words : tuple of str
-        Choices of a WORD (its position is not its code, see `codes`), or the letters of FLAGS.
+        Choices of a WORD (its position is not its code, see `codes`), words that may stand for the number
+        of a REAL, or the letters of FLAGS.
     codes : mapping of str to int
         Old numeric codes of the words.
     family : str

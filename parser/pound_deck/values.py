@@ -47,7 +47,7 @@ class Values:
             raise mistake("P219", f"{f.name} takes no range here", part.span, hint)
         match f.kind:
             case Kind.REAL:
-                return self.real(part, f)
+                return self._instead(part, f) or self.real(part, f)
             case Kind.INT | Kind.NODE:
                 return self.whole(part, f)
             case Kind.TEXT:
@@ -64,6 +64,13 @@ class Values:
                 codes = {s.code: s.name for s in specs.values() if s.code is not None}
                 return self.choice(part, specs, codes, f.name, f.doc)
         raise AssertionError(f.kind)
+
+    def _instead(self, part: Expression, f: Field) -> str:
+        """Word that stands for the field's number, itself or as a PARAM; empty where a number does."""
+        step = part.lone
+        value = self._param(step) if f.words and step and step.kind == "word" else None
+        text = value if isinstance(value, str) else step.text if step else ""
+        return text.upper() if text.upper() in f.words else ""
 
     def real(self, part: Expression, f: Field | None, bounded: bool = True) -> float:
         """Finite number (of BY where the field is None), within the field's limits where `bounded`."""

@@ -223,6 +223,7 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
             self_weight,
             model.geometry,
             partial(mass_along, model, nodal_mass),
+            partial(stiffness_along, model, parts),
         )
         if site.member_loads and prop.spec.name not in ("FRAME", "BEAM_COLUMN"):
             wrong = f"element {element.id} is a {prop.spec.name}"
@@ -314,6 +315,32 @@ def mass_along(
             return 0.0
         inverse += component**2 / nodal_mass[at]
     return np.inf if inverse == 0.0 else 1.0 / inverse
+
+
+def stiffness_along(
+    model: Model, parts: Mapping[int, Parts], node: int, normal: tuple[float, float]
+) -> dict[int, float]:
+    """Axial stiffness [F/L] along a direction of the elements that meet a node, by their number.
+
+    That of a rod, EA/L, times the squared cosine; what has no length is a rod along the direction.
+    """
+    out = {}
+    for name, own in parts.items():
+        e, initial = model.elements[name], own.initial()
+        at = [n for n, f in enumerate(initial.freedoms) if f in ((node, 0), (node, 1))]
+        if not at:
+            continue
+        way, length = np.array(normal), 0.0
+        if e.j is not None:
+            i, j = model.nodes[e.i], model.nodes[e.j]
+            line = np.array([j.x - i.x, j.y - i.y])
+            length = float(np.hypot(*line))
+            way = line / length if length else way
+        t = way[[initial.freedoms[n][1] for n in at]]
+        k = float(t @ initial.matrix[np.ix_(at, at)] @ t) * float(way @ normal) ** 2
+        if k > 1e-12 * np.abs(initial.matrix).max():  # a column's cosine may be rounding
+            out[name] = k
+    return out
 
 
 def _ridden(model: Model, freedom: Freedom, d: int) -> float:
@@ -434,7 +461,11 @@ def _add_damping(
         if group.dashpots is not None:
             labels, beta, by_secant = group.dashpots
             for i, s in enumerate(structure.laws):
-                if not s.is_contact and (labels is None or model.elements[s.element].prop in labels):
+                if (
+                    not s.is_contact
+                    and not s.normal
+                    and (labels is None or model.elements[s.element].prop in labels)
+                ):
                     betas[int(by_secant), i] += beta
         structure.damping_texts.append((card, group.text))
     structure.initial_damping = structure.damping

@@ -455,7 +455,7 @@ class Course:
                     loss,
                 )
             )
-            if loss:
+            if loss and not x.normal:  # friction has no residual deformation of its own
                 last, unit = recorder.deformations[i], rows[-1][6]
                 left = damage.residual(x.law, outcome.states[i], last) if ended else np.nan
                 path = damage.plastic_path(loss, x.k0, x.yields)

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 PARAMETERS, MEMORY, EXITS = 20, 16, 3  #: numbers in a law's parameters and memory, exits of a branch
+PUSH, PUSH_RATE = MEMORY - 2, MEMORY - 1  #: where a law that leans on another finds its force and its rate
 
 Numbers = tuple[float, ...]
 State = tuple[int, float, float, Numbers]  #: branch; deformation and work at its entry; memory

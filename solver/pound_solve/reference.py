@@ -212,6 +212,7 @@ def takes(f: Field) -> str:
     else:
         text = " ".join(t for t in (_KINDS.get(f.kind, ""), _limits(f)) if t)
         text = text or ("whole number" if f.kind is Kind.INT else "number")
+        text += "".join(f", or {word}" for word in f.words)
     if f.varies:
         text += ", or range"
     return ", ".join(t for t in (many, text) if t)

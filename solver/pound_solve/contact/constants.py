@@ -121,7 +121,7 @@ def linear_fields(published: str) -> tuple[Field, ...]:
     relation = fields("XI", "", published)[2]
     which = "(one of C, XI, E)"
     return (
-        Field("K", Kind.REAL, "F/L", above=0, doc="contact stiffness"),
+        Field("K", Kind.REAL, "F/L", above=0, words=("ADJACENT",), doc="contact stiffness"),
         Field("C", Kind.REAL, "F*T/L", default=None, lo=0, doc=f"dashpot {which}"),
         Field(
             "XI", Kind.REAL, "-", default=None, lo=0, doc=f"damping ratio on the colliding masses {which}"

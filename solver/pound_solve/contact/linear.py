@@ -21,7 +21,7 @@ SPEC = Spec(
     "contact",
     "LINEAR",
     "spring while pressed",
-    (Field("K", Kind.REAL, "F/L", above=0, doc="contact stiffness"),),
+    (Field("K", Kind.REAL, "F/L", above=0, words=("ADJACENT",), doc="contact stiffness"),),
     code=0,
     reference="Maison & Kasai 1990 and others",
     impl=build,

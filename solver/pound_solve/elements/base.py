@@ -49,6 +49,9 @@ class LawSpring:
         Dashpot as a multiple of the secant stiffness [T]; not zero with a `SecantLaw` only.
     yields : tuple of float or None
         Deformations at first yield, positive and negative, for ductilities.
+    normal : str
+        Component of the same element whose force this one's law leans on (see `contact.friction`); or
+        empty.
     facts : mapping
         For a contact: what the report says of it (xi, e_asked, e_given, note, reduced_mass, k, c, gap).
     """
@@ -65,6 +68,7 @@ class LawSpring:
     unit: str = "F"
     beta: float = 0.0
     secant: float = 0.0
+    normal: str = ""
 
     @property
     def is_contact(self) -> bool:
@@ -182,6 +186,9 @@ class Site:
     mass_along : callable
         ``mass_along(node, (nx, ny))``: translational mass [F T^2/L] of a node
         along a direction; contacts only.
+    stiffness_along : callable
+        ``stiffness_along(node, (nx, ny))``: elements that meet a node, and their axial stiffness along a
+        direction [F/L], where they have any; contacts only.
     """
 
     element: Element
@@ -194,6 +201,7 @@ class Site:
     self_weight: bool
     geometry: str
     mass_along: Callable[[int, tuple[float, float]], float]
+    stiffness_along: Callable[[int, tuple[float, float]], dict[int, float]]
 
 
 class ElementError(Exception):

@@ -30,9 +30,11 @@ HIGH, T_HIGH, LOW, T_LOW, SLOPE, VALUE = range(6)  #: rows of `Motion.peak`
 WHOLE, PIECE, MASS = range(3)  #: rows of `Motion.l`, and of its pivots
 # columns of `Laws.f`: the linear piece, exits; entry of the state; motion; dashpot; what a contact counts
 K, C, F0, EXIT, D0, WORK = 0, 1, 2, 3, 12, 13
-LD, LV, LD1, LV1, MOST_D, MOST_V, BETA, DASHPOT, PEAK, T_PEAK, IMPULSE, SECANT = range(14, 26)
+LD, LV, LD1, LV1, MOST_D, MOST_V, BETA, DASHPOT, PEAK, T_PEAK, IMPULSE, SECANT, HELD = range(14, 27)
 TURN, STIFFNESS = MEMORY, MEMORY + 1  #: columns of `Laws.memory` beside the rule's own (see `SecantLaw`)
-CODE, CURVED, CONTACT, AT, N_EXITS, SAVED = range(6)  #: columns of `Laws.i`
+# columns of `Laws.i`; the last two: the law that this one leans on, or -1, and a bit for each branch of
+# that one where it is pressed
+CODE, CURVED, CONTACT, AT, N_EXITS, SAVED, NORMAL, PRESSED = range(8)
 # columns of `Turning.s`: quantities and forces at the start and the end of a step, quantities at the end
 # but for the acceleration there, forces at no quantities of the line that stands for the chord
 S0, S1, G0, G1, AHEAD, REST = range(0, 36, 6)
@@ -154,10 +156,12 @@ class Laws(NamedTuple):
     supports : ndarray, shape (n_laws, n_moved)
     p : ndarray, shape (n_laws, PARAMETERS)
     memory : ndarray, shape (n_laws, MEMORY + 2)
-    f, i : ndarray, shapes (n_laws, 26), (n_laws, 6)
+    f, i : ndarray, shapes (n_laws, 27), (n_laws, 8)
         Columns as above.
     saved : ndarray, shape (n_laws, 5 + MEMORY)
         State at the start of a step that is not cut at events.
+    leans : ndarray, shape (n_leaning,)
+        The laws that lean on another, which comes before them.
     chords : Turning
     """
 
@@ -170,6 +174,7 @@ class Laws(NamedTuple):
     f: Array
     i: Index
     saved: Array
+    leans: Index
     chords: Turning
 
 

@@ -428,6 +428,10 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     if scene.structure.chords:
         why = "members that change their stiffness as they move (GEOMETRY {}) need steps: AUTO takes them"
         raise Stop("A505", float(start.times[0]), why.format(scene.structure.model.geometry))
+    curved = next((s for s in scene.structure.laws if s.law.curved), None)
+    if curved is not None:
+        why = "EXACT needs linear pieces, and the law {} of element {} is curved: AUTO takes steps"
+        raise Stop("A505", float(start.times[0]), why.format(curved.rule, curved.element))
     small = condense(scene)
     run = Exact(
         small.scene,

@@ -47,6 +47,7 @@ from pound_solve.integrate.arrays import (
     G0,
     G1,
     GOAL,
+    HELD,
     HIGH,
     IMPULSE,
     KEPT,
@@ -61,6 +62,7 @@ from pound_solve.integrate.arrays import (
     MOST_V,
     NEAR,
     NEWTON,
+    NORMAL,
     P1,
     PAUSE,
     PEAK,
@@ -108,9 +110,12 @@ from pound_solve.integrate.states import (
     along,
     bend,
     follows,
+    grip,
     law_force,
     law_work,
+    lean,
     leave,
+    limit,
     load,
     memory,
     motions,
@@ -118,6 +123,7 @@ from pound_solve.integrate.states import (
     parameters,
     restore,
     save,
+    slide,
     tangent,
     times,
 )
@@ -223,6 +229,10 @@ def attempt(
         for i in range(laws):
             if not w.i[i, CURVED]:
                 continue
+            j = w.i[i, NORMAL]
+            if j >= 0:
+                acc = along(w.rows, j, x.q, A1)
+                lean(w, i, w.f[j, LD1] + bk * acc, w.f[j, LV1] + gk * acc, acc)
             acc = along(w.rows, i, x.q, A1)
             dd, vv = w.f[i, LD1] + bk * acc, w.f[i, LV1] + gk * acc
             c = f.curve[w.i[i, CODE]](
@@ -265,6 +275,8 @@ def attempt(
         acc = along(w.rows, i, x.q, A1)
         w.f[i, LD1] += bk * acc
         w.f[i, LV1] += gk * acc
+    if len(w.leans) > 0:
+        limit(w, f, x.q)
     return True
 
 
@@ -373,6 +385,8 @@ def accept(m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, h: float)
         b.most[0] = max(b.most[0], chord_force(b, c))
         for j in range(6):
             b.s[c, S0 + j], b.s[c, G0 + j] = b.s[c, S1 + j], b.s[c, G1 + j]
+    if len(w.leans) > 0:
+        slide(w, h)
     x.works[0] += work * h / 6.0
     x.works[1] += loss * h / 3.0
     x.works[3] += abs(x.works[0] - before)
@@ -505,6 +519,8 @@ def switch(
 ) -> None:  # fmt: skip
     """Let law `i` leave its branch; `h` is the nominal step, whose factor follows."""
     before, k, c = w.i[i, AT], w.f[i, K], w.f[i, C]
+    if w.i[i, NORMAL] >= 0:
+        grip(w, f, x.q, i)
     leave(w, f, i, way, w.f[i, LD], w.f[i, LV])
     if w.i[i, CURVED]:
         tangent(w, f, i)
@@ -517,6 +533,12 @@ def switch(
     if before != w.i[i, AT]:
         write(w, z, count, i, before, t, force)
     count[EVENTS] += 1
+    for j in w.leans:
+        before = w.i[j, AT]
+        grip(w, f, x.q, j)
+        if before != w.i[j, AT]:
+            write(w, z, count, j, before, t, w.f[j, HELD])
+            count[UPDATES] = REFRESH + 1
 
 
 def write(w: Laws, z: Samples, count: Index, i: int, before: int, t: float, force: float) -> None:
@@ -790,7 +812,7 @@ def advance(
     clock : ndarray, shape (4,)
         Time, length that the factor at hand is for, energy at the start, longest piece for now.
     """
-    room, pause = 108 + 8 * len(w.i), count[STEPS] + PAUSE
+    room, pause = 216 + 16 * len(w.i), count[STEPS] + PAUSE
     while count[GOAL] < len(goals):
         goal = count[GOAL]
         h = lengths[goal]

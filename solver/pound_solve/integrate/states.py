@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_solve.integrate.arrays import (
+    A1,
     AT,
     BETA,
     CODE,
@@ -13,20 +14,27 @@ from pound_solve.integrate.arrays import (
     D0,
     EXIT,
     F0,
+    HELD,
     LD,
+    LD1,
     LV,
+    LV1,
     N_EXITS,
+    NORMAL,
+    PRESSED,
     SAVED,
     SECANT,
     STIFFNESS,
     TURN,
     WORK,
+    A,
     C,
     K,
     Laws,
     Matrices,
 )
 from pound_solve.jit import Tables
+from pound_solve.laws import PUSH, PUSH_RATE
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -129,6 +137,43 @@ def leave(w: Laws, f: Tables, i: int, way: int, d: float, v: float) -> None:
     for j in range(len(m)):
         w.memory[i, j] = m[j]
     enter(w, f, i)
+
+
+def lean(w: Laws, i: int, d: float, v: float, a: float) -> None:
+    """Tell law `i` the force of the one that it leans on, and its rate, at the motion of that one."""
+    j = w.i[i, NORMAL]
+    k, c = w.f[j, K], w.f[j, C]
+    w.memory[i, PUSH], w.memory[i, PUSH_RATE] = max(k * d + c * v + w.f[j, F0], 0.0), k * v + c * a
+
+
+def limit(w: Laws, f: Tables, q: Array) -> None:
+    """Limits of the laws that lean on others, at the end of a step."""
+    for i in w.leans:
+        j = w.i[i, NORMAL]
+        lean(w, i, w.f[j, LD1], w.f[j, LV1], along(w.rows, j, q, A1))
+        enter(w, f, i)
+
+
+def slide(w: Laws, h: float) -> None:
+    """Add up the work of the laws that lean on others and slip, over a step of length `h`."""
+    for i in w.leans:
+        if w.f[i, K] == 0.0:
+            before, after = w.f[i, HELD], w.f[i, F0]
+            w.f[i, WORK] += (
+                h / 6.0 * ((2.0 * before + after) * w.f[i, LV] + (before + 2.0 * after) * w.f[i, LV1])
+            )
+            w.f[i, HELD], w.f[i, D0] = after, w.f[i, LD1]
+
+
+def grip(w: Laws, f: Tables, q: Array, i: int) -> None:
+    """Let law `i` touch or let go with the one that it leans on, and take over what that does now."""
+    j = w.i[i, NORMAL]
+    lean(w, i, w.f[j, LD], w.f[j, LV], along(w.rows, j, q, A))
+    pressed = (w.i[i, PRESSED] >> w.i[j, AT]) & 1
+    if pressed != (w.i[i, AT] != 0):
+        leave(w, f, i, 0 if pressed else 2, w.f[i, LD], w.f[i, LV])
+    enter(w, f, i)
+    w.f[i, HELD] = w.f[i, K] * w.f[i, LD] + w.f[i, F0]
 
 
 def tangent(w: Laws, f: Tables, i: int) -> None:

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind
 from pound_solve import jit
+from pound_solve.elements.base import LawSpring
 from pound_solve.hysteresis import bilinear
 from pound_solve.integrate import arrays, kernel, ldl, states, turning
 from pound_solve.integrate.base import (
@@ -197,9 +198,10 @@ class Stepper:
             supports=np.ascontiguousarray(dense(s.law_rows[:, nf:])),
             p=np.array([x.law.p for x in laws]).reshape(count, PARAMETERS),
             memory=np.zeros((count, MEMORY + 2)),
-            f=np.zeros((count, 26)),
-            i=np.zeros((count, 6), np.int64),
+            f=np.zeros((count, 27)),
+            i=np.zeros((count, 8), np.int64),
             saved=np.zeros((count, 5 + MEMORY)),
+            leans=np.flatnonzero([bool(s.normal) for s in laws]).astype(np.int64),
             chords=self._turning(position if stiff else {}),
         )
         for i, (law, state) in enumerate(zip(laws, start.states)):
@@ -208,6 +210,7 @@ class Stepper:
             w.f[i, [arrays.LD, arrays.LV]] = d[i], v[i]
             w.f[i, arrays.SECANT], w.memory[i, : len(state[3])] = law.secant, state[3]
             w.f[i, [arrays.MOST_D, arrays.MOST_V]] = abs(d[i]), abs(v[i])
+            w.i[i, [arrays.NORMAL, arrays.PRESSED]] = self._leans_on(law)
         self.x = x = arrays.Motion(
             np.zeros((18, n)),
             np.zeros((3, len(pattern.li))),
@@ -235,6 +238,14 @@ class Stepper:
                 states.tangent(w, self.tables, i)
         turning.turn_start(w, x, inputs(t))
         turning.linearise(w.chords, arrays.S0)
+
+    def _leans_on(self, law: LawSpring) -> tuple[int, int]:
+        """Law that this one leans on, and a bit for each branch where that one is pressed; -1 if none."""
+        for j, other in enumerate(self.laws):
+            if law.normal and (other.element, other.component) == (law.element, law.normal):
+                pressed = enumerate(x.startswith("pressed") for x in other.law.rule.branches)
+                return j, sum(yes << n for n, yes in pressed)
+        return -1, 0
 
     def _turning(self, position: Mapping[tuple[int, int], int]) -> arrays.Turning:
         """The members' chords; `position` of pairs of unknowns in A, none if that needs no stiffness."""
@@ -287,6 +298,9 @@ class Stepper:
 
     def _run(self) -> Outcome:
         m, w, x, z, scene = self.matrices, self.w, self.x, self.z, self.scene
+        rubs = next((s for s in self.laws if s.normal), None)
+        if rubs is not None and not self.scheme.locate:
+            raise self.stop("A505", f"friction (element {rubs.element}) needs steps with EVENTS=LOCATED")
         t0 = float(self.times[0])
         for i, s in enumerate(self.laws):
             if s.is_contact and s.law.rule.branches[w.i[i, arrays.AT]].startswith("pressed"):
@@ -296,6 +310,8 @@ class Stepper:
                 w.f[i, arrays.PEAK] = force
         x.q[arrays.P] = self._force(t0)
         x.inputs[:2] = scene.excitation.value(t0), scene.excitation.value(t0, 1)
+        for i in w.leans.tolist():
+            states.grip(w, self.tables, x.q, i)
         if jit.cold(kernel.advance):
             self.sink.trial(t0, "compiling the kernels, once for this version: some 20 s")
         with jit.compiling():
