@@ -26,6 +26,7 @@ Function = Callable[..., Any]
 
 
 SHORT = 700  #: bytes of Python's code up to which a function is put into its callers
+LOOSE = {"contract", "reassoc"}  #: what compiled code may do to the rounding of kernels marked so
 
 
 class Tables(NamedTuple):
@@ -80,6 +81,18 @@ def numba() -> Any:
     return found
 
 
+def flat(function: Function) -> Function:
+    """Mark a kernel to be compiled in one piece with all that it calls: it calls them in every step."""
+    function.flat = True  # type: ignore[attr-defined]
+    return function
+
+
+def loose(function: Function) -> Function:
+    """Mark a kernel whose sums may be taken in another order, several terms at once."""
+    function.loose = True  # type: ignore[attr-defined]
+    return function
+
+
 @contextmanager
 def quiet() -> Iterator[None]:
     """Keep numba's notice to itself that functions as values are new."""
@@ -113,15 +126,17 @@ def compiled(function: Function, signature: Any = None, inner: bool = False) -> 
     found = numba()
     if found is None:
         return function
-    scope = dict(function.__globals__)
+    scope, flat = dict(function.__globals__), hasattr(function, "flat")
     for used in {i.argval for i in dis.get_instructions(function) if i.opname == "LOAD_GLOBAL"}:
         value = scope.get(used)
         if isinstance(value, types.FunctionType) and value.__module__.startswith("pound_solve"):
-            scope[used] = compiled(value, inner=len(value.__code__.co_code) < SHORT)
+            scope[used] = compiled(value, inner=flat or len(value.__code__.co_code) < SHORT)
     twin = types.FunctionType(function.__code__, scope, function.__name__, function.__defaults__)
     twin.__qualname__, twin.__module__ = function.__qualname__, function.__module__
     # arrays belong to the caller of a kernel: they need not be counted, which would cost more than the work
     how = {"cache": True, "forceinline": inner, "error_model": "numpy", "_nrt": False}
+    if hasattr(function, "loose"):
+        how["fastmath"] = LOOSE
     with quiet():
         return found.njit(*([] if signature is None else [signature]), **how)(twin)
 

@@ -41,10 +41,13 @@ def first_exit(w: Laws, x: Motion, h: float) -> tuple[int, int, float]:
             if fd == 0.0 and fc == 0.0:  # what hardly moves would turn again and again
                 fc = -BACK * abs(fv) * w.f[i, MOST_V]
             g1 = fd * d1 + fv * v1 + fc
+            s0, s1 = fd * v, fd * v1
+            turns = s0 > 0.0 and s1 < 0.0
+            if g1 <= 0.0 and not turns:
+                continue
             size = abs(fd) * w.f[i, MOST_D] + abs(fv) * w.f[i, MOST_V] + abs(fc)
             tol = STILL * max(size, abs(g1))
-            s0, s1 = fd * v, fd * v1
-            if g1 <= tol and not (s0 > 0.0 and s1 < 0.0):
+            if g1 <= tol and not turns:
                 continue
             if fv != 0.0:
                 s0 += fv * along(w.rows, i, x.q, A)

@@ -62,11 +62,30 @@ COMMON = (
 SAMPLES, LOG = 64, 4096  #: samples and changes of branches kept between two visits of Python
 
 
-def sparse(a: Array) -> tuple[Index, Index, Array]:
+FULL = 0.25  #: part of a diagonal from which its zeros cost less than naming its entries
+
+
+def sparse(a: Array) -> tuple[Index, ldl.Place, Array]:
     """Rows of a matrix as pointers, columns and values."""
     rows, columns = np.nonzero(a)
     pointers = np.searchsorted(rows, np.arange(len(a) + 1)).astype(np.int64)
-    return pointers, columns.astype(np.int64), np.ascontiguousarray(a[rows, columns], float)
+    return pointers, columns.astype(np.uint32), np.ascontiguousarray(a[rows, columns], float)
+
+
+def product(a: Array) -> arrays.Product:
+    """Lay a square matrix out for products."""
+    n = len(a)
+    rows, columns = np.nonzero(a)
+    found, number = np.unique(columns - rows, return_counts=True)
+    full = found[(number >= FULL * n) & (found != 0)]
+    offsets = np.concatenate([[0], full]).astype(np.int64)
+    diagonals, rest = np.zeros((len(offsets), n)), a.copy()
+    for z, off in enumerate(offsets.tolist()):
+        i = np.arange(max(0, -off), min(n, n - off))
+        diagonals[z, : len(i)] = a[i, i + off]
+        rest[i, i + off] = 0.0
+    row = np.flatnonzero(rest.any(axis=1))
+    return arrays.Product(offsets, diagonals, row.astype(np.uint32), *sparse(rest[row]))
 
 
 class Stepper:
@@ -135,10 +154,10 @@ class Stepper:
         rate_of, bend_of = np.zeros_like(moved), np.zeros_like(moved)
         rate_of[:, 1:], bend_of[:, 2:] = moved[:, :-1], moved[:, :-2]
         self.matrices = arrays.Matrices(
-            k=sparse(stiffness),
-            c=sparse(damping),
-            m=sparse(mass),
-            inputs=np.ascontiguousarray(scene.inputs[o]),
+            k=product(stiffness),
+            c=product(damping),
+            m=product(mass),
+            inputs=np.ascontiguousarray(scene.inputs[o].T),
             pushed=np.ascontiguousarray(scene.force_inputs[free]),
             constant=scene.constant[o],
             pattern=pattern,
@@ -185,7 +204,7 @@ class Stepper:
             inputs=np.ascontiguousarray(scene.law_inputs),
             pairs=(
                 np.concatenate([[0], np.cumsum([len(p) for p in pairs])]).astype(np.int64),
-                np.array([q for p in pairs for q, _ in p], np.int64),
+                np.array([q for p in pairs for q, _ in p], np.uint32),
                 np.array([x for p in pairs for _, x in p], float),
             ),
             supports=np.ascontiguousarray(s.law_rows[:, nf:]),
@@ -262,7 +281,7 @@ class Stepper:
 
     def _force(self, t: float) -> Array:
         """Loads on the unknowns, in the order of elimination."""
-        return self.matrices.inputs @ self.scene.excitation.value(t) + self.matrices.constant
+        return self.scene.inputs[self.order] @ self.scene.excitation.value(t) + self.matrices.constant
 
     def run(self) -> Outcome:
         """Integrate to the last output time.
