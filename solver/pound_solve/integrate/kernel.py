@@ -613,7 +613,9 @@ def uncut_step(
                 bend(w, f, i, d1, w.f[i, LV1])
             if w.f[i, K] != k or w.f[i, C] != c or abs(w.f[i, F0] - f0) > STILL * abs(f0):
                 changed = True
-                change = scheme.gamma * length * (w.f[i, C] - c) + scheme.beta * length**2 * (w.f[i, K] - k)
+                change = scheme.gamma * length * (w.f[i, C] - c) + scheme.beta * length * length * (
+                    w.f[i, K] - k
+                )
                 if change != 0.0 and not m.explicit:
                     count[UPDATES] += 1
                     if not change_factor(m, w, x, i, change, WHOLE):

@@ -27,6 +27,7 @@ from pound_solve.integrate.arrays import (
     Matrices,
     Product,
 )
+from pound_solve.integrate.ldl import Place
 from pound_solve.jit import Tables
 
 Array = NDArray[np.float64]
@@ -92,7 +93,7 @@ def times(a: Product, q: Array, x: int, out: int) -> None:
         q[out, a.row[r]] += total
 
 
-def along(a: tuple[Index, Index, Array], i: int, q: Array, x: int) -> float:
+def along(a: tuple[Index, Place, Array], i: int, q: Array, x: int) -> float:
     """One sparse row times row `x` of `q`."""
     total = 0.0
     for j in range(a[0][i], a[0][i + 1]):
