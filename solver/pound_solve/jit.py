@@ -29,6 +29,7 @@ Function = Callable[..., Any]
 
 SHORT = 700  #: bytes of Python's code up to which a function is put into its callers
 ROOM = 8  #: rules that tables have room for, or a multiple of it
+LOOSE = {"contract", "reassoc"}  #: what compiled code may do to the rounding of kernels marked so
 
 
 class Tables(NamedTuple):
@@ -83,6 +84,18 @@ def numba() -> Any:
     return found
 
 
+def flat(function: Function) -> Function:
+    """Mark a kernel to be compiled in one piece with all that it calls: it calls them in every step."""
+    function.flat = True  # type: ignore[attr-defined]
+    return function
+
+
+def loose(function: Function) -> Function:
+    """Mark a kernel whose sums may be taken in another order, several terms at once."""
+    function.loose = True  # type: ignore[attr-defined]
+    return function
+
+
 @contextmanager
 def compiling() -> Iterator[None]:
     """Settings of numba while a kernel is called that may have to be compiled."""
@@ -109,7 +122,9 @@ def cold(function: Function) -> bool:
 
 
 @cache
-def compiled(function: Function, signature: Any = None, inner: bool = False) -> Function:
+def compiled(
+    function: Function, signature: Any = None, inner: bool = False, inline: bool = False
+) -> Function:
     """Compile a kernel and, first, the functions of this program that it calls.
 
     Parameters
@@ -119,6 +134,8 @@ def compiled(function: Function, signature: Any = None, inner: bool = False) -> 
     signature : numba signature or None
         Compile for these types at once, so that the function can be handed on as a value.
     inner : bool
+        Only other kernels call it.
+    inline : bool
         Put its code into that of its callers: a call that hands on many arrays counts every one of them.
 
     Returns
@@ -129,21 +146,22 @@ def compiled(function: Function, signature: Any = None, inner: bool = False) -> 
     found = numba()
     if found is None:
         return function
-    scope = dict(function.__globals__)
+    scope, flat = dict(function.__globals__), hasattr(function, "flat")
     for used in {i.argval for i in dis.get_instructions(function) if i.opname == "LOAD_GLOBAL"}:
         value = scope.get(used)
         if isinstance(value, types.FunctionType) and value.__module__.startswith("pound_solve"):
-            scope[used] = compiled(value, inner=True)
+            scope[used] = compiled(value, inner=True, inline=flat or len(value.__code__.co_code) < SHORT)
         elif type(value) is int:  # of a kind of its own each, for which numba would compile a callee anew
             scope[used] = np.int64(value)
     twin = types.FunctionType(function.__code__, scope, function.__name__, function.__defaults__)
     twin.__qualname__, twin.__module__ = function.__qualname__, function.__module__
     # arrays belong to the caller of a kernel: they need not be counted, which would cost more than the work
-    how = {"cache": True, "error_model": "numpy", "_nrt": False}
+    how = {"cache": True, "error_model": "numpy", "_nrt": False, "forceinline": inline}
     if inner:  # no Python calls it, so that it needs no door to it; kept by a name of its own
-        twin.__qualname__ += "_inner"
+        twin.__qualname__ += "_inline" if inline else "_inner"
         how |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-        how["forceinline"] = len(function.__code__.co_code) < SHORT
+    if hasattr(function, "loose"):
+        how["fastmath"] = LOOSE
     with compiling():
         return found.njit(*([] if signature is None else [signature]), **how)(twin)
 

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 import pound_solve
 from pound_solve import jit
 from pound_solve.hysteresis import bilinear, imk_bilinear
-from pound_solve.integrate import auto, exits, kernel, ldl
+from pound_solve.integrate import auto, exits, kernel, ldl, states, stepping
 
 # two one-bay frames of which the left one yields at its hinges, slabs that meet with a dashpot
 POUNDING = """UNITS kN m s
@@ -378,3 +378,30 @@ def test_a_load_that_jumps_within_the_run_keeps_the_order(tmp_path):
         errors = [abs(end(f"{method} DT={h}") - exact) for h in (4e-3, 2e-3, 1e-3)]
         orders = np.log2(np.array(errors[:-1]) / errors[1:])
         assert np.all((orders > 1.8) & (orders < 2.2)), (method, errors, orders)
+
+
+def test_products_along_diagonals_and_row_by_row_are_those_of_the_matrix():
+    rng, n = np.random.default_rng(3), 13
+    a = (
+        np.diag(rng.normal(size=n))
+        + np.diag(rng.normal(size=n - 2), 2)
+        + np.diag(rng.normal(size=n - 1), -1)
+    )
+    a[0, -1], a[7, 3], a[5, 5] = 3.0, -2.0, 0.0
+    laid = stepping.product(a)
+    assert laid.offsets.tolist() == [0, -1, 2] and laid.row.tolist() == [0, 7]
+    q = np.vstack([rng.normal(size=n), np.full(n, np.nan)])
+    states.times(laid, q, 0, 1)
+    assert np.allclose(q[1], a @ q[0], rtol=1e-14, atol=1e-14)
+
+
+def test_lines_and_rings_are_eliminated_from_both_ends_on_few_diagonals():
+    rng, n = np.random.default_rng(4), 40
+    ring = np.eye(n, dtype=bool)
+    ring[np.arange(n), np.arange(1, n + 1) % n] = True
+    names = rng.permutation(n)
+    linked = (ring | ring.T)[np.ix_(names, names)]
+    own = ldl.order(n, *np.nonzero(linked))
+    rows, columns = np.nonzero(linked[np.ix_(own, own)])
+    assert sum(abs(rows - columns) == 4) >= 2 * (n - 8)  # a line would have 2, both ends in turn have 4
+    assert len(ldl.analyse(n, rows, columns).li) <= 2 * n

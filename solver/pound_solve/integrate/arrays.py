@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.ldl import Pattern
+from pound_solve.integrate.ldl import Pattern, Place
 from pound_solve.laws import MEMORY
 
 Array = NDArray[np.float64]
@@ -43,16 +43,40 @@ ROUNDING = 1e-15  #: share of a chord's axial stiffness that its forces are roun
 SLOW = 0.05  #: part of an error that an iteration may leave before the factor is made anew
 
 
+class Product(NamedTuple):
+    """A matrix to be multiplied with: along its diagonals where they are full enough, else row by row.
+
+    Attributes
+    ----------
+    offsets : ndarray, shape (n_diagonals,)
+        Column less row; the first is zero.
+    diagonals : ndarray, shape (n_diagonals, n)
+        Their entries, from the first row that has one.
+    row : ndarray, shape (n_rows,)
+        Rows that have other entries.
+    pointers : ndarray, shape (n_rows + 1,)
+    columns, values : ndarray, shape (n_others,)
+        These entries.
+    """
+
+    offsets: Index
+    diagonals: Array
+    row: Place
+    pointers: Index
+    columns: Place
+    values: Array
+
+
 class Matrices(NamedTuple):
     """The linear part, constant through a run; sparse rows as (pointers, columns, values).
 
     Attributes
     ----------
-    k, c, m : tuples of ndarray
+    k, c, m : Product
         Stiffness, damping and mass.
-    inputs : ndarray, shape (n, n_inputs)
+    inputs : ndarray, shape (n_inputs, n)
     pushed : ndarray, shape (n, n_inputs)
-        The part of `inputs` that is forces on nodes.
+        The part of them that is forces on nodes.
     constant : ndarray, shape (n,)
     pattern : Pattern
     a : ndarray, shape (3, n_entries)
@@ -80,9 +104,9 @@ class Matrices(NamedTuple):
     support_c : ndarray, shape (n_moved, n_moved)
     """
 
-    k: tuple[Index, Index, Array]
-    c: tuple[Index, Index, Array]
-    m: tuple[Index, Index, Array]
+    k: Product
+    c: Product
+    m: Product
     inputs: Array
     pushed: Array
     constant: Array
@@ -94,7 +118,7 @@ class Matrices(NamedTuple):
     implicit: bool
     diagonal: bool
     explicit: bool
-    rows: tuple[Index, Index, Array]
+    rows: tuple[Index, Place, Array]
     row_inputs: Array
     row_constants: Array
     reactions: Array
@@ -165,9 +189,9 @@ class Laws(NamedTuple):
     chords : Turning
     """
 
-    rows: tuple[Index, Index, Array]
+    rows: tuple[Index, Place, Array]
     inputs: Array
-    pairs: tuple[Index, Index, Array]
+    pairs: tuple[Index, Place, Array]
     supports: Array
     p: Array
     memory: Array

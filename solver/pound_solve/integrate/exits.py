@@ -48,9 +48,12 @@ def first_exit(w: Laws, x: Motion, h: float) -> tuple[int, int, float]:
             if fd == 0.0 and fv == 0.0:
                 continue
             g1, size = excess(w, i, e, d1, v1)
-            tol = STILL * max(size, abs(g1))
             s0, s1 = fd * v, fd * v1
-            if g1 <= tol and not (s0 > 0.0 and s1 < 0.0):
+            turns = s0 > 0.0 and s1 < 0.0
+            if g1 <= 0.0 and not turns:
+                continue
+            tol = STILL * max(size, abs(g1))
+            if g1 <= tol and not turns:
                 continue
             if fv != 0.0:
                 s0 += fv * along(w.rows, i, x.q, A)
@@ -82,8 +85,8 @@ def between(a: float, b: float, c: float, ga: float, gb: float, gc: float) -> fl
 
 def summit(g0: float, g1: float, s0: float, s1: float, h: float) -> tuple[float, float]:
     """Place and value of the maximum of a cubic that rises at 0 and falls at `h`."""
-    a = 2.0 * (g0 - g1) / h**3 + (s0 + s1) / h**2
-    b = 3.0 * (g1 - g0) / h**2 - (2.0 * s0 + s1) / h
+    a = 2.0 * (g0 - g1) / (h * h * h) + (s0 + s1) / (h * h)
+    b = 3.0 * (g1 - g0) / (h * h) - (2.0 * s0 + s1) / h
     q = b * b - 3.0 * a * s0
     at = -1.0
     if q >= 0.0:
@@ -101,8 +104,8 @@ def root(g0: float, g1: float, s0: float, s1: float, h: float) -> float:
     """First place where a cubic that is not above zero at 0 and above it at `h` rises through zero."""
     if g0 >= 0.0 and s0 > 0.0:
         return 0.0
-    a = 2.0 * (g0 - g1) / h**3 + (s0 + s1) / h**2
-    b = 3.0 * (g1 - g0) / h**2 - (2.0 * s0 + s1) / h
+    a = 2.0 * (g0 - g1) / (h * h * h) + (s0 + s1) / (h * h)
+    b = 3.0 * (g1 - g0) / (h * h) - (2.0 * s0 + s1) / h
     low, high = 0.0, h
     if g0 >= 0.0:  # it falls from zero first
         at = h

@@ -109,6 +109,7 @@ from pound_solve.integrate.ldl import factor, solve, update
 from pound_solve.integrate.states import (
     along,
     bend,
+    carry,
     follows,
     grip,
     law_force,
@@ -138,7 +139,7 @@ from pound_solve.integrate.turning import (
     straight_force,
     turn_start,
 )
-from pound_solve.jit import Tables
+from pound_solve.jit import Tables, flat, loose
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -158,11 +159,7 @@ def refactor(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float, at: int)
     if sk != 0.0:
         for c in range(len(w.chords.p)):
             stiffen(m, w.chords, x, c, c, sk, False)
-    bad = factor(m.pattern, x.ax, x.l, at, x.q, D + at, W)
-    if m.explicit:
-        for i in range(x.q.shape[1]):
-            x.q[D + at, i] = 1.0 / x.q[D + at, i]
-    return bad
+    return factor(m.pattern, x.ax, x.l, at, x.q, D + at, W)
 
 
 def change_factor(m: Matrices, w: Laws, x: Motion, i: int, change: float, at: int) -> bool:
@@ -189,6 +186,7 @@ def attempt(
     load(m, s, x.q, P1)
     for i in range(n):
         x.q[U1, i] = x.q[U, i] + h * x.q[V, i] + b2 * x.q[A, i]
+    for i in range(n):
         x.q[V1, i] = x.q[V, i] + g1 * x.q[A, i]
     times(m.k, x.q, U1, BASE)
     if scheme.alpha_f != 0.0 or scheme.alpha_m != 0.0:
@@ -199,10 +197,13 @@ def attempt(
     for i in range(n):
         x.q[BASE, i] = x.q[P1, i] - x.q[BASE, i] - x.q[CV, i] - g1 * x.q[CA, i]
     for i in range(laws):
-        dd, vv = along(w.rows, i, x.q, U1), along(w.rows, i, x.q, V1)
+        dd, vv = 0.0, 0.0
         for j in range(len(s)):
             dd += w.inputs[i, j] * s[j]
             vv += w.inputs[i, j] * rate[j]
+        for q in range(w.rows[0][i], w.rows[0][i + 1]):
+            dd += w.rows[2][q] * x.q[U1, w.rows[1][q]]
+            vv += w.rows[2][q] * x.q[V1, w.rows[1][q]]
         w.f[i, LD1], w.f[i, LV1] = dd, vv
     b = w.chords
     aim(w, x, s)
@@ -220,11 +221,7 @@ def attempt(
                 b.s[c, G1 + j] = b.s[c, REST + j]
             straight_force(b, c, c, AHEAD, G1, 1.0)
             resist(b, c, x.q, A1, G1)
-        if m.explicit:
-            for i in range(n):
-                x.q[A1, i] *= x.q[D + at, i]
-        else:
-            solve(m.pattern, x.l, at, x.q, D + at, A1)
+        solve(m.pattern, x.l, at, x.q, D + at, A1)
         worst = 0.0
         for i in range(laws):
             if not w.i[i, CURVED]:
@@ -250,7 +247,7 @@ def attempt(
                 continue
             if refactor(m, w, x, scheme, h, at) >= 0:
                 return False
-        error = miss(w, x, bk)
+        error = miss(w, x, bk) if len(b.p) > 0 else 0.0
         if worst <= 1e-12 and error <= 1.0:
             break
         if not error < np.inf:
@@ -270,6 +267,7 @@ def attempt(
         return False
     for i in range(n):
         x.q[U1, i] += bk * x.q[A1, i]
+    for i in range(n):
         x.q[V1, i] += gk * x.q[A1, i]
     for i in range(laws):
         acc = along(w.rows, i, x.q, A1)
@@ -353,6 +351,24 @@ def take(w: Laws, x: Motion, law: int, i: int, value: float, t: float) -> None:
         w.f[law, PEAK], w.f[law, T_PEAK] = value, t
 
 
+@loose
+def spent(q: Array) -> float:
+    """Three times the mean power that the dashpots of the structure take in a step."""
+    loss = 0.0
+    for i in range(q.shape[1]):
+        loss += q[CV, i] * (q[V, i] + q[V1, i]) + q[Y, i] * q[V1, i]
+    return loss
+
+
+@loose
+def gained(q: Array) -> float:
+    """Six times the mean power that the loads put in, in a step."""
+    work = 0.0
+    for i in range(q.shape[1]):
+        work += (2.0 * q[P, i] + q[P1, i]) * q[V, i] + (q[P, i] + 2.0 * q[P1, i]) * q[V1, i]
+    return work
+
+
 def accept(m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, h: float) -> None:
     """Make the end of the step that was tried the start of the next."""
     n = x.q.shape[1]
@@ -362,7 +378,7 @@ def accept(m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, h: float)
     work, loss = 0.0, 0.0
     for i in range(n):
         x.q[Y, i] = x.q[CV, i] + g1 * x.q[CA, i] + gk * x.q[CA1, i]
-        loss += x.q[CV, i] * (x.q[V, i] + x.q[V1, i]) + x.q[Y, i] * x.q[V1, i]
+    loss += spent(x.q)
     if len(m.support_c) > 0:
         for i in range(n):
             pushed0, pushed1 = m.constant[i], m.constant[i]
@@ -375,8 +391,7 @@ def accept(m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, h: float)
         work += 3.0 * (put0 + put1)
         loss += 1.5 * (lost0 + lost1)
     else:
-        for i in range(n):
-            work += (2.0 * x.q[P, i] + x.q[P1, i]) * x.q[V, i] + (x.q[P, i] + 2.0 * x.q[P1, i]) * x.q[V1, i]
+        work += gained(x.q)
     b = w.chords
     for c in range(len(b.p)):
         if b.p[c, KIND] == STRING:  # what its axial force does on the way that a string leaves out
@@ -415,9 +430,12 @@ def accept(m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, h: float)
         times(m.m, x.q, A, BASE)
         for i in range(n):
             x.q[R, i] = one * (x.q[BASE, i] - scheme.alpha_f * x.q[R, i])
-    for i in range(n):
-        x.q[U, i], x.q[V, i], x.q[A, i] = x.q[U1, i], x.q[V1, i], x.q[A1, i]
-        x.q[CV, i], x.q[CA, i], x.q[P, i] = x.q[Y, i], x.q[CA1, i], x.q[P1, i]
+    carry(x.q, U1, U)
+    carry(x.q, V1, V)
+    carry(x.q, A1, A)
+    carry(x.q, Y, CV)
+    carry(x.q, CA1, CA)
+    carry(x.q, P1, P)
     for j in range(x.inputs.shape[1]):
         x.inputs[0, j], x.inputs[1, j] = x.inputs[2, j], x.inputs[3, j]
 
@@ -438,7 +456,7 @@ def release(m: Matrices, w: Laws, x: Motion, h: float) -> None:
     for i in range(n):
         change = 0.0
         for j in range(len(rate)):
-            change += m.inputs[i, j] * rate[j]
+            change += m.inputs[j, i] * rate[j]
         x.q[A1, i] = x.q[P, i] - x.q[BASE, i] - x.q[V1, i] + e * (change - x.q[A1, i])
     for q in range(len(x.ax)):
         i, j = m.pattern.ai[q], m.column[q]
@@ -582,18 +600,20 @@ def sample(w: Laws, x: Motion, z: Samples, f: Tables, count: Index, t: float) ->
 
 def uncut_step(
     m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, scheme: Scheme, coefs: Array, begin: float,
-    count: Index, clock: Array, length: float,
+    count: Index, clock: Array, length: float, tried: bool,
 ) -> int:  # fmt: skip
     """Advance by `length` without a cut at events: Newton to the forces of the laws at its end, each driven
-    along a straight path from its start.
+    along a straight path from its start; `tried` where the first trial is made.
     """
     laws = len(w.i)
     for i in range(laws):
         w.i[i, SAVED] = 0
     for _ in range(50):
-        if not attempt(m, w, x, scheme, f, coefs, clock[0] + length - begin, length, WHOLE, count):
+        if not tried and not attempt(
+            m, w, x, scheme, f, coefs, clock[0] + length - begin, length, WHOLE, count
+        ):
             break
-        changed, driven = False, 0
+        tried, changed, driven = False, False, 0
         for i in range(laws):
             d, d1 = w.f[i, LD], w.f[i, LD1]
             if w.i[i, SAVED] == 0 and next_exit(w, i, d, d1, w.f[i, LV1])[0] < 0:
@@ -614,7 +634,9 @@ def uncut_step(
                 bend(w, f, i, d1, w.f[i, LV1])
             if w.f[i, K] != k or w.f[i, C] != c or abs(w.f[i, F0] - f0) > STILL * abs(f0):
                 changed = True
-                change = scheme.gamma * length * (w.f[i, C] - c) + scheme.beta * length**2 * (w.f[i, K] - k)
+                change = scheme.gamma * length * (w.f[i, C] - c) + scheme.beta * length * length * (
+                    w.f[i, K] - k
+                )
                 if change != 0.0 and not m.explicit:
                     count[UPDATES] += 1
                     if not change_factor(m, w, x, i, change, WHOLE):
@@ -719,9 +741,10 @@ def cut(
 
 def whole_step(
     m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, scheme: Scheme, coefs: Array, begin: float,
-    count: Index, clock: Array, length: float, h: float,
+    count: Index, clock: Array, length: float, h: float, tried: bool,
 ) -> int:  # fmt: skip
-    """Advance by `length`, in pieces where events cut it; the factor at hand is for the step `h`.
+    """Advance by `length`, in pieces where events cut it; the factor at hand is for the step `h`,
+    and `tried` tells that the first trial is made.
 
     After the touch of a curved contact the pieces grow from a short one: forces like the fourth root
     of time begin there.
@@ -747,7 +770,7 @@ def whole_step(
             first = False
             continue
         halvings = 0
-        while not attempt(m, w, x, scheme, f, coefs, t + piece - begin, piece, slot, count):
+        while not tried and not attempt(m, w, x, scheme, f, coefs, t + piece - begin, piece, slot, count):
             halvings += 1
             if halvings > 25:
                 return NEWTON
@@ -756,6 +779,7 @@ def whole_step(
             start_again(w, f)
             if refactor(m, w, x, scheme, piece, PIECE) >= 0:
                 return NEWTON
+        tried = False
         law, way, tau = first_exit(w, x, piece)
         if law < 0:
             accept(m, w, x, f, scheme, piece)
@@ -790,6 +814,36 @@ def whole_step(
             count[WORST] = law
             return CHATTER
     return DONE
+
+
+@flat
+def stride(
+    m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, coefs: Array, begin: float, count: Index,
+    clock: Array, h: float, last: int,
+) -> bool:  # fmt: skip
+    """Take steps of length `h` up to step `last` while every law stays on its branch.
+
+    Returns
+    -------
+    bool
+        Whether it stopped at a step that is tried, but not accepted, because a law leaves its branch.
+    """
+    while count[STEP] < last and count[UPDATES] <= REFRESH and clock[3] >= h:
+        if not attempt(m, w, x, scheme, f, coefs, clock[0] + h - begin, h, WHOLE, count):
+            return False
+        if scheme.locate:
+            if first_exit(w, x, h)[0] >= 0:
+                return True
+        else:
+            for i in range(len(w.i)):
+                if next_exit(w, i, w.f[i, LD], w.f[i, LD1], w.f[i, LV1])[0] >= 0:
+                    return True
+        accept(m, w, x, f, scheme, h)
+        clock[0] += h
+        note(m, w, x, clock[0], h)
+        count[STEP] += 1
+        count[STEPS] += 1
+    return False
 
 
 def advance(
@@ -837,12 +891,21 @@ def advance(
                     count[WORST] = bad
                     return PIVOT
                 clock[1], count[UPDATES] = h, 0
+            last = min(steps[goal] - 1, count[STEP] + pause - count[STEPS])
+            tried = stride(m, w, x, f, scheme, coefs[pieces[goal]], begin, count, clock, h, last)
+            if not tried and (count[STEP] == last < steps[goal] - 1 or count[UPDATES] > REFRESH):
+                continue
             length = h if count[STEP] < steps[goal] - 1 else goals[goal] - clock[0]
             why = NEWTON
             if not scheme.locate:
-                why = uncut_step(m, w, x, z, f, scheme, coefs[pieces[goal]], begin, count, clock, length)
+                why = uncut_step(
+                    m, w, x, z, f, scheme, coefs[pieces[goal]], begin, count, clock, length, tried
+                )
+                tried = False
             if why == NEWTON:  # cut at its events a step always has a solution
-                why = whole_step(m, w, x, z, f, scheme, coefs[pieces[goal]], begin, count, clock, length, h)
+                why = whole_step(
+                    m, w, x, z, f, scheme, coefs[pieces[goal]], begin, count, clock, length, h, tried
+                )
             if why != DONE:
                 return why
             count[STEP] += 1

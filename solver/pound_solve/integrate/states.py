@@ -32,7 +32,9 @@ from pound_solve.integrate.arrays import (
     K,
     Laws,
     Matrices,
+    Product,
 )
+from pound_solve.integrate.ldl import Place
 from pound_solve.jit import Tables
 from pound_solve.laws import PUSH, PUSH_RATE
 
@@ -70,22 +72,36 @@ def motions(coefs: Array, s: float, out: Array, at: int) -> None:
 def load(m: Matrices, s: Array, q: Array, out: int) -> None:
     """Loads for the inputs `s`, into row `out`."""
     for i in range(q.shape[1]):
-        total = m.constant[i]
-        for j in range(len(s)):
-            total += m.inputs[i, j] * s[j]
-        q[out, i] = total
+        q[out, i] = m.constant[i]
+    for j in range(len(s)):
+        for i in range(q.shape[1]):
+            q[out, i] += m.inputs[j, i] * s[j]
 
 
-def times(a: tuple[Index, Index, Array], q: Array, x: int, out: int) -> None:
-    """Product of sparse rows with row `x` of `q`, into row `out`."""
+def carry(q: Array, x: int, out: int) -> None:
+    """Copy row `x` of `q` into row `out`."""
     for i in range(q.shape[1]):
+        q[out, i] = q[x, i]
+
+
+def times(a: Product, q: Array, x: int, out: int) -> None:
+    """Product of a matrix with row `x` of `q`, into row `out`."""
+    n = q.shape[1]
+    for i in range(n):
+        q[out, i] = a.diagonals[0, i] * q[x, i]
+    for z in range(1, len(a.offsets)):
+        first, size = max(0, -a.offsets[z]), n - abs(a.offsets[z])
+        near, far = q[out, first : first + size], q[x, first + a.offsets[z] :]
+        for i in range(size):
+            near[i] += a.diagonals[z, i] * far[i]
+    for r in range(len(a.row)):
         total = 0.0
-        for j in range(a[0][i], a[0][i + 1]):
-            total += a[2][j] * q[x, a[1][j]]
-        q[out, i] = total
+        for j in range(a.pointers[r], a.pointers[r + 1]):
+            total += a.values[j] * q[x, a.columns[j]]
+        q[out, a.row[r]] += total
 
 
-def along(a: tuple[Index, Index, Array], i: int, q: Array, x: int) -> float:
+def along(a: tuple[Index, Place, Array], i: int, q: Array, x: int) -> float:
     """One sparse row times row `x` of `q`."""
     total = 0.0
     for j in range(a[0][i], a[0][i + 1]):

@@ -65,10 +65,36 @@ SAMPLES, LOG = 64, 4096  #: samples and changes of branches kept between two vis
 HELD = 2**20  #: numbers in those samples, at most, but for a single one
 
 
-def sparse(a: Matrix) -> tuple[Index, Index, Array]:
+FULL = 0.25  #: part of a diagonal from which its zeros cost less than naming its entries
+
+
+def sparse(a: Matrix) -> tuple[Index, ldl.Place, Array]:
     """Rows of a matrix as pointers, columns and values."""
     rows, columns, values = entries(a)
-    return np.searchsorted(rows, np.arange(a.shape[0] + 1)).astype(np.int64), columns, values
+    return _rows(rows, np.arange(a.shape[0]), columns, values)
+
+
+def _rows(rows: Index, wanted: Index, columns: Index, values: Array) -> tuple[Index, ldl.Place, Array]:
+    """The entries of some rows, which come row by row, as pointers, columns and values."""
+    pointers = np.append(np.searchsorted(rows, wanted), len(rows)).astype(np.int64)
+    return pointers, columns.astype(np.uint32), np.ascontiguousarray(values)
+
+
+def product(a: Matrix) -> arrays.Product:
+    """Lay a square matrix out for products."""
+    n = a.shape[0]
+    rows, columns, values = entries(a)
+    off = columns - rows
+    found, number = np.unique(off, return_counts=True)
+    offsets = np.concatenate([[0], found[(number >= FULL * n) & (found != 0)]]).astype(np.int64)
+    diagonals = np.zeros((len(offsets), n))
+    for z, own in enumerate(offsets.tolist()):
+        diagonals[z, rows[off == own] - max(0, -own)] = values[off == own]
+    rest = ~np.isin(off, offsets)
+    row = np.unique(rows[rest])
+    return arrays.Product(
+        offsets, diagonals, row.astype(np.uint32), *_rows(rows[rest], row, columns[rest], values[rest])
+    )
 
 
 def coupled(touched: Iterable[Index]) -> tuple[Index, Index]:
@@ -134,7 +160,8 @@ class Stepper:
         mass, damping, stiffness = (a[grid] for a in (scene.mass, scene.damping, scene.stiffness))
         columns = np.repeat(np.arange(n), np.diff(pattern.ap))
         heavy = ~massless(mass)
-        on_pattern = [at(a, pattern.ai, columns) for a in (mass, damping, stiffness * stiff)]
+        lower = pattern.ai.astype(np.int64)
+        on_pattern = [at(a, lower, columns) for a in (mass, damping, stiffness * stiff)]
         moved = scene.support_inputs
         s = scene.structure
         free = np.array(scene.columns, int)[o]
@@ -142,10 +169,10 @@ class Stepper:
         rate_of, bend_of = np.zeros_like(moved), np.zeros_like(moved)
         rate_of[:, 1:], bend_of[:, 2:] = moved[:, :-1], moved[:, :-2]
         self.matrices = arrays.Matrices(
-            k=sparse(stiffness),
-            c=sparse(damping),
-            m=sparse(mass),
-            inputs=np.ascontiguousarray(scene.inputs[o]),
+            k=product(stiffness),
+            c=product(damping),
+            m=product(mass),
+            inputs=np.ascontiguousarray(scene.inputs[o].T),
             pushed=np.ascontiguousarray(scene.force_inputs[free]),
             constant=scene.constant[o],
             pattern=pattern,
@@ -192,7 +219,7 @@ class Stepper:
             inputs=np.ascontiguousarray(scene.law_inputs),
             pairs=(
                 np.concatenate([[0], np.cumsum([len(p) for p in pairs])]).astype(np.int64),
-                np.array([q for p in pairs for q, _ in p], np.int64),
+                np.array([q for p in pairs for q, _ in p], np.uint32),
                 np.array([x for p in pairs for _, x in p], float),
             ),
             supports=np.ascontiguousarray(dense(s.law_rows[:, nf:])),
@@ -280,7 +307,7 @@ class Stepper:
 
     def _force(self, t: float) -> Array:
         """Loads on the unknowns, in the order of elimination."""
-        return self.matrices.inputs @ self.scene.excitation.value(t) + self.matrices.constant
+        return self.scene.inputs[self.order] @ self.scene.excitation.value(t) + self.matrices.constant
 
     def run(self) -> Outcome:
         """Integrate to the last output time.
