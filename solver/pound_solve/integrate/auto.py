@@ -20,7 +20,17 @@ from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate import exact, newmark
-from pound_solve.integrate.base import Extreme, LawValues, Outcome, Peaks, Sink, Start, Stop, Watch
+from pound_solve.integrate.base import (
+    Extreme,
+    LawValues,
+    Outcome,
+    Peaks,
+    Sink,
+    Start,
+    Stop,
+    Watch,
+    refuse_rigid,
+)
 from pound_solve.scene import Decision, Scene
 
 Array = NDArray[np.float64]
@@ -39,6 +49,8 @@ def why_not_exact(scene: Scene) -> str:
     curved = next((s for s in laws if s.law.curved), None)
     if curved is not None:
         return f"the law {curved.rule} of element {curved.element} is curved"
+    if any(s.law.rigid for s in laws):  # no other method knows them
+        return ""
     if scene.size > MOST_UNKNOWNS:
         return f"{scene.size} unknowns are too many for EXACT (up to {MOST_UNKNOWNS})"
     if len(laws) > MOST_LAWS:
@@ -135,6 +147,7 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
         why = "all laws are piecewise linear, unknowns and laws are few: no time step is needed"
         scene.decisions.append(Decision("method", "EXACT", why))
         return exact.integrate(scene, start, watch, {}, sink)
+    refuse_rigid(scene, start, f"NEWMARK, which AUTO takes because {reason},")
     how = f"{reason}; steps are shortened until the peaks stand still"
     scene.decisions.append(Decision("method", "NEWMARK", how))
     return to_tolerance(scene, start, watch, options, sink)

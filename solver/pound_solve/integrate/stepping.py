@@ -40,6 +40,7 @@ from pound_solve.integrate.base import (
     Watch,
     energy_at_start,
     goals,
+    refuse_rigid,
 )
 from pound_solve.laws import MEMORY, PARAMETERS
 from pound_solve.modes import massless
@@ -94,6 +95,7 @@ class Stepper:
         scheme: arrays.Scheme,
         name: str,
     ) -> None:
+        refuse_rigid(scene, start, name.partition(",")[0])
         self.scene, self.watch, self.sink = scene, watch, sink
         self.dt, self.name = options["DT"], name
         self.scheme = scheme._replace(locate=options.get("EVENTS", "LOCATED") == "LOCATED")
