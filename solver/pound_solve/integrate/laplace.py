@@ -6,11 +6,11 @@ A structure that is linear between events, soil and foundation included, obeys
 
 from the state :math:`u_0, v_0` on.  The transform is inverted along :math:`s = \alpha + i\omega` by a fast
 Fourier transform over a window of N samples DT apart.  The earliest exit of a law ends the piece: the law
-changes its branch, and the next piece starts from the state there, which carries the unbalanced forces over.
-So did Chouw with buildings, their contact and the soil in one transform.
+changes its branch, and the next piece starts from the state there, which carries the unbalanced forces
+over.  So did Chouw with buildings, their contact and the soil in one transform.
 
-The start is a step in :math:`u` to the transform, whose inverse would converge slowly.  A part with a closed
-transform that starts as the response does, up to the derivative of order `STARTS`,
+The start is a step in :math:`u` to the transform, whose inverse would converge slowly.  A part with a
+closed transform that starts as the response does, up to the derivative of order `STARTS`,
 
 .. math:: q(t) = e^{-\beta t}\sum_k c_k t^k, \qquad \hat q(s) = \sum_k \frac{k!\,c_k}{(s+\beta)^{k+1}}
 
@@ -160,6 +160,10 @@ class Laplace:
             shift = np.exp(-s * (left - begin))
             for j, row in enumerate(coefs):
                 out += (shift * kernels[j] * length ** (j + 1))[:, None] * row
+        # beyond its end the excitation stands still: a jump there would be felt before it
+        last = float(ex.breaks[-1])
+        if last < end:
+            out += (np.exp(-s * (last - begin)) / s)[:, None] * ex.value(last)
         return out
 
     def _response(self) -> tuple[Array, Array]:
@@ -199,6 +203,7 @@ class Laplace:
         u = np.fft.irfft(rest.T, self.points)[:, : half + 1] * grow + (q.T @ powers) * decay
         v = np.fft.irfft(s * rest.T, self.points)[:, : half + 1] * grow
         v += (q[1:].T @ slopes - beta * q.T @ powers) * decay
+        u[:, 0], v[:, 0] = derivatives[:2]  # known: the branches of the laws hang on them
         self.transforms += 1
         return u, v
 
@@ -219,9 +224,7 @@ class Laplace:
         u, v = u[:, :count], v[:, :count]
         inputs = [ex.values(self.t + t, order).T for order in range(3)]
         a = self._acceleration(u, v, inputs[0])
-        value, rate, second = (
-            self.rows @ x + self.row_inputs @ s for x, s in zip((u, v, a), inputs)
-        )
+        value, rate, second = (self.rows @ x + self.row_inputs @ s for x, s in zip((u, v, a), inputs))
         value += self.row_constants[:, None]
         if not np.isfinite(value).all():
             raise self.stop("A504", "the motion grew beyond all numbers")
@@ -387,8 +390,8 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     Raises
     ------
     Stop
-        A scene that is not piecewise linear or whose supports move apart from each other, a DT that does not
-        resolve it, a mechanism, numbers beyond all bounds, or an interrupt.
+        A scene that is not piecewise linear or whose supports move apart from each other, a DT that does
+        not resolve it, a mechanism, numbers beyond all bounds, or an interrupt.
     """
     refuse_rigid(scene, start, "LAPLACE")
     curved = next((s for s in scene.structure.laws if s.law.curved), None)
