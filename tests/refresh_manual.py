@@ -6,7 +6,7 @@ from pathlib import Path
 
 from pound_deck.diagnostics import messages_page
 from pound_solve.catalog import specs
-from pound_solve.loop import AXES, picture
+from pound_solve.loop import AXES, has_loop, picture
 from pound_solve.reference import deck_page
 from pound_solve.tables import results_page
 from verification import cases
@@ -20,8 +20,8 @@ def write(name: str, text: str) -> None:
 
 
 def pictures() -> dict[str, str]:
-    """Loops of all rules and contact laws as SVG, by file name; ELASTIC has none."""
-    drawn = [s for s in specs() if s.family in AXES and s.impl is not None]
+    """Loops of all rules and contact laws as SVG, by file name."""
+    drawn = [s for s in specs() if s.family in AXES and has_loop(s)]
     kind = {"hysteresis": "loop", "contact": "contact"}
     return {f"{kind[s.family]}_{s.name.lower()}.svg": picture(s) for s in drawn}
 

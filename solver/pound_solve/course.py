@@ -391,7 +391,7 @@ class Course:
                 continue
             d = peaks.deformation[i]
             own = [c for c in peaks.collisions if c.law == i]
-            best = max(own, key=lambda c: c.peak, default=None)
+            best = max(own, key=lambda c: (c.peak == c.peak, c.peak), default=None)  # NaN: an impact
             closed = sum((c.t_end if np.isfinite(c.t_end) else recorder.reached) - c.t_start for c in own)
             gap = x.facts["gap"]
             contact_rows.append(

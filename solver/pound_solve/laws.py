@@ -96,6 +96,10 @@ class Rule(NamedTuple):
     curve : callable or None
         ``curve(p, at, m, d0, d, v) -> (force, d force/d d, d force/d v, work since d0)`` where branches are
         not linear; `d0` is the deformation at their entry.
+    held : int
+        Branch of a rigid contact on which the deformation stays at ``p[2]``, by whatever force that takes
+        (-1: none has it).  The exits of that branch are functions of this force instead of the deformation;
+        its entry is an impact with the restitution ``p[1]``.
     """
 
     branches: tuple[str, ...]
@@ -106,6 +110,7 @@ class Rule(NamedTuple):
     curve: (
         Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]] | None
     ) = None
+    held: int = -1
 
 
 class Exit(NamedTuple):
@@ -124,6 +129,7 @@ class Branch(NamedTuple):
     damping: float
     force0: float
     exits: tuple[Exit, ...]
+    held: bool = False  #: by a rigid contact, see `Rule.held`
 
     def force(self, d: float, v: float) -> float:
         """Force at deformation `d` and rate `v`."""
@@ -149,6 +155,11 @@ class Law:
         """Whether its branches are not linear."""
         return self.rule.curve is not None
 
+    @property
+    def rigid(self) -> bool:
+        """Whether it is a rigid contact."""
+        return self.rule.held >= 0
+
     def start(self) -> State:
         """Return the virgin state at zero deformation."""
         at, m = self.rule.start(self.p)
@@ -161,7 +172,7 @@ class Law:
         exits = [Exit(*flat[i : i + 3]) for i in range(0, 3 * EXITS, 3)]
         while exits and exits[-1] == NEVER:
             exits.pop()
-        return Branch(self.rule.branches[state[0]], k, c, f0, tuple(exits))
+        return Branch(self.rule.branches[state[0]], k, c, f0, tuple(exits), state[0] == self.rule.held)
 
     def force(self, state: State, d: float, v: float = 0.0) -> tuple[float, float, float]:
         """Force at deformation `d` and rate `v`, and its derivatives by them."""

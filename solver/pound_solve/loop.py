@@ -127,7 +127,20 @@ def specimen(spec: Spec, items: Sequence[str] = ()) -> tuple[LawSpring, str]:
         (spring,) = assemble(model).laws
     except AssemblyError as err:
         raise LoopError("\n".join(d.message for d in err.diagnostics)) from None
+    if spring.law.rigid:
+        raise LoopError(
+            f"{spec.name} is rigid: its force does not follow from its closure, there is no loop"
+        )
     return spring, card
+
+
+def has_loop(spec: Spec) -> bool:
+    """Whether a rule or contact law has a loop to draw: ELASTIC and rigid contacts have none."""
+    try:
+        specimen(spec)
+    except LoopError:
+        return False
+    return True
 
 
 def protocol(spring: LawSpring) -> list[float]:

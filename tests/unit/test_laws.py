@@ -16,6 +16,7 @@ import pytest
 from paths import Walk, turning_points
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.catalog import specs
+from pound_solve.contact import bilinear_impact, table
 from pound_solve.laws import (
     EXITS,
     MEMORY,
@@ -34,6 +35,7 @@ from pound_solve.laws import (
     remember,
     settle,
 )
+from pound_solve.loop import specimen
 
 REACH = 0.1  #: paths run between plus and minus this
 GAPS = (0.01, 0.0, -0.005)  #: of the contacts
@@ -186,8 +188,13 @@ def contacts() -> list[Any]:
                 except ValueError:  # a mixture that the law refuses
                     continue
                 built += 1
+                if made.law.rigid:  # no force follows from its deformation, see test_rigid_contact
+                    continue
                 found.append(pytest.param(made.law, gap, made.k, id=f"{spec.name} {gap} {values}"))
-            assert built, f"no parameters found for {spec.name}"
+            if not built:  # items that only go together: the law's own example
+                spring = specimen(spec, [])[0]
+                facts = spring.facts
+                found.append(pytest.param(spring.law, facts["gap"], facts["k"], id=spec.name))
     return found
 
 
@@ -204,7 +211,8 @@ def test_contract_of_a_contact(law: Law, gap: float, k: float) -> None:
     """Values, exits and slopes along a path, the branches entered on the way included."""
     for seed in range(3):
         state, d = law.start(), 0.0
-        assert law.branch(state).force(0.0, 0.0) == pytest.approx(k * max(0.0, -gap))
+        if not law.curved:
+            assert law.branch(state).force(0.0, 0.0) == pytest.approx(k * max(0.0, -gap))
         entered = set()
         for goal in turning_points(seed, REACH):
             # a tried step changes nothing, and hashing and comparing are those of values
@@ -233,25 +241,34 @@ def test_contract_of_a_contact(law: Law, gap: float, k: float) -> None:
                 for e in branch.exits
                 if e.d_factor
             ):
-                ahead, behind = (
-                    law.branch(follow(law, state, d, d + s * h)).force(d + s * h, 0.0) for s in (1, -1)
-                )
-                assert (ahead - behind) / (2 * h) == pytest.approx(branch.stiffness, abs=1e-5 * k)
+                ahead, behind = (law.force(follow(law, state, d, d + s * h), d + s * h)[0] for s in (1, -1))
+                force, stiffness, _ = law.force(state, d)
+                assert (ahead - behind) / (2 * h) == pytest.approx(stiffness, abs=1e-5 * k)
                 slope = (law.stored(state, d + h) - law.stored(state, d - h)) / (2 * h)
-                assert slope == pytest.approx(branch.force(d, 0.0), abs=1e-5 * k * REACH)
+                assert slope == pytest.approx(force, abs=1e-5 * k * REACH)
         assert entered
 
 
 @contact
 def test_contact_pushes_and_forgets(law: Law, gap: float, k: float) -> None:
     """Quasi-statically a contact is an elastic stop: the same force on the way in and out."""
-    walk, begin = Walk(law), 0.5 * k * max(0.0, -gap) ** 2
+    if law.rule in (bilinear_impact.RULE, table.RULE):
+        pytest.skip("unloads along another line")
+
+    def once(goal: float) -> tuple[float, float]:
+        """Force and energy of the stop pressed once; of a linear one from its stiffness."""
+        over = max(0.0, goal - gap)
+        if not law.curved:
+            return k * over, 0.5 * k * over**2
+        fresh = follow(law, law.start(), 0.0, goal)
+        return law.force(fresh, goal)[0], law.stored(fresh, goal)
+
+    walk, begin = Walk(law), law.stored(law.start(), 0.0)
     for seed in range(2):
         for goal in turning_points(seed, REACH):
             walk.move(goal)
-            assert walk.force == pytest.approx(k * max(0.0, goal - gap), abs=1e-9)
-            assert law.stored(walk.state, goal) == pytest.approx(
-                0.5 * k * max(0.0, goal - gap) ** 2, abs=1e-9
-            )
+            force, energy = once(goal)
+            assert walk.force == pytest.approx(force, abs=1e-9)
+            assert law.stored(walk.state, goal) == pytest.approx(energy, abs=1e-9)
             assert law.work(walk.state, goal) == pytest.approx(begin + walk.work, abs=1e-12)
             assert law.dissipated(walk.state, goal) == pytest.approx(0.0, abs=1e-12)

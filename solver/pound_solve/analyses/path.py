@@ -198,6 +198,12 @@ class Path:
         held = law.force(self.states[i], d)[0]
         self.states[i] = law.leave(self.states[i], exit_.way, d)
         self.branches[i] = law.branch(self.states[i])
+        if self.branches[i].held:
+            raise Unstable(
+                f"the rigid contact {self.laws[i].element} ({self.laws[i].rule}) closes, and statics knows "
+                "no force for it: HISTORY FROM=REST lets it meet, or a LAW with a stiffness serves",
+                "A507",
+            )
         let_go = held - law.force(self.states[i], d)[0]
         if abs(let_go) > JUMP * (abs(held) + abs(law.p[0]) * float(self._terms(self.u)[i])):
             self._lost = self._lost + let_go * self.rows[i]

@@ -28,7 +28,18 @@ from numpy.typing import NDArray
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve import jit
 from pound_solve.integrate import exact, newmark
-from pound_solve.integrate.base import Extreme, LawValues, Outcome, Peaks, Sink, Start, Stop, Watch, goals
+from pound_solve.integrate.base import (
+    Extreme,
+    LawValues,
+    Outcome,
+    Peaks,
+    Sink,
+    Start,
+    Stop,
+    Watch,
+    goals,
+    refuse_rigid,
+)
 from pound_solve.scene import Decision, Scene
 
 Array = NDArray[np.float64]
@@ -109,6 +120,8 @@ class Rival:
             replay.hand_on()
             raise
         why = "all laws are piecewise linear, and it costs less than steps: no time step is needed"
+        if cost == np.inf:
+            why = "rigid contacts: no other method knows them"
         decisions.insert(known, Decision("method", "EXACT", why))
         replay.hand_on()
         return outcome
@@ -185,8 +198,12 @@ def to_tolerance(
 
 def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
     """Choose a method, note why, and run it."""
-    rival = Rival(scene, start, watch, sink)
-    outcome = rival.run(FREE, FEW)
+    rival, free, few = Rival(scene, start, watch, sink), FREE, float(FEW)
+    if any(s.law.rigid for s in scene.structure.laws):
+        if reason := why_not_exact(scene):
+            refuse_rigid(scene, start, f"NEWMARK, which AUTO takes because {reason},")
+        free = few = np.inf  # no other method knows them
+    outcome = rival.run(free, few)
     return outcome or to_tolerance(scene, start, watch, options, sink, rival)
 
 

@@ -198,6 +198,18 @@ class Stop(Exception):
         self.code, self.t, self.outcome = code, t, outcome
 
 
+def refuse_rigid(scene: Scene, start: Start, method: str) -> None:
+    """Raise Stop where a scene has rigid contacts and the method knows none."""
+    for s in scene.structure.laws:
+        if s.law.rigid:
+            raise Stop(
+                "A505",
+                float(start.times[0]),
+                f"{method} knows no rigid contact, and {s.rule} of element {s.element} is one: "
+                "EXACT takes it, or a LAW with a stiffness",
+            )
+
+
 class Method(Protocol):
     """An integrator, as a Spec's `impl`."""
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pound_solve import polynomial
 from pound_solve.integrate import work
 from pound_solve.integrate.flow import Flow, Mechanism, make_flow
+from pound_solve.integrate.rigid import Rigid
 from pound_solve.laws import Branch
 from pound_solve.scene import Scene
 
@@ -22,6 +23,45 @@ Key = tuple[Any, ...]
 
 #: cost of a regime, as `exact.WINDOW`; of its tables for each unknown; of its modes over the unknowns' cube
 REGIME, TABLE, MODES = 2e-3, 2e-4, 3e-8
+
+
+@dataclass(frozen=True)
+class Reactions:
+    """Forces of the rigid contacts that a block holds closed: ``on_q q + on_p p + on_rate p'``.
+
+    Attributes
+    ----------
+    laws : ndarray of int, shape (n_held,)
+    place : ndarray of int, shape (n_held,)
+        Their rows among those of the run.
+    gaps : ndarray, shape (n_held,)
+    inputs : ndarray, shape (n_held, n_inputs)
+        The deformations that the unknowns are held to are ``gaps - inputs s``.
+    on_q : ndarray, shape (n_held, n_q)
+    on_p, on_rate : ndarray, shape (n_held, n + 3 n_held)
+        On the forces, extended as in `flow.held_space`.
+    """
+
+    laws: NDArray[np.intp]
+    place: NDArray[np.intp]
+    gaps: Array
+    inputs: Array
+    on_q: NDArray[Any]
+    on_p: Array
+    on_rate: Array
+
+    def extended(self, ps: Array, coefs: Array) -> Array:
+        """Force polynomials (n_intervals, degree + 1, n + 3 n_held) with what is held in their last
+        columns, from inputs' coefficients.
+        """
+        m, orders = len(self.laws), np.arange(1, coefs.shape[1])[:, None]
+        ps = ps.copy()
+        x, first, second = (ps[..., k * m - 3 * m : (k * m - 2 * m) or None] for k in range(3))
+        x[:] = -coefs @ self.inputs.T
+        x[:, 0] += self.gaps
+        first[:, :-1] = x[:, 1:] * orders
+        second[:, :-1] = first[:, 1:] * orders
+        return ps
 
 
 @dataclass(frozen=True)
@@ -39,6 +79,7 @@ class Regime:
     rows : ndarray, shape (n_watched, n)
     uv_rows : ndarray, shape (2 n_watched, n_q)
         The rows on u_q above those on v_q.
+    reactions : Reactions or None
     """
 
     index: NDArray[np.intp]
@@ -49,6 +90,7 @@ class Regime:
     rows: Array
     uv_rows: NDArray[Any]
     meter: work.Meter
+    reactions: Reactions | None
 
 
 @dataclass
@@ -86,12 +128,18 @@ class Partition:
     scene : Scene
     rows : ndarray, shape (n_rows, n)
         Functionals that the run watches; the first are the laws' deformations.
+        The forces of the rigid contacts come after them.
     row_inputs : ndarray, shape (n_rows, n_inputs)
     row_constants : ndarray, shape (n_rows,)
     """
 
     def __init__(self, scene: Scene, rows: Array, row_inputs: Array, row_constants: Array) -> None:
-        self.scene, self.rows, self.row_inputs, self.row_constants = scene, rows, row_inputs, row_constants
+        self.scene, self.rigid, more = scene, Rigid(scene), len(rows)
+        count = len(self.rigid.laws)
+        self.force_row = {law: more + i for i, law in enumerate(self.rigid.laws)}
+        self.rows = np.pad(rows, ((0, count), (0, 0)))
+        self.row_inputs = np.pad(row_inputs, ((0, count), (0, 0)))
+        self.row_constants = np.pad(row_constants, (0, count))
         self.known = bool(np.any(row_inputs))
         self.blocks: list[Block] = []
         self.regimes: dict[Key, Regime] = {}
@@ -135,12 +183,12 @@ class Partition:
         scene = self.scene
         labels = self._base.copy()
         for i, (s, b) in enumerate(zip(scene.structure.laws, branches)):
-            if s.is_contact and (b.stiffness or b.damping):
+            if s.is_contact and (b.stiffness or b.damping or b.held):
                 parts = np.unique(labels[scene.law_rows[i] != 0])
                 if len(parts):
                     labels[np.isin(labels, parts)] = parts[0]
         old = {b.key: b for b in self.blocks}
-        acting = [i for i, b in enumerate(branches) if b.stiffness or b.damping or b.force0]
+        acting = [i for i, b in enumerate(branches) if b.stiffness or b.damping or b.force0 or b.held]
         blocks = []
         for label in np.unique(labels):
             index = np.flatnonzero(labels == label)
@@ -148,7 +196,7 @@ class Partition:
             key = (
                 int(label),
                 len(index),
-                *((int(i), branches[i].stiffness, branches[i].damping) for i in laws),
+                *((int(i), branches[i].stiffness, branches[i].damping, branches[i].held) for i in laws),
             )
             constant = scene.constant[index] - scene.law_rows[np.ix_(laws, index)].T @ [
                 branches[i].force0 for i in laws
@@ -172,8 +220,10 @@ class Partition:
         b = scene.law_rows[np.ix_(laws, index)]
         k = scene.stiffness[grid] + (b.T * [branches[i].stiffness for i in laws]) @ b
         c = scene.damping[grid] + (b.T * [branches[i].damping for i in laws]) @ b
+        held = np.array([i for i in laws if branches[i].held], np.intp)
+        held_rows = scene.law_rows[np.ix_(held, index)] if len(held) else None
         try:
-            flow = make_flow(scene.mass[grid], c, k, scene.inputs[index])
+            flow = make_flow(scene.mass[grid], c, k, scene.inputs[index], held_rows)
         except Mechanism as err:
             whole = np.zeros(scene.size)
             whole[index] = err.shape
@@ -188,7 +238,36 @@ class Partition:
         ]
         meter = work.Meter(flow, scene.damping[grid], scene.inputs[index], dashpots)
         return Regime(
-            index, laws, flow, watched, place, rows, np.vstack([rows @ flow.u_q, rows @ flow.v_q]), meter
+            index,
+            laws,
+            flow,
+            watched,
+            place,
+            rows,
+            np.vstack([rows @ flow.u_q, rows @ flow.v_q]),
+            meter,
+            self._reactions(held, index, flow, c, k) if len(held) else None,
+        )
+
+    def _reactions(
+        self, held: NDArray[np.intp], index: NDArray[np.intp], flow: Flow, c: Array, k: Array
+    ) -> Reactions:
+        """From ``G f = B M^-1 (p - C v - K u) - x''``, see `rigid` and `flow.held_space`."""
+        assert flow.u_p is not None and flow.space.v_p is not None  # of all that is held
+        at = np.array([self.rigid.laws.index(i) for i in held], np.intp)
+        inverse = np.linalg.pinv(self.rigid.compliance[np.ix_(at, at)], rcond=1e-12)
+        x = inverse @ self.rigid.yielding[np.ix_(index, at)].T
+        on_p = -x @ (k @ flow.u_p + c @ flow.space.v_p)
+        on_p[:, : len(index)] += x
+        on_p[:, on_p.shape[1] - len(held) :] -= inverse
+        return Reactions(
+            held,
+            np.array([self.force_row[i] for i in held], np.intp),
+            self.rigid.gap[at],
+            self.rigid.inputs[at],
+            -x @ (k @ flow.u_q + c @ flow.v_q),
+            on_p,
+            -x @ c @ flow.u_p,
         )
 
 
@@ -217,8 +296,11 @@ class Window:
                 block.gs = flow.forcing(coefs, block.constant)
             else:
                 ps = coefs @ flow.inputs.T
-                ps[:, 0] += block.constant
-                block.ps = ps + self._supports(block)
+                n = len(block.constant)
+                ps[:, 0, :n] += block.constant
+                ps[..., :n] += self._supports(block)
+                reactions = block.regime.reactions
+                block.ps = ps if reactions is None else reactions.extended(ps, coefs)
                 block.gs = flow.push(block.ps)
             block.qs = flow.march(block.q, block.gs, length)
 
@@ -278,13 +360,15 @@ class Window:
             block.samples = samples = flow.samples(block.qs[:, :-1], block.gs, h, count)
             if not m:
                 continue
-            flat = samples.reshape(len(samples), -1)
+            flat = samples.reshape(len(samples), n * count)
             last = block.qs[:, -1]
+            if block.regime.reactions is not None:
+                self._react(block, samples, t, value, rate)
             both = (block.regime.uv_rows @ np.concatenate([flat, last[:, None]], axis=1)).real
             value[w] += both[:m]
             rate[w] += both[m:]
             if bending:
-                bend = flow.rates(samples, block.gs, t).reshape(len(samples), -1)
+                bend = flow.rates(samples, block.gs, t).reshape(len(samples), n * count)
                 end = flow.rate(last, block.gs[-1], self.length)
                 second[w] += (block.regime.uv_rows[m:] @ np.concatenate([bend, end[:, None]], axis=1)).real
             if block.ps is not None and flow.u_p is not None:
@@ -304,6 +388,29 @@ class Window:
         rate[w] += v_p @ force + u_p @ slope
         second[w] += v_p @ slope + u_p @ bend
 
+    def _react(
+        self, block: Block, samples: NDArray[Any], t: NDArray[Any], value: Array, rate: Array
+    ) -> None:
+        """Put in the forces of closed rigid contacts."""
+        flow, r = block.regime.flow, block.regime.reactions
+        assert block.ps is not None and r is not None
+        last = block.qs[:, -1]
+        times = [(i, x) for i in range(self.intervals) for x in t] + [(self.intervals - 1, self.length)]
+        for out, q, end, order in (
+            (value, samples, last, 0),
+            (
+                rate,
+                flow.rates(samples, block.gs, t),
+                flow.rate(last, block.gs[-1], self.length),
+                1,
+            ),
+        ):
+            states = np.concatenate([q.reshape(len(q), len(times) - 1), end[:, None]], axis=1)
+            force, slope = (
+                np.array([polynomial.value(block.ps[i], x, order + k) for i, x in times]).T for k in (0, 1)
+            )
+            out[r.place] = (r.on_q @ states).real + r.on_p @ force + r.on_rate @ slope
+
     def at(self, row: int, tau: float) -> tuple[float, float, float]:
         """Value, rate and second rate of one row at local time `tau`:
         what polishing asks for again and again.
@@ -321,6 +428,7 @@ class Window:
         chosen = slice(None) if row is None else slice(row, row + 1)
         value = part.row_constants[chosen].copy()
         rate, second = np.zeros_like(value), np.zeros_like(value)
+        to: Any
         if part.known:
             offset = self.coefs[i] @ part.row_inputs[chosen].T
             for out, order in ((value, 0), (rate, 1), (second, 2)):
@@ -328,8 +436,15 @@ class Window:
         for block in part.blocks:
             r = block.regime
             n = len(r.watched)
+            if r.reactions is not None and (row is None or row in r.reactions.place):
+                own_value, own_rate = self._reaction(block, i, tau)
+                to = r.reactions.place
+                if row is not None:
+                    own_value, own_rate = own_value[to == row], own_rate[to == row]
+                    to = slice(0, 1)
+                value[to], rate[to] = own_value, own_rate
             if row is None:
-                to: Any = r.watched
+                to = r.watched
                 own = slice(0, n)
             elif r.place[row] >= 0:
                 to = slice(0, 1)
@@ -349,6 +464,17 @@ class Window:
                 rate[to] += v_p @ force + u_p @ slope
                 second[to] += v_p @ slope + u_p @ bend
         return value, rate, second
+
+    def _reaction(self, block: Block, interval: int, tau: float) -> tuple[Array, Array]:
+        """Forces of a block's closed rigid contacts and their rates."""
+        flow, r = block.regime.flow, block.regime.reactions
+        assert block.ps is not None and r is not None
+        q, g = self.state(block, interval, tau), block.gs[interval]
+        p, slope, bend = (polynomial.value(block.ps[interval], tau, order) for order in (0, 1, 2))
+        return (
+            (r.on_q @ q).real + r.on_p @ p + r.on_rate @ slope,
+            (r.on_q @ flow.rate(q, g, tau)).real + r.on_p @ slope + r.on_rate @ bend,
+        )
 
     def motion(self, interval: int, tau: float) -> tuple[Array, Array, Array]:
         """Displacement, velocity and acceleration of the unknowns at `tau` within an interval."""
@@ -398,7 +524,7 @@ class Window:
             flow, index, q = block.regime.flow, block.regime.index, states(block)
             rate = flow.rates(q, block.gs[intervals], t)
             u[index], v[index], a[index] = (
-                (x @ y.reshape(len(y), -1)).real
+                (x @ y.reshape(len(y), n * len(t))).real
                 for x, y in ((flow.u_q, q), (flow.v_q, q), (flow.v_q, rate))
             )
             if block.ps is not None and flow.u_p is not None:
@@ -449,6 +575,8 @@ class Window:
     def impulse(self, law: int, interval: int, tau: float) -> float:
         """Integral of a law's force over the first `tau` of an interval [F T]."""
         b, scene = self.branches[law], self.partition.scene
+        if b.held:
+            return self._held_impulse(law, interval, tau)
         e = self.coefs[interval] @ scene.law_inputs[law]
         area = sum(e[k] * tau ** (k + 1) / (k + 1) for k in range(len(e)))
         change = sum(e[k] * tau**k for k in range(1, len(e)))
@@ -464,3 +592,17 @@ class Window:
                 area += float(row @ flow.u_p @ sum(p[k] * tau ** (k + 1) / (k + 1) for k in range(len(p))))
                 change += float(row @ flow.u_p @ (polynomial.value(p, tau) - p[0]))
         return float(b.force0 * tau + b.stiffness * area + b.damping * change)
+
+    def _held_impulse(self, law: int, interval: int, tau: float) -> float:
+        """`impulse` of a closed rigid contact."""
+        for block in self.partition.blocks:
+            r = block.regime.reactions
+            if r is None or law not in r.laws:
+                continue
+            assert block.ps is not None
+            p, flow = block.ps[interval], block.regime.flow
+            area = (r.on_q @ flow.integral(block.qs[:, interval], block.gs[interval], tau)).real
+            area = area + r.on_p @ sum(p[k] * tau ** (k + 1) / (k + 1) for k in range(len(p)))
+            area += r.on_rate @ (polynomial.value(p, tau) - p[0])
+            return float(area[r.laws == law][0])
+        return 0.0

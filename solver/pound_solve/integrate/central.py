@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve import modes
 from pound_solve.integrate.arrays import Scheme
-from pound_solve.integrate.base import Outcome, Sink, Start, Stop, Watch
+from pound_solve.integrate.base import Outcome, Sink, Start, Stop, Watch, refuse_rigid
 from pound_solve.integrate.stepping import Stepper
 from pound_solve.matrices import weighted
 from pound_solve.scene import Scene
@@ -51,6 +51,7 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
         Step above the stability limit, massless freedoms that cannot be condensed,
         or numbers beyond all bounds.
     """
+    refuse_rigid(scene, start, "CENTRAL")
     light = modes.massless(scene.mass)
     if light.any():
         raise Stop(

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve import polynomial
 from pound_solve.integrate import search, work
 from pound_solve.integrate.base import (
     INTERRUPTED,
@@ -42,6 +43,7 @@ from pound_solve.integrate.base import (
 from pound_solve.integrate.base import goals as goals_of
 from pound_solve.integrate.blocks import Partition, Window
 from pound_solve.integrate.flow import MOST_CONDITION, Mechanism, SeriesFlow
+from pound_solve.integrate.rigid import NOISE, Weightless
 from pound_solve.laws import Branch
 from pound_solve.scene import Condensed, Decision, Scene, condense
 
@@ -98,7 +100,9 @@ class Exact:
         self.ledger = Ledger(scene, len(watch.names))
         self.t, self.u, self.v = float(start.times[0]), start.u.copy(), start.v.copy()
         self.works = start.works.copy()  # input, dashpots of structure and springs, dashpots of contacts
-        self.largest = np.zeros((2, n))  # |d|, |v| seen, the scale of the exits
+        self.rigid = self.partition.rigid
+        # |value|, |rate| of all rows seen, the scale of the exits
+        self.largest = np.zeros((2, len(self.partition.rows)))
         self.ahead = 1  # intervals of the next window
         self.events = self.windows = self.same_instant = self.pieces = 0
         self.held = energy_at_start(scene, start)
@@ -110,6 +114,7 @@ class Exact:
             if s.is_contact and self.branches[i].name.startswith("pressed"):
                 d, v = float(self.scene.law_rows[i] @ self.u), float(self.scene.law_rows[i] @ self.v)
                 self.ledger.switched(i, "open", "pressed", 0.0, d, v, self.branches[i].force(d, v))
+        self._no_overlap()
         self._form()
         goals, self.is_output = goals_of(self.scene, self.times)
         first = self._window(0.0, np.array([self.t]))  # of no length: for the first sample only
@@ -125,6 +130,16 @@ class Exact:
         if self.spent > self.most or len(self.partition.regimes) > self.most_regimes:
             raise CostlyError(self.spent, self.t)
 
+    def _no_overlap(self) -> None:
+        """Stop where rigid bodies overlap from the start."""
+        r = self.rigid
+        d = r.rows @ self.u + r.inputs @ self._inputs()[0]
+        size = np.abs(r.rows) @ np.abs(self.u) + r.gap
+        for i in np.flatnonzero(d - r.gap > 1e-10 * size).tolist():
+            s = self.laws[r.laws[i]]
+            why = f"the rigid contact {s.element} ({s.rule}) overlaps by {d[i] - r.gap[i]:.3g} at the start"
+            raise self.stop("A505", why)
+
     def _form(self) -> None:
         """Form the blocks for the present branches and gather their exits."""
         try:
@@ -133,7 +148,11 @@ class Exact:
             worst = int(np.argmax(np.abs(err.shape)))
             raise self.stop("A501", f"{self.scene.name(worst)} has no mass and nothing holds it") from None
         self.exit_pairs = [(i, e) for i, b in enumerate(self.branches) for e in range(len(b.exits))]
-        self.exit_law = np.array([i for i, _ in self.exit_pairs], np.intp)
+        # what a closed rigid contact may leave by is its force
+        row = self.partition.force_row
+        self.exit_row = np.array(
+            [row[i] if self.branches[i].held else i for i, _ in self.exit_pairs], np.intp
+        )
         self.exit_factors = (
             np.array([self.branches[i].exits[e] for i, e in self.exit_pairs]).reshape(-1, 3).T
         )
@@ -251,7 +270,13 @@ class Exact:
         self.sink.between(self.t + tau, *motion)
 
     def _hand_out(self, t: float, u: Array, v: Array, a: Array, works: Array) -> None:
-        self.sink.sample(t, u, v, a, law_values(self.scene, t, u, v, self.states), works)
+        laws = law_values(self.scene, t, u, v, self.states)
+        held = np.array([self.branches[i].held for i in self.rigid.laws], bool)
+        if held.any():
+            ex = self.scene.excitation
+            s = np.stack([ex.value(t, order) for order in range(3)])
+            laws.force[self.rigid.laws] = self.rigid.forces(held, self.branches, u, v, s)
+        self.sink.sample(t, u, v, a, laws, works)
 
     def _work(self, window: Window, interval: int, tau: float) -> None:
         """Add the work done over the first `tau` of an interval."""
@@ -295,29 +320,33 @@ class Exact:
     def _first_event(
         self, window: Window, t: Array, value: Array, rate: Array, second: Array
     ) -> tuple[float, int, int] | None:
-        law, (a, b, c) = self.exit_law, self.exit_factors
-        g, slope = a[:, None] * value[law] + c[:, None], a[:, None] * rate[law]
+        row, (a, b, c) = self.exit_row, self.exit_factors
+        g, slope = a[:, None] * value[row] + c[:, None], a[:, None] * rate[row]
         if self.bending:
-            g += b[:, None] * rate[law]
-            slope += b[:, None] * second[law]
-        scale = np.abs(a) * self.largest[0, law] + np.abs(b) * self.largest[1, law] + np.abs(c)
+            g += b[:, None] * rate[row]
+            slope += b[:, None] * second[row]
+        scale = np.abs(a) * self.largest[0, row] + np.abs(b) * self.largest[1, row] + np.abs(c)
         tol = STILL * np.maximum(scale, np.abs(g[:, :2]).max(axis=1))[:, None]
 
         def exact(n: int, tau: float) -> tuple[float, float]:
-            d, v, w = window.at(int(law[n]), tau)
+            d, v, w = window.at(int(row[n]), tau)
             return float(a[n] * d + b[n] * v + c[n]), float(a[n] * v + b[n] * w)
 
         found = search.first_rise(t, g, slope, tol, exact)
         return None if found is None else (found[0], *self.exit_pairs[found[1]])
 
     def _switch(self, law: int, exit_index: int, d: float, v: float) -> None:
-        before = self.branches[law].name
-        self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, d, v)
-        after = self.branches[law] = self.laws[law].branch(self.states[law])
-        force = self.laws[law].force(self.states[law], d, v)
         self.events += 1
-        self.ledger.switched(law, before, after.name, self.t, d, v, force)
-        self.ledger.peaks.force[law].take(force, self.t)
+        before = self.branches[law].name
+        try:
+            if self.laws[law].law.rigid and not self.branches[law].held:
+                self._meet()
+            else:
+                self._leave(law, exit_index, d, v)
+                self._press()
+        except ArithmeticError as err:
+            raise self.stop("A503", str(err)) from None
+        after = self.branches[law]
         if self.same_instant > 50 + 4 * self.n_laws:
             s = self.laws[law]
             raise self.stop(
@@ -327,13 +356,77 @@ class Exact:
             )
         self._form()
 
+    def _leave(self, law: int, exit_index: int, d: float, v: float) -> None:
+        before = self.branches[law].name
+        self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, d, v)
+        after = self.branches[law] = self.laws[law].branch(self.states[law])
+        force = self.laws[law].force(self.states[law], d, v)
+        self.ledger.switched(law, before, after.name, self.t, d, v, force)
+        self.ledger.peaks.force[law].take(force, self.t)
+
+    def _inputs(self) -> Array:
+        """Inputs and their first two derivatives just after now, shape (3, n_inputs)."""
+        ex = self.scene.excitation
+        own = ex.local(ex.piece(self.t + 1e-13 * max(1.0, self.t)), self.t)
+        return np.stack([polynomial.value(own, 0.0, order) for order in range(3)])
+
+    def _meet(self) -> None:
+        """Let rigid contacts that touch strike, and close or part."""
+        r, s = self.rigid, self._inputs()
+        held = np.array([self.branches[i].held for i in r.laws])
+        d, rates = r.rows @ self.u + r.inputs @ s[0], r.rows @ self.v + r.inputs @ s[1]
+        near = 1e-12 * (self.largest[0, r.laws] + r.gap) + 1e-13 * max(1.0, self.t) * np.abs(rates)
+        touching = held | (d >= r.gap - near)
+        fastest = self.largest[1, r.laws]
+        impulse, lost, after = r.strike(rates, touching, fastest)
+        self.v = self.v - r.yielding @ impulse
+        done = float(impulse @ (r.inputs @ s[1]))  # by supports that move
+        self.works = self.works + np.array([done, 0.0, lost.sum()])
+        self.put_in += abs(done)
+        still = touching & (after >= -NOISE * fastest)
+        for i, law in enumerate(r.laws):
+            self.ledger.peaks.dashpot_losses[law] += float(lost[i])
+            if not held[i] and (still[i] or impulse[i] > 0.0):
+                self._leave(law, 0, float(d[i]), float(rates[i]))
+            if law in self.ledger.open:
+                self.ledger.open[law].impulse += float(impulse[i])
+            if self.branches[law].held and not still[i]:
+                if not held[i]:
+                    self.ledger.open[law].peak = np.nan  # beyond all numbers
+                self._leave(law, 0, float(d[i]), float(after[i]))
+        self._press()
+        self.partition.blocks = []  # the velocities have jumped
+
+    def _press(self) -> None:
+        """Open those of the closed rigid contacts that would have to pull."""
+        r = self.rigid
+        if not r.laws:
+            return
+        # a deformation that contact holds at next to nothing still has the rounding of what it is made of
+        moved = np.abs(r.rows) @ np.abs(self.u)
+        self.largest[0, r.laws] = np.maximum(self.largest[0, r.laws], moved)
+        held = np.array([self.branches[i].held for i in r.laws])
+        if not held.any():
+            return
+        s = self._inputs()
+        free, size = r.accelerations(self.branches, self.u, self.v, s)
+        # displacements come from modes that carry the velocities as well
+        size = size + self.partition.fastest * (np.abs(r.rows) @ np.abs(self.v))
+        force = r.plastic(free, held)
+        parting = held & (force == 0.0) & (free - r.compliance @ force < -NOISE * size)
+        for i in np.flatnonzero(parting).tolist():
+            d, v = r.rows[i] @ self.u + r.inputs[i] @ s[0], r.rows[i] @ self.v + r.inputs[i] @ s[1]
+            self._leave(r.laws[i], 0, float(d), float(v))
+        rows = [self.partition.force_row[i] for i in r.laws]
+        self.largest[0, rows] = np.maximum(self.largest[0, rows], size / np.diag(r.compliance))
+
     def _peaks(self, window: Window, t: Array, value: Array, rate: Array, second: Array) -> None:
         n, peaks = self.n_laws, self.ledger.peaks
         if n:
-            np.maximum(self.largest, np.abs([value[:n], rate[:n]]).max(axis=2), out=self.largest)
-        search.widen(
-            [*peaks.deformation, *peaks.watch], self.t, t, value, rate, lambda i, x: window.at(i, x)[:2]
-        )
+            np.maximum(self.largest, np.abs([value, rate]).max(axis=2), out=self.largest)
+        linear = [*peaks.deformation, *peaks.watch]
+        m = len(linear)
+        search.widen(linear, self.t, t, value[:m], rate[:m], lambda i, x: window.at(i, x)[:2])
         # forces of springs, and of contacts that are pressed: those go to the collision that runs
         acting = [i for i, spring in enumerate(self.laws) if not spring.is_contact or i in self.ledger.open]
         if not acting:
@@ -343,12 +436,15 @@ class Exact:
             for x in ("stiffness", "damping", "force0")
         )
         c *= np.array([[self.laws[i].is_contact] for i in acting])  # a spring's force is without damping
+        held = np.array([self.branches[i].held for i in acting])
+        k[held] = 1.0
+        rows = [self.partition.force_row[i] if x else i for i, x in zip(acting, held.tolist())]
 
         def exact(i: int, tau: float) -> tuple[float, float]:
-            d, v, w = window.at(acting[i], tau)
+            d, v, w = window.at(rows[i], tau)
             return float(k[i, 0] * d + c[i, 0] * v + f0[i, 0]), float(k[i, 0] * v + c[i, 0] * w)
 
-        force, slope = k * value[acting] + c * rate[acting] + f0, k * rate[acting] + c * second[acting]
+        force, slope = k * value[rows] + c * rate[rows] + f0, k * rate[rows] + c * second[rows]
         running = self.ledger.open
         targets = [self.ledger.running(i) if i in running else peaks.force[i] for i in acting]
         search.widen(targets, self.t, t, force, slope, exact)
@@ -433,18 +529,21 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
         why = "EXACT needs linear pieces, and the law {} of element {} is curved: AUTO takes steps"
         raise Stop("A505", float(start.times[0]), why.format(curved.rule, curved.element))
     small = condense(scene)
-    run = Exact(
-        small.scene,
-        replace(start, u=start.u[small.keep], v=start.v[small.keep]),
-        Watch(
-            watch.names,
-            watch.rows @ small.expand,
-            watch.input_rows + watch.rows @ small.follow,
-            watch.constants + watch.rows @ small.constant,
-        ),
-        options,
-        Whole(sink, small),
-    )
+    try:
+        run = Exact(
+            small.scene,
+            replace(start, u=start.u[small.keep], v=start.v[small.keep]),
+            Watch(
+                watch.names,
+                watch.rows @ small.expand,
+                watch.input_rows + watch.rows @ small.follow,
+                watch.constants + watch.rows @ small.constant,
+            ),
+            options,
+            Whole(sink, small),
+        )
+    except Weightless as err:
+        raise Stop("A505", float(start.times[0]), str(err)) from None
     try:
         return run.run()
     except KeyboardInterrupt:

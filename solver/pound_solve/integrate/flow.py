@@ -154,6 +154,53 @@ def state_space(m: Array, c: Array, k: Array) -> StateSpace:
     return StateSpace(a, b, keep @ x_z, keep @ xdot_z, z_u, z_v, u_p, v_p, ())
 
 
+def held_space(m: Array, c: Array, k: Array, rows: Array) -> StateSpace:
+    r"""Return the first-order form of a block some of whose deformations are held, ``rows u = x(t)``.
+
+    With :math:`u = T y + W x`, T a basis of what the rows leave free and W their pseudo-inverse,
+
+    .. math:: T^T M T\ddot y + T^T C T\dot y + T^T K T y = T^T (p - K W x - C W\dot x - M W\ddot x)
+
+    is a block without constraints.  The forces are ``p`` extended by :math:`x, \dot x, \ddot x`.
+
+    Parameters
+    ----------
+    m, c, k : ndarray, shape (n, n)
+    rows : ndarray, shape (n_held, n)
+        They touch massive freedoms only.
+    """
+    n = len(m)
+    touched = np.flatnonzero(rows.any(axis=0))
+    others = np.delete(np.arange(n), touched)
+    _, size, turn = np.linalg.svd(rows[:, touched])
+    null = turn[int((size > 1e-12 * size[0]).sum()) :].T
+    t = np.zeros((n, null.shape[1] + len(others)))
+    t[touched, : null.shape[1]] = null
+    t[others, null.shape[1] + np.arange(len(others))] = 1.0
+    w = np.linalg.pinv(rows, rcond=1e-12)
+    try:
+        inner = state_space(t.T @ m @ t, t.T @ c @ t, t.T @ k @ t)
+    except Mechanism as err:
+        raise Mechanism(t @ err.shape) from None
+    push = t.T @ np.hstack([np.eye(n), -k @ w, -c @ w, -m @ w])
+    u_p, v_p = np.zeros((n, push.shape[1])), np.zeros((n, push.shape[1]))
+    if inner.u_p is not None and inner.v_p is not None:
+        u_p, v_p = t @ inner.u_p @ push, t @ inner.v_p @ push
+    u_p[:, n : n + len(rows)] += w
+    back = t.T
+    return StateSpace(
+        inner.a,
+        inner.b @ push,
+        t @ inner.u_z,
+        t @ inner.v_z,
+        inner.z_u @ back,
+        inner.z_v @ back,
+        u_p,
+        v_p,
+        inner.rigid,
+    )
+
+
 def _undamped(m: Array, k: Array) -> tuple[Array, Array]:
     """Squared frequencies and mass-normalised modes of K and a positive definite M."""
     values, phi_u = generalised(k, m)
@@ -549,9 +596,18 @@ def gauss(t: float, fastest: float) -> tuple[Array, Array]:
     return np.tile(_W * width, cells), (np.arange(cells)[:, None] * width + _X * width).ravel()
 
 
-def make_flow(m: Array, c: Array, k: Array, inputs: Array) -> ModalFlow | SeriesFlow:
-    """Return the exact motion of a block: in modes, or by series where the modes are defective."""
-    space = state_space(m, c, k)
+def make_flow(
+    m: Array, c: Array, k: Array, inputs: Array, rows: Array | None = None
+) -> ModalFlow | SeriesFlow:
+    """Return the exact motion of a block: in modes, or by series where the modes are defective.
+
+    With `rows` it is that of `held_space`.
+    """
+    if rows is None:
+        space = state_space(m, c, k)
+    else:
+        space = held_space(m, c, k, rows)
+        inputs = np.vstack([inputs, np.zeros((3 * len(rows), inputs.shape[1]))])
     try:
         flow = ModalFlow(space, inputs)
     except np.linalg.LinAlgError:

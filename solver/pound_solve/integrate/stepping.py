@@ -41,6 +41,7 @@ from pound_solve.integrate.base import (
     Watch,
     energy_at_start,
     goals,
+    refuse_rigid,
 )
 from pound_solve.laws import MEMORY, PARAMETERS
 from pound_solve.matrices import Matrix, at, by_rows, dense, entries, is_diagonal
@@ -131,6 +132,7 @@ class Stepper:
         scheme: arrays.Scheme,
         name: str,
     ) -> None:
+        refuse_rigid(scene, start, name.partition(",")[0])
         self.scene, self.watch, self.sink = scene, watch, sink
         self.dt, self.name = options["DT"], name
         self.scheme = scheme._replace(locate=options.get("EVENTS", "LOCATED") == "LOCATED")

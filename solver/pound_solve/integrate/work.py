@@ -290,6 +290,11 @@ def total_work(
     force = (
         structure.stiffness @ u + structure.damping @ v + structure.mass @ a + structure.law_rows.T @ law
     )
+    held = [i for i, b in enumerate(branches) if b.held]
+    if held:  # what the unknowns leave out of balance is what rigid contacts take
+        rows = structure.law_rows[held]
+        rest = scene.applied(inputs[0]) - force[:n]
+        force += rows.T @ np.linalg.lstsq(rows[:, :n].T, rest, rcond=1e-12)[0]
     power = (force[n:] * v[n:]).sum(axis=0) + (scene.applied(inputs[0]) * v[:n]).sum(axis=0)
     losses = (c * rate**2) @ w
     return Work(

@@ -1,0 +1,436 @@
+r"""LAPLACE: between events the response by a numerical Laplace transform.
+
+A structure that is linear between events, soil and foundation included, obeys
+
+.. math:: D(s)\,\hat u(s) = \hat p(s) + M(s u_0 + v_0) + C u_0, \qquad D(s) = s^2 M + s C + K
+
+from the state :math:`u_0, v_0` on.  The transform is inverted along :math:`s = \alpha + i\omega` by a fast
+Fourier transform over a window of N samples DT apart.  The earliest exit of a law ends the piece: the law
+changes its branch, and the next piece starts from the state there, which carries the unbalanced forces
+over.  So did Chouw with buildings, their contact and the soil in one transform.
+
+The start is a step in :math:`u` to the transform, whose inverse would converge slowly.  A part with a
+closed transform that starts as the response does, up to the derivative of order `STARTS`,
+
+.. math:: q(t) = e^{-\beta t}\sum_k c_k t^k, \qquad \hat q(s) = \sum_k \frac{k!\,c_k}{(s+\beta)^{k+1}}
+
+is taken off before the inversion.  What is left has kinks where the excitation has them, so that the error
+is of order DT^3 in displacements and DT^2 in velocities (straight-line records).
+:math:`\alpha` is such that the window's repetition and the rounding, which both grow with
+:math:`e^{\alpha t}`, are :math:`10^{-10}` in the first half of the window; only that is used.
+
+Beside the transforms of the polynomial pieces of the excitation, which are exact, this shares nothing with
+EXACT: it is a check of it, not a rival.
+
+References
+----------
+Chouw N (2002), Influence of soil-structure interaction on pounding response of adjacent buildings due to
+near-source earthquakes, J. Applied Mechanics JSCE 5: 543-553; Wilcox DJ (1978), Numerical Laplace
+transformation and inversion, Int. J. Elect. Engng Educ. 15: 247-265 (the damped Fourier transform).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.integrate import phi, search
+from pound_solve.integrate.base import (
+    INTERRUPTED,
+    RUNAWAY,
+    Ledger,
+    Outcome,
+    Sink,
+    Start,
+    Stop,
+    Watch,
+    energy_at_start,
+    law_values,
+    refuse_rigid,
+)
+from pound_solve.integrate.exact import Whole
+from pound_solve.integrate.flow import Mechanism, StateSpace, state_space
+from pound_solve.modes import massless
+from pound_solve.scene import Scene, condense
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+STARTS = 5  #: highest derivative at the start that is taken off
+DAMPING = 24.0  #: alpha times the window: 1e-10 in its first half
+STILL = 1e-10  #: share of its largest value below which an exit counts as not reached
+
+
+def hermite(h: float, x: float, f: Array, slope: Array) -> tuple[Array, Array]:
+    """Value and slope at `x` within (0, h) of the cubic through values and slopes at both ends."""
+    y = x / h
+    d = f[1] - f[0]
+    a, b = h * slope[0] - d, d - h * slope[1]
+    value = (1 - y) * f[0] + y * f[1] + y * (1 - y) * ((1 - y) * a + y * b)
+    rate = d + (1 - 2 * y) * ((1 - y) * a + y * b) + y * (1 - y) * (b - a)
+    return value, rate / h
+
+
+class Laplace:
+    """One run; see the module's head."""
+
+    def __init__(
+        self, scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink
+    ) -> None:
+        self.scene, self.sink, self.watch, self.times = scene, sink, watch, start.times
+        self.dt, self.points = options["DT"], 2 * (options["POINTS"] // 2)
+        self.laws = scene.structure.laws
+        self.states = list(start.states)
+        self.branches = [s.branch(x) for s, x in zip(self.laws, self.states)]
+        self.ledger = Ledger(scene, len(watch.names))
+        self.t, self.u, self.v = float(start.times[0]), start.u.copy(), start.v.copy()
+        self.works = start.works.copy()
+        self.rows = np.vstack([scene.law_rows, watch.rows])
+        self.row_inputs = np.vstack([scene.law_inputs, watch.input_rows])
+        self.row_constants = np.concatenate([np.zeros(len(self.laws)), watch.constants])
+        self.largest = np.zeros((2, len(self.laws)))
+        self.heavy = np.flatnonzero(~massless(scene.mass))
+        self.events = self.transforms = self.same_instant = 0
+        self.held, self.put_in = energy_at_start(scene, start), 0.0
+        self.s = (DAMPING + 2j * np.pi * np.arange(self.points // 2 + 1)) / (self.points * self.dt)
+        self._regimes: dict[tuple[float, ...], tuple[StateSpace, float, Complex]] = {}
+
+    def run(self) -> Outcome:
+        """Integrate to the last output time."""
+        for i, s in enumerate(self.laws):
+            if s.is_contact and self.branches[i].name.startswith("pressed"):
+                d, v = float(self.scene.law_rows[i] @ self.u), float(self.scene.law_rows[i] @ self.v)
+                self.ledger.switched(i, "open", "pressed", self.t, d, v, self.branches[i].force(d, v))
+        first, end = True, float(self.times[-1])
+        while first or end - self.t > 1e-12 * max(1.0, end):
+            self._piece(end, first)
+            first = False
+        return self.outcome()
+
+    def _matrices(self) -> tuple[Array, Array, Array]:
+        """Damping, stiffness and constant forces on the present branches."""
+        scene, b = self.scene, self.scene.law_rows
+        k, c, f0 = (
+            np.array([getattr(x, name) for x in self.branches])
+            for name in ("stiffness", "damping", "force0")
+        )
+        return (
+            scene.damping + (b.T * c) @ b,
+            scene.stiffness + (b.T * k) @ b,
+            scene.constant - b.T @ f0,
+        )
+
+    def _regime(self, c: Array, k: Array) -> tuple[StateSpace, float, Complex]:
+        """First-order form, fastest rate, and 1/D(s) at all frequencies, of a set of branches."""
+        key = tuple(x for b in self.branches for x in (b.stiffness, b.damping))
+        if key not in self._regimes:
+            try:
+                space = state_space(self.scene.mass, c, k)
+            except Mechanism as err:
+                name = self.scene.name(int(np.argmax(np.abs(err.shape))))
+                raise self.stop("A501", f"{name} has no mass and nothing holds it") from None
+            fastest = float(np.abs(np.linalg.eigvals(space.a)).max(initial=0.0))
+            if fastest * self.dt > 1.0:
+                why = "DT={:g} does not resolve the fastest mode, {:.4g} rad per unit of time: {:.3g} does"
+                raise self.stop("A502", why.format(self.dt, fastest, 0.5 / fastest))
+            s = self.s[:, None, None]
+            self._regimes[key] = space, fastest, np.linalg.inv(s * s * self.scene.mass + s * c + k)
+        return self._regimes[key]
+
+    def _transform(self) -> Complex:
+        """Transform of the inputs from now on, shape (n_frequencies, n_inputs)."""
+        ex, s = self.scene.excitation, self.s
+        out = np.zeros((len(s), ex.coefs.shape[2]), complex)
+        begin, end = self.t, self.t + self.points * self.dt
+        first = ex.piece(begin + 1e-13 * max(1.0, begin))
+        for i in range(first, len(ex.coefs)):
+            left, right = max(begin, float(ex.breaks[i])), min(end, float(ex.breaks[i + 1]))
+            if left >= end:
+                break
+            if right <= left:
+                continue
+            length, coefs = right - left, ex.local(i, left)
+            kernels = phi.moments(-s * length, ex.degree)
+            shift = np.exp(-s * (left - begin))
+            for j, row in enumerate(coefs):
+                out += (shift * kernels[j] * length ** (j + 1))[:, None] * row
+        # beyond its end the excitation stands still: a jump there would be felt before it
+        last = float(ex.breaks[-1])
+        if last < end:
+            out += (np.exp(-s * (last - begin)) / s)[:, None] * ex.value(last)
+        return out
+
+    def _response(self) -> tuple[Array, Array]:
+        """Displacements and velocities at the samples of the half window, shape (n, n_samples)."""
+        scene, s, half = self.scene, self.s, self.points // 2
+        c, k, constant = self._matrices()
+        space, beta, inverse = self._regime(c, k)
+        ex = scene.excitation
+        coefs = ex.local(ex.piece(self.t + 1e-13 * max(1.0, self.t)), self.t)
+        # derivatives at the start, from the first-order form
+        z = space.z_u @ self.u + space.z_v @ self.v
+        derivatives, force = [], np.zeros(scene.size)
+        for j in range(STARTS + 1):
+            force = math.factorial(j) * scene.inputs @ coefs[j] if j < len(coefs) else 0.0 * force
+            force = force + constant * (j == 0)
+            follow = 0.0 if space.u_p is None else space.u_p @ force
+            derivatives.append(space.u_z @ z + follow)
+            z = space.a @ z + space.b @ force
+        beta = beta or 1.0 / self.dt
+        q = np.array(
+            [
+                sum(
+                    beta ** (j - i) / math.factorial(j - i) / math.factorial(i) * derivatives[i]
+                    for i in range(j + 1)
+                )
+                for j in range(STARTS + 1)
+            ]
+        )
+        right = self._transform() @ scene.inputs.T + constant / s[:, None]
+        right += s[:, None] * (scene.mass @ derivatives[0]) + scene.mass @ self.v + c @ derivatives[0]
+        start = sum(math.factorial(j) * q[j] / (s[:, None] + beta) ** (j + 1) for j in range(STARTS + 1))
+        rest = (inverse @ right[:, :, None])[:, :, 0] - start
+        t = self.dt * np.arange(half + 1)
+        grow = np.exp(DAMPING / (self.points * self.dt) * t) / self.dt
+        decay, powers = np.exp(-beta * t), t ** np.arange(STARTS + 1)[:, None]
+        slopes = powers[:-1] * np.arange(1, STARTS + 1)[:, None]
+        u = np.fft.irfft(rest.T, self.points)[:, : half + 1] * grow + (q.T @ powers) * decay
+        v = np.fft.irfft(s * rest.T, self.points)[:, : half + 1] * grow
+        v += (q[1:].T @ slopes - beta * q.T @ powers) * decay
+        u[:, 0], v[:, 0] = derivatives[:2]  # known: the branches of the laws hang on them
+        self.transforms += 1
+        return u, v
+
+    def _acceleration(self, u: Array, v: Array, s: Array) -> Array:
+        """From the equations of motion, at instants that are columns."""
+        c, k, constant = self._matrices()
+        out, h = np.zeros_like(u), self.heavy
+        force = (self.scene.inputs @ s - c @ v - k @ u) + constant[:, None]
+        out[h] = np.linalg.solve(self.scene.mass[np.ix_(h, h)], force[h])
+        return out
+
+    def _piece(self, end: float, first: bool) -> None:
+        """Go on to the next event, to the middle of the window, or to the end."""
+        ex = self.scene.excitation
+        u, v = self._response()
+        count = min(u.shape[1], int(np.ceil((end - self.t) / self.dt * (1 - 1e-12))) + 1)
+        t = self.dt * np.arange(count)
+        u, v = u[:, :count], v[:, :count]
+        inputs = [ex.values(self.t + t, order).T for order in range(3)]
+        a = self._acceleration(u, v, inputs[0])
+        value, rate, second = (self.rows @ x + self.row_inputs @ s for x, s in zip((u, v, a), inputs))
+        value += self.row_constants[:, None]
+        if not np.isfinite(value).all():
+            raise self.stop("A504", "the motion grew beyond all numbers")
+        samples = np.stack([value, rate, second])
+        span = min(float(t[-1]), end - self.t)
+        event = self._first_event(t, samples)
+        tau = span if event is None or event[0] >= span else event[0]
+
+        def within(x: Array, slope: Array, at: float) -> tuple[Array, Array]:
+            i = min(int(at / self.dt), count - 2)
+            return hermite(self.dt, at - i * self.dt, x[:, i : i + 2].T, slope[:, i : i + 2].T)
+
+        out = self.times[(self.times > self.t) & (self.times <= self.t + tau * (1 + 1e-13))]
+        done, at = self.works, 0.0
+        if first:
+            self._hand_out(self.t, u[:, 0], v[:, 0], a[:, 0], done)
+        for goal in out.tolist():
+            done = done + self._work(at, goal - self.t, u, v, a)
+            at = goal - self.t
+            now, speed = within(u, v, at)[0], within(v, a, at)[0]
+            bend = self._acceleration(now[:, None], speed[:, None], ex.value(goal)[:, None])[:, 0]
+            self._hand_out(goal, now, speed, bend, done)
+        self.works = done + self._work(at, tau, u, v, a)
+        cut = t < tau
+        ends = within(value, rate, tau)[0], within(rate, second, tau)[0], within(rate, second, tau)[1]
+        known = [np.append(x[:, cut], y[:, None], axis=1) for x, y in zip(samples, ends)]
+        self._peaks(np.append(t[cut], tau), known, lambda i, x: self._local(samples, i, x))
+        self.u, self.v = within(u, v, tau)[0], within(v, a, tau)[0]
+        self.same_instant = self.same_instant + 1 if tau <= 1e-12 * max(1.0, self.t) else 0
+        self.t += tau
+        if event is not None and event[0] < span:
+            self._switch(event[1], event[2], float(ends[0][event[1]]), float(ends[1][event[1]]))
+        self.put_in += abs(float(self.works[0] - done[0]))
+        kinetic = 0.5 * float(self.v @ self.scene.mass @ self.v)
+        if not kinetic <= 10.0 * (self.held + self.put_in + abs(float(self.works[0]))) + 1e-300:
+            raise self.stop("A504", RUNAWAY.format(kinetic))
+
+    def _local(self, samples: Array, row: int, at: float) -> tuple[float, float, float]:
+        """Value, rate and second rate of a row between the samples."""
+        i = min(int(at / self.dt), samples.shape[2] - 2)
+        two, x = samples[:, row, i : i + 2], at - i * self.dt
+        value = hermite(self.dt, x, two[0], two[1])[0]
+        rate, second = hermite(self.dt, x, two[1], two[2])
+        return float(value), float(rate), float(second)
+
+    def _first_event(self, t: Array, samples: Array) -> tuple[float, int, int] | None:
+        pairs = [(i, e) for i, b in enumerate(self.branches) for e in range(len(b.exits))]
+        if not pairs:
+            return None
+        law = np.array([i for i, _ in pairs], np.intp)
+        a, b, c = np.array([self.branches[i].exits[e] for i, e in pairs]).T
+        value, rate, second = samples[:, law]
+        g = a[:, None] * value + b[:, None] * rate + c[:, None]
+        slope = a[:, None] * rate + b[:, None] * second
+        scale = np.abs(a) * self.largest[0, law] + np.abs(b) * self.largest[1, law] + np.abs(c)
+        tol = STILL * np.maximum(scale, np.abs(g[:, :2]).max(axis=1))[:, None]
+
+        def exact(n: int, at: float) -> tuple[float, float]:
+            d, v, w = self._local(samples, int(law[n]), at)
+            return float(a[n] * d + b[n] * v + c[n]), float(a[n] * v + b[n] * w)
+
+        found = search.first_rise(t, g, slope, tol, exact)
+        return None if found is None else (found[0], *pairs[found[1]])
+
+    def _switch(self, law: int, exit_index: int, d: float, v: float) -> None:
+        before = self.branches[law].name
+        self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, d, v)
+        after = self.branches[law] = self.laws[law].branch(self.states[law])
+        force = self.laws[law].force(self.states[law], d, v)
+        self.events += 1
+        self.ledger.switched(law, before, after.name, self.t, d, v, force)
+        self.ledger.peaks.force[law].take(force, self.t)
+        if self.same_instant > 50 + 4 * len(self.laws):
+            s = self.laws[law]
+            why = f"{self.same_instant} changes at one instant, the last in element {s.element} ({s.rule})"
+            raise self.stop("A503", why)
+
+    def _work(self, begin: float, end: float, u: Array, v: Array, a: Array) -> Array:
+        """Work put in and lost in dashpots between two local times, shape (3,), by Simpson's rule
+        over the samples' cubics; losses and impulses of the laws are noted.
+        """
+        if end <= begin:
+            return np.zeros(3)
+        h, scene = self.dt, self.scene
+        inner = h * np.arange(math.floor(begin / h) + 1, math.ceil(end / h))
+        ends = np.concatenate([[begin], inner[(inner > begin) & (inner < end)], [end]])
+        width = np.diff(ends)
+        t = np.append(np.column_stack([ends[:-1], ends[:-1] + 0.5 * width]).ravel(), end)
+        weight = np.zeros(len(t))
+        weight[:-1:2] += width / 6
+        weight[1::2] += 4 * width / 6
+        weight[2::2] += width / 6
+        i = np.minimum((t / h).astype(int), u.shape[1] - 2)
+        x = t - i * h
+        place = hermite(h, x, np.stack([u[:, i], u[:, i + 1]]), np.stack([v[:, i], v[:, i + 1]]))[0]
+        speed = hermite(h, x, np.stack([v[:, i], v[:, i + 1]]), np.stack([a[:, i], a[:, i + 1]]))[0]
+        s, ds = (scene.excitation.values(self.t + t, order).T for order in (0, 1))
+        d, rate = scene.law_rows @ place + scene.law_inputs @ s, scene.law_rows @ speed
+        rate = rate + scene.law_inputs @ ds
+        power = ((scene.inputs @ s + scene.constant[:, None]) * speed).sum(axis=0)
+        damping, lost = float((speed * (scene.damping @ speed)).sum(axis=0) @ weight), 0.0
+        for law, branch in enumerate(self.branches):
+            loss = float(branch.damping * rate[law] ** 2 @ weight)
+            self.ledger.peaks.dashpot_losses[law] += loss
+            if self.laws[law].is_contact:
+                lost += loss
+            else:
+                damping += loss
+            if law in self.ledger.open:
+                force = branch.stiffness * d[law] + branch.damping * rate[law] + branch.force0
+                self.ledger.open[law].impulse += float(force @ weight)
+        return np.array([float(power @ weight), damping, lost])
+
+    def _peaks(self, t: Array, known: list[Array], local: Any) -> None:
+        value, rate, second = known
+        n, peaks = len(self.laws), self.ledger.peaks
+        np.maximum(self.largest, np.abs([value[:n], rate[:n]]).max(axis=2), out=self.largest)
+        search.widen(
+            [*peaks.deformation, *peaks.watch], self.t, t, value, rate, lambda i, x: local(i, x)[:2]
+        )
+        acting = [i for i, s in enumerate(self.laws) if not s.is_contact or i in self.ledger.open]
+        if not acting:
+            return
+        k, c, f0 = np.array(
+            [
+                (b.stiffness, b.damping * self.laws[i].is_contact, b.force0)
+                for i, b in ((i, self.branches[i]) for i in acting)
+            ]
+        ).T[:, :, None]
+
+        def exact(i: int, at: float) -> tuple[float, float]:
+            d, v, w = local(acting[i], at)
+            return float(k[i, 0] * d + c[i, 0] * v + f0[i, 0]), float(k[i, 0] * v + c[i, 0] * w)
+
+        force, slope = k * value[acting] + c * rate[acting] + f0, k * rate[acting] + c * second[acting]
+        running = self.ledger.open
+        targets = [self.ledger.running(i) if i in running else peaks.force[i] for i in acting]
+        search.widen(targets, self.t, t, force, slope, exact)
+        for i, collision in running.items():
+            peaks.force[i].take(collision.peak, collision.t_peak)
+
+    def _hand_out(self, t: float, u: Array, v: Array, a: Array, works: Array) -> None:
+        self.sink.sample(t, u, v, a, law_values(self.scene, t, u, v, self.states), works)
+
+    def outcome(self) -> Outcome:
+        """What the run gathered."""
+        figures = {
+            "method": f"LAPLACE, {self.points} samples {self.dt:g} apart",
+            "events": self.events,
+            "transforms": self.transforms,
+            "linear regimes": len(self._regimes),
+        }
+        return Outcome(self.ledger.close(), figures, tuple(self.states))
+
+    def stop(self, code: str, why: str) -> Stop:
+        """The exception that ends the run here."""
+        return Stop(code, self.t, why, self.outcome())
+
+
+def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
+    """Integrate a scene by numerical Laplace transforms; see the module's head.
+
+    Raises
+    ------
+    Stop
+        A scene that is not piecewise linear or whose supports move apart from each other, a DT that does
+        not resolve it, a mechanism, numbers beyond all bounds, or an interrupt.
+    """
+    refuse_rigid(scene, start, "LAPLACE")
+    curved = next((s for s in scene.structure.laws if s.law.curved), None)
+    why = ""
+    if scene.structure.chords:
+        why = f"members change their stiffness as they move (GEOMETRY {scene.structure.model.geometry})"
+    elif curved is not None:
+        why = f"the law {curved.rule} of element {curved.element} is curved"
+    elif scene.total:
+        why = "the supports move apart from each other"
+    if why:
+        raise Stop("A505", float(start.times[0]), f"LAPLACE cannot take this: {why}; AUTO can")
+    small = condense(scene)
+    run = Laplace(
+        small.scene,
+        replace(start, u=start.u[small.keep], v=start.v[small.keep]),
+        Watch(
+            watch.names,
+            watch.rows @ small.expand,
+            watch.input_rows + watch.rows @ small.follow,
+            watch.constants + watch.rows @ small.constant,
+        ),
+        options,
+        Whole(sink, small),
+    )
+    try:
+        return run.run()
+    except KeyboardInterrupt:
+        raise run.stop("A506", INTERRUPTED) from None
+
+
+SPEC = Spec(
+    "method",
+    "LAPLACE",
+    "numerical Laplace transform between events",
+    (
+        Field("DT", Kind.REAL, "T", above=0, doc="distance of the samples"),
+        Field("POINTS", Kind.INT, default=4096, lo=16, hi=1_000_000, doc="samples in one transform"),
+    ),
+    reference="after Chouw 2002; Wilcox 1978",
+    impl=integrate,
+)

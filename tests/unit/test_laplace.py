@@ -1,0 +1,151 @@
+"""LAPLACE: orders against closed forms, and EXACT's answers with contact, yielding and soil."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from verification.cases import ROOT, run_deck, run_text
+
+OSCILLATOR = """UNITS N m s
+PARAM w = 5   xi = 0.05   gap = 9
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 1 0 FIX=YR
+ELEMENTS
+ 1 K 1 2
+ 2 STOP 2
+PROPS
+ K SPRING KX=w^2
+ STOP CONTACT GAP=gap LAW=KELVIN_VOIGT K=1000 E=0.7
+WEIGHTS
+ 2 1
+DAMPING
+ RAYLEIGH XI=xi OMEGA=w,3*w
+INITIAL
+ 2 UX=-1 VX=2
+OUTPUT
+ EVERY=0.1
+ANALYSIS
+ HISTORY 3
+"""
+
+
+def test_free_vibration_by_its_closed_form() -> None:
+    """Without kinks in the excitation the error is that of the cubics between the samples: order 4 at an
+    output time between them."""
+    w, xi = 5.0, 0.05
+    wd = w * math.sqrt(1 - xi * xi)
+    off = []
+    for dt in (0.03, 0.015, 0.0075):
+        r = run_text(OSCILLATOR, method="LAPLACE", dt=dt)
+        t = r.time
+        u = np.exp(-xi * w * t) * (-np.cos(wd * t) + (2 - xi * w) / wd * np.sin(wd * t))
+        off.append(np.abs(r.u[:, 1, 0] - u).max())
+        assert r.check() < 1e-3
+    assert off[2] < 2e-6
+    assert math.log2(off[0] / off[1]) > 3.5 and math.log2(off[1] / off[2]) > 3.5
+
+
+def test_kinks_of_the_excitation_leave_order_3() -> None:
+    """A sawtooth of the ground whose points lie between the samples."""
+    deck = OSCILLATOR.replace("ANALYSIS", "EQUAKE\n TABLE POINTS=0,0,0.31,8,0.77,-9,1.3,3,9,3\nANALYSIS")
+    exact = run_text(deck, method="EXACT")
+    runs = [run_text(deck, method="LAPLACE", dt=dt) for dt in (0.04, 0.02, 0.01, 0.005)]
+    place, speed = (
+        [float(np.abs(getattr(r, x) - getattr(exact, x)).max()) for r in runs] for x in ("u", "v")
+    )
+    assert math.log2(place[0] / place[3]) / 3 > 2.5 and place[3] < 1e-7
+    assert math.log2(speed[0] / speed[3]) / 3 > 1.5 and speed[3] < 1e-5
+
+
+def test_impacts_are_those_of_exact() -> None:
+    deck = OSCILLATOR.replace("gap = 9", "gap = 0.5")
+    exact = run_text(deck, method="EXACT").tables["collisions"]
+    off = []
+    for dt in (0.005, 0.0025, 0.00125):
+        r = run_text(deck, method="LAPLACE", dt=dt)
+        c = r.tables["collisions"]
+        assert c["t_start"] == pytest.approx(exact["t_start"], abs=1e-6)
+        assert c["peak_force"] == pytest.approx(exact["peak_force"], rel=2e-5)
+        assert c["impulse"] == pytest.approx(exact["impulse"], rel=2e-5)
+        off.append(np.abs(c["t_end"] - exact["t_end"]).max())
+    assert off[0] / off[2] > 30.0
+
+
+SOIL = """UNITS kN m s
+GRAVITY 9.81
+NODES
+ 1 0 0
+ 2 0 4
+ 3 12 0
+ 4 12 4
+ELEMENTS
+ 1 FOOT 1
+ 2 COL 1 2
+ 3 FOOT 3
+ 4 COL 3 4
+ 5 HIT 2 4
+PROPS
+ FOOT FOUNDATION {foot}
+ COL FRAME E=3e7 A=0.2 I=0.004
+ HIT CONTACT GAP=0.004 LAW=KELVIN_VOIGT K=2e5 E=0.6
+WEIGHTS
+ 1 300 300 200
+ 2 800 800 100
+ 3 300 300 200
+ 4 300 300 60
+INITIAL
+ 2 VX=0.4
+OUTPUT
+ EVERY=0.02
+ANALYSIS
+ HISTORY 1.2
+"""
+
+
+def test_two_buildings_on_soil_that_pound() -> None:
+    """Cones under both footings, the contact between the roofs: displacements and forces of EXACT."""
+    deck = SOIL.format(foot="G=8e4 NU=0.33 WGT=19 B=2 L=2")
+    exact = run_text(deck, method="EXACT")
+    assert exact.status == "done", exact.message
+    r = run_text(deck, method="LAPLACE", dt=2e-4)
+    assert r.status == "done", r.message
+    size = np.abs(exact.u).max()
+    assert np.abs(r.u - exact.u).max() < 1e-5 * size
+    assert len(r.tables["collisions"]) == len(exact.tables["collisions"]) > 0
+    assert r.column("contact_summary", "peak_force") == pytest.approx(
+        exact.column("contact_summary", "peak_force"), rel=1e-4
+    )
+    assert r.check() < 1e-3
+
+
+def test_the_papers_lumped_buildings() -> None:
+    """El Centro, storeys that yield, a stiff and an equivalent contact: peaks of EXACT."""
+    deck = ROOT / "examples" / "cole2011" / "lumped.inp"
+    for contact, share in (({}, 1e-4), ({"kc": 3254097, "cc": 9822.4}, 1e-5)):
+        exact = run_deck(deck, {"t": 3, **contact}, "EXACT")
+        r = run_deck(deck, {"t": 3, **contact}, "LAPLACE", 1e-3)
+        for name in ("max", "min"):
+            size = np.abs(exact.column("drift_envelope", name)).max()
+            off = r.column("drift_envelope", name) - exact.column("drift_envelope", name)
+            assert np.abs(off).max() < share * size
+        most = exact.column("contact_summary", "peak_force")
+        assert r.column("contact_summary", "peak_force") == pytest.approx(most, rel=share)
+        assert len(r.tables["collisions"]) == len(exact.tables["collisions"])
+
+
+def test_what_it_cannot_take_is_refused_in_words() -> None:
+    r = run_text(
+        OSCILLATOR.replace("LAW=KELVIN_VOIGT K=1000", "LAW=STEREOMECHANICS"), None, "LAPLACE", 0.01
+    )
+    assert r.status == "stopped" and "LAPLACE knows no rigid contact" in r.message
+    r = run_text(OSCILLATOR, {"w": 500}, "LAPLACE", 0.01)
+    assert "DT=0.01 does not resolve the fastest mode" in r.message
+    moved = OSCILLATOR.replace("ANALYSIS", "EQUAKE\n SINE AMPLITUDE=1 PERIOD=1 SUPPORTS=1\nANALYSIS")
+    assert "the supports move apart" in run_text(moved, None, "LAPLACE", 0.01).message
+    curved = OSCILLATOR.replace("KX=w^2", "KX=w^2 FX=3 RULE=BOUC_WEN N=2")
+    assert "the law BOUC_WEN of element 1 is curved" in run_text(curved, None, "LAPLACE", 0.01).message

@@ -1,0 +1,491 @@
+"""Rigid contacts: impacts by Eqs 1-2, rows of masses, bounces until rest, forces of closed contacts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from decks import scene_of, structure_of
+from pound_solve.analyses import static
+from pound_solve.analyses.path import Unstable
+from pound_solve.assemble import AssemblyError
+from pound_solve.integrate.flow import held_space, make_flow, state_space
+from pound_solve.integrate.rigid import SLOW, Rigid
+from verification.cases import Ran, run_text
+
+Array = NDArray[np.float64]
+
+
+def row(
+    masses: list[float],
+    speeds: list[float],
+    e: float | list[float],
+    gap: float = 0.0,
+    t: float = 1.0,
+    more: str = "",
+) -> str:
+    """Free masses in a row along x, a contact between each and the next."""
+    n = len(masses)
+    es = [e] * (n - 1) if isinstance(e, float | int) else e
+    lines = [f"UNITS N m s\nGRAVITY 1\nNODES\n 1 TO {n} 1 TO {n} 0 FIX=YR\nELEMENTS"]
+    lines += [f" {i} C{i} {i} {i + 1}" for i in range(1, n)]
+    lines += ["PROPS"]
+    lines += [f" C{i + 1} CONTACT GAP={gap!r} LAW=STEREOMECHANICS E={x!r}" for i, x in enumerate(es)]
+    lines += ["WEIGHTS", *(f" {i + 1} {m!r}" for i, m in enumerate(masses))]
+    lines += ["INITIAL", *(f" {i + 1} VX={v!r}" for i, v in enumerate(speeds)), more]
+    return "\n".join([*lines, f"ANALYSIS\n HISTORY {t!r} FROM=REST"])
+
+
+def speeds(r: Ran) -> Array:
+    return np.asarray(r.v[-1, :, 0])
+
+
+# ---------------------------------------------------------------------- impacts
+
+
+@settings(max_examples=8, deadline=None)
+@given(
+    st.floats(0.01, 100.0),
+    st.floats(0.01, 100.0),
+    st.floats(-3.0, 3.0),
+    st.floats(0.01, 10.0),
+    st.floats(0.0, 1.0),
+)
+def test_two_masses_part_by_equations_1_and_2(
+    m1: float, m2: float, share: float, approach: float, e: float
+) -> None:
+    v2 = share * approach
+    v1, gap = v2 + approach, 0.1
+    r = run_text(row([m1, m2], [v1, v2], e, gap, 2 * gap / approach))
+    after = [
+        v1 - (1 + e) * m2 / (m1 + m2) * (v1 - v2),
+        v2 - (1 + e) * m1 / (m1 + m2) * (v2 - v1),
+    ]  # Cole et al. 2011, Eqs 1-2
+    assert speeds(r) == pytest.approx(after, abs=1e-12 * (abs(v1) + abs(v2)))
+    c = r.tables["collisions"]
+    m = m1 * m2 / (m1 + m2)
+    assert c["t_start"] == pytest.approx([gap / approach], rel=1e-12)
+    assert c["approach_velocity"] == pytest.approx([approach], rel=1e-12)
+    assert c["impulse"] == pytest.approx([(1 + e) * m * approach], rel=1e-12)
+    if e > 1e-3:
+        assert c["separation_velocity"] == pytest.approx([e * approach], rel=1e-9)
+        assert np.isnan(c["peak_force"]).all()  # no number can be
+    lost = float(r.column("contact_summary", "energy_lost")[0])
+    assert lost == pytest.approx(0.5 * m * approach**2 * (1 - e * e), abs=1e-12 * m * approach**2)
+    assert r.check() < 1e-12
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.01])
+@pytest.mark.parametrize("n", [3, 5])
+def test_a_row_of_equal_masses_hands_the_impact_through(n: int, gap: float) -> None:
+    """Newton's cradle, touching or not."""
+    r = run_text(row([2.0] * n, [1.0] + [0.0] * (n - 1), 1.0, gap))
+    assert speeds(r) == pytest.approx([0.0] * (n - 1) + [1.0], abs=1e-14)
+    assert r.column("collisions", "impulse") == pytest.approx([2.0] * (n - 1), rel=1e-13)
+
+
+def test_two_masses_arrive_two_leave() -> None:
+    r = run_text(row([1.0] * 5, [1.0, 1.0, 0.0, 0.0, 0.0], 1.0))
+    assert speeds(r) == pytest.approx([0, 0, 0, 1, 1], abs=1e-14)
+
+
+def test_what_is_symmetric_stays_symmetric() -> None:
+    """A mass that is hit from both sides at once stays where it is."""
+    r = run_text(row([1.0, 3.0, 1.0], [1.0, 0.0, -1.0], 0.7, 0.1))
+    assert speeds(r) == pytest.approx([-0.7, 0.0, 0.7], abs=1e-14)
+    assert len(r.tables["collisions"]) == 2
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(2, 6), st.integers(0, 10**6))
+def test_impacts_keep_momentum_and_never_win_energy(n: int, seed: int) -> None:
+    """Rows of any masses that all touch, each contact with an E of its own."""
+    rng = np.random.default_rng(seed)
+    masses, v = 10.0 ** rng.uniform(-2, 2, n), rng.normal(size=n)
+    es = rng.choice([0.0, 0.3, 0.8, 1.0], n - 1).tolist()
+    r = Rigid(scene_of(row(masses.tolist(), v.tolist(), es)))
+    rates = r.rows @ v
+    impulse, lost, after = r.strike(rates, np.ones(n - 1, bool), np.abs(rates))
+    w = v - r.yielding @ impulse
+    scale = float(masses @ v**2)
+    assert np.all(impulse >= 0.0) and lost.sum() >= -1e-14 * scale
+    assert after == pytest.approx(r.rows @ w, abs=1e-10 * np.abs(w).max())
+    assert np.all(after <= 1e-10 * np.abs(w).max())
+    assert masses @ w == pytest.approx(masses @ v, abs=1e-11 * masses @ np.abs(v))
+    assert 0.5 * scale - 0.5 * masses @ w**2 == pytest.approx(lost.sum(), abs=1e-10 * scale)
+
+
+def test_redundant_contacts_share() -> None:
+    """Two contacts between the same two masses act as one."""
+    deck = row([1.0, 2.0], [1.0, 0.0], 0.0, more="LOADS\n 1 1 0").replace("PROPS", " 9 C1 1 2\nPROPS")
+    r = run_text(deck)
+    # then the load of 1 pushes 3: the second gets two thirds of it
+    assert speeds(r) == pytest.approx([2 / 3, 2 / 3], rel=1e-12)
+    assert r.force[-1] == pytest.approx([1 / 3, 1 / 3], rel=1e-12)
+    assert r.check() < 1e-12
+
+
+# ---------------------------------------------------------------------- bounces and rest
+
+BALL = """UNITS N m s
+PARAM e = 0.5   h = 0.5   g = 10   t = 12
+GRAVITY g
+NODES
+ 1 0 0 FIX=XR
+ELEMENTS
+ 1 FLOOR 1
+PROPS
+ FLOOR CONTACT GAP=h ANGLE=-90 LAW=STEREOMECHANICS E=e
+WEIGHTS
+ 1 2*g
+LOADS
+ 1 0 -2*g
+OUTPUT
+ EVERY=0.1
+ANALYSIS
+ HISTORY t FROM=REST
+"""
+
+
+@pytest.mark.parametrize("e", [0.0, 0.05, 0.5, 0.9])
+def test_a_ball_bounces_by_the_closed_form_until_it_rests(e: float) -> None:
+    """Impact n at t0 + 2 v0/g (e + ... + e^n), v0 e^n; rest where that comes to an end, sooner by what
+    approaches below the threshold would have taken."""
+    r = run_text(BALL, {"e": e})
+    g, h = 10.0, 0.5
+    t0, v0 = math.sqrt(2 * h / g), math.sqrt(2 * h * g)
+    c = r.tables["collisions"]
+    flights = 2 * v0 / g * e ** np.arange(1, len(c))
+    off = np.abs(c["t_start"] - t0 - np.append(0.0, np.cumsum(flights)))
+    assert np.all(
+        off <= 1e-13 + 1e-15 / (1 - e) / c["approach_velocity"]
+    )  # the rounding of a place is a time
+    few = c["approach_velocity"] > 1e-2
+    assert c["approach_velocity"][few] == pytest.approx(v0 * e ** np.arange(few.sum()), rel=1e-10)
+    assert np.isnan(c["t_end"][-1]) and (c["t_end"][:-1] == c["t_start"][:-1]).all()
+    zeno = t0 + 2 * v0 / g * e / (1 - e)
+    assert -1e-14 <= zeno - c["t_start"][-1] < 2 * SLOW * 2 * v0 / g / (1 - e) + 1e-14
+    assert r.force[-1, 0] == c["peak_force"][-1] == pytest.approx(20.0, rel=1e-14)
+    assert r.u[-1, 0, 1] == pytest.approx(-h, rel=1e-15) and r.v[-1, 0, 1] == 0.0
+    # all the impulse is the weight's
+    assert c["impulse"].sum() == pytest.approx(20.0 * 12.0, rel=1e-12)
+    assert float(r.column("contact_summary", "energy_lost")[0]) == pytest.approx(20.0 * h, rel=1e-12)
+    assert r.check() < 1e-12
+
+
+def test_a_stack_rests_and_each_contact_bears_what_lies_on_it() -> None:
+    deck = """UNITS N m s
+GRAVITY 10
+NODES
+ 1 0 1 FIX=XR
+ 2 0 2 FIX=XR
+ 3 0 3 FIX=XR
+ELEMENTS
+ 1 A 1
+ 2 B 2 1
+ 3 B 3 2
+PROPS
+ A CONTACT GAP=0.02 ANGLE=-90 LAW=STEREOMECHANICS E=0.4
+ B CONTACT GAP=0.01 LAW=STEREOMECHANICS E=0.4
+WEIGHTS
+ 1 10
+ 2 20
+ 3 40
+LOADS
+ 1 0 -10
+ 2 0 -20
+ 3 0 -40
+ANALYSIS
+ HISTORY 3 FROM=REST
+"""
+    r = run_text(deck)
+    assert r.status == "done"
+    assert r.force[-1] == pytest.approx([70.0, 60.0, 40.0], rel=1e-12)
+    assert r.u[-1, :, 1] == pytest.approx([-0.02, -0.03, -0.04], rel=1e-12)
+    assert r.column("contact_summary", "impulse") == pytest.approx([210.0, 180.0, 120.0], rel=1e-9)
+    assert r.check() < 1e-12
+
+
+WALL = """UNITS N m s
+PARAM e = 1   w = 5   gap = 0   x0 = -1   v0 = 0   t = 10   xi = 0
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 1 0 FIX=YR
+ELEMENTS
+ 1 K 1 2
+ 2 STOP 2
+PROPS
+ K SPRING KX=w^2
+ STOP CONTACT GAP=gap LAW=STEREOMECHANICS E=e
+WEIGHTS
+ 2 1
+DAMPING
+ RAYLEIGH XI=xi OMEGA=w,3*w
+INITIAL
+ 2 UX=x0 VX=v0
+ANALYSIS
+ HISTORY t
+"""
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.4, -0.0, 0.9])
+def test_an_oscillator_against_a_wall_is_periodic(gap: float) -> None:
+    """E = 1: the wall mirrors the motion; from one impact to the next the phase goes from -p to p.  Energy
+    1/2 w^2 is kept for all of 10 s."""
+    r = run_text(WALL, {"gap": gap})
+    w = 5.0
+    phase = math.acos(-gap)  # of cos, from x = -1 on to x = gap
+    c = r.tables["collisions"]
+    expected = (phase + 2 * phase * np.arange(len(c))) / w
+    assert len(c) == int((10 * w / phase + 1) / 2)
+    assert c["t_start"] == pytest.approx(expected, rel=1e-12)
+    assert c["approach_velocity"] == pytest.approx(w * math.sqrt(1 - gap * gap), rel=1e-12)
+    assert r.check() < 1e-12
+
+
+def test_a_damped_oscillator_against_a_wall() -> None:
+    """At gap 0 every half period of the damped oscillation; each loses e and the damping of that time."""
+    e, xi, w = 0.8, 0.05, 5.0
+    c = run_text(WALL, {"e": e, "xi": xi, "x0": 0, "v0": -2, "t": 6}).tables["collisions"]
+    half = math.pi / (w * math.sqrt(1 - xi * xi))
+    n = np.arange(1, len(c) + 1)
+    assert len(c) == int(6 / half)
+    assert c["t_start"] == pytest.approx(half * n, rel=1e-12)
+    expected = 2 * e ** (n - 1) * np.exp(-xi * w * half * n)
+    assert c["approach_velocity"] == pytest.approx(expected, rel=1e-11)
+
+
+def test_a_stiff_spring_tends_to_an_elastic_impact() -> None:
+    """The contact time of a LINEAR contact falls with its stiffness' root, and with it the delay of the
+    second impact."""
+    rigid = run_text(WALL, {"gap": 0.5, "t": 2}).column("collisions", "t_start")[1]
+    off = []
+    for k in (1e4, 1e6, 1e8):
+        deck = WALL.replace("STEREOMECHANICS E=e", f"LINEAR K={k!r}")
+        off.append(run_text(deck, {"gap": 0.5, "t": 2}).column("collisions", "t_start")[1] - rigid)
+    assert off[0] / off[1] == pytest.approx(10.0, rel=0.1)
+    assert off[1] / off[2] == pytest.approx(10.0, rel=0.02)
+
+
+# ---------------------------------------------------------------------- closed contacts
+
+
+def random_block(seed: int, light: int = 0) -> tuple[Array, Array, Array, Array]:
+    rng = np.random.default_rng(seed)
+    n = 6
+    x, y = rng.normal(size=(2, n, n))
+    m = np.diag(rng.uniform(0.5, 2.0, n))
+    m[n - light :, n - light :] = 0.0
+    rows = np.zeros((2, n))
+    rows[0, :2], rows[1, 1:4] = (1.0, -1.0), (0.6, 0.0, -0.8)
+    return m, 0.1 * y @ y.T, x @ x.T + 0.2 * np.eye(n), rows
+
+
+@pytest.mark.parametrize("light", [0, 1, 2])
+def test_what_is_held_stays_held_and_the_rest_balances(light: int) -> None:
+    """``M a + C v + K u - p`` is made of the rows alone, ``rows u = x(t)``, at any time."""
+    m, c, k, rows = random_block(3, light)
+    n = len(m)
+    rng = np.random.default_rng(light)
+    p, x = rng.normal(size=(3, n)), rng.normal(size=(3, 2))
+    first, second = np.array([x[1], 2 * x[2], 0 * x[2]]), np.array([2 * x[2], 0 * x[2], 0 * x[2]])
+    whole = np.hstack([p, x, first, second])
+    flow = make_flow(m, c, k, np.zeros((n, 1)), rows)
+    g, q0 = flow.push(whole), flow.enter(*rng.normal(size=(2, n)))
+    u_p, v_p = flow.u_p, flow.space.v_p
+    assert u_p is not None and v_p is not None
+    for t in (0.0, 0.3, 2.0):
+        q = flow.at(q0, g, t)
+        rate = flow.rate(q, g, t)
+        f, df = whole[0] + t * whole[1] + t * t * whole[2], whole[1] + 2 * t * whole[2]
+        ddf = 2 * whole[2]
+        u = (flow.u_q @ q).real + u_p @ f
+        v = (flow.v_q @ q).real + v_p @ f + u_p @ df
+        a = (flow.v_q @ rate).real + v_p @ df + u_p @ ddf
+        assert rows @ u == pytest.approx(x[0] + t * x[1] + t * t * x[2], abs=1e-12)
+        assert rows @ v == pytest.approx(x[1] + 2 * t * x[2], abs=1e-12)
+        rest = m @ a + c @ v + k @ u - f[:n]
+        assert np.abs(rest - np.linalg.pinv(rows) @ (rows @ rest)).max() < 1e-11
+        assert np.abs(rest).max() > 0.1
+
+
+def test_nothing_held_is_no_constraint() -> None:
+    m, c, k, _ = random_block(1)
+    free, held = state_space(m, c, k), held_space(m, c, k, np.eye(6)[:1])
+    assert len(held.a) == len(free.a) - 2
+
+
+def test_a_mass_is_carried_by_a_moving_support_until_that_slows_down() -> None:
+    """The support accelerates as sin, the mass touches it and is pushed by m a; they part at half the
+    period with the velocity reached."""
+    deck = """UNITS N m s
+PARAM w = 2*pi
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 0 FIX=YR
+ELEMENTS
+ 1 PUSH 2 1
+PROPS
+ PUSH CONTACT GAP=0 ANGLE=180 LAW=LAGRANGE
+WEIGHTS
+ 2 3
+EQUAKE
+ SINE AMPLITUDE=5 PERIOD=1 VELOCITY0=0 SUPPORTS=1
+OUTPUT
+ EVERY=0.05
+ANALYSIS
+ HISTORY 0.8
+"""
+    r = run_text(deck)
+    w, t = 2 * math.pi, r.time
+    assert r.status == "done", r.message
+    mass = r.nodes.index(2)
+    pushed = t <= 0.5
+    assert r.force[pushed, 0] == pytest.approx(15.0 * np.sin(w * t[pushed]), abs=1e-9)
+    assert (r.force[t > 0.51, 0] == 0.0).all()
+    v = np.where(pushed, 5 / w * (1 - np.cos(w * t)), 10 / w)
+    assert r.v[:, mass, 0] == pytest.approx(v, abs=1e-9)
+    c = r.tables["collisions"]
+    assert c["t_end"][-1] == pytest.approx(0.5, rel=1e-9)
+    assert c["impulse"].sum() == pytest.approx(3 * 10 / w, rel=1e-9)
+    assert r.check() < 1e-11
+
+
+def test_a_spring_lifts_its_foot_off_where_the_floor_would_have_to_pull() -> None:
+    """Two masses joined by a spring, the lower one on the floor: it leaves where the spring pulls its
+    weight, at a time of the upper one's oscillation."""
+    deck = """UNITS N m s
+GRAVITY 10
+NODES
+ 1 0 1 FIX=XR
+ 2 0 2 FIX=XR
+ELEMENTS
+ 1 FLOOR 1
+ 2 S 1 2
+PROPS
+ FLOOR CONTACT GAP=0 ANGLE=-90 LAW=LAGRANGE
+ S SPRING KY=100
+WEIGHTS
+ 1 10
+ 2 10
+LOADS
+ 1 0 -10
+ 2 0 -10
+INITIAL
+ 2 VY=5
+ANALYSIS
+ HISTORY 0.3 FROM=REST
+"""
+    r = run_text(deck)
+    c = r.tables["collisions"]
+    # upper: y = -0.1 + 0.1 cos wt + v/w sin wt, w = 10; the floor opens at y = 0.1
+    size, phase = math.hypot(0.1, 0.5), math.atan2(0.5, 0.1)
+    leave = (phase - math.acos(0.2 / size)) / 10
+    assert c["t_end"][0] == pytest.approx(leave, rel=1e-12)
+    assert c["peak_force"][0] == pytest.approx(10.0, rel=1e-12)
+    assert r.check() < 1e-12
+
+
+BARS = """UNITS kN m s
+PARAM n = 20   v = 1   t = 0.06
+GRAVITY 9.81
+NODES
+ 100 TO 100+n 0 TO 20 0 FIX=YR
+ 1000 TO 1000+n 20 TO 70 0 FIX=YR
+ELEMENTS
+ 101 TO 100+n D1 100 TO 99+n 101 TO 100+n
+ 1001 TO 1000+n D2 1000 TO 999+n 1001 TO 1000+n
+ 900 C 100+n 1000
+PROPS
+ D1 SPRING KX=1881300*n
+ D2 SPRING KX=752520*n
+ C CONTACT GAP=0 ANGLE=0 LAW=LAGRANGE
+WEIGHTS
+ 100,100+n 1600/(2*n)
+ 101 TO 99+n 1600/n
+ 1000,1000+n 3000/(2*n)
+ 1001 TO 999+n 3000/n
+INITIAL
+ 100 TO 100+n VX=v
+OUTPUT
+ EVERY=1e-3
+ANALYSIS
+ HISTORY t
+"""
+
+
+def test_bars_converge_to_the_theory_of_waves() -> None:
+    """The paper's diaphragms (Table IV) at 1 m/s: plateau F0 = Z1 Z2/(Z1 + Z2), contact until T2,
+    restitution 0.52664; what their end nodes lose at touch falls with 1/n."""
+    m1, m2, f0 = 1600 / 9.81, 3000 / 9.81, 8129.6
+    m = m1 * m2 / (m1 + m2)
+    off, lost = [], []
+    for n in (5, 20, 50):
+        r = run_text(BARS, {"n": n})
+        c = r.tables["collisions"]
+        off.append(abs(c["impulse"].sum() / m - 1 - 0.52664))
+        before = c[c["t_start"] < 0.0403]
+        assert before["impulse"].sum() == pytest.approx(c["impulse"].sum())
+        first = m1 * m2 / (m1 + m2) / (2 * n)
+        lost.append(float(r.column("contact_summary", "energy_lost")[0]))
+        assert lost[-1] >= 0.5 * first * (1 - 1e-9)
+        plateau = r.force[(r.time > 0.004) & (r.time < 0.016), 0]
+        assert plateau.mean() == pytest.approx(f0, rel=0.5 / n + 1e-3)
+        assert r.check() < 1e-12
+    assert off[0] > 4 * off[1] > 4 * off[2] and off[2] < 5e-4
+    assert lost[0] / lost[1] > 3.0 and lost[1] / lost[2] > 2.0
+
+
+# ---------------------------------------------------------------------- refusals
+
+
+def test_other_methods_and_statics_refuse_in_words() -> None:
+    for method in ("NEWMARK", "CENTRAL", "HHT"):
+        r = run_text(WALL, {"gap": 0.5}, method, 0.001)
+        assert r.status == "stopped" and f"A505 at t = 0 s: {method} knows no rigid contact" in r.message
+    assert run_text(WALL, {"gap": 0.5}).status == "done"  # AUTO takes EXACT
+    with pytest.raises(Unstable, match=r"rigid contact 2 \(STEREOMECHANICS\) closes"):
+        static.solve(structure_of(WALL.replace("INITIAL\n 2 UX=x0 VX=v0", "LOADS\n 2 100 0")))
+
+
+def test_weightless_nodes_and_overlaps_are_refused() -> None:
+    with pytest.raises(AssemblyError, match="give its nodes weight"):
+        structure_of(WALL.replace("WEIGHTS\n 2 1", ""))
+    with pytest.raises(AssemblyError, match="do not overlap"):
+        structure_of(WALL, {"gap": -0.1})
+    r = run_text(WALL.replace("WEIGHTS\n 2 1", "").replace("E=e", "E=e MASSES=1"))
+    assert r.status == "stopped" and "touches a freedom without mass" in r.message
+    r = run_text(WALL, {"gap": 0.5, "x0": 0.6})
+    assert r.status == "stopped" and "overlaps by 0.1 at the start" in r.message
+
+
+def test_a_support_hits_a_mass_at_rest() -> None:
+    """The mass leaves at (1 + e) times the support's velocity; what the support put in balances."""
+    deck = """UNITS N m s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 0 FIX=YR
+ELEMENTS
+ 1 PUSH 2 1
+PROPS
+ PUSH CONTACT GAP=0 ANGLE=180 LAW=STEREOMECHANICS E=0.5
+WEIGHTS
+ 2 3
+EQUAKE
+ SINE AMPLITUDE=5 PERIOD=1 SUPPORTS=1
+ANALYSIS
+ HISTORY 0.8
+"""
+    r = run_text(deck)
+    # -5/w at t = 0, back in its place at half the period with 5/w
+    assert r.v[-1, r.nodes.index(2), 0] == pytest.approx(1.5 * 5 / (2 * math.pi), rel=1e-12)
+    assert r.column("collisions", "t_start") == pytest.approx([0.5], rel=1e-12)
+    assert r.check() < 1e-12
