@@ -164,8 +164,9 @@ def to_tolerance(
         replay = Replay(sink)
         try:
             outcome = newmark.integrate(scene, start, watch, {"DT": h, "BETA": 0.25, "GAMMA": 0.5}, replay)
-        except Stop:
-            if before is None and h > 1e-6 * length:  # too coarse to go on says nothing of the structure
+        except Stop as err:
+            # too coarse to go on says nothing of the structure
+            if (before is None or err.code == "A503") and h > 1e-6 * length:
                 h *= 0.25
                 continue
             scene.decisions.append(stepped(scene))
