@@ -6,10 +6,10 @@ between two runs of which the second takes r times the steps of the first the pe
 :math:`\Delta`, and the error left in the second is estimated as :math:`\Delta/(r-1)`, as if the method
 were of first order only.  It is of second order, so that the estimate errs on the safe side.
 
-Which of the two pays shows on the way.  EXACT may begin with a little; if that does not last, steps are
-taken, and before every run of them EXACT may go as far as that run's cost, if by what it has shown it
-would get to the end.  Costs are counted from windows, decompositions, steps and unknowns, and not measured,
-so that a deck takes the same way whenever it is run.
+Which of the two pays shows on the way.  Where few laws change stiffness EXACT may begin with a little; if
+that does not last, steps are taken, and before every run of them EXACT may go as far as that run's cost, if
+by what it has shown it would get to the end.  Costs are counted from windows, decompositions, steps and
+unknowns, and not measured, so that a deck takes the same way whenever it is run.
 
 What is compared: the largest and smallest value of every drift, against the larger of the two; the peak
 force of every contact, against itself (but no less than a twentieth of the largest contact force);
@@ -48,6 +48,7 @@ MOST_STEPS = 50_000_000  #: of one run
 MARGIN = 0.6  #: of the tolerance that the next step aims at
 FREE = 1.0  #: what EXACT may cost before steps are thought of: loading their kernels costs as much
 FEW = 24  #: combinations of stiffnesses that it may meet by then: where they do not return, more will come
+MANY = 12  #: laws from which EXACT gets nothing free: their combinations seldom return
 STEP, EACH = 3e-7, 2.5e-8  #: cost of a step and of each of its unknowns, of a law twice, as `exact.WINDOW`
 PLAIN = 100  #: times as much where nothing compiles the kernels
 
@@ -204,6 +205,8 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
         if reason := why_not_exact(scene):
             refuse_rigid(scene, start, f"NEWMARK, which AUTO takes because {reason},")
         free = few = np.inf  # no other method knows them
+    elif len(scene.structure.laws) > MANY:
+        free = 0.0
     outcome = rival.run(free, few)
     return outcome or to_tolerance(scene, start, watch, options, sink, rival)
 

@@ -270,8 +270,8 @@ class Stepper:
 
     def _leans_on(self, law: LawSpring) -> tuple[int, int]:
         """Law that this one leans on, and a bit for each branch where that one is pressed; -1 if none."""
-        for j, other in enumerate(self.laws):
-            if law.normal and (other.element, other.component) == (law.element, law.normal):
+        for j, other in enumerate(self.laws if law.normal else ()):
+            if (other.element, other.component) == (law.element, law.normal):
                 pressed = enumerate(x.startswith("pressed") for x in other.law.rule.branches)
                 return j, sum(yes << n for n, yes in pressed)
         return -1, 0
@@ -353,7 +353,8 @@ class Stepper:
         # twelve digits: steps of equal length share their factor, whatever the rounding of the times
         h = np.array([float(f"{x:.12e}") for x in lengths / steps])
         ex = scene.excitation
-        pieces = np.array([ex.piece(t + 1e-13 * max(1.0, t)) for t in ends - lengths], np.int64)
+        begin = ends - lengths
+        pieces = ex.pieces(begin + 1e-13 * np.maximum(1.0, begin)).astype(np.int64)
         coefs = np.ascontiguousarray(ex.coefs)
         advance = jit.compiled(kernel.advance)
         while True:
