@@ -94,7 +94,7 @@ def row(buildings, storeys=1, t=10.0, every=0.02, rule="ELASTO_PLASTIC"):
 
 
 def bouncer(t, every=None):
-    """One mass that a sine drives against a wall once a period of 0.2 s: ten changes a second."""
+    """One mass that a sine drives against a wall once a period of 0.2 s: fifteen changes a second."""
     return deck(
         ["1000000 0 0 FIX=XYR", "1 1 0 FIX=YR", "2 2 0 FIX=XYR"],
         ["1 S 1000000 1", "2 POUND 1 2"],
@@ -140,7 +140,7 @@ def run(folder, source, method, rounds=ROUNDS, **options):
             used, facts = costs(results)
         if best is None or i == 1 or used < best.seconds:  # the first one may have compiled
             best = Run(used, facts)
-        if used > LONG and (i or used > 10 * LONG):
+        if used > LONG and i:
             break
     return best
 
@@ -205,9 +205,9 @@ def memory(folder, source, method, **options):
 GROWTH = {
     "freedoms": (
         "freedoms of an elastic chain, 2 s, steps of 10 ms",
-        (10, 100, 1000, 10_000, 100_000),
+        (10, 100, 1000, 10_000, 50_000),
         chain,
-        {"NEWMARK": ({"dt": 0.01}, 100_000), "EXACT": ({}, 1000)},
+        {"NEWMARK": ({"dt": 0.01}, 50_000), "EXACT": ({}, 1000)},
         "NEWMARK: one sparse factor, each step passes over its entries once; EXACT: all modes, dense",
     ),
     "contacts": (
@@ -219,10 +219,10 @@ GROWTH = {
         "some steps over all; EXACT: a window and new modes for each event",
     ),
     "events": (
-        "events of one mass against a wall, ten a second",
-        (1.0, 10.0, 100.0, 1000.0, 10_000.0),
+        "seconds of one mass against a wall, fifteen events a second",
+        (1.0, 10.0, 100.0, 1000.0),
         bouncer,
-        {"NEWMARK": ({"dt": 2e-3}, 10_000.0), "EXACT": ({}, 100.0)},
+        {"NEWMARK": ({"dt": 2e-3}, 1000.0), "EXACT": ({}, 100.0)},
         "every event costs the same, and every closure leaves a row of the report",
     ),
     "record": (

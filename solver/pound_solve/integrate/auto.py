@@ -48,7 +48,9 @@ MOST_STEPS = 50_000_000  #: of one run
 MARGIN = 0.6  #: of the tolerance that the next step aims at
 FREE = 1.0  #: what EXACT may cost before steps are thought of: loading their kernels costs as much
 FEW = 24  #: combinations of stiffnesses that it may meet by then: where they do not return, more will come
-MANY = 12  #: laws from which EXACT gets nothing free: their combinations seldom return
+MANY = (
+    12  #: laws; where there are more, EXACT is taken to cost no less than that: combinations seldom return
+)
 STEP, EACH = 3e-7, 2.5e-8  #: cost of a step and of each of its unknowns, of a law twice, as `exact.WINDOW`
 PLAIN = 100  #: times as much where nothing compiles the kernels
 
@@ -102,7 +104,10 @@ class Rival:
 
     def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Sink) -> None:
         self.scene, self.start, self.watch, self.sink = scene, start, watch, sink
-        self.whole = np.inf if why_not_exact(scene) else 0.0  # least cost of the whole run, so far as known
+        # least cost of the whole run, so far as known
+        self.whole = FREE if len(scene.structure.laws) > MANY else 0.0
+        if why_not_exact(scene):
+            self.whole = np.inf
 
     def run(self, cost: float, regimes: float = np.inf) -> Outcome | None:
         """Its run, if that costs no more and meets no more linear regimes; None where it would."""
@@ -205,8 +210,6 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
         if reason := why_not_exact(scene):
             refuse_rigid(scene, start, f"NEWMARK, which AUTO takes because {reason},")
         free = few = np.inf  # no other method knows them
-    elif len(scene.structure.laws) > MANY:
-        free = 0.0
     outcome = rival.run(free, few)
     return outcome or to_tolerance(scene, start, watch, options, sink, rival)
 
