@@ -49,6 +49,7 @@ MARGIN = 0.6  #: of the tolerance that the next step aims at
 FREE = 1.0  #: what EXACT may cost before steps are thought of: loading their kernels costs as much
 FEW = 24  #: combinations of stiffnesses that it may meet by then: where they do not return, more will come
 STEP, EACH = 3e-7, 2.5e-8  #: cost of a step and of each of its unknowns, of a law twice, as `exact.WINDOW`
+EVENT = 10  #: steps that a located event costs as much as
 PLAIN = 100  #: times as much where nothing compiles the kernels
 
 
@@ -157,23 +158,26 @@ def to_tolerance(
     if jit.numba() is None:
         each *= PLAIN
     before: tuple[int, Array] | None = None
-    runs, error = 0, np.inf
+    runs, error, events = 0, np.inf, 0
     while True:
-        if (exactly := rival.run(each * length / h)) is not None:
+        if (exactly := rival.run(each * (length / h + EVENT * events))) is not None:
             return exactly
         replay = Replay(sink)
         try:
             outcome = newmark.integrate(scene, start, watch, {"DT": h, "BETA": 0.25, "GAMMA": 0.5}, replay)
-        except Stop:
-            if before is None and h > 1e-6 * length:  # too coarse to go on says nothing of the structure
-                h *= 0.25
+        except Stop as stop:
+            # too coarse to go on says nothing of the structure; growth may, if a finer step grows too
+            coarse = stop.code == "A503" or (stop.code == "A504" and before is None)
+            if coarse and h > 1e-6 * length:
+                h, before = 0.25 * h, None
+                events = max(events, stop.outcome.figures["events"] if stop.outcome else 0)
                 continue
             scene.decisions.append(stepped(scene))
             replay.hand_on()
             raise
         runs += 1
         now, against = figures(scene, outcome.peaks, replay)
-        steps = outcome.figures["steps"]
+        steps, events = outcome.figures["steps"], outcome.figures["events"]
         if before is not None and steps > before[0]:
             change = float(
                 (np.abs(now - before[1]) / np.where(against > 0.0, against, 1.0)).max(initial=0.0)
