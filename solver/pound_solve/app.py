@@ -59,6 +59,8 @@ class Request:
         Folders where records are looked for, after the deck's own.
     method, dt, tol : str or None, float or None
         Replace METHOD, DT and TOL of every HISTORY.
+    explain : bool
+        Put what the run imports, compiles and holds into the results.
     """
 
     deck: str
@@ -68,6 +70,7 @@ class Request:
     method: str | None = None
     dt: float | None = None
     tol: float | None = None
+    explain: bool = False
 
     def path(self, suffix: str) -> Path:
         """Path of an output file."""
@@ -279,8 +282,7 @@ def execute(request: Request, progress: Progress | None = None) -> tuple[int, Re
     ready = prepare(request)
     if request.out is not None:
         request.out.mkdir(parents=True, exist_ok=True)
-    given = {name.lower() for name in request.params}
-    status, results = solve(ready, request.path(".h5"), given, progress, began)
+    status, results = solve(ready, request.path(".h5"), progress, began, request)
     from pound_solve.report import render
 
     request.path(".rpt").write_text(render(results), encoding="ascii", newline="\n")
@@ -288,7 +290,7 @@ def execute(request: Request, progress: Progress | None = None) -> tuple[int, Re
 
 
 def solve(
-    ready: Prepared, path: Path, given: set[str], progress: Progress | None, began: float
+    ready: Prepared, path: Path, progress: Progress | None, began: float, request: Request
 ) -> tuple[int, Results]:
     """Run the analyses of a prepared deck into a results file.
 
@@ -297,11 +299,11 @@ def solve(
     ready : Prepared
     path : Path
         The results file.
-    given : set of str
-        Lower-case names of the PARAMs that do not come from the deck.
     progress : callable or None
     began : float
         Reading of `time.perf_counter` from which the total time counts.
+    request : Request
+        Tells which PARAMs do not come from the deck, and whether to explain.
 
     Returns
     -------
@@ -313,9 +315,10 @@ def solve(
     with Writer(
         path, title=ready.model.title, units=ready.model.units, program_version=__version__
     ) as writer:
+        given = {name.lower() for name in request.params}
         message = Course(
             ready.model, ready.motions, ready.forces, ready.structure, given, writer, progress, began,
-            ready.saved,
+            ready.saved, request.explain,
         ).all()  # fmt: skip
         writer.finish("stopped" if message else "done", message)
     return (STOPPED if message else DONE), Results.open(path)

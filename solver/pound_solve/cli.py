@@ -52,6 +52,9 @@ def parser() -> argparse.ArgumentParser:
         "-o", "--out", type=Path, metavar="DIR", help="folder of report and results (default: the deck's)"
     )
     run.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    run.add_argument(
+        "--explain", action="store_true", help="tell what the run imported, compiled, kept and left out"
+    )
     deck("check", "report all mistakes of a deck without running it")
     study = deck("study", "error against time of every method on this deck, and advice", methods=False)
     study.add_argument("--methods", metavar="M,M,...", help="methods (default: all)")
@@ -164,8 +167,9 @@ def _request(args: argparse.Namespace) -> object:
             raise SystemExit(_complain(f"--set {item}: write NAME=VALUE", 2))
         params[name.strip()] = value.strip()
     out, records = getattr(args, "out", None), tuple(args.records)
-    own = (getattr(args, name, None) for name in ("method", "dt", "tol"))
-    return Request(args.deck, params, out, records, *own)
+    given = vars(args)
+    own = {name: given[name] for name in ("method", "dt", "tol", "explain") if name in given}
+    return Request(args.deck, params, out, records, **own)
 
 
 def _run(args: argparse.Namespace) -> int:
@@ -193,6 +197,10 @@ def _run(args: argparse.Namespace) -> int:
                     print(f"pound-solve: warning: {check}: {value}; {verdict}", file=sys.stderr)
         if status == app.STOPPED:
             print(f"pound-solve: stopped: {results.message}", file=sys.stderr)
+        if args.explain:
+            from pound_solve.report import render as printed
+
+            print(printed(results, only=("scene", "size", "arrays", "imports")))
         if not args.quiet:
             print(f"{request.path('.rpt')}\n{request.path('.h5')}")
     return status

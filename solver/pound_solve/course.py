@@ -21,7 +21,7 @@ from pound_solve.assemble import Structure
 from pound_solve.forces.base import Force
 from pound_solve.integrate.base import ENERGIES, Outcome, Peaks, Stop
 from pound_solve.motions.base import Motion
-from pound_solve.results import Writer
+from pound_solve.results import Layout, Writer
 
 Array = NDArray[np.float64]
 Progress = Callable[[float, float], None]  #: told the time reached and the time to reach
@@ -52,6 +52,8 @@ class Course:
         Reading of the clock when the run began.
     saved : mapping of str to ndarray
         State that a history with RESTART goes on from, as it lies in the results file; else empty.
+    explain : bool
+        Tell what is imported, compiled and held, too.
     """
 
     def __init__(
@@ -65,11 +67,13 @@ class Course:
         progress: Progress | None,
         began: float,
         saved: Mapping[str, Array],
+        explain: bool = False,
     ) -> None:
         self.model, self.motions, self.forces, self.structure = model, motions, forces, structure
         self.overridden, self.writer, self.progress = overridden, writer, progress
         self.began, self.solve_seconds, self.every = began, 0.0, 0.0
-        self.saved = saved
+        self.saved, self.explain = saved, explain
+        self.held: tuple[scene.Scene | None, Layout] = (None, {})  # of the history
         self.checks: list[tuple[str, str, str]] = []
 
     def all(self) -> str:
@@ -242,7 +246,8 @@ class Course:
             start = history.begin(s, place, u, v0, state.states, state.u, times)
         tell, first = self.progress or (lambda t, end: None), None if saved is None else saved.first
         recorder = history.Recorder(place, drifts, self.writer.append, lambda t: tell(t, end), first)
-        self.writer.start_history(recorder.layout())
+        self.held = place, recorder.layout()
+        self.writer.start_history(self.held[1])
         spec = card.laws["METHOD"][0]
         options = {f.name: card[f.name] for f in spec.fields}
         save = card["SAVE"] if card["SAVE"] is not None and times[0] < card["SAVE"] < end else end
@@ -487,6 +492,13 @@ class Course:
             ("Python, numpy", f"{platform.python_version()}, {np.__version__}"),
         ]
         self.writer.table("run_figures", rows)
+        if not self.explain:
+            return
+        from pound_solve import explain
+
+        kind = explain.kind(self.structure, {card.spec.name for card in self.model.analyses})
+        self.writer.table("arrays", explain.arrays(self.structure, *self.held), f"Kind of problem: {kind}.")
+        self.writer.table("imports", explain.imports())
 
 
 def _until(times: Array, end: float) -> Array:

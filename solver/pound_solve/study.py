@@ -213,7 +213,7 @@ def run(request: app.Request, plan: Plan, tell: Tell = lambda text: None) -> tup
             raise StudyError(f"--methods {name}: known methods are {', '.join(known)}")
     model = replace(ready.model, analyses=tuple(cards))
     with tempfile.TemporaryDirectory(prefix="pound-study-") as folder:
-        bench = _Bench(replace(ready, model=model), plan, Path(folder) / "run.h5", tell)
+        bench = _Bench(request, replace(ready, model=model), plan, Path(folder) / "run.h5", tell)
         trials, reference = bench.all()
     return Study(tuple(trials), reference, advise(trials, reference)), ready
 
@@ -221,8 +221,10 @@ def run(request: app.Request, plan: Plan, tell: Tell = lambda text: None) -> tup
 class _Bench:
     """Runs the trials of one study."""
 
-    def __init__(self, ready: app.Prepared, plan: Plan, path: Path, tell: Tell) -> None:
-        self.ready, self.plan, self.path, self.tell = ready, plan, path, tell
+    def __init__(
+        self, request: app.Request, ready: app.Prepared, plan: Plan, path: Path, tell: Tell
+    ) -> None:
+        self.request, self.ready, self.plan, self.path, self.tell = request, ready, plan, path, tell
         self.methods = catalog().family("method")
         self.warm: set[str] = set()
 
@@ -338,7 +340,7 @@ class _Bench:
             if method in self.warm and time.perf_counter() - began > longest:
                 raise TooLong(TOO_LONG)
 
-        status, results = app.solve(ready, self.path, set(), watch, began)
+        status, results = app.solve(ready, self.path, watch, began, self.request)
         with results:
             if status != app.DONE:
                 if results.message.startswith("A506"):

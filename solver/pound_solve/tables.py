@@ -304,6 +304,17 @@ _SCENE = (
         ),
     ),
     Table("size", "Problem size", (_ITEM, _VALUE)),
+    Table(
+        "arrays",
+        "Arrays that are held",
+        (
+            Column("part", doc="what the arrays belong to"),
+            Column("what", doc="what they hold"),
+            Column("numbers", fmt="int", doc="numbers in them; of sparse matrices those that are stored"),
+            Column("bytes", fmt="int", doc="memory, indices of sparse matrices included"),
+        ),
+        note="Work arrays of a method, of the order of these, are not counted.",
+    ),
 )
 
 _STATIC = (
@@ -609,6 +620,15 @@ _FIGURES = (
         "Time, memory, versions",
         (_ITEM, _VALUE),
         note="Only this last section differs between two runs of the same deck.",
+    ),
+    Table(
+        "imports",
+        "Modules and kernels of this process",
+        (
+            Column("part", doc="package of the program, or library"),
+            Column("modules", fmt="int", doc="number of its modules that are imported, or of kernels"),
+            Column("which", doc="names of the program's own modules"),
+        ),
     ),
 )
 

@@ -21,7 +21,7 @@ LAYERS = (
     ("analyses",),
     ("catalog", "tables"),
     ("results", "echo", "reference"),
-    ("report", "export", "loop", "plot"),
+    ("report", "export", "loop", "plot", "explain"),
     ("course",),
     ("app",),
     ("study",),
