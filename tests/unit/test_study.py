@@ -188,7 +188,8 @@ def test_a_run_that_stops_is_a_row_and_two_studies_differ_in_times_only(two, cap
     assert two.path(".study.rpt").exists() and not two.path(".h5").exists()
 
 
-def test_where_exact_cannot_go_the_tolerances_of_auto_are_met(two):
+def test_where_exact_cannot_go_the_tolerances_of_auto_are_met(tmp_path):
+    two = write(tmp_path, OTHERS[2])
     deck = Path(two.deck)
     curved = "RULE=BOUC_WEN N=2 FX=100 KX="
     deck.write_text(deck.read_text().replace("KX=", curved))
