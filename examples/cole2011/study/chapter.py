@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import isnan
 from pathlib import Path
 from statistics import fmean
 
 import figures
 from cases import BENCHMARK, EXACT_EQUIVALENT, KD1, KD2, TESTS
 from errors import benchmark_of, by_test, drifts, worst
-from pound_solve.pounding import Diaphragm, Pair
 from runs import PLACES, Run
 from statements import judge, sensitivity
 from tabulate import tabulate
+
+from pound_solve.pounding import Diaphragm, Pair
 
 G = 9.81
 PAIR = Pair(Diaphragm(1600 / G, KD1), Diaphragm(3000 / G, KD2))  #: the two floors of Table IV
@@ -86,7 +88,13 @@ def drift_table(runs: Sequence[Run]) -> str:
 def contact_rows(runs: Sequence[Run]) -> list[list[str]]:
     """Closures and peak forces of some runs."""
     return [
-        [r.test, *map(str, r.closures), *(f"{f:.1f}" for f in r.forces), f"{r.residual:.0e}"] for r in runs
+        [
+            r.test,
+            *map(str, r.closures),
+            *("-" if isnan(f) else f"{f:.1f}" for f in r.forces),
+            f"{r.residual:.0e}",
+        ]
+        for r in runs
     ]
 
 
@@ -163,8 +171,9 @@ def write(folder: Path, study: Study) -> None:
     verdicts = [[v.statement, v.verdict, v.figures] for v in judge(paper, PAIR.force)]
     parts = [
         "# The study of Cole et al. (2011), run anew",
-        "Written by `python examples/cole2011/study`; every number comes from its runs or from the closed forms of "
-        "`pound_solve.pounding`. What had to be assumed stands in `examples/cole2011/README.md`.",
+        "Written by `python examples/cole2011/study`; every number comes from its runs or from the closed "
+        "forms of `pound_solve.pounding`. What had to be assumed stands with the decks, in "
+        "`examples/cole2011/README.md`.",
     ]
     if study.left_out:
         parts.append("Left out, for their records are missing: " + "; ".join(study.left_out) + ".")
@@ -180,8 +189,8 @@ def write(folder: Path, study: Study) -> None:
         shown("figure 11", "Drift errors of building 1 (Figure 11)"),
         shown("figure 12", "Drift errors of building 2 (Figure 12)"),
         "## Eq. 11 against recorded forces (Figures 13 and 14)",
-        "The recorded force is taken once as the peak, which rings above a plateau on a mesh of lumped masses, "
-        "and once as the plateau: the impulse over the duration of the collision.",
+        "The recorded force is taken once as the peak, which rings above a plateau on a mesh of lumped "
+        "masses, and once as the plateau: the impulse over the duration of the collision.",
         *(shown(f"figure {n} {of}", f"Figure {n}, {of}") for n in (13, 14) for of in ("peak", "plateau")),
     ]
     for record, group in paper.items():
@@ -191,8 +200,10 @@ def write(folder: Path, study: Study) -> None:
         parts += [
             "## All systems that the paper names, El Centro",
             systems_table(study.systems, bench),
-            "Drift errors against distributed masses. Laws with a restitution have E = 0.65 and the stiffness "
-            "of the stiffer diaphragm; the Hertz laws have that which gives at 0.3 m/s the same elastic force.",
+            "Drift errors against distributed masses. Laws with a restitution have E = 0.65 (the multiplier "
+            "0, elastic where it says so) and the stiffness of the stiffer diaphragm; the Hertz laws have "
+            "that which gives at 0.3 m/s the same elastic force. Rigid contacts have impulses in place of "
+            "peak forces.",
         ]
     if study.finer:
         parts += ["## More elements", finer_table(study.finer, bench)]
