@@ -274,13 +274,13 @@ class Window:
             block.samples = samples = flow.samples(block.qs[:, :-1], block.gs, h, count)
             if not m:
                 continue
-            flat = samples.reshape(len(samples), -1)
+            flat = samples.reshape(len(samples), n * count)
             last = block.qs[:, -1]
             both = (block.regime.uv_rows @ np.concatenate([flat, last[:, None]], axis=1)).real
             value[w] += both[:m]
             rate[w] += both[m:]
             if bending:
-                bend = flow.rates(samples, block.gs, t).reshape(len(samples), -1)
+                bend = flow.rates(samples, block.gs, t).reshape(len(samples), n * count)
                 end = flow.rate(last, block.gs[-1], self.length)
                 second[w] += (block.regime.uv_rows[m:] @ np.concatenate([bend, end[:, None]], axis=1)).real
             if block.ps is not None and flow.u_p is not None:
@@ -394,7 +394,7 @@ class Window:
             flow, index, q = block.regime.flow, block.regime.index, states(block)
             rate = flow.rates(q, block.gs[intervals], t)
             u[index], v[index], a[index] = (
-                (x @ y.reshape(len(y), -1)).real
+                (x @ y.reshape(len(y), n * len(t))).real
                 for x, y in ((flow.u_q, q), (flow.v_q, q), (flow.v_q, rate))
             )
             if block.ps is not None and flow.u_p is not None:
