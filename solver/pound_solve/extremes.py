@@ -1,5 +1,5 @@
-"""Stiff and extreme scenes for the stability matrix, as decks: every contact law, every hysteresis rule, and
-linear scenes whose motion is known in closed form.
+"""Stiff and extreme scenes for the stability matrix, as decks: every contact law, every hysteresis rule,
+and linear scenes whose motion is known in closed form.
 
 Laws are taken from the catalog with their own sample items, so a new one is covered by itself.  Masses are
 weights (GRAVITY 1); the storey of unit mass has a period of 1.
@@ -47,8 +47,6 @@ class Case:
         Displacements ux of the nodes of OUTPUT at some times, shape (n_times, n_nodes), in closed form.
     like : tuple of str and float
         Deck whose displacements times the factor are the right ones; empty: the deck itself.
-    curved : bool
-        Whether EXACT cannot be the reference.
     files : mapping of str to str
         Files beside the deck.
     heavy : bool
@@ -64,7 +62,6 @@ class Case:
     within: float = 0.02
     right: Callable[[Array], Array] | None = None
     like: tuple[str, float] = ("", 1.0)
-    curved: bool = False
     files: Mapping[str, str] = field(default_factory=dict)
     heavy: bool = False
 
@@ -330,7 +327,9 @@ OUTPUT
 """
 
 
-def one(more: str, end: float = 3.0, every: float = 0.0437123456789, k: float = STOREY, mass: float = 1.0) -> str:
+def one(
+    more: str, end: float = 3.0, every: float = 0.0437123456789, k: float = STOREY, mass: float = 1.0
+) -> str:
     """One storey."""
     return ONE.format(more=more, end=end, every=every, k=k, mass=mass)
 
@@ -425,11 +424,13 @@ def linear() -> Iterator[Case]:
     pushed = free.replace("ANALYSIS", "LOADS\n 2,3 FX=2\nANALYSIS").replace("METHOD=", "FROM=REST METHOD=")
     yield case("rigid-body modes", "pushed", pushed, right=lambda t: (t + t * t)[:, None])
     for share in (0.0, 1.0):
-        deck = one(damped(share) + "INITIAL\n 2,3 VX=1\n").replace("ELEMENTS", " 3 1 1 FIX=YR\nELEMENTS\n 2 SPR 1 3")
+        deck = one(damped(share) + "INITIAL\n 2,3 VX=1\n").replace(
+            "ELEMENTS", " 3 1 1 FIX=YR\nELEMENTS\n 2 SPR 1 3"
+        )
         deck = deck.replace(" 2 1.0\n", " 2,3 1.0\n").replace("NODES=2\n", "NODES=2,3\n")
         yield case(
             "repeated eigenvalues", "defective" if share else "undamped", deck,
-            right=lambda t, s=share: np.tile(swing(s)(t), 2),  # type: ignore[misc]
+            right=lambda t, s=share: np.tile(swing(s)(t), 2),
         )  # fmt: skip
     sine = f"EQUAKE\n SINE AMPLITUDE=1 OMEGA={OMEGA!r} DURATION=1000\n"
     yield case(
@@ -459,7 +460,11 @@ def linear() -> Iterator[Case]:
     for form in ("PDELTA", "PDELTA_MEMBER", "PDELTA_VARYING", "LARGE"):
         for share in (0.999, 1.001, 50.0):
             euler = math.pi**2 / 4 * 100
-            yield case("axial load over Euler's", f"{form} {share:g}", LEANING.format(form=form, push=-share * euler))
+            yield case(
+                "axial load over Euler's",
+                f"{form} {share:g}",
+                LEANING.format(form=form, push=-share * euler),
+            )
 
 
 def cases(families: tuple[str, ...] = ("linear", "contact", "hysteresis")) -> Iterator[Case]:

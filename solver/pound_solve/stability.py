@@ -17,8 +17,9 @@ import tempfile
 import time
 import warnings
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from multiprocessing.pool import Pool
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -33,6 +34,7 @@ Array = NDArray[np.float64]
 
 EXACT_WITHIN, AUTO_WITHIN = 1e-6, 2e-3  #: errors allowed, as shares of the largest displacement
 LIMIT: Final = 120.0  #: seconds until a case counts as endless
+FAMILIES: Final = ("linear", "contact", "hysteresis")
 RIGHT, TOLD, STOPPED, FAULT = "right", "told", "stopped", "fault"  #: how a case may end
 #: a stop names its number and time or stage; a refused deck its place
 CLEAR: Final = re.compile(r"A5\d\d (at t = \S+ \S+: |static analysis: )\w.{20,}|A50[15] \w.{20,}")
@@ -101,7 +103,11 @@ def solve(deck: str, files: Mapping[str, str]) -> Found:
             stop, t, u = results.message, nothing, nothing
             if "node/u" in results.histories:
                 t, u = results.time.copy(), results.history("node/u")[:, :, 0].copy()
-            looks = [c for c in results.table("checks") if c["verdict"].startswith("look")] if "checks" in results.tables else []
+            looks = (
+                [c for c in results.table("checks") if c["verdict"].startswith("look")]
+                if "checks" in results.tables
+                else []
+            )
             bad = [name for name in results.histories if not np.isfinite(results.history(name)).all()]
         if bad:
             return found(t, u, wrong=f"numbers that are none in {', '.join(bad)}")
@@ -114,7 +120,8 @@ class Runner:
     """Runs decks in a process of its own, which can be ended; the same deck is run once."""
 
     def __init__(self, limit: float) -> None:
-        self.limit, self.pool, self.kept = limit, None, dict[str, Found]()
+        self.limit, self.kept = limit, dict[str, Found]()
+        self.pool: Pool | None = None
 
     def __call__(self, case: Case, deck: str, method: str) -> Found:
         """Run a deck with a method."""
@@ -189,7 +196,7 @@ def judge(run: Runner, case: Case, method: str) -> Row:
 
 
 def matrix(
-    families: tuple[str, ...] = ("linear", "contact", "hysteresis"),
+    families: tuple[str, ...] = FAMILIES,
     chosen: Callable[[Case], bool] = lambda case: True,
     progress: Callable[[Row], None] = lambda row: None,
     limit: float = LIMIT,
@@ -222,23 +229,40 @@ def matrix(
 ENDS: Final = (RIGHT, TOLD, STOPPED, FAULT)
 
 
-def table(rows: Iterable[Row]) -> str:
-    """Counts of how cases end, scene by method, as Markdown; faults and kinds of stops below."""
-    by: dict[tuple[str, str], dict[str, list[Row]]] = defaultdict(lambda: defaultdict(list))
-    rows = list(rows)
-    for row in rows:
-        by[row.case.family, row.case.scene][row.method].append(row)
+def table(rows: Sequence[Row]) -> str:
+    """Counts of how cases end, scene by method, as Markdown."""
     names = methods()
-    out = ["Each cell: right / told by a check / stopped in words / faults.", ""]
+    by: dict[tuple[str, str], list[Row]] = defaultdict(list)
+    for row in rows:
+        by[row.case.family, row.case.scene].append(row)
+    out = []
     for family in dict.fromkeys(f for f, _ in by):
         out += [f"| {family} | cases | " + " | ".join(names) + " |", "|---" * (len(names) + 2) + "|"]
         for (own, scene), cells in by.items():
             if own == family:
-                count = len(next(iter(cells.values())))
-                ends = [Counter(r.end for r in cells[m]) for m in names]
-                texts = ["/".join(str(e[x]) for x in ENDS) for e in ends]
-                out.append(f"| {scene} | {count} | " + " | ".join(texts) + " |")
+                ends = [Counter(r.end for r in cells if r.method == m) for m in names]
+                texts = [" / ".join(str(e[x]) for x in ENDS) for e in ends]
+                out.append(f"| {scene} | {len(cells) // len(names)} | " + " | ".join(texts) + " |")
         out.append("")
     total = Counter(r.end for r in rows)
-    out.append(f"{len(rows)} runs: " + ", ".join(f"{total[e]} {e}" for e in ENDS) + ".")
+    return "\n".join([*out, f"{len(rows)} runs: " + ", ".join(f"{total[e]} {e}" for e in ENDS) + "."])
+
+
+def stops(rows: Sequence[Row]) -> str:
+    """The stops by kind, with their count and an example each; then all faults."""
+    kinds: dict[str, list[str]] = defaultdict(list)
+    for row in rows:
+        if row.end == STOPPED:
+            text = re.sub(r"^.*?case.inp", "case.inp", row.says.split("\n")[0])
+            kinds[re.sub(r"[-+\d.e]*\d[-+\d.e]*", "0", text)].append(text)
+    found = sorted(kinds.values(), key=len, reverse=True)
+    out = ["| stops | the first of them |", "|---|---|", *(f"| {len(x)} | {x[0]} |" for x in found)]
+    faults = [r for r in rows if r.end == FAULT]
+    for r in faults:
+        out.append(f"- {r.case.scene}, {r.case.variant}, {r.case.law} by {r.method}: {r.says}")
     return "\n".join(out)
+
+
+def page(rows: Sequence[Row]) -> str:
+    """Both, for the terminal and the manual."""
+    return f"Cells: {' / '.join(ENDS)}.\n\n{table(rows)}\n\n{stops(rows)}"

@@ -24,6 +24,7 @@ LAYERS = (
     ("report", "export", "loop", "plot"),
     ("course",),
     ("app",),
+    ("extremes", "stability"),
     ("__init__",),
     ("cli",),
     ("__main__",),

@@ -404,6 +404,12 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     if scene.structure.chords:
         why = "members that change their stiffness as they move (GEOMETRY {}) need steps: AUTO takes them"
         raise Stop("A505", float(start.times[0]), why.format(scene.structure.model.geometry))
+    curved = next((s for s in scene.structure.laws if s.law.curved), None)
+    if curved is not None:
+        why = (
+            f"the law {curved.rule} of element {curved.element} is curved and needs steps: AUTO takes them"
+        )
+        raise Stop("A505", float(start.times[0]), why)
     small = condense(scene)
     run = Exact(
         small.scene,
