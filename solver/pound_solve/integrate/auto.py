@@ -5,7 +5,8 @@ step until the peaks no longer change: between two runs with steps h and h/r the
 :math:`\Delta`, and the error left in the second is estimated as :math:`\Delta/(r-1)`, as if the method
 were of first order only.  It is of second order, so that the estimate errs on the safe side.
 
-What is compared: the largest and smallest value of every drift, against the larger of the two; the peak
+What is compared: the largest and smallest value of every drift, against the larger of the two (but no less
+than a millionth of the largest drift: what is smaller may be rounding, which never stands still); the peak
 force of every contact, against itself (but no less than a twentieth of the largest contact force);
 without either, the deformations of all springs in the same way as drifts.
 """
@@ -80,9 +81,9 @@ def figures(scene: Scene, peaks: Peaks) -> tuple[Array, Array]:
     if not swings and not contact:
         swings = peaks.deformation
     values = [(e.high, e.low) for e in swings]
-    sizes = [(max(abs(e.high), abs(e.low)),) * 2 for e in swings]
-    against = np.maximum(force, 0.05 * force.max(initial=0.0))
-    return np.concatenate([np.ravel(values), force]), np.concatenate([np.ravel(sizes), against])
+    size = np.repeat([max(abs(e.high), abs(e.low)) for e in swings], 2)
+    against = [np.maximum(x, share * x.max(initial=0.0)) for x, share in ((size, 1e-6), (force, 0.05))]
+    return np.concatenate([np.ravel(values), force]), np.concatenate(against)
 
 
 def to_tolerance(
