@@ -157,9 +157,9 @@ def test_a_thousand_seconds_of_record(tmp_path):
     """EXACT balances the energy of a long record that yields and pounds; steps come to the same drifts."""
     spec = extremes.catalog().family("contact")["KELVIN_VOIGT"]
     k = 100 * extremes.STOREY
-    quake = "EQUAKE\n SYNTHETIC PGA=3 SEED=7 DT=0.02 DURATION=1000\n"
+    quake = "EQUAKE\n SYNTHETIC PGA=10 SEED=7 DT=0.02 DURATION=1000\n"
     law = extremes.items(spec, K=k)
-    given = {"motion": quake, "end": 1000.0, "every": 1.0, "speed": 0.0, "k2": 2 * extremes.STOREY}
+    given = {"motion": quake, "gap": 0.02, "end": 1000.0, "every": 1.0, "speed": 0.0, "k2": 2 * extremes.STOREY}
     text = extremes.pair(law, damping=extremes.damped(0.05), **given)
     deck = tmp_path / "long.inp"
     found = []
