@@ -73,9 +73,7 @@ def items(spec: Spec, length: float = 1.0, **given: float) -> str:
         item = spec.field(name)
         if item is not None and item.unit == "L":
             own[name] = ",".join(repr(float(x) * length) for x in value.split(","))
-    for name, value in given.items():
-        if spec.field(name) is not None:
-            own[name] = repr(value)
+    own |= {name: repr(value) for name, value in given.items() if spec.field(name) is not None}
     return " ".join([spec.name, *(f"{name}={value}" for name, value in own.items())])
 
 
