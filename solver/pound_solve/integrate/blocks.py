@@ -360,7 +360,8 @@ class Window:
             block.samples = samples = flow.samples(block.qs[:, :-1], block.gs, h, count)
             if not m:
                 continue
-            states = np.concatenate([samples.reshape(len(samples), -1), block.qs[:, -1:]], axis=1)
+            flat = samples.reshape(len(samples), n * count)
+            states = np.concatenate([flat, block.qs[:, -1:]], axis=1)
             if block.regime.reactions is not None:
                 self._react(block, states, t, value, rate)
             on_q = block.regime.on_q
