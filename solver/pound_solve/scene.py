@@ -87,6 +87,18 @@ class Excitation:
         """Coefficients about `t`, shape (degree + 1, n_inputs)."""
         return polynomial.shift(self.coefs[piece], t - float(self.breaks[piece]))
 
+    def about(self, t: Array) -> Array:
+        """Coefficients about each of several times, each on the piece that begins there or before
+        (a hair after it: rounding never puts us on the one that has just ended),
+        shape (n_times, degree + 1, n_inputs).
+        """
+        after = t + 1e-13 * np.maximum(1.0, t)
+        i = np.clip(np.searchsorted(self.breaks, after, side="right") - 1, 0, len(self.coefs) - 1)
+        own, since = self.coefs[i], t - self.breaks[i]
+        if not since.any():
+            return own
+        return np.asarray(polynomial.shift(own.swapaxes(0, 1), since[:, None]).swapaxes(0, 1))
+
     def jumps(self) -> NDArray[np.bool_]:
         """Which inputs jump, from zero at t = 0 or between two pieces."""
         powers = np.diff(self.breaks)[:, None] ** np.arange(self.degree + 1)

@@ -160,10 +160,7 @@ class Exact:
         self.bending = bool(np.any(self.exit_factors[1])) or any(b.damping for b in self.branches)
 
     def _window(self, length: float, starts: Array) -> Window:
-        ex = self.scene.excitation
-        # a hair beyond, so that rounding never puts us on the piece that has just ended
-        coefs = np.stack([ex.local(ex.piece(t + 1e-13 * max(1.0, t)), t) for t in starts.tolist()])
-        return Window(self.partition, self.branches, coefs, length)
+        return Window(self.partition, self.branches, self.scene.excitation.about(starts), length)
 
     def _advance(self, goals: Array, cursor: int) -> int:
         """Advance by a window of intervals up to the next goals, or to an event; return the new cursor."""
@@ -197,7 +194,7 @@ class Exact:
         event = self._first_event(window, t, value, rate, second) if self.n_laws else None
         if event is None:
             self._peaks(window, t, value, rate, second)
-            self._between(window, h, window.length * window.intervals)
+            self._between(window, window.length * window.intervals)
             self._sample(window, goals, cursor, window.intervals if whole else 0)
             if whole:
                 self.pieces = 0
@@ -216,7 +213,7 @@ class Exact:
         now = window.all_at(tau)
         points = [np.append(a[:, cut], x[:, None], axis=1) for a, x in zip((value, rate, second), now)]
         self._peaks(window, np.append(t[cut], tau), *points)
-        self._between(window, h, tau)
+        self._between(window, tau)
         self._sample(window, goals, cursor, interval)
         self._work(window, interval, within)
         self.u, self.v, _ = window.motion(interval, within)
@@ -264,9 +261,9 @@ class Exact:
             self._hand_out(float(goals[cursor + i]), u[:, i], v[:, i], a[:, i], works[i])
         self.works = works[-1]
 
-    def _between(self, window: Window, h: float, end: float) -> None:
+    def _between(self, window: Window, end: float) -> None:
         """Show the sink the motion between the samples, up to the local time `end`."""
-        tau, *motion = window.between(h, EACH, end)
+        tau, *motion = window.between(EACH, end)
         self.sink.between(self.t + tau, *motion)
 
     def _hand_out(self, t: float, u: Array, v: Array, a: Array, works: Array) -> None:
@@ -367,7 +364,7 @@ class Exact:
     def _inputs(self) -> Array:
         """Inputs and their first two derivatives just after now, shape (3, n_inputs)."""
         ex = self.scene.excitation
-        own = ex.local(ex.piece(self.t + 1e-13 * max(1.0, self.t)), self.t)
+        own = ex.about(np.array([self.t]))[0]
         return np.stack([polynomial.value(own, 0.0, order) for order in range(3)])
 
     def _meet(self) -> None:
