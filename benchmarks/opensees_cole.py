@@ -9,24 +9,13 @@ Prints one JSON object; drifts in m, forces in kN, one entry per floor where the
 
 import argparse
 import json
-import math
 import os
 import struct
 import tempfile
 import time
 
 import openseespy.opensees as ops
-
-G = 9.81  # gravity [m/s2]
-GAP = 0.008  # clear distance between the buildings [m]
-ZETA = 0.05  # damping ratio of both rigid-diaphragm sway modes [-]
-
-# Table IV: floor weight [kN], storey stiffness [kN/m], storey yield force [kN], diaphragm stiffness [kN/m]
-BUILDINGS = {
-    1: {"W": 1600.0, "k": 420_000.0, "Fy": 2400.0, "kD": 1_881_300.0},
-    2: {"W": 3000.0, "k": 350_000.0, "Fy": 1400.0, "kD": 752_520.0},
-}
-SOFT, STIFF = sorted(b["kD"] for b in BUILDINGS.values())
+from two_buildings import BUILDINGS, GAP, SOFT, STIFF, G, rayleigh, read_two_columns
 
 # name: integrator, algorithm, the fastest solver that is right.  Newton, because Linear lets contacts
 # gain energy; factored once, because the effective matrix of central differences is constant.  The lagged
@@ -43,13 +32,7 @@ def node(building, floor, i):
     return 100_000 * building + 10_000 * floor + i
 
 
-def rayleigh(b):
-    """Alpha [1/s] and beta [s] that give ZETA at omega^2 = (3 -+ sqrt 5)/2 k/m, the two sway modes."""
-    w1, w2 = (math.sqrt((3 + s * math.sqrt(5)) / 2 * b["k"] * G / b["W"]) for s in (-1, 1))
-    return 2 * ZETA * w1 * w2 / (w1 + w2), 2 * ZETA / (w1 + w2)
-
-
-def build(n, k_contact):
+def build(n, k_contact, c_contact):
     """Make the model; return ``{"B1 storey 1 left": element, ...}`` and the two contact elements."""
     ops.wipe()
     ops.model("basic", "-ndm", 1, "-ndf", 1)
@@ -86,7 +69,10 @@ def build(n, k_contact):
         ops.region(10 * j, "-node", *diaphragms, "-rayleigh", alpha, 0.0, 0.0, 0.0)
         ops.region(10 * j + 1, "-eleOnly", *own, "-rayleigh", 0.0, 0.0, beta, 0.0)
 
-    ops.uniaxialMaterial("ElasticPPGap", 1, k_contact, -1e12, -GAP)  # compression only; never yields
+    if c_contact:  # holds until the overlap is gone, and pulls before; no material here lets go at no force
+        ops.uniaxialMaterial("ViscoelasticGap", 1, k_contact, c_contact, -GAP)
+    else:
+        ops.uniaxialMaterial("ElasticPPGap", 1, k_contact, -1e12, -GAP)  # compression only; never yields
     contacts = [spring(next(tags), node(1, floor, n), node(2, floor, 0), 1) for floor in (1, 2)]
     return columns, contacts
 
@@ -97,21 +83,16 @@ def spring(tag, i, j, material, rayleigh=0):
     return tag
 
 
-def read_two_columns(path):
-    """Times [s] and accelerations [g]; blank lines and # comments are skipped."""
-    with open(path) as file:
-        rows = [line.split() for line in file if line.strip() and not line.startswith("#")]
-    return [float(t) for t, _ in rows], [float(a) for _, a in rows]
-
-
-def analyse(record, n, dt, duration, integrator, solver, k_contact, count, tolerance=1e-6):
+def analyse(record, n, dt, duration, integrator, solver, k_contact, c_contact, count, tolerance=1e-6):
     """Run once and return the results as a dict; only ``ops.analyze`` is timed."""
-    columns, contacts = build(n, k_contact)
+    columns, contacts = build(n, k_contact, c_contact)
     times, accelerations = read_two_columns(record)
     ops.timeSeries("Path", 1, "-time", *times, "-values", *accelerations, "-factor", G)
     ops.pattern("UniformExcitation", 1, 1, "-accel", 1)
 
     scheme, algorithm, fastest = METHODS[integrator]
+    if c_contact and integrator == "central":
+        algorithm = ("Linear",)  # its matrix holds the dashpots, and these come and go
     solver = solver or fastest
     ops.constraints("Plain")
     ops.numberer("RCM")
@@ -149,6 +130,7 @@ def analyse(record, n, dt, duration, integrator, solver, k_contact, count, toler
         "integrator": integrator,
         "solver": solver,
         "k_contact": k_contact,
+        "c_contact": c_contact,
         "steps": steps,
         "solve_seconds": seconds,
         "cpu_seconds": used,
@@ -193,6 +175,7 @@ def main():
     add("--integrator", choices=METHODS, default="newmark")
     add("--solver", help="OpenSees system of equations; default the fastest that is right")
     add("--k-contact", type=float, help="[kN/m]; default n min(kD), or 10 max(kD) for n = 0")
+    add("--c-contact", type=float, default=0.0, help="[kN s/m]")
     add("--no-closures", dest="count", action="store_false", help="keep no force history (a little faster)")
     args = vars(parser.parse_args())
     if args["k_contact"] is None:

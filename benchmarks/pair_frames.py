@@ -10,11 +10,9 @@ no layout and no report.
 """
 
 import argparse
-import json
 import math
 import os
 import re
-import subprocess
 import sys
 import tempfile
 import time
@@ -23,7 +21,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from pair_cole import DECK as CHAIN
-from pair_cole import HERE, PEER, read_at2, record_file, text, write_two_columns
+from pair_cole import HERE, PEER, read_at2, record_file, text, theirs, write_two_columns
 
 FRAMES = HERE.parent / "examples" / "frames"
 DT = 0.005  # of the frames [s]
@@ -101,14 +99,6 @@ def our_peaks(deck, folder, params, events):
 
 
 # ---------------------------------------------------------------------- the peer
-
-
-def theirs(python, script, *arguments):
-    """What a script of the peer says."""
-    done = subprocess.run([python, HERE / script, *map(str, arguments)], capture_output=True, text=True)
-    if done.returncode:
-        sys.exit(f"pair_frames: the peer did not run\n{done.stderr}")
-    return json.loads(done.stdout)
 
 
 def write_motion(case, folder):

@@ -77,7 +77,8 @@ class Course:
     ) -> None:
         self.model, self.motions, self.forces, self.structure = model, motions, forces, structure
         self.overridden, self.writer, self.progress = overridden, writer, progress
-        self.began, self.solve_seconds, self.every = began, 0.0, 0.0
+        self.began, self.every = began, 0.0
+        self.solve_seconds = self.cpu_seconds = 0.0  # of histories
         self.saved, self.explain = saved, explain
         self.meetings = meetings(structure)
         self.held: tuple[scene.Scene | None, Layout] = (None, {})  # of the history
@@ -262,7 +263,7 @@ class Course:
         spec = card.laws["METHOD"][0]
         options = {f.name: card[f.name] for f in spec.fields}
         save = card["SAVE"] if card["SAVE"] is not None and times[0] < card["SAVE"] < end else end
-        began = time.perf_counter()
+        began, used = time.perf_counter(), time.process_time()
         stop: Stop | None = None
         parts: list[Outcome] = []
         try:
@@ -278,6 +279,7 @@ class Course:
             stop = err
             parts += [err.outcome] if err.outcome is not None else []
         self.solve_seconds += time.perf_counter() - began
+        self.cpu_seconds += time.process_time() - used
         recorder.flush()
         self._scene_tables(place)
         self._sample_tables(place, recorder)
@@ -502,6 +504,7 @@ class Course:
     def _figures(self) -> None:
         rows = [
             ("solve seconds", f"{self.solve_seconds:.4f}"),
+            ("solve seconds, CPU", f"{self.cpu_seconds:.4f}"),
             ("total seconds", f"{time.perf_counter() - self.began:.4f}"),
             ("pound-solve", __version__),
             ("Python, numpy", f"{platform.python_version()}, {np.__version__}"),
