@@ -493,8 +493,7 @@ def _can_move(
         touched = row[row < n]
         join(touched)
         real[touched] = True
-        branch = spring.law.branch(spring.law.start())
-        if branch.force(0.0, 0.0) != 0 or np.any(row >= n):
+        if spring.law.force(spring.law.start(), 0.0)[0] != 0 or np.any(row >= n):
             driven[touched] = True
     awake = {root(int(i)) for i in np.flatnonzero(driven)}
     return np.array([root(i) in awake for i in range(n)], bool) & real
