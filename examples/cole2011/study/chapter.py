@@ -200,10 +200,10 @@ def write(folder: Path, study: Study) -> None:
         parts += [
             "## All systems that the paper names, El Centro",
             systems_table(study.systems, bench),
-            "Drift errors against distributed masses. Laws with a restitution have E = 0.65 (the multiplier "
-            "0, elastic where it says so) and the stiffness of the stiffer diaphragm; the Hertz laws have "
-            "that which gives at 0.3 m/s the same elastic force. Rigid contacts have impulses in place of "
-            "peak forces.",
+            "Drift errors against distributed masses. Laws with a restitution have E = 0.65 (the "
+            "multiplier 0, elastic where it says so) and the stiffness of the stiffer diaphragm; the Hertz "
+            "laws have that which gives at 0.3 m/s the same elastic force. Rigid contacts have impulses "
+            "in place of peak forces.",
         ]
     if study.finer:
         parts += ["## More elements", finer_table(study.finer, bench)]

@@ -392,7 +392,9 @@ class Window:
         rate[w] += v_p @ force + u_p @ slope
         second[w] += v_p @ slope + u_p @ bend
 
-    def _react(self, block: Block, states: NDArray[Any], t: NDArray[Any], value: Array, rate: Array) -> None:
+    def _react(
+        self, block: Block, states: NDArray[Any], t: NDArray[Any], value: Array, rate: Array
+    ) -> None:
         """Put in the forces of closed rigid contacts."""
         flow, r = block.regime.flow, block.regime.reactions
         assert block.ps is not None and r is not None
@@ -534,8 +536,8 @@ class Window:
             flow, index, q = block.regime.flow, block.regime.index, states(block)
             own = (block.regime.motion @ q.reshape(len(q), count)).real.reshape(3, len(index), count)
             own[2] += polynomial.along((block.gs[intervals] @ flow.v_q.T).real, t)
-            if block.ps is not None and flow.u_p is not None:
-                u_p, v_p = flow.u_p, flow.space.v_p
+            u_p, v_p = flow.u_p, flow.space.v_p
+            if block.ps is not None and u_p is not None and v_p is not None:
                 force, slope, bend = (polynomial.along(block.ps[intervals], t, k) for k in range(3))
                 own[0] += u_p @ force
                 own[1] += v_p @ force + u_p @ slope
