@@ -42,6 +42,12 @@ def arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--records", type=Path, action="append", default=[], help="folder with the Mexico City record"
     )
+    parser.add_argument(
+        "--manual",
+        type=Path,
+        metavar="DIR",
+        help="write the manual's chapter instead: DIR/cole2011-study.md",
+    )
     parser.add_argument("--quick", action="store_true", help="El Centro alone, without variants")
     return parser.parse_args(argv)
 
@@ -82,11 +88,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         [runs[x] for x in finer],
         left_out,
     )
-    args.out.mkdir(parents=True, exist_ok=True)
-    write(args.out, study)
+    page = args.manual / "cole2011-study.md" if args.manual else args.out / "study.md"
+    drawn = page.parent / "pictures" if args.manual else page.parent
+    drawn.mkdir(parents=True, exist_ok=True)
+    write(page, drawn, study)
     for name in left_out:
         print(f"left out, its record is missing: {name}")
-    print(f"{len(runs)} runs in {time.perf_counter() - began:.0f} s; {args.out / 'study.md'}")
+    print(f"{len(runs)} runs in {time.perf_counter() - began:.0f} s; {page}")
     return 0
 
 

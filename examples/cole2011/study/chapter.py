@@ -140,7 +140,7 @@ def equivalent_table(study: Study) -> str:
     return table(head, rows)
 
 
-def pictures(folder: Path, study: Study) -> dict[str, str]:
+def pictures(folder: Path, study: Study) -> dict[str, Path]:
     """Draw all pictures; the file of each by its subject."""
     paper, speed = study.paper, PAIR.force
     drawn = {
@@ -153,20 +153,20 @@ def pictures(folder: Path, study: Study) -> dict[str, str]:
     for of in ("peak", "plateau"):
         drawn[f"figure 13 {of}"] = (figures.figure_13, paper, speed, of)
         drawn[f"figure 14 {of}"] = (figures.figure_14, paper["El Centro"], speed, of)
-    out = {}
+    out: dict[str, Path] = {}
     for name, (draw, *what) in drawn.items():
-        out[name] = f"{name.replace(' ', '_')}.svg"
-        draw(*what, folder / out[name])
+        out[name] = folder / f"study_{name.replace(' ', '_')}.svg"
+        draw(*what, out[name])
     return out
 
 
-def write(folder: Path, study: Study) -> None:
-    """Write ``study.md`` and its pictures."""
+def write(page: Path, folder: Path, study: Study) -> None:
+    """Write the text into `page`, and its pictures into a folder beside or below it."""
     files = pictures(folder, study)
     paper, bench = study.paper, benchmark_of(study.paper["El Centro"])
 
     def shown(name: str, text: str) -> str:
-        return f"![{text}]({files[name]})"
+        return f"![{text}]({files[name].relative_to(page.parent).as_posix()})"
 
     verdicts = [[v.statement, v.verdict, v.figures] for v in judge(paper, PAIR.force)]
     parts = [
@@ -216,4 +216,4 @@ def write(folder: Path, study: Study) -> None:
         groups = {"as the decks stand": paper["El Centro"], **study.variants}
         rows = [sensitivity(name, group) for name, group in groups.items()]
         parts += ["## What the paper does not say", table(head, rows)]
-    (folder / "study.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8", newline="\n")
+    page.write_text("\n\n".join(parts) + "\n", encoding="utf-8", newline="\n")
