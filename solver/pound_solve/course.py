@@ -340,7 +340,7 @@ class Course:
         """Envelopes of nodes and members and the energies: what the samples tell."""
         w, units = self.writer, self.model.units
         rows: list[tuple[Any, ...]] = []
-        found = {q: e.rows() for q, e in recorder.node_envelopes.items()}
+        found = {q: e.rows() for q, e in recorder.survey.node.items()}
         for i, node in enumerate(recorder.nodes):
             for axis in range(3):
                 for q, word, dimension in (
@@ -352,9 +352,10 @@ class Course:
                     if extremes[0] != 0.0 or extremes[2] != 0.0:
                         unit = units.text(dimension if axis < 2 else dimension.replace("L", "rad"))
                         rows.append((node, "XYR"[axis], word, unit, *extremes))
-        if recorder.seen:
+        seen, apart = recorder.survey.seen, recorder.survey.apart
+        if seen:
             how = (
-                f"Seen at {recorder.seen} instants, at most {recorder.apart:.3g} {units.time} apart, "
+                f"Seen at {seen} instants, at most {apart:.3g} {units.time} apart, "
                 "and at the output times; peaks between them are not. "
             )
         else:
@@ -368,7 +369,7 @@ class Course:
             "member_envelope",
             [
                 (o.element, o.quantity, units.text(o.unit), *extremes)
-                for o, extremes in zip(recorder.outputs, recorder.output_envelope.rows())
+                for o, extremes in zip(recorder.outputs, recorder.survey.output.rows())
             ],
             how + SIGNS,
         )

@@ -35,6 +35,7 @@ from pound_solve.matrices import (
     dense,
     diagonal,
     entries,
+    gathered,
     is_diagonal,
     least_squares,
     scaled,
@@ -188,6 +189,17 @@ class Scene:
         if order == 0:
             free = (free.T + self.expand_constant).T
         return np.concatenate([free, self.support_inputs @ s])
+
+    def over(self, rows: Matrix) -> tuple[Matrix, Array, Array]:
+        """Rows over all columns of the structure as rows over unknowns and inputs, and constants."""
+        n = self.structure.n_free
+        own = rows[:, :n]
+        over = own @ self.expand
+        return (
+            gathered(over.shape, *entries(over)),
+            own @ self.expand_inputs + rows[:, n:] @ self.support_inputs,
+            own @ self.expand_constant,
+        )
 
     def applied(self, s: Array) -> Array:
         """Held loads and FORCES on all unknown freedoms at inputs `s`; columns are instants

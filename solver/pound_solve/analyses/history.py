@@ -6,6 +6,7 @@ and turns the samples that come back into histories, envelopes and tables.
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -15,9 +16,10 @@ from numpy.typing import NDArray
 from pound_deck.model import Model
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.assemble import Structure
+from pound_solve.elements.base import Output
 from pound_solve.integrate.base import ENERGIES, LawValues, Start, Watch, energies
 from pound_solve.laws import State, follow, settle
-from pound_solve.matrices import least_squares, used_columns, used_rows, weighted
+from pound_solve.matrices import layers, least_squares, used_columns, used_rows, weighted
 from pound_solve.modes import massless
 from pound_solve.scene import Scene
 
@@ -117,17 +119,11 @@ def _lead_massless(scene: Scene, u: Array, pushed: Array) -> None:
 def watch(structure: Structure, scene: Scene) -> Watch:
     """Rows of the DRIFT cards over the scene's unknowns."""
     cards = structure.model.drifts
-    n = structure.n_free
     ways = ["XY".index(c["DIRECTION"]) for c in cards]
     rows = structure.freedoms.rows(
         [(((c["J"], way), (c["I"], way)), (1.0, -1.0)) for c, way in zip(cards, ways)]
     )
-    return Watch(
-        [c["NAME"] for c in cards],
-        rows[:, :n] @ scene.expand,
-        rows[:, :n] @ scene.expand_inputs + rows[:, n:] @ scene.support_inputs,
-        rows[:, :n] @ scene.expand_constant,
-    )
+    return Watch([c["NAME"] for c in cards], *scene.over(rows))
 
 
 def heights(model: Model) -> list[float]:
@@ -157,9 +153,103 @@ class Envelope:
             at = place(values[:, new], axis=0)
             value[new], time[new] = values[at, new], t[at]
 
+    def widen(self, other: Envelope) -> None:
+        """Count in what another one of the same quantities has seen."""
+        higher, lower = other.high > self.high, other.low < self.low
+        self.high[higher], self.t_high[higher] = other.high[higher], other.t_high[higher]
+        self.low[lower], self.t_low[lower] = other.low[lower], other.t_low[lower]
+
     def rows(self) -> list[tuple[float, float, float, float]]:
         """Largest value and its time, smallest value and its time, of each quantity."""
         return list(zip(self.high.tolist(), self.t_high.tolist(), self.low.tolist(), self.t_low.tolist()))
+
+
+class Survey:
+    """Envelopes of the motion of some nodes and of the forces of some members.
+
+    Attributes
+    ----------
+    node : dict of Envelope
+        Of displacements "u", velocities "v" (relative to the ground, where it moves as one) and
+        accelerations "a" (total).
+    output : Envelope
+    seen, apart : int, float
+        Number of instants between the samples that were counted in, longest time from one to the next [T].
+    """
+
+    def __init__(self, scene: Scene, nodes: Sequence[int], outputs: Sequence[Output]) -> None:
+        freedoms, place = scene.structure.freedoms, scene.structure.model.nodes
+        self.scene, self.n_nodes = scene, len(nodes)
+        of_u, self.on_inputs, self.at_rest = scene.over(
+            freedoms.matrix([(n, d) for n in nodes for d in range(3)])
+        )
+        self.layers = layers(of_u)  # next to always one: a node has unknowns of its own
+        of_u, out_s, constants = scene.over(
+            freedoms.rows([(o.freedoms, o.u_row.tolist()) for o in outputs])
+        )
+        of_v, out_rate, _ = scene.over(
+            freedoms.rows([(o.freedoms, () if o.v_row is None else o.v_row.tolist()) for o in outputs])
+        )
+        self.of_u, self.of_v, self.out_s, self.out_rate = of_u.T, of_v.T, out_s.T, out_rate.T
+        self.damped = any(o.v_row is not None for o in outputs)
+        self.constants = np.array([o.constant for o in outputs]) + constants
+        self.shares = scene.chords.shares([(o.element, o.quantity) for o in outputs])
+        # motion of the nodes when they ride on the ground: x, y, and a turn about the origin
+        x, y = (np.array([getattr(place[n], c) for n in nodes]) for c in "xy")
+        self.ridden = np.zeros((3, len(nodes), 3))
+        self.ridden[0, :, 0] = self.ridden[1, :, 1] = self.ridden[2, :, 2] = 1.0
+        self.ridden[2, :, 0], self.ridden[2, :, 1] = -y, x
+        self._clear()
+
+    def _clear(self) -> None:
+        self.node = {q: Envelope(3 * self.n_nodes) for q in "uva"}
+        self.output = Envelope(len(self.constants))
+        self.seen, self.apart = 0, 0.0
+
+    def blank(self) -> Survey:
+        """Return one of the same quantities that has seen nothing."""
+        other = copy.copy(self)
+        other._clear()
+        return other
+
+    def widen(self, other: Survey) -> None:
+        """Count in what another one of the same quantities has seen."""
+        for q, envelope in self.node.items():
+            envelope.widen(other.node[q])
+        self.output.widen(other.output)
+        self.seen, self.apart = self.seen + other.seen, max(self.apart, other.apart)
+
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+        """Count in instants between the samples (see `integrate.base.Sink`)."""
+        self.take(t, u.T, v.T, a.T, [self.scene.excitation.values(t, order) for order in range(3)])
+        self.seen, self.apart = self.seen + len(t), max(self.apart, apart)
+
+    def take(
+        self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]
+    ) -> tuple[dict[str, Array], Array]:
+        """Count in some instants; return the motion of the nodes, shape (nt, n_nodes, 3),
+        and the members' forces, shape (nt, n_outputs), from unknowns and inputs, shape (nt, n) each.
+        """
+        shape = (len(t), self.n_nodes, 3)
+        flat = {q: y @ self.on_inputs.T for q, y in zip("uva", s)}
+        flat["u"] += self.at_rest
+        for q, x in zip("uva", (u, v, a)):
+            for columns, factors in self.layers:
+                flat[q] += x[:, columns] * factors
+        node = {q: values.reshape(shape) for q, values in flat.items()}
+        node["a"] += np.einsum(
+            "tj,jnd->tnd", s[0] @ self.scene.acceleration_inputs.T, self.ridden
+        )  # they are total
+        out = u @ self.of_u + s[0] @ self.out_s + self.constants
+        if self.damped:
+            out += v @ self.of_v + s[1] @ self.out_rate
+        if self.scene.chords:
+            at, share = self.shares
+            out += (share * self.scene.chords.survey(self.scene.quantities(u, s[0]))[:, at, 1:]).sum(axis=2)
+        for q, values in node.items():
+            self.node[q].take(values.reshape(len(t), -1), t)
+        self.output.take(out, t)
+        return node, out
 
 
 class Recorder:
@@ -186,28 +276,15 @@ class Recorder:
         first_energy: Array | None = None,
     ) -> None:
         structure = scene.structure
-        model, freedoms = structure.model, structure.freedoms
+        model = structure.model
         self.scene, self.drifts, self._append, self._progress = scene, drifts, append, progress
         chosen = model.output["NODES"]
         self.nodes = tuple(model.nodes) if chosen is None else tuple(dict.fromkeys(chosen))
-        self.node_rows = freedoms.matrix([(n, d) for n in self.nodes for d in range(3)])
-        # motion of the nodes when they ride on the ground: x, y, and a turn about the origin
-        x, y = (np.array([getattr(model.nodes[n], c) for n in self.nodes]) for c in "xy")
-        self.ridden = np.zeros((3, len(self.nodes), 3))
-        self.ridden[0, :, 0] = self.ridden[1, :, 1] = self.ridden[2, :, 2] = 1.0
-        self.ridden[2, :, 0], self.ridden[2, :, 1] = -y, x
         elements = model.output["MEMBERS"]
         self.outputs = [o for o in structure.outputs if elements is None or o.element in elements]
-        self.out_u = freedoms.rows([(o.freedoms, o.u_row.tolist()) for o in self.outputs])
-        self.out_v = freedoms.rows(
-            [(o.freedoms, () if o.v_row is None else o.v_row.tolist()) for o in self.outputs]
-        )
-        self.constants = np.array([o.constant for o in self.outputs])
-        self.shares = scene.chords.shares([(o.element, o.quantity) for o in self.outputs])
+        self.survey = Survey(scene, self.nodes, self.outputs)
         self.springs = [i for i, s in enumerate(structure.laws) if not s.is_contact]
         self.contacts = [i for i, s in enumerate(structure.laws) if s.is_contact]
-        self.node_envelopes = {q: Envelope(3 * len(self.nodes)) for q in "uva"}
-        self.output_envelope = Envelope(len(self.outputs))
         self.first_energy = np.zeros(len(ENERGIES)) if first_energy is None else first_energy
         self.last_energy = np.zeros(len(ENERGIES))
         self._fresh = first_energy is None
@@ -215,11 +292,11 @@ class Recorder:
         self.losses = [0.0] * len(structure.laws)  # by slip and release, dashpots apart [F L]
         self.deformations = [0.0] * len(structure.laws)  # at the last sample
         self.reached = -1.0
-        # between the samples: number of instants seen, the last of them, longest time from one to the next
-        self.seen, self.last_seen, self.apart = 0, 0.0, 0.0
         self.last: tuple[Array, Array, Array] = (np.zeros(0), np.zeros(0), np.zeros(3))  # u, v, works
         self._rows: list[tuple[Any, ...]] = []
-        widest = max(freedoms.size, 3 * len(self.nodes), len(self.outputs), len(structure.laws), 1)
+        widest = max(
+            structure.freedoms.size, 3 * len(self.nodes), len(self.outputs), len(structure.laws), 1
+        )
         self._most = min(BLOCK, max(HELD // widest, 1))
 
     def layout(self) -> dict[str, tuple[tuple[int, ...], dict[str, Any]]]:
@@ -280,12 +357,9 @@ class Recorder:
         if len(self._rows) >= self._most:
             self.flush()
 
-    def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
         """Widen the envelopes only (see `integrate.base.Sink`)."""
-        s = [self.scene.excitation.values(t, order) for order in range(3)]
-        self._envelopes(t, u.T, v.T, a.T, s)
-        self.apart = max(self.apart, float(np.diff(t, prepend=self.last_seen if self.seen else t[0]).max()))
-        self.seen, self.last_seen = self.seen + len(t), float(t[-1])
+        self.survey.between(t, u, v, a, apart)
 
     def trial(self, t: float, doing: str = "") -> None:
         """Tell the progress of a run whose samples may not count (see `integrate.base.Sink`)."""
@@ -295,32 +369,6 @@ class Recorder:
         """Input less what it became, against the start [F L], for rows of energies."""
         change = energy - self.first_energy
         return 2.0 * change[:, 0] - change.sum(axis=1)
-
-    def _envelopes(
-        self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]
-    ) -> tuple[dict[str, Array], Array]:
-        """Count some instants into the envelopes; return the motion of the nodes, shape (nt, n_nodes, 3),
-        and the members' forces, shape (nt, n_outputs), from unknowns and inputs, shape (nt, n) each.
-        """
-        full_u, full_v, full_a = (
-            self.scene.expanded(x.T, y.T, order).T for order, (x, y) in enumerate(zip((u, v, a), s))
-        )
-        shape = (len(t), len(self.nodes), 3)
-        node = {
-            q: (full @ self.node_rows.T).reshape(shape)
-            for q, full in (("u", full_u), ("v", full_v), ("a", full_a))
-        }
-        node["a"] += np.einsum(
-            "tj,jnd->tnd", s[0] @ self.scene.acceleration_inputs.T, self.ridden
-        )  # they are total
-        out = full_u @ self.out_u.T + full_v @ self.out_v.T + self.constants
-        if self.scene.chords:
-            at, share = self.shares
-            out += (share * self.scene.chords.survey(self.scene.quantities(u, s[0]))[:, at, 1:]).sum(axis=2)
-        for q, values in node.items():
-            self.node_envelopes[q].take(values.reshape(len(t), -1), t)
-        self.output_envelope.take(out, t)
-        return node, out
 
     def flush(self) -> None:
         """Write the samples that are held."""
@@ -340,7 +388,7 @@ class Recorder:
         self.energy_peak = max(self.energy_peak, float(np.abs(energy).max()))
         self.residual_peak = max(self.residual_peak, float(np.abs(residual).max()))
         self.losses, self.deformations = lost[-1].tolist(), d[-1].tolist()
-        node, out = self._envelopes(t, u, v, a, inputs)
+        node, out = self.survey.take(t, u, v, a, inputs)
         gaps = np.array([laws[i].facts["gap"] for i in self.contacts])
         self._append(
             {

@@ -20,7 +20,7 @@ against the largest in their direction.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -31,10 +31,10 @@ from pound_solve import jit
 from pound_solve.integrate import exact, newmark
 from pound_solve.integrate.base import (
     Extreme,
+    Keeper,
     LawValues,
     Outcome,
     Peaks,
-    Sink,
     Start,
     Stop,
     Watch,
@@ -71,22 +71,26 @@ def stepped(scene: Scene) -> Decision:
 
 
 class Replay:
-    """Keeps what a run tells its sink, to hand it on if it is the last; knows the extremes of u."""
+    """Keeps what a run tells its sink, to hand it on if it is the last; knows the extremes of u.
 
-    def __init__(self, sink: Sink) -> None:
-        self.sink, self.told = sink, list[tuple[Callable[..., None], tuple[Any, ...]]]()
+    Of what is between the samples only the envelopes are kept.
+    """
+
+    def __init__(self, sink: Keeper) -> None:
+        self.sink, self.told = sink, list[tuple[Any, ...]]()
+        self.survey = sink.survey.blank()
         self.high: Array | float = -np.inf
         self.low: Array | float = np.inf
 
     def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take one sample (see `integrate.base.Sink`)."""
-        self.told.append((self.sink.sample, (t, u, v, a, laws, works)))
+        self.told.append((t, u, v, a, laws, works))
         self.high, self.low = np.maximum(self.high, u), np.minimum(self.low, u)
         self.sink.trial(t)
 
-    def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
         """Take the motion between samples (see `integrate.base.Sink`)."""
-        self.told.append((self.sink.between, (t, u, v, a)))
+        self.survey.between(t, u, v, a, apart)
 
     def trial(self, t: float, doing: str = "") -> None:
         """Pass on how far a trial has come."""
@@ -94,14 +98,15 @@ class Replay:
 
     def hand_on(self) -> None:
         """Tell the sink all of it."""
-        for tell, what in self.told:
-            tell(*what)
+        self.sink.survey.widen(self.survey)
+        for what in self.told:
+            self.sink.sample(*what)
 
 
 class Rival:
     """EXACT, tried for no more than a cost."""
 
-    def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Sink) -> None:
+    def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Keeper) -> None:
         self.scene, self.start, self.watch, self.sink = scene, start, watch, sink
         self.whole = np.inf if why_not_exact(scene) else 0.0  # least cost of the whole run, so far as known
 
@@ -149,7 +154,7 @@ def figures(scene: Scene, peaks: Peaks, replay: Replay) -> tuple[Array, Array]:
 
 
 def to_tolerance(
-    scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink, rival: Rival
+    scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Keeper, rival: Rival
 ) -> Outcome:
     """Repeat the run with shorter steps until the peaks stand still, or the rival costs less."""
     tol, length = options["TOL"], float(start.times[-1] - start.times[0])
@@ -201,7 +206,9 @@ def to_tolerance(
     return outcome
 
 
-def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
+def integrate(
+    scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Keeper
+) -> Outcome:
     """Choose a method, note why, and run it."""
     rival, free, few = Rival(scene, start, watch, sink), FREE, float(FEW)
     if any(s.law.rigid for s in scene.structure.laws):

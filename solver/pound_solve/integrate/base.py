@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -147,6 +147,22 @@ def law_values(scene: Scene, t: float, u: Array, v: Array, states: Sequence[Stat
     )
 
 
+class Survey(Protocol):
+    """Envelopes of a run."""
+
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+        """Count in the motion at some times, as `Sink.between`."""
+        ...
+
+    def blank(self) -> Self:
+        """Return one that has seen nothing."""
+        ...
+
+    def widen(self, other: Self) -> None:
+        """Count in what another one has seen."""
+        ...
+
+
 class Sink(Protocol):
     """Takes the samples of a history."""
 
@@ -158,12 +174,24 @@ class Sink(Protocol):
         """
         ...
 
-    def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
-        """Take the motion at times between the samples, shapes (n_times,), (n, n_times): for envelopes."""
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+        """Take the motion at times between the samples, shapes (n_times,), (n, n_times): for envelopes.
+
+        `apart` is the longest time from one instant that is seen to the next.
+        """
         ...
 
     def trial(self, t: float, doing: str = "") -> None:
         """Be told the time reached by a run whose samples may not count, or what keeps it waiting there."""
+        ...
+
+
+class Keeper(Sink, Protocol):
+    """A sink that keeps envelopes."""
+
+    @property
+    def survey(self) -> Survey:
+        """What it has seen between the samples, and may be at them."""
         ...
 
 

@@ -263,8 +263,8 @@ class Exact:
 
     def _between(self, window: Window, end: float) -> None:
         """Show the sink the motion between the samples, up to the local time `end`."""
-        tau, *motion = window.between(EACH, end)
-        self.sink.between(self.t + tau, *motion)
+        tau, u, v, a = window.between(EACH, end)
+        self.sink.between(self.t + tau, u, v, a, float(np.diff(tau, append=end).max(initial=0.0)))
 
     def _hand_out(self, t: float, u: Array, v: Array, a: Array, works: Array) -> None:
         laws = law_values(self.scene, t, u, v, self.states)
@@ -496,12 +496,11 @@ class Whole:
             works = works + np.array([self.small.put_in(t) - self.at_start, 0.0, 0.0])
         self.sink.sample(t, u, v, a, laws, works)
 
-    def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
         """Take the motion between samples (see `integrate.base.Sink`)."""
         ex = self.small.scene.excitation
-        self.sink.between(
-            t, *(self.small.all(x, ex.values(t, order).T, order) for order, x in enumerate((u, v, a)))
-        )
+        u, v, a = (self.small.all(x, ex.values(t, order).T, order) for order, x in enumerate((u, v, a)))
+        self.sink.between(t, u, v, a, apart)
 
     def trial(self, t: float, doing: str = "") -> None:
         """Pass it on."""

@@ -66,7 +66,7 @@ COMMON = (
 SAMPLES, LOG = 64, 4096  #: samples and changes of branches kept between two visits of Python
 RESOLVED = 10  #: steps in a period or a collision at least, which gives peaks to a few parts in a hundred
 QUIET = 1e-9  #: share of the energy below which a motion is rounding
-HELD = 2**20  #: numbers in those samples, at most, but for a single one
+HELD = 2**20  #: numbers of one kind in those samples, at most, but for two
 
 
 FULL = 0.25  #: part of a diagonal from which its zeros cost less than naming its entries
@@ -150,8 +150,9 @@ class Stepper:
         self.rules = list(dict.fromkeys(s.law.rule for s in self.laws))
         self.tables = jit.tables(self.rules or [bilinear.RULE])  # never empty, which compiles to nothing
         self._lay_out(start)
-        self.count = np.zeros(8, np.int64)
+        self.count = np.zeros(10, np.int64)
         self.rush = np.zeros(2)  # v M v and a M a, summed over the samples
+        self.seen = float(start.times[0])  # latest instant that the sink was shown
         self.clock = np.array([start.times[0], -1.0, energy_at_start(scene, start), np.inf])
 
     def _lay_out(self, start: Start) -> None:
@@ -263,12 +264,15 @@ class Stepper:
         x.peak[arrays.HIGH], x.peak[arrays.LOW] = -np.inf, np.inf
         padded = np.where((pattern.ai == columns) & ~heavy[columns], 1.0, on_pattern[0])
         ldl.factor(pattern, padded, x.l, arrays.MASS, x.q, arrays.D + arrays.MASS, arrays.W)
-        samples = min(SAMPLES, max(HELD // (3 * max(n, count, 1)), 1))
+        samples = min(SAMPLES, max(HELD // (3 * max((1 + arrays.SHOWS) * n, count, 1)), 2))
+        shown = samples * arrays.SHOWS
         self.z = arrays.Samples(
             np.zeros((samples, 3, n)),
             np.zeros((samples, 3, count)),
             np.zeros((samples, 4)),
             np.zeros((LOG + 16 * count, arrays.COLUMNS)),
+            np.zeros((shown, 3, n)),
+            np.zeros(shown),
         )
         for i in range(count):
             states.enter(w, self.tables, i)
@@ -361,6 +365,9 @@ class Stepper:
         steps = np.maximum(1, np.ceil(lengths / self.dt * (1 - 1e-9))).astype(np.int64)
         # twelve digits: steps of equal length share their factor, whatever the rounding of the times
         h = np.array([float(f"{x:.12e}") for x in lengths / steps])
+        # steps from one output to the next, of which so many are shown to the envelopes
+        output = np.concatenate([[0], np.cumsum(is_output)[:-1]])
+        shows = -(-np.bincount(output, steps).astype(np.int64) // (arrays.SHOWS + 1))[output]
         ex = scene.excitation
         pieces = np.array([ex.piece(t + 1e-13 * max(1.0, t)) for t in ends - lengths], np.int64)
         coefs = np.ascontiguousarray(ex.coefs)
@@ -369,7 +376,7 @@ class Stepper:
             with np.errstate(all="ignore"), jit.compiling():  # a runaway is told in words
                 why = advance(
                     m, w, x, z, self.tables, self.scheme, coefs, ex.breaks, ends, steps, h, is_output,
-                    pieces, self.count, self.clock,
+                    shows, pieces, self.count, self.clock,
                 )  # fmt: skip
             self._fetch()
             if why == arrays.DONE:
@@ -387,12 +394,18 @@ class Stepper:
             if law in self.ledger.open:
                 self._count(self.ledger.open[law], row[7:])
             self.ledger.switched(law, names[before], names[after], *row[3:7])
-        for i in range(count[arrays.KEPT]):
+        shown, kept = count[arrays.SHOWN], count[arrays.KEPT]
+        if shown:
+            seen = np.sort(np.concatenate([[self.seen], z.when[:shown], z.works[:kept, 0]]))
+            u, v, a = z.shown[:shown, :, back].transpose(1, 2, 0)
+            self.sink.between(z.when[:shown].copy(), u, v, a, float(np.diff(seen).max()))
+            self.seen = seen[-1]
+        for i in range(kept):
             u, v, a = z.motion[i][:, back]
             t, *works = z.works[i].tolist()
             self.rush += v @ (self.scene.mass @ v), a @ (self.scene.mass @ a)
             self.sink.sample(t, u, v, a, LawValues(*z.laws[i].copy()), np.array(works))
-        count[arrays.LOGGED] = count[arrays.KEPT] = 0
+        count[arrays.LOGGED] = count[arrays.KEPT] = count[arrays.SHOWN] = 0
 
     @staticmethod
     def _count(collision: Collision, running: list[float]) -> None:
