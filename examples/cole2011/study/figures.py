@@ -10,8 +10,9 @@ from cases import TESTS
 from errors import Prediction, benchmark_of, drifts, predictions
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from pound_solve.pounding import Diaphragm, Pair
 from runs import PLACES, Run
+
+from pound_solve.pounding import Diaphragm, Pair
 
 COLOURS = {"El Centro": "#0b4f8a", "Mexico City": "#b3541e", "Loma Prieta": "#3d7a3d"}
 MARKS = {"left": "<", "right": ">"}
