@@ -147,15 +147,17 @@ class Envelope:
         self.high, self.low = np.full(n, -np.inf), np.full(n, np.inf)
         self.t_high, self.t_low = np.zeros(n), np.zeros(n)
 
-    def take(self, values: Array, t: Array) -> None:
-        """Count in values, shape (n_times, n), at some times."""
+    def take(self, values: Array, t: Array, which: NDArray[np.intp] | None = None) -> None:
+        """Count in values of all quantities, or of those with some numbers, shape (n, n_times)."""
+        which = np.arange(len(values)) if which is None else which
         for new, best in (
-            (np.flatnonzero(values.max(axis=0) > self.high), (self.high, self.t_high, np.argmax)),
-            (np.flatnonzero(values.min(axis=0) < self.low), (self.low, self.t_low, np.argmin)),
+            (values.max(axis=1) > self.high[which], (self.high, self.t_high, np.argmax)),
+            (values.min(axis=1) < self.low[which], (self.low, self.t_low, np.argmin)),
         ):
             value, time, place = best
-            at = place(values[:, new], axis=0)
-            value[new], time[new] = values[at, new], t[at]
+            own = values[new]
+            at = place(own, axis=1)
+            value[which[new]], time[which[new]] = own[np.arange(len(own)), at], t[at]
 
     def rows(self) -> list[tuple[float, float, float, float]]:
         """Largest value and its time, smallest value and its time, of each quantity."""
@@ -190,12 +192,20 @@ class Recorder:
         self.scene, self.drifts, self._append, self._progress = scene, drifts, append, progress
         chosen = model.output["NODES"]
         self.nodes = tuple(model.nodes) if chosen is None else tuple(dict.fromkeys(chosen))
-        self.node_rows = freedoms.matrix([(n, d) for n in self.nodes for d in range(3)])
+        free, node_rows = structure.n_free, freedoms.matrix([(n, d) for n in self.nodes for d in range(3)])
         # motion of the nodes when they ride on the ground: x, y, and a turn about the origin
         x, y = (np.array([getattr(model.nodes[n], c) for n in self.nodes]) for c in "xy")
-        self.ridden = np.zeros((3, len(self.nodes), 3))
-        self.ridden[0, :, 0] = self.ridden[1, :, 1] = self.ridden[2, :, 2] = 1.0
-        self.ridden[2, :, 0], self.ridden[2, :, 1] = -y, x
+        ridden = np.zeros((3, len(self.nodes), 3))
+        ridden[0, :, 0] = ridden[1, :, 1] = ridden[2, :, 2] = 1.0
+        ridden[2, :, 0], ridden[2, :, 1] = -y, x
+        ground = np.einsum("jnd,jc->ndc", ridden, scene.acceleration_inputs).reshape(3 * len(self.nodes), -1)
+        # nodes' motions from unknowns and inputs, of what moves at all
+        inputs = node_rows[:, :free] @ scene.expand_inputs + node_rows[:, free:] @ scene.support_inputs
+        own = node_rows[:, :free] @ scene.expand
+        constant = node_rows[:, :free] @ scene.expand_constant
+        at = np.flatnonzero(used_rows(own) | np.any(np.column_stack([inputs, ground, constant]), axis=1))
+        self.moving, self.node_u, self.node_inputs = at, own[at], inputs[at]
+        self.node_constant, self.node_ground = constant[at], ground[at]
         elements = model.output["MEMBERS"]
         self.outputs = [o for o in structure.outputs if elements is None or o.element in elements]
         self.out_u = freedoms.rows([(o.freedoms, o.u_row.tolist()) for o in self.outputs])
@@ -218,7 +228,7 @@ class Recorder:
         # between the samples: number of instants seen, the last of them, longest time from one to the next
         self.seen, self.last_seen, self.apart = 0, 0.0, 0.0
         self.last: tuple[Array, Array, Array] = (np.zeros(0), np.zeros(0), np.zeros(3))  # u, v, works
-        self._rows: list[tuple[Any, ...]] = []
+        self._blocks: list[tuple[Any, ...]] = []
         widest = max(freedoms.size, 3 * len(self.nodes), len(self.outputs), len(structure.laws), 1)
         self._most = min(BLOCK, max(HELD // widest, 1))
 
@@ -269,21 +279,22 @@ class Recorder:
             "energy": ((7,), {"labels": [*ENERGIES, "residual"], "unit": "F*L"}),
         }
 
-    def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take one sample (see `integrate.base.Sink`)."""
-        if t <= self.reached:
-            return  # the start of a part, where another ended
-        self._rows.append((t, u, v, a, *laws, works))
-        self.last = u, v, works
-        self.reached = t
-        self._progress(t, "")
-        if len(self._rows) >= self._most:
+    def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take some samples (see `integrate.base.Sink`)."""
+        new = t > self.reached  # but not the start of a part, where another ended
+        if not new.any():
+            return
+        block = (t, u, v, a, *laws, works)
+        self._blocks.append(block if new.all() else tuple(x[..., new] for x in block))
+        self.last = u[:, -1], v[:, -1], works[:, -1]
+        self.reached = float(t[-1])
+        self._progress(self.reached, "")
+        if sum(len(x[0]) for x in self._blocks) >= self._most:
             self.flush()
 
     def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
         """Widen the envelopes only (see `integrate.base.Sink`)."""
-        s = [self.scene.excitation.values(t, order) for order in range(3)]
-        self._envelopes(t, u.T, v.T, a.T, s)
+        self._envelopes(t, u, v, a, [self.scene.excitation.values(t, order).T for order in range(3)])
         self.apart = max(self.apart, float(np.diff(t, prepend=self.last_seen if self.seen else t[0]).max()))
         self.seen, self.last_seen = self.seen + len(t), float(t[-1])
 
@@ -298,66 +309,69 @@ class Recorder:
 
     def _envelopes(
         self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]
-    ) -> tuple[dict[str, Array], Array]:
-        """Count some instants into the envelopes; return the motion of the nodes, shape (nt, n_nodes, 3),
-        and the members' forces, shape (nt, n_outputs), from unknowns and inputs, shape (nt, n) each.
+    ) -> tuple[list[Array], Array]:
+        """Count some instants into the envelopes; return the motions that nodes have, shape (n_moving, nt),
+        and the members' forces, shape (n_outputs, nt), from unknowns and inputs, shape (n, nt) each.
         """
-        full_u, full_v, full_a = (
-            self.scene.expanded(x.T, y.T, order).T for order, (x, y) in enumerate(zip((u, v, a), s))
-        )
-        shape = (len(t), len(self.nodes), 3)
-        node = {
-            q: (full @ self.node_rows.T).reshape(shape)
-            for q, full in (("u", full_u), ("v", full_v), ("a", full_a))
-        }
-        node["a"] += np.einsum(
-            "tj,jnd->tnd", s[0] @ self.scene.acceleration_inputs.T, self.ridden
-        )  # they are total
-        out = full_u @ self.out_u.T + full_v @ self.out_v.T + self.constants
-        if self.scene.chords:
+        scene = self.scene
+        node = [self.node_u @ x + self.node_inputs @ y for x, y in zip((u, v, a), s)]
+        node[0] += self.node_constant[:, None]
+        node[2] += self.node_ground @ s[0]  # they are total
+        full_u, full_v = (scene.expanded(x, y, order) for order, (x, y) in enumerate(zip((u, v), s)))
+        out = self.out_u @ full_u + self.out_v @ full_v + self.constants[:, None]
+        if scene.chords:
             at, share = self.shares
-            out += (share * self.scene.chords.survey(self.scene.quantities(u, s[0]))[:, at, 1:]).sum(axis=2)
-        for q, values in node.items():
-            self.node_envelopes[q].take(values.reshape(len(t), -1), t)
+            out += (share * scene.chords.survey(scene.quantities(u.T, s[0].T))[:, at, 1:]).sum(axis=2).T
+        for envelope, values in zip(self.node_envelopes.values(), node):
+            envelope.take(values, t, self.moving)
         self.output_envelope.take(out, t)
         return node, out
 
     def flush(self) -> None:
         """Write the samples that are held."""
-        if not self._rows:
+        if not self._blocks:
             return
         scene, laws = self.scene, self.scene.structure.laws
-        t, u, v, a, force, stored, lost, works = (np.array(column) for column in zip(*self._rows))
-        self._rows = []
-        inputs = [scene.excitation.values(t, order) for order in range(3)]
+        t, u, v, a, force, stored, lost, works = (
+            np.concatenate(parts, axis=-1) for parts in zip(*self._blocks)
+        )
+        self._blocks = []
+        inputs = [scene.excitation.values(t, order).T for order in range(3)]
         s = inputs[0]
-        d = u @ scene.law_rows.T + s @ scene.law_inputs.T
-        energy = energies(scene, t, u, v, stored, lost, works)
+        d = scene.law_rows @ u + scene.law_inputs @ s
+        energy = energies(scene, t, u.T, v.T, stored.T, lost.T, works.T)
         if self._fresh:
             self.first_energy, self._fresh = energy[0], False
         residual = self._residuals(energy)
         self.last_energy, self.last_residual = energy[-1], float(residual[-1])
         self.energy_peak = max(self.energy_peak, float(np.abs(energy).max()))
         self.residual_peak = max(self.residual_peak, float(np.abs(residual).max()))
-        self.losses, self.deformations = lost[-1].tolist(), d[-1].tolist()
-        node, out = self._envelopes(t, u, v, a, inputs)
+        self.losses, self.deformations = lost[:, -1].tolist(), d[:, -1].tolist()
+        moving, out = self._envelopes(t, u, v, a, inputs)
+        node = np.zeros((3, 3 * len(self.nodes), len(t)))
+        node[:, self.moving] = moving
+        for envelope, values in zip(self.node_envelopes.values(), node):
+            envelope.take(values, t)
         gaps = np.array([laws[i].facts["gap"] for i in self.contacts])
         self._append(
             {
                 "time": t,
-                "node/u": node["u"],
-                "node/v": node["v"],
-                "node/a": node["a"],
-                "member/force": out,
-                "contact/gap": gaps - d[:, self.contacts] if self.contacts else np.zeros((len(t), 0)),
-                "contact/force": force[:, self.contacts] if self.contacts else np.zeros((len(t), 0)),
-                "spring/force": force[:, self.springs] if self.springs else np.zeros((len(t), 0)),
-                "spring/deformation": d[:, self.springs] if self.springs else np.zeros((len(t), 0)),
-                "drift": u @ self.drifts.rows.T + s @ self.drifts.input_rows.T + self.drifts.constants,
+                **{
+                    f"node/{q}": values.T.reshape(len(t), len(self.nodes), 3)
+                    for q, values in zip("uva", node)
+                },
+                "member/force": out.T,
+                "contact/gap": gaps - d[self.contacts].T,
+                "contact/force": force[self.contacts].T,
+                "spring/force": force[self.springs].T,
+                "spring/deformation": d[self.springs].T,
+                "drift": (
+                    self.drifts.rows @ u + self.drifts.input_rows @ s + self.drifts.constants[:, None]
+                ).T,
                 "ground": np.array(
                     [[float(m.acceleration.value(x)) for m in scene.motions] for x in t]
                 ).reshape(len(t), -1),
-                "force": s[:, s.shape[1] - len(scene.forces) :],
+                "force": s[len(s) - len(scene.forces) :].T,
                 "energy": np.column_stack([energy, residual]),
             }
         )

@@ -76,11 +76,12 @@ class Replay:
         self.high: Array | float = -np.inf
         self.low: Array | float = np.inf
 
-    def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+    def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take one sample (see `integrate.base.Sink`)."""
         self.told.append((self.sink.sample, (t, u, v, a, laws, works)))
-        self.high, self.low = np.maximum(self.high, u), np.minimum(self.low, u)
-        self.sink.trial(t)
+        self.high = np.maximum(self.high, u.max(axis=1))
+        self.low = np.minimum(self.low, u.min(axis=1))
+        self.sink.trial(float(t[-1]))
 
     def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
         """Take the motion between samples (see `integrate.base.Sink`)."""

@@ -367,7 +367,9 @@ class Laplace:
             peaks.force[i].take(collision.peak, collision.t_peak)
 
     def _hand_out(self, t: float, u: Array, v: Array, a: Array, works: Array) -> None:
-        self.sink.sample(t, u, v, a, law_values(self.scene, t, u, v, self.states), works)
+        at, *motion = np.array([t]), u[:, None], v[:, None], a[:, None]
+        laws = law_values(self.scene, at, motion[0], motion[1], self.states)
+        self.sink.sample(at, *motion, laws, works[:, None])
 
     def outcome(self) -> Outcome:
         """What the run gathered."""

@@ -378,10 +378,11 @@ class Stepper:
             if law in self.ledger.open:
                 self._count(self.ledger.open[law], row[7:])
             self.ledger.switched(law, names[before], names[after], *row[3:7])
-        for i in range(count[arrays.KEPT]):
-            u, v, a = z.motion[i][:, back]
-            t, *works = z.works[i].tolist()
-            self.sink.sample(t, u, v, a, LawValues(*z.laws[i].copy()), np.array(works))
+        if kept := int(count[arrays.KEPT]):
+            t, *works = z.works[:kept].T.copy()
+            u, v, a = z.motion[:kept][:, :, back].transpose(1, 2, 0)
+            laws = LawValues(*z.laws[:kept].transpose(1, 2, 0).copy())
+            self.sink.sample(t, u, v, a, laws, np.array(works))
         count[arrays.LOGGED] = count[arrays.KEPT] = 0
 
     @staticmethod
