@@ -189,6 +189,14 @@ class Scene:
             free = (free.T + self.expand_constant).T
         return np.concatenate([free, self.support_inputs @ s])
 
+    def on_unknowns(self, rows: Matrix) -> tuple[Matrix, Array, Array]:
+        """What rows on all columns of the structure are on the unknowns and on the inputs,
+        and their constant part.
+        """
+        free, moved = rows[:, : self.structure.n_free], rows[:, self.structure.n_free :]
+        inputs = free @ self.expand_inputs + moved @ self.support_inputs
+        return free @ self.expand, inputs, free @ self.expand_constant
+
     def applied(self, s: Array) -> Array:
         """Held loads and FORCES on all unknown freedoms at inputs `s`; columns are instants
         where there are several.

@@ -117,17 +117,11 @@ def _lead_massless(scene: Scene, u: Array, pushed: Array) -> None:
 def watch(structure: Structure, scene: Scene) -> Watch:
     """Rows of the DRIFT cards over the scene's unknowns."""
     cards = structure.model.drifts
-    n = structure.n_free
     ways = ["XY".index(c["DIRECTION"]) for c in cards]
     rows = structure.freedoms.rows(
         [(((c["J"], way), (c["I"], way)), (1.0, -1.0)) for c, way in zip(cards, ways)]
     )
-    return Watch(
-        [c["NAME"] for c in cards],
-        rows[:, :n] @ scene.expand,
-        rows[:, :n] @ scene.expand_inputs + rows[:, n:] @ scene.support_inputs,
-        rows[:, :n] @ scene.expand_constant,
-    )
+    return Watch([c["NAME"] for c in cards], *scene.on_unknowns(rows))
 
 
 def heights(model: Model) -> list[float]:
@@ -192,7 +186,7 @@ class Recorder:
         self.scene, self.drifts, self._append, self._progress = scene, drifts, append, progress
         chosen = model.output["NODES"]
         self.nodes = tuple(model.nodes) if chosen is None else tuple(dict.fromkeys(chosen))
-        free, node_rows = structure.n_free, freedoms.matrix([(n, d) for n in self.nodes for d in range(3)])
+        node_rows = freedoms.matrix([(n, d) for n in self.nodes for d in range(3)])
         # motion of the nodes when they ride on the ground: x, y, and a turn about the origin
         x, y = (np.array([getattr(model.nodes[n], c) for n in self.nodes]) for c in "xy")
         ridden = np.zeros((3, len(self.nodes), 3))
@@ -200,19 +194,20 @@ class Recorder:
         ridden[2, :, 0], ridden[2, :, 1] = -y, x
         ground = np.einsum("jnd,jc->ndc", ridden, scene.acceleration_inputs).reshape(3 * len(self.nodes), -1)
         # nodes' motions from unknowns and inputs, of what moves at all
-        inputs = node_rows[:, :free] @ scene.expand_inputs + node_rows[:, free:] @ scene.support_inputs
-        own = node_rows[:, :free] @ scene.expand
-        constant = node_rows[:, :free] @ scene.expand_constant
+        own, inputs, constant = scene.on_unknowns(node_rows)
         at = np.flatnonzero(used_rows(own) | np.any(np.column_stack([inputs, ground, constant]), axis=1))
         self.moving, self.node_u, self.node_inputs = at, own[at], inputs[at]
         self.node_constant, self.node_ground = constant[at], ground[at]
         elements = model.output["MEMBERS"]
         self.outputs = [o for o in structure.outputs if elements is None or o.element in elements]
-        self.out_u = freedoms.rows([(o.freedoms, o.u_row.tolist()) for o in self.outputs])
-        self.out_v = freedoms.rows(
+        on_u = freedoms.rows([(o.freedoms, o.u_row.tolist()) for o in self.outputs])
+        on_v = freedoms.rows(
             [(o.freedoms, () if o.v_row is None else o.v_row.tolist()) for o in self.outputs]
         )
-        self.constants = np.array([o.constant for o in self.outputs])
+        self.from_u, self.from_input, constant = scene.on_unknowns(on_u)
+        self.from_v, self.from_rate, _ = scene.on_unknowns(on_v)
+        self.damped = bool(used_rows(on_v).any())
+        self.constants = constant + [o.constant for o in self.outputs]
         self.shares = scene.chords.shares([(o.element, o.quantity) for o in self.outputs])
         self.springs = [i for i, s in enumerate(structure.laws) if not s.is_contact]
         self.contacts = [i for i, s in enumerate(structure.laws) if s.is_contact]
@@ -317,8 +312,9 @@ class Recorder:
         node = [self.node_u @ x + self.node_inputs @ y for x, y in zip((u, v, a), s)]
         node[0] += self.node_constant[:, None]
         node[2] += self.node_ground @ s[0]  # they are total
-        full_u, full_v = (scene.expanded(x, y, order) for order, (x, y) in enumerate(zip((u, v), s)))
-        out = self.out_u @ full_u + self.out_v @ full_v + self.constants[:, None]
+        out = self.from_u @ u + self.from_input @ s[0] + self.constants[:, None]
+        if self.damped:
+            out += self.from_v @ v + self.from_rate @ s[1]
         if scene.chords:
             at, share = self.shares
             out += (share * scene.chords.survey(scene.quantities(u.T, s[0].T))[:, at, 1:]).sum(axis=2).T
