@@ -77,7 +77,10 @@ def test_exact_refuses_a_curved_law(tmp_path):
     deck.write_text(extremes.storeys(extremes.items(rule)).replace(extremes.METHOD, "EXACT"))
     results = pound_solve.run(deck)
     assert results.status == "stopped"
-    assert "A505 at t = 0 s: the law BOUC_WEN of element 1 is curved" in results.message
+    assert (
+        "A505 at t = 0 s: EXACT needs linear pieces, and the law BOUC_WEN of element 1 is curved"
+        in results.message
+    )
 
 
 @pytest.mark.parametrize("method", ["HHT", "GENERALISED_ALPHA"])
