@@ -343,13 +343,13 @@ class Condensed:
     constant: Array
     loads: Array
 
-    def put_in(self, t: float) -> float:
+    def put_in(self, t: Array) -> Array:
         """Work of the loads on condensed freedoms by that part of their displacements which follows
-        the loads at once, since these were zero [F L].
+        the loads at once, since these were zero [F L], at some times.
         """
-        s = np.append(self.scene.excitation.value(t), 1.0)
+        s = np.vstack([self.scene.excitation.values(t).T, np.ones(len(t))])
         own = np.column_stack([self.follow, self.constant]) @ s
-        return 0.5 * float(own @ self.loads @ s)
+        return np.asarray(0.5 * (own * (self.loads @ s)).sum(axis=0))
 
     def all(self, u: Array, s: Array, order: int = 0) -> Array:
         """All unknowns from those that are left and the inputs `s`, shape (n,); `order` 1: velocities,

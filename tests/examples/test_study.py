@@ -55,7 +55,9 @@ def test_verdicts_follow_from_the_errors(quick):
     ]
     large = int(figures.split()[0])
     # errors are printed with one decimal
-    assert sum(e >= 10.05 for e in old) <= large <= sum(e >= 9.95 for e in old) and f"of {len(old)}" in figures
+    assert (
+        sum(e >= 10.05 for e in old) <= large <= sum(e >= 9.95 for e in old) and f"of {len(old)}" in figures
+    )
     assert (verdict == "holds") == (large == len(old))
     many = [abs(e) for r in errors for e in r[5:9]]
     verdict, figures = verdicts["With two or more elements every error is below 5 %"]

@@ -147,7 +147,7 @@ def test_auto_keeps_its_tolerance_and_its_estimate_holds(tmp_path, monkeypatch, 
     exact = run(tmp_path, "AUTO")
     assert "EXACT" in exact.table("scene")["decision"].tolist()
     truth, closed = figures(exact), exact.table("contact_summary")["closures"][0]
-    monkeypatch.setattr(auto, "why_not_exact", lambda scene: "steps are asked for")
+    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
     found = run(tmp_path, f"AUTO TOL={tol}")
     assert found.table("contact_summary")["closures"][0] == closed
     assert error_against(found, truth) <= estimate(found) <= tol
@@ -168,7 +168,7 @@ def error_against(results, truth):
 def test_auto_learns_nothing_from_two_runs_with_the_same_steps(tmp_path, monkeypatch):
     """Output times cut the steps of both: a difference of zero between them is no accuracy."""
     truth = figures(run(tmp_path, "EXACT"))
-    monkeypatch.setattr(auto, "why_not_exact", lambda scene: "steps are asked for")
+    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
     found = run(tmp_path, "AUTO TOL=1e-3", every=0.004)
     assert error_against(found, truth) <= estimate(found) <= 1e-3
 
@@ -256,7 +256,7 @@ def seen(row, values, t):
 
 def test_auto_hands_on_the_envelopes_of_its_last_run_alone(tmp_path, monkeypatch):
     """They are those of NEWMARK with the step that it came to, and no coarser run is left in them."""
-    monkeypatch.setattr(auto, "why_not_exact", lambda scene: "steps are asked for")
+    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
     found = run(tmp_path, "AUTO TOL=1e-3", "")
     step = next(r["value"] for r in found.table("run") if r["item"] == "time step")
     alone = run(tmp_path, f"NEWMARK DT={step}", "")

@@ -108,7 +108,7 @@ def test_steps_that_do_not_resolve_the_motion_are_told(tmp_path):
 
 
 def test_auto_says_how_good_it_is_rather_than_its_steps(tmp_path, monkeypatch):
-    monkeypatch.setattr(auto, "why_not_exact", lambda scene: "steps are asked for")
+    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
     deck = tmp_path / "pair.inp"
     spec = extremes.catalog().family("contact")["KELVIN_VOIGT"]
     k = 1e3 * extremes.STOREY

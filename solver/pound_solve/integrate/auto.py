@@ -39,6 +39,7 @@ from pound_solve.integrate.base import (
     Stop,
     Watch,
     goals,
+    not_linear,
     refuse_rigid,
 )
 from pound_solve.scene import Decision, Scene
@@ -54,19 +55,9 @@ EVENT = 10  #: steps that a located event costs as much as
 PLAIN = 100  #: times as much where nothing compiles the kernels
 
 
-def why_not_exact(scene: Scene) -> str:
-    """Reason why EXACT cannot solve the scene; empty where it can."""
-    if scene.structure.chords:
-        return f"GEOMETRY {scene.structure.model.geometry}: the members' stiffness changes as they move"
-    curved = next((s for s in scene.structure.laws if s.law.curved), None)
-    if curved is not None:
-        return f"the law {curved.rule} of element {curved.element} is curved"
-    return ""
-
-
 def stepped(scene: Scene) -> Decision:
     """Why steps were taken."""
-    reason = why_not_exact(scene) or "the stiffness changes so often that EXACT would cost more"
+    reason = not_linear(scene) or "the stiffness changes so often that EXACT would cost more"
     return Decision("method", "NEWMARK", f"{reason}; steps are shortened until the peaks stand still")
 
 
@@ -82,11 +73,12 @@ class Replay:
         self.high: Array | float = -np.inf
         self.low: Array | float = np.inf
 
-    def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take one sample (see `integrate.base.Sink`)."""
+    def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take some samples (see `integrate.base.Sink`)."""
         self.told.append((t, u, v, a, laws, works))
-        self.high, self.low = np.maximum(self.high, u), np.minimum(self.low, u)
-        self.sink.trial(t)
+        self.high = np.maximum(self.high, u.max(axis=1))
+        self.low = np.minimum(self.low, u.min(axis=1))
+        self.sink.trial(float(t[-1]))
 
     def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
         """Take the motion between samples (see `integrate.base.Sink`)."""
@@ -108,7 +100,7 @@ class Rival:
 
     def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Keeper) -> None:
         self.scene, self.start, self.watch, self.sink = scene, start, watch, sink
-        self.whole = np.inf if why_not_exact(scene) else 0.0  # least cost of the whole run, so far as known
+        self.whole = np.inf if not_linear(scene) else 0.0  # least cost of the whole run, so far as known
 
     def run(self, cost: float, regimes: float = np.inf) -> Outcome | None:
         """Its run, if that costs no more and meets no more linear regimes; None where it would."""
@@ -212,7 +204,7 @@ def integrate(
     """Choose a method, note why, and run it."""
     rival, free, few = Rival(scene, start, watch, sink), FREE, float(FEW)
     if any(s.law.rigid for s in scene.structure.laws):
-        if reason := why_not_exact(scene):
+        if reason := not_linear(scene):
             refuse_rigid(scene, start, f"NEWMARK, which AUTO takes because {reason},")
         free = few = np.inf  # no other method knows them
     outcome = rival.run(free, few)

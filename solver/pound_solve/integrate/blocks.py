@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pound_solve import polynomial
 from pound_solve.integrate import work
-from pound_solve.integrate.flow import TERMS, Flow, Mechanism, make_flow
+from pound_solve.integrate.flow import TERMS, Flow, Mechanism, make_flow, on_stacked, stacked
 from pound_solve.integrate.rigid import Rigid
 from pound_solve.laws import Branch
 from pound_solve.scene import Scene
@@ -77,10 +77,12 @@ class Regime:
     watched : ndarray of int, place : list of int
         Which rows of the run touch it; the place of every row among them, or -1.
     rows : ndarray, shape (n_watched, n)
-    on_q : ndarray, shape (3 n_watched, n_q)
-        What the rows' values, rates and second rates take from q.
-    motion : ndarray, shape (3 n, n_q)
-        What displacements, velocities and accelerations take from q.
+    on_u : ndarray, shape (n_watched, n_q)
+        What the rows' values take from q.
+    on_q : ndarray, shape (3 n_watched, n_q or 2 n_q)
+        What their values, rates and second rates take from `flow.stacked` q.
+    motion : ndarray, shape (3 n, n_q or 2 n_q)
+        What displacements, velocities and accelerations take from it.
     reactions : Reactions or None
     """
 
@@ -90,8 +92,9 @@ class Regime:
     watched: NDArray[np.intp]
     place: list[int]
     rows: Array
-    on_q: NDArray[Any]
-    motion: NDArray[Any]
+    on_u: NDArray[Any]
+    on_q: Array
+    motion: Array
     meter: work.Meter
     reactions: Reactions | None
 
@@ -240,7 +243,7 @@ class Partition:
             (int(i), branches[i].damping, scene.law_rows[i, index]) for i in laws if branches[i].damping
         ]
         meter = work.Meter(flow, scene.damping[grid], scene.inputs[index], dashpots)
-        motion = np.vstack([flow.u_q, flow.v_q, flow.onward(flow.v_q)])
+        motion = on_stacked(np.vstack([flow.u_q, flow.v_q, flow.onward(flow.v_q)]))
         return Regime(
             index,
             laws,
@@ -248,6 +251,7 @@ class Partition:
             watched,
             place,
             rows,
+            rows @ flow.u_q,
             np.concatenate([rows @ x for x in np.split(motion, 3)]),
             motion,
             meter,
@@ -361,16 +365,16 @@ class Window:
             if not m:
                 continue
             flat = samples.reshape(len(samples), n * count)
-            states = np.concatenate([flat, block.qs[:, -1:]], axis=1)
+            states = stacked(np.concatenate([flat, block.qs[:, -1:]], axis=1))
             if block.regime.reactions is not None:
                 self._react(block, states, t, value, rate)
             on_q = block.regime.on_q
-            both = (on_q[: 2 * m] @ states).real
+            both = on_q[: 2 * m] @ states
             value[w] += both[:m]
             rate[w] += both[m:]
             if bending:
-                bend = (on_q[2 * m :] @ states).real
-                second[w] += bend + self._along((block.gs @ on_q[m : 2 * m].T).real, t, 0)
+                bend = on_q[2 * m :] @ states
+                second[w] += bend + self._along(stacked(block.gs, -1) @ on_q[m : 2 * m].T, t, 0)
             if block.ps is not None and flow.u_p is not None:
                 self._direct(block, t, value, rate, second)
         return value, rate, second
@@ -392,16 +396,14 @@ class Window:
         rate[w] += v_p @ force + u_p @ slope
         second[w] += v_p @ slope + u_p @ bend
 
-    def _react(
-        self, block: Block, states: NDArray[Any], t: NDArray[Any], value: Array, rate: Array
-    ) -> None:
+    def _react(self, block: Block, states: Array, t: NDArray[Any], value: Array, rate: Array) -> None:
         """Put in the forces of closed rigid contacts."""
         flow, r = block.regime.flow, block.regime.reactions
         assert block.ps is not None and r is not None
         force, slope, bend = (self._along(block.ps, t, order) for order in range(3))
-        value[r.place] = (r.on_q @ states).real + r.on_p @ force + r.on_rate @ slope
+        value[r.place] = on_stacked(r.on_q) @ states + r.on_p @ force + r.on_rate @ slope
         rate[r.place] = (
-            (flow.onward(r.on_q) @ states).real
+            on_stacked(flow.onward(r.on_q)) @ states
             + self._along((block.gs @ r.on_q.T).real, t, 0)
             + r.on_p @ slope
             + r.on_rate @ bend
@@ -439,7 +441,7 @@ class Window:
                 known = p @ r.reactions.on_p[n]
                 known[:-1] += (p[1:] @ r.reactions.on_rate[n]) * np.arange(1, len(p))
             elif own >= 0:
-                on_q = r.on_q[own]
+                on_q = r.on_u[own]
                 if block.ps is not None and r.flow.u_p is not None:
                     known = known + block.ps[interval] @ (r.rows[own] @ r.flow.u_p)
             else:
@@ -465,10 +467,10 @@ class Window:
             if r.reactions is not None:
                 value[r.reactions.place], rate[r.reactions.place] = self._reaction(block, i, tau)
             q = self.state(block, i, tau)
-            d, v, x = (r.on_q @ q).real.reshape(3, m)
+            d, v, x = (r.on_q @ stacked(q)).reshape(3, m)
             value[w] += d
             rate[w] += v
-            second[w] += x + polynomial.value((g @ r.on_q[m : 2 * m].T).real, tau)
+            second[w] += x + polynomial.value(stacked(g, -1) @ r.on_q[m : 2 * m].T, tau)
             if block.ps is not None and r.flow.u_p is not None:
                 force, slope, bend = (polynomial.value(block.ps[i], tau, order) for order in (0, 1, 2))
                 assert r.flow.space.v_p is not None  # stands where u_p does
@@ -534,8 +536,9 @@ class Window:
         out = np.zeros((3, self.partition.scene.size, count))
         for block in self.partition.blocks:
             flow, index, q = block.regime.flow, block.regime.index, states(block)
-            own = (block.regime.motion @ q.reshape(len(q), count)).real.reshape(3, len(index), count)
-            own[2] += polynomial.along((block.gs[intervals] @ flow.v_q.T).real, t)
+            motion, n = block.regime.motion, len(index)
+            own = (motion @ stacked(q.reshape(len(q), count))).reshape(3, n, count)
+            own[2] += polynomial.along(stacked(block.gs[intervals], -1) @ motion[n : 2 * n].T, t)
             u_p, v_p = flow.u_p, flow.space.v_p
             if block.ps is not None and u_p is not None and v_p is not None:
                 force, slope, bend = (polynomial.along(block.ps[intervals], t, k) for k in range(3))

@@ -266,6 +266,16 @@ def _second_order(m: Array, c: Array, k: Array) -> StateSpace:
     )
 
 
+def stacked(x: NDArray[Any], axis: int = 0) -> Array:
+    """Real numbers of a state, or of several along other axes: its real parts, then its imaginary ones."""
+    return np.concatenate([x.real, x.imag], axis) if np.iscomplexobj(x) else x
+
+
+def on_stacked(rows: NDArray[Any]) -> Array:
+    """Rows on a state as rows on what is `stacked` of it: half the work of a complex product."""
+    return np.concatenate([rows.real, -rows.imag], axis=1) if np.iscomplexobj(rows) else rows
+
+
 class Flow(ABC):
     """A block's exact motion; the base of `ModalFlow` and `SeriesFlow`.
 

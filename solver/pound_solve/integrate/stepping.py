@@ -400,11 +400,12 @@ class Stepper:
             u, v, a = z.shown[:shown, :, back].transpose(1, 2, 0)
             self.sink.between(z.when[:shown].copy(), u, v, a, float(np.diff(seen).max()))
             self.seen = seen[-1]
-        for i in range(kept):
-            u, v, a = z.motion[i][:, back]
-            t, *works = z.works[i].tolist()
-            self.rush += v @ (self.scene.mass @ v), a @ (self.scene.mass @ a)
-            self.sink.sample(t, u, v, a, LawValues(*z.laws[i].copy()), np.array(works))
+        if kept:
+            t, *works = z.works[:kept].T.copy()
+            u, v, a = z.motion[:kept, :, back].transpose(1, 2, 0)
+            self.rush += (v * (self.scene.mass @ v)).sum(), (a * (self.scene.mass @ a)).sum()
+            values = LawValues(*z.laws[:kept].transpose(1, 2, 0).copy())
+            self.sink.sample(t, u, v, a, values, np.array(works))
         count[arrays.LOGGED] = count[arrays.KEPT] = count[arrays.SHOWN] = 0
 
     @staticmethod
