@@ -46,7 +46,7 @@ def deck(nodes, elements, props, weights, motion, t, every, damping="ALPHA=0.5 B
     parts = {
         "NODES": nodes, "ELEMENTS": elements, "PROPS": props, "WEIGHTS": weights,
         "DAMPING": [f"RAYLEIGH {damping}"], "EQUAKE": [motion], "ANALYSIS": [f"HISTORY {t}"],
-        "OUTPUT": [f"EVERY={every}", "NODES=1", "ELEMENTS=1"],
+        "OUTPUT": [f"EVERY={every}", "NODES=1"],
     }  # fmt: skip
     lines = ["UNITS kN m s", "GRAVITY 9.81"]
     for name, own in parts.items():

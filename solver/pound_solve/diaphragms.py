@@ -58,18 +58,18 @@ class Meeting:
         return math.nan if self.pair is None else self.pair.force * approach
 
 
-def sides(structure: Structure, spring: LawSpring) -> tuple[Diaphragm, Diaphragm]:
-    """Diaphragms on the sides of I and J of a contact; a wall and a fixed node have infinite mass."""
+def sides(
+    structure: Structure, members: Mapping[int, Sequence[int]], spring: LawSpring
+) -> tuple[Diaphragm, Diaphragm]:
+    """Diaphragms on the sides of I and J of a contact; a wall and a fixed node have infinite mass.
+
+    `members` are the numbers of the elements at each node.
+    """
     element = structure.model.elements[spring.element]
     given = structure.model.props[element.prop]["DIAPHRAGMS"]
     first, second = map(Diaphragm, spring.facts["masses"])
     if given is not None:
         return Diaphragm(first.mass, given[0]), Diaphragm(second.mass, (*given, math.inf)[1])
-    members: dict[int, list[int]] = {}
-    for e in structure.model.elements.values():
-        if e.j is not None:
-            members.setdefault(e.i, []).append(e.id)
-            members.setdefault(e.j, []).append(e.id)
     (nx, ny), _ = axes(spring.facts["angle"])
     first = _behind(structure, members, element.i, (-nx, -ny)) or first
     if element.j is not None:
@@ -79,12 +79,17 @@ def sides(structure: Structure, spring: LawSpring) -> tuple[Diaphragm, Diaphragm
 
 def meetings(structure: Structure) -> dict[int, Meeting]:
     """What meets in every contact, by the number of its law."""
-    return {i: _meeting(structure, s) for i, s in enumerate(structure.laws) if s.is_contact}
+    members: dict[int, list[int]] = {}
+    for e in structure.model.elements.values():
+        if e.j is not None:
+            members.setdefault(e.i, []).append(e.id)
+            members.setdefault(e.j, []).append(e.id)
+    return {i: _meeting(structure, members, s) for i, s in enumerate(structure.laws) if s.is_contact}
 
 
-def _meeting(structure: Structure, spring: LawSpring) -> Meeting:
+def _meeting(structure: Structure, members: Mapping[int, Sequence[int]], spring: LawSpring) -> Meeting:
     """Both sides of a contact, and what the theory says of them."""
-    first, second = both = sides(structure, spring)
+    first, second = both = sides(structure, members, spring)
     if 0.0 in (first.mass, second.mass):
         return Meeting(both, None, math.nan, "no theory: a diaphragm has no mass")
     prop = structure.model.props[structure.model.elements[spring.element].prop]

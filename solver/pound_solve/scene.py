@@ -84,6 +84,10 @@ class Excitation:
         """Index of the piece that begins at or before `t`."""
         return min(max(int(np.searchsorted(self.breaks, t, side="right")) - 1, 0), len(self.coefs) - 1)
 
+    def pieces(self, t: Array) -> NDArray[np.intp]:
+        """`piece` at several times, shape (n_times,)."""
+        return np.clip(np.searchsorted(self.breaks, t, side="right") - 1, 0, len(self.coefs) - 1)
+
     def local(self, piece: int, t: float) -> Array:
         """Coefficients about `t`, shape (degree + 1, n_inputs)."""
         return polynomial.shift(self.coefs[piece], t - float(self.breaks[piece]))
@@ -115,7 +119,7 @@ class Excitation:
 
     def values(self, t: Array, order: int = 0) -> Array:
         """`value` at several times, shape (n_times, n_inputs)."""
-        i = np.clip(np.searchsorted(self.breaks, t, side="right") - 1, 0, len(self.coefs) - 1)
+        i = self.pieces(t)
         return polynomial.values(self.coefs[i], t - self.breaks[i], order)
 
 

@@ -6,10 +6,10 @@ between two runs of which the second takes r times the steps of the first the pe
 :math:`\Delta`, and the error left in the second is estimated as :math:`\Delta/(r-1)`, as if the method
 were of first order only.  It is of second order, so that the estimate errs on the safe side.
 
-Which of the two pays shows on the way.  EXACT may begin with a little; if that does not last, steps are
-taken, and before every run of them EXACT may go as far as that run's cost, if by what it has shown it
-would get to the end.  Costs are counted from windows, decompositions, steps and unknowns, and not measured,
-so that a deck takes the same way whenever it is run.
+Which of the two pays shows on the way.  Where few laws change stiffness EXACT may begin with a little; if
+that does not last, steps are taken, and before every run of them EXACT may go as far as that run's cost, if
+by what it has shown it would get to the end.  Costs are counted from windows, decompositions, steps and
+unknowns, and not measured, so that a deck takes the same way whenever it is run.
 
 What is compared: the largest and smallest value of every drift, against the larger of the two (but no less
 than a millionth of the largest drift: what is smaller may be rounding, which never stands still); the peak
@@ -50,6 +50,7 @@ MOST_STEPS = 50_000_000  #: of one run
 MARGIN = 0.6  #: of the tolerance that the next step aims at
 FREE = 1.0  #: what EXACT may cost before steps are thought of: loading their kernels costs as much
 FEW = 24  #: combinations of stiffnesses that it may meet by then: where they do not return, more will come
+MANY = 12  #: laws from which EXACT gets nothing free: their combinations seldom return
 STEP, EACH = 3e-7, 2.5e-8  #: cost of a step and of each of its unknowns, of a law twice, as `exact.WINDOW`
 EVENT = 10  #: steps that a located event costs as much as
 PLAIN = 100  #: times as much where nothing compiles the kernels
@@ -207,6 +208,8 @@ def integrate(
         if reason := not_linear(scene):
             refuse_rigid(scene, start, f"NEWMARK, which AUTO takes because {reason},")
         free = few = np.inf  # no other method knows them
+    elif len(scene.structure.laws) > MANY:
+        free = 0.0
     outcome = rival.run(free, few)
     return outcome or to_tolerance(scene, start, watch, options, sink, rival)
 

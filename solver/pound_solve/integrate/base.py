@@ -300,10 +300,10 @@ class Ledger:
                 self.peaks.yields[law] += 1
             return
         was, now = before.startswith("pressed"), after.startswith("pressed")
-        ended = [i for i, c in enumerate(self.peaks.collisions) if c.law == law]
-        if before == "released" and now and ended:
+        ended = self._last_ended(law) if before == "released" and now else None
+        if ended is not None:
             # the bodies never parted: the collision goes on
-            again = self.peaks.collisions.pop(ended[-1])
+            again = self.peaks.collisions.pop(ended)
             again.t_end = again.separation = np.nan
             self.open[law] = again
         elif now and not was and law not in self.open:
@@ -312,6 +312,11 @@ class Ledger:
             done = self.open.pop(law)
             done.t_end, done.separation = t, -v
             self.peaks.collisions.append(done)
+
+    def _last_ended(self, law: int) -> int | None:
+        """Place of the contact's last collision; it is seldom far from the end of the list."""
+        collisions = self.peaks.collisions
+        return next((i for i in reversed(range(len(collisions))) if collisions[i].law == law), None)
 
     def force(self, law: int, value: float, t: float) -> None:
         """Count a contact force into its collision."""

@@ -283,8 +283,8 @@ class Stepper:
 
     def _leans_on(self, law: LawSpring) -> tuple[int, int]:
         """Law that this one leans on, and a bit for each branch where that one is pressed; -1 if none."""
-        for j, other in enumerate(self.laws):
-            if law.normal and (other.element, other.component) == (law.element, law.normal):
+        for j, other in enumerate(self.laws if law.normal else ()):
+            if (other.element, other.component) == (law.element, law.normal):
                 pressed = enumerate(x.startswith("pressed") for x in other.law.rule.branches)
                 return j, sum(yes << n for n, yes in pressed)
         return -1, 0
@@ -369,7 +369,8 @@ class Stepper:
         output = np.concatenate([[0], np.cumsum(is_output)[:-1]])
         shows = -(-np.bincount(output, steps).astype(np.int64) // (arrays.SHOWS + 1))[output]
         ex = scene.excitation
-        pieces = np.array([ex.piece(t + 1e-13 * max(1.0, t)) for t in ends - lengths], np.int64)
+        begin = ends - lengths
+        pieces = ex.pieces(begin + 1e-13 * np.maximum(1.0, begin)).astype(np.int64)
         coefs = np.ascontiguousarray(ex.coefs)
         advance = jit.compiled(kernel.advance)
         while True:
