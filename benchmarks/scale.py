@@ -159,7 +159,7 @@ def one(path, params, method, tol, barred):
     from pound_solve.integrate import auto
 
     options = {"method": method} | ({"tol": tol} if method == "AUTO" else {})
-    bar = mock.patch.object(auto, "why_not_exact", lambda scene: "barred") if barred else nullcontext()
+    bar = mock.patch.object(auto, "not_linear", lambda scene: "barred") if barred else nullcontext()
     with (
         bar,
         tempfile.TemporaryDirectory() as out,

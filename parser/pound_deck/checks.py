@@ -169,7 +169,8 @@ def _initial(model: Model) -> Found:
 def _excitation(model: Model) -> Found:
     # a list may be empty
     loaded = any(card["NODES"] for card in (*model.initial, *model.loads, *model.forces))
-    if model.equake or loaded or any(card["ELEMENTS"] for card in model.member_loads):
+    overlaps = any(x.spec.name == "CONTACT" and x["GAP"] < 0.0 for x in model.props.values())
+    if model.equake or loaded or overlaps or any(card["ELEMENTS"] for card in model.member_loads):
         return
     for card in model.analyses:
         if card.spec.name == "HISTORY":

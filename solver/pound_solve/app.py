@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pound_deck.diagnostics import Diagnostic, has_errors
 from pound_deck.model import Card, Model, Span
 from pound_deck.reader import read_deck
-from pound_deck.schema import REQUIRED
+from pound_deck.schema import REQUIRED, Spec
 from pound_solve import __version__, scene
 from pound_solve.analyses import pushover
 from pound_solve.assemble import AssemblyError, Structure, assemble
@@ -59,6 +59,8 @@ class Request:
         Folders where records are looked for, after the deck's own.
     method, dt, tol : str or None, float or None
         Replace METHOD, DT and TOL of every HISTORY.
+    explain : bool
+        Put what the run imports, compiles and holds into the results.
     """
 
     deck: str
@@ -68,6 +70,7 @@ class Request:
     method: str | None = None
     dt: float | None = None
     tol: float | None = None
+    explain: bool = False
 
     def path(self, suffix: str) -> Path:
         """Path of an output file."""
@@ -228,30 +231,34 @@ def _override(model: Model, request: Request, found: list[Diagnostic]) -> Model:
                     )
                 )
                 return model
-            own = {f.name: card.values.get(f.name, f.default) for f in methods[name].fields}
-            # an item of the deck's own method that was left out there may be one that this method must have
-            own |= {f.name: f.default for f in methods[name].fields if own[f.name] is None}
-            for item, value in given.items():
-                if value is not None and item in own:
-                    own[item] = value
-                elif value is not None:
+            method = methods[name]
+            asked = {item: value for item, value in given.items() if value is not None}
+            for item in asked:
+                if item not in {f.name for f in method.fields}:
                     message = f"--{item.lower()}: {name} has no item {item}"
                     found.append(Diagnostic("P211", message, None, severity="warning"))
-            missing = [key for key, value in own.items() if value is REQUIRED]
+            card = with_method(card, method, asked)
+            missing = [f.name for f in method.fields if card.values[f.name] is REQUIRED]
             if missing:
                 found.append(
                     Diagnostic("P213", f"--method {name} needs {', '.join(missing)}: give --dt", None)
                 )
                 return model
-            spans = dict(card.spans) | {k: Span("--method/--dt", 1, 1, 2) for k in ("METHOD", *given)}
-            card = replace(
-                card,
-                values={**card.values, **own, "METHOD": name},
-                laws={"METHOD": (methods[name],)},
-                spans=spans,
-            )
         cards.append(card)
     return replace(model, analyses=tuple(cards))
+
+
+def with_method(card: Card, method: Spec, given: Mapping[str, Any]) -> Card:
+    """HISTORY card with another method: the card's own items where the method has them, else the defaults,
+    and what is given.
+    """
+    own = {f.name: card.values.get(f.name, f.default) for f in method.fields}
+    # an item of the deck's own method that was left out there may be one that this method must have
+    own |= {f.name: f.default for f in method.fields if own[f.name] is None}
+    own |= {item: value for item, value in given.items() if item in own}
+    spans = dict(card.spans) | {k: Span("--method/--dt", 1, 1, 2) for k in ("METHOD", *given)}
+    values = {**card.values, **own, "METHOD": method.name}
+    return replace(card, values=values, laws={"METHOD": (method,)}, spans=spans)
 
 
 def execute(request: Request, progress: Progress | None = None) -> tuple[int, Results, Prepared]:
@@ -275,18 +282,43 @@ def execute(request: Request, progress: Progress | None = None) -> tuple[int, Re
     ready = prepare(request)
     if request.out is not None:
         request.out.mkdir(parents=True, exist_ok=True)
-    path = request.path(".h5")
-    with Writer(
-        path, title=ready.model.title, units=ready.model.units, program_version=__version__
-    ) as writer:
-        overridden = {name.lower() for name in request.params}
-        message = Course(
-            ready.model, ready.motions, ready.forces, ready.structure, overridden, writer, progress, began,
-            ready.saved,
-        ).all()  # fmt: skip
-        writer.finish("stopped" if message else "done", message)
-    results = Results.open(path)
+    status, results = solve(ready, request.path(".h5"), progress, began, request)
     from pound_solve.report import render
 
     request.path(".rpt").write_text(render(results), encoding="ascii", newline="\n")
-    return (STOPPED if message else DONE), results, ready
+    return status, results, ready
+
+
+def solve(
+    ready: Prepared, path: Path, progress: Progress | None, began: float, request: Request
+) -> tuple[int, Results]:
+    """Run the analyses of a prepared deck into a results file.
+
+    Parameters
+    ----------
+    ready : Prepared
+    path : Path
+        The results file.
+    progress : callable or None
+    began : float
+        Reading of `time.perf_counter` from which the total time counts.
+    request : Request
+        Tells which PARAMs do not come from the deck, and whether to explain.
+
+    Returns
+    -------
+    status : int
+        `DONE` or `STOPPED`.
+    results : Results
+        The file, opened.
+    """
+    with Writer(
+        path, title=ready.model.title, units=ready.model.units, program_version=__version__
+    ) as writer:
+        given = {name.lower() for name in request.params}
+        message = Course(
+            ready.model, ready.motions, ready.forces, ready.structure, given, writer, progress, began,
+            ready.saved, request.explain,
+        ).all()  # fmt: skip
+        writer.finish("stopped" if message else "done", message)
+    return (STOPPED if message else DONE), Results.open(path)

@@ -1,39 +1,61 @@
-"""The Catalog of all Specs: every module of a family package that declares a SPEC is in it."""
+"""The Catalog of all Specs: every module of a family package that declares a SPEC is in it.
+
+A family is imported when it is first asked for: a deck without HISTORY never sees a method.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
+from types import MappingProxyType
+from typing import Final
 
 from pound_deck.schema import Catalog, Spec
 
-FAMILIES = (
-    "elements",
-    "hysteresis",
-    "contact",
-    "damping",
-    "records",
-    "motions",
-    "forces",
-    "analyses",
-    "integrate",
+#: Package of every family.
+FAMILIES: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "element": "elements",
+        "hysteresis": "hysteresis",
+        "contact": "contact",
+        "damping": "damping",
+        "record": "records",
+        "motion": "motions",
+        "force": "forces",
+        "analysis": "analyses",
+        "method": "integrate",
+    }
 )
 
 
+class Families(Catalog):
+    """A Catalog whose families are imported one by one, when asked for."""
+
+    def families(self) -> tuple[str, ...]:
+        """Names of the families."""
+        return tuple(FAMILIES)
+
+    def family(self, name: str) -> Mapping[str, Spec]:
+        """Specs of a family by name (empty when there are none)."""
+        return members(name).family(name) if name in FAMILIES else {}
+
+
 @cache
-def specs() -> tuple[Spec, ...]:
-    """Return the Specs of all families, in the order of `FAMILIES` and of file names."""
-    found = []
-    for family in FAMILIES:
-        package = import_module(f"pound_solve.{family}")
-        for module in sorted(m.name for m in iter_modules(package.__path__)):
-            spec = getattr(import_module(f"pound_solve.{family}.{module}"), "SPEC", None)
-            if spec is not None:
-                found.append(spec)
-    return tuple(found)
+def members(family: str) -> Catalog:
+    """Import a family: its Specs, in the order of file names."""
+    package = import_module(f"pound_solve.{FAMILIES[family]}")
+    names = sorted(m.name for m in iter_modules(package.__path__))
+    modules = (import_module(f"{package.__name__}.{name}") for name in names)
+    return Catalog(module.SPEC for module in modules if hasattr(module, "SPEC"))
 
 
 def catalog() -> Catalog:
     """Return the vocabulary that a deck may use."""
-    return Catalog(specs())
+    return Families(())
+
+
+def specs() -> tuple[Spec, ...]:
+    """Return the Specs of all families, in the order of `FAMILIES` and of file names."""
+    return tuple(spec for family in FAMILIES for spec in members(family).family(family).values())

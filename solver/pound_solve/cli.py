@@ -12,14 +12,18 @@ import time
 from collections.abc import Sequence
 from difflib import get_close_matches
 from pathlib import Path
+from typing import Any
 
 from pound_solve import __version__
 
 PICTURES = (
     "frame", "modes", "deformed", "envelopes", "histories", "energy", "loops", "contacts", "collisions",
+    "study",
 )  # fmt: skip
 WIDTH = 69  #: of the line that tells the progress
-VERBS = ("run", "check", "report", "export", "plot", "separation", "list", "loop")
+VERBS = ("run", "check", "study", "report", "export", "plot", "separation", "list", "loop", "stability")
+#: threads of numpy's linear algebra, as its builds know them
+THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -31,7 +35,7 @@ def parser() -> argparse.ArgumentParser:
     out.add_argument("--version", action="version", version=f"pound-solve {__version__}")
     verbs = out.add_subparsers(dest="verb", required=True, metavar="VERB")
 
-    def deck(name: str, text: str) -> argparse.ArgumentParser:
+    def deck(name: str, text: str, methods: bool = True) -> argparse.ArgumentParser:
         p = verbs.add_parser(name, help=text, description=text)
         p.add_argument("deck", help="input deck")
         p.add_argument(
@@ -40,9 +44,10 @@ def parser() -> argparse.ArgumentParser:
         p.add_argument(
             "--records", action="append", default=[], type=Path, metavar="DIR", help="folder with records"
         )
-        p.add_argument("--method", help="replace METHOD of HISTORY")
-        p.add_argument("--dt", type=float, help="replace DT of HISTORY")
-        p.add_argument("--tol", type=float, help="replace TOL of HISTORY")
+        if methods:
+            p.add_argument("--method", help="replace METHOD of HISTORY")
+            p.add_argument("--dt", type=float, help="replace DT of HISTORY")
+            p.add_argument("--tol", type=float, help="replace TOL of HISTORY")
         return p
 
     run = deck("run", "run a deck (the verb may be left out)")
@@ -50,7 +55,26 @@ def parser() -> argparse.ArgumentParser:
         "-o", "--out", type=Path, metavar="DIR", help="folder of report and results (default: the deck's)"
     )
     run.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    run.add_argument(
+        "--explain", action="store_true", help="tell what the run imported, compiled, kept and left out"
+    )
     deck("check", "report all mistakes of a deck without running it")
+    study = deck("study", "error against time of every method on this deck, and advice", methods=False)
+    study.add_argument("--methods", metavar="M,M,...", help="methods (default: all)")
+    study.add_argument(
+        "--steps",
+        metavar="DT,DT,...",
+        help="time steps (default: halves of the record's until it suffices)",
+    )
+    study.add_argument("--tols", metavar="TOL,TOL,...", help="tolerances of AUTO")
+    study.add_argument("--repeat", type=int, default=3, metavar="N", help="timed runs of each (default 3)")
+    study.add_argument(
+        "--longest", type=float, default=5.0, metavar="S", help="seconds a run may take (default 5)"
+    )
+    study.add_argument("--picture", type=Path, metavar="FILE", help="draw error against time into a file")
+    study.add_argument(
+        "-o", "--out", type=Path, metavar="DIR", help="folder of the study (default: the deck's)"
+    )
     report = verbs.add_parser("report", help="print the report of a results file")
     report.add_argument("results", help="results file (.h5)")
     report.add_argument("--all", action="store_true", help="cut no long table short")
@@ -95,6 +119,11 @@ def parser() -> argparse.ArgumentParser:
     )
     loop.add_argument("--png", type=Path, metavar="FILE", help="draw with matplotlib into a file")
     loop.add_argument("--svg", type=Path, metavar="FILE", help="draw into an SVG file")
+    text = "solve stiff and extreme scenes with every law by every method; print how they end"
+    matrix = verbs.add_parser("stability", help=text, description=text)
+    matrix.add_argument("--family", choices=("linear", "contact", "hysteresis"), help="these scenes only")
+    matrix.add_argument("--law", help="scenes with this law only")
+    matrix.add_argument("--quick", action="store_true", help="leave out the heavy scenes")
     return out
 
 
@@ -110,16 +139,21 @@ def main(argv: Sequence[str] | None = None) -> int:
     elif words and words[0].startswith("-") and words[0] not in ("-h", "--help", "--version"):
         words.insert(0, "run")
     args = parser().parse_args(words)
+    # before numpy is there: with more threads the digits depend on their number, and small matrices wait
+    for name in THREADS:
+        os.environ.setdefault(name, "1")
     try:
         return {
             "run": _run,
             "check": _check,
+            "study": _study,
             "report": _report,
             "export": _export,
             "plot": _plot,
             "separation": _separation,
             "list": _list,
             "loop": _loop,
+            "stability": _stability,
         }[args.verb](args)
     except BrokenPipeError:  # the reader of our output has gone: not our mistake
         sys.stderr.close()
@@ -155,7 +189,9 @@ def _request(args: argparse.Namespace) -> object:
             raise SystemExit(_complain(f"--set {item}: write NAME=VALUE", 2))
         params[name.strip()] = value.strip()
     out, records = getattr(args, "out", None), tuple(args.records)
-    return Request(args.deck, params, out, records, args.method, args.dt, args.tol)
+    given = vars(args)
+    own = {name: given[name] for name in ("method", "dt", "tol", "explain") if name in given}
+    return Request(args.deck, params, out, records, **own)
 
 
 def _run(args: argparse.Namespace) -> int:
@@ -183,6 +219,10 @@ def _run(args: argparse.Namespace) -> int:
                     print(f"pound-solve: warning: {check}: {value}; {verdict}", file=sys.stderr)
         if status == app.STOPPED:
             print(f"pound-solve: stopped: {results.message}", file=sys.stderr)
+        if args.explain:
+            from pound_solve.report import render as printed
+
+            print(printed(results, only=("scene", "size", "arrays", "imports")))
         if not args.quiet:
             print(f"{request.path('.rpt')}\n{request.path('.h5')}")
     return status
@@ -245,6 +285,72 @@ def _check(args: argparse.Namespace) -> int:
         f"{ready.structure.n_free} unknowns"
     )
     return app.DONE
+
+
+def _study(args: argparse.Namespace) -> int:
+    from pound_deck.diagnostics import render as told
+    from pound_solve import app, study
+    from pound_solve.report import render
+    from pound_solve.results import ResultsError
+
+    request = _request(args)
+    assert isinstance(request, app.Request)
+    live = sys.stderr.isatty()
+
+    def tell(text: str) -> None:
+        if live:
+            print(f"\r {text:<70}", end="", file=sys.stderr, flush=True)
+
+    try:
+        found, ready = study.run(request, _plan(args), tell)
+        tell("")
+        results = study.write(found, ready, request.path(".study.h5"))
+    except app.DeckError as err:
+        print(err, file=sys.stderr)
+        return app.MISTAKES
+    except study.StudyError as err:
+        tell("")
+        return _complain(str(err), 2)
+    except ResultsError as err:
+        return _complain(str(err))
+    if ready.warnings:
+        print(told(ready.warnings, ready.files), file=sys.stderr)
+    if found.noise > study.NOISY:
+        print(f"pound-solve: warning: {study.noisy(found)}", file=sys.stderr)
+    with results:
+        text = render(results)
+        request.path(".study.rpt").write_text(text, encoding="ascii", newline="\n")
+        print(text)
+        print(f"{found.sentence}\n{request.path('.study.rpt')}\n{request.path('.study.h5')}")
+        if args.picture:
+            from pound_solve import plot
+
+            try:
+                plot.draw_into(results, "study", args.picture)
+            except ImportError:
+                return _complain('--picture needs matplotlib: pip install "pound-solve[plot]"', 2)
+    return 0
+
+
+def _plan(args: argparse.Namespace) -> Any:
+    """What a study is to run, by the options; what is left out stays as `Plan` has it."""
+    from pound_solve.study import Plan, StudyError
+
+    given: dict[str, Any] = {"repeat": args.repeat, "longest": args.longest}
+    if args.methods:
+        given["methods"] = tuple(word.strip().upper() for word in args.methods.split(","))
+    for name in ("steps", "tols"):
+        words = getattr(args, name)
+        if words:
+            numbers = _numbers(words.replace(",", " ").split(), f"--{name} takes numbers", StudyError)
+            given[name] = tuple(sorted(numbers, reverse=True))
+    if (
+        args.repeat < 1
+        or not args.longest > 0
+        or any(x <= 0 for n in ("steps", "tols") for x in given.get(n, ()))
+    ):
+        raise StudyError("--repeat, --longest, --steps and --tols are above zero")
+    return Plan(**given)
 
 
 def _report(args: argparse.Namespace) -> int:
@@ -366,14 +472,38 @@ def _turning_points(args: argparse.Namespace) -> list[float]:
         raise LoopError("give --path or --file, not both")
     text = args.file.read_text(encoding="utf-8") if args.file else args.path or ""
     words = [w for line in text.splitlines() for w in line.split("#")[0].replace(",", " ").split()]
+    out = _numbers(words, "--path and --file take deformations", LoopError)
+    if (args.path is not None or args.file) and not out:
+        raise LoopError("--path and --file take one deformation at least")
+    return out
+
+
+def _numbers(words: Sequence[str], takes: str, error: type[Exception]) -> list[float]:
+    """Finite numbers; raise `error`, which says what the option `takes`, at the first word that is none."""
     out = []
     for word in words:
         try:
             out.append(float(word))
         except ValueError:
-            raise LoopError(f"{word[:60]} is no number: --path and --file take deformations") from None
+            raise error(f"{word[:60]} is no number: {takes}") from None
         if not math.isfinite(out[-1]):
-            raise LoopError(f"{word[:60]} is no finite number")
-    if (args.path is not None or args.file) and not out:
-        raise LoopError("--path and --file take one deformation at least")
+            raise error(f"{word[:60]} is no finite number")
     return out
+
+
+def _stability(args: argparse.Namespace) -> int:
+    from pound_solve import extremes, stability
+
+    families = (args.family,) if args.family else stability.FAMILIES
+    law = (args.law or "").upper()
+
+    def tell(row: stability.Row) -> None:
+        if sys.stderr.isatty():
+            print(f"\r{row.case.scene[:40]:40} {row.case.law:20} {row.method:20}", end="", file=sys.stderr)
+
+    def chosen(case: extremes.Case) -> bool:
+        return law in ("", case.law) and not (args.quick and case.heavy)
+
+    rows = list(stability.matrix(families, chosen, tell))
+    print(stability.page(rows))
+    return int(any(row.end == stability.FAULT for row in rows))

@@ -22,7 +22,7 @@ from pound_solve.diaphragms import meetings
 from pound_solve.forces.base import Force
 from pound_solve.integrate.base import ENERGIES, Outcome, Peaks, Stop
 from pound_solve.motions.base import Motion
-from pound_solve.results import Writer
+from pound_solve.results import Layout, Writer
 
 Array = NDArray[np.float64]
 #: told the time reached, the time to reach, and what keeps the run waiting there, if anything
@@ -58,6 +58,8 @@ class Course:
         Reading of the clock when the run began.
     saved : mapping of str to ndarray
         State that a history with RESTART goes on from, as it lies in the results file; else empty.
+    explain : bool
+        Tell what is imported, compiled and held, too.
     """
 
     def __init__(
@@ -71,13 +73,15 @@ class Course:
         progress: Progress | None,
         began: float,
         saved: Mapping[str, Array],
+        explain: bool = False,
     ) -> None:
         self.model, self.motions, self.forces, self.structure = model, motions, forces, structure
         self.overridden, self.writer, self.progress = overridden, writer, progress
         self.began, self.every = began, 0.0
         self.solve_seconds = self.cpu_seconds = 0.0  # of histories
-        self.saved = saved
+        self.saved, self.explain = saved, explain
         self.meetings = meetings(structure)
+        self.held: tuple[scene.Scene | None, Layout] = (None, {})  # of the history
         self.checks: list[tuple[str, str, str]] = []
 
     def all(self) -> str:
@@ -254,7 +258,8 @@ class Course:
         recorder = history.Recorder(
             place, drifts, self.writer.append, lambda t, doing: tell(t, end, doing), first
         )
-        self.writer.start_history(recorder.layout())
+        self.held = place, recorder.layout()
+        self.writer.start_history(self.held[1])
         spec = card.laws["METHOD"][0]
         options = {f.name: card[f.name] for f in spec.fields}
         save = card["SAVE"] if card["SAVE"] is not None and times[0] < card["SAVE"] < end else end
@@ -335,7 +340,7 @@ class Course:
         """Envelopes of nodes and members and the energies: what the samples tell."""
         w, units = self.writer, self.model.units
         rows: list[tuple[Any, ...]] = []
-        found = {q: e.rows() for q, e in recorder.node_envelopes.items()}
+        found = {q: e.rows() for q, e in recorder.survey.node.items()}
         for i, node in enumerate(recorder.nodes):
             for axis in range(3):
                 for q, word, dimension in (
@@ -347,9 +352,10 @@ class Course:
                     if extremes[0] != 0.0 or extremes[2] != 0.0:
                         unit = units.text(dimension if axis < 2 else dimension.replace("L", "rad"))
                         rows.append((node, "XYR"[axis], word, unit, *extremes))
-        if recorder.seen:
+        seen, apart = recorder.survey.seen, recorder.survey.apart
+        if seen:
             how = (
-                f"Seen at {recorder.seen} instants, at most {recorder.apart:.3g} {units.time} apart, "
+                f"Seen at {seen} instants, at most {apart:.3g} {units.time} apart, "
                 "and at the output times; peaks between them are not. "
             )
         else:
@@ -363,7 +369,7 @@ class Course:
             "member_envelope",
             [
                 (o.element, o.quantity, units.text(o.unit), *extremes)
-                for o, extremes in zip(recorder.outputs, recorder.output_envelope.rows())
+                for o, extremes in zip(recorder.outputs, recorder.survey.output.rows())
             ],
             how + SIGNS,
         )
@@ -505,6 +511,13 @@ class Course:
             ("Python, numpy", f"{platform.python_version()}, {np.__version__}"),
         ]
         self.writer.table("run_figures", rows)
+        if not self.explain:
+            return
+        from pound_solve import explain
+
+        kind = explain.kind(self.structure, {card.spec.name for card in self.model.analyses})
+        self.writer.table("arrays", explain.arrays(self.structure, *self.held), f"Kind of problem: {kind}.")
+        self.writer.table("imports", explain.imports())
 
 
 def _until(times: Array, end: float) -> Array:

@@ -40,7 +40,9 @@ def shift(coefs: Array, t: float | Array) -> Array:
     """
     table, power = _binomials(len(coefs))
     if np.ndim(t) == 0:
-        return coefs if t == 0.0 else np.tensordot(table * float(t) ** power, coefs, axes=1)
+        if t == 0.0:
+            return coefs
+        return np.asarray((table * float(t) ** power) @ coefs.reshape(len(coefs), -1)).reshape(coefs.shape)
     factors = table.reshape(*table.shape, *([1] * np.ndim(t))) * np.asarray(t) ** power.reshape(
         *power.shape, *([1] * np.ndim(t))
     )
@@ -52,8 +54,31 @@ def value(coefs: Array, t: float, order: int = 0) -> Array:
     n = len(coefs)
     if order >= n:
         return np.zeros(coefs.shape[1:])
-    weights = _falling(n, order) * float(t) ** np.arange(n - order)
-    return np.tensordot(weights, coefs[order:], axes=1)
+    factors = _falling(n, order).tolist()
+    out = factors[-1] * coefs[-1]
+    for factor, own in zip(factors[-2::-1], coefs[-2::-1]):
+        out = out * t + factor * own
+    return np.asarray(out)
+
+
+def along(coefs: Array, t: Array, order: int = 0) -> Array:
+    """`value` of several sets of polynomials, each at all of the times, one set after the other.
+
+    Parameters
+    ----------
+    coefs : ndarray, shape (n_sets, degree + 1, n)
+    t : ndarray, shape (n_times,)
+    order : int
+
+    Returns
+    -------
+    ndarray, shape (n, n_sets * n_times)
+    """
+    sets, terms, n = coefs.shape
+    if order >= terms:
+        return np.zeros((n, sets * len(t)))
+    weights = _falling(terms, order)[:, None] * t ** np.arange(terms - order)[:, None]
+    return np.asarray(coefs[:, order:].transpose(2, 0, 1) @ weights).reshape(n, sets * len(t))
 
 
 def values(coefs: Array, t: Array, order: int = 0) -> Array:

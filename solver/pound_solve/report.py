@@ -11,7 +11,7 @@ import math
 import re
 import textwrap
 import unicodedata
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Any, Final
 
 from numpy.typing import NDArray
@@ -35,7 +35,7 @@ _PAIRS: Final = """
 _SIGNS: Final = dict(pair.split("|") for pair in _PAIRS.split())
 
 
-def render(results: Results, *, limit: int | None = None) -> str:
+def render(results: Results, *, limit: int | None = None, only: Collection[str] | None = None) -> str:
     """Report of a results file.
 
     Parameters
@@ -44,6 +44,8 @@ def render(results: Results, *, limit: int | None = None) -> str:
         The file.
     limit : int, optional
         Rows that are printed of each table that has a limit, in place of that limit (0: all rows).
+    only : collection of str, optional
+        Names of the tables that are printed, for an excerpt.
 
     Returns
     -------
@@ -51,7 +53,7 @@ def render(results: Results, *, limit: int | None = None) -> str:
         The report; every line ends in ``\\n``.
     """
     lines = [*_banner(results), *_warning(results)]
-    present = set(results.tables)
+    present = set(results.tables) if only is None else set(results.tables) & set(only)
     for number, (heading, names) in enumerate(SECTIONS, 1):
         blocks = [
             [f"{number}.{place}  {TABLES[name].title.upper()}", "", *body, "", ""]

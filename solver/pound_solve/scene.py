@@ -35,6 +35,7 @@ from pound_solve.matrices import (
     dense,
     diagonal,
     entries,
+    gathered,
     is_diagonal,
     least_squares,
     scaled,
@@ -90,6 +91,18 @@ class Excitation:
     def local(self, piece: int, t: float) -> Array:
         """Coefficients about `t`, shape (degree + 1, n_inputs)."""
         return polynomial.shift(self.coefs[piece], t - float(self.breaks[piece]))
+
+    def about(self, t: Array) -> Array:
+        """Coefficients about each of several times, each on the piece that begins there or before
+        (a hair after it: rounding never puts us on the one that has just ended),
+        shape (n_times, degree + 1, n_inputs).
+        """
+        after = t + 1e-13 * np.maximum(1.0, t)
+        i = np.clip(np.searchsorted(self.breaks, after, side="right") - 1, 0, len(self.coefs) - 1)
+        own, since = self.coefs[i], t - self.breaks[i]
+        if not since.any():
+            return own
+        return np.asarray(polynomial.shift(own.swapaxes(0, 1), since[:, None]).swapaxes(0, 1))
 
     def jumps(self) -> NDArray[np.bool_]:
         """Which inputs jump, from zero at t = 0 or between two pieces."""
@@ -180,6 +193,17 @@ class Scene:
         if order == 0:
             free = (free.T + self.expand_constant).T
         return np.concatenate([free, self.support_inputs @ s])
+
+    def over(self, rows: Matrix) -> tuple[Matrix, Array, Array]:
+        """Rows over all columns of the structure as rows over unknowns and inputs, and constants."""
+        n = self.structure.n_free
+        own = rows[:, :n]
+        over = own @ self.expand
+        return (
+            gathered(over.shape, *entries(over)),
+            own @ self.expand_inputs + rows[:, n:] @ self.support_inputs,
+            own @ self.expand_constant,
+        )
 
     def applied(self, s: Array) -> Array:
         """Held loads and FORCES on all unknown freedoms at inputs `s`; columns are instants
@@ -323,13 +347,13 @@ class Condensed:
     constant: Array
     loads: Array
 
-    def put_in(self, t: float) -> float:
+    def put_in(self, t: Array) -> Array:
         """Work of the loads on condensed freedoms by that part of their displacements which follows
-        the loads at once, since these were zero [F L].
+        the loads at once, since these were zero [F L], at some times.
         """
-        s = np.append(self.scene.excitation.value(t), 1.0)
+        s = np.vstack([self.scene.excitation.values(t).T, np.ones(len(t))])
         own = np.column_stack([self.follow, self.constant]) @ s
-        return 0.5 * float(own @ self.loads @ s)
+        return np.asarray(0.5 * (own * (self.loads @ s)).sum(axis=0))
 
     def all(self, u: Array, s: Array, order: int = 0) -> Array:
         """All unknowns from those that are left and the inputs `s`, shape (n,); `order` 1: velocities,
@@ -485,8 +509,7 @@ def _can_move(
         touched = row[row < n]
         join(touched)
         real[touched] = True
-        branch = spring.law.branch(spring.law.start())
-        if branch.force(0.0, 0.0) != 0 or np.any(row >= n):
+        if spring.law.force(spring.law.start(), 0.0)[0] != 0 or np.any(row >= n):
             driven[touched] = True
     awake = {root(int(i)) for i in np.flatnonzero(driven)}
     return np.array([root(i) in awake for i in range(n)], bool) & real

@@ -355,6 +355,17 @@ _SCENE = (
         ),
     ),
     Table("size", "Problem size", (_ITEM, _VALUE)),
+    Table(
+        "arrays",
+        "Arrays that are held",
+        (
+            Column("part", doc="what the arrays belong to"),
+            Column("what", doc="what they hold"),
+            Column("numbers", fmt="int", doc="numbers in them; of sparse matrices those that are stored"),
+            Column("bytes", fmt="int", doc="memory, indices of sparse matrices included"),
+        ),
+        note="Work arrays of a method, of the order of these, are not counted.",
+    ),
 )
 
 _STATIC = (
@@ -678,6 +689,59 @@ _FIGURES = (
         (_ITEM, _VALUE),
         note="Only this last section differs between two runs of the same deck.",
     ),
+    Table(
+        "imports",
+        "Modules and kernels of this process",
+        (
+            Column("part", doc="package of the program, or library"),
+            Column("modules", fmt="int", doc="number of its modules that are imported, or of kernels"),
+            Column("which", doc="names of the program's own modules"),
+        ),
+    ),
+)
+
+_STUDY = (
+    Table(
+        "study",
+        "Error and time of every run",
+        (
+            Column("method", doc="method of HISTORY"),
+            Column("setting", doc="its step or tolerance as a deck has it"),
+            Column("seconds", "time to\nsolve [s]", "", "short", "median of the repeats"),
+            Column("steps", fmt="int", zero="-", doc="steps taken"),
+            Column("events", fmt="int", doc="changes of springs and contacts that were located"),
+            Column("drift", "drifts", "-", "short", "error of the drifts, else of displacements"),
+            Column("member", "member\nforces", "-", "short", "error of forces of members and springs"),
+            Column("contact", "contact\nforces", "-", "short", "error of the peak contact forces"),
+            Column("order", "order", "-", "short", "of the largest of the three, against the row above"),
+            Column("collisions", "colli-\nsions", fmt="int", doc="number of collisions"),
+            Column("residual", "energy\nresidual", "-", "short", "largest, over the largest energy"),
+        ),
+        note="An error is the largest difference of an extreme from that of the reference, over the "
+        "largest extreme of that kind.",
+        group="method",
+    ),
+    Table(
+        "study_stops",
+        "Runs that did not come to their end",
+        (
+            Column("method", doc="method of HISTORY"),
+            Column("setting", doc="its step or tolerance"),
+            Column("why", doc="message of the run"),
+        ),
+    ),
+    Table(
+        "study_advice",
+        "Least time for an error",
+        (
+            Column("target", "largest\nerror", "-", "short", "error that must be met"),
+            Column("method", doc="method of HISTORY; empty where no run is sure to meet it"),
+            Column("setting", doc="its step or tolerance"),
+            Column("seconds", "time to\nsolve [s]", "", "short", "of that run"),
+            Column("error", "error\nfound", "-", "short", "largest error of that run"),
+            Column("sure", "error\nallowed for", "-", "short", "the same with the margin of the advice"),
+        ),
+    ),
 )
 
 _PARTS = (
@@ -692,6 +756,7 @@ _PARTS = (
     ("Contacts and collisions", _CONTACTS),
     ("Energy and checks", _ENERGY),
     ("Run figures", _FIGURES),
+    ("Error against time", _STUDY),
 )
 
 #: Sections of the report: heading, names of the tables.  A section's number is its place here.

@@ -149,6 +149,10 @@ def rows(seed: int = 1) -> dict[str, list[tuple[Any, ...]]]:
             *((n, some(1e-19), -abs(some(2e-4)), some(1e-5)) for n in NODES),
             (999, -0.0, 0.0, 0.0),
         ],
+        "arrays": [
+            ("structure", "stiffness, mass, damping", 768, 6144),
+            ("contacts", "closures of 0", 0, 0),
+        ],
         "static_force": [
             (101 + i, quantity, some(300.0), unit)
             for i in range(3)
@@ -279,6 +283,19 @@ def rows(seed: int = 1) -> dict[str, list[tuple[Any, ...]]]:
             ("regimes", "4"),
         ],
         "run_figures": [("wall time", "0.412 s"), ("peak memory", "81 MB"), ("numpy", "2.4.6")],
+        "imports": [("pound_solve", 3, "app, cli, course"), ("numba", 0, "not imported")],
+        "study": [
+            ("EXACT", "", 0.05312, 0, 24, 0.0, 1.1e-15, 3e-16, NAN, 8, 1.03e-15),
+            ("NEWMARK", "DT=0.005", 0.0305, 1120, 24, 1.4454e-2, 1.7786e-2, 2.5733e-2, NAN, 8, 1.88e-2),
+            ("NEWMARK", "DT=0.0025", 0.0417, 2080, 24, 4.533e-3, 5.1073e-3, 6.9075e-3, 2.1245, 8, 5.26e-3),
+            ("CENTRAL", "DT=0.005", NAN, 0, 0, NAN, NAN, NAN, NAN, 0, NAN),
+        ],
+        "study_stops": [("CENTRAL", "DT=0.005", "A502 at t = 0 s: above the stability limit 0.004684")],
+        "study_advice": [
+            (1e-2, "NEWMARK", "DT=0.0025", 0.0417, 6.9e-3, 9.9e-3),
+            (1e-3, "EXACT", "", 0.05312, 1.1e-15, 3.3e-15),
+            (1e-6, "", "", NAN, NAN, NAN),
+        ],
     }
 
 

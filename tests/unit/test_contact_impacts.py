@@ -339,6 +339,21 @@ def test_steps_give_back_what_was_asked(law: str, e: float) -> None:
     assert abs(r.check()) < 1e-3
 
 
+@pytest.mark.parametrize("method", ["NEWMARK DT=5E-4", "HHT DT=5E-4", "CENTRAL DT=5E-4", "AUTO"])
+def test_bodies_pressed_together_at_rest_fly_apart(method: str) -> None:
+    """All that HERTZ holds, U = k delta^(n+1)/(n+1), becomes motion: m w^2/2 with the relative speed w and
+    the reduced mass m; their momenta are opposite.
+    """
+    deck = DECK.replace("INITIAL\n   1  VX=1\n", "")
+    r = run_text(deck.format(law="HERTZ K=1E6", method=method, gap=-0.01, length=0.2))
+    apart = math.sqrt(2.0 * 1e6 * 0.01**2.5 / 2.5 / (100 / 3))
+    (hit,) = r.tables["collisions"]
+    assert r.force[0, 0] == pytest.approx(1e6 * 0.01**1.5, rel=1e-12)
+    assert hit["t_start"] == 0.0 and hit["approach_velocity"] == 0.0
+    assert hit["separation_velocity"] == pytest.approx(apart, rel=1e-4)
+    assert r.v[-1, :, 0] == pytest.approx([-apart / 3, 2 * apart / 3], rel=1e-4)
+
+
 @pytest.mark.parametrize("e", [0.05, 0.65, 1.0])
 def test_exact_gives_back_what_was_asked(e: float) -> None:
     for law in ("KELVIN_VOIGT", "KELVIN_VOIGT TENSION=YES", "MAHMOUD_JANKOWSKI"):

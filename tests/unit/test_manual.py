@@ -15,7 +15,7 @@ from decks import model_of, solved
 from pound_solve import run
 from pound_solve.app import Request, prepare
 from pound_solve.assemble import AssemblyError, assemble
-from pound_solve.catalog import specs
+from pound_solve.catalog import members, specs
 from pound_solve.contact import restitution
 
 ROOT = Path(__file__).parents[2]
@@ -242,9 +242,9 @@ def extended(tmp_path, monkeypatch):
         monkeypatch.setattr(package, "__path__", [*package.__path__, str(own)])
         names.append((package, module))
     importlib.invalidate_caches()
-    specs.cache_clear()
+    members.cache_clear()
     yield tmp_path
-    specs.cache_clear()
+    members.cache_clear()
     for package, module in names:
         sys.modules.pop(f"{package.__name__}.{module}", None)
         if hasattr(package, module):

@@ -134,7 +134,8 @@ WEIGHTS
     assert (3, 0) not in scene_of(far.format("SPRING KY=2") + supports).freedoms
 
 
-def test_an_overlap_sets_in_motion():
+@pytest.mark.parametrize("law", ["LINEAR K=9", "HERTZ K=9", "TABLE DEPTHS=1 FORCES=9"])
+def test_an_overlap_sets_in_motion(law):
     deck = """
 NODES
  1 0 0 FIX=R
@@ -145,12 +146,12 @@ ELEMENTS
  9 C 1 2
 PROPS
  S SPRING KX=400 KY=400
- C CONTACT GAP={} LAW=LINEAR K=9
+ C CONTACT GAP={} LAW={}
 WEIGHTS
  1,2 10
 """
-    assert (1, 1) not in scene_of(deck.format(0.1) + tail()).freedoms
-    assert (1, 1) in scene_of(deck.format(-0.1) + tail()).freedoms
+    assert (1, 1) not in scene_of(deck.format(0.1, law) + tail()).freedoms
+    assert (1, 1) in scene_of(deck.format(-0.1, law) + tail()).freedoms
 
 
 PORTAL = """

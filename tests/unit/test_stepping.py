@@ -147,7 +147,7 @@ def test_auto_keeps_its_tolerance_and_its_estimate_holds(tmp_path, monkeypatch, 
     exact = run(tmp_path, "AUTO")
     assert "EXACT" in exact.table("scene")["decision"].tolist()
     truth, closed = figures(exact), exact.table("contact_summary")["closures"][0]
-    monkeypatch.setattr(auto, "why_not_exact", lambda scene: "steps are asked for")
+    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
     found = run(tmp_path, f"AUTO TOL={tol}")
     assert found.table("contact_summary")["closures"][0] == closed
     assert error_against(found, truth) <= estimate(found) <= tol
@@ -168,7 +168,7 @@ def error_against(results, truth):
 def test_auto_learns_nothing_from_two_runs_with_the_same_steps(tmp_path, monkeypatch):
     """Output times cut the steps of both: a difference of zero between them is no accuracy."""
     truth = figures(run(tmp_path, "EXACT"))
-    monkeypatch.setattr(auto, "why_not_exact", lambda scene: "steps are asked for")
+    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
     found = run(tmp_path, "AUTO TOL=1e-3", every=0.004)
     assert error_against(found, truth) <= estimate(found) <= 1e-3
 
@@ -214,6 +214,55 @@ def test_auto_without_drifts_and_laws_compares_displacements(tmp_path):
     most = np.abs(ends[1]).max(axis=(0, 1))
     error = (np.abs(ends[0].max(axis=0) - ends[1].max(axis=0)) / most).max()
     assert 0.0 < error <= told <= 1e-4
+
+
+def tabled(results):
+    node, member = results.table("node_envelope"), results.table("member_envelope")
+    return [np.array([t[c] for c in ("max", "t_max", "min", "t_min")]) for t in (node, member)]
+
+
+@pytest.mark.parametrize("method", ["NEWMARK DT=1E-3", "CENTRAL DT=2E-4", "NEWMARK DT=1E-3 EVENTS=STEPPED"])
+def test_envelopes_see_steps_between_the_outputs(tmp_path, method):
+    """Of 19 steps between two outputs four, evenly spaced, of four all: they are outputs of another run."""
+    step, deck = float(method.split("=")[1].split()[0]), tmp_path / "free.inp"
+    for n in (20, 5):
+        both = []
+        for every in (n * step, n // 5 * step):
+            text = POUNDING.format(method=method, hinge="", turn="0.5", gap=0.005, every=every)
+            # no motion of the ground, whose corners would cut the steps between two outputs unevenly
+            text = text.replace("EQUAKE\n SINE AMPLITUDE=6 PERIOD=0.4 DURATION=1.2", "INITIAL\n 3,4 VX=0.5")
+            deck.write_text(text)
+            both.append(pound_solve.run(deck))
+        rare, often = both
+        assert rare.table("contact_summary")["closures"][0] > 1
+        t, place = often.history("time"), often.labels("node/u")
+        for r in rare.table("node_envelope"):
+            x = often.history({"d": "node/u", "v": "node/v", "a": "node/a"}[r["quantity"][0]])
+            seen(r, x.reshape(len(t), -1)[:, place.index(f"{r['node']} {r['direction']}")], t)
+        for r, x in zip(rare.table("member_envelope"), often.history("member/force").T):
+            seen(r, x, t)
+        count, apart = round(1.2 / (n * step)) * 4, n // 5 * step
+        told = f"Seen at {count} instants, at most {apart:g} s apart, and at the output times"
+        assert rare.note("node_envelope").startswith(told)
+
+
+def seen(row, values, t):
+    """The row of an envelope is that of these values, up to rounding."""
+    close = 1e-8 * np.abs(values).max() + 1e-12
+    assert abs(row["max"] - values.max()) <= close and abs(row["min"] - values.min()) <= close
+    for side in ("max", "min"):
+        assert abs(np.interp(row[f"t_{side}"], t, values) - row[side]) <= close
+
+
+def test_auto_hands_on_the_envelopes_of_its_last_run_alone(tmp_path, monkeypatch):
+    """They are those of NEWMARK with the step that it came to, and no coarser run is left in them."""
+    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
+    found = run(tmp_path, "AUTO TOL=1e-3", "")
+    step = next(r["value"] for r in found.table("run") if r["item"] == "time step")
+    alone = run(tmp_path, f"NEWMARK DT={step}", "")
+    for a, b in zip(tabled(found), tabled(alone)):
+        assert np.abs(a - b).max() <= 1e-9 * np.abs(b).max()
+    assert found.note("node_envelope") == alone.note("node_envelope")
 
 
 @pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")

@@ -10,16 +10,29 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from cases import EL_CENTRO, RECORDS, TESTS, VARIANTS, Variant
-from chapter import write
-from runs import Job, Run, found, solve_all
+from cases import (
+    EL_CENTRO,
+    EXACT_EQUIVALENT,
+    FINER,
+    RECORDS,
+    SYSTEMS,
+    TESTS,
+    VARIANTS,
+    Record,
+    Test,
+    Variant,
+)
+from chapter import Study, write
+from runs import Job, found, solve_all
 
 BASE = VARIANTS[0]
+#: tests that every variant runs
+SPARSE = ("0(10)", "0(1)", "0(0.1)", "0(equiv)", "1", "2", "5", "20")
 
 
 def arguments(argv: Sequence[str] | None) -> argparse.Namespace:
@@ -29,6 +42,12 @@ def arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--records", type=Path, action="append", default=[], help="folder with the Mexico City record"
     )
+    parser.add_argument(
+        "--manual",
+        type=Path,
+        metavar="DIR",
+        help="write the manual's chapter instead: DIR/cole2011-study.md",
+    )
     parser.add_argument("--quick", action="store_true", help="El Centro alone, without variants")
     return parser.parse_args(argv)
 
@@ -37,13 +56,6 @@ def progress(done: int, of: int) -> None:
     """Show how far the runs are, on a terminal."""
     if sys.stderr.isatty():
         print(f"\r{done} of {of} runs ", end="" if done < of else "\n", file=sys.stderr, flush=True)
-
-
-def jobs_of(records: Sequence, variants: Sequence[Variant], folders: tuple[Path, ...]) -> list[Job]:
-    """All runs: every record as the decks stand, every variant under its own."""
-    out = [Job(record, test, BASE, folders) for record in records for test in TESTS]
-    out += [Job(v.record, test, v, folders) for v in variants for test in TESTS]
-    return out
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -59,17 +71,30 @@ def main(argv: Sequence[str] | None = None) -> int:
     if EL_CENTRO not in records:
         print('El Centro is missing: pip install "pound-solve[records]"', file=sys.stderr)
         return 3
-    runs = solve_all(jobs_of(records, variants, folders), progress)
-    by_record: Mapping[str, list[Run]] = {
-        r.name: [x for x in runs if x.record == r.name and x.variant == BASE.name] for r in records
-    }
-    by_variant = {v.name: [x for x in runs if x.variant == v.name] for v in (BASE, *variants)}
-    by_variant[BASE.name] = by_record[EL_CENTRO.name]
-    args.out.mkdir(parents=True, exist_ok=True)
-    write(args.out, by_record, by_variant if variants else {}, left_out)
+
+    def job(record: Record, test: Test, variant: Variant = BASE) -> Job:
+        return Job(record, test, variant, folders)
+
+    paper = [job(r, test) for r in records for test in (*TESTS, EXACT_EQUIVALENT)]
+    grid = [job(v.record, test, v) for v in variants for test in TESTS if test.name in SPARSE]
+    systems = [] if args.quick else [job(EL_CENTRO, test) for test in SYSTEMS]
+    finer = [] if args.quick else [job(EL_CENTRO, test) for test in FINER]
+    # the longest first, so that none is waited for at the end
+    runs = dict(zip(ordered := [*finer, *grid, *paper, *systems], solve_all(ordered, progress)))
+    study = Study(
+        {r.name: [runs[x] for x in paper if x.record == r] for r in records},
+        {v.name: [runs[x] for x in grid if x.variant == v] for v in variants},
+        [runs[x] for x in systems],
+        [runs[x] for x in finer],
+        left_out,
+    )
+    page = args.manual / "cole2011-study.md" if args.manual else args.out / "study.md"
+    drawn = page.parent / "pictures" if args.manual else page.parent
+    drawn.mkdir(parents=True, exist_ok=True)
+    write(page, drawn, study)
     for name in left_out:
         print(f"left out, its record is missing: {name}")
-    print(f"{len(runs)} runs in {time.perf_counter() - began:.0f} s; {args.out / 'study.md'}")
+    print(f"{len(runs)} runs in {time.perf_counter() - began:.0f} s; {page}")
     return 0
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent.parent
-LUMPED, DISTRIBUTED = HERE / "lumped.inp", HERE / "distributed.inp"
+LUMPED, EQUIVALENT, DISTRIBUTED = (HERE / f"{n}.inp" for n in ("lumped", "equivalent", "distributed"))
 KD1, KD2 = 1881300.0, 752520.0  #: axial stiffness of the diaphragms, Table IV [kN/m]
 BENCHMARK = "20"
 TRADITIONAL = ("0(10)", "0(1)", "0(0.1)")
@@ -46,13 +46,24 @@ LOMA_PRIETA = Record("Loma Prieta", "CORRALITOS_000", -1, 1)
 RECORDS = (EL_CENTRO, MEXICO, LOMA_PRIETA)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Test:
-    """One row of the paper's Table V, or one number of elements."""
+    """One row of the paper's Table V, one number of elements, or one named system.
+
+    Attributes
+    ----------
+    edits : tuple of (str, str)
+        Texts of the deck and what stands in their place.
+    method, dt : str or None, float or None
+        Replace those of the deck.
+    """
 
     name: str
     deck: Path
     params: Mapping[str, object]
+    edits: tuple[tuple[str, str], ...] = ()
+    method: str | None = None
+    dt: float | None = None
 
     @property
     def elements(self) -> int:
@@ -62,24 +73,52 @@ class Test:
 
 def lumped(name: str, kc: float, cc: float = 0.0) -> Test:
     """A test with rigid diaphragms and a Kelvin-Voigt contact."""
-    return Test(name, LUMPED, {"kc": repr(kc), "cc": repr(cc)})
+    return Test(name, LUMPED, {"kc": repr(kc), "cc": repr(cc)}, (), "EXACT")
 
 
-def distributed(n: int) -> Test:
+def distributed(n: int, method: str = "EXACT", dt: float | None = None) -> Test:
     """A test with n axial elements in every diaphragm."""
-    return Test(str(n), DISTRIBUTED, {"n": n})
+    return Test(str(n), DISTRIBUTED, {"n": n}, (), method, dt)
+
+
+def system(name: str, law: str, method: str | None = None, dt: float | None = None) -> Test:
+    """The lumped buildings with another contact law."""
+    return Test(name, LUMPED, {}, (("LAW=KELVIN_VOIGT  K=kc  C=cc", f"LAW={law}"),), method, dt)
 
 
 TESTS = (
     lumped("0(10)", 10 * KD1),
     lumped("0(1)", KD1),
     lumped("0(0.1)", 0.1 * KD1),
-    lumped("0(equiv)", 3254097, 9822.4),
+    Test("0(equiv)", EQUIVALENT, {"model": '"PAPER"'}, (), "EXACT"),
     *(distributed(n) for n in (1, 2, 3, 4, 5, 20)),
+)
+EXACT_EQUIVALENT = Test("0(exact)", EQUIVALENT, {"model": '"EXACT"'}, (), "EXACT")
+FINER = (distributed(50), distributed(100, "CENTRAL", 2e-5), distributed(200, "CENTRAL", 1e-5))
+E = 0.65  #: restitution that is usual for concrete
+MASS = 1600 * 3000 / (1600 + 3000) / 9.81  #: reduced mass of two floors [t]
+#: stiffness of the Hertz laws [kN/m^1.5]: at 0.3 m/s the peak force of the linear spring k_D, no dashpot
+HERTZ = (0.3 * (KD1 * MASS) ** 0.5 / (1.25 * MASS * 0.3**2) ** 0.6) ** 2.5
+SYSTEMS = (
+    system("stereomechanics", f"STEREOMECHANICS E={E}"),
+    system("stereomechanics, elastic", "STEREOMECHANICS E=1"),
+    system("Lagrange multiplier", "LAGRANGE"),
+    Test("Laplace, linear spring k_D", LUMPED, {"kc": repr(KD1)}, (), "LAPLACE", 2.5e-4),
+    Test("linear spring k_D", LUMPED, {"kc": repr(KD1)}),
+    system("Kelvin-Voigt", f"KELVIN_VOIGT K=kd1 E={E} TENSION=YES"),
+    system("Kelvin-Voigt, no tension", f"KELVIN_VOIGT K=kd1 E={E}"),
+    system("Mahmoud & Jankowski", f"MAHMOUD_JANKOWSKI K=kd1 E={E}"),
+    system("Hertz", f"HERTZ K={HERTZ!r}"),
+    system("Jankowski", f"JANKOWSKI K={HERTZ!r} E={E}"),
+    system("Hertzdamp", f"HERTZDAMP K={HERTZ!r} E={E}"),
+    system("Hertzdamp, published relation", f"HERTZDAMP K={HERTZ!r} E={E} RELATION=PUBLISHED"),
+    Test("equivalent lumped mass, paper", EQUIVALENT, {"model": '"PAPER"'}),
+    Test("equivalent lumped mass, exact", EQUIVALENT, {"model": '"EXACT"'}),
+    Test("distributed masses, n = 20", DISTRIBUTED, {"n": 20}),
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Variant:
     """A reading of what the paper leaves unsaid: other PARAMs, other lines of the decks, another record.
 

@@ -10,8 +10,9 @@ from cases import TESTS
 from errors import Prediction, benchmark_of, drifts, predictions
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from pound_solve.pounding import Diaphragm, Pair
 from runs import PLACES, Run
+
+from pound_solve.pounding import Diaphragm, Pair
 
 COLOURS = {"El Centro": "#0b4f8a", "Mexico City": "#b3541e", "Loma Prieta": "#3d7a3d"}
 MARKS = {"left": "<", "right": ">"}
@@ -156,9 +157,9 @@ def theory_map(path: Path) -> None:
     levels = (-2.0, -1.5, -1.0, -0.75, -0.5, -0.25, -0.1, -0.02)
     filled = axes.contourf(ratios, periods, error, levels=(*levels, 1e-9), cmap="YlOrBr_r")
     axes.plot(ratios, np.where(ratios <= 1, ratios, np.nan), color="0.2", linewidth=1.2)
-    axes.annotate("Z1 = Z2: the paper holds above", (0.35, 0.4), fontsize=8, rotation=38)
+    axes.annotate("Z1 = Z2: the paper\nholds on the left", (0.06, 0.8), fontsize=8)
     axes.plot(1600 / 3000, 0.018622 / 0.040318, "o", color="#b3301e")
-    axes.annotate("Table IV", (1600 / 3000, 0.43), fontsize=8, color="#b3301e", ha="left")
+    axes.annotate("Table IV", (0.58, 0.44), fontsize=8, color="#b3301e", ha="left")
     axes.set_xscale("log")
     axes.set_xlabel("m1 / m2")
     axes.set_ylabel("T1 / T2")

@@ -59,7 +59,7 @@ class Run:
     seconds: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Job:
     """One run to be made."""
 
@@ -67,29 +67,31 @@ class Job:
     test: Test
     variant: Variant
     folders: tuple[Path, ...]
-    method: str | None = None
-    dt: float | None = None
 
 
-def deck_text(job: Job) -> str:
-    """The deck of a job: the example's, with the variant's changes."""
-    text = job.test.deck.read_text(encoding="utf-8")
-    if job.variant.rebuild and job.test.deck == DISTRIBUTED:
-        text = job.variant.rebuild(text)
-    for old, new in job.variant.edits:
-        text = text.replace(old, new)
-    return text.replace("RECORD  record  SCALE", f"RECORD  record  {job.record.items}  SCALE")
+def write_deck(job: Job, folder: Path) -> Path:
+    """The deck of a job and what it includes: the example's, with the variant's changes."""
+    for source in (job.test.deck, *job.test.deck.parent.glob("*.inc")):
+        text = source.read_text(encoding="utf-8")
+        if job.variant.rebuild and source == DISTRIBUTED:
+            text = job.variant.rebuild(text)
+        for old, new in (*job.test.edits, *job.variant.edits):
+            text = text.replace(old, new)
+        text = text.replace("RECORD  record  SCALE", f"RECORD  record  {job.record.items}  SCALE")
+        (folder / source.name).write_text(text, encoding="utf-8")
+    return folder / job.test.deck.name
 
 
 def solve(job: Job) -> Run:
     """Run one job in a folder of its own."""
     name = f"{job.record.name}, {job.variant.name}, test {job.test.name}"
     with tempfile.TemporaryDirectory() as folder:
-        deck = Path(folder) / job.test.deck.name
-        deck.write_text(deck_text(job), encoding="utf-8")
+        deck = write_deck(job, Path(folder))
         params = {**job.test.params, **job.record.params, **job.variant.params}
         try:
-            results = pound_solve.run(deck, params, records=job.folders, method=job.method, dt=job.dt)
+            results = pound_solve.run(
+                deck, params, records=job.folders, method=job.test.method, dt=job.test.dt
+            )
         except DeckError as err:
             raise RuntimeError(f"{name}: {err}") from None
         with results:
@@ -109,7 +111,7 @@ def gather(job: Job, results: pound_solve.results.Results) -> Run:
             float(row["t_start"]),
             float(row["approach_velocity"]),
             float(row["peak_force"]),
-            float(row["peak_force"]),
+            float(row["plateau_force"]),
         )
         for row in results.table("collisions")
     )

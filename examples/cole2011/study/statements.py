@@ -203,7 +203,7 @@ def all_tests(found: Sequence[Prediction], of: str) -> Verdict:
     )
 
 
-def sensitivity(variant: str, runs: Sequence[Run], per_speed: float) -> list[object]:
+def sensitivity(variant: str, runs: Sequence[Run]) -> list[object]:
     """One row of the grid over what the paper does not say: the main figures of a variant."""
     found = list(drifts(runs, benchmark_of(runs)))
     tests = by_test(runs)
@@ -213,10 +213,11 @@ def sensitivity(variant: str, runs: Sequence[Run], per_speed: float) -> list[obj
     return [
         variant,
         *(f"{n}" for n in bench.closures),
-        *(round(f) for f in bench.forces),
-        round(min(abs(d.error) for d in old), 1),
-        round(fmean(abs(d.error) for d in old), 1),
-        round(fmean(abs(d.error) for d in some(found, "0(equiv)")), 1),
-        round(fmean(abs(d.error) for d in some(found, "1")), 1),
-        round(worst(fewer), 1),
+        *(f"{f:.0f}" for f in bench.forces),
+        f"{min(abs(d.error) for d in old):.1f}",
+        *(
+            f"{fmean(abs(d.error) for d in group):.1f}"
+            for group in (old, some(found, "0(equiv)"), some(found, "1"))
+        ),
+        f"{worst(fewer):.1f}",
     ]

@@ -6,6 +6,7 @@ and turns the samples that come back into histories, envelopes and tables.
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -15,9 +16,10 @@ from numpy.typing import NDArray
 from pound_deck.model import Model
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.assemble import Structure
+from pound_solve.elements.base import Output
 from pound_solve.integrate.base import ENERGIES, LawValues, Start, Watch, energies
 from pound_solve.laws import State, follow, settle
-from pound_solve.matrices import least_squares, used_columns, used_rows, weighted
+from pound_solve.matrices import layers, least_squares, used_columns, used_rows, weighted
 from pound_solve.modes import massless
 from pound_solve.scene import Scene
 
@@ -117,17 +119,11 @@ def _lead_massless(scene: Scene, u: Array, pushed: Array) -> None:
 def watch(structure: Structure, scene: Scene) -> Watch:
     """Rows of the DRIFT cards over the scene's unknowns."""
     cards = structure.model.drifts
-    n = structure.n_free
     ways = ["XY".index(c["DIRECTION"]) for c in cards]
     rows = structure.freedoms.rows(
         [(((c["J"], way), (c["I"], way)), (1.0, -1.0)) for c, way in zip(cards, ways)]
     )
-    return Watch(
-        [c["NAME"] for c in cards],
-        rows[:, :n] @ scene.expand,
-        rows[:, :n] @ scene.expand_inputs + rows[:, n:] @ scene.support_inputs,
-        rows[:, :n] @ scene.expand_constant,
-    )
+    return Watch([c["NAME"] for c in cards], *scene.over(rows))
 
 
 def heights(model: Model) -> list[float]:
@@ -147,19 +143,128 @@ class Envelope:
         self.high, self.low = np.full(n, -np.inf), np.full(n, np.inf)
         self.t_high, self.t_low = np.zeros(n), np.zeros(n)
 
-    def take(self, values: Array, t: Array) -> None:
-        """Count in values, shape (n_times, n), at some times."""
+    def take(self, values: Array, t: Array, which: NDArray[np.intp] | None = None) -> None:
+        """Count in values of all quantities, or of those with some numbers, shape (n, n_times)."""
+        which = np.arange(len(values)) if which is None else which
         for new, best in (
-            (np.flatnonzero(values.max(axis=0) > self.high), (self.high, self.t_high, np.argmax)),
-            (np.flatnonzero(values.min(axis=0) < self.low), (self.low, self.t_low, np.argmin)),
+            (values.max(axis=1) > self.high[which], (self.high, self.t_high, np.argmax)),
+            (values.min(axis=1) < self.low[which], (self.low, self.t_low, np.argmin)),
         ):
             value, time, place = best
-            at = place(values[:, new], axis=0)
-            value[new], time[new] = values[at, new], t[at]
+            own = values[new]
+            at = place(own, axis=1)
+            value[which[new]], time[which[new]] = own[np.arange(len(own)), at], t[at]
+
+    def widen(self, other: Envelope) -> None:
+        """Count in what another one of the same quantities has seen."""
+        higher, lower = other.high > self.high, other.low < self.low
+        self.high[higher], self.t_high[higher] = other.high[higher], other.t_high[higher]
+        self.low[lower], self.t_low[lower] = other.low[lower], other.t_low[lower]
 
     def rows(self) -> list[tuple[float, float, float, float]]:
         """Largest value and its time, smallest value and its time, of each quantity."""
         return list(zip(self.high.tolist(), self.t_high.tolist(), self.low.tolist(), self.t_low.tolist()))
+
+
+class Survey:
+    """Envelopes of the motion of some nodes and of the forces of some members.
+
+    Attributes
+    ----------
+    node : dict of Envelope
+        Of displacements "u", velocities "v" (relative to the ground, where it moves as one) and
+        accelerations "a" (total).
+    output : Envelope
+    seen, apart : int, float
+        Number of instants between the samples that were counted in, longest time from one to the next [T].
+    """
+
+    def __init__(self, scene: Scene, nodes: Sequence[int], outputs: Sequence[Output]) -> None:
+        freedoms, place = scene.structure.freedoms, scene.structure.model.nodes
+        self.scene, self.n_nodes = scene, len(nodes)
+        of_u, on_inputs, at_rest = scene.over(freedoms.matrix([(n, d) for n in nodes for d in range(3)]))
+        # motion of the nodes when they ride on the ground: x, y, and a turn about the origin
+        x, y = (np.array([getattr(place[n], c) for n in nodes]) for c in "xy")
+        ridden = np.zeros((len(nodes), 3, 3))
+        ridden[:, 0, 0] = ridden[:, 1, 1] = ridden[:, 2, 2] = 1.0
+        ridden[:, 0, 2], ridden[:, 1, 2] = -y, x
+        ground = ridden.reshape(-1, 3) @ scene.acceleration_inputs
+        # what never moves needs no products
+        moves = used_rows(of_u) | np.any(np.column_stack([on_inputs, at_rest, ground]), axis=1)
+        self.still, self.moving = np.flatnonzero(~moves), np.flatnonzero(moves)
+        at = self.moving
+        self.layers = layers(of_u[at])  # next to always one: a node has unknowns of its own
+        self.on_inputs, self.at_rest, self.ground = on_inputs[at], at_rest[at, None], ground[at]
+        self.of_u, self.out_s, constants = scene.over(
+            freedoms.rows([(o.freedoms, o.u_row.tolist()) for o in outputs])
+        )
+        self.of_v, self.out_rate, _ = scene.over(
+            freedoms.rows([(o.freedoms, () if o.v_row is None else o.v_row.tolist()) for o in outputs])
+        )
+        self.damped = bool(used_rows(self.of_v).any() or self.out_rate.any())
+        self.constants = np.array([o.constant for o in outputs]) + constants
+        self.shares = scene.chords.shares([(o.element, o.quantity) for o in outputs])
+        self._clear()
+
+    def _clear(self) -> None:
+        self.node = {q: Envelope(3 * self.n_nodes) for q in "uva"}
+        self.output = Envelope(len(self.constants))
+        self.seen, self.apart = 0, 0.0
+
+    def blank(self) -> Survey:
+        """Return one of the same quantities that has seen nothing."""
+        other = copy.copy(self)
+        other._clear()
+        return other
+
+    def widen(self, other: Survey) -> None:
+        """Count in what another one of the same quantities has seen."""
+        for q, envelope in self.node.items():
+            envelope.widen(other.node[q])
+        self.output.widen(other.output)
+        self.seen, self.apart = self.seen + other.seen, max(self.apart, other.apart)
+
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+        """Count in instants between the samples (see `integrate.base.Sink`)."""
+        self._count(t, u, v, a, [self.scene.excitation.values(t, order).T for order in range(3)])
+        self.seen, self.apart = self.seen + len(t), max(self.apart, apart)
+
+    def take(
+        self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]
+    ) -> tuple[dict[str, Array], Array]:
+        """Count in some samples; return the motion of the nodes, shape (3 n_nodes, nt) each,
+        and the members' forces, shape (n_outputs, nt), from unknowns and inputs, shape (n, nt) each.
+        """
+        moving, out = self._count(t, u, v, a, s)
+        node = {q: np.zeros((3 * self.n_nodes, len(t))) for q in moving}
+        for q, values in moving.items():
+            node[q][self.moving] = values
+            self.node[q].take(node[q][self.still], t, self.still)
+        return node, out
+
+    def _count(
+        self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]
+    ) -> tuple[dict[str, Array], Array]:
+        """Count in some instants, but for what never moves; return the motion of the rest,
+        shape (n_moving, nt) each, and the members' forces.
+        """
+        node = {q: self.on_inputs @ y for q, y in zip("uva", s)}
+        node["u"] += self.at_rest
+        node["a"] += self.ground @ s[0]  # they are total
+        for q, x in zip("uva", (u, v, a)):
+            for columns, factors in self.layers:
+                node[q] += x[columns] * factors[:, None]
+        out = self.of_u @ u + self.out_s @ s[0] + self.constants[:, None]
+        if self.damped:
+            out += self.of_v @ v + self.out_rate @ s[1]
+        if self.scene.chords:
+            at, share = self.shares
+            seen = self.scene.chords.survey(self.scene.quantities(u.T, s[0].T))[:, at, 1:]
+            out += (share * seen).sum(axis=2).T
+        for q, values in node.items():
+            self.node[q].take(values, t, self.moving)
+        self.output.take(out, t)
+        return node, out
 
 
 class Recorder:
@@ -186,28 +291,15 @@ class Recorder:
         first_energy: Array | None = None,
     ) -> None:
         structure = scene.structure
-        model, freedoms = structure.model, structure.freedoms
+        model = structure.model
         self.scene, self.drifts, self._append, self._progress = scene, drifts, append, progress
         chosen = model.output["NODES"]
         self.nodes = tuple(model.nodes) if chosen is None else tuple(dict.fromkeys(chosen))
-        self.node_rows = freedoms.matrix([(n, d) for n in self.nodes for d in range(3)])
-        # motion of the nodes when they ride on the ground: x, y, and a turn about the origin
-        x, y = (np.array([getattr(model.nodes[n], c) for n in self.nodes]) for c in "xy")
-        self.ridden = np.zeros((3, len(self.nodes), 3))
-        self.ridden[0, :, 0] = self.ridden[1, :, 1] = self.ridden[2, :, 2] = 1.0
-        self.ridden[2, :, 0], self.ridden[2, :, 1] = -y, x
         elements = model.output["MEMBERS"]
         self.outputs = [o for o in structure.outputs if elements is None or o.element in elements]
-        self.out_u = freedoms.rows([(o.freedoms, o.u_row.tolist()) for o in self.outputs])
-        self.out_v = freedoms.rows(
-            [(o.freedoms, () if o.v_row is None else o.v_row.tolist()) for o in self.outputs]
-        )
-        self.constants = np.array([o.constant for o in self.outputs])
-        self.shares = scene.chords.shares([(o.element, o.quantity) for o in self.outputs])
+        self.survey = Survey(scene, self.nodes, self.outputs)
         self.springs = [i for i, s in enumerate(structure.laws) if not s.is_contact]
         self.contacts = [i for i, s in enumerate(structure.laws) if s.is_contact]
-        self.node_envelopes = {q: Envelope(3 * len(self.nodes)) for q in "uva"}
-        self.output_envelope = Envelope(len(self.outputs))
         self.first_energy = np.zeros(len(ENERGIES)) if first_energy is None else first_energy
         self.last_energy = np.zeros(len(ENERGIES))
         self._fresh = first_energy is None
@@ -215,11 +307,11 @@ class Recorder:
         self.losses = [0.0] * len(structure.laws)  # by slip and release, dashpots apart [F L]
         self.deformations = [0.0] * len(structure.laws)  # at the last sample
         self.reached = -1.0
-        # between the samples: number of instants seen, the last of them, longest time from one to the next
-        self.seen, self.last_seen, self.apart = 0, 0.0, 0.0
         self.last: tuple[Array, Array, Array] = (np.zeros(0), np.zeros(0), np.zeros(3))  # u, v, works
-        self._rows: list[tuple[Any, ...]] = []
-        widest = max(freedoms.size, 3 * len(self.nodes), len(self.outputs), len(structure.laws), 1)
+        self._blocks: list[tuple[Any, ...]] = []
+        widest = max(
+            structure.freedoms.size, 3 * len(self.nodes), len(self.outputs), len(structure.laws), 1
+        )
         self._most = min(BLOCK, max(HELD // widest, 1))
 
     def layout(self) -> dict[str, tuple[tuple[int, ...], dict[str, Any]]]:
@@ -269,23 +361,22 @@ class Recorder:
             "energy": ((7,), {"labels": [*ENERGIES, "residual"], "unit": "F*L"}),
         }
 
-    def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take one sample (see `integrate.base.Sink`)."""
-        if t <= self.reached:
-            return  # the start of a part, where another ended
-        self._rows.append((t, u, v, a, *laws, works))
-        self.last = u, v, works
-        self.reached = t
-        self._progress(t, "")
-        if len(self._rows) >= self._most:
+    def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take some samples (see `integrate.base.Sink`)."""
+        new = t > self.reached  # but not the start of a part, where another ended
+        if not new.any():
+            return
+        block = (t, u, v, a, *laws, works)
+        self._blocks.append(block if new.all() else tuple(x[..., new] for x in block))
+        self.last = u[:, -1], v[:, -1], works[:, -1]
+        self.reached = float(t[-1])
+        self._progress(self.reached, "")
+        if sum(len(x[0]) for x in self._blocks) >= self._most:
             self.flush()
 
-    def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
         """Widen the envelopes only (see `integrate.base.Sink`)."""
-        s = [self.scene.excitation.values(t, order) for order in range(3)]
-        self._envelopes(t, u.T, v.T, a.T, s)
-        self.apart = max(self.apart, float(np.diff(t, prepend=self.last_seen if self.seen else t[0]).max()))
-        self.seen, self.last_seen = self.seen + len(t), float(t[-1])
+        self.survey.between(t, u, v, a, apart)
 
     def trial(self, t: float, doing: str = "") -> None:
         """Tell the progress of a run whose samples may not count (see `integrate.base.Sink`)."""
@@ -296,68 +387,44 @@ class Recorder:
         change = energy - self.first_energy
         return 2.0 * change[:, 0] - change.sum(axis=1)
 
-    def _envelopes(
-        self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]
-    ) -> tuple[dict[str, Array], Array]:
-        """Count some instants into the envelopes; return the motion of the nodes, shape (nt, n_nodes, 3),
-        and the members' forces, shape (nt, n_outputs), from unknowns and inputs, shape (nt, n) each.
-        """
-        full_u, full_v, full_a = (
-            self.scene.expanded(x.T, y.T, order).T for order, (x, y) in enumerate(zip((u, v, a), s))
-        )
-        shape = (len(t), len(self.nodes), 3)
-        node = {
-            q: (full @ self.node_rows.T).reshape(shape)
-            for q, full in (("u", full_u), ("v", full_v), ("a", full_a))
-        }
-        node["a"] += np.einsum(
-            "tj,jnd->tnd", s[0] @ self.scene.acceleration_inputs.T, self.ridden
-        )  # they are total
-        out = full_u @ self.out_u.T + full_v @ self.out_v.T + self.constants
-        if self.scene.chords:
-            at, share = self.shares
-            out += (share * self.scene.chords.survey(self.scene.quantities(u, s[0]))[:, at, 1:]).sum(axis=2)
-        for q, values in node.items():
-            self.node_envelopes[q].take(values.reshape(len(t), -1), t)
-        self.output_envelope.take(out, t)
-        return node, out
-
     def flush(self) -> None:
         """Write the samples that are held."""
-        if not self._rows:
+        if not self._blocks:
             return
         scene, laws = self.scene, self.scene.structure.laws
-        t, u, v, a, force, stored, lost, works = (np.array(column) for column in zip(*self._rows))
-        self._rows = []
-        inputs = [scene.excitation.values(t, order) for order in range(3)]
+        t, u, v, a, force, stored, lost, works = (
+            np.concatenate(parts, axis=-1) for parts in zip(*self._blocks)
+        )
+        self._blocks = []
+        inputs = [scene.excitation.values(t, order).T for order in range(3)]
         s = inputs[0]
-        d = u @ scene.law_rows.T + s @ scene.law_inputs.T
-        energy = energies(scene, t, u, v, stored, lost, works)
+        d = scene.law_rows @ u + scene.law_inputs @ s
+        energy = energies(scene, t, u.T, v.T, stored.T, lost.T, works.T)
         if self._fresh:
             self.first_energy, self._fresh = energy[0], False
         residual = self._residuals(energy)
         self.last_energy, self.last_residual = energy[-1], float(residual[-1])
         self.energy_peak = max(self.energy_peak, float(np.abs(energy).max()))
         self.residual_peak = max(self.residual_peak, float(np.abs(residual).max()))
-        self.losses, self.deformations = lost[-1].tolist(), d[-1].tolist()
-        node, out = self._envelopes(t, u, v, a, inputs)
+        self.losses, self.deformations = lost[:, -1].tolist(), d[:, -1].tolist()
+        node, out = self.survey.take(t, u, v, a, inputs)
         gaps = np.array([laws[i].facts["gap"] for i in self.contacts])
         self._append(
             {
                 "time": t,
-                "node/u": node["u"],
-                "node/v": node["v"],
-                "node/a": node["a"],
-                "member/force": out,
-                "contact/gap": gaps - d[:, self.contacts] if self.contacts else np.zeros((len(t), 0)),
-                "contact/force": force[:, self.contacts] if self.contacts else np.zeros((len(t), 0)),
-                "spring/force": force[:, self.springs] if self.springs else np.zeros((len(t), 0)),
-                "spring/deformation": d[:, self.springs] if self.springs else np.zeros((len(t), 0)),
-                "drift": u @ self.drifts.rows.T + s @ self.drifts.input_rows.T + self.drifts.constants,
+                **{f"node/{q}": values.T.reshape(len(t), len(self.nodes), 3) for q, values in node.items()},
+                "member/force": out.T,
+                "contact/gap": gaps - d[self.contacts].T,
+                "contact/force": force[self.contacts].T,
+                "spring/force": force[self.springs].T,
+                "spring/deformation": d[self.springs].T,
+                "drift": (
+                    self.drifts.rows @ u + self.drifts.input_rows @ s + self.drifts.constants[:, None]
+                ).T,
                 "ground": np.array(
                     [[float(m.acceleration.value(x)) for m in scene.motions] for x in t]
                 ).reshape(len(t), -1),
-                "force": s[:, s.shape[1] - len(scene.forces) :],
+                "force": s[len(s) - len(scene.forces) :].T,
                 "energy": np.column_stack([energy, residual]),
             }
         )

@@ -17,7 +17,6 @@ from __future__ import annotations
 import math
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.contact import friction
 from pound_solve.dofs import Freedom
 from pound_solve.elements import base
 from pound_solve.elements.base import ElementError, LawSpring, Parts, Site, axes
@@ -69,6 +68,8 @@ def rubbing(
             if card[item] is not None:
                 raise ElementError(f"{item} belongs to friction: give MU, too", item)
         return [], ""
+    from pound_solve.contact import friction  # a deck without it does not load it
+
     if card["KT"] is None:
         raise ElementError("friction needs KT, the tangential stiffness while it sticks", "MU")
     mud = card["MU"] if card["MUD"] is None else card["MUD"]

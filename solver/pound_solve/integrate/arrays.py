@@ -15,11 +15,12 @@ Index = NDArray[np.int64]
 
 # why `advance` came back
 DONE, FULL, RUNAWAY, CHATTER, PIVOT, NEWTON = range(6)
-GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST = range(8)  #: the integers of `count`
+GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST, SINCE, SHOWN = range(10)  #: integers of `count`
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 BACK = 1e-6  #: share of its largest rate that a law must move back with before it counts as turned
 NEAR = 1e-6  #: share of its largest value within which an exit is taken where it cannot be met better
 CLOSE = 1e-9  #: share of a step within which two events are at one instant
+SHOWS = 4  #: steps between two outputs, at most, that the envelopes see
 PAUSE = 100_000  #: steps after which Python may look whether the user wants to stop
 FIRST = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
 REFRESH = 200  #: updates of rank one before a factor is made anew
@@ -240,12 +241,18 @@ class Samples(NamedTuple):
     works : ndarray, shape (n_samples, 4)
         Time, and the first three works.
     log : ndarray, shape (n_log, COLUMNS)
+    shown : ndarray, shape (n_shown, 3, n)
+        The motion between the samples.
+    when : ndarray, shape (n_shown,)
+        Its times.
     """
 
     motion: Array
     laws: Array
     works: Array
     log: Array
+    shown: Array
+    when: Array
 
 
 class Scheme(NamedTuple):

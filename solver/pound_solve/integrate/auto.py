@@ -11,7 +11,8 @@ that does not last, steps are taken, and before every run of them EXACT may go a
 by what it has shown it would get to the end.  Costs are counted from windows, decompositions, steps and
 unknowns, and not measured, so that a deck takes the same way whenever it is run.
 
-What is compared: the largest and smallest value of every drift, against the larger of the two; the peak
+What is compared: the largest and smallest value of every drift, against the larger of the two (but no less
+than a millionth of the largest drift: what is smaller may be rounding, which never stands still); the peak
 force of every contact, against itself (but no less than a twentieth of the largest contact force);
 without either, the deformations of all springs in the same way as drifts; without any, all displacements,
 against the largest in their direction.
@@ -19,7 +20,7 @@ against the largest in their direction.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -30,14 +31,15 @@ from pound_solve import jit
 from pound_solve.integrate import exact, newmark
 from pound_solve.integrate.base import (
     Extreme,
+    Keeper,
     LawValues,
     Outcome,
     Peaks,
-    Sink,
     Start,
     Stop,
     Watch,
     goals,
+    not_linear,
     refuse_rigid,
 )
 from pound_solve.scene import Decision, Scene
@@ -48,46 +50,40 @@ MOST_STEPS = 50_000_000  #: of one run
 MARGIN = 0.6  #: of the tolerance that the next step aims at
 FREE = 1.0  #: what EXACT may cost before steps are thought of: loading their kernels costs as much
 FEW = 24  #: combinations of stiffnesses that it may meet by then: where they do not return, more will come
-MANY = (
-    12  #: laws; where there are more, EXACT is taken to cost no less than that: combinations seldom return
-)
+MANY = 12  #: laws; with more, EXACT is taken to cost more than that: combinations seldom return
 STEP, EACH = 3e-7, 2.5e-8  #: cost of a step and of each of its unknowns, of a law twice, as `exact.WINDOW`
+EVENT = 10  #: steps that a located event costs as much as
 PLAIN = 100  #: times as much where nothing compiles the kernels
-
-
-def why_not_exact(scene: Scene) -> str:
-    """Reason why EXACT cannot solve the scene; empty where it can."""
-    if scene.structure.chords:
-        return f"GEOMETRY {scene.structure.model.geometry}: the members' stiffness changes as they move"
-    curved = next((s for s in scene.structure.laws if s.law.curved), None)
-    if curved is not None:
-        return f"the law {curved.rule} of element {curved.element} is curved"
-    return ""
 
 
 def stepped(scene: Scene) -> Decision:
     """Why steps were taken."""
-    reason = why_not_exact(scene) or "the stiffness changes so often that EXACT would cost more"
+    reason = not_linear(scene) or "the stiffness changes so often that EXACT would cost more"
     return Decision("method", "NEWMARK", f"{reason}; steps are shortened until the peaks stand still")
 
 
 class Replay:
-    """Keeps what a run tells its sink, to hand it on if it is the last; knows the extremes of u."""
+    """Keeps what a run tells its sink, to hand it on if it is the last; knows the extremes of u.
 
-    def __init__(self, sink: Sink) -> None:
-        self.sink, self.told = sink, list[tuple[Callable[..., None], tuple[Any, ...]]]()
+    Of what is between the samples only the envelopes are kept.
+    """
+
+    def __init__(self, sink: Keeper) -> None:
+        self.sink, self.told = sink, list[tuple[Any, ...]]()
+        self.survey = sink.survey.blank()
         self.high: Array | float = -np.inf
         self.low: Array | float = np.inf
 
-    def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take one sample (see `integrate.base.Sink`)."""
-        self.told.append((self.sink.sample, (t, u, v, a, laws, works)))
-        self.high, self.low = np.maximum(self.high, u), np.minimum(self.low, u)
-        self.sink.trial(t)
+    def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take some samples (see `integrate.base.Sink`)."""
+        self.told.append((t, u, v, a, laws, works))
+        self.high = np.maximum(self.high, u.max(axis=1))
+        self.low = np.minimum(self.low, u.min(axis=1))
+        self.sink.trial(float(t[-1]))
 
-    def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
         """Take the motion between samples (see `integrate.base.Sink`)."""
-        self.told.append((self.sink.between, (t, u, v, a)))
+        self.survey.between(t, u, v, a, apart)
 
     def trial(self, t: float, doing: str = "") -> None:
         """Pass on how far a trial has come."""
@@ -95,18 +91,19 @@ class Replay:
 
     def hand_on(self) -> None:
         """Tell the sink all of it."""
-        for tell, what in self.told:
-            tell(*what)
+        self.sink.survey.widen(self.survey)
+        for what in self.told:
+            self.sink.sample(*what)
 
 
 class Rival:
     """EXACT, tried for no more than a cost."""
 
-    def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Sink) -> None:
+    def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Keeper) -> None:
         self.scene, self.start, self.watch, self.sink = scene, start, watch, sink
         # least cost of the whole run, so far as known
         self.whole = FREE if len(scene.structure.laws) > MANY else 0.0
-        if why_not_exact(scene):
+        if not_linear(scene):
             self.whole = np.inf
 
     def run(self, cost: float, regimes: float = np.inf) -> Outcome | None:
@@ -142,18 +139,18 @@ def figures(scene: Scene, peaks: Peaks, replay: Replay) -> tuple[Array, Array]:
     if not swings and not contact:
         swings = peaks.deformation
     values = [(e.high, e.low) for e in swings]
-    sizes = [(max(abs(e.high), abs(e.low)),) * 2 for e in swings]
+    size = np.repeat([max(abs(e.high), abs(e.low)) for e in swings], 2)
     if not laws and not swings:
         values = list(zip(np.ravel(replay.high), np.ravel(replay.low)))
         ways = np.array([d for _, d in scene.freedoms])
         most = [np.abs(np.array(values)[ways == d]).max(initial=0.0) for d in range(3)]
-        sizes = [(most[d],) * 2 for d in ways]
-    against = np.maximum(force, 0.05 * force.max(initial=0.0))
-    return np.concatenate([np.ravel(values), force]), np.concatenate([np.ravel(sizes), against])
+        size = np.repeat([most[d] for d in ways], 2)
+    against = [np.maximum(x, share * x.max(initial=0.0)) for x, share in ((size, 1e-6), (force, 0.05))]
+    return np.concatenate([np.ravel(values), force]), np.concatenate(against)
 
 
 def to_tolerance(
-    scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink, rival: Rival
+    scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Keeper, rival: Rival
 ) -> Outcome:
     """Repeat the run with shorter steps until the peaks stand still, or the rival costs less."""
     tol, length = options["TOL"], float(start.times[-1] - start.times[0])
@@ -163,24 +160,26 @@ def to_tolerance(
     if jit.numba() is None:
         each *= PLAIN
     before: tuple[int, Array] | None = None
-    runs, error = 0, np.inf
+    runs, error, events = 0, np.inf, 0
     while True:
-        if (exactly := rival.run(each * length / h)) is not None:
+        if (exactly := rival.run(each * (length / h + EVENT * events))) is not None:
             return exactly
         replay = Replay(sink)
         try:
             outcome = newmark.integrate(scene, start, watch, {"DT": h, "BETA": 0.25, "GAMMA": 0.5}, replay)
-        except Stop as err:
-            # too coarse to go on says nothing of the structure
-            if (before is None or err.code == "A503") and h > 1e-6 * length:
-                h *= 0.25
+        except Stop as stop:
+            # too coarse to go on says nothing of the structure; growth may, if a finer step grows too
+            coarse = stop.code == "A503" or (stop.code == "A504" and before is None)
+            if coarse and h > 1e-6 * length:
+                h, before = 0.25 * h, None
+                events = max(events, stop.outcome.figures["events"] if stop.outcome else 0)
                 continue
             scene.decisions.append(stepped(scene))
             replay.hand_on()
             raise
         runs += 1
         now, against = figures(scene, outcome.peaks, replay)
-        steps = outcome.figures["steps"]
+        steps, events = outcome.figures["steps"], outcome.figures["events"]
         if before is not None and steps > before[0]:
             change = float(
                 (np.abs(now - before[1]) / np.where(against > 0.0, against, 1.0)).max(initial=0.0)
@@ -193,21 +192,23 @@ def to_tolerance(
     scene.decisions.append(stepped(scene))
     replay.hand_on()
     outcome.figures = {**outcome.figures, "runs": runs}
-    outcome.checks.append(
+    outcome.checks = [  # it says more than those of a single run
         (
             f"estimated error of drifts and contact forces, TOL {tol:g}",
             f"{error:.1e}",
             "met" if error <= tol else f"look: not met with {MOST_STEPS} steps",
         )
-    )
+    ]
     return outcome
 
 
-def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
+def integrate(
+    scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Keeper
+) -> Outcome:
     """Choose a method, note why, and run it."""
     rival, free, few = Rival(scene, start, watch, sink), FREE, float(FEW)
     if any(s.law.rigid for s in scene.structure.laws):
-        if reason := why_not_exact(scene):
+        if reason := not_linear(scene):
             refuse_rigid(scene, start, f"NEWMARK, which AUTO takes because {reason},")
         free = few = np.inf  # no other method knows them
     outcome = rival.run(free, few)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -128,42 +128,90 @@ class Peak(Protocol):
 
 
 class LawValues(NamedTuple):
-    """Forces [F] or [F L], recoverable and lost energies [F L] of all laws, shape (n_laws,) each."""
+    """Forces [F] or [F L], recoverable and lost energies [F L] of all laws, shape (n_laws, n_times)."""
 
     force: Array
     stored: Array
     lost: Array
 
 
-def law_values(scene: Scene, t: float, u: Array, v: Array, states: Sequence[State]) -> LawValues:
-    """Forces and energies of all laws from their states."""
-    d = (scene.law_rows @ u + scene.law_inputs @ scene.excitation.value(t)).tolist()
-    rate = (scene.law_rows @ v + scene.law_inputs @ scene.excitation.value(t, 1)).tolist()
-    laws = scene.structure.laws
-    return LawValues(
-        np.array([s.force(x, p, q) for s, x, p, q in zip(laws, states, d, rate)]),
-        np.array([s.law.stored(x, p) for s, x, p in zip(laws, states, d)]),
-        np.array([s.law.dissipated(x, p) for s, x, p in zip(laws, states, d)]),
+def law_values(scene: Scene, t: Array, u: Array, v: Array, states: Sequence[State]) -> LawValues:
+    """Forces and energies of all laws from their states, at times (n_times,) and motions (n, n_times)
+    between two changes of branch.
+    """
+    laws = [s.law for s in scene.structure.laws]
+    if not laws:
+        return LawValues(*np.zeros((3, 0, len(t))))
+    d = scene.law_rows @ u + scene.law_inputs @ scene.excitation.values(t).T
+    rate = scene.law_rows @ v + scene.law_inputs @ scene.excitation.values(t, 1).T
+    # `Law.work` and `Law.dissipated` of all laws and times at once: a sample of some laws is a small thing
+    k, c, f0 = np.array([x.rule.branch(x.p, s[0], s[3])[:3] for x, s in zip(laws, states)]).T[:, :, None]
+    begin, before = np.array([s[1:3] for s in states]).T[:, :, None]
+    still = k * d + f0
+    done = before + (0.5 * k * (d + begin) + f0) * (d - begin)
+    force = still + c * rate * np.array([[s.is_contact] for s in scene.structure.laws])
+    for i, s in enumerate(scene.structure.laws):
+        if s.law.curved:
+            own = d[i].tolist()
+            still[i] = [s.law.force(states[i], x)[0] for x in own]
+            done[i] = [s.law.work(states[i], x) for x in own]
+            force[i] = [s.force(states[i], x, y) for x, y in zip(own, rate[i].tolist())]
+    stored = np.array(
+        [
+            [x.rule.recoverable(x.p, s[0], s[3], y, f) for y, f in zip(*pair)]
+            for x, s, *pair in zip(laws, states, d.tolist(), still.tolist())
+        ]
     )
+    size = np.array([[x.p[0]] for x in laws]) * np.maximum(np.abs(d), np.abs(begin)) ** 2
+    lost = done - stored
+    return LawValues(force, stored, np.where(np.abs(lost) > 1e-14 * size, lost, 0.0))
+
+
+class Survey(Protocol):
+    """Envelopes of a run."""
+
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+        """Count in the motion at some times, as `Sink.between`."""
+        ...
+
+    def blank(self) -> Self:
+        """Return one that has seen nothing."""
+        ...
+
+    def widen(self, other: Self) -> None:
+        """Count in what another one has seen."""
+        ...
 
 
 class Sink(Protocol):
     """Takes the samples of a history."""
 
-    def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take the motion and the laws' forces and energies at an output time.
+    def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take the motion (n, n_times) and the laws' forces and energies at some output times.
 
-        `works`, shape (3,), are the work put in, and that lost so far in the structure's
+        `works`, shape (3, n_times), are the work put in, and that lost so far in the structure's
         and in the contacts' dashpots.
         """
         ...
 
-    def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
-        """Take the motion at times between the samples, shapes (n_times,), (n, n_times): for envelopes."""
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+        """Take the motion at times between the samples, shapes (n_times,), (n, n_times): for envelopes.
+
+        `apart` is the longest time from one instant that is seen to the next.
+        """
         ...
 
     def trial(self, t: float, doing: str = "") -> None:
         """Be told the time reached by a run whose samples may not count, or what keeps it waiting there."""
+        ...
+
+
+class Keeper(Sink, Protocol):
+    """A sink that keeps envelopes."""
+
+    @property
+    def survey(self) -> Survey:
+        """What it has seen between the samples, and may be at them."""
         ...
 
 
@@ -196,6 +244,14 @@ class Stop(Exception):
     def __init__(self, code: str, t: float, why: str, outcome: Outcome | None = None) -> None:
         super().__init__(why)
         self.code, self.t, self.outcome = code, t, outcome
+
+
+def not_linear(scene: Scene) -> str:
+    """Reason why a scene is not linear between events, as some methods need; empty where it is."""
+    if scene.structure.chords:
+        return f"members change their stiffness as they move (GEOMETRY {scene.structure.model.geometry})"
+    curved = next((s for s in scene.structure.laws if s.law.curved), None)
+    return "" if curved is None else f"the law {curved.rule} of element {curved.element} is curved"
 
 
 def refuse_rigid(scene: Scene, start: Start, method: str) -> None:
@@ -346,6 +402,6 @@ def energies(scene: Scene, t: Array, u: Array, v: Array, stored: Array, lost: Ar
 def energy_at_start(scene: Scene, start: Start) -> float:
     """Kinetic and recoverable energy [F L]: with the work put in since, all that the motion can hold."""
     t, u, v = start.times[:1], start.u, start.v
-    laws = law_values(scene, float(t[0]), u, v, start.states)
-    whole = energies(scene, t, u[None], v[None], laws.stored[None], laws.lost[None], np.zeros((1, 3)))
+    laws = law_values(scene, t, u[:, None], v[:, None], start.states)
+    whole = energies(scene, t, u[None], v[None], laws.stored.T, laws.lost.T, np.zeros((1, 3)))
     return float(whole[0, 1] + whole[0, 2])

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pound_solve import polynomial
 from pound_solve.integrate import work
-from pound_solve.integrate.flow import Flow, Mechanism, make_flow
+from pound_solve.integrate.flow import TERMS, Flow, Mechanism, make_flow, on_stacked, stacked
 from pound_solve.integrate.rigid import Rigid
 from pound_solve.laws import Branch
 from pound_solve.scene import Scene
@@ -77,8 +77,12 @@ class Regime:
     watched : ndarray of int, place : list of int
         Which rows of the run touch it; the place of every row among them, or -1.
     rows : ndarray, shape (n_watched, n)
-    uv_rows : ndarray, shape (2 n_watched, n_q)
-        The rows on u_q above those on v_q.
+    on_u : ndarray, shape (n_watched, n_q)
+        What the rows' values take from q.
+    on_q : ndarray, shape (3 n_watched, n_q or 2 n_q)
+        What their values, rates and second rates take from `flow.stacked` q.
+    motion : ndarray, shape (3 n, n_q or 2 n_q)
+        What displacements, velocities and accelerations take from it.
     reactions : Reactions or None
     """
 
@@ -88,7 +92,9 @@ class Regime:
     watched: NDArray[np.intp]
     place: list[int]
     rows: Array
-    uv_rows: NDArray[Any]
+    on_u: NDArray[Any]
+    on_q: Array
+    motion: Array
     meter: work.Meter
     reactions: Reactions | None
 
@@ -237,6 +243,7 @@ class Partition:
             (int(i), branches[i].damping, scene.law_rows[i, index]) for i in laws if branches[i].damping
         ]
         meter = work.Meter(flow, scene.damping[grid], scene.inputs[index], dashpots)
+        motion = on_stacked(np.vstack([flow.u_q, flow.v_q, flow.onward(flow.v_q)]))
         return Regime(
             index,
             laws,
@@ -244,7 +251,9 @@ class Partition:
             watched,
             place,
             rows,
-            np.vstack([rows @ flow.u_q, rows @ flow.v_q]),
+            rows @ flow.u_q,
+            np.concatenate([rows @ x for x in np.split(motion, 3)]),
+            motion,
             meter,
             self._reactions(held, index, flow, c, k) if len(held) else None,
         )
@@ -289,6 +298,8 @@ class Window:
         self, partition: Partition, branches: Sequence[Branch], coefs: Array, length: float
     ) -> None:
         self.partition, self.branches, self.coefs, self.length = partition, branches, coefs, length
+        self.h, self.count = length, 1  # of the grid that `functionals` is asked on
+        self._arcs: dict[tuple[int, int, int], list[float]] = {}
         scene = partition.scene
         for block in partition.blocks:
             flow = block.regime.flow
@@ -339,130 +350,134 @@ class Window:
         """Value, rate and (with `bending`, else zero) second rate of all rows on `grid`,
         shape (n_rows, n_times).
         """
-        part = self.partition
-        n = self.intervals
+        part, n = self.partition, self.intervals
         count = int(np.ceil(self.length / h * (1 - 1e-12)))
+        self.h, self.count = h, count
         t = h * np.arange(count)
         value = np.repeat(part.row_constants[:, None], n * count + 1, axis=1)
         rate, second = np.zeros_like(value), np.zeros_like(value)
         if part.known:
-            offset = (
-                self.coefs @ part.row_inputs.T
-            )  # polynomials of what the inputs add, (n, degree + 1, n_rows)
-            for out, order in ((value, 0), (rate, 1), (second, 2)):
-                for i in range(n):
-                    out[:, i * count : (i + 1) * count] += np.array(
-                        [polynomial.value(offset[i], x, order) for x in t]
-                    ).T
-                out[:, -1] += polynomial.value(offset[-1], self.length, order)
+            for order, out in enumerate((value, rate, second)):
+                out += self._along(self.coefs @ part.row_inputs.T, t, order)
         for block in part.blocks:
             flow, w, m = block.regime.flow, block.regime.watched, len(block.regime.watched)
             block.samples = samples = flow.samples(block.qs[:, :-1], block.gs, h, count)
             if not m:
                 continue
             flat = samples.reshape(len(samples), n * count)
-            last = block.qs[:, -1]
+            states = stacked(np.concatenate([flat, block.qs[:, -1:]], axis=1))
             if block.regime.reactions is not None:
-                self._react(block, samples, t, value, rate)
-            both = (block.regime.uv_rows @ np.concatenate([flat, last[:, None]], axis=1)).real
+                self._react(block, states, t, value, rate)
+            on_q = block.regime.on_q
+            both = on_q[: 2 * m] @ states
             value[w] += both[:m]
             rate[w] += both[m:]
             if bending:
-                bend = flow.rates(samples, block.gs, t).reshape(len(samples), n * count)
-                end = flow.rate(last, block.gs[-1], self.length)
-                second[w] += (block.regime.uv_rows[m:] @ np.concatenate([bend, end[:, None]], axis=1)).real
+                bend = on_q[2 * m :] @ states
+                second[w] += bend + self._along(stacked(block.gs, -1) @ on_q[m : 2 * m].T, t, 0)
             if block.ps is not None and flow.u_p is not None:
                 self._direct(block, t, value, rate, second)
         return value, rate, second
+
+    def _along(self, coefs: Array, t: NDArray[Any], order: int) -> Array:
+        """Polynomials (n_intervals, degree + 1, n) at times `t` of each interval and at the end of
+        the window, shape (n, n_intervals * n_times + 1).
+        """
+        end = polynomial.value(coefs[-1], self.length, order)
+        return np.concatenate([polynomial.along(coefs, t, order), end[:, None]], axis=1)
 
     def _direct(self, block: Block, t: NDArray[Any], value: Array, rate: Array, second: Array) -> None:
         """Add what forces on massless freedoms move directly."""
         flow, w = block.regime.flow, block.regime.watched
         assert block.ps is not None and flow.u_p is not None and flow.space.v_p is not None
         u_p, v_p = block.regime.rows @ flow.u_p, block.regime.rows @ flow.space.v_p
-        times = [(i, x) for i in range(self.intervals) for x in t] + [(self.intervals - 1, self.length)]
-        force, slope, bend = (
-            np.array([polynomial.value(block.ps[i], x, order) for i, x in times]).T for order in (0, 1, 2)
-        )
+        force, slope, bend = (self._along(block.ps, t, order) for order in range(3))
         value[w] += u_p @ force
         rate[w] += v_p @ force + u_p @ slope
         second[w] += v_p @ slope + u_p @ bend
 
-    def _react(
-        self, block: Block, samples: NDArray[Any], t: NDArray[Any], value: Array, rate: Array
-    ) -> None:
+    def _react(self, block: Block, states: Array, t: NDArray[Any], value: Array, rate: Array) -> None:
         """Put in the forces of closed rigid contacts."""
         flow, r = block.regime.flow, block.regime.reactions
         assert block.ps is not None and r is not None
-        last = block.qs[:, -1]
-        times = [(i, x) for i in range(self.intervals) for x in t] + [(self.intervals - 1, self.length)]
-        for out, q, end, order in (
-            (value, samples, last, 0),
-            (
-                rate,
-                flow.rates(samples, block.gs, t),
-                flow.rate(last, block.gs[-1], self.length),
-                1,
-            ),
-        ):
-            states = np.concatenate([q.reshape(len(q), len(times) - 1), end[:, None]], axis=1)
-            force, slope = (
-                np.array([polynomial.value(block.ps[i], x, order + k) for i, x in times]).T for k in (0, 1)
-            )
-            out[r.place] = (r.on_q @ states).real + r.on_p @ force + r.on_rate @ slope
+        force, slope, bend = (self._along(block.ps, t, order) for order in range(3))
+        value[r.place] = on_stacked(r.on_q) @ states + r.on_p @ force + r.on_rate @ slope
+        rate[r.place] = (
+            on_stacked(flow.onward(r.on_q)) @ states
+            + self._along((block.gs @ r.on_q.T).real, t, 0)
+            + r.on_p @ slope
+            + r.on_rate @ bend
+        )
 
     def at(self, row: int, tau: float) -> tuple[float, float, float]:
-        """Value, rate and second rate of one row at local time `tau`:
-        what polishing asks for again and again.
+        """Value, rate and second rate of one row at local time `tau`, by its Taylor series about the grid
+        point before: what polishing asks for again and again.
         """
-        value, rate, second = self._evaluate(tau, row)
-        return float(value[0]), float(rate[0]), float(second[0])
+        i, tau = self.place(tau)
+        cell = min(int(tau / self.h), self.count - 1)
+        arc = self._arcs.get((row, i, cell))
+        if arc is None:
+            arc = self._arcs[row, i, cell] = self._arc(row, i, cell).tolist()
+        x = tau / self.h - cell
+        value = rate = second = 0.0
+        for c in arc:  # from the highest power: Horner's scheme for the value and both derivatives
+            second = second * x + rate
+            rate = rate * x + value
+            value = value * x + c
+        return value, rate / self.h, 2.0 * second / self.h**2
+
+    def _arc(self, row: int, interval: int, cell: int) -> Array:
+        """Taylor series of one row about a grid point, in powers of grid steps, the highest power first."""
+        part, h, t = self.partition, self.h, self.h * cell
+        out = np.zeros(TERMS)
+        out[0] = part.row_constants[row]
+        known = self.coefs[interval] @ part.row_inputs[row]
+        for block in part.blocks:
+            r, own = block.regime, block.regime.place[row]
+            if r.reactions is not None and row in r.reactions.place:
+                assert block.ps is not None
+                n = int(np.argmax(r.reactions.place == row))
+                on_q, p = r.reactions.on_q[n], block.ps[interval]
+                known = p @ r.reactions.on_p[n]
+                known[:-1] += (p[1:] @ r.reactions.on_rate[n]) * np.arange(1, len(p))
+            elif own >= 0:
+                on_q = r.on_u[own]
+                if block.ps is not None and r.flow.u_p is not None:
+                    known = known + block.ps[interval] @ (r.rows[own] @ r.flow.u_p)
+            else:
+                continue
+            g = polynomial.shift(block.gs[interval], t)
+            out += r.flow.taylor(on_q, block.samples[:, interval, cell], g, h)
+        out[: len(known)] += polynomial.shift(known, t) * h ** np.arange(len(known))
+        return out[::-1]
 
     def all_at(self, tau: float) -> tuple[Array, Array, Array]:
         """Value, rate and second rate of all rows at local time `tau`, shape (n_rows,) each."""
-        return self._evaluate(tau, None)
-
-    def _evaluate(self, tau: float, row: int | None) -> tuple[Array, Array, Array]:
         part = self.partition
         i, tau = self.place(tau)
-        chosen = slice(None) if row is None else slice(row, row + 1)
-        value = part.row_constants[chosen].copy()
+        value = part.row_constants.copy()
         rate, second = np.zeros_like(value), np.zeros_like(value)
-        to: Any
         if part.known:
-            offset = self.coefs[i] @ part.row_inputs[chosen].T
-            for out, order in ((value, 0), (rate, 1), (second, 2)):
+            offset = self.coefs[i] @ part.row_inputs.T
+            for order, out in enumerate((value, rate, second)):
                 out += polynomial.value(offset, tau, order)
         for block in part.blocks:
-            r = block.regime
-            n = len(r.watched)
-            if r.reactions is not None and (row is None or row in r.reactions.place):
-                own_value, own_rate = self._reaction(block, i, tau)
-                to = r.reactions.place
-                if row is not None:
-                    own_value, own_rate = own_value[to == row], own_rate[to == row]
-                    to = slice(0, 1)
-                value[to], rate[to] = own_value, own_rate
-            if row is None:
-                to = r.watched
-                own = slice(0, n)
-            elif r.place[row] >= 0:
-                to = slice(0, 1)
-                own = slice(r.place[row], r.place[row] + 1)
-            else:
-                continue
-            q = r.flow.at(block.qs[:, i], block.gs[i], tau)
-            on_u, on_v = r.uv_rows[:n][own], r.uv_rows[n:][own]
-            value[to] += (on_u @ q).real
-            rate[to] += (on_v @ q).real
-            second[to] += (on_v @ r.flow.rate(q, block.gs[i], tau)).real
+            r, g = block.regime, block.gs[i]
+            w, m = r.watched, len(r.watched)
+            if r.reactions is not None:
+                value[r.reactions.place], rate[r.reactions.place] = self._reaction(block, i, tau)
+            q = self.state(block, i, tau)
+            d, v, x = (r.on_q @ stacked(q)).reshape(3, m)
+            value[w] += d
+            rate[w] += v
+            second[w] += x + polynomial.value(stacked(g, -1) @ r.on_q[m : 2 * m].T, tau)
             if block.ps is not None and r.flow.u_p is not None:
                 force, slope, bend = (polynomial.value(block.ps[i], tau, order) for order in (0, 1, 2))
                 assert r.flow.space.v_p is not None  # stands where u_p does
-                u_p, v_p = r.rows[own] @ r.flow.u_p, r.rows[own] @ r.flow.space.v_p
-                value[to] += u_p @ force
-                rate[to] += v_p @ force + u_p @ slope
-                second[to] += v_p @ slope + u_p @ bend
+                u_p, v_p = r.rows @ r.flow.u_p, r.rows @ r.flow.space.v_p
+                value[w] += u_p @ force
+                rate[w] += v_p @ force + u_p @ slope
+                second[w] += v_p @ slope + u_p @ bend
         return value, rate, second
 
     def _reaction(self, block: Block, interval: int, tau: float) -> tuple[Array, Array]:
@@ -497,14 +512,13 @@ class Window:
         t = np.array([self.length])
         return self._motions(slice(count), t, lambda block: block.qs[:, 1 : count + 1, None])
 
-    def between(self, h: float, each: int, end: float) -> tuple[Array, Array, Array, Array]:
+    def between(self, each: int, end: float) -> tuple[Array, Array, Array, Array]:
         """Local times and `motion` at every `each`-th point of an interval's grid, up to `end`;
         shape (n_times,) and (n, n_times).
 
         `functionals` was asked on this grid.
         """
-        count = int(np.ceil(self.length / h * (1 - 1e-12)))
-        chosen, within = slice(self.place(end)[0] + 1), h * np.arange(0, count, each)
+        chosen, within = slice(self.place(end)[0] + 1), self.h * np.arange(0, self.count, each)
         starts = self.length * np.arange(self.intervals)[chosen]
         t = (starts[:, None] + within).ravel()
         motion = self._motions(chosen, within, lambda block: block.samples[:, chosen, ::each])
@@ -518,24 +532,21 @@ class Window:
 
         `states` gives a block's q there, shape (n_q, n_intervals, n_times).
         """
-        n = len(range(*intervals.indices(self.intervals)))
-        u, v, a = (np.zeros((self.partition.scene.size, n * len(t))) for _ in range(3))
+        count = len(range(*intervals.indices(self.intervals))) * len(t)
+        out = np.zeros((3, self.partition.scene.size, count))
         for block in self.partition.blocks:
             flow, index, q = block.regime.flow, block.regime.index, states(block)
-            rate = flow.rates(q, block.gs[intervals], t)
-            u[index], v[index], a[index] = (
-                (x @ y.reshape(len(y), n * len(t))).real
-                for x, y in ((flow.u_q, q), (flow.v_q, q), (flow.v_q, rate))
-            )
-            if block.ps is not None and flow.u_p is not None:
-                u_p, v_p = flow.u_p, flow.space.v_p
-                force, slope, bend = (
-                    np.array([polynomial.value(p, float(x), k) for p in block.ps[intervals] for x in t]).T
-                    for k in range(3)
-                )
-                u[index] += u_p @ force
-                v[index] += v_p @ force + u_p @ slope
-                a[index] += v_p @ slope + u_p @ bend
+            motion, n = block.regime.motion, len(index)
+            own = (motion @ stacked(q.reshape(len(q), count))).reshape(3, n, count)
+            own[2] += polynomial.along(stacked(block.gs[intervals], -1) @ motion[n : 2 * n].T, t)
+            u_p, v_p = flow.u_p, flow.space.v_p
+            if block.ps is not None and u_p is not None and v_p is not None:
+                force, slope, bend = (polynomial.along(block.ps[intervals], t, k) for k in range(3))
+                own[0] += u_p @ force
+                own[1] += v_p @ force + u_p @ slope
+                own[2] += v_p @ slope + u_p @ bend
+            out[:, index] = own
+        u, v, a = out
         return u, v, a
 
     def state(self, block: Block, interval: int, tau: float) -> NDArray[Any]:

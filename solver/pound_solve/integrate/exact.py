@@ -39,6 +39,7 @@ from pound_solve.integrate.base import (
     Watch,
     energy_at_start,
     law_values,
+    not_linear,
 )
 from pound_solve.integrate.base import goals as goals_of
 from pound_solve.integrate.blocks import Partition, Window
@@ -118,7 +119,7 @@ class Exact:
         self._form()
         goals, self.is_output = goals_of(self.scene, self.times)
         first = self._window(0.0, np.array([self.t]))  # of no length: for the first sample only
-        self._hand_out(self.t, *first.motion(0, 0.0), self.works)
+        self._hand_out(np.array([self.t]), *first.path(0, np.zeros(1)), self.works[:, None])
         cursor = 0
         while cursor < len(goals):
             cursor = self._advance(goals, cursor)
@@ -160,17 +161,15 @@ class Exact:
         self.bending = bool(np.any(self.exit_factors[1])) or any(b.damping for b in self.branches)
 
     def _window(self, length: float, starts: Array) -> Window:
-        ex = self.scene.excitation
-        # a hair beyond, so that rounding never puts us on the piece that has just ended
-        coefs = np.stack([ex.local(ex.piece(t + 1e-13 * max(1.0, t)), t) for t in starts.tolist()])
-        return Window(self.partition, self.branches, coefs, length)
+        return Window(self.partition, self.branches, self.scene.excitation.about(starts), length)
 
     def _advance(self, goals: Array, cursor: int) -> int:
         """Advance by a window of intervals up to the next goals, or to an event; return the new cursor."""
         if goals[cursor] - self.t <= 1e-14 * max(1.0, self.t):  # an event fell on the goal
             self.t = float(goals[cursor])
             if self.is_output[cursor]:
-                self._hand_out(self.t, *self._window(0.0, np.array([self.t])).motion(0, 0.0), self.works)
+                at = np.array([self.t])
+                self._hand_out(at, *self._window(0.0, at).path(0, np.zeros(1)), self.works[:, None])
             return cursor + 1
         # twelve digits: intervals of equal length share their exponentials,
         # whatever the rounding of the times
@@ -197,7 +196,7 @@ class Exact:
         event = self._first_event(window, t, value, rate, second) if self.n_laws else None
         if event is None:
             self._peaks(window, t, value, rate, second)
-            self._between(window, h, window.length * window.intervals)
+            self._between(window, window.length * window.intervals)
             self._sample(window, goals, cursor, window.intervals if whole else 0)
             if whole:
                 self.pieces = 0
@@ -216,7 +215,7 @@ class Exact:
         now = window.all_at(tau)
         points = [np.append(a[:, cut], x[:, None], axis=1) for a, x in zip((value, rate, second), now)]
         self._peaks(window, np.append(t[cut], tau), *points)
-        self._between(window, h, tau)
+        self._between(window, tau)
         self._sample(window, goals, cursor, interval)
         self._work(window, interval, within)
         self.u, self.v, _ = window.motion(interval, within)
@@ -260,22 +259,25 @@ class Exact:
         kinetic = 0.5 * float(v[:, -1] @ self.scene.mass @ v[:, -1])
         if not kinetic <= 10.0 * (self.held + self.put_in) + 1e-300:
             raise self.stop("A504", RUNAWAY.format(kinetic))
-        for i in np.flatnonzero(self.is_output[cursor : cursor + count]).tolist():
-            self._hand_out(float(goals[cursor + i]), u[:, i], v[:, i], a[:, i], works[i])
+        out = np.flatnonzero(self.is_output[cursor : cursor + count])
+        if len(out):
+            self._hand_out(goals[cursor + out], u[:, out], v[:, out], a[:, out], works[out].T)
         self.works = works[-1]
 
-    def _between(self, window: Window, h: float, end: float) -> None:
+    def _between(self, window: Window, end: float) -> None:
         """Show the sink the motion between the samples, up to the local time `end`."""
-        tau, *motion = window.between(h, EACH, end)
-        self.sink.between(self.t + tau, *motion)
+        tau, u, v, a = window.between(EACH, end)
+        self.sink.between(self.t + tau, u, v, a, float(np.diff(tau, append=end).max(initial=0.0)))
 
-    def _hand_out(self, t: float, u: Array, v: Array, a: Array, works: Array) -> None:
+    def _hand_out(self, t: Array, u: Array, v: Array, a: Array, works: Array) -> None:
         laws = law_values(self.scene, t, u, v, self.states)
         held = np.array([self.branches[i].held for i in self.rigid.laws], bool)
         if held.any():
             ex = self.scene.excitation
-            s = np.stack([ex.value(t, order) for order in range(3)])
-            laws.force[self.rigid.laws] = self.rigid.forces(held, self.branches, u, v, s)
+            s = np.stack([ex.values(t, order) for order in range(3)])
+            for i in range(len(t)):
+                now = self.rigid.forces(held, self.branches, u[:, i], v[:, i], s[:, i])
+                laws.force[self.rigid.laws, i] = now
         self.sink.sample(t, u, v, a, laws, works)
 
     def _work(self, window: Window, interval: int, tau: float) -> None:
@@ -367,7 +369,7 @@ class Exact:
     def _inputs(self) -> Array:
         """Inputs and their first two derivatives just after now, shape (3, n_inputs)."""
         ex = self.scene.excitation
-        own = ex.local(ex.piece(self.t + 1e-13 * max(1.0, self.t)), self.t)
+        own = ex.about(np.array([self.t]))[0]
         return np.stack([polynomial.value(own, 0.0, order) for order in range(3)])
 
     def _meet(self) -> None:
@@ -489,26 +491,42 @@ class Whole:
     """Hands samples on with all unknowns, condensed ones too."""
 
     def __init__(self, sink: Sink, small: Condensed) -> None:
-        self.sink, self.small, self.at_start = sink, small, small.put_in(0.0)
+        self.sink, self.small, self.at_start = sink, small, small.put_in(np.zeros(1))
 
-    def sample(self, t: float, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take one sample (see `integrate.base.Sink`)."""
+    def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take some samples (see `integrate.base.Sink`)."""
         ex = self.small.scene.excitation
-        u, v, a = (self.small.all(x, ex.value(t, order), order) for order, x in enumerate((u, v, a)))
+        u, v, a = (self.small.all(x, ex.values(t, order).T, order) for order, x in enumerate((u, v, a)))
         if not self.small.scene.total:  # the total form counts the work on all freedoms
-            works = works + np.array([self.small.put_in(t) - self.at_start, 0.0, 0.0])
+            works = works.copy()
+            works[0] += self.small.put_in(t) - self.at_start
         self.sink.sample(t, u, v, a, laws, works)
 
-    def between(self, t: Array, u: Array, v: Array, a: Array) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
         """Take the motion between samples (see `integrate.base.Sink`)."""
         ex = self.small.scene.excitation
-        self.sink.between(
-            t, *(self.small.all(x, ex.values(t, order).T, order) for order, x in enumerate((u, v, a)))
-        )
+        u, v, a = (self.small.all(x, ex.values(t, order).T, order) for order, x in enumerate((u, v, a)))
+        self.sink.between(t, u, v, a, apart)
 
     def trial(self, t: float, doing: str = "") -> None:
         """Pass it on."""
         self.sink.trial(t, doing)
+
+
+def condensed(scene: Scene, start: Start, watch: Watch, sink: Sink) -> tuple[Scene, Start, Watch, Sink]:
+    """What a method is given that works on full matrices: no massless freedoms that follow the others."""
+    small = condense(scene)
+    return (
+        small.scene,
+        replace(start, u=start.u[small.keep], v=start.v[small.keep]),
+        Watch(
+            watch.names,
+            watch.rows @ small.expand,
+            watch.input_rows + watch.rows @ small.follow,
+            watch.constants + watch.rows @ small.constant,
+        ),
+        sink if len(small.keep) == scene.size else Whole(sink, small),
+    )
 
 
 def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
@@ -521,27 +539,12 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     CostlyError
         It costs more than COST, or takes more than REGIMES, of the options; no deck sets them.
     """
-    if scene.structure.chords:
-        why = "members that change their stiffness as they move (GEOMETRY {}) need steps: AUTO takes them"
-        raise Stop("A505", float(start.times[0]), why.format(scene.structure.model.geometry))
-    curved = next((s for s in scene.structure.laws if s.law.curved), None)
-    if curved is not None:
-        why = "EXACT needs linear pieces, and the law {} of element {} is curved: AUTO takes steps"
-        raise Stop("A505", float(start.times[0]), why.format(curved.rule, curved.element))
-    small = condense(scene)
+    if why := not_linear(scene):
+        why = f"EXACT needs linear pieces, and {why}: AUTO takes steps"
+        raise Stop("A505", float(start.times[0]), why)
+    scene, start, watch, sink = condensed(scene, start, watch, sink)
     try:
-        run = Exact(
-            small.scene,
-            replace(start, u=start.u[small.keep], v=start.v[small.keep]),
-            Watch(
-                watch.names,
-                watch.rows @ small.expand,
-                watch.input_rows + watch.rows @ small.follow,
-                watch.constants + watch.rows @ small.constant,
-            ),
-            options,
-            Whole(sink, small),
-        )
+        run = Exact(scene, start, watch, options, sink)
     except Weightless as err:
         raise Stop("A505", float(start.times[0]), str(err)) from None
     try:

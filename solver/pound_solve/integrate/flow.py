@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from math import factorial
 from typing import Any
 
 import numpy as np
@@ -40,8 +41,16 @@ Complex = NDArray[np.complex128]
 
 MOST_CONDITION = 1e6  #: of the mode matrix; beyond it the series is used
 SLOW = 1e-3  #: omega^2 below this share of the largest is sought again among the slow modes
+TERMS = 22  #: of a Taylor series over 1 / (fastest eigenvalue): 1/22! is 1e-21
 RECURRING = 64  #: lengths of segments for which the response is kept
 RIGID = 1e-14  #: omega^2 below this share of the rounding scale (times the size) is a rigid-body mode
+
+
+#: k! m! / (k + m + 1)!: what the m-th of `Flow._derivatives` makes of a force t^k
+_SHARES = [
+    np.array([factorial(k) * factorial(m) / factorial(k + m + 1) for m in range(TERMS - k - 1)])
+    for k in range(TERMS - 1)
+]
 
 
 class Mechanism(Exception):
@@ -257,6 +266,16 @@ def _second_order(m: Array, c: Array, k: Array) -> StateSpace:
     )
 
 
+def stacked(x: NDArray[Any], axis: int = 0) -> Array:
+    """Real numbers of a state, or of several along other axes: its real parts, then its imaginary ones."""
+    return np.concatenate([x.real, x.imag], axis) if np.iscomplexobj(x) else x
+
+
+def on_stacked(rows: NDArray[Any]) -> Array:
+    """Rows on a state as rows on what is `stacked` of it: half the work of a complex product."""
+    return np.concatenate([rows.real, -rows.imag], axis=1) if np.iscomplexobj(rows) else rows
+
+
 class Flow(ABC):
     """A block's exact motion; the base of `ModalFlow` and `SeriesFlow`.
 
@@ -331,6 +350,29 @@ class Flow(ABC):
         """Return q at one time `t`."""
 
     @abstractmethod
+    def onward(self, rows: NDArray[Any]) -> NDArray[Any]:
+        """Return what rows on q are on dq/dt by q itself: with the rows on its forcing g they give
+        the rate, shape of `rows`.
+        """
+
+    def taylor(self, row: NDArray[Any], q: NDArray[Any], g: NDArray[Any], h: float) -> Array:
+        """Return the coefficients of ``Re(row q(h x))`` in powers of x, shape (TERMS,), up to x = 1.
+
+        `q` and `g` are of the start, and `h` is no longer than 1 / `fastest`:
+        by :math:`q^{(m+1)} = A q^{(m)} + g^{(m)}`.
+        """
+        by = self._derivatives(row, h)
+        out: Array = (by @ q).real
+        for k, force in enumerate(g):
+            # t^k enters at the power k + 1, and each derivative of q carries it one further
+            out[k + 1 :] += h ** (k + 1) * _SHARES[k] * (by[: TERMS - k - 1] @ force).real
+        return out
+
+    @abstractmethod
+    def _derivatives(self, row: NDArray[Any], h: float) -> NDArray[Any]:
+        """Return ``row (A h)^m / m!``, shape (TERMS, n_q)."""
+
+    @abstractmethod
     def path(self, q: NDArray[Any], g: NDArray[Any], times: Array) -> NDArray[Any]:
         """Return q at rising `times`, shape (n_q, n_times)."""
 
@@ -387,7 +429,8 @@ class ModalFlow(Flow):
         self._force = left_full @ space.b
         self._input = self._force @ inputs
         self.fastest = float(np.abs(lam).max(initial=0.0))
-        self._tables: dict[tuple[float, int], tuple[int, Complex, Complex]] = {}
+        self._tables: dict[tuple[float, int], Complex] = {}
+        self._powers: dict[float, Complex] = {}  # of eigenvalues times h, over their factorials
         # responses at a few times that recur
         self._single: dict[tuple[float, int], tuple[Complex, Complex]] = {}
 
@@ -420,15 +463,16 @@ class ModalFlow(Flow):
         # t^(k+1) K_k(lam t), shape (degree + 1, n_q, n_t)
         return e, phi.duhamel(z, degree, e) * powers(t, degree + 1)[1:, None, :]
 
-    def _table(self, h: float, count: int, degree: int) -> tuple[Complex, Complex]:
-        """Responses at 0, h, ..., (count - 1) h, kept."""
-        none: tuple[int, Any, Any] = (0, None, None)
-        n, e, tables = self._tables.get((h, degree), none)
-        if n < count:
-            n = max(count, 16)
-            e, tables = self._responses(h * np.arange(n), degree)
-            self._tables[h, degree] = (n, e, tables)
-        return e[:, :count], tables[:, :, :count]
+    def _table(self, h: float, count: int, degree: int) -> Complex:
+        """Responses at 0, h, ..., (count - 1) h to a unit of q and of each g, kept,
+        shape (n_q, degree + 2, count).
+        """
+        found = self._tables.get((h, degree))
+        if found is None or found.shape[2] < count:
+            e, tables = self._responses(h * np.arange(max(count, 16)), degree)
+            found = np.concatenate([e[:, None], tables.swapaxes(0, 1)], axis=1)
+            self._tables[h, degree] = found
+        return found[:, :, :count]
 
     def _once(self, t: float, degree: int) -> tuple[Complex, Complex]:
         """Response at one time, kept if there is room: lengths of segments recur."""
@@ -444,10 +488,8 @@ class ModalFlow(Flow):
         return self.samples(q[:, None], g[None], h, count)[:, 0]
 
     def samples(self, qs: Complex, gs: Complex, h: float, count: int) -> Complex:  # noqa: D102
-        e, tables = self._table(h, count, gs.shape[1] - 1)
-        out = e[:, None, :] * qs[:, :, None]
-        for k in range(gs.shape[1]):
-            out += tables[k][:, None, :] * gs[:, k].T[:, :, None]
+        start = np.concatenate([qs[:, :, None], gs.transpose(2, 0, 1)], axis=2)
+        out = start @ self._table(h, count, gs.shape[1] - 1)
         self._drift(out, qs, gs, h * np.arange(count))
         return out
 
@@ -469,6 +511,22 @@ class ModalFlow(Flow):
         out[:, 0] = q
         for i, push in enumerate(pushed):
             out[:, i + 1] = q = e * q + push
+        return out
+
+    def onward(self, rows: Complex) -> Complex:  # noqa: D102
+        out = rows * self.lam
+        out[..., self.b_rows] += rows[..., self.a_rows] * self.scale
+        return out
+
+    def _derivatives(self, row: Complex, h: float) -> Complex:
+        found = self._powers.get(h)
+        if found is None:
+            steps = h * self.lam / np.arange(1, TERMS)[:, None]
+            found = np.cumprod(np.concatenate([np.ones((1, len(self.lam))), steps]), axis=0)
+            if len(self._powers) < RECURRING:
+                self._powers[h] = found
+        out = row * found
+        out[1, self.b_rows] += h * row[self.a_rows] * self.scale
         return out
 
     def path(self, q: Complex, g: Complex, times: Array) -> Complex:  # noqa: D102
@@ -525,6 +583,15 @@ class SeriesFlow(Flow):
     def integral(self, q: Array, g: Array, t: float) -> Array:  # noqa: D102
         w, points = gauss(t, self.fastest)
         return self.path(q, g, points) @ w
+
+    def onward(self, rows: Array) -> Array:  # noqa: D102
+        return rows @ self.space.a
+
+    def _derivatives(self, row: Array, h: float) -> Array:
+        out = [row]
+        for m in range(1, TERMS):
+            out.append(h / m * (out[-1] @ self.space.a))
+        return np.array(out)
 
     def path(self, q: Array, g: Array, times: Array) -> Array:  # noqa: D102
         # from time to time, each as the start of the next

@@ -74,6 +74,8 @@ from pound_solve.integrate.arrays import (
     S0,
     S1,
     SAVED,
+    SHOWN,
+    SINCE,
     SLOPE,
     SLOW,
     STEP,
@@ -598,6 +600,20 @@ def sample(w: Laws, x: Motion, z: Samples, f: Tables, count: Index, t: float) ->
     count[KEPT] += 1
 
 
+def show(x: Motion, z: Samples, count: Index, t: float, each: int) -> None:
+    """Keep the motion after every `each`-th step between two outputs."""
+    count[SINCE] += 1
+    if count[SINCE] < each:
+        return
+    at = count[SHOWN]
+    z.when[at] = t
+    for j in range(3):
+        for i in range(x.q.shape[1]):
+            z.shown[at, j, i] = x.q[U + j, i]
+    count[SINCE] = 0
+    count[SHOWN] += 1
+
+
 def uncut_step(
     m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, scheme: Scheme, coefs: Array, begin: float,
     count: Index, clock: Array, length: float, tried: bool,
@@ -818,10 +834,10 @@ def whole_step(
 
 @flat
 def stride(
-    m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, coefs: Array, begin: float, count: Index,
-    clock: Array, h: float, last: int,
+    m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, scheme: Scheme, coefs: Array, begin: float,
+    count: Index, clock: Array, h: float, last: int, each: int,
 ) -> bool:  # fmt: skip
-    """Take steps of length `h` up to step `last` while every law stays on its branch.
+    """Take steps of length `h` up to step `last` while every law stays on its branch; `each` is `show`'s.
 
     Returns
     -------
@@ -843,13 +859,14 @@ def stride(
         note(m, w, x, clock[0], h)
         count[STEP] += 1
         count[STEPS] += 1
+        show(x, z, count, clock[0], each)
     return False
 
 
 def advance(
     m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, scheme: Scheme, coefs: Array, breaks: Array,
-    goals: Array, steps: Index, lengths: Array, outputs: NDArray[np.bool_], pieces: Index, count: Index,
-    clock: Array,
+    goals: Array, steps: Index, lengths: Array, outputs: NDArray[np.bool_], shows: Index, pieces: Index,
+    count: Index, clock: Array,
 ) -> int:  # fmt: skip
     """Integrate to the last goal, or until Python must look at something.
 
@@ -859,10 +876,11 @@ def advance(
         The motions; they begin at `breaks`.
     goals : ndarray, shape (n_goals,)
         Times that a step ends at, reached in `steps` steps of `lengths` each, on the motions' `pieces`;
-        `outputs` tells whether a sample is taken.
-    count : ndarray, shape (8,)
+        `outputs` tells whether a sample is taken; on the way to it the envelopes are shown the motion every
+        so many steps as `shows` tells.
+    count : ndarray, shape (10,)
         Goal, step on the way to it, samples and log rows kept, steps, events, updates of the factor,
-        unknown or law at fault.
+        unknown or law at fault, steps since the motion was last shown or sampled, how often it was shown.
     clock : ndarray, shape (4,)
         Time, length that the factor at hand is for, energy at the start, longest piece for now.
     """
@@ -874,7 +892,9 @@ def advance(
         if count[STEP] == 0:
             motions(coefs[pieces[goal]], clock[0] - begin, x.inputs, 0)
             load(m, x.inputs[0], x.q, Y)
-            leap = 0.0
+            # accelerations of the alpha methods lag behind: after steps much shorter, as through a spike of
+            # the load, that of its past would act for too long
+            leap = 1.0 if scheme.alpha_f + scheme.alpha_m != 0.0 and h > 2.0 * clock[1] > 0.0 else 0.0
             for i in range(x.q.shape[1]):
                 if abs(x.q[Y, i] - x.q[P, i]) > STILL * (abs(x.q[Y, i]) + abs(x.q[P, i])):
                     leap = 1.0
@@ -892,7 +912,9 @@ def advance(
                     return PIVOT
                 clock[1], count[UPDATES] = h, 0
             last = min(steps[goal] - 1, count[STEP] + pause - count[STEPS])
-            tried = stride(m, w, x, f, scheme, coefs[pieces[goal]], begin, count, clock, h, last)
+            tried = stride(
+                m, w, x, z, f, scheme, coefs[pieces[goal]], begin, count, clock, h, last, shows[goal]
+            )
             if not tried and (count[STEP] == last < steps[goal] - 1 or count[UPDATES] > REFRESH):
                 continue
             length = h if count[STEP] < steps[goal] - 1 else goals[goal] - clock[0]
@@ -910,6 +932,8 @@ def advance(
                 return why
             count[STEP] += 1
             count[STEPS] += 1
+            if count[STEP] < steps[goal] or not outputs[goal]:
+                show(x, z, count, clock[0], shows[goal])
         clock[0] = goals[goal]
         kinetic = 0.0
         times(m.m, x.q, V, Y)
@@ -922,6 +946,7 @@ def advance(
         count[STEP] = 0
         if outputs[goal]:
             sample(w, x, z, f, count, clock[0])
+            count[SINCE] = 0
             if count[KEPT] == len(z.works):
                 return FULL
     return DONE

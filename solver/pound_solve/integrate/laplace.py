@@ -33,7 +33,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -52,12 +51,13 @@ from pound_solve.integrate.base import (
     Watch,
     energy_at_start,
     law_values,
+    not_linear,
     refuse_rigid,
 )
-from pound_solve.integrate.exact import Whole
+from pound_solve.integrate.exact import condensed
 from pound_solve.integrate.flow import Mechanism, StateSpace, state_space
 from pound_solve.modes import massless
-from pound_solve.scene import Scene, condense
+from pound_solve.scene import Scene
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -367,7 +367,9 @@ class Laplace:
             peaks.force[i].take(collision.peak, collision.t_peak)
 
     def _hand_out(self, t: float, u: Array, v: Array, a: Array, works: Array) -> None:
-        self.sink.sample(t, u, v, a, law_values(self.scene, t, u, v, self.states), works)
+        at, (u, v, a) = np.array([t]), np.stack([u, v, a])[:, :, None]
+        laws = law_values(self.scene, at, u, v, self.states)
+        self.sink.sample(at, u, v, a, laws, works[:, None])
 
     def outcome(self) -> Outcome:
         """What the run gathered."""
@@ -394,29 +396,10 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
         not resolve it, a mechanism, numbers beyond all bounds, or an interrupt.
     """
     refuse_rigid(scene, start, "LAPLACE")
-    curved = next((s for s in scene.structure.laws if s.law.curved), None)
-    why = ""
-    if scene.structure.chords:
-        why = f"members change their stiffness as they move (GEOMETRY {scene.structure.model.geometry})"
-    elif curved is not None:
-        why = f"the law {curved.rule} of element {curved.element} is curved"
-    elif scene.total:
-        why = "the supports move apart from each other"
-    if why:
+    if why := not_linear(scene) or ("the supports move apart from each other" if scene.total else ""):
         raise Stop("A505", float(start.times[0]), f"LAPLACE cannot take this: {why}; AUTO can")
-    small = condense(scene)
-    run = Laplace(
-        small.scene,
-        replace(start, u=start.u[small.keep], v=start.v[small.keep]),
-        Watch(
-            watch.names,
-            watch.rows @ small.expand,
-            watch.input_rows + watch.rows @ small.follow,
-            watch.constants + watch.rows @ small.constant,
-        ),
-        options,
-        Whole(sink, small),
-    )
+    scene, start, watch, sink = condensed(scene, start, watch, sink)
+    run = Laplace(scene, start, watch, options, sink)
     try:
         return run.run()
     except KeyboardInterrupt:

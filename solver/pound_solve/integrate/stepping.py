@@ -35,6 +35,7 @@ from pound_solve.integrate.base import (
     LawValues,
     Ledger,
     Outcome,
+    Peaks,
     Sink,
     Start,
     Stop,
@@ -63,7 +64,9 @@ COMMON = (
 )  #: fields of every implicit method
 
 SAMPLES, LOG = 64, 4096  #: samples and changes of branches kept between two visits of Python
-HELD = 2**20  #: numbers in those samples, at most, but for a single one
+RESOLVED = 10  #: steps in a period or a collision at least, which gives peaks to a few parts in a hundred
+QUIET = 1e-9  #: share of the energy below which a motion is rounding
+HELD = 2**20  #: numbers of one kind in those samples, at most, but for two
 
 
 FULL = 0.25  #: part of a diagonal from which its zeros cost less than naming its entries
@@ -107,6 +110,11 @@ def coupled(touched: Iterable[Index]) -> tuple[Index, Index]:
     )
 
 
+def _enough(count: float) -> str:
+    """Verdict on a number of steps."""
+    return "good" if count >= RESOLVED else f"look: {RESOLVED} at least, by a shorter DT, or EXACT"
+
+
 class Stepper:
     """One run of a method; see the module's head.
 
@@ -142,7 +150,9 @@ class Stepper:
         self.rules = list(dict.fromkeys(s.law.rule for s in self.laws))
         self.tables = jit.tables(self.rules or [bilinear.RULE])  # never empty, which compiles to nothing
         self._lay_out(start)
-        self.count = np.zeros(8, np.int64)
+        self.count = np.zeros(10, np.int64)
+        self.rush = np.zeros(2)  # v M v and a M a, summed over the samples
+        self.seen = float(start.times[0])  # latest instant that the sink was shown
         self.clock = np.array([start.times[0], -1.0, energy_at_start(scene, start), np.inf])
 
     def _lay_out(self, start: Start) -> None:
@@ -254,12 +264,15 @@ class Stepper:
         x.peak[arrays.HIGH], x.peak[arrays.LOW] = -np.inf, np.inf
         padded = np.where((pattern.ai == columns) & ~heavy[columns], 1.0, on_pattern[0])
         ldl.factor(pattern, padded, x.l, arrays.MASS, x.q, arrays.D + arrays.MASS, arrays.W)
-        samples = min(SAMPLES, max(HELD // (3 * max(n, count, 1)), 1))
+        samples = min(SAMPLES, max(HELD // (3 * max((1 + arrays.SHOWS) * n, count, 1)), 2))
+        shown = samples * arrays.SHOWS
         self.z = arrays.Samples(
             np.zeros((samples, 3, n)),
             np.zeros((samples, 3, count)),
             np.zeros((samples, 4)),
             np.zeros((LOG + 16 * count, arrays.COLUMNS)),
+            np.zeros((shown, 3, n)),
+            np.zeros(shown),
         )
         for i in range(count):
             states.enter(w, self.tables, i)
@@ -352,6 +365,9 @@ class Stepper:
         steps = np.maximum(1, np.ceil(lengths / self.dt * (1 - 1e-9))).astype(np.int64)
         # twelve digits: steps of equal length share their factor, whatever the rounding of the times
         h = np.array([float(f"{x:.12e}") for x in lengths / steps])
+        # steps from one output to the next, of which so many are shown to the envelopes
+        output = np.concatenate([[0], np.cumsum(is_output)[:-1]])
+        shows = -(-np.bincount(output, steps).astype(np.int64) // (arrays.SHOWS + 1))[output]
         ex = scene.excitation
         begin = ends - lengths
         pieces = ex.pieces(begin + 1e-13 * np.maximum(1.0, begin)).astype(np.int64)
@@ -361,7 +377,7 @@ class Stepper:
             with np.errstate(all="ignore"), jit.compiling():  # a runaway is told in words
                 why = advance(
                     m, w, x, z, self.tables, self.scheme, coefs, ex.breaks, ends, steps, h, is_output,
-                    pieces, self.count, self.clock,
+                    shows, pieces, self.count, self.clock,
                 )  # fmt: skip
             self._fetch()
             if why == arrays.DONE:
@@ -379,11 +395,19 @@ class Stepper:
             if law in self.ledger.open:
                 self._count(self.ledger.open[law], row[7:])
             self.ledger.switched(law, names[before], names[after], *row[3:7])
-        for i in range(count[arrays.KEPT]):
-            u, v, a = z.motion[i][:, back]
-            t, *works = z.works[i].tolist()
-            self.sink.sample(t, u, v, a, LawValues(*z.laws[i].copy()), np.array(works))
-        count[arrays.LOGGED] = count[arrays.KEPT] = 0
+        shown, kept = count[arrays.SHOWN], count[arrays.KEPT]
+        if shown:
+            seen = np.sort(np.concatenate([[self.seen], z.when[:shown], z.works[:kept, 0]]))
+            u, v, a = z.shown[:shown, :, back].transpose(1, 2, 0)
+            self.sink.between(z.when[:shown].copy(), u, v, a, float(np.diff(seen).max()))
+            self.seen = seen[-1]
+        if kept:
+            t, *works = z.works[:kept].T.copy()
+            u, v, a = z.motion[:kept, :, back].transpose(1, 2, 0)
+            self.rush += (v * (self.scene.mass @ v)).sum(), (a * (self.scene.mass @ a)).sum()
+            values = LawValues(*z.laws[:kept].transpose(1, 2, 0).copy())
+            self.sink.sample(t, u, v, a, values, np.array(works))
+        count[arrays.LOGGED] = count[arrays.KEPT] = count[arrays.SHOWN] = 0
 
     @staticmethod
     def _count(collision: Collision, running: list[float]) -> None:
@@ -431,7 +455,28 @@ class Stepper:
         f, i = self.w.f, self.w.i
         states = zip(i[:, arrays.AT].tolist(), f[:, arrays.D0].tolist(), f[:, arrays.WORK].tolist(),
                      map(tuple, self.w.memory.tolist()))  # fmt: skip
-        return Outcome(peaks, figures, tuple(states))
+        return Outcome(peaks, figures, tuple(states), self._checks(peaks))
+
+    def _checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
+        """Whether the steps resolve the motion, and the hardest collision of every contact.
+
+        Newmark's energy balances in free vibration however long the step; so the period is taken from the
+        ratio of velocities to accelerations.
+        """
+        speed, rush = self.rush.tolist()
+        moves = speed > QUIET * (float(self.clock[2]) + float(self.x.works[3]))
+        out = []
+        if moves and rush > 0.0:
+            count = 2.0 * np.pi * (speed / rush) ** 0.5 / self.dt
+            out.append(("steps in a period of the motion, about", f"{count:.3g}", _enough(count)))
+        ended = [c for c in peaks.collisions if c.t_end > c.t_start]
+        hardest = [
+            max((c for c in ended if c.law == law), key=lambda c: c.peak) for law in {c.law for c in ended}
+        ]
+        if hardest:
+            count = min(c.t_end - c.t_start for c in hardest) / self.dt
+            out.append(("steps in the hardest collision of a contact", f"{count:.3g}", _enough(count)))
+        return out
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""

@@ -80,15 +80,15 @@ class Meter:
         )
         if not isinstance(flow, ModalFlow) or not self.closed_form:
             return
-        v = flow.v_q
         self.lam = flow.lam
-        self.forms = [self._form(v, damping)] if self.damped else []
-        self.law_forms = [self._form(row[None, :] @ v, np.array([[c]])) for _, c, row in laws]
-        self.power_rows = inputs.T @ v
+        self.form = self._form(flow.v_q, damping) if self.damped else np.zeros((0, 0))
+        self.law_forms = [c * self._form(row[None, :] @ flow.v_q, np.eye(1)) for _, c, row in laws]
         self._moments: dict[tuple[float, int], tuple[NDArray[np.bool_], Complex, Complex]] = {}
 
-    def _form(self, v: Complex, c: Array) -> tuple[Complex, Complex, Complex, Array]:
-        """Return (V, R1, R2, C): the free-free quadratic forms already divided by their exponents."""
+    def _form(self, v: Complex, c: Array) -> Array:
+        """Return the quadratic form of the real and imaginary parts of free amplitudes whose change over
+        a segment is their dissipation, shape (2 n_q, 2 n_q): each term already divided by its exponent.
+        """
         cv = c @ v
         plain, mixed = v.T @ cv, v.conj().T @ cv
         s1, s2 = self.lam[:, None] + self.lam[None, :], self.lam.conj()[:, None] + self.lam[None, :]
@@ -96,7 +96,8 @@ class Meter:
         floor = 1e-15 * max(float(np.abs(self.lam).max(initial=0.0)), 1e-300)
         r1 = np.where(np.abs(s1) > floor, plain / np.where(np.abs(s1) > floor, s1, 1.0), 0.0)
         r2 = np.where(np.abs(s2) > floor, mixed / np.where(np.abs(s2) > floor, s2, 1.0), 0.0)
-        return v, r1, r2, c
+        # v = Re(V q): v^T C v = (q^T S1 q + q^H S2 q) / 2, real part
+        return 0.5 * np.block([[(r1 + r2).real, -(r1 + r2).imag], [(r2 - r1).imag, (r2 - r1).real]])
 
     def _split(self, qs: Complex, gs: Complex, tau: float) -> tuple[Complex, Complex, Complex, Complex]:
         """Free amplitudes at 0 and tau (n_q, n), forced
@@ -113,10 +114,11 @@ class Meter:
         p[:, slow] = 0.0
         c0 = np.where(slow[:, None], 0.0, qs - p[0])
         if slow.any():
-            p[0, slow] = qs[slow]
+            own, force = np.empty((powers_used, slow.sum(), qs.shape[1]), complex), g[:, slow]
+            own[0] = qs[slow]
             for k in range(powers_used - 1):
-                force = g[k, slow] if k <= degree else 0.0
-                p[k + 1, slow] = (self.lam[slow, None] * p[k, slow] + force) / (k + 1)
+                own[k + 1] = (self.lam[slow, None] * own[k] + (force[k] if k <= degree else 0.0)) / (k + 1)
+            p[:powers_used, slow] = own
         return c0, c0 * grown[:, None], p[:powers_used], moments
 
     def _responses(self, tau: float, degree: int) -> tuple[NDArray[np.bool_], Complex, Complex]:
@@ -192,44 +194,29 @@ class Meter:
             ]
             return Works(np.array([w.damping for w in each]), np.array([w.input for w in each]), losses)
         c0, c1, forced, moments = self._split(qs, gs, tau)
-        loss = sum(
-            (self._loss(form, c0, c1, forced, moments, tau) for form in self.forms), np.zeros(len(gs))
-        )
-        losses = [
-            (law, self._loss(form, c0, c1, forced, moments, tau))
-            for (law, _, _), form in zip(self.laws, self.law_forms)
-        ]
-        # input: sum over inputs j and powers k of coefs[k, j] * integral t^k F_j^T v
-        total = np.zeros(len(gs))
+        ends = np.concatenate([c0, c1], axis=1)
+        ends = np.concatenate([ends.real, ends.imag])
+        # of the velocities: the forced polynomials, and the integrals of t^k times the free part, and all;
+        # shape (powers, n, n_intervals) each
+        steady, free = ((self.flow.v_q @ x).real for x in (forced, c0 * moments[:, :, None]))
+        both = np.add.outer(np.arange(len(forced)), np.arange(1, len(forced) + 1))
+        whole = free + np.tensordot(tau**both / both, steady, axes=1)
+        loss, losses = np.zeros(len(gs)), []
+        if self.damped:
+            loss = self._change(self.form, ends)
+            loss += ((self.damping_matrix @ steady) * (free + whole)).sum(axis=(0, 1))
+        for (law, c, row), form in zip(self.laws, self.law_forms):
+            own = self._change(form, ends) + c * ((row @ steady) * (row @ (free + whole))).sum(axis=0)
+            losses.append((law, own))
+        total = np.asarray(constant @ whole[0])
         for k in range(coefs.shape[1]):
-            integral = c0 * moments[k][:, None] + sum(
-                forced[j] * tau ** (j + k + 1) / (j + k + 1) for j in range(len(forced))
-            )
-            total += np.einsum("ij,ji->i", coefs[:, k], (self.power_rows @ integral).real)
-            if k == 0 and constant.any():
-                total += constant @ (self.flow.v_q @ integral).real
+            total += ((self.inputs @ coefs[:, k].T) * whole[k]).sum(axis=0)
         return Works(loss, total, losses)
 
-    def _loss(
-        self,
-        form: tuple[Complex, Complex, Complex, Array],
-        c0: Complex,
-        c1: Complex,
-        p: Complex,
-        moments: Complex,
-        tau: float,
-    ) -> Array:
-        v, r1, r2, c = form
-        # v = Re(V q): v^T C v = (q^T S1 q + q^H S2 q) / 2, real part
-        loss = 0.5 * ((c1 * (r1 @ c1)).sum(axis=0) - (c0 * (r1 @ c0)).sum(axis=0)).real
-        loss += 0.5 * ((c1.conj() * (r2 @ c1)).sum(axis=0) - (c0.conj() * (r2 @ c0)).sum(axis=0)).real
-        forced = [(v @ x).real for x in p]  # velocity polynomials, each (n, n_intervals)
-        pulled = [c @ x for x in forced]
-        for k, x in enumerate(pulled):
-            loss += 2.0 * ((v.T @ x) * (c0 * moments[k][:, None])).sum(axis=0).real
-            for j, y in enumerate(forced):
-                loss += (y * x).sum(axis=0) * (tau ** (j + k + 1) / (j + k + 1))
-        return loss
+    def _change(self, form: Array, ends: Array) -> Array:
+        """Change of a form of `_form` between the amplitudes at the starts and those at the ends."""
+        start, end = np.split((ends * (form @ ends)).sum(axis=0), 2)
+        return np.asarray(end - start)
 
     def _quadrature(
         self, q: NDArray[Any], g: NDArray[Any], tau: float, coefs: Array, constant: Array, p: Array | None

@@ -9,9 +9,10 @@ from typing import Any
 
 from pound_solve.plot import course, structure, style
 from pound_solve.plot.loop import loop
+from pound_solve.plot.study import study
 from pound_solve.results import Results
 
-__all__ = ("PICTURES", "draw", "loop", "possible")
+__all__ = ("PICTURES", "draw", "draw_into", "loop", "possible")
 
 #: Every picture: what draws it, and the tables and histories that it needs.
 PICTURES: Mapping[str, tuple[Callable[[Results], Any], tuple[str, ...]]] = MappingProxyType(
@@ -25,6 +26,7 @@ PICTURES: Mapping[str, tuple[Callable[[Results], Any], tuple[str, ...]]] = Mappi
         "loops": (course.loops, ("spring/force",)),
         "contacts": (course.contacts, ("contact/force",)),
         "collisions": (course.collisions, ("collisions", "contact/force")),
+        "study": (study, ("study",)),
     }
 )
 
@@ -60,7 +62,11 @@ def draw(results: Results, names: Sequence[str], folder: Path, ending: str = "sv
     folder.mkdir(parents=True, exist_ok=True)
     out = []
     for name in names:
-        path = folder / f"{results.path.stem}_{name}.{ending}"
-        style.save(PICTURES[name][0](results), path)
-        out.append(path)
+        out.append(folder / f"{results.path.stem}_{name}.{ending}")
+        draw_into(results, name, out[-1])
     return out
+
+
+def draw_into(results: Results, name: str, path: Path) -> None:
+    """Draw one picture into a file, whose ending names the format; see `draw`."""
+    style.save(PICTURES[name][0](results), path)

@@ -1,0 +1,484 @@
+"""Stiff and extreme scenes for the stability matrix, as decks: every contact law, every hysteresis rule,
+and linear scenes whose motion is known in closed form.
+
+Laws are taken from the catalog with their own sample items, so a new one is covered by itself.  Masses are
+weights (GRAVITY 1); the storey of unit mass has a period of 1.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_deck.schema import Spec
+from pound_solve.catalog import catalog
+
+Array = NDArray[np.float64]
+
+OMEGA: Final = 2.0 * math.pi
+STOREY: Final = OMEGA**2  #: stiffness of the storey of unit mass
+METHOD: Final = "@METHOD"  #: where the method's name and items go in a deck
+STEP: Final = 1e-3
+
+
+@dataclass(frozen=True)
+class Case:
+    """One deck of the matrix.
+
+    Attributes
+    ----------
+    family : str
+        ``contact``, ``hysteresis`` or ``linear``.
+    scene, variant, law : str
+        Row of the table; what is extreme; the law in it.
+    deck : str
+        Text with `METHOD` in place of the method.
+    step : float
+        DT of the methods that take steps [T].
+    within : float
+        Error of those allowed, as a share of the largest displacement.
+    right : callable or None
+        Displacements ux of the nodes of OUTPUT at some times, shape (n_times, n_nodes), in closed form.
+    like : tuple of str and float
+        Deck whose displacements times the factor are the right ones; empty: the deck itself.
+    files : mapping of str to str
+        Files beside the deck.
+    heavy : bool
+        Left out of a quick run.
+    """
+
+    family: str
+    scene: str
+    variant: str
+    law: str
+    deck: str
+    step: float = STEP
+    within: float = 0.02
+    right: Callable[[Array], Array] | None = None
+    like: tuple[str, float] = ("", 1.0)
+    files: Mapping[str, str] = field(default_factory=dict)
+    heavy: bool = False
+
+
+def items(spec: Spec, length: float = 1.0, **given: float) -> str:
+    """A law's sample items, with those given that it knows in place of its own; lengths times `length`."""
+    own = dict(word.split("=", 1) for word in spec.sample.split())
+    for name, value in own.items():
+        item = spec.field(name)
+        if item is not None and item.unit == "L":
+            own[name] = ",".join(repr(float(x) * length) for x in value.split(","))
+    own |= {name: repr(value) for name, value in given.items() if spec.field(name) is not None}
+    return " ".join([spec.name, *(f"{name}={value}" for name, value in own.items())])
+
+
+def stiffness(spec: Spec, k: float, overlap: float) -> dict[str, float]:
+    """Item K of a contact law whose force at an `overlap` is that of a spring of stiffness `k`."""
+    item = spec.field("K")
+    if item is None:
+        return {}
+    power = re.fullmatch(r"F/L(?:\^([0-9.]+))?", item.unit)
+    n = float(power[1]) if power and power[1] else 1.0
+    return {"K": k * overlap ** (1.0 - n)}
+
+
+PAIR: Final = """UNITS kN {length} s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 1 FIX=YR
+ 3 1 0 FIX=XYR
+ 4 1 1 FIX=YR
+ELEMENTS
+ 1 LEFT 1 2
+ 2 RIGHT 3 4
+ 3 MEET 2 4
+PROPS
+ LEFT SPRING KX={k1!r}
+ RIGHT SPRING KX={k2!r}
+ MEET CONTACT GAP={gap!r} ANGLE=0 LAW={law}
+WEIGHTS
+ 2 1
+ 4 {mass!r}
+{damping}INITIAL
+ 2 VX={speed!r}
+{motion}ANALYSIS
+ HISTORY {end!r} METHOD=@METHOD
+OUTPUT
+ EVERY={every!r} NODES=2,4
+"""
+
+
+def pair(law: str, **given: object) -> str:
+    """Two storeys of which the left one meets the right one."""
+    plain: dict[str, object] = {
+        "length": "m", "k1": STOREY, "k2": STOREY, "gap": 0.05, "mass": 1.0, "damping": "", "speed": 1.0,
+        "motion": "", "end": 0.6, "every": 0.02,
+    }  # fmt: skip
+    return PAIR.format(law=law, **{**plain, **given})
+
+
+def damped(share: float) -> str:
+    """Section DAMPING: `share` of critical at the storey's own period."""
+    return f"DAMPING\n RAYLEIGH ALPHA={2.0 * share * OMEGA!r} BETA=0\n"
+
+
+TWICE: Final = """GRAVITY 1
+NODES
+ 1 0 0 FIX=YR
+ 2 1 0 FIX=YR
+ 3 2 0 FIX=YR
+ELEMENTS
+ 1 MEET 1 2
+ 2 MEET 2 3
+PROPS
+ MEET CONTACT GAP=0.05 ANGLE=0 LAW={law}
+WEIGHTS
+ 1,2,3 1
+INITIAL
+ 1 VX=1
+ 3 VX=-1
+ANALYSIS
+ HISTORY 0.3 METHOD=@METHOD
+OUTPUT
+ EVERY=0.01
+"""
+BALL: Final = """GRAVITY 1
+NODES
+ 1 0 0 FIX=YR
+ELEMENTS
+ 1 FLOOR 1
+PROPS
+ FLOOR CONTACT GAP={gap} ANGLE=0 LAW={law}
+WEIGHTS
+ 1 1
+LOADS
+ 1 FX=9.81
+ANALYSIS
+ HISTORY {end} METHOD=@METHOD FROM=REST
+OUTPUT
+ EVERY=0.01
+"""
+CROWD: Final = """GRAVITY 1
+NODES
+ 1 TO {n} 0 TO {n}-1 0 FIX=YR
+ELEMENTS
+ 1 TO {n} STOREY 1 TO {n}
+ {n}+1 TO 2*{n} WALL 1 TO {n}
+PROPS
+ STOREY SPRING KX={k!r}
+ WALL CONTACT GAP=0.05 ANGLE=0 LAW={law}
+WEIGHTS
+ 1 TO {n} 1
+INITIAL
+ 1 TO {n} VX=1
+ANALYSIS
+ HISTORY {end} METHOD=@METHOD
+OUTPUT
+ EVERY={end} NODES=1,{n}
+"""
+SPIKE: Final = "EQUAKE\n TABLE POINTS=0.01,0,0.010001,1E6,0.010002,0\n"
+JUMP: Final = "EQUAKE\n TABLE POINTS=0.1,0,0.1,5,3,5\n"
+ZEROS: Final = "EQUAKE\n TABLE POINTS=0,0,10,0\n"
+
+
+def contacts(spec: Spec) -> Iterator[Case]:
+    """Scenes with one contact law."""
+
+    def law(ratio: float = 1e3, **given: float) -> str:
+        k = ratio * STOREY
+        return items(spec, **stiffness(spec, k, 1.0 / math.sqrt(k)), **given)
+
+    def case(scene: str, variant: str, deck: str, **given: object) -> Case:
+        return replace(Case("contact", scene, variant, spec.name, deck), **given)  # type: ignore[arg-type]
+
+    plain = law()
+    for ratio in (1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9, 1e12):
+        yield case("contact stiffness over the storey's", f"{ratio:g}", pair(law(ratio)))
+        span = 8.0 / math.sqrt(max(ratio, 1.0) * STOREY)  # of the impact, which the step resolves
+        deck = pair(law(ratio), gap=0.1 * span, end=span, every=span / 20)
+        yield case("the same, steps that resolve the impact", f"{ratio:g}", deck, step=span / 800)
+    for mass in (1e-8, 1e-4, 1e4, 1e8):
+        deck = pair(plain, mass=mass, k2=STOREY * mass)
+        yield case("one mass over the other", f"{mass:g}", deck)
+    yield case("massless node that is met", "no weight", pair(plain, mass=0.0))
+    for gap in (0.0, 1e-12, -0.002):
+        yield case("gap", f"{gap:g}", pair(plain, gap=gap))
+    for name, values in (("E", (1.0, 1e-3)), ("XI", (0.0, 1.0, 10.0)), ("C", (0.0, 1e6))):
+        if spec.field(name) is not None and (spec.sample == "E=0.5" or name == "E"):
+            for value in values:
+                text = law(**{name: value})
+                if name != "E":
+                    text = text.replace("E=0.5", "")
+                yield case("restitution and dashpot of the contact", f"{name} {value:g}", pair(text))
+    for share in (0.0, 1.0, 10.0):
+        deck = pair(plain, damping=damped(share))
+        yield case("damping of the storeys over critical", f"{share:g}", deck)
+    yield case("two contacts at the same instant", "symmetric", TWICE.format(law=plain))
+    swing = 1.0 / OMEGA
+    for gap in (1.0 - 1e-3, 1.0 - 1e-9, 1.0, 1.0 + 1e-9):
+        yield case("a contact that grazes", f"{gap:.9f} of the swing", pair(plain, gap=gap * swing))
+    for ratio, end in ((250.0, 6.0), (1e6, 3.0)):
+        deck = BALL.format(gap=0.05, law=law(ratio), end=end)
+        yield case("a ball that comes to rest", f"stiffness {ratio:g}", deck)
+    yield case("a ball that lies there", "gap 0", BALL.format(gap=0, law=law(25.0), end=1.0))
+    for n, end in ((30, 0.3), (10_000, 0.1)):
+        deck = CROWD.format(n=n, law=plain, end=end, k=STOREY)
+        yield case("many contacts at once", f"{n}", deck, heavy=n > 100)
+    for step in (1e-9, 1e-5, 0.05, 1.0):
+        end = min(0.6, 200 * step) if step < 1e-4 else max(0.6, 2 * step)
+        deck = pair(plain, gap=min(0.05, 0.1 * end), end=end, every=end / 10)
+        yield case("steps", f"{step:g}", deck, step=step)
+    for length, scale in (("mm", 1e3), ("km", 1e-3)):
+        k = 1e3 * STOREY / scale
+        own = items(spec, scale, **stiffness(spec, k, scale / math.sqrt(1e3 * STOREY)))
+        deck = pair(own, length=length, k1=STOREY / scale, k2=STOREY / scale, gap=0.05 * scale,
+                    mass=1.0, speed=scale)  # fmt: skip
+        deck = deck.replace("GRAVITY 1", f"GRAVITY {scale!r}")
+        yield case("units", length, deck, like=(pair(plain), scale))
+    for name, motion in (("a spike", SPIKE), ("a step", JUMP), ("zeros", ZEROS)):
+        deck = pair(plain, motion=motion, speed=0.0 if name != "zeros" else 1.0, k2=2 * STOREY, gap=0.01)
+        yield case("records", name, deck)
+
+
+STOREYS: Final = """UNITS kN {length} s
+GRAVITY {g!r}
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 1 FIX=YR
+ 3 0 2 FIX=YR
+ELEMENTS
+ 1 SPR 1 2
+ 2 SPR 2 3
+PROPS
+ SPR SPRING KX={k!r} FX={fy!r} RULE={rule}
+WEIGHTS
+ 2 {middle!r}
+ 3 1
+{damping}EQUAKE
+ {motion}
+ANALYSIS
+ HISTORY {end!r} METHOD=@METHOD
+OUTPUT
+ EVERY={every!r} NODES=2,3
+"""
+
+
+def storeys(rule: str, **given: object) -> str:
+    """Two storeys on springs of one rule, shaken by a sine close to their period."""
+    plain: dict[str, object] = {
+        "length": "m", "g": 1.0, "k": 2.6 * STOREY, "fy": 4.0, "middle": 1.0, "damping": "", "end": 2.0,
+        "every": 0.05, "motion": "SINE AMPLITUDE=4 PERIOD=1 DURATION=30",
+    }  # fmt: skip
+    return STOREYS.format(rule=rule, **{**plain, **given})
+
+
+def springs(spec: Spec) -> Iterator[Case]:
+    """Scenes with one hysteresis rule."""
+
+    def case(scene: str, variant: str, deck: str, **given: object) -> Case:
+        return replace(Case("hysteresis", scene, variant, spec.name, deck), **given)  # type: ignore[arg-type]
+
+    plain = items(spec)
+    for force in (0.0, 1e-9, 1e12):
+        elastic = storeys("ELASTIC") if force > 1.0 else ""
+        yield case("yield force", f"{force:g}", storeys(plain, fy=force), like=(elastic, 1.0))
+    for ratio in (1e-6, 1e-3, 1e3, 1e6, 1e12):
+        deck = storeys(plain, k=2.6 * STOREY * ratio)
+        step = STEP / 32 if ratio == 1e3 else STEP  # that follows the stiffer springs, or does not
+        yield case("stiffness of the springs", f"{ratio:g}", deck, step=step, heavy=ratio > 1e5)
+    for ratio in (0.0, 1e-8, 1e8):
+        yield case("mass of the middle over the top's", f"{ratio:g}", storeys(plain, middle=ratio))
+    if spec.field("R") is not None:
+        for r in (-0.05, -0.5):
+            deck = storeys(items(spec, R=r), motion="TABLE POINTS=0,6,1,6", end=3.0)
+            yield case("falling branch to collapse", f"R {r:g}", deck)
+    yield case("resonance", "20 periods", storeys(plain, end=20.0, every=0.5))
+    for share in (1.0, 10.0):
+        yield case("damping over critical", f"{share:g}", storeys(plain, damping=damped(share)))
+    for name, motion in (("a spike", SPIKE), ("a step", JUMP), ("zeros", ZEROS)):
+        yield case("records", name, storeys(plain, motion=motion.split("\n")[1]))
+    for step in (1e-9, 1e-5, 0.1, 1.0):
+        end = 200 * step if step < 1e-4 else max(2.0, 2 * step)
+        yield case("steps", f"{step:g}", storeys(plain, end=end, every=end / 10), step=step)
+    for length, scale in (("mm", 1e3), ("km", 1e-3)):
+        deck = storeys(items(spec, scale), length=length, g=scale, k=2.6 * STOREY / scale,
+                       motion=f"SINE AMPLITUDE={4 * scale!r} PERIOD=1 DURATION=30")  # fmt: skip
+        yield case("units", length, deck, like=(storeys(plain), scale))
+
+
+ONE: Final = """UNITS kN m s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 1 FIX=YR
+ELEMENTS
+ 1 SPR 1 2
+PROPS
+ SPR SPRING KX={k!r}
+WEIGHTS
+ 2 {mass!r}
+{more}ANALYSIS
+ HISTORY {end!r} METHOD=@METHOD
+OUTPUT
+ EVERY={every!r} NODES=2
+"""
+
+
+def one(
+    more: str, end: float = 3.0, every: float = 0.0437123456789, k: float = STOREY, mass: float = 1.0
+) -> str:
+    """One storey."""
+    return ONE.format(more=more, end=end, every=every, k=k, mass=mass)
+
+
+def swing(share: float, omega: float = OMEGA) -> Callable[[Array], Array]:
+    """Free vibration after a unit velocity with a `share` of critical damping."""
+
+    def motion(t: Array) -> Array:
+        decay, w = share * omega, omega * math.sqrt(abs(1.0 - share * share))
+        if share < 1.0:
+            return np.asarray(np.exp(-decay * t) * np.sin(w * t) / w)[:, None]
+        if share == 1.0:
+            return np.asarray(np.exp(-decay * t) * t)[:, None]
+        slow = -omega * omega / (decay + w)
+        return np.asarray(np.exp(slow * t) * -np.expm1(-2 * w * t) / (2 * w))[:, None]
+
+    return motion
+
+
+KICK: Final = "INITIAL\n 2 VX=1\n"
+TWO: Final = """GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 1 FIX=YR
+ 3 0 2 FIX=YR
+ELEMENTS
+ 1 LOW 1 2
+ 2 HIGH 2 3
+PROPS
+ LOW SPRING KX={low!r}
+ HIGH SPRING KX={high!r}
+WEIGHTS
+ 2 {middle!r}
+ 3 {top!r}
+INITIAL
+ 3 VX=1
+ANALYSIS
+ HISTORY {end!r} METHOD=@METHOD
+OUTPUT
+ EVERY={every!r} NODES=3
+"""
+LEANING: Final = """GEOMETRY {form}
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 1
+ELEMENTS
+ 1 POST 1 2
+PROPS
+ POST FRAME E=1E6 A=1 I=1E-4
+WEIGHTS
+ 2 9.81 9.81 0.001
+LOADS
+ 2 FY={push!r} FX=0.001
+ANALYSIS
+ STATIC
+ HISTORY 0.5 METHOD=@METHOD
+OUTPUT
+ NODES=2
+"""
+
+
+def linear() -> Iterator[Case]:
+    """Linear scenes, whose motion is known."""
+
+    def case(scene: str, variant: str, deck: str, **given: object) -> Case:
+        return replace(Case("linear", scene, variant, "", deck), **given)  # type: ignore[arg-type]
+
+    for share in (0.0, 0.05, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 10.0, 1e3, 1e6):
+        deck = one(damped(share) + KICK)
+        told = f"{share:.9g}"
+        yield case("damping over critical", told, deck, right=swing(share), heavy=share > 1e5)
+    for step in (1e-9, 1e-6, 1e-4, 0.01, 0.2, 1.0):
+        end = 500 * step if step < 1e-5 else max(3.0, 3 * step)
+        within = min(2.0 * (OMEGA * step) ** 2 * OMEGA * end / 12 + 1e-9, 0.05)
+        deck = one(KICK, end=end, every=max(end / 20.3, min(step, 0.937)))
+        yield case("steps", f"{step:g}", deck, step=step, within=within, right=swing(0.0))
+    for k in (1e-6, 1e6, 1e12):
+        w = OMEGA * math.sqrt(k)
+        deck = one(KICK, k=STOREY * k, end=3 / math.sqrt(k), every=0.0437 / math.sqrt(k))
+        yield case("stiffness", f"{k:g}", deck, step=1e-3 / math.sqrt(k), right=swing(0.0, w))
+        deck = one(KICK, k=STOREY * k, end=3.0)
+        yield case(
+            "stiffness, step of the plain storey", f"{k:g}", deck, right=swing(0.0, w), heavy=k > 1e9
+        )
+    for ratio in (1e-8, 1e-4, 1e4, 1e8):
+        deck = TWO.format(low=STOREY, high=STOREY, middle=ratio, top=1.0, end=1.0, every=0.05)
+        yield case("one mass over the other", f"{ratio:g}", deck)
+    for ratio in (1e-8, 1.0, 1e6, 1e12):
+        deck = TWO.format(low=STOREY * ratio, high=STOREY, middle=0.0, top=1.0, end=1.0, every=0.05)
+        w = OMEGA * math.sqrt(ratio / (1.0 + ratio))
+        yield case("massless node", f"stiffness {ratio:g}", deck, right=swing(0.0, w))
+    free = TWO.format(low=STOREY, high=STOREY, middle=1.0, top=1.0, end=3.0, every=0.1)
+    free = free.replace(" 1 LOW 1 2\n", "").replace(" 3 VX", " 2,3 VX")
+    yield case("rigid-body modes", "moving on", free, right=lambda t: t[:, None])
+    pushed = free.replace("ANALYSIS", "LOADS\n 2,3 FX=2\nANALYSIS").replace("METHOD=", "FROM=REST METHOD=")
+    yield case("rigid-body modes", "pushed", pushed, right=lambda t: (t + t * t)[:, None])
+    for share in (0.0, 1.0):
+        deck = one(damped(share) + "INITIAL\n 2,3 VX=1\n").replace(
+            "ELEMENTS", " 3 1 1 FIX=YR\nELEMENTS\n 2 SPR 1 3"
+        )
+        deck = deck.replace(" 2 1.0\n", " 2,3 1.0\n").replace("NODES=2\n", "NODES=2,3\n")
+        yield case(
+            "repeated eigenvalues", "defective" if share else "undamped", deck,
+            right=lambda t, s=share: np.tile(swing(s)(t), 2),
+        )  # fmt: skip
+    sine = f"EQUAKE\n SINE AMPLITUDE=1 OMEGA={OMEGA!r} DURATION=1000\n"
+    yield case(
+        "resonance", "50 periods", one(sine, end=50.0, every=0.125), within=5e-3,
+        right=lambda t: (-(np.sin(OMEGA * t) - OMEGA * t * np.cos(OMEGA * t)) / (2 * STOREY))[:, None],
+    )  # fmt: skip
+    yield case("records", "zeros", one(ZEROS), right=lambda t: 0.0 * t[:, None])
+    area = 1.0  # of the spike
+    yield case(
+        "records", "a spike", one(SPIKE, every=0.1), within=0.03,
+        right=lambda t: -area * np.where(t > 0.01, np.sin(OMEGA * (t - 0.010001)) / OMEGA, 0.0)[:, None],
+    )  # fmt: skip
+    yield case(
+        "records", "a step", one(JUMP, every=0.1, end=2.5), within=1e-3,
+        right=lambda t: np.where(t > 0.1, -5 * (1 - np.cos(OMEGA * (t - 0.1))) / STOREY, 0.0)[:, None],
+    )  # fmt: skip
+    point = 'EQUAKE\n RECORD FILE="point.txt" FORMAT=COLUMNS DT=0.01 UNIT=DECK\n'
+    yield case("records", "one point", one(point), files={"point.txt": "1.0\n"})
+    n = 1_000_000
+    long = 'EQUAKE\n RECORD FILE="long.txt" FORMAT=COLUMNS DT=0.00001 UNIT=DECK\n'
+    text = "\n".join(f"{math.sin(3 * OMEGA * i * 1e-5):.17g}" for i in range(n + 1))
+    r = 3 * OMEGA
+    yield case(
+        "records", "a million points", one(long, end=10.0, every=0.5), heavy=True, files={"long.txt": text},
+        right=lambda t: (-(np.sin(r * t) - 3 * np.sin(OMEGA * t)) / (STOREY - r * r))[:, None],
+    )  # fmt: skip
+    for form in ("PDELTA", "PDELTA_MEMBER", "PDELTA_VARYING", "LARGE"):
+        for share in (0.999, 1.001, 50.0):
+            euler = math.pi**2 / 4 * 100
+            yield case(
+                "axial load over Euler's",
+                f"{form} {share:g}",
+                LEANING.format(form=form, push=-share * euler),
+            )
+
+
+def cases(families: tuple[str, ...] = ("linear", "contact", "hysteresis")) -> Iterator[Case]:
+    """All cases of some families."""
+    if "linear" in families:
+        yield from linear()
+    for family, scenes in (("contact", contacts), ("hysteresis", springs)):
+        if family in families:
+            for spec in catalog().family(family).values():
+                if spec.impl is not None:
+                    yield from scenes(spec)

@@ -1,0 +1,268 @@
+"""The stability matrix: every method on every stiff and extreme scene with every law.
+
+Each case must give the right answer, or say clearly why not: a message with its number, place and cause, or
+a self-check of the report that says "look".  Everything else is a fault: a wrong answer with good checks,
+NaN, an exception, or no end.
+
+Right is the closed form where there is one; else what EXACT finds on a search grid eight times finer; for
+curved laws, which EXACT does not take, NEWMARK with steps sixteen times shorter.  The methods that take
+steps are allowed the share that the case names, EXACT and AUTO `EXACT_WITHIN` and `AUTO_WITHIN`.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import re
+import tempfile
+import time
+import warnings
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from multiprocessing.pool import Pool
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.app import DeckError, Request, execute
+from pound_solve.catalog import catalog
+from pound_solve.extremes import METHOD, STEP, Case, cases
+
+Array = NDArray[np.float64]
+
+EXACT_WITHIN, AUTO_WITHIN = 1e-6, 2e-3  #: errors allowed, as shares of the largest displacement
+LIMIT: Final = 120.0  #: seconds until a case counts as endless
+FAMILIES: Final = ("linear", "contact", "hysteresis")
+RIGHT, TOLD, STOPPED, FAULT = "right", "told", "stopped", "fault"  #: how a case may end
+#: a stop names its number and time or stage; a refused deck its place
+CLEAR: Final = re.compile(r"A5\d\d (at t = \S+ \S+: |static analysis: )\w.{20,}|A50[15] \w.{20,}")
+REFUSED: Final = re.compile(r"\.inp:\d+:\d+: error [A-Z]\d{3}: ")
+
+
+class Found(NamedTuple):
+    """What a run gave: times and displacements; the stop's or refusal's message; checks that say "look";
+    what is wrong with it; seconds.
+    """
+
+    t: Array
+    u: Array
+    stop: str
+    looks: tuple[str, ...]
+    wrong: str
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Row:
+    """One case solved by one method.
+
+    Attributes
+    ----------
+    case : Case
+    method : str
+    end : str
+        `RIGHT`, `TOLD`, `STOPPED` or `FAULT`.
+    error : float
+        As a share of the largest displacement; NaN where nothing was compared.
+    says : str
+        The message, or what is wrong.
+    seconds : float
+    """
+
+    case: Case
+    method: str
+    end: str
+    error: float
+    says: str
+    seconds: float
+
+
+def solve(deck: str, files: Mapping[str, str]) -> Found:
+    """Run a deck in a folder of its own; nothing is raised."""
+    began, nothing = time.perf_counter(), np.zeros(0)
+
+    def found(t: Array = nothing, u: Array = nothing, **told: Any) -> Found:
+        plain: dict[str, Any] = {"stop": "", "looks": (), "wrong": ""}
+        return Found(t, u, **{**plain, **told}, seconds=time.perf_counter() - began)
+
+    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("error")
+        path = Path(folder) / "case.inp"
+        for name, text in {**files, path.name: deck}.items():
+            (Path(folder) / name).write_text(text, encoding="utf-8")
+        try:
+            _, results, _ = execute(Request(str(path)))
+        except DeckError as err:
+            text = str(err)
+            return found(stop=text) if REFUSED.search(text) else found(wrong=f"unclear refusal: {text}")
+        except Exception as err:
+            return found(wrong=f"{type(err).__name__}: {err}")
+        with results:
+            stop, t, u = results.message, nothing, nothing
+            if "node/u" in results.histories:
+                t, u = results.time.copy(), results.history("node/u")[:, :, 0].copy()
+            looks = (
+                [c for c in results.table("checks") if c["verdict"].startswith("look")]
+                if "checks" in results.tables
+                else []
+            )
+            bad = [name for name in results.histories if not np.isfinite(results.history(name)).all()]
+        if bad:
+            return found(t, u, wrong=f"numbers that are none in {', '.join(bad)}")
+        if stop and not CLEAR.match(stop):
+            return found(t, u, wrong=f"unclear stop: {stop}")
+        return found(t, u, stop=stop, looks=tuple(f"{c['check']}: {c['value']}" for c in looks))
+
+
+class Runner:
+    """Runs decks in a process of its own, which can be ended; the same deck is run once."""
+
+    def __init__(self, limit: float) -> None:
+        self.limit, self.kept = limit, dict[str, Found]()
+        self.pool: Pool | None = None
+
+    def __call__(self, case: Case, deck: str, method: str) -> Found:
+        """Run a deck with a method."""
+        text = deck.replace(METHOD, method)
+        if not self.limit:
+            return solve(text, case.files)
+        if text not in self.kept:
+            if self.pool is None:
+                self.pool = multiprocessing.get_context("spawn").Pool(1)
+            try:
+                self.kept[text] = self.pool.apply_async(solve, (text, case.files)).get(self.limit)
+            except multiprocessing.TimeoutError:
+                self.close()
+                none = np.zeros(0)
+                self.kept[text] = Found(none, none, "", (), f"no end within {self.limit:g} s", self.limit)
+        return self.kept[text]
+
+    def close(self) -> None:
+        """End the process."""
+        if self.pool is not None:
+            self.pool.terminate()
+            self.pool.join()
+        self.pool = None
+
+
+def methods() -> list[str]:
+    """Names of the catalog's methods, those that need no step first."""
+    return sorted(catalog().family("method"), key=lambda name: (name != "EXACT", name != "AUTO", name))
+
+
+def written(method: str, step: float) -> str:
+    """A method as the deck has it."""
+    return f"{method} DT={step!r}" if catalog().family("method")[method].field("DT") else method
+
+
+def reference(run: Runner, case: Case) -> tuple[Array, Array] | None:
+    """Times and right displacements; None where nothing tells them."""
+    deck, factor = case.like[0] or case.deck, case.like[1]
+    for method in ("EXACT REFINE=3", f"NEWMARK DT={min(case.step, STEP) / 16!r}"):
+        found = run(case, deck, method)
+        if not (found.stop or found.wrong):
+            return found.t, factor * found.u
+    return None
+
+
+def judge(run: Runner, case: Case, method: str) -> Row:
+    """Solve a case by a method and judge what comes."""
+    found = run(case, case.deck, written(method, case.step))
+
+    def row(end: str, says: str, error: float = np.nan) -> Row:
+        return Row(case, method, end, error, says, found.seconds)
+
+    if found.wrong:
+        return row(FAULT, found.wrong)
+    if found.stop:
+        return row(STOPPED, found.stop)
+    says = "; ".join(found.looks)
+    if case.right is not None:
+        right = case.right(found.t)
+    else:
+        told = reference(run, case)
+        if told is None or len(told[0]) != len(found.t):
+            return row(TOLD if says else RIGHT, says or "energy balances; nothing else to compare with")
+        right = told[1]
+    size = float(np.abs(right).max(initial=0.0))
+    off = float(np.abs(found.u - right).max(initial=0.0))
+    error = off / size if size else off
+    within = {"EXACT": EXACT_WITHIN, "AUTO": max(AUTO_WITHIN, EXACT_WITHIN)}.get(method, case.within)
+    if error <= within:
+        return row(RIGHT, says, error)
+    return row(TOLD, says, error) if says else row(FAULT, f"error {error:.2g}, above {within:g}", error)
+
+
+def matrix(
+    families: tuple[str, ...] = FAMILIES,
+    chosen: Callable[[Case], bool] = lambda case: True,
+    progress: Callable[[Row], None] = lambda row: None,
+    limit: float = LIMIT,
+) -> Iterator[Row]:
+    """Solve all cases by all methods.
+
+    Parameters
+    ----------
+    families : tuple of str
+        Of ``linear``, ``contact`` and ``hysteresis``.
+    chosen : callable
+        Which cases.
+    progress : callable
+        Told every row as it is there.
+    limit : float
+        Seconds that a case may take, in a process of its own; 0: in this process, without a limit.
+    """
+    run = Runner(limit)
+    try:
+        for case in filter(chosen, cases(families)):
+            run.kept.clear()
+            for method in methods():
+                row = judge(run, case, method)
+                progress(row)
+                yield row
+    finally:
+        run.close()
+
+
+ENDS: Final = (RIGHT, TOLD, STOPPED, FAULT)
+
+
+def table(rows: Sequence[Row]) -> str:
+    """Counts of how cases end, scene by method, as Markdown."""
+    names = methods()
+    by: dict[tuple[str, str], list[Row]] = defaultdict(list)
+    for row in rows:
+        by[row.case.family, row.case.scene].append(row)
+    out = []
+    for family in dict.fromkeys(f for f, _ in by):
+        out += [f"| {family} | cases | " + " | ".join(names) + " |", "|---" * (len(names) + 2) + "|"]
+        for (own, scene), cells in by.items():
+            if own == family:
+                ends = [Counter(r.end for r in cells if r.method == m) for m in names]
+                texts = [" / ".join(str(e[x]) for x in ENDS) for e in ends]
+                out.append(f"| {scene} | {len(cells) // len(names)} | " + " | ".join(texts) + " |")
+        out.append("")
+    total = Counter(r.end for r in rows)
+    return "\n".join([*out, f"{len(rows)} runs: " + ", ".join(f"{total[e]} {e}" for e in ENDS) + "."])
+
+
+def stops(rows: Sequence[Row]) -> str:
+    """The stops by kind, with their count and an example each; then all faults."""
+    kinds: dict[str, list[str]] = defaultdict(list)
+    for row in rows:
+        if row.end == STOPPED:
+            text = re.sub(r"^.*?case.inp", "case.inp", row.says.split("\n")[0])
+            kinds[re.sub(r"[-+\d.e]*\d[-+\d.e]*", "0", text)].append(text)
+    found = sorted(kinds.values(), key=len, reverse=True)
+    out = ["| stops | the first of them |", "|---|---|", *(f"| {len(x)} | {x[0]} |" for x in found)]
+    faults = [r for r in rows if r.end == FAULT]
+    for r in faults:
+        out.append(f"- {r.case.scene}, {r.case.variant}, {r.case.law} by {r.method}: {r.says}")
+    return "\n".join(out)
+
+
+def page(rows: Sequence[Row]) -> str:
+    """Both, for the terminal and the manual."""
+    return f"Cells: {' / '.join(ENDS)}.\n\n{table(rows)}\n\n{stops(rows)}"

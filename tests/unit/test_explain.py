@@ -1,0 +1,156 @@
+"""Budgets of every kind of deck: what it imports, compiles and holds, pinned in processes of their own."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from pound_solve import explain
+from pound_solve.catalog import FAMILIES, specs
+from pound_solve.results import Results
+
+FRAME = """UNITS  kN m s
+NODES
+   1  0 0  FIX=XYR
+   2  0 3
+   3  4 3
+ELEMENTS
+   1  M 1 2
+   2  M 2 3
+PROPS
+   M FRAME E=2E8 A=0.01 I=1E-4 {yields}
+WEIGHTS
+   2,3 100
+LOADS
+   3 0 -5
+{rest}
+ANALYSIS
+   {analysis}
+"""
+SINE = "EQUAKE\n   SINE AMPLITUDE=1 PERIOD=0.5 DURATION=1"
+HINGES = "RULE=BILINEAR R=0.05 MI=20 MJ=20 LP=0.3"
+#: kinds of decks: what FRAME holds, and what the report calls it
+KINDS = {
+    "linear static": {"analysis": "STATIC"},
+    "modal": {"analysis": "MODAL 2"},
+    "linear history": {"analysis": "HISTORY 1", "rest": SINE},
+    "piecewise linear history": {"analysis": "HISTORY 1", "rest": SINE, "yields": HINGES},
+    "general history": {
+        "analysis": "HISTORY 0.1 METHOD=NEWMARK DT=0.01",
+        "rest": SINE + "\nGEOMETRY LARGE",
+        "yields": HINGES,
+    },
+}
+#: libraries that are slow to import, and the kinds that need any; steps take numba too where it is on
+NUMERICS = {"scipy", "numba", "llvmlite"}
+NEEDS = {"general history": {"scipy"}}
+#: the event machinery and the steppers
+ENGINES = {"exact", "flow", "search", "auto", "newmark", "stepping", "kernel", "states", "exits"}
+
+
+def deck(folder, kind):
+    path = folder / "deck.inp"
+    path.write_text(FRAME.format(**({"yields": "", "rest": ""} | KINDS[kind])))
+    return path
+
+
+def run(path, *words, compiling="1"):
+    """Run a deck in a process of its own: the modules that it imports, and what it prints."""
+    code = (
+        "import json, sys; from pound_solve.cli import main\n"
+        f"status = main({[str(path), '--quiet', *words]!r})\n"
+        "print(json.dumps([status, sorted(sys.modules)]))"
+    )
+    env = {**os.environ, "POUND_COMPILE": compiling}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=env)
+    assert done.returncode == 0, done.stderr
+    status, modules = json.loads(done.stdout.splitlines()[-1])
+    assert status == 0, done.stderr
+    return set(modules), done.stdout
+
+
+def libraries(modules):
+    return {name.partition(".")[0] for name in modules} & set(explain.LIBRARIES)
+
+
+def engines(modules):
+    return {name for name in ENGINES if f"pound_solve.integrate.{name}" in modules}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_kind_of_deck_imports_what_it_needs_and_no_more(tmp_path, kind):
+    # only steps may compile, which would take its time here
+    modules, _ = run(deck(tmp_path, kind), "--explain", compiling="0" if "general" in kind else "1")
+    with Results.open(tmp_path / "deck.h5") as results:
+        assert f"Kind of problem: {kind}." in results.note("arrays")
+        told = {part: (count, which) for part, count, which in results.table("imports").tolist()}
+        held = {part for part, *_ in results.table("arrays").tolist()}
+    assert libraries(modules) & NUMERICS == NEEDS.get(kind, set())
+    assert "matplotlib" not in libraries(modules)
+    moving = "history" in kind
+    # the whole family of methods comes with HISTORY, and nothing of it without
+    assert engines(modules) == (ENGINES if moving else set())
+    assert ("history" in held) == moving
+    assert not {m for m in modules if m.startswith(("pound_solve.contact.", "pound_solve.study"))}
+    # and the table says so
+    assert told["numba"] == (0, "not imported")
+    assert told["kernels compiled"] == (0, "none")
+    assert set(told["pound_solve.integrate"][1].split(", ")) >= {"base"}
+    assert ("exact" in told["pound_solve.integrate"][1]) == moving
+
+
+def test_a_deck_without_contacts_holds_none_of_their_arrays(tmp_path):
+    path = deck(tmp_path, "piecewise linear history")
+    run(path, "--explain")
+    with Results.open(tmp_path / "deck.h5") as results:
+        held = {(part, what): size for part, what, _, size in results.table("arrays").tolist()}
+        assert held["contacts", "closures of 0"] == 0
+        assert held["members that move", "chords of 0"] == 0
+        # four hinges over six unknowns
+        assert held["springs and hinges", "deformations of 4"] == 8 * 4 * results_unknowns(results)
+        assert not {what for part, what in held if part == "stored at an instant" and "contact" in what}
+        assert not [name for name in results.histories if name.startswith("contact")]
+
+
+def results_unknowns(results):
+    return int(dict(results.table("size").tolist())["unknowns before reduction"])
+
+
+def test_a_run_that_is_not_asked_explains_nothing(tmp_path):
+    _, out = run(deck(tmp_path, "linear static"))
+    with Results.open(tmp_path / "deck.h5") as results:
+        assert not {"arrays", "imports"} & set(results.tables)
+    assert "ARRAYS" not in out
+    _, out = run(deck(tmp_path, "linear static"), "--explain")
+    assert "ARRAYS THAT ARE HELD" in out and "SCENE AND PROBLEM SIZE" in out
+
+
+def test_the_version_and_the_help_need_no_numbers():
+    for word in ("--version", "--help"):
+        code = (
+            "import sys; from pound_solve.cli import main\n"
+            f"try: main([{word!r}])\n"
+            "except SystemExit: pass\n"
+            "print(sorted(m for m in sys.modules if m.startswith('pound_')))\n"
+            f"assert not set({explain.LIBRARIES!r}) & {{m.partition('.')[0] for m in sys.modules}}"
+        )
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.splitlines()[-1] == "['pound_solve', 'pound_solve.cli']"
+
+
+def test_every_spec_stands_in_the_package_of_its_family():
+    for spec in specs():
+        assert spec.impl is None or f".{FAMILIES[spec.family]}." in spec.impl.__module__ + "."
+
+
+def test_sparse_matrices_count_with_their_indices():
+    sparse = pytest.importorskip("scipy.sparse")
+    import numpy as np
+
+    a = sparse.csr_array(np.eye(5))
+    numbers, held = explain.size(a, np.zeros((2, 3)))
+    assert numbers == 5 + 6
+    assert held == 8 * 11 + a.indices.nbytes + a.indptr.nbytes

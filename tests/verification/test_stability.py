@@ -1,0 +1,213 @@
+"""The stability matrix: no case ends in a fault; and long runs keep phase, energy and bits."""
+
+import math
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import pound_solve
+from pound_solve import extremes, stability
+from pound_solve.integrate import auto
+
+
+def chosen(case):
+    """Scenes and laws that have one speciality each; short ones."""
+    laws = {"linear": {""}, "contact": {"LINEAR", "KELVIN_VOIGT"}, "hysteresis": {"BILINEAR"}}
+    quick = {
+        "massless node that is met", "gap", "two contacts at the same instant",
+        "falling branch to collapse", "rigid-body modes", "repeated eigenvalues",
+    }  # fmt: skip
+    return case.law in laws[case.family] and case.scene in quick
+
+
+def test_the_quick_part_of_the_matrix_has_no_fault(monkeypatch):
+    monkeypatch.setattr(stability, "methods", lambda: ["EXACT"])
+    rows = list(stability.matrix(chosen=chosen, limit=0.0))
+    assert [(r.case.scene, r.case.law, r.says) for r in rows if r.end == stability.FAULT] == []
+    ends = [r.end for r in rows]
+    assert len(rows) >= 16 and ends.count(stability.RIGHT) > 0.8 * len(rows), ends
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("family", stability.FAMILIES)
+def test_the_matrix_has_no_fault(family):
+    rows = list(stability.matrix((family,), lambda case: not case.heavy))
+    assert [(r.case.scene, r.case.law, r.method, r.says) for r in rows if r.end == stability.FAULT] == []
+
+
+def judged(case, **given):
+    """How a made-up run of a case is judged."""
+    plain = {"t": np.zeros(2), "u": np.zeros((2, 1)), "stop": "", "looks": (), "wrong": "", "seconds": 0.0}
+
+    def run(case, deck, method):
+        return stability.Found(**{**plain, **given})
+
+    return stability.judge(run, case, "NEWMARK").end
+
+
+def test_the_judge_tells_right_from_wrong():
+    case = extremes.Case("linear", "", "", "", "", within=0.1, right=lambda t: np.array([[0.0], [1.0]]))
+    ends = np.array([[0.0], [1.05]]), np.array([[0.0], [1.2]])
+    assert judged(case, u=ends[0]) == stability.RIGHT
+    assert judged(case, u=ends[1]) == stability.FAULT
+    assert judged(case, u=ends[1], looks=("energy: 2",)) == stability.TOLD
+    assert judged(case, stop="A503 at t = 1 s: why") == stability.STOPPED
+    assert judged(case, wrong="numbers that are none") == stability.FAULT
+
+
+@pytest.mark.parametrize(
+    ("message", "clear"),
+    [
+        ("A503 at t = 1.25 s: too many changes within one step, the last in element 3", True),
+        ("A501 static analysis: the structure buckles: its factor is 0.5", True),
+        ("A503 at t = 1.25 s: no", False),
+        ("the history went wrong somewhere on its way to the end", False),
+    ],
+)
+def test_a_clear_stop_has_number_time_and_cause(message, clear):
+    assert bool(stability.CLEAR.match(message)) is clear
+
+
+def test_exact_refuses_a_curved_law(tmp_path):
+    rule = extremes.catalog().family("hysteresis")["BOUC_WEN"]
+    deck = tmp_path / "curved.inp"
+    deck.write_text(extremes.storeys(extremes.items(rule)).replace(extremes.METHOD, "EXACT"))
+    results = pound_solve.run(deck)
+    assert results.status == "stopped"
+    assert results.message.startswith("A505 at t = 0 s: ")
+    assert "the law BOUC_WEN of element 1 is curved" in results.message
+
+
+@pytest.mark.parametrize("method", ["HHT", "GENERALISED_ALPHA"])
+def test_a_spike_leaves_its_impulse_whatever_the_alphas(tmp_path, method):
+    """The acceleration of its last step must not act over the long one that follows.
+
+    The spike has two steps; HHT (alpha -0.1, gamma 0.6) gets a tenth of its peak one step late, of which
+    0.4 falls behind its end: 4 % of the impulse.
+    """
+    (case,) = (c for c in extremes.linear() if c.variant == "a spike")
+    row = stability.judge(stability.Runner(0.0), case, method)
+    assert row.error == pytest.approx(0.04, abs=0.002) if method == "HHT" else row.error < 0.01, row.says
+
+
+def test_steps_that_do_not_resolve_the_motion_are_told(tmp_path):
+    """Newmark keeps the energy of free vibration whatever the step; the report must tell all the same."""
+    for dt, verdict in ((0.01, "good"), (0.2, "look")):
+        deck = tmp_path / "one.inp"
+        text = extremes.one(extremes.KICK, every=0.2).replace(extremes.METHOD, f"NEWMARK DT={dt}")
+        deck.write_text(text)
+        checks = {c["check"]: c for c in pound_solve.run(deck).table("checks")}
+        found = checks["steps in a period of the motion, about"]
+        # the method's own period is longer: omega' = 2/h atan(omega h/2)
+        own = 2 * math.pi / (2 / dt * math.atan(extremes.OMEGA * dt / 2)) / dt
+        assert found["verdict"].startswith(verdict)
+        assert float(found["value"]) == pytest.approx(own, rel=0.35)
+
+
+def test_auto_says_how_good_it_is_rather_than_its_steps(tmp_path, monkeypatch):
+    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
+    deck = tmp_path / "pair.inp"
+    spec = extremes.catalog().family("contact")["KELVIN_VOIGT"]
+    k = 1e3 * extremes.STOREY
+    law = extremes.items(spec, K=k)
+    deck.write_text(extremes.pair(law, end=0.2).replace(extremes.METHOD, "AUTO TOL=0.01"))
+    checks = pound_solve.run(deck).table("checks")["check"].tolist()
+    assert any("estimated error" in c for c in checks) and not any("steps in" in c for c in checks)
+
+
+OMEGA = extremes.OMEGA
+
+
+def drifted(folder, method, periods, dt=0.0):
+    """Phase, in radians ahead of the exact one, and energy over that at the start, less 1, at the end."""
+    deck = folder / "long.inp"
+    text = extremes.one(extremes.KICK, end=float(periods), every=float(periods))
+    deck.write_text(text.replace(extremes.METHOD, f"{method} DT={dt!r}" if dt else method))
+    results = pound_solve.run(deck)
+    u, v = results.history("node/u")[-1, 0, 0], results.history("node/v")[-1, 0, 0]
+    energy = results.history("energy")
+    return math.atan2(u * OMEGA, v), (energy[-1, 1] + energy[-1, 2]) / (energy[0, 1] + energy[0, 2]) - 1.0
+
+
+def wrapped(angle):
+    return math.remainder(angle, 2 * math.pi)
+
+
+@pytest.mark.parametrize("periods", [100, pytest.param(10_000, marks=pytest.mark.slow)])
+def test_phase_and_energy_over_many_periods(tmp_path, periods):
+    """Newmark: omega' = 2/h atan(omega h/2), central: 2/h asin(omega h/2); both keep the energy
+    (central that of its own: kinetic and strain together swing by (omega h)^2/4 between them).
+    """
+    dt, span = 0.01, 2 * math.pi * periods
+    # the clock sums the steps, and the last one takes what rounding has left
+    clock = OMEGA * periods / dt * float(np.spacing(float(periods)))
+    x = OMEGA * dt / 2
+    for method, own, phase, energy in (
+        ("EXACT", 1.0, 1e-15 * span + 1e-12, 1e-12),
+        ("NEWMARK", math.atan(x) / x, clock + 1e-9, 1e-10),
+        ("CENTRAL", math.asin(x) / x, clock + 3 * x * x, x * x),
+    ):
+        ahead, drift = drifted(tmp_path, method, periods, 0.0 if method == "EXACT" else dt)
+        assert abs(wrapped(ahead - span * (own - 1.0))) < phase, method
+        assert abs(drift) < energy, method
+
+
+@pytest.mark.slow
+def test_a_thousand_seconds_of_record(tmp_path):
+    """EXACT balances the energy of a long record that yields and pounds; steps come to the same drifts."""
+    spec = extremes.catalog().family("contact")["KELVIN_VOIGT"]
+    k = 100 * extremes.STOREY
+    quake = "EQUAKE\n SYNTHETIC PGA=10 SEED=7 DT=0.02 DURATION=1000\n"
+    law = extremes.items(spec, K=k)
+    given = {
+        "motion": quake,
+        "gap": 0.02,
+        "end": 1000.0,
+        "every": 1.0,
+        "speed": 0.0,
+        "k2": 2 * extremes.STOREY,
+    }
+    text = extremes.pair(law, damping=extremes.damped(0.05), **given)
+    deck = tmp_path / "long.inp"
+    found = []
+    for method in ("EXACT", "NEWMARK DT=0.002"):
+        deck.write_text(text.replace(extremes.METHOD, method))
+        found.append(pound_solve.run(deck, out=tmp_path / method[:5]))
+    checks = found[0].table("checks")
+    assert float(checks["value"][0]) < 1e-9 and found[0].table("contact_summary")["closures"][0] > 20
+    u = [np.abs(r.history("node/u")[:, :, 0]).max() for r in found]
+    assert u[1] == pytest.approx(u[0], rel=0.05)
+
+
+BITS = """import hashlib, sys
+from pound_solve.cli import main
+assert main([sys.argv[1], "-o", sys.argv[2], "--quiet"]) == 0
+from pound_solve.results import Results
+with Results.open(sys.argv[2] + "/row.h5") as r:
+    print(*(hashlib.sha256(r.history(k).tobytes()).hexdigest() for k in sorted(r.histories)))
+"""
+
+
+def test_the_same_deck_gives_the_same_bits_on_any_number_of_cores(tmp_path):
+    """The command line takes one thread of linear algebra, unless it is told otherwise."""
+    deck = tmp_path / "row.inp"
+    n = 60
+    k = 100 * extremes.STOREY
+    law = extremes.items(extremes.catalog().family("contact")["KELVIN_VOIGT"], K=k)
+    text = extremes.CROWD.format(n=n, law=law, k=k, end=0.1)
+    chain = text.replace(extremes.METHOD, "EXACT").replace(
+        f"STOREY 1 TO {n}\n", f"STOREY 1 TO {n}\n 901 TO 959 STOREY 1 TO 59 2 TO 60\n"
+    )
+    deck.write_text(chain)
+    said = []
+    for i, threads in enumerate(("", "", "1")):
+        env = {k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")}
+        env |= {"PYTHONPATH": os.pathsep.join(sys.path)} | (
+            {"OPENBLAS_NUM_THREADS": threads} if threads else {}
+        )
+        words = [sys.executable, "-c", BITS, str(deck), str(tmp_path / str(i))]
+        said.append(subprocess.run(words, env=env, capture_output=True, text=True, check=True).stdout)
+    assert said[0] and said[0] == said[1] == said[2]
