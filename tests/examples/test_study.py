@@ -79,8 +79,8 @@ def test_the_page_of_the_manual_is_that_of_a_run(quick):
         assert len(ours) == len(theirs)
         for a, b in zip(ours, theirs):
             assert a[:5] == b[:5]  # residuals are rounding, and differ between machines
-    for name in re.findall(r"\]\(pictures/([^)]+\.svg)\)", page):
-        assert (ROOT / "manual" / "pictures" / name).exists()
+    pictures = re.findall(r"\]\((study/[^)]+\.svg)\)", page)
+    assert len(pictures) == 9 and all((ROOT / "manual" / name).exists() for name in pictures)
 
 
 def test_a_record_that_is_missing_is_told(tmp_path, monkeypatch):

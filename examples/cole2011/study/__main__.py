@@ -89,7 +89,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         left_out,
     )
     page = args.manual / "cole2011-study.md" if args.manual else args.out / "study.md"
-    drawn = page.parent / "pictures" if args.manual else page.parent
+    drawn = page.parent / "study" if args.manual else page.parent
     drawn.mkdir(parents=True, exist_ok=True)
     write(page, drawn, study)
     for name in left_out:

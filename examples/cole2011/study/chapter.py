@@ -155,7 +155,7 @@ def pictures(folder: Path, study: Study) -> dict[str, Path]:
         drawn[f"figure 14 {of}"] = (figures.figure_14, paper["El Centro"], speed, of)
     out: dict[str, Path] = {}
     for name, (draw, *what) in drawn.items():
-        out[name] = folder / f"study_{name.replace(' ', '_')}.svg"
+        out[name] = folder / f"{name.replace(' ', '_')}.svg"
         draw(*what, out[name])
     return out
 
