@@ -78,6 +78,8 @@ def write_deck(job: Job, folder: Path) -> Path:
         for old, new in (*job.test.edits, *job.variant.edits):
             text = text.replace(old, new)
         text = text.replace("RECORD  record  SCALE", f"RECORD  record  {job.record.items}  SCALE")
+        if source == job.test.deck:  # peaks do not hang on what is stored, but time does
+            text += "\nOUTPUT\n   EVERY=1\n"
         (folder / source.name).write_text(text, encoding="utf-8")
     return folder / job.test.deck.name
 
