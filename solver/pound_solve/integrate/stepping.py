@@ -355,7 +355,7 @@ class Stepper:
         for i in w.leans.tolist():
             states.grip(w, self.tables, x.q, i)
         if jit.cold(kernel.advance):
-            self.sink.trial(t0, "compiling the kernels, once for this version: some 20 s")
+            self.sink.trial(t0, "compiling the kernels, once for this version: some 40 s")
         with jit.compiling():
             jit.compiled(kernel.settle)(m, w, x, self.dt)
         kernel.note(m, w, x, t0, 0.0)
