@@ -65,11 +65,6 @@ class Test:
     method: str | None = None
     dt: float | None = None
 
-    @property
-    def elements(self) -> int:
-        """Axial elements in a diaphragm; 0 for a rigid one."""
-        return int(self.params.get("n", 0))  # type: ignore[call-overload,no-any-return]
-
 
 def lumped(name: str, kc: float, cc: float = 0.0) -> Test:
     """A test with rigid diaphragms and a Kelvin-Voigt contact."""

@@ -43,8 +43,6 @@ class Run:
         Peak force [kN] and number of closures of every floor.
     residual : float
         Energy residual as a share of the input.
-    seconds : float
-        Time of the history's solution.
     """
 
     record: str
@@ -56,7 +54,6 @@ class Run:
     forces: tuple[float, ...]
     closures: tuple[int, ...]
     residual: float
-    seconds: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +115,6 @@ def gather(job: Job, results: pound_solve.results.Results) -> Run:
         for row in results.table("collisions")
     )
     energy = {row["item"]: row for row in results.table("energy")}
-    figures = {row["item"]: row["value"] for row in results.table("run_figures")}
     return Run(
         job.record.name,
         job.test.name,
@@ -129,7 +125,6 @@ def gather(job: Job, results: pound_solve.results.Results) -> Run:
         tuple(float(row["peak_force"]) for row in summary),
         tuple(int(row["closures"]) for row in summary),
         abs(float(energy["residual"]["share"])) / 100,
-        float(str(figures["solve seconds"])),
     )
 
 
