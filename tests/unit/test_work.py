@@ -20,6 +20,16 @@ def contact_row(n: int) -> Array:
     return np.eye(n)[0] - np.eye(n)[-1]
 
 
+def measure(
+    meter: Meter, q: Array, g: Array, tau: float, coefs: Array, constant: Array, p: Array | None = None
+) -> Work:
+    """Work over one interval."""
+    out = meter.measures(q[:, None], g[None], tau, coefs[None], constant, None if p is None else p[None])
+    return Work(
+        float(out.damping[0]), float(out.input[0]), [(law, float(loss[0])) for law, loss in out.laws]
+    )
+
+
 class Case:
     """A block with a pressed contact, its loads and start, measured and integrated densely."""
 
@@ -36,7 +46,7 @@ class Case:
         self.q, self.g = self.flow.enter(self.u, self.v), self.flow.forcing(self.coefs, self.constant)
 
     def measure(self, tau: float) -> Work:
-        return self.meter.measure(self.q, self.g, tau, self.coefs, self.constant, self.p)
+        return measure(self.meter, self.q, self.g, tau, self.coefs, self.constant, self.p)
 
     def velocity(self, t: Array) -> Array:
         v = (self.flow.v_q @ self.flow.path(self.q, self.g, t)).real
@@ -122,7 +132,7 @@ def test_plastic_storey_with_hardly_any_damping(decay: float) -> None:
         meter = Meter(flow, np.diag([decay, 0.0]), np.eye(2), [])
         coefs = np.array([[f, 0.0], [g, 0.0]])
         q = flow.enter(np.zeros(2), np.array([v0, 1.0]))
-        found = meter.measure(q, flow.forcing(coefs, np.zeros(2)), tau, coefs, np.zeros(2))
+        found = measure(meter, q, flow.forcing(coefs, np.zeros(2)), tau, coefs, np.zeros(2))
         assert found.damping == pytest.approx(loss, rel=1e-12, abs=0.0)
         assert found.input == pytest.approx(done, rel=1e-12)
         if fast > 1.0 and isinstance(flow, SeriesFlow):
@@ -144,7 +154,7 @@ def test_many_intervals_at_once(kind: str, degree: int) -> None:
     assert several.input.sum() == pytest.approx(whole.input, rel=1e-12)
     assert several.laws[0][1].sum() == pytest.approx(whole.laws[0][1], rel=1e-12)
     for i in range(n):
-        one = case.meter.measure(qs[:, i], gs[i], h, coefs[i], case.constant)
+        one = measure(case.meter, qs[:, i], gs[i], h, coefs[i], case.constant)
         assert one.damping == pytest.approx(several.damping[i], rel=1e-13)
         assert one.input == pytest.approx(several.input[i], rel=1e-12, abs=1e-13 * abs(whole.input))
 

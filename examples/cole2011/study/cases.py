@@ -6,9 +6,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from pound_solve.pounding import Diaphragm, Pair
+
 HERE = Path(__file__).resolve().parent.parent
 LUMPED, EQUIVALENT, DISTRIBUTED = (HERE / f"{n}.inp" for n in ("lumped", "equivalent", "distributed"))
 KD1, KD2 = 1881300.0, 752520.0  #: axial stiffness of the diaphragms, Table IV [kN/m]
+G = 9.81
+PAIR = Pair(Diaphragm(1600 / G, KD1), Diaphragm(3000 / G, KD2))  #: the two floors of Table IV
 BENCHMARK = "20"
 TRADITIONAL = ("0(10)", "0(1)", "0(0.1)")
 
@@ -91,9 +95,8 @@ TESTS = (
 EXACT_EQUIVALENT = Test("0(exact)", EQUIVALENT, {"model": '"EXACT"'}, (), "EXACT")
 FINER = (distributed(50), distributed(100, "CENTRAL", 2e-5), distributed(200, "CENTRAL", 1e-5))
 E = 0.65  #: restitution that is usual for concrete
-MASS = 1600 * 3000 / (1600 + 3000) / 9.81  #: reduced mass of two floors [t]
 #: stiffness of the Hertz laws [kN/m^1.5]: at 0.3 m/s the peak force of the linear spring k_D, no dashpot
-HERTZ = (0.3 * (KD1 * MASS) ** 0.5 / (1.25 * MASS * 0.3**2) ** 0.6) ** 2.5
+HERTZ = (0.3 * (KD1 * PAIR.mass) ** 0.5 / (1.25 * PAIR.mass * 0.3**2) ** 0.6) ** 2.5
 SYSTEMS = (
     system("stereomechanics", f"STEREOMECHANICS E={E}"),
     system("stereomechanics, elastic", "STEREOMECHANICS E=1"),

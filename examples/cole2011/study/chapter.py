@@ -9,16 +9,11 @@ from pathlib import Path
 from statistics import fmean
 
 import figures
-from cases import BENCHMARK, EXACT_EQUIVALENT, KD1, KD2, TESTS
+from cases import BENCHMARK, EXACT_EQUIVALENT, PAIR, TESTS
 from errors import benchmark_of, by_test, drifts, worst
 from runs import PLACES, Run
 from statements import judge, sensitivity
 from tabulate import tabulate
-
-from pound_solve.pounding import Diaphragm, Pair
-
-G = 9.81
-PAIR = Pair(Diaphragm(1600 / G, KD1), Diaphragm(3000 / G, KD2))  #: the two floors of Table IV
 
 
 @dataclass(frozen=True)

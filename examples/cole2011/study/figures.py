@@ -6,12 +6,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from cases import TESTS
+from cases import PAIR, TESTS
 from errors import Prediction, benchmark_of, drifts, predictions
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from runs import PLACES, Run
 
+from pound_solve.plot import style
 from pound_solve.pounding import Diaphragm, Pair
 
 COLOURS = {"El Centro": "#0b4f8a", "Mexico City": "#b3541e", "Loma Prieta": "#3d7a3d"}
@@ -20,23 +21,14 @@ RATIOS = np.geomspace(0.05, 20, 241)  #: mass ratios of the curves
 PERIODS = (1.0, 0.8, 0.6, 0.4, 0.2)  #: period ratios T1/T2 of the curves
 
 
-def save(figure: Figure, path: Path) -> None:
-    """Write a picture; the same numbers give the same bytes."""
-    figure.savefig(path, metadata={"Date": None}, dpi=150)
-
-
 def axes_of(figure: Figure, rows: int = 1, columns: int = 1, **options: object) -> Sequence[Axes]:
     """Axes with a light grid."""
-    out = np.ravel(figure.subplots(rows, columns, **options))  # type: ignore[call-overload]
-    for axes in out:
-        axes.grid(color="0.88", linewidth=0.6)
-        axes.set_axisbelow(True)
-    return list(out)
+    return [style.grid(axes) for axes in np.ravel(figure.subplots(rows, columns, **options))]  # type: ignore[call-overload]
 
 
 def drift_errors(runs: Mapping[str, Sequence[Run]], building: int, path: Path) -> None:
     """Figures 11 and 12: drift errors of one building, by test, place, record and direction."""
-    figure = Figure(figsize=(10, 7), layout="constrained")
+    figure = style.figure(10, 7)
     places = [p for p in PLACES if p.startswith(f"B{building}")]
     all_axes = axes_of(figure, 2, 2, sharex=True, sharey=True)
     names = [t.name for t in TESTS[:-1]]
@@ -68,12 +60,12 @@ def drift_errors(runs: Mapping[str, Sequence[Run]], building: int, path: Path) -
         f"Building {building}: drift envelopes against 20 elements a diaphragm (grey: within 10 %)",
         fontsize=10,
     )
-    save(figure, path)
+    style.save(figure, path)
 
 
 def force_errors(found: Mapping[str, Sequence[Prediction]], title: str, path: Path) -> None:
     """Figures 13 and 14: error of Eq. 11 over the recorded force, a colour a record or test."""
-    figure = Figure(figsize=(7, 4.5), layout="constrained")
+    figure = style.figure(7, 4.5)
     axes = axes_of(figure)[0]
     axes.axhspan(-15, 15, color="0.93", zorder=0)
     axes.axhline(0, color="0.4", linewidth=0.8)
@@ -90,7 +82,7 @@ def force_errors(found: Mapping[str, Sequence[Prediction]], title: str, path: Pa
     axes.set_ylim(-110, 110)
     axes.legend(fontsize=6, ncols=2)
     axes.set_title(title, fontsize=9)
-    save(figure, path)
+    style.save(figure, path)
 
 
 def figure_13(runs: Mapping[str, Sequence[Run]], per_speed: float, of: str, path: Path) -> None:
@@ -117,7 +109,7 @@ def pair(mass_ratio: float, period_ratio: float) -> Pair:
 
 def figure_6(path: Path) -> None:
     """Influence coefficients over the mass ratio: lumped, and distributed by the paper and exact."""
-    figure = Figure(figsize=(9, 4.2), layout="constrained")
+    figure = style.figure(9, 4.2)
     for n, axes in enumerate(axes_of(figure, 1, 2, sharey=True)):
         for colour, tau in zip(["0.1", *COLOURS.values(), "#7a3d7a"], PERIODS):
             pairs = [pair(mu, tau) for mu in RATIOS]
@@ -127,12 +119,12 @@ def figure_6(path: Path) -> None:
         axes.set_xlabel("m1 / m2")
         axes.set_title(f"alpha {n + 1}: lines exact, dots by the paper", fontsize=9)
     axes.legend(fontsize=7)
-    save(figure, path)
+    style.save(figure, path)
 
 
 def figure_7(path: Path) -> None:
     """Effective restitution over the mass ratio, exact and by Eq. 14, and its share r (Eq. 22)."""
-    figure = Figure(figsize=(7, 4.6), layout="constrained")
+    figure = style.figure(7, 4.6)
     axes = axes_of(figure)[0]
     for colour, tau in zip(["0.1", *COLOURS.values(), "#7a3d7a"], PERIODS):
         pairs = [pair(mu, tau) for mu in RATIOS]
@@ -145,24 +137,26 @@ def figure_7(path: Path) -> None:
     axes.set_ylabel("effective restitution")
     axes.set_title("lines exact (thin: r = 0.5), dots Eq. 14", fontsize=9)
     axes.legend(fontsize=7)
-    save(figure, path)
+    style.save(figure, path)
 
 
 def theory_map(path: Path) -> None:
     """Error of Eq. 14 over mass and period ratio; none right of the line Z1 = Z2."""
     ratios, periods = np.geomspace(0.05, 20, 161), np.linspace(0.02, 1.0, 99)
     error = np.array([[(p := pair(mu, tau)).e_paper - p.e for mu in ratios] for tau in periods])
-    figure = Figure(figsize=(7, 4.6), layout="constrained")
+    figure = style.figure(7, 4.6)
     axes = axes_of(figure)[0]
     levels = (-2.0, -1.5, -1.0, -0.75, -0.5, -0.25, -0.1, -0.02)
     filled = axes.contourf(ratios, periods, error, levels=(*levels, 1e-9), cmap="YlOrBr_r")
     axes.plot(ratios, np.where(ratios <= 1, ratios, np.nan), color="0.2", linewidth=1.2)
     axes.annotate("Z1 = Z2: the paper\nholds on the left", (0.06, 0.8), fontsize=8)
-    axes.plot(1600 / 3000, 0.018622 / 0.040318, "o", color="#b3301e")
-    axes.annotate("Table IV", (0.58, 0.44), fontsize=8, color="#b3301e", ha="left")
+    first, second = PAIR.first, PAIR.second
+    at = first.mass / second.mass, first.period / second.period
+    axes.plot(*at, "o", color=style.RED)
+    axes.annotate("Table IV", at, fontsize=8, color=style.RED, xytext=(6, -10), textcoords="offset points")
     axes.set_xscale("log")
     axes.set_xlabel("m1 / m2")
     axes.set_ylabel("T1 / T2")
     axes.set_title("e_eff by Eq. 14 less the exact one", fontsize=9)
     figure.colorbar(filled)
-    save(figure, path)
+    style.save(figure, path)

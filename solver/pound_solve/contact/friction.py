@@ -28,7 +28,7 @@ from pound_solve.hysteresis.mirror import side
 from pound_solve.laws import PUSH, PUSH_RATE, Law, Numbers, Rule, piece, remember
 
 OPEN, PLUS, MINUS, STICKING = 0, 1, 2, 3
-TOUCHED, RELEASED = 0, 2  #: ways to leave that the contact decides on
+RELEASED = 2  #: way to leave when the contact opens
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:

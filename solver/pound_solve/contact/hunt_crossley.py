@@ -27,7 +27,7 @@ from typing import Any
 
 from pound_deck.schema import Spec
 from pound_solve.contact import constants, restitution
-from pound_solve.contact.kelvin_voigt import Built
+from pound_solve.contact.kelvin_voigt import OPEN, PRESSED, Built, start
 from pound_solve.contact.power import (
     drag,
     drag_slope,
@@ -37,13 +37,6 @@ from pound_solve.contact.power import (
     stiffness_unit,
 )
 from pound_solve.laws import Law, Numbers, Rule, above, below, piece, remember
-
-OPEN, PRESSED = 0, 1
-
-
-def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (PRESSED if p[2] < 0.0 else OPEN), remember()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:

@@ -20,8 +20,8 @@ from typing import Any
 
 from pound_deck.schema import Spec
 from pound_solve.contact import constants, restitution
-from pound_solve.contact.kelvin_voigt import Built
-from pound_solve.contact.mahmoud_jankowski import APPROACH, BRANCHES, OPEN, leave, start
+from pound_solve.contact.kelvin_voigt import Built, start
+from pound_solve.contact.mahmoud_jankowski import APPROACH, BRANCHES, OPEN, leave
 from pound_solve.contact.power import (
     drag,
     drag_slope,

@@ -19,16 +19,11 @@ from typing import Any
 from pound_deck.schema import Spec
 from pound_solve.contact import restitution
 from pound_solve.contact.constants import dashpot, linear_fields
-from pound_solve.contact.kelvin_voigt import Built
-from pound_solve.laws import TURNS_DOWN, TURNS_UP, Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.contact.kelvin_voigt import Built, start
+from pound_solve.laws import TURNS_DOWN, TURNS_UP, Law, Numbers, Rule, above, below, piece
 
 OPEN, APPROACH, PARTING = 0, 1, 2
 BRANCHES = ("open", "pressed", "pressed, parting")
-
-
-def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (APPROACH if p[2] < 0.0 else OPEN), remember()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:

@@ -21,8 +21,8 @@ from typing import Any
 
 from pound_deck.schema import Spec
 from pound_solve.contact import constants, restitution
-from pound_solve.contact.hunt_crossley import OPEN, branch, leave, recoverable, start
-from pound_solve.contact.kelvin_voigt import TENSION, Built
+from pound_solve.contact.hunt_crossley import branch, leave, recoverable
+from pound_solve.contact.kelvin_voigt import OPEN, TENSION, Built, start
 from pound_solve.contact.power import (
     drag,
     drag_slope,

@@ -27,8 +27,8 @@ from typing import Any
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.contact import constants, restitution
 from pound_solve.contact.jankowski import branch
-from pound_solve.contact.kelvin_voigt import Built
-from pound_solve.contact.mahmoud_jankowski import APPROACH, BRANCHES, OPEN, PARTING, start
+from pound_solve.contact.kelvin_voigt import Built, start
+from pound_solve.contact.mahmoud_jankowski import APPROACH, BRANCHES, OPEN, PARTING
 from pound_solve.contact.power import power_fields, spring_energy, spring_force, stiffness_unit
 from pound_solve.laws import Law, Numbers, Rule, remember
 

@@ -123,8 +123,6 @@ class Rival:
             replay.hand_on()
             raise
         why = "all laws are piecewise linear, and it costs less than steps: no time step is needed"
-        if cost == np.inf:
-            why = "rigid contacts: no other method knows them"
         decisions.insert(known, Decision("method", "EXACT", why))
         replay.hand_on()
         return outcome
@@ -206,12 +204,13 @@ def integrate(
     scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Keeper
 ) -> Outcome:
     """Choose a method, note why, and run it."""
-    rival, free, few = Rival(scene, start, watch, sink), FREE, float(FEW)
-    if any(s.law.rigid for s in scene.structure.laws):
-        if reason := not_linear(scene):
-            refuse_rigid(scene, start, f"NEWMARK, which AUTO takes because {reason},")
-        free = few = np.inf  # no other method knows them
-    outcome = rival.run(free, few)
+    if reason := not_linear(scene):
+        refuse_rigid(scene, start, f"NEWMARK, which AUTO takes because {reason},")
+    elif any(s.law.rigid for s in scene.structure.laws):
+        scene.decisions.append(Decision("method", "EXACT", "rigid contacts: no other method knows them"))
+        return exact.integrate(scene, start, watch, {}, sink)
+    rival = Rival(scene, start, watch, sink)
+    outcome = rival.run(FREE, FEW)
     return outcome or to_tolerance(scene, start, watch, options, sink, rival)
 
 

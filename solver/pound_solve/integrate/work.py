@@ -136,35 +136,6 @@ class Meter:
                 self._moments[tau, degree] = found
         return found
 
-    def measure(
-        self,
-        q: NDArray[Any],
-        g: NDArray[Any],
-        tau: float,
-        coefs: Array,
-        constant: Array,
-        p: Array | None = None,
-    ) -> Work:
-        """Return the work over (0, tau).
-
-        Parameters
-        ----------
-        q, g : ndarray
-            Modal state at 0 and forcing.
-        tau : float
-            [T]
-        coefs : ndarray, shape (degree + 1, n_inputs)
-            Inputs; their forces and `constant` loads (n,) do the input work.
-        p : ndarray, shape (degree + 1, n), or None
-            Force polynomials on the unknowns, where massless freedoms need them.
-        """
-        out = self.measures(q[:, None], g[None], tau, coefs[None], constant, None if p is None else p[None])
-        return Work(
-            float(out.damping[0]),
-            float(out.input[0]),
-            [(law, float(loss[0])) for law, loss in out.laws],
-        )
-
     def measures(
         self,
         qs: NDArray[Any],
@@ -174,15 +145,20 @@ class Meter:
         constant: Array,
         ps: Array | None = None,
     ) -> Works:
-        """Return `measure` for several intervals of length `tau` at once.
+        """Return the work over several intervals of one length.
 
         Parameters
         ----------
         qs : ndarray, shape (n_q, n)
             Modal states at their starts.
         gs : ndarray, shape (n, degree + 1, n_q)
+            Their forcing.
+        tau : float
+            Their length [T].
         coefs : ndarray, shape (n, degree + 1, n_inputs)
+            Inputs; their forces and `constant` loads (n_unknowns,) do the input work.
         ps : ndarray, shape (n, degree + 1, n_unknowns), or None
+            Force polynomials on the unknowns, where massless freedoms need them.
         """
         if not self.closed_form or gs.shape[1] > 2:
             each = [

@@ -81,11 +81,9 @@ def frame(results: Results) -> Any:
         )  # fmt: skip
     heaviest = max(s.mass.values(), default=0.0)
     for node, (x, y) in s.place.items():
-        if "X" in s.fixed[node] or "Y" in s.fixed[node]:
-            whole = {"X", "Y"} <= set(s.fixed[node])
-            free_to_slide = not whole and y > s.low[1]  # floors of shear buildings: no mark
-            if not free_to_slide:
-                axes.plot(x, y, marker="^", color=style.GREEN, markersize=8, clip_on=False)
+        held = {"X", "Y"} & set(s.fixed[node])
+        if len(held) == 2 or (held and y == s.low[1]):  # floors of shear buildings may slide: no mark
+            axes.plot(x, y, marker="^", color=style.GREEN, markersize=8, clip_on=False)
         if heaviest and s.mass.get(node):
             axes.plot(x, y, "o", color="0.2", markersize=2 + 6 * (s.mass[node] / heaviest) ** 0.5)
         if len(s.place) <= MOST_NUMBERS:
