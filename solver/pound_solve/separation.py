@@ -49,7 +49,7 @@ TABLE: Final = Table(
         Column("ddc", "DDC", "L", "num", "double difference combination"),
         Column("needed", "gap\nneeded", "L", "num", "largest closure of this run, if nothing met"),
         Column("gap", "gap of\nthe deck", "L", "num", "gap of the contact"),
-        Column("note", "run", doc="whether the peaks are those of buildings that move freely, and what lacks"),
+        Column("note", "run", doc="whether the buildings moved freely, and what is not known"),
     ),
     note="Peaks are absolute displacements from the node envelopes of this run. The gap needed is its "
     "largest closure, if nothing met in it; else run the deck with gaps that stay open. The period of a "
