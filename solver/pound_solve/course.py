@@ -35,7 +35,10 @@ SIGNS = (
 EXACT, STEPS = "Peaks are exact.", "Peaks are those of the steps, interpolated between them."
 PREDICTED = (
     "The prediction knows the diaphragms only (section 1), no other forces and no ringing: the peak of a "
-    "mesh of lumped masses lies above a constant force by 14 % or more."
+    "mesh of lumped masses lies above a constant force by 14 % or more. It takes the contact for much "
+    "stiffer than the diaphragms, and is left out where they touch for more than twice its time: softer "
+    "contacts stay below it. The plateau is the impulse over the time of contact, or over the shorter "
+    "time that the predicted force would take for it; of a coarse mesh it may lie above the peak."
 )
 MOST_ROWS = 5_000_000  #: of stored histories
 ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
@@ -431,7 +434,7 @@ class Course:
                     c.t_peak,
                     c.impulse,
                     self.meetings[c.law].plateau(c.impulse, c.t_end - c.t_start),
-                    predicted := self.meetings[c.law].predicted(c.approach),
+                    predicted := self.meetings[c.law].predicted(c.approach, c.t_end - c.t_start),
                     100.0 * (predicted / c.peak - 1.0) if c.peak > 0.0 else float("nan"),
                 )
                 for c in ordered

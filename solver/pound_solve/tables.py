@@ -650,7 +650,8 @@ _CONTACTS = (
                 "predicted\nforce",
                 "F",
                 "short",
-                "first force of the diaphragms at this approach velocity, Eq 11 of Cole et al. 2011",
+                "first force of the diaphragms at this approach velocity, Eq 11 of Cole et al. 2011; NaN "
+                "where contact lasts more than twice as long as predicted",
             ),
             Column("force_error", "error", "%", "percent", "predicted over peak force, less one"),
         ),
