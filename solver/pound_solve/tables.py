@@ -324,8 +324,9 @@ _GROUND = (
             _time("end", "end", "time at which the motion ends"),
             Column("sha256", doc="checksum of the record's file", clip=12),
         ),
-        note="Velocity and displacement are integrals of the record as it stands, without baseline "
-        "correction. The checksum is cut to its first 12 characters.",
+        note="Peaks are those of the whole motion, from start to end, even if the history is shorter. "
+        "Velocity and displacement are integrals of the record as it stands, without baseline correction. "
+        "The checksum is cut to its first 12 characters.",
     ),
     Table(
         "forces",
