@@ -231,7 +231,7 @@ def test_a_column_of_a_newer_version_may_be_missing(tmp_path: Path) -> None:
 
 
 def test_rounding_is_no_force() -> None:
-    values = np.array([600.0, -3e-14, 2e-13, -5e-20, 1e-9, 0.0])
+    values = np.array([600.0, -3e-14, 2e-13, -5e-26, 1e-9, 0.0])
     kinds = ("kN", "kN", "kN*m", "kN*m", "kN", "kN")
     # a moment is measured against moments: the largest of a kind stays, however small
     assert zeroed(values, kinds).tolist() == [600.0, 0.0, 2e-13, 0.0, 1e-9, 0.0]
