@@ -452,7 +452,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "A503": (
         "no progress",
         "Too many events happen at one instant, or the step falls below its least size. Check "
-        "stiffness and restitution of the contacts.",
+        "stiffness and restitution of the contacts. NEWMARK with EVENTS=STEPPED and a short DT does not "
+        "search for events and may go on.",
     ),
     "A504": (
         "runaway or not a number",

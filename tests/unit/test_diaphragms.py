@@ -96,7 +96,7 @@ def test_a_bar_on_a_mass_has_a_theory_only_where_the_card_says_so() -> None:
         structure = structure_of(CHAIN.format(turn=0, ends="4 9", more=more))
         (found,) = meetings(structure).values()
         assert (found.pair is not None) == known
-        assert known or found.note.startswith("J rigid: no theory")
+        assert known or found.note.startswith("J rigid, no member behind:")
 
 
 # ---------------------------------------------------------------------- the report
