@@ -137,6 +137,14 @@ class TestRecord:
         assert any("500 g" in w for w in self.build(tmp_path, text, DT=0.01).info["warnings"])
         assert self.build(tmp_path, text, DT=0.01, UNIT="GAL").info["warnings"] == ()
 
+    @pytest.mark.parametrize(("scale", "unit", "told"), [
+        (9.81, "G", True), (-9.81, "G", True), (9.81, "GAL", False), (9.5, "G", False), (1.0, "G", False),
+    ])  # fmt: skip
+    def test_gravity_counted_twice(self, tmp_path: Path, scale: float, unit: str, told: bool) -> None:
+        motion = self.build(tmp_path, "1\n0.2\n-0.1\n" if unit == "G" else "1\n20\n-10\n", DT=0.01,
+                            UNIT=unit, SCALE=scale)  # fmt: skip
+        assert any("SCALE" in w and "anyway" in w for w in motion.info["warnings"]) is told
+
 
 class TestSine:
     @pytest.mark.parametrize("period", [1.0, 0.37, 1 / 3])

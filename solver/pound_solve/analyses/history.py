@@ -329,9 +329,9 @@ class Recorder:
 
         names = [contact_name(model, laws[i].element) for i in self.contacts]
         return {
-            "node/u": ((len(self.nodes), 3), {**three, "unit": ["L", "L", ""]}),
-            "node/v": ((len(self.nodes), 3), {**three, "unit": ["L/T", "L/T", "1/T"]}),
-            "node/a": ((len(self.nodes), 3), {**three, "unit": ["L/T^2", "L/T^2", "1/T^2"]}),
+            "node/u": ((len(self.nodes), 3), {**three, "unit": ["L", "L", "rad"]}),
+            "node/v": ((len(self.nodes), 3), {**three, "unit": ["L/T", "L/T", "rad/T"]}),
+            "node/a": ((len(self.nodes), 3), {**three, "unit": ["L/T^2", "L/T^2", "rad/T^2"]}),
             "member/force": (
                 (len(self.outputs),),
                 {
@@ -348,14 +348,14 @@ class Recorder:
             ),
             "spring/deformation": (
                 (len(springs),),
-                {"labels": components, "unit": ["" if s.unit == "F*L" else "L" for s in springs]},
+                {"labels": components, "unit": ["rad" if s.unit == "F*L" else "L" for s in springs]},
             ),
             "drift": ((len(self.drifts.names),), {"labels": list(self.drifts.names), "unit": "L"}),
             "ground": (
                 (len(self.scene.motions),),
                 {
                     "labels": [f"{i + 1} {m.direction}" for i, m in enumerate(self.scene.motions)],
-                    "unit": ["1/T^2" if m.direction == "R" else "L/T^2" for m in self.scene.motions],
+                    "unit": ["rad/T^2" if m.direction == "R" else "L/T^2" for m in self.scene.motions],
                 },
             ),
             "force": (
