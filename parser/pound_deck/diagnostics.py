@@ -451,9 +451,9 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "A503": (
         "no progress",
-        "Too many events happen at one instant, or the step falls below its least size. Check "
-        "stiffness and restitution of the contacts. NEWMARK with EVENTS=STEPPED and a short DT does not "
-        "search for events and may go on.",
+        "Too many events happen at one instant or within one step, or the step falls below its least "
+        "size. Take a shorter DT or METHOD=EXACT; check stiffness and restitution of the contacts. NEWMARK "
+        "with EVENTS=STEPPED and a short DT does not search for events and may go on.",
     ),
     "A504": (
         "runaway or not a number",

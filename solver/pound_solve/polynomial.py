@@ -38,15 +38,16 @@ def shift(coefs: Array, t: float | Array) -> Array:
     -------
     ndarray, shape of `coefs`
     """
-    table, power = _binomials(len(coefs))
+    if not np.any(t):
+        return coefs
     if np.ndim(t) == 0:
-        if t == 0.0:
-            return coefs
+        table, power = _binomials(len(coefs))
         return np.asarray((table * float(t) ** power) @ coefs.reshape(len(coefs), -1)).reshape(coefs.shape)
-    factors = table.reshape(*table.shape, *([1] * np.ndim(t))) * np.asarray(t) ** power.reshape(
-        *power.shape, *([1] * np.ndim(t))
-    )
-    return (factors * coefs).sum(axis=1)
+    out = np.array(coefs)
+    for k in range(len(out) - 1):  # Horner's divisions, which need no room beside the coefficients
+        for i in range(len(out) - 2, k - 1, -1):
+            out[i] += t * out[i + 1]
+    return out
 
 
 def value(coefs: Array, t: float, order: int = 0) -> Array:
