@@ -396,12 +396,18 @@ def springs(spec: Spec) -> Iterator[Case]:
     def case(scene: str, variant: str, deck: str, **given: object) -> Case:
         return replace(Case("hysteresis", scene, variant, spec.name, deck), **given)  # type: ignore[arg-type]
 
-    plain = items(spec)
+    def rule(fy: float = 4.0, k: float = 2.6 * STOREY, **given: float) -> str:
+        """Lengths and forces of the sample items are shares of what yielding begins at."""
+        return items(spec, fy / k, fy, **given)
+
+    plain = rule()
     for force in (0.0, 1e-9, 1e12):
         elastic = storeys("ELASTIC") if force > 1.0 else ""
-        yield case("yield force", f"{force:g}", storeys(plain, fy=force), like=(elastic, 1.0))
+        deck = storeys(rule(force) if force else plain, fy=force)
+        yield case("yield force", f"{force:g}", deck, like=(elastic, 1.0))
     for ratio in (1e-6, 1e-3, 1e3, 1e6, 1e12):
-        deck = storeys(plain, k=2.6 * STOREY * ratio)
+        k = 2.6 * STOREY * ratio
+        deck = storeys(rule(k=k), k=k)
         step = STEP / 32 if ratio == 1e3 else STEP  # that follows the stiffer springs, or does not
         yield case("stiffness of the springs", f"{ratio:g}", deck, step=step, heavy=ratio > 1e5)
     for ratio in (0.0, 1e-8, 1e8):
@@ -411,11 +417,10 @@ def springs(spec: Spec) -> Iterator[Case]:
         )  # fmt: skip
     if spec.field("R") is not None:
         for r in (-0.05, -0.5):
-            deck = storeys(items(spec, R=r), motion="TABLE POINTS=0,6,1,6", end=3.0)
+            deck = storeys(rule(R=r), motion="TABLE POINTS=0,6,1,6", end=3.0)
             yield case("falling branch to collapse", f"R {r:g}", deck)
     if spec.field("DPC") is not None:
-        falling = items(spec, 0.02)  # the sample's lengths are many times the yield deformation
-        deck = storeys(falling, motion="TABLE POINTS=0,6,1,6", end=3.0)
+        deck = storeys(plain, motion="TABLE POINTS=0,6,1,6", end=3.0)
         yield case("falling branch to collapse", "capped", deck)
     yield case("resonance", "20 periods", storeys(plain, end=20.0, every=0.5))
     for share in (1.0, 10.0):
@@ -429,7 +434,8 @@ def springs(spec: Spec) -> Iterator[Case]:
             within = 0.05
         yield case("steps", f"{step:g}", deck, step=step, within=within)
     for length, scale in (("mm", 1e3), ("km", 1e-3)):
-        deck = storeys(items(spec, scale), length=length, g=scale, k=2.6 * STOREY / scale,
+        k = 2.6 * STOREY / scale
+        deck = storeys(rule(k=k), length=length, g=scale, k=k,
                        motion=f"SINE AMPLITUDE={4 * scale!r} PERIOD=1 DURATION=30")  # fmt: skip
         yield case("units", length, deck, like=(storeys(plain), scale))
 

@@ -19,10 +19,12 @@ import time
 import warnings
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from multiprocessing.pool import Pool
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -121,12 +123,19 @@ def solve(deck: str, files: Mapping[str, str]) -> Found:
         return found(t, u, stop=stop, looks=tuple(f"{c['check']}: {c['value']}" for c in looks))
 
 
+def serve(line: Connection) -> None:
+    """Solve what comes along a line, in a process of its own."""
+    with suppress(EOFError):
+        while True:
+            line.send(solve(*line.recv()))
+
+
 class Runner:
-    """Runs decks in a process of its own, which can be ended; the same deck is run once."""
+    """Runs decks in a process of its own, which may die or be ended; the same deck is run once."""
 
     def __init__(self, limit: float) -> None:
         self.limit, self.kept = limit, dict[str, Found]()
-        self.pool: Pool | None = None
+        self.worker: tuple[BaseProcess, Connection] | None = None
 
     def __call__(self, case: Case, deck: str, method: str) -> Found:
         """Run a deck with a method."""
@@ -134,22 +143,35 @@ class Runner:
         if not self.limit:
             return solve(text, case.files)
         if text not in self.kept:
-            if self.pool is None:
-                self.pool = multiprocessing.get_context("spawn").Pool(1)
-            try:
-                self.kept[text] = self.pool.apply_async(solve, (text, case.files)).get(self.limit)
-            except multiprocessing.TimeoutError:
-                self.close()
-                none = np.zeros(0)
-                self.kept[text] = Found(none, none, "", (), f"no end within {self.limit:g} s", self.limit)
+            self.kept[text] = self._apart(text, case.files)
         return self.kept[text]
+
+    def _apart(self, text: str, files: Mapping[str, str]) -> Found:
+        if self.worker is None:
+            context = multiprocessing.get_context("spawn")
+            here, there = context.Pipe()
+            self.worker = context.Process(target=serve, args=(there,), daemon=True), here
+            self.worker[0].start()
+            there.close()  # so that the line ends with the process
+        process, line = self.worker
+        line.send((text, files))
+        wrong = f"no end within {self.limit:g} s"
+        try:
+            if line.poll(self.limit):
+                return cast(Found, line.recv())
+        except (EOFError, ConnectionError):
+            process.join()
+            wrong = f"the process died: exit code {process.exitcode}"
+        self.close()
+        return Found(np.zeros(0), np.zeros(0), "", (), wrong, self.limit)
 
     def close(self) -> None:
         """End the process."""
-        if self.pool is not None:
-            self.pool.terminate()
-            self.pool.join()
-        self.pool = None
+        if self.worker is not None:
+            self.worker[1].close()
+            self.worker[0].terminate()
+            self.worker[0].join()
+        self.worker = None
 
 
 def methods() -> list[str]:

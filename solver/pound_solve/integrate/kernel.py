@@ -765,7 +765,7 @@ def whole_step(
     After the touch of a curved contact the pieces grow from a short one: forces like the fourth root
     of time begin there.
     """
-    left, first, same = length, True, 0
+    left, first, same, changes = length, True, 0, 0
     most = 100 + 8 * len(w.i)
     curved = False
     for i in range(len(w.i)):
@@ -825,8 +825,8 @@ def whole_step(
             clock[3] = FIRST * h
         settle(m, w, x, h)
         note(m, w, x, clock[0], 0.0)
-        same += 1
-        if same > most:
+        same, changes = same + 1, changes + 1
+        if same > most or changes > 2 * most:  # as many as `advance` keeps room for
             count[WORST] = law
             return CHATTER
     return DONE
@@ -884,7 +884,7 @@ def advance(
     clock : ndarray, shape (4,)
         Time, length that the factor at hand is for, energy at the start, longest piece for now.
     """
-    room, pause = 216 + 16 * len(w.i), count[STEPS] + PAUSE
+    room, pause = 216 + 16 * len(w.i), count[STEPS] + PAUSE  # changes of branch in one step
     while count[GOAL] < len(goals):
         goal = count[GOAL]
         h = lengths[goal]
