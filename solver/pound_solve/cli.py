@@ -21,7 +21,7 @@ PICTURES = (
     "study",
 )  # fmt: skip
 WIDTH = 69  #: of the line that tells the progress
-VERBS = ("run", "check", "study", "report", "export", "plot", "separation", "list", "loop", "stability")
+VERBS = ("run", "check", "study", "report", "export", "plot", "separation", "list", "loop")
 #: threads of numpy's linear algebra, as its builds know them
 THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 
@@ -35,9 +35,11 @@ def parser() -> argparse.ArgumentParser:
     out.add_argument("--version", action="version", version=f"pound-solve {__version__}")
     verbs = out.add_subparsers(dest="verb", required=True, metavar="VERB")
 
-    def deck(name: str, text: str, methods: bool = True) -> argparse.ArgumentParser:
+    def deck(
+        name: str, text: str, methods: bool = True, nargs: str | None = None
+    ) -> argparse.ArgumentParser:
         p = verbs.add_parser(name, help=text, description=text)
-        p.add_argument("deck", help="input deck")
+        p.add_argument("deck", nargs=nargs, help="input deck")
         p.add_argument(
             "--set", action="append", default=[], metavar="NAME=VALUE", help="replace a PARAM of the deck"
         )
@@ -59,7 +61,9 @@ def parser() -> argparse.ArgumentParser:
         "--explain", action="store_true", help="tell what the run imported, compiled, kept and left out"
     )
     deck("check", "report all mistakes of a deck without running it")
-    study = deck("study", "error against time of every method on this deck, and advice", methods=False)
+    study = deck(
+        "study", "error against time of every method on this deck, and advice", methods=False, nargs="?"
+    )
     study.add_argument("--methods", metavar="M,M,...", help="methods (default: all)")
     study.add_argument(
         "--steps",
@@ -67,14 +71,18 @@ def parser() -> argparse.ArgumentParser:
         help="time steps (default: halves of the record's until it suffices)",
     )
     study.add_argument("--tols", metavar="TOL,TOL,...", help="tolerances of AUTO")
-    study.add_argument("--repeat", type=int, default=3, metavar="N", help="timed runs of each (default 3)")
-    study.add_argument(
-        "--longest", type=float, default=5.0, metavar="S", help="seconds a run may take (default 5)"
-    )
+    study.add_argument("--repeat", type=int, metavar="N", help="timed runs of each (default 3)")
+    study.add_argument("--longest", type=float, metavar="S", help="seconds a run may take (default 5)")
     study.add_argument("--picture", type=Path, metavar="FILE", help="draw error against time into a file")
     study.add_argument(
         "-o", "--out", type=Path, metavar="DIR", help="folder of the study (default: the deck's)"
     )
+    text = "instead of a deck: stiff and extreme scenes with every law by every method, and how they end"
+    matrix = study.add_argument_group("the stability matrix")
+    matrix.add_argument("--stability", action="store_true", help=text)
+    matrix.add_argument("--family", choices=("linear", "contact", "hysteresis"), help="these scenes only")
+    matrix.add_argument("--law", help="scenes with this law only")
+    matrix.add_argument("--quick", action="store_true", help="leave out the heavy scenes")
     report = verbs.add_parser("report", help="print the report of a results file")
     report.add_argument("results", help="results file (.h5)")
     report.add_argument("--all", action="store_true", help="cut no long table short")
@@ -119,11 +127,6 @@ def parser() -> argparse.ArgumentParser:
     )
     loop.add_argument("--png", type=Path, metavar="FILE", help="draw with matplotlib into a file")
     loop.add_argument("--svg", type=Path, metavar="FILE", help="draw into an SVG file")
-    text = "solve stiff and extreme scenes with every law by every method; print how they end"
-    matrix = verbs.add_parser("stability", help=text, description=text)
-    matrix.add_argument("--family", choices=("linear", "contact", "hysteresis"), help="these scenes only")
-    matrix.add_argument("--law", help="scenes with this law only")
-    matrix.add_argument("--quick", action="store_true", help="leave out the heavy scenes")
     return out
 
 
@@ -153,7 +156,6 @@ def main(argv: Sequence[str] | None = None) -> int:
             "separation": _separation,
             "list": _list,
             "loop": _loop,
-            "stability": _stability,
         }[args.verb](args)
     except BrokenPipeError:  # the reader of our output has gone: not our mistake
         sys.stderr.close()
@@ -287,7 +289,26 @@ def _check(args: argparse.Namespace) -> int:
     return app.DONE
 
 
+#: options of `study` that only one of its two forms has
+OF_A_DECK = ("set", "records", "methods", "steps", "tols", "repeat", "longest", "picture", "out")
+OF_THE_MATRIX = ("family", "law", "quick")
+
+
 def _study(args: argparse.Namespace) -> int:
+    if args.stability and args.deck:
+        return _complain(f"--stability has scenes of its own: leave out {args.deck}", 2)
+    for name in OF_A_DECK if args.stability else OF_THE_MATRIX:
+        if getattr(args, name):
+            own = "a study of a deck" if args.stability else "--stability"
+            return _complain(f"--{name} belongs to {own}", 2)
+    if args.stability:
+        return _stability(args)
+    if not args.deck:
+        return _complain("study takes a deck, or --stability for the scenes of the stability matrix", 2)
+    return _study_of_a_deck(args)
+
+
+def _study_of_a_deck(args: argparse.Namespace) -> int:
     from pound_deck.diagnostics import render as told
     from pound_solve import app, study
     from pound_solve.report import render
@@ -336,7 +357,7 @@ def _plan(args: argparse.Namespace) -> Any:
     """What a study is to run, by the options; what is left out stays as `Plan` has it."""
     from pound_solve.study import Plan, StudyError
 
-    given: dict[str, Any] = {"repeat": args.repeat, "longest": args.longest}
+    given = {name: getattr(args, name) for name in ("repeat", "longest") if getattr(args, name) is not None}
     if args.methods:
         given["methods"] = tuple(word.strip().upper() for word in args.methods.split(","))
     for name in ("steps", "tols"):
@@ -344,13 +365,10 @@ def _plan(args: argparse.Namespace) -> Any:
         if words:
             numbers = _numbers(words.replace(",", " ").split(), f"--{name} takes numbers", StudyError)
             given[name] = tuple(sorted(numbers, reverse=True))
-    if (
-        args.repeat < 1
-        or not args.longest > 0
-        or any(x <= 0 for n in ("steps", "tols") for x in given.get(n, ()))
-    ):
+    plan = Plan(**given)
+    if plan.repeat < 1 or not plan.longest > 0 or any(x <= 0 for x in (*plan.steps, *plan.tols)):
         raise StudyError("--repeat, --longest, --steps and --tols are above zero")
-    return Plan(**given)
+    return plan
 
 
 def _report(args: argparse.Namespace) -> int:
@@ -496,14 +514,18 @@ def _stability(args: argparse.Namespace) -> int:
 
     families = (args.family,) if args.family else stability.FAMILIES
     law = (args.law or "").upper()
+    live = sys.stderr.isatty()
 
     def tell(row: stability.Row) -> None:
-        if sys.stderr.isatty():
+        if live:
             print(f"\r{row.case.scene[:40]:40} {row.case.law:20} {row.method:20}", end="", file=sys.stderr)
 
     def chosen(case: extremes.Case) -> bool:
         return law in ("", case.law) and not (args.quick and case.heavy)
 
+    if not any(map(chosen, extremes.cases(families))):
+        near = f"--family {args.family} has" if args.family else "there are"
+        return _complain(f"{near} no scenes with the law {args.law}: see pound-solve list", 2)
     rows = list(stability.matrix(families, chosen, tell))
     print(stability.page(rows))
     return int(any(row.end == stability.FAULT for row in rows))

@@ -50,6 +50,38 @@ def test_free_vibration_by_its_closed_form() -> None:
     assert math.log2(off[0] / off[1]) > 3.5 and math.log2(off[1] / off[2]) > 3.5
 
 
+def test_bodies_that_nothing_holds_keep_their_speeds() -> None:
+    """Between impacts they have no rate of their own, to which the part taken off could be fitted."""
+    deck = """GRAVITY 1
+NODES
+ 1 0 0 FIX=YR
+ 2 1 0 FIX=YR
+ELEMENTS
+ 1 MEET 1 2
+PROPS
+ MEET CONTACT GAP=0.05 ANGLE=0 LAW=KELVIN_VOIGT K=4E4 E=0.5
+WEIGHTS
+ 1,2 1
+INITIAL
+ 1 VX=1
+ANALYSIS
+ HISTORY 1
+OUTPUT
+ EVERY=0.02
+"""
+    r = run_text(deck, method="LAPLACE", dt=1e-4)
+    before, after = r.time < 0.05, r.time > 0.08
+    assert np.abs(r.v[before, :, 0] - [1.0, 0.0]).max() < 1e-9
+    assert np.abs(r.v[after, :, 0] - [0.25, 0.75]).max() < 1e-6
+    assert len(r.tables["collisions"]) == 1
+
+
+def test_an_input_between_the_samples_is_named_where_the_energy_misses_it() -> None:
+    deck = OSCILLATOR.replace("ANALYSIS", "EQUAKE\n TABLE POINTS=0.101,0,0.101001,1E8,0.101002,0\nANALYSIS")
+    r = run_text(deck, method="LAPLACE", dt=0.01)
+    assert r.message.startswith("A504") and "is DT too long for the excitation?" in r.message
+
+
 def test_kinks_of_the_excitation_leave_order_3() -> None:
     """A sawtooth of the ground whose points lie between the samples."""
     deck = OSCILLATOR.replace("ANALYSIS", "EQUAKE\n TABLE POINTS=0,0,0.31,8,0.77,-9,1.3,3,9,3\nANALYSIS")

@@ -183,6 +183,17 @@ def test_auto_learns_nothing_from_two_runs_with_the_same_steps(tmp_path, monkeyp
     assert error_against(found, truth) <= estimate(found) <= 1e-3
 
 
+def test_auto_gives_up_where_shorter_steps_bring_nothing(tmp_path, monkeypatch):
+    """A peak that differs by a tenth from run to run, as a force that rings does."""
+    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
+    rings = itertools.cycle((1.0, 1.1))
+    monkeypatch.setattr(auto, "figures", lambda *given: (np.array([next(rings)]), np.ones(1)))
+    found = run(tmp_path, "AUTO TOL=1e-2")
+    (check,) = [c for c in found.table("checks") if "estimated error" in c["check"]]
+    assert check["verdict"].startswith("look: not met") and "nor nearer" in check["verdict"]
+    assert float(check["value"]) > 1e-2 and found.status == "done"
+
+
 @pytest.mark.parametrize("few", [0, 3, 10**6])
 def test_auto_takes_one_way_and_the_same_again(tmp_path, monkeypatch, few):
     """EXACT given up at once, on its way, or never: one method is named, and all figures return."""

@@ -10,6 +10,7 @@ import pytest
 
 import pound_solve
 from pound_solve import extremes, stability
+from pound_solve.cli import main
 from pound_solve.integrate import auto
 
 
@@ -36,6 +37,34 @@ def test_the_quick_part_of_the_matrix_has_no_fault(monkeypatch):
 def test_the_matrix_has_no_fault(family):
     rows = list(stability.matrix((family,), lambda case: not case.heavy))
     assert [(r.case.scene, r.case.law, r.method, r.says) for r in rows if r.end == stability.FAULT] == []
+
+
+def test_study_prints_the_matrix(monkeypatch, capsys):
+    few = [c for c in extremes.linear() if c.scene == "rigid-body modes"]
+    monkeypatch.setattr(extremes, "linear", lambda: iter(few))
+    assert main(["study", "--stability", "--family", "linear", "--quick"]) == 0
+    said = capsys.readouterr().out
+    runs = len(few) * len(stability.methods())
+    assert f"| rigid-body modes | {len(few)} |" in said and f"{runs} runs: {runs} right" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ([], "study takes a deck, or --stability"),
+        (["a.inp", "--stability"], "leave out a.inp"),
+        (["a.inp", "--quick"], "--quick belongs to --stability"),
+        (["a.inp", "--law", "LINEAR"], "--law belongs to --stability"),
+        (["--stability", "--steps", "0.1"], "--steps belongs to a study of a deck"),
+        (["--stability", "-o", "x"], "--out belongs to a study of a deck"),
+        (["--stability", "--set", "k=1"], "--set belongs to a study of a deck"),
+        (["--stability", "--law", "GLUE"], "no scenes with the law GLUE"),
+        (["--stability", "--family", "linear", "--law", "LINEAR"], "--family linear has no scenes"),
+    ],
+)
+def test_study_says_which_options_belong_together(words, told, capsys):
+    assert main(["study", *words]) == 2
+    assert told in capsys.readouterr().err
 
 
 def judged(case, **given):

@@ -1,7 +1,8 @@
 r"""AUTO: EXACT where it pays, else NEWMARK with the step that meets a tolerance.
 
 EXACT needs no step, but linear pieces, and every combination of stiffnesses that is new costs it a
-decomposition.  The whole run by steps is repeated with a shorter step until the peaks no longer change:
+decomposition.  The whole run by steps is repeated with a shorter step until the peaks no longer change, or
+shorter steps bring nothing any more (a force that rings at a node without mass):
 between two runs of which the second takes r times the steps of the first the peaks differ by
 :math:`\Delta`, and the error left in the second is estimated as :math:`\Delta/(r-1)`, as if the method
 were of first order only.  It is of second order, so that the estimate errs on the safe side.
@@ -47,6 +48,7 @@ from pound_solve.scene import Decision, Scene
 Array = NDArray[np.float64]
 
 MOST_STEPS = 50_000_000  #: of one run
+STALE = 4  #: runs in a row that do not halve the error, after which shorter steps are given up
 MARGIN = 0.6  #: of the tolerance that the next step aims at
 FREE = 1.0  #: what EXACT may cost before steps are thought of: loading their kernels costs as much
 FEW = 24  #: combinations of stiffnesses that it may meet by then: where they do not return, more will come
@@ -60,6 +62,9 @@ def stepped(scene: Scene) -> Decision:
     """Why steps were taken."""
     reason = not_linear(scene) or "the stiffness changes so often that EXACT would cost more"
     return Decision("method", "NEWMARK", f"{reason}; steps are shortened until the peaks stand still")
+
+
+GIVEN_UP = ("the most that are tried", "nor nearer than with far fewer")  #: why no shorter steps are tried
 
 
 class Replay:
@@ -164,6 +169,7 @@ def to_tolerance(
         each *= PLAIN
     before: tuple[int, Array] | None = None
     runs, error, events = 0, np.inf, 0
+    best, stale = np.inf, 0
     while True:
         if (exactly := rival.run(each * (length / h + EVENT * events))) is not None:
             return exactly
@@ -188,7 +194,9 @@ def to_tolerance(
                 (np.abs(now - before[1]) / np.where(against > 0.0, against, 1.0)).max(initial=0.0)
             )
             error = change / (steps / before[0] - 1.0)
-            if error <= tol or length / h * 2.0 > MOST_STEPS:
+            stale = 0 if error < 0.5 * best else stale + 1
+            best = min(best, error)
+            if error <= tol or stale == STALE or length / h * 2.0 > MOST_STEPS:
                 break
         before = steps, now
         h *= 0.5 if not np.isfinite(error) else float(np.clip(np.sqrt(MARGIN * tol / error), 1 / 4, 1 / 2))
@@ -199,7 +207,7 @@ def to_tolerance(
         (
             f"estimated error of drifts and contact forces, TOL {tol:g}",
             f"{error:.1e}",
-            "met" if error <= tol else f"look: not met with {MOST_STEPS} steps",
+            "met" if error <= tol else f"look: not met with {steps} steps, {GIVEN_UP[stale == STALE]}",
         )
     ]
     return outcome

@@ -214,7 +214,7 @@ class Laplace:
             follow = 0.0 if space.u_p is None else space.u_p @ force
             derivatives.append(space.u_z @ z + follow)
             z = space.a @ z + space.b @ force
-        beta = beta or 1.0 / self.dt
+        beta = max(beta, self.s[0].real)  # free bodies have no rate: that of the window
         q = np.array(
             [
                 sum(
@@ -290,7 +290,8 @@ class Laplace:
         self.put_in += abs(float(self.works[0] - done[0]))
         kinetic = 0.5 * float(self.v @ self.scene.mass @ self.v)
         if not kinetic <= 10.0 * (self.held + self.put_in + abs(float(self.works[0]))) + 1e-300:
-            raise self.stop("A504", RUNAWAY.format(kinetic))
+            seen = f" as samples {self.dt:g} apart see it: is DT too long for the excitation?"
+            raise self.stop("A504", RUNAWAY.format(kinetic) + seen)
 
     def _first_event(self, seen: Samples) -> tuple[float, int, int] | None:
         watched, pairs = exits(self.branches, {})

@@ -421,7 +421,10 @@ class Stepper:
     def _trouble(self, why: int) -> Stop:
         worst = int(self.count[arrays.WORST])
         if why == arrays.RUNAWAY:
-            return self.stop("A504", RUNAWAY.format(self.clock[2]))
+            fastest = int(self.order[np.argmax(np.abs(self.x.q[arrays.V]))])
+            name = self.scene.name(fastest)
+            cause = f", fastest at {name}: the structure collapses, or DT={self.dt:g} is too long"
+            return self.stop("A504", RUNAWAY.format(self.clock[2]) + cause)
         if why == arrays.PIVOT:
             name = self.scene.name(int(self.order[worst]))
             return self.stop("A501", f"{name} has no mass and nothing holds it")
