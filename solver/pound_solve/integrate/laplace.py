@@ -290,8 +290,8 @@ class Laplace:
         self.put_in += abs(float(self.works[0] - done[0]))
         kinetic = 0.5 * float(self.v @ self.scene.mass @ self.v)
         if not kinetic <= 10.0 * (self.held + self.put_in + abs(float(self.works[0]))) + 1e-300:
-            seen = f" as samples {self.dt:g} apart see it: is DT too long for the excitation?"
-            raise self.stop("A504", RUNAWAY.format(kinetic) + seen)
+            why = f" as samples {self.dt:g} apart see it: is DT too long for the excitation?"
+            raise self.stop("A504", RUNAWAY.format(kinetic) + why)
 
     def _first_event(self, seen: Samples) -> tuple[float, int, int] | None:
         watched, pairs = exits(self.branches, {})
