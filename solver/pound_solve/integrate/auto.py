@@ -53,6 +53,7 @@ MARGIN = 0.6  #: of the tolerance that the next step aims at
 FREE = 1.0  #: what EXACT may cost before steps are thought of: loading their kernels costs as much
 FEW = 24  #: combinations of stiffnesses that it may meet by then: where they do not return, more will come
 MANY = 12  #: laws; with more, EXACT is taken to cost more than that: combinations seldom return
+RADIAN = 5  #: steps that it takes to follow the fastest mode through a radian
 STEP, EACH = 3e-7, 2.5e-8  #: cost of a step and of each of its unknowns, of a law twice, as `exact.WINDOW`
 EVENT = 10  #: steps that a located event costs as much as
 PLAIN = 100  #: times as much where nothing compiles the kernels
@@ -106,6 +107,12 @@ class Replay:
             self.sink.sample(*what)
 
 
+def cost_of_step(scene: Scene) -> float:
+    """Cost of a step, as those of `exact`."""
+    compiled = STEP + EACH * (scene.size + 2 * len(scene.structure.laws))
+    return compiled if jit.numba() else PLAIN * compiled
+
+
 class Rival:
     """EXACT, tried for no more than a cost."""
 
@@ -116,12 +123,18 @@ class Rival:
         if not_linear(scene):
             self.whole = np.inf
 
-    def run(self, cost: float, regimes: float = np.inf) -> Outcome | None:
-        """Its run, if that costs no more and meets no more linear regimes; None where it would."""
+    def first(self) -> Outcome | None:
+        """Its run, if that costs little, or no more than steps that resolve the fastest mode, and meets few
+        linear regimes; None where it does not.
+        """
+        return self.run(FREE, {"REGIMES": FEW, "PER_RADIAN": RADIAN * cost_of_step(self.scene)})
+
+    def run(self, cost: float, limits: Mapping[str, float] | None = None) -> Outcome | None:
+        """Its run, if that costs no more and keeps the limits (see `exact.integrate`); else None."""
         if self.whole >= cost:
             return None
         replay, decisions = Replay(self.sink), self.scene.decisions
-        known, limits = len(decisions), {"COST": cost, "REGIMES": regimes}
+        known, limits = len(decisions), {"COST": cost, **(limits or {})}
         try:
             outcome = exact.integrate(self.scene, self.start, self.watch, limits, replay)
         except exact.CostlyError as err:
@@ -164,9 +177,7 @@ def to_tolerance(
     tol, length = options["TOL"], float(start.times[-1] - start.times[0])
     intervals = np.diff(goals(scene, start.times)[0], prepend=start.times[0])
     h = min(float(np.median(intervals)), length / 1000)
-    each = STEP + EACH * (scene.size + 2 * len(scene.structure.laws))
-    if jit.numba() is None:
-        each *= PLAIN
+    each = cost_of_step(scene)
     before: tuple[int, Array] | None = None
     runs, error, events = 0, np.inf, 0
     best, stale = np.inf, 0
@@ -223,8 +234,7 @@ def integrate(
         scene.decisions.append(Decision("method", "EXACT", "rigid contacts: no other method knows them"))
         return exact.integrate(scene, start, watch, {}, sink)
     rival = Rival(scene, start, watch, sink)
-    outcome = rival.run(FREE, FEW)
-    return outcome or to_tolerance(scene, start, watch, options, sink, rival)
+    return rival.first() or to_tolerance(scene, start, watch, options, sink, rival)
 
 
 SPEC = Spec(

@@ -22,8 +22,8 @@ from pound_solve.scene import Scene
 Array = NDArray[np.float64]
 Key = tuple[Any, ...]
 
-#: cost of a regime, as `exact.WINDOW`; of its tables for each unknown; of its modes over the unknowns' cube
-REGIME, TABLE, MODES = 2e-3, 2e-5, 2e-8
+#: cost of a regime, as `exact.WINDOW`; of its products over the unknowns' square; of its modes over their cube
+REGIME, PRODUCTS, MODES = 8e-4, 1.5e-6, 8e-9
 SMALL = 128  #: modes that blocks put together may have
 
 
@@ -234,7 +234,7 @@ class Partition:
                 *((int(i), branches[i].stiffness, branches[i].damping, branches[i].held) for i in laws),
             )
             if key not in self.regimes:
-                spend(REGIME + TABLE * len(index) + MODES * len(index) ** 3)
+                spend(REGIME + PRODUCTS * len(index) ** 2 + MODES * len(index) ** 3)
                 self.regimes[key] = self._regime(index, laws, branches)
             own = [branches[i].force0 for i in laws]
             found.append((key, scene.constant[index] - scene.law_rows[np.ix_(laws, index)].T @ own))

@@ -91,11 +91,10 @@ class Exact:
     ) -> None:
         self.scene, self.sink, self.times = scene, sink, start.times
         self.refine = 2.0 ** -int(options.get("REFINE") or 0)
-        self.spent, self.most, self.most_regimes = (
-            0.0,
-            options.get("COST", np.inf),
-            options.get("REGIMES", np.inf),
-        )
+        self.spent, self.most = 0.0, options.get("COST", np.inf)
+        self.per_radian = options.get("PER_RADIAN", 0.0)
+        self.most_regimes = options.get("REGIMES", np.inf)
+        self.begin, self.end = float(start.times[0]), float(start.times[-1])
         self.laws = scene.structure.laws
         n = self.n_laws = len(self.laws)
         self.states = list(start.states)
@@ -144,10 +143,17 @@ class Exact:
         return self.outcome()
 
     def _spend(self, cost: float) -> None:
-        """Take something from what the run may cost."""
+        """Take something from what the run may cost: the faster its fastest mode, the more, as long as it
+        will do at this rate.
+        """
         self.spent += cost
-        if self.spent > self.most or len(self.partition.regimes) > self.most_regimes:
+        if len(self.partition.regimes) > self.most_regimes:
             raise CostlyError(self.spent, self.t)
+        if self.spent > self.most:
+            length = self.end - self.begin
+            whole = self.spent * length / max(self.t - self.begin, 1e-300)
+            if whole > self.most + self.per_radian * self.partition.fastest * length:
+                raise CostlyError(self.spent, self.t)
 
     def _no_overlap(self) -> None:
         """Stop where rigid bodies overlap from the start."""
@@ -603,7 +609,8 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     Stop
         Too many changes at one instant, a mechanism, numbers beyond all bounds, or an interrupt.
     CostlyError
-        It costs more than COST, or takes more than REGIMES, of the options; no deck sets them.
+        It costs more than COST and will cost more than that and PER_RADIAN for each radian of the fastest
+        mode, or takes more than REGIMES, of the options; no deck sets them.
     """
     if why := not_linear(scene):
         why = f"EXACT needs linear pieces, and {why}: AUTO takes steps"

@@ -191,6 +191,8 @@ def widen(peaks: Sequence[Peak], t0: float, t: Array, value: Array, rate: Array,
     exact : callable
         Evaluates function n in a cell.
     """
+    if not len(peaks):
+        return
     count(peaks, t0 + t.ravel(), value.reshape(len(value), -1))
     f0, s0, s1 = value[..., :-1], rate[..., :-1], rate[..., 1:]
     turn = s0 * s1 < 0
