@@ -22,7 +22,7 @@ from pound_solve.scene import Scene
 Array = NDArray[np.float64]
 Key = tuple[Any, ...]
 
-#: cost of a regime, as `exact.WINDOW`; of its products, over the unknowns' square; of its modes, over the cube
+#: cost of a regime, as `exact.WINDOW`; its products, over the unknowns' square; its modes, over the cube
 REGIME, PRODUCTS, MODES = 8e-4, 1.5e-6, 8e-9
 SMALL = 128  #: modes that blocks put together may have
 
