@@ -195,6 +195,18 @@ OUTPUT
 """
 
 
+def test_envelopes_of_chosen_nodes_and_members_are_those_of_all() -> None:
+    """The motion between the samples is looked at where OUTPUT asks for it, and nowhere else."""
+    whole = run_text(WAVES.format(refine=0, every=0.05))
+    some = run_text(WAVES.format(refine=0, every="0.05 NODES=1,3 MEMBERS=2,90"))
+    for table, of, chosen in (("node_envelope", "node", {1, 3}), ("member_envelope", "element", {2, 90})):
+        a, b = some.tables[table], whole.tables[table]
+        b = b[[row[of] in chosen for row in b]]
+        assert len(a) == len(b) > 0 and (a[of] == b[of]).all()
+        for side in ("max", "min"):
+            assert np.abs(a[side] - b[side]).max() < 1e-12 * np.abs(b[side]).max()
+
+
 def test_envelopes_see_waves_between_the_samples() -> None:
     """A bar hits a wall: envelopes with three samples are those of five thousand.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol, Self
 
@@ -270,16 +270,6 @@ def refuse_rigid(scene: Scene, start: Start, method: str) -> None:
                 f"{method} knows no rigid contact, and {s.rule} of element {s.element} is one: "
                 "EXACT takes it, or a LAW with a stiffness",
             )
-
-
-class Method(Protocol):
-    """An integrator, as a Spec's `impl`."""
-
-    def __call__(
-        self, scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink
-    ) -> Outcome:
-        """Integrate over `start.times` and hand a sample to `sink` at each of them."""
-        ...
 
 
 class Ledger:
