@@ -245,7 +245,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P221": (
         "too much generated",
-        "Ranges of the deck generate more than 200 000 numbers. Check their ends.",
+        "Ranges of the deck generate more than 1 000 000 numbers. Check their ends.",
     ),
     "P222": (
         "unknown name",

@@ -75,6 +75,11 @@ def test_peak_inside_a_piece() -> None:
     )
 
 
+def test_peak_where_the_highest_power_is_rounding() -> None:
+    f = Piecewise(np.array([0.0, 1.0]), np.array([[0.0], [-2.0], [2.0], [2.0**-52]]))
+    assert f.peak() == pytest.approx((0.5, -0.5))
+
+
 def test_extended_velocity_keeps_its_value() -> None:
     v = Piecewise.from_samples([0.0, 1.0], [2.0, 2.0]).extended(3.0).integral(1.0)
     np.testing.assert_allclose(v.value([0.0, 0.5, 1.0, 2.0, 3.0]), [1.0, 2.0, 3.0, 3.0, 3.0])

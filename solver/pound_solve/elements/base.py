@@ -161,6 +161,8 @@ class Parts:
             k[np.ix_(at, at)] += b.matrix
         own = [i for f, i in place.items() if f[1] > 2 and k[i].any()]
         nodes = [i for f, i in place.items() if f[1] < 3]
+        if len(nodes) == len(freedoms):
+            return Block(freedoms, k)
         follow = np.linalg.solve(k[np.ix_(own, own)], k[np.ix_(own, nodes)])
         left = k[np.ix_(nodes, nodes)] - k[np.ix_(nodes, own)] @ follow
         return Block(tuple(freedoms[i] for i in nodes), left)

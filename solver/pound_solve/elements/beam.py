@@ -127,6 +127,8 @@ def soften(k: Array, pins: list[int], soft: Array) -> tuple[Array, Array, Array]
     forces, shape, flexibility : ndarray, shape (6, 6)
         End forces and x for unit u, and x for unit f.
     """
+    if not pins and not soft.any():
+        return k.copy(), np.eye(6), np.zeros((6, 6))
     held, b = np.ones(6), soft.copy()
     if pins and k[np.ix_(pins, pins)].any():  # an axial bar has no bending stiffness to condense
         held[pins] = 0.0
@@ -217,7 +219,8 @@ def build(site: Site, hinged: tuple[int, ...] = (), taken: Array | None = None) 
         _, shape, _ = soften(stiffness(0.0, 1.0, length, 0.0), pins, joints)
 
     # local displacements of the flexible ends: as the nodes move them, and of the beam behind the hinges
-    at_nodes = np.kron(np.eye(2), rotation)
+    at_nodes = np.zeros((6, 6))
+    at_nodes[:3, :3] = at_nodes[3:, 3:] = rotation
     own = tuple((site.element.id, INSIDE[d]) for d in hinged)
     freedoms = tuple((n.id, d) for n in (site.i, site.j) for d in range(3)) + own
     to_ends = end_blocks(p["END1"], p["END2"]) @ at_nodes
@@ -298,7 +301,7 @@ def _loads(site: Site, length: float, phi: float, turn: Array) -> tuple[Array, A
         if card["PX"] or card["PY"]:
             points.append((card["AT"], np.array([card["PX"], card["PY"]])))
     equivalent, nodal = np.zeros(6), np.zeros(6)
-    for xi, w in zip(_GAUSS_X, _GAUSS_W):
+    for xi, w in zip(_GAUSS_X, _GAUSS_W) if uniform.any() else ():
         equivalent += w * length * shapes(xi, length, phi).T @ (turn @ uniform)
     for at, force in points:
         equivalent += shapes(at, length, phi).T @ (turn @ force)

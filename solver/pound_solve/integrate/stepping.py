@@ -264,7 +264,10 @@ class Stepper:
         x.works[:3] = start.works
         x.peak[arrays.HIGH], x.peak[arrays.LOW] = -np.inf, np.inf
         padded = np.where((pattern.ai == columns) & ~heavy[columns], 1.0, on_pattern[0])
-        ldl.factor(pattern, padded, x.l, arrays.MASS, x.q, arrays.D + arrays.MASS, arrays.W)
+        if self.matrices.diagonal:
+            x.q[arrays.D + arrays.MASS] = padded[pattern.ap[:-1]]
+        else:
+            ldl.factor(pattern, padded, x.l, arrays.MASS, x.q, arrays.D + arrays.MASS, arrays.W)
         samples = min(SAMPLES, max(HELD // (3 * max((1 + arrays.SHOWS) * n, count, 1)), 2))
         shown = samples * arrays.SHOWS
         self.z = arrays.Samples(

@@ -184,14 +184,15 @@ class Piecewise:
         width = np.diff(self.breaks)
         sampled = np.abs([_horner(self.coefs, part * width) for part in (0.0, 0.5, 1.0)]).max(axis=0)
         i = int(sampled.argmax())
-        own = np.polynomial.Polynomial(self.coefs[:, i])
-        # trailing zeros would make roots() ill-posed; a constant has no turning point
-        roots = own.deriv().trim().roots() if self.degree > 1 else np.empty(0)
+        own = np.polynomial.Polynomial(self.coefs[:, i] * width[i] ** np.arange(self.degree + 1))
+        slope = own.deriv()
+        # high powers that are rounding would make roots() ill-posed; a constant has no turning point
+        roots = slope.trim(1e-15 * np.abs(slope.coef).max()).roots() if self.degree > 1 else np.empty(0)
         turns = roots[np.isreal(roots)].real
-        at = np.concatenate(([0.0, width[i]], turns[(turns > 0) & (turns < width[i])]))
+        at = np.concatenate(([0.0, 1.0], turns[(turns > 0) & (turns < 1)]))
         values = own(at)
         k = int(np.abs(values).argmax())
-        return float(self.breaks[i] + at[k]), float(values[k])
+        return float(self.breaks[i] + at[k] * width[i]), float(values[k])
 
     def __mul__(self, factor: float) -> Piecewise:
         return Piecewise(self.breaks, self.coefs * factor)
