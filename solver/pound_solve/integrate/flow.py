@@ -372,8 +372,15 @@ class Flow(ABC):
         """Return ``row (A h)^m / m!``, shape (TERMS, n_q)."""
 
     @abstractmethod
+    def paths(self, qs: NDArray[Any], gs: NDArray[Any], times: Array) -> NDArray[Any]:
+        """Return q at rising `times` of several intervals with starts `qs` (n_q, n) and forcing `gs`
+        (n, degree + 1, n_q), shape (n_q, n, n_times).
+        """
+
     def path(self, q: NDArray[Any], g: NDArray[Any], times: Array) -> NDArray[Any]:
-        """Return q at rising `times`, shape (n_q, n_times)."""
+        """Return `paths` of one interval, shape (n_q, n_times)."""
+        out: NDArray[Any] = self.paths(q[:, None], g[None], times)[:, 0]
+        return out
 
 
 def powers(t: NDArray[Any] | float, degree: int) -> Array:
@@ -506,10 +513,8 @@ class ModalFlow(Flow):
         return found
 
     def samples(self, qs: Complex, gs: Complex, h: float, count: int) -> Complex:  # noqa: D102
-        start = np.concatenate([qs[:, :, None], gs.transpose(2, 0, 1)], axis=2)
-        out = start @ self._table(h, count, gs.shape[1] - 1)
-        self._drift(out, qs, gs, h * np.arange(count))
-        return out
+        table = self._table(h, count, gs.shape[1] - 1)
+        return self._answered(qs, gs, h * np.arange(count), table)
 
     def at(self, q: Complex, g: Complex, t: float) -> Complex:  # noqa: D102
         e, table = self._once(t, len(g) - 1)
@@ -566,11 +571,16 @@ class ModalFlow(Flow):
         out[1, self.b_rows] += h * row[self.a_rows] * self.scale
         return out
 
-    def path(self, q: Complex, g: Complex, times: Array) -> Complex:  # noqa: D102
-        e, table = self._responses(times, len(g) - 1)
-        out = (e * q[:, None] + np.einsum("kit,ki->it", table, g))[:, None]
-        self._drift(out, q[:, None], g[None], times)
-        return out[:, 0]
+    def paths(self, qs: Complex, gs: Complex, times: Array) -> Complex:  # noqa: D102
+        e, table = self._responses(times, gs.shape[1] - 1)
+        return self._answered(qs, gs, times, np.concatenate([e[:, None], table.swapaxes(0, 1)], axis=1))
+
+    def _answered(self, qs: Complex, gs: Complex, times: NDArray[Any], table: Complex) -> Complex:
+        """What a table of responses (n_q, degree + 2, n_times) makes of starts and forcing."""
+        start = np.concatenate([qs[:, :, None], gs.transpose(2, 0, 1)], axis=2)
+        out: Complex = start @ table
+        self._drift(out, qs, gs, times)
+        return out
 
     def _drift(self, out: Complex, qs: Complex, gs: Complex, t: NDArray[Any]) -> None:
         """Add what rigid-body velocities and forces do to rigid-body displacements, shape (n_q, n, n_t)."""
@@ -631,12 +641,14 @@ class SeriesFlow(Flow):
             out.append(h / m * (out[-1] @ self.space.a))
         return np.array(out)
 
-    def path(self, q: Array, g: Array, times: Array) -> Array:  # noqa: D102
+    def paths(self, qs: Array, gs: Array, times: Array) -> Array:  # noqa: D102
         # from time to time, each as the start of the next
-        out, last = np.empty((len(q), len(times))), 0.0
-        for i, t in enumerate(times):
-            q = self.at(q, polynomial.shift(g, last), float(t) - last)
-            out[:, i], last = q, float(t)
+        out = np.empty((*qs.shape, len(times)))
+        for n, (q, g) in enumerate(zip(qs.T, gs)):
+            last = 0.0
+            for i, t in enumerate(times.tolist()):
+                q = self.at(q, polynomial.shift(g, last), t - last)
+                out[:, n, i], last = q, t
         return out
 
     def at(self, q: Array, g: Array, t: float) -> Array:  # noqa: D102

@@ -33,6 +33,7 @@ Complex = NDArray[np.complex128]
 
 SLOW = 0.1  #: modes with |eigenvalue| times interval below this are expanded in powers of time
 TERMS = 11  #: of that expansion, beyond the force's own
+MOST_NUMBERS = 2**20  #: velocities that the quadrature holds at once
 MOST_SQUARED = 3e3  #: condition of the modes up to which their products are used
 
 
@@ -151,14 +152,7 @@ class Meter:
             Force polynomials on the unknowns, where massless freedoms need them.
         """
         if not self.closed_form or gs.shape[1] > 2:
-            each = [
-                self._quadrature(qs[:, i], gs[i], length, coefs[i], constant, None if ps is None else ps[i])
-                for i, length in enumerate(tau.tolist())
-            ]
-            losses = [
-                (law, np.array([w.laws[n][1] for w in each])) for n, (law, _, _) in enumerate(self.laws)
-            ]
-            return Works(np.array([w.damping for w in each]), np.array([w.input for w in each]), losses)
+            return self._quadratures(qs, gs, tau, coefs, constant, ps)
         c0, c1, forced, moments = self._split(qs, gs, tau)
         ends = np.concatenate([c0, c1], axis=1)
         ends = np.concatenate([ends.real, ends.imag])
@@ -184,22 +178,40 @@ class Meter:
         start, end = np.split((ends * (form @ ends)).sum(axis=0), 2)
         return np.asarray(end - start)
 
-    def _quadrature(
-        self, q: NDArray[Any], g: NDArray[Any], tau: float, coefs: Array, constant: Array, p: Array | None
-    ) -> Work:
-        w, points = gauss(tau, self.flow.fastest)
-        v = (self.flow.v_q @ self.flow.path(q, g, points)).real
-        if self.flow.u_p is not None and p is not None:
-            value, slope = (
-                np.array([polynomial.value(p, float(x), order) for x in points]).T for order in (0, 1)
-            )
-            v += self.flow.v_p @ value + self.flow.u_p @ slope
-        force = constant[:, None] + self.inputs @ np.einsum(
-            "kj,kt->jt", coefs, powers(points, len(coefs) - 1)
+    def _quadratures(
+        self,
+        qs: NDArray[Any],
+        gs: NDArray[Any],
+        tau: Array,
+        coefs: Array,
+        constant: Array,
+        ps: Array | None,
+    ) -> Works:
+        """Return `measures` by Gauss's rule."""
+        out = Works(
+            np.zeros(len(tau)), np.zeros(len(tau)), [(law, np.zeros(len(tau))) for law, *_ in self.laws]
         )
-        loss = float(np.einsum("it,ij,jt,t->", v, self.damping_matrix, v, w)) if self.damped else 0.0
-        losses = [(law, float(c * (w @ (row @ v) ** 2))) for law, c, row in self.laws]
-        return Work(loss, float(np.einsum("it,it,t->", v, force, w)), losses)
+        for length in np.unique(tau).tolist():
+            w, points = gauss(length, self.flow.fastest)
+            same = np.flatnonzero(tau == length)
+            at_once = max(1, MOST_NUMBERS // (len(points) * max(len(qs), len(constant))))
+            for i in range(0, len(same), at_once):
+                chosen = same[i : i + at_once]
+                times = np.broadcast_to(points, (len(chosen), len(points)))
+                q = self.flow.paths(qs[:, chosen], gs[chosen], points)
+                v = np.tensordot(self.flow.v_q, q, 1).real
+                if self.flow.u_p is not None and self.flow.v_p is not None and ps is not None:
+                    v += np.tensordot(self.flow.v_p, polynomial.on(ps[chosen], times), 1)
+                    v += np.tensordot(self.flow.u_p, polynomial.on(ps[chosen], times, 1), 1)
+                force = np.tensordot(self.inputs, polynomial.on(coefs[chosen], times), 1)
+                force += constant[:, None, None]
+                done[chosen] = np.einsum("int,int,t->n", v, force, w)
+                if self.damped:
+                    drag = np.tensordot(self.damping_matrix, v, 1)
+                    loss[chosen] = np.einsum("int,int,t->n", v, drag, w)
+                for own, (_, c, row) in zip(losses, self.laws):
+                    own[chosen] = c * (np.tensordot(row, v, 1) ** 2 @ w)
+        return Works(loss, done, [(law, own) for (law, _, _), own in zip(self.laws, losses)])
 
 
 def total_work(
