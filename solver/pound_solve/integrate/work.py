@@ -188,9 +188,7 @@ class Meter:
         ps: Array | None,
     ) -> Works:
         """Return `measures` by Gauss's rule."""
-        out = Works(
-            np.zeros(len(tau)), np.zeros(len(tau)), [(law, np.zeros(len(tau))) for law, *_ in self.laws]
-        )
+        loss, done, *losses = np.zeros((2 + len(self.laws), len(tau)))
         for length in np.unique(tau).tolist():
             w, points = gauss(length, self.flow.fastest)
             same = np.flatnonzero(tau == length)
