@@ -333,9 +333,11 @@ def contacts(spec: Spec) -> Iterator[Case]:
         yield case("a ball that comes to rest", f"stiffness {ratio:g}", deck, step=step)
     deck = BALL.format(gap=0, law=law(25.0, bodies=1), end=1.0)
     yield case("a ball that lies there", "gap 0", deck, step=STEP / 2)
-    for n, end in ((30, 0.3), (10_000, 0.1)):
-        deck = CROWD.format(n=n, law=law(bodies=1), end=end, k=STOREY)
-        yield case("many contacts at once", f"{n}", deck, heavy=n > 100)
+    crowd = {"law": law(bodies=1), "k": STOREY}
+    yield case("many contacts at once", "30", CROWD.format(n=30, end=0.3, **crowd))
+    if spec.name == "KELVIN_VOIGT":  # the number tries the program, not the law; all do as two of them do
+        decks = [CROWD.format(n=n, end=0.1, **crowd) for n in (10_000, 2)]
+        yield case("many contacts at once", "10000", decks[0], like=(decks[1], 1.0), heavy=True)
     for step in (1e-9, 1e-5, 0.05, 1.0):
         end = min(0.6, 200 * step) if step < 1e-4 else max(0.6, 2 * step)
         deck = pair(plain, gap=min(0.05, 0.1 * end), end=end, every=end / 10)
@@ -384,8 +386,8 @@ def storeys(rule: str, **given: object) -> str:
 
 
 def top(t: Array, u: Array) -> Array:
-    """The last node's motion: of two springs in line that yield without hardening, with no mass between,
-    either may have the other's share.
+    """The last node's motion: of two springs in line that yield without hardening, with hardly any mass
+    between, either may have the other's share.
     """
     return u[:, -1:]
 
@@ -413,7 +415,7 @@ def springs(spec: Spec) -> Iterator[Case]:
     for ratio in (0.0, 1e-8, 1e8):
         yield case(
             "mass of the middle over the top's", f"{ratio:g}", storeys(plain, middle=ratio),
-            compared=top if ratio == 0.0 else every,
+            compared=top if ratio < 1.0 else every,
         )  # fmt: skip
     if spec.field("R") is not None:
         for r in (-0.05, -0.5):
@@ -422,7 +424,8 @@ def springs(spec: Spec) -> Iterator[Case]:
     if spec.field("DPC") is not None:
         deck = storeys(plain, motion="TABLE POINTS=0,6,1,6", end=3.0)
         yield case("falling branch to collapse", "capped", deck)
-    yield case("resonance", "20 periods", storeys(plain, end=20.0, every=0.5))
+    deck = storeys(plain, end=20.0, every=0.5)
+    yield case("resonance", "20 periods", deck, step=STEP / 8)  # what each period is off adds up
     for share in (1.0, 10.0):
         yield case("damping over critical", f"{share:g}", storeys(plain, damping=damped(share)))
     for name, motion in (("a spike", SPIKE), ("a step", JUMP), ("zeros", ZEROS)):

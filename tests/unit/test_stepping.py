@@ -465,3 +465,32 @@ def test_lines_and_rings_are_eliminated_from_both_ends_on_few_diagonals():
     rows, columns = np.nonzero(linked[np.ix_(own, own)])
     assert sum(abs(rows - columns) == 4) >= 2 * (n - 8)  # a line would have 2, both ends in turn have 4
     assert len(ldl.analyse(n, rows, columns).li) <= 2 * n
+
+
+def test_a_step_with_endless_changes_stops_in_words(tmp_path):
+    """A massless node between two curved springs: their reversals once went past the end of the log."""
+    deck = tmp_path / "curved.inp"
+    deck.write_text(
+        """GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 1 FIX=YR
+ 3 0 2 FIX=YR
+ELEMENTS
+ 1 SPR 1 2
+ 2 SPR 2 3
+PROPS
+ SPR SPRING KX=102.64388577132932 FX=4 RULE=RAMBERG_OSGOOD N=7
+WEIGHTS
+ 3 1
+EQUAKE
+ SINE AMPLITUDE=4 PERIOD=1 DURATION=30
+ANALYSIS
+ HISTORY 1.2 METHOD=NEWMARK DT=0.001
+OUTPUT
+ EVERY=0.05
+"""
+    )
+    results = pound_solve.run(deck)
+    assert results.message.startswith("A503 at t = ")
+    assert "too many changes within one step, the last in element 1 (RAMBERG_OSGOOD)" in results.message
