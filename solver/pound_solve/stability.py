@@ -224,6 +224,8 @@ def judge(run: Runner, case: Case, method: str) -> Row:
         right = case.right(found.t)
     else:
         told = reference(run, case)
+        if told is None and case.like[0]:
+            return row(FAULT, "the deck that tells the right answer does not run")
         if told is None or len(told[0]) != len(found.t):
             return row(TOLD if says else RIGHT, says or ALONE)
         right, doubt = case.compared(*told[:2]), told[2]

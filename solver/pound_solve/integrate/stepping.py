@@ -432,7 +432,8 @@ class Stepper:
             branch = s.law.rule.branches[self.w.i[worst, arrays.AT]]
             return self.stop(
                 "A503",
-                f"too many changes within one step, the last in element {s.element} ({s.rule}): {branch}",
+                f"too many changes within one step, the last in element {s.element} ({s.rule}): {branch}; "
+                "a shorter DT may tell them apart",
             )
         return self.stop("A503", "Newton's iterations find no equilibrium, however short the step")
 
