@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from pound_solve import app
 from pound_solve.catalog import catalog
-from pound_solve.extremes import METHOD, STEP, Case, cases
+from pound_solve.extremes import KICK, METHOD, STEP, Case, cases, one
 
 Array = NDArray[np.float64]
 
@@ -124,7 +124,9 @@ def solve(deck: str, files: Mapping[str, str]) -> Found:
 
 
 def serve(line: Connection) -> None:
-    """Solve what comes along a line, in a process of its own."""
+    """Solve what comes along a line, in a process of its own; say when its kernels are compiled."""
+    solve(one(KICK).replace(METHOD, "NEWMARK DT=0.1"), {})
+    line.send(None)
     with suppress(EOFError):
         while True:
             line.send(solve(*line.recv()))
@@ -153,6 +155,7 @@ class Runner:
             self.worker = context.Process(target=serve, args=(there,), daemon=True), here
             self.worker[0].start()
             there.close()  # so that the line ends with the process
+            here.recv()
         process, line = self.worker
         line.send((text, files))
         wrong = f"no end within {self.limit:g} s"
