@@ -105,7 +105,11 @@ def solve(model: Model, self_weight: bool = True) -> Solved:
         for o in s.outputs
     }
     for spring, law_state, row in zip(s.laws, state.states, s.law_rows):
-        name = "contact" if spring.is_contact else f"force {spring.component}"
+        name = (
+            "contact"
+            if spring.is_contact
+            else f"{'moment' if spring.unit == 'F*L' else 'force'} {spring.component}"
+        )
         force[spring.element, name] = spring.law.branch(law_state).force(float(row @ state.u), 0.0)
     # reactions: let the supports go, and see what must hold them
     bare = replace(model, nodes={k: replace(n, fixed="") for k, n in model.nodes.items()}, damping=())

@@ -178,6 +178,38 @@ def _excitation(model: Model) -> Found:
             yield Diagnostic("P317", "nothing sets this history in motion", card.span, hint, "warning")
 
 
+def _no_axial_force(model: Model) -> Found:
+    """P-Delta without anything that presses the columns: the weights are masses only, unless asked for."""
+    static = [card for card in model.analyses if card.spec.name == "STATIC"]
+    kinds = [model.props[e.prop] for e in model.elements.values() if e.prop in model.props]
+    pressed = (
+        any(card.values.get("GRAVITY") == "YES" for card in static)
+        or any(card["FX"] or card["FY"] or card["MZ"] for card in model.loads)
+        or bool(model.member_loads)
+        or any(card.values.get("N0") for card in kinds)
+        or (
+            all(card.values.get("SELF_WEIGHT") != "NO" for card in static)
+            and any(card.values.get("WGT") for card in kinds)
+        )
+    )
+    if model.geometry.startswith("PDELTA") and model.weights and model.analyses and not pressed:
+        message = f"GEOMETRY {model.geometry}, but nothing loads the columns: their axial forces are zero"
+        hint = "add STATIC GRAVITY=YES, which lets the WEIGHTS press, or LOADS"
+        yield Diagnostic("P340", message, (static or model.analyses)[0].span, hint, "warning")
+
+
+def _percent(model: Model) -> Found:
+    """Damping given in percent where a share is meant."""
+    for card in model.damping:
+        given = card.values.get("XI")
+        ratios = given if isinstance(given, tuple) else () if given is None else (given,)
+        if any(xi > 1.0 for xi in ratios):
+            xi = max(ratios)
+            message = f"a damping ratio of {xi:g} is {100.0 * xi:g} % of critical: nothing would swing"
+            hint = f"XI is a share: {xi:g} % is XI={xi / 100.0:g}"
+            yield Diagnostic("P341", message, card.place("XI"), hint, "warning")
+
+
 def _drift_names(model: Model) -> Found:
     first: dict[str, Span] = {}
     for card in model.drifts:
@@ -239,6 +271,11 @@ CHECKS: Final[tuple[tuple[Callable[[Model], Found], frozenset[str]], ...]] = (
     (_unused_props, _MEMBERS | _PROPS),
     (_loose_nodes, _NODES | _MEMBERS),
     (_excitation, frozenset({"EQUAKE", "FORCES", "INITIAL", "LOADS", "MEMBER_LOADS"})),
+    (
+        _no_axial_force,
+        _MEMBERS | _PROPS | frozenset({"ANALYSIS", "LOADS", "MEMBER_LOADS", "WEIGHTS"}),
+    ),
+    (_percent, frozenset()),
     (_drift_names, frozenset()),
     (_drift_heights, frozenset()),
     (_node_like_weights, frozenset()),

@@ -399,6 +399,19 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "pattern. It needs a TARGET (with CONTROL=FORCE a FACTOR will do), FORCES go with PATTERN=FORCES "
         "and as many NODES, ADAPTIVE=YES with PATTERN=MODE; the other patterns need mass.",
     ),
+    "P336": (
+        "contact pressed at rest (warning)",
+        "GAP is below zero: the bodies overlap at rest and press each other. A distance is positive.",
+    ),
+    "P340": (
+        "P-Delta without axial forces (warning)",
+        "GEOMETRY asks for P-Delta, but no load presses the columns, so it does nothing. Weights are "
+        "masses; STATIC GRAVITY=YES makes them loads too.",
+    ),
+    "P341": (
+        "damping ratio above one (warning)",
+        "XI under DAMPING is a share of critical damping, not percent: 5 % is 0.05.",
+    ),
     "R401": (
         "record not found",
         "The record stands neither in the deck's folder nor in the record folders. Check its name, "
@@ -438,8 +451,9 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "A503": (
         "no progress",
-        "Too many events happen at one instant, or the step falls below its least size. Check "
-        "stiffness and restitution of the contacts.",
+        "Too many events happen at one instant or within one step, or the step falls below its least "
+        "size. Take a shorter DT or METHOD=EXACT; check stiffness and restitution of the contacts. NEWMARK "
+        "with EVENTS=STEPPED and a short DT does not search for events and may go on.",
     ),
     "A504": (
         "runaway or not a number",

@@ -120,7 +120,7 @@ def prepare(request: Request) -> Prepared:
     except AssemblyError as err:
         found += err.diagnostics
     if structure is not None:
-        found += _inclined(structure) + pushover.mistakes(structure)
+        found += _inclined(structure) + _pressed(structure) + pushover.mistakes(structure)
     saved = _saved(model, request, found)
     if has_errors(found) or structure is None:
         raise DeckError(found, files)
@@ -194,6 +194,24 @@ def _inclined(structure: Structure) -> list[Diagnostic]:
             hint = "give ANGLE (0 for floors that meet along x) if that is not meant"
             out.append(Diagnostic("P334", message, element.span, hint, "warning"))
     return out
+
+
+def _pressed(structure: Structure) -> list[Diagnostic]:
+    """Contacts that are closed at rest: some programs write the gap with a minus sign."""
+    elements, props = structure.model.elements, structure.model.props
+    used = dict.fromkeys(elements[s.element].prop for s in structure.laws if s.is_contact)
+    hint = "a distance is positive; leave it if the bodies are pressed on purpose"
+    return [
+        Diagnostic(
+            "P336",
+            f"contacts of {label} are pressed at rest: GAP is {props[label]['GAP']:g}",
+            props[label].place("GAP"),
+            hint,
+            "warning",
+        )
+        for label in used
+        if props[label]["GAP"] < 0.0
+    ]
 
 
 def context(model: Model, request: Request) -> Context:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_deck.diagnostics import Diagnostic
-from pound_deck.model import Card, Model
+from pound_deck.model import Card, Element, Model
 from pound_solve import modes
 from pound_solve.chords import Chords
 from pound_solve.damping.base import DampingError, Ground
@@ -171,6 +171,18 @@ class AssemblyError(Exception):
         self.diagnostics = diagnostics
 
 
+def _refusal(model: Model, label: str, message: str, item: str, elements: list[Element]) -> Diagnostic:
+    """What is wrong with the elements of one property set, told once."""
+    first, *others = elements
+    more = f" and {len(others)} more" if others else ""
+    return Diagnostic(
+        "P330",
+        f"element {first.id}{more} ({label}): {message}",
+        model.props[label].place(item),
+        hint=f"element {first.id} stands at {first.span}",
+    )
+
+
 def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = True) -> Structure:
     """Assemble a model.
 
@@ -207,6 +219,7 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
         model.elements.values(), key=lambda e: model.props[e.prop].spec.name == "CONTACT"
     )
     masses_known = False
+    refused: dict[tuple[str, str, str], list[Element]] = {}
     for element in contacts_last:
         prop = model.props[element.prop]
         if prop.spec.name == "CONTACT" and not masses_known:
@@ -232,19 +245,13 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
         try:
             parts[element.id] = prop.spec.impl(site)
         except ElementError as err:
-            problems.append(
-                Diagnostic(
-                    "P330",
-                    f"element {element.id} ({prop.label}): {err}",
-                    prop.place(err.item),
-                    hint=f"element {element.id} stands at {element.span}",
-                )
-            )
+            refused.setdefault((prop.label, str(err), err.item), []).append(element)
             continue
         nodes = frozenset(k for k in (element.i, element.j) if k is not None)
         mass_terms += [(nodes, b.freedoms, b.matrix) for b in parts[element.id].mass]
     if not masses_known:
         _add_diagonals(mass_terms, model, nodal_mass)
+    problems += [_refusal(model, *why, elements) for why, elements in refused.items()]
     if problems:
         raise AssemblyError(problems)
     ordered = [parts[e] for e in model.elements]

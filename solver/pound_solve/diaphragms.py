@@ -47,15 +47,19 @@ class Meeting:
 
         The impulse is spread over the duration, but over no longer than the first force of the theory
         would take for its impulse: the weak second phase of a staircase and the tail of a coarse mesh are
-        no plateau.  A contact of more than twice the duration of the theory is no such collision.
+        no plateau.
         """
-        if self.pair is not None and duration <= 2.0 * self.pair.duration:
+        if self.pair is not None and not self.pushing(duration):
             duration = min(duration, self.pair.impulse / self.pair.force)
         return impulse / duration if duration > 0.0 else math.nan
 
-    def predicted(self, approach: float) -> float:
-        """First force of the theory at that approach speed [F]; NaN without a theory."""
-        return math.nan if self.pair is None else self.pair.force * approach
+    def predicted(self, approach: float, duration: float) -> float:
+        """First force of the theory at that approach speed [F]; NaN where it does not hold."""
+        return math.nan if self.pair is None or self.pushing(duration) else self.pair.force * approach
+
+    def pushing(self, duration: float) -> bool:
+        """Whether a contact lasts too long for a collision of waves: more than twice the theory's time."""
+        return self.pair is not None and duration > 2.0 * self.pair.duration
 
 
 def sides(
@@ -97,7 +101,7 @@ def _meeting(structure: Structure, members: Mapping[int, Sequence[int]], spring:
     rigid = [n for n, d in zip("IJ", both) if math.isinf(d.stiffness) and not math.isinf(d.mass)]
     if rigid and not given:
         # a mass at a column is no floor: what holds it matters, and the theory does not know it
-        what = f"{' and '.join(rigid)} rigid: no theory without DIAPHRAGMS on the contact's card"
+        what = f"{' and '.join(rigid)} rigid, no member behind: a theory only with DIAPHRAGMS under PROPS"
         return Meeting(both, None, math.nan, what)
     pair = Pair(first, second)
     plasticity = prop["R"] if spring.rule == "EQUIVALENT" else 1.0

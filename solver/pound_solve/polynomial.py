@@ -38,15 +38,16 @@ def shift(coefs: Array, t: float | Array) -> Array:
     -------
     ndarray, shape of `coefs`
     """
-    table, power = _binomials(len(coefs))
+    if not np.any(t):
+        return coefs
     if np.ndim(t) == 0:
-        if t == 0.0:
-            return coefs
+        table, power = _binomials(len(coefs))
         return np.asarray((table * float(t) ** power) @ coefs.reshape(len(coefs), -1)).reshape(coefs.shape)
-    factors = table.reshape(*table.shape, *([1] * np.ndim(t))) * np.asarray(t) ** power.reshape(
-        *power.shape, *([1] * np.ndim(t))
-    )
-    return (factors * coefs).sum(axis=1)
+    out = np.array(coefs)
+    for k in range(len(out) - 1):  # Horner's divisions, which need no room beside the coefficients
+        for i in range(len(out) - 2, k - 1, -1):
+            out[i] += t * out[i + 1]
+    return out
 
 
 def value(coefs: Array, t: float, order: int = 0) -> Array:
@@ -61,24 +62,28 @@ def value(coefs: Array, t: float, order: int = 0) -> Array:
     return np.asarray(out)
 
 
-def along(coefs: Array, t: Array, order: int = 0) -> Array:
-    """`value` of several sets of polynomials, each at all of the times, one set after the other.
+def on(coefs: Array, t: Array, order: int = 0) -> Array:
+    """`value` of several sets of polynomials, each at times of its own.
 
     Parameters
     ----------
     coefs : ndarray, shape (n_sets, degree + 1, n)
-    t : ndarray, shape (n_times,)
+    t : ndarray, shape (n_sets, n_times)
     order : int
 
     Returns
     -------
-    ndarray, shape (n, n_sets * n_times)
+    ndarray, shape (n, n_sets, n_times)
     """
-    sets, terms, n = coefs.shape
+    _, terms, n = coefs.shape
     if order >= terms:
-        return np.zeros((n, sets * len(t)))
-    weights = _falling(terms, order)[:, None] * t ** np.arange(terms - order)[:, None]
-    return np.asarray(coefs[:, order:].transpose(2, 0, 1) @ weights).reshape(n, sets * len(t))
+        return np.zeros((n, *t.shape))
+    own = coefs[:, order:].transpose(1, 2, 0)[..., None]  # power, polynomial, set
+    factors = _falling(terms, order).tolist()
+    out = np.broadcast_to(factors[-1] * own[-1], (n, *t.shape))
+    for factor, x in zip(factors[-2::-1], own[-2::-1]):
+        out = out * t + factor * x
+    return out
 
 
 def values(coefs: Array, t: Array, order: int = 0) -> Array:

@@ -212,23 +212,30 @@ def _print(
         lines += _lines(row)
         lines += [[""] * len(panel)] if number in ends else []
     align = ["left" if c.is_text else "right" for c in panel]
-    text = tabulate(lines, tablefmt="plain", disable_numparse=True, colalign=align)
+    # a column is one cell of many lines: tabulate looks at every cell several times
+    cell = ["\n".join(column) for column in zip(*lines)]
+    text = tabulate(
+        [cell], tablefmt="plain", disable_numparse=True, colalign=align, preserve_whitespace=True
+    )
     return [_INDENT + line for line in text.split("\n")]
 
 
 def _lines(row: Sequence[str]) -> list[list[str]]:
     """Row of cells, some of several lines, as rows of one line each."""
+    if not any("\n" in cell for cell in row):
+        return [list(row)]
     return [list(line) for line in itertools.zip_longest(*(cell.split("\n") for cell in row), fillvalue="")]
 
 
 def _width(head: str, cells: Iterable[str]) -> int:
-    return max(len(line) for text in (head, *cells) for line in text.split("\n"))
+    return max(map(len, "\n".join((head, *cells)).split("\n")))
 
 
 def _format(column: Column, values: list[Any]) -> list[str]:
     """Cells of one column, numbers with as many decimals each; ``-`` for no value."""
     if column.fmt == "text":
-        return [_plain(v)[: column.clip or None] for v in values]
+        plain = {v: _plain(v)[: column.clip or None] for v in set(values)}
+        return [plain[v] for v in values]
     if column.fmt == "int":
         return [column.zero if column.zero and not v else str(v) for v in values]
     real = [0.0 if abs(v) < _DUST else v for v in values if math.isfinite(v)]
@@ -269,7 +276,7 @@ def _numbers(values: list[float], digits: int) -> list[str]:
 
 def _unsigned_zero(text: str) -> str:
     """The same number, but no minus before a zero."""
-    return text[1:] if re.fullmatch(r"-[0.]+", text) else text
+    return text[1:] if text[0] == "-" and not text.strip("-0.") else text
 
 
 def _plain(text: str) -> str:

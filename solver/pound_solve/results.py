@@ -138,12 +138,20 @@ class Writer:
         if name not in TABLES:
             raise ValueError(f"no table {name!r} in TABLES")
         columns = TABLES[name].columns
-        records = [_record(name, columns, number, row) for number, row in enumerate(rows)]
         dtype = np.dtype([(c.name, _DTYPES.get(c.fmt, np.dtype("f8"))) for c in columns])
+        records = list(rows)
+        for number, row in enumerate(records):
+            if len(row) != len(columns):
+                raise ValueError(
+                    f"table {name!r}, row {number}: {len(row)} values for {len(columns)} columns"
+                )
+        data = np.empty(len(records), dtype)
+        for column, values in zip(columns, zip(*records)):
+            data[column.name] = _checked(name, column, values)
         group = self._file["tables"]
         if name in group:
             del group[name]
-        dataset = group.create_dataset(name, data=np.array(records, dtype=dtype))
+        dataset = group.create_dataset(name, data=data)
         dataset.attrs["title"] = TABLES[name].title
         dataset.attrs["note"] = _storable(note or "")
         dataset.attrs["columns"] = [c.name for c in columns]
@@ -413,23 +421,23 @@ class Results:
         return _find(self._datasets, name, "history", name, self.histories)
 
 
-def _record(table: str, columns: tuple[Column, ...], number: int, row: Sequence[Any]) -> tuple[Any, ...]:
-    """One checked row, ready to store."""
-    if len(row) != len(columns):
-        raise ValueError(f"table {table!r}, row {number}: {len(row)} values for {len(columns)} columns")
-    return tuple(_cell(table, c, number, v) for c, v in zip(columns, row))
-
-
-def _cell(table: str, column: Column, number: int, value: Any) -> Any:
+def _checked(table: str, column: Column, values: Sequence[Any]) -> Sequence[Any]:
+    """The values of one column, ready to store."""
     kind: type = {"text": str, "int": Integral}.get(column.fmt, Real)
-    if not isinstance(value, kind) or isinstance(value, bool):
-        name = kind.__name__.lower()
-        raise TypeError(f"table {table!r}, row {number}, column {column.name!r}: {value!r} is not {name}")
-    return _storable(value) if isinstance(value, str) else value
+    wrong = {own for own in set(map(type, values)) if not issubclass(own, kind) or issubclass(own, bool)}
+    for number, value in enumerate(values if wrong else ()):
+        if type(value) in wrong:
+            name = kind.__name__.lower()
+            raise TypeError(
+                f"table {table!r}, row {number}, column {column.name!r}: {value!r} is not {name}"
+            )
+    return list(map(_storable, values)) if kind is str else values
 
 
 def _storable(text: str) -> str:
     """Text that HDF5 can hold: no NUL, nothing outside UTF-8 (undecodable bytes in file names)."""
+    if text.isascii() and "\0" not in text:
+        return text
     return text.replace("\0", "\N{REPLACEMENT CHARACTER}").encode("utf-8", "replace").decode("utf-8")
 
 

@@ -31,6 +31,7 @@ from pound_solve.tables import Column, Table
 TAKES_PART = 0.1  #: component of a mode, largest 1, from which it is taken for a building's own
 NAN: Final = math.nan
 FREE, MET = "free: nothing met", "pounding: something met"
+UNKNOWN = "; no DDC without periods and damping: MODAL SHAPES=YES, or --periods and --damping"
 
 TABLE: Final = Table(
     "separation",
@@ -48,7 +49,7 @@ TABLE: Final = Table(
         Column("ddc", "DDC", "L", "num", "double difference combination"),
         Column("needed", "gap\nneeded", "L", "num", "largest closure of this run, if nothing met"),
         Column("gap", "gap of\nthe deck", "L", "num", "gap of the contact"),
-        Column("note", "run", doc="whether the peaks are those of buildings that move freely"),
+        Column("note", "run", doc="whether the buildings moved freely, and what is not known"),
     ),
     note="Peaks are absolute displacements from the node envelopes of this run. The gap needed is its "
     "largest closure, if nothing met in it; else run the deck with gaps that stay open. The period of a "
@@ -115,14 +116,17 @@ def rows(
         modes = [_mode(results, node, way) for node in nodes]
         t1, t2 = periods or [m[0] for m in modes]
         xi1, xi2 = damping or [m[1] for m in modes]
+        note = MET if met else FREE
         if u2 == 0.0 or u1 == 0.0:
             ddc = u1 + u2  # one side stands still: nothing to correlate
+        elif math.isnan(t1 + t2 + xi1 + xi2):
+            ddc, note = NAN, note + UNKNOWN
         else:
             ddc = double_difference(u1, u2, correlation(t1, t2, xi1 / 100.0, xi2 / 100.0))
         gap = float(law["gap"])
         closure = NAN if met else gap - float(summary[law["contact"]]["min_gap"])
         sums = (u1 + u2, math.hypot(u1, u2), ddc)
-        out.append((law["contact"], u1, u2, t1, t2, xi1, xi2, *sums, closure, gap, MET if met else FREE))
+        out.append((law["contact"], u1, u2, t1, t2, xi1, xi2, *sums, closure, gap, note))
     return out
 
 

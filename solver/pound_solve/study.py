@@ -241,12 +241,7 @@ class _Bench:
                 reference = Reference(fine.peaks, own, "EXACT with REFINE=2")
         stepping = [m for m in plan.methods if "DT" in {f.name for f in self.methods[m].fields}]
         if reference is None:
-            if not stepping:
-                raise StudyError("without EXACT a study needs a method with steps: name one in --methods")
-            ladder = self._ladder(stepping[0], None)
-            reference = extrapolated(stepping[0], ladder)
-            # the two finest made the reference: their own errors would flatter
-            out[stepping[0]] = [t for t in ladder if t.stopped] + [t for t in ladder if not t.stopped][:-2]
+            reference = self._stepped(stepping, out)
         for method in plan.methods:
             if method not in out:
                 ways = self._ladder if method in stepping else self._tolerances
@@ -255,6 +250,23 @@ class _Bench:
         return [
             replace(t, errors=errors(t.peaks, known.peaks)) for m in plan.methods for t in out[m]
         ], known
+
+    def _stepped(self, methods: Sequence[str], out: dict[str, list[Trial]]) -> Reference:
+        """The limit of the first of some methods that follows the motion with such steps; the ladders that
+        were run go into `out`.
+        """
+        why = StudyError("without EXACT a study needs a method with steps: name one in --methods")
+        for method in methods:
+            out[method] = ladder = self._ladder(method, None)
+            try:
+                reference = extrapolated(method, ladder)
+            except StudyError as err:
+                why = err
+                continue
+            # the two finest made the reference: their own errors would flatter
+            out[method] = [t for t in ladder if t.stopped] + [t for t in ladder if not t.stopped][:-2]
+            return reference
+        raise why
 
     def _ladder(self, method: str, reference: Reference | None) -> list[Trial]:
         """Trials with shorter and shorter steps; without a reference until they change no more."""

@@ -324,8 +324,9 @@ _GROUND = (
             _time("end", "end", "time at which the motion ends"),
             Column("sha256", doc="checksum of the record's file", clip=12),
         ),
-        note="Velocity and displacement are integrals of the record as it stands, without baseline "
-        "correction. The checksum is cut to its first 12 characters.",
+        note="Peaks are those of the whole motion, from start to end, even if the history is shorter. "
+        "Velocity and displacement are integrals of the record as it stands, without baseline correction. "
+        "The checksum is cut to its first 12 characters.",
     ),
     Table(
         "forces",
@@ -650,7 +651,8 @@ _CONTACTS = (
                 "predicted\nforce",
                 "F",
                 "short",
-                "first force of the diaphragms at this approach velocity, Eq 11 of Cole et al. 2011",
+                "first force of the diaphragms at this approach velocity, Eq 11 of Cole et al. 2011; NaN "
+                "where contact lasts more than twice as long as predicted",
             ),
             Column("force_error", "error", "%", "percent", "predicted over peak force, less one"),
         ),

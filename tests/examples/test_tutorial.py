@@ -20,6 +20,7 @@ from typing import Any
 import pytest
 
 from pound_solve.cli import main
+from pound_solve.tables import SECTIONS, TABLES
 
 MANUAL = Path(__file__).parents[2] / "manual"
 EXAMPLE = Path(__file__).parents[2] / "examples" / "01_two_oscillators"
@@ -159,3 +160,17 @@ def test_the_numbers_in_the_prose():
         assert said in text
     for shown in ("6287.97", "2140.9", "0.14994", "3900.545", "0.0037275", "25.966", "0.64617", "0.41362"):
         assert shown in text
+
+
+def test_sections_and_tables_have_the_numbers_that_the_tutorial_gives():
+    page = (MANUAL / "tutorial.md").read_text("utf-8")
+    heads = dict(re.findall(r"^### (\d+) (\w+)", page, re.MULTILINE))
+    titles = {str(n): heading for n, (heading, _) in enumerate(SECTIONS, 1)}
+    assert len(heads) >= 7 and all(titles[n].upper().startswith(word.upper()) for n, word in heads.items())
+    tables = {
+        f"{n}.{k}": TABLES[name].title
+        for n, (_, names) in enumerate(SECTIONS, 1)
+        for k, name in enumerate(names, 1)
+    }
+    named = re.findall(r'Table (\d+\.\d+), "([^"]+)"', page)
+    assert named and all(tables[number] == title for number, title in named)

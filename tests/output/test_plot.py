@@ -72,6 +72,44 @@ def test_energies_pile_up_to_the_input(results: Results) -> None:
     assert top == pytest.approx(results.history("energy")[:, 0].max(), rel=1e-6)
 
 
+LOADED = """
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 1 FIX=Y
+ELEMENTS
+ 1 FOOT 1 2
+PROPS
+ FOOT SPRING KX=100 KR=50 FX=1 MR=1 RULE=BILINEAR
+WEIGHTS
+ 2 1 0 1
+LOADS
+ 2 0.5 0 0.2
+EQUAKE
+ SINE AMPLITUDE=2 PERIOD=0.7
+ANALYSIS
+ STATIC
+ HISTORY 1
+"""
+
+
+def test_a_loaded_structure_starts_with_energy_and_turns_in_radians(tmp_path: Path) -> None:
+    deck = tmp_path / "loaded.inp"
+    deck.write_text(LOADED, encoding="utf-8")
+    with pound_solve.run(deck, out=tmp_path) as results:
+        axes = course.energy(results).axes[0]
+        strain = 0.5 * (0.5**2 / 100 + 0.2**2 / 50)
+        (line,) = lines(axes)
+        assert line[0, 1] == pytest.approx(strain)
+        # the pile and the line stay together: nothing is lost
+        top = axes.collections[-1].get_paths()[0].vertices[:, 1].max()
+        assert top == pytest.approx(line[:, 1].max(), rel=1e-6) and top > 2 * strain
+        across, turn = course.loops(results).axes[:2]
+        assert (across.get_xlabel(), across.get_ylabel()) == ("deformation [m]", "force [kN]")
+        assert (turn.get_xlabel(), turn.get_ylabel()) == ("rotation [rad]", "moment [kN*m]")
+        assert results.history_units("node/a")[:3] == ("m/s^2", "m/s^2", "rad/s^2")
+
+
 def test_every_collision_is_marked(results: Results) -> None:
     figure = course.collisions(results)
     marked = np.concatenate([c for c in lines(figure.axes[0]) if len(c)])

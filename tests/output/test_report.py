@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from output import sample
+from pound_solve.course import zeroed
 from pound_solve.report import WIDTH, render
 from pound_solve.results import Results, Writer
 from pound_solve.tables import SECTIONS, TABLES
@@ -227,3 +228,11 @@ def test_a_column_of_a_newer_version_may_be_missing(tmp_path: Path) -> None:
         file["tables/reactions"].attrs.update(attrs)
     with Results.open(path) as results:
         assert re.search(r"force X\n  node +\[kN\]", render(results))
+
+
+def test_rounding_is_no_force() -> None:
+    values = np.array([600.0, -3e-14, 2e-13, -5e-26, 1e-9, 0.0])
+    kinds = ("kN", "kN", "kN*m", "kN*m", "kN", "kN")
+    # a moment is measured against moments: the largest of a kind stays, however small
+    assert zeroed(values, kinds).tolist() == [600.0, 0.0, 2e-13, 0.0, 1e-9, 0.0]
+    assert zeroed(np.array([]), ()).size == 0

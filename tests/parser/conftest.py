@@ -77,6 +77,7 @@ def make_catalog() -> Catalog:
                 (
                     Field("ALPHA", real, "1/T", default=0.0),
                     Field("BETA", real, "T", default=0.0),
+                    Field("XI", real, "-", default=None, count=(1, 2), lo=0),
                     Field("NODES", Kind.NODES, default=None),
                     Field("PROPS", Kind.PROPS, default=None),
                 ),

@@ -137,7 +137,8 @@ def test_energy_balances(seed: int, tau: float) -> None:
     flow = make_flow(m, c, k, np.eye(n))
     u, v, p = rng.normal(size=n), rng.normal(size=n), rng.normal(size=(2, n))
     q, g = flow.enter(u, v), flow.push(p)
-    found = Meter(flow, c, np.eye(n), []).measure(q, g, tau, p, np.zeros(n))
+    meter = Meter(flow, c, np.eye(n), [])
+    found = meter.measures(q[:, None], g[None], np.array([tau]), p[None], np.zeros(n))
     energies = []
     for at in (q, flow.at(q, g, tau)):
         x, y = (flow.u_q @ at).real, (flow.v_q @ at).real

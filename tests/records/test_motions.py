@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
@@ -137,6 +138,14 @@ class TestRecord:
         assert any("500 g" in w for w in self.build(tmp_path, text, DT=0.01).info["warnings"])
         assert self.build(tmp_path, text, DT=0.01, UNIT="GAL").info["warnings"] == ()
 
+    @pytest.mark.parametrize(("scale", "unit", "told"), [
+        (9.81, "G", True), (-9.81, "G", True), (9.81, "GAL", False), (9.5, "G", False), (1.0, "G", False),
+    ])  # fmt: skip
+    def test_gravity_counted_twice(self, tmp_path: Path, scale: float, unit: str, told: bool) -> None:
+        motion = self.build(tmp_path, "1\n0.2\n-0.1\n" if unit == "G" else "1\n20\n-10\n", DT=0.01,
+                            UNIT=unit, SCALE=scale)  # fmt: skip
+        assert any("SCALE" in w and "anyway" in w for w in motion.info["warnings"]) is told
+
 
 class TestSine:
     @pytest.mark.parametrize("period", [1.0, 0.37, 1 / 3])
@@ -189,6 +198,22 @@ class TestSine:
         np.testing.assert_allclose(motion.displacement(6.0).value(t), d, atol=1e-14)
         integrated = motion.acceleration.extended(6.0).integral(0.0).integral(0.0)
         np.testing.assert_allclose(integrated.value(t), d, atol=1e-14)
+
+    def test_a_long_one_keeps_its_acceleration_and_little_else(self) -> None:
+        card = {"AMPLITUDE": 1.0, "PERIOD": 1.0}
+        sine.build(card, context(duration=1.0))  # what the first call imports is not of the motion
+        tracemalloc.start()
+        try:
+            a = sine.build(card, context(duration=500.0)).acceleration
+            kept, most = (x / a.coefs.nbytes for x in tracemalloc.get_traced_memory())
+            assert kept < 1.2 and most < 4.0
+            tracemalloc.reset_peak()
+            other = a.on(np.union1d(a.breaks, a.breaks[:-1] + 0.01))  # on twice as many pieces
+            assert tracemalloc.get_traced_memory()[1] < 4.0 * other.coefs.nbytes
+        finally:
+            tracemalloc.stop()
+        t = np.linspace(0.0, 500.0, 997)
+        np.testing.assert_allclose(other.value(t), np.sin(2 * np.pi * t), atol=1e-11)
 
     def test_sine_that_never_begins(self) -> None:
         motion = sine.build({"AMPLITUDE": 1.0, "PERIOD": 1.0, "START": 9.0}, context(duration=5.0))

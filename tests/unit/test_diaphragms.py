@@ -96,7 +96,7 @@ def test_a_bar_on_a_mass_has_a_theory_only_where_the_card_says_so() -> None:
         structure = structure_of(CHAIN.format(turn=0, ends="4 9", more=more))
         (found,) = meetings(structure).values()
         assert (found.pair is not None) == known
-        assert known or found.note.startswith("J rigid: no theory")
+        assert known or found.note.startswith("J rigid, no member behind:")
 
 
 # ---------------------------------------------------------------------- the report
@@ -146,6 +146,11 @@ def test_the_plateau_of_short_and_of_long_contacts() -> None:
     assert found.plateau(6.0, 1.9) == pytest.approx(4.5)
     assert found.plateau(6.0, 5.0) == 1.2
     assert math.isnan(found.plateau(6.0, math.nan)) and math.isnan(found.plateau(6.0, 0.0))
+    # a contact that pushes for longer than waves collide has no first force
+    assert found.predicted(3.0, 3.9) == pytest.approx(2.0) and found.predicted(
+        3.0, math.nan
+    ) == pytest.approx(2.0)
+    assert math.isnan(found.predicted(3.0, 4.1))
 
 
 def test_equal_bars_need_no_warning_and_rigid_masses_have_no_theory(tmp_path: Path) -> None:

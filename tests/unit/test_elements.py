@@ -61,7 +61,8 @@ LOADS
 """)
     force = turn @ np.array(f)
     assert turn @ r.u[1] == pytest.approx(force / [100, 300, 50], rel=1e-9, abs=1e-13)
-    assert [r.force[4, f"force {x}"] for x in "XYR"] == pytest.approx(force, rel=1e-9, abs=1e-12)
+    names = ("force X", "force Y", "moment R")
+    assert [r.force[4, x] for x in names] == pytest.approx(force, rel=1e-9, abs=1e-12)
 
 
 def test_hysteretic_and_elastic_components_take_the_same_signs():

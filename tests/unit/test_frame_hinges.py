@@ -226,7 +226,7 @@ def test_a_hardening_cantilever(lp):
         turn = max(p * n - my, 0.0) * (1 / r - 1) * lp / EI
         close(s.u[2][1:], [p * n**3 / (3 * EI) + turn * n, p * n**2 / (2 * EI) + turn], 1e-11)
         assert s.force[7, "moment I"] == pytest.approx(-p * n) and s.state.events == (p > 25)
-        assert s.force[7, "force hinge I"] == pytest.approx(p * n)
+        assert s.force[7, "moment hinge I"] == pytest.approx(p * n)
 
 
 def test_strengths_are_those_of_sagging_and_hogging():
@@ -247,7 +247,7 @@ LOADS
 """
             s = solved(deck)
             assert s.state.events == yields
-            assert s.force[7, f"force hinge {end}"] == pytest.approx(4.0 * p)
+            assert s.force[7, f"moment hinge {end}"] == pytest.approx(4.0 * p)
 
 
 def test_rigid_blocks_put_the_hinge_at_their_face():
@@ -304,7 +304,7 @@ MEMBER_LOADS
         s = solved(deck.format(w=-w))
         close(s.u[2][1], -sag, 1e-10)
         assert s.force[1, "moment J"] == pytest.approx(middle, rel=1e-10) and s.state.events == events
-        assert s.force[1, "force hinge I"] == pytest.approx(-min(w / w1, 1) * m)
+        assert s.force[1, "moment hinge I"] == pytest.approx(-min(w / w1, 1) * m)
     with pytest.raises(static.Unstable, match="mechanism, worst at"):
         solved(deck.format(w=-1.001 * w2))
 
@@ -350,7 +350,7 @@ def test_pushover_ladder_of_a_portal():
         assert s.u[3][0] == pytest.approx(u, rel=1e-6)  # stiff in the axial direction, not rigid
         assert s.state.events == events
         feet = min(load / first, 1) * m
-        assert abs(s.force[1, "force hinge I"]) == pytest.approx(feet, rel=1e-6)
+        assert abs(s.force[1, "moment hinge I"]) == pytest.approx(feet, rel=1e-6)
         assert s.force[1, "moment I"] + s.force[1, "moment J"] == pytest.approx(load / 2 * h, rel=1e-6)
     with pytest.raises(static.Unstable, match="mechanism"):
         solved(portal(1.001 * last))

@@ -193,7 +193,7 @@ def test_a_column_on_a_spring():
         assert s.u[3][0] == pytest.approx(16 / (900 - 4 * weight), rel=1e-4)
         assert s.state.buckling == pytest.approx(225 / weight, rel=1e-4)
         # the foot feels H h + P u
-        assert abs(s.force[1, "force R"]) == pytest.approx(4 + weight * s.u[3][0], rel=1e-9)
+        assert abs(s.force[1, "moment R"]) == pytest.approx(4 + weight * s.u[3][0], rel=1e-9)
     with pytest.raises(
         Unstable, match=r"buckles: its buckling load factor is 0\.9[0-9]+, which is below 1"
     ):

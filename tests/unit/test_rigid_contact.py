@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from decks import scene_of, structure_of
+from pound_solve import polynomial
 from pound_solve.analyses import static
 from pound_solve.analyses.path import Unstable
 from pound_solve.assemble import AssemblyError
@@ -298,11 +299,11 @@ def test_what_is_held_stays_held_and_the_rest_balances(light: int) -> None:
     whole = np.hstack([p, x, first, second])
     flow = make_flow(m, c, k, np.zeros((n, 1)), rows)
     g, q0 = flow.push(whole), flow.enter(*rng.normal(size=(2, n)))
-    u_p, v_p = flow.u_p, flow.space.v_p
+    u_p, v_p = flow.u_p, flow.v_p
     assert u_p is not None and v_p is not None
     for t in (0.0, 0.3, 2.0):
         q = flow.at(q0, g, t)
-        rate = flow.rate(q, g, t)
+        rate = flow.onward(np.eye(len(q), dtype=q.dtype)) @ q + polynomial.value(g, t)
         f, df = whole[0] + t * whole[1] + t * t * whole[2], whole[1] + 2 * t * whole[2]
         ddf = 2 * whole[2]
         u = (flow.u_q @ q).real + u_p @ f

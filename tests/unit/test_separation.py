@@ -131,6 +131,20 @@ def test_given_periods_and_a_wall(tmp_path: Path) -> None:
         assert row[2] == 0.0 and row[7:10] == pytest.approx((0.03, 0.03, 0.03))
 
 
+def test_without_mode_shapes_there_is_no_ddc(tmp_path: Path) -> None:
+    deck, words = tmp_path / "walls.inp", WALLS.replace(" MODAL 2", " MODAL 2 SHAPES=NO")
+    deck.write_text(words.format(ends="2 4", angle="0"), encoding="utf-8")
+    with run(deck, out=tmp_path) as results:
+        (row,) = rows(results)
+        assert row[8] == pytest.approx(math.hypot(0.03, 0.02))  # SRSS needs no periods
+        assert math.isnan(row[9]) and "--periods" in row[12]
+        assert "SHAPES=YES" in " ".join(text(results).split())
+        (row,) = rows(results, (0.4, 0.4))  # the damping is still not known
+        assert math.isnan(row[9])
+        (row,) = rows(results, (0.4, 0.4), (3.0, 3.0))
+        assert row[9] == pytest.approx(0.01) and row[12] == "free: nothing met"
+
+
 def test_a_run_in_which_they_meet_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with ran(tmp_path, gap=0.04) as results:
         (row,) = rows(results)

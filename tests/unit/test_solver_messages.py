@@ -10,7 +10,7 @@ from pound_solve.app import DeckError, Request, prepare
 
 BAD = Path(__file__).parents[1] / "parser" / "bad"
 EXPECT = re.compile(r"! expect ([PR]\d+) (\d+):(\d+) solver\n")
-WARNINGS = {"P334"}
+WARNINGS = {"P334", "P336"}
 DECKS = sorted(path for path in BAD.glob("*.inp") if EXPECT.match(path.read_text("utf-8")))
 
 
@@ -32,3 +32,15 @@ def test_one_mistake_one_message_at_its_place(path):
 def test_every_message_of_assembly_has_a_deck():
     decks = {path.name[:4] for path in DECKS if path.name.startswith("P")}
     assert decks == {code for code in MESSAGES if code.startswith("P33")}
+
+
+def test_a_mistake_of_a_property_set_is_told_once(tmp_path):
+    deck = tmp_path / "columns.inp"
+    deck.write_text(
+        "NODES\n 1 TO 4 0 0 TO 9\nELEMENTS\n 1 TO 3 COL 1 TO 3 2 TO 4\n"
+        "PROPS\n COL FRAME E=1 A=1 RULE=TAKEDA MI=1 LP=0.1\nANALYSIS\n MODAL 1\n"
+    )
+    with pytest.raises(DeckError) as caught:
+        prepare(Request(str(deck)))
+    (told,) = caught.value.diagnostics
+    assert told.code == "P330" and told.message.startswith("element 1 and 2 more (COL): ")

@@ -188,6 +188,19 @@ def test_a_run_that_stops_is_a_row_and_two_studies_differ_in_times_only(two, cap
     assert two.path(".study.rpt").exists() and not two.path(".h5").exists()
 
 
+def test_another_method_gives_the_reference_where_the_first_cannot_follow(tmp_path):
+    two = write(tmp_path, "SINE AMPLITUDE=1 PERIOD=6")  # a slow one cuts no step below the limit of CENTRAL
+    deck = Path(two.deck)
+    deck.write_text(deck.read_text() + "\nOUTPUT\n  EVERY=0.1\n")
+    for steps, method in (((0.05, 0.01, 0.005, 0.0025), "CENTRAL"), ((0.1, 0.05, 0.025), "NEWMARK")):
+        found, _ = study.run(two, Plan(("CENTRAL", "NEWMARK"), steps, repeat=1))
+        assert found.reference.how.startswith(f"{method} extrapolated")
+    # CENTRAL with all of its steps, NEWMARK but for the two that made the reference
+    assert [(t.method, t.stopped[:4]) for t in found.trials] == [("CENTRAL", "A502")] * 3 + [
+        ("NEWMARK", "")
+    ]
+
+
 def test_where_exact_cannot_go_the_tolerances_of_auto_are_met(tmp_path):
     two = write(tmp_path, OTHERS[2])
     deck = Path(two.deck)

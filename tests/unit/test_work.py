@@ -24,7 +24,8 @@ def measure(
     meter: Meter, q: Array, g: Array, tau: float, coefs: Array, constant: Array, p: Array | None = None
 ) -> Work:
     """Work over one interval."""
-    out = meter.measures(q[:, None], g[None], tau, coefs[None], constant, None if p is None else p[None])
+    ps = None if p is None else p[None]
+    out = meter.measures(q[:, None], g[None], np.array([tau]), coefs[None], constant, ps)
     return Work(
         float(out.damping[0]), float(out.input[0]), [(law, float(loss[0])) for law, loss in out.laws]
     )
@@ -54,7 +55,7 @@ class Case:
             p, slope = (
                 np.array([polynomial.value(self.p, float(x), order) for x in t]).T for order in (0, 1)
             )
-            v = v + self.flow.space.v_p @ p + self.flow.u_p @ slope
+            v = v + self.flow.v_p @ p + self.flow.u_p @ slope
         return np.asarray(v)
 
     def dense(self, tau: float) -> tuple[float, float, float]:
@@ -146,9 +147,11 @@ def test_many_intervals_at_once(kind: str, degree: int) -> None:
     h, n = 0.25, 6
     gs = np.stack([polynomial.shift(case.g, i * h) for i in range(n)])
     coefs = np.stack([polynomial.shift(case.coefs, i * h) for i in range(n)])
-    qs = case.flow.march(case.q, gs, h)[:, :-1]
-    several = case.meter.measures(qs, gs, h, coefs, case.constant)
+    qs = case.flow.march(case.q, gs, np.full(n, h))[:, :-1]
+    several = case.meter.measures(qs, gs, np.full(n, h), coefs, case.constant)
     whole = case.measure(n * h)
+    lengths = h * np.array([1.0, 0.4, 1.0, 1e-3, 1.0, 0.4])
+    cut = case.meter.measures(qs, gs, lengths, coefs, case.constant)
     assert several.damping.shape == several.input.shape == several.laws[0][1].shape == (n,)
     assert several.damping.sum() == pytest.approx(whole.damping, rel=1e-12)
     assert several.input.sum() == pytest.approx(whole.input, rel=1e-12)
@@ -157,6 +160,9 @@ def test_many_intervals_at_once(kind: str, degree: int) -> None:
         one = measure(case.meter, qs[:, i], gs[i], h, coefs[i], case.constant)
         assert one.damping == pytest.approx(several.damping[i], rel=1e-13)
         assert one.input == pytest.approx(several.input[i], rel=1e-12, abs=1e-13 * abs(whole.input))
+        part = measure(case.meter, qs[:, i], gs[i], lengths[i], coefs[i], case.constant)
+        assert part.damping == pytest.approx(cut.damping[i], rel=1e-11, abs=1e-15 * whole.damping)
+        assert part.input == pytest.approx(cut.input[i], rel=1e-11, abs=1e-15 * abs(whole.input))
 
 
 @pytest.mark.parametrize("off", [1e-3, 1e-5, 1e-7, 1e-9, 1e-12])

@@ -175,6 +175,8 @@ class Survey:
         Of displacements "u", velocities "v" (relative to the ground, where it moves as one) and
         accelerations "a" (total).
     output : Envelope
+    shown : ndarray of bool, shape (n,)
+        Unknowns that it looks at.
     seen, apart : int, float
         Number of instants between the samples that were counted in, longest time from one to the next [T].
     """
@@ -204,6 +206,8 @@ class Survey:
         self.damped = bool(used_rows(self.of_v).any() or self.out_rate.any())
         self.constants = np.array([o.constant for o in outputs]) + constants
         self.shares = scene.chords.shares([(o.element, o.quantity) for o in outputs])
+        self.shown = used_columns(of_u) | used_columns(self.of_u) | used_columns(self.of_v)
+        self.shown |= bool(scene.chords)  # they look at all
         self._clear()
 
     def _clear(self) -> None:
@@ -325,9 +329,9 @@ class Recorder:
 
         names = [contact_name(model, laws[i].element) for i in self.contacts]
         return {
-            "node/u": ((len(self.nodes), 3), {**three, "unit": ["L", "L", ""]}),
-            "node/v": ((len(self.nodes), 3), {**three, "unit": ["L/T", "L/T", "1/T"]}),
-            "node/a": ((len(self.nodes), 3), {**three, "unit": ["L/T^2", "L/T^2", "1/T^2"]}),
+            "node/u": ((len(self.nodes), 3), {**three, "unit": ["L", "L", "rad"]}),
+            "node/v": ((len(self.nodes), 3), {**three, "unit": ["L/T", "L/T", "rad/T"]}),
+            "node/a": ((len(self.nodes), 3), {**three, "unit": ["L/T^2", "L/T^2", "rad/T^2"]}),
             "member/force": (
                 (len(self.outputs),),
                 {
@@ -344,14 +348,14 @@ class Recorder:
             ),
             "spring/deformation": (
                 (len(springs),),
-                {"labels": components, "unit": ["" if s.unit == "F*L" else "L" for s in springs]},
+                {"labels": components, "unit": ["rad" if s.unit == "F*L" else "L" for s in springs]},
             ),
             "drift": ((len(self.drifts.names),), {"labels": list(self.drifts.names), "unit": "L"}),
             "ground": (
                 (len(self.scene.motions),),
                 {
                     "labels": [f"{i + 1} {m.direction}" for i, m in enumerate(self.scene.motions)],
-                    "unit": ["1/T^2" if m.direction == "R" else "L/T^2" for m in self.scene.motions],
+                    "unit": ["rad/T^2" if m.direction == "R" else "L/T^2" for m in self.scene.motions],
                 },
             ),
             "force": (
@@ -377,6 +381,11 @@ class Recorder:
     def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
         """Widen the envelopes only (see `integrate.base.Sink`)."""
         self.survey.between(t, u, v, a, apart)
+
+    @property
+    def shown(self) -> NDArray[np.bool_]:
+        """Which unknowns `between` looks at (see `integrate.base.Sink`)."""
+        return self.survey.shown
 
     def trial(self, t: float, doing: str = "") -> None:
         """Tell the progress of a run whose samples may not count (see `integrate.base.Sink`)."""

@@ -18,9 +18,9 @@ def build(site: Site) -> Parts:
             continue
         r = np.array(row)
         parts.damping.append(Block(freedoms, c * np.outer(r, r)))
-        unit = "F*L" if name == "R" else "F"
+        unit, kind = ("F*L", "moment") if name == "R" else ("F", "force")
         parts.outputs.append(
-            Output(site.element.id, f"force {name}", unit, freedoms, np.zeros(len(row)), c * r)
+            Output(site.element.id, f"{kind} {name}", unit, freedoms, np.zeros(len(row)), c * r)
         )
     return parts
 

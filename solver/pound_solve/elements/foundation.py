@@ -102,7 +102,7 @@ def build(site: Site) -> Parts:
     for name, unit, spring, k, dashpot, c in (
         ("force X", "F", x, kx, x, cx),
         ("force Y", "F", settling, k_settling, y, cy),
-        ("force R", "F*L", turn, 0.0 if p["UPLIFT"] == "YES" else kr, radiating, cr),
+        ("moment R", "F*L", turn, 0.0 if p["UPLIFT"] == "YES" else kr, radiating, cr),
     ):
         if k:
             parts.stiffness.append(_block(spring, k))

@@ -57,7 +57,7 @@ def build(site: Site) -> Parts:
         rule = specs[names[n] if len(names) == 3 else names[0]]
         if k == 0.0:
             continue
-        unit = "F*L" if name == "R" else "F"
+        unit, kind = ("F*L", "moment") if name == "R" else ("F", "force")
         if rule.impl is not None and force is None:
             raise ElementError(
                 f"{rule.name} along {name} needs the yield force {item}; "
@@ -69,7 +69,7 @@ def build(site: Site) -> Parts:
         if rule.impl is None:
             r = np.array(row)
             parts.stiffness.append(Block(freedoms, k * np.outer(r, r)))
-            parts.outputs.append(Output(site.element.id, f"force {name}", unit, freedoms, k * r))
+            parts.outputs.append(Output(site.element.id, f"{kind} {name}", unit, freedoms, k * r))
             continue
         at = dict(zip(freedoms, row))
         parts.laws.append(hysteretic(site.element.id, name, unit, at, card, rule, k, signed(force, item)))

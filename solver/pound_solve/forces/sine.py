@@ -28,7 +28,7 @@ def build(card_values: Mapping[str, Any], context: Context) -> Force:
     # from 0 on first, so that the angle is not the difference of large numbers
     breaks = sine.intervals(w, 0.0, end - start)
     angle = w * breaks[:-1] + np.longdouble(card_values.get("PHASE", 0.0))
-    wave = Piecewise(breaks, np.asarray(sine.taylor(1.0, w, angle), dtype=np.float64))
+    wave = Piecewise(breaks, sine.taylor(1.0, w, angle))
     return finish(card_values, wave.delayed(start), {"kind": SPEC.name})
 
 

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 # why `advance` came back
-DONE, FULL, RUNAWAY, CHATTER, PIVOT, NEWTON = range(6)
+DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON = range(7)
 GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST, SINCE, SHOWN = range(10)  #: integers of `count`
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 BACK = 1e-6  #: share of its largest rate that a law must move back with before it counts as turned

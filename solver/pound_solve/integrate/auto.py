@@ -90,6 +90,11 @@ class Replay:
         """Take the motion between samples (see `integrate.base.Sink`)."""
         self.survey.between(t, u, v, a, apart)
 
+    @property
+    def shown(self) -> NDArray[np.bool_]:
+        """Which unknowns `between` looks at (see `integrate.base.Sink`)."""
+        return self.sink.shown
+
     def trial(self, t: float, doing: str = "") -> None:
         """Pass on how far a trial has come."""
         self.sink.trial(t, doing)

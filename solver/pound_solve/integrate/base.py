@@ -186,6 +186,11 @@ class Survey(Protocol):
 class Sink(Protocol):
     """Takes the samples of a history."""
 
+    @property
+    def shown(self) -> NDArray[np.bool_]:
+        """Which unknowns `between` looks at, shape (n,)."""
+        ...
+
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take the motion (n, n_times) and the laws' forces and energies at some output times.
 
@@ -196,6 +201,7 @@ class Sink(Protocol):
 
     def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
         """Take the motion at times between the samples, shapes (n_times,), (n, n_times): for envelopes.
+        Only that of the unknowns in `shown` need be right.
 
         `apart` is the longest time from one instant that is seen to the next.
         """

@@ -2,10 +2,16 @@ r"""EXACT: event-driven integration without a time step.
 
 Between events (a spring yields or unloads, a contact closes or opens) the scene is linear and its motion
 under piecewise-polynomial excitation is known in closed form (:mod:`~pound_solve.integrate.flow`).
-So only the event times need finding: the exits of all laws are sampled with their slopes on a grid
-that resolves the fastest mode, bracketed by value and by slope (two crossings within one interval),
-and polished to the last digits (:mod:`~pound_solve.integrate.search`).  Peaks of drifts,
-spring deformations and contact forces are found the same way.
+So only the event times need finding.  The exits of all laws are sampled with their slopes in cells whose
+length the motion itself sets: how far it can bend within one is bounded by what its modes carry,
+
+.. math:: |\ddot y(t)| \le \sum_i |r_i|\,|\ddot q_i(0)|
+
+for a functional :math:`y = \mathrm{Re} \sum r_i q_i`, modes that do not grow and excitation along a
+straight line, so that most cells cannot hold an event.  The others are seen on a grid that resolves the
+fastest mode, bracketed by value and by slope (two crossings within one step of it), and polished to
+the last digits (:mod:`~pound_solve.integrate.search`).  Peaks of drifts, spring deformations and contact
+forces are found the same way.
 
 Parts of the structure that no closed contact joins are solved apart, each with its own modes for each
 combination of stiffnesses, kept for when it returns (:mod:`~pound_solve.integrate.blocks`).
@@ -27,6 +33,7 @@ from numpy.typing import NDArray
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve import polynomial
 from pound_solve.integrate import search, work
+from pound_solve.integrate.account import Account
 from pound_solve.integrate.base import (
     INTERRUPTED,
     RUNAWAY,
@@ -42,22 +49,30 @@ from pound_solve.integrate.base import (
     not_linear,
 )
 from pound_solve.integrate.base import goals as goals_of
-from pound_solve.integrate.blocks import Partition, Window
+from pound_solve.integrate.blocks import Partition
 from pound_solve.integrate.flow import MOST_CONDITION, Mechanism, SeriesFlow
+from pound_solve.integrate.functionals import exits, followed
 from pound_solve.integrate.rigid import NOISE, Weightless
+from pound_solve.integrate.window import Arcs, Window
 from pound_solve.laws import Branch
 from pound_solve.scene import Condensed, Decision, Scene, condense
 
 Array = NDArray[np.float64]
 
-MOST_POINTS = 1024  #: grid points of one window
+MOST_POINTS = 4096  #: points of the fine grid in one window
+MOST_STEPS = 64  #: of the fine grid in one cell
+SLACK = 0.05  #: share of an exit's scale that it may bend within a cell
 MOST_PIECES = 20_000  #: windows within one interval of the excitation
 MOST_INTERVALS = 32  #: intervals of one window
+AFTER = 8  #: of the first one after an event
 GRID = 1.0  #: grid interval times the fastest eigenvalue
+MOST_OPEN = 256  #: intervals whose work is put off
+MOST_SEEN = 2**19  #: displacements between the samples that wait for the sink
 EACH = 4  #: grid points from one that envelopes of nodes and members are taken at to the next
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 # what it costs, in seconds of some machine: counted, not measured, so that a choice by it repeats
-WINDOW, POINT = 1e-3, 2e-8  #: a window; each of its grid points times each unknown
+WINDOW, POINT = 1.3e-3, 2e-8  #: a window; each of its grid points times each unknown
+SEEN = 5e-8  #: each point for the envelopes times each unknown that they look at
 
 
 class CostlyError(Exception):
@@ -91,6 +106,7 @@ class Exact:
             np.vstack([scene.law_rows, watch.rows]),
             np.vstack([scene.law_inputs, watch.input_rows]),
             np.concatenate([np.zeros(n), watch.constants]),
+            sink.shown,
         )
         if (parts := self.partition.parts) > 1:
             scene.decisions.append(
@@ -100,14 +116,17 @@ class Exact:
             )
         self.ledger = Ledger(scene, len(watch.names))
         self.t, self.u, self.v = float(start.times[0]), start.u.copy(), start.v.copy()
-        self.works = start.works.copy()  # input, dashpots of structure and springs, dashpots of contacts
+        contact = np.array([s.is_contact for s in self.laws], bool)
+        self.account = Account(start.works.copy(), scene.constant, contact)
+        # what waits for the sink: samples whose works are not known yet, and motions between them
+        self.held_back: list[tuple[Any, ...]] = []
+        self.seen: list[tuple[Any, ...]] = []
         self.rigid = self.partition.rigid
         # |value|, |rate| of all rows seen, the scale of the exits
         self.largest = np.zeros((2, len(self.partition.rows)))
-        self.ahead = 1  # intervals of the next window
+        self.ahead = AFTER  # intervals of the next window
         self.events = self.windows = self.same_instant = self.pieces = 0
         self.held = energy_at_start(scene, start)
-        self.put_in = 0.0  # sum of all |input| since the start
 
     def run(self) -> Outcome:
         """Integrate to the last output time."""
@@ -118,8 +137,7 @@ class Exact:
         self._no_overlap()
         self._form()
         goals, self.is_output = goals_of(self.scene, self.times)
-        first = self._window(0.0, np.array([self.t]))  # of no length: for the first sample only
-        self._hand_out(np.array([self.t]), *first.path(0, np.zeros(1)), self.works[:, None])
+        self._show_now()
         cursor = 0
         while cursor < len(goals):
             cursor = self._advance(goals, cursor)
@@ -148,83 +166,133 @@ class Exact:
         except Mechanism as err:
             worst = int(np.argmax(np.abs(err.shape)))
             raise self.stop("A501", f"{self.scene.name(worst)} has no mass and nothing holds it") from None
-        self.exit_pairs = [(i, e) for i, b in enumerate(self.branches) for e in range(len(b.exits))]
-        # what a closed rigid contact may leave by is its force
-        row = self.partition.force_row
-        self.exit_row = np.array(
-            [row[i] if self.branches[i].held else i for i, _ in self.exit_pairs], np.intp
-        )
-        self.exit_factors = (
-            np.array([self.branches[i].exits[e] for i, e in self.exit_pairs]).reshape(-1, 3).T
-        )
-        # the second rate of a law matters where its rate decides
-        self.bending = bool(np.any(self.exit_factors[1])) or any(b.damping for b in self.branches)
+        self.exits, self.exit_pairs = exits(self.branches, self.partition.force_row)
+        self.followed, self.peaks = followed(self.ledger, self.branches, self.partition.force_row)
+        # second rates matter where rates decide
+        self.bending = self.exits.by_rate or self.followed.by_rate
 
-    def _window(self, length: float, starts: Array) -> Window:
-        return Window(self.partition, self.branches, self.scene.excitation.about(starts), length)
+    def _window(self, lengths: Array, starts: Array) -> Window:
+        return Window(self.partition, self.branches, self.scene.excitation.about(starts), lengths)
+
+    def _show_now(self) -> None:
+        """Hand out a sample of the present."""
+        at = np.array([self.t])
+        motion = self._window(np.zeros(1), at).path(0, np.zeros(1))
+        self._hand_out(at, *motion, np.array([self.account.rows]))
 
     def _advance(self, goals: Array, cursor: int) -> int:
         """Advance by a window of intervals up to the next goals, or to an event; return the new cursor."""
         if goals[cursor] - self.t <= 1e-14 * max(1.0, self.t):  # an event fell on the goal
             self.t = float(goals[cursor])
             if self.is_output[cursor]:
-                at = np.array([self.t])
-                self._hand_out(at, *self._window(0.0, at).path(0, np.zeros(1)), self.works[:, None])
+                self._show_now()
             return cursor + 1
-        # twelve digits: intervals of equal length share their exponentials,
-        # whatever the rounding of the times
-        length = float(f"{goals[cursor] - self.t:.12e}")
-        h = self._grid_step(length)
-        per_interval = int(np.ceil(length / h * (1 - 1e-12)))
-        whole = per_interval <= MOST_POINTS
-        starts = np.array([self.t])
-        if not whole:
-            length = MOST_POINTS * h
-            self._resolvable(length)
-        else:
-            most = min(self.ahead, max(1, MOST_POINTS // per_interval), len(goals) - cursor)
-            later = np.append(self.t, goals[cursor : cursor + most])
-            same = np.abs(np.diff(later) - length) <= 1e-11 * length
-            starts = later[: int(np.argmin(same)) if not same.all() else len(same)]
-        window = self._window(length, starts)
-        t = window.grid(h)
-        value, rate, second = window.functionals(h, self.bending)
-        if not np.isfinite(value).all() or not np.isfinite(rate).all():
+        lengths, starts, h, whole = self._intervals(goals, cursor)
+        window = self._window(lengths, starts)
+        bends = window.bends()
+        coarse = window.all(self._cell(bends, h), self.bending)
+        if not np.isfinite(coarse.value).all() or not np.isfinite(coarse.rate).all():
             raise self.stop("A504", "the motion grew beyond all numbers")
         self.windows += 1
-        self._spend(WINDOW + POINT * len(t) * len(self.u))
-        event = self._first_event(window, t, value, rate, second) if self.n_laws else None
+        fine = coarse
+        if coarse.h > h:
+            fine = coarse.closer(self._near(coarse, bends), h, self.bending)
+        self._spend(WINDOW + POINT * (coarse.t.size + fine.t.size) * len(self.u))
+        self._spend(SEEN * window.length / (EACH * h) * self.partition.shown.sum())
+        event = self._first_event(fine) if self.exit_pairs and fine.t.size else None
         if event is None:
-            self._peaks(window, t, value, rate, second)
-            self._between(window, window.length * window.intervals)
-            self._sample(window, goals, cursor, window.intervals if whole else 0)
+            self._peaks(coarse, fine, window.length)
+            self._between(window, h, window.length)
             if whole:
+                self._sample(window, goals, cursor, window.intervals)
                 self.pieces = 0
                 cursor += window.intervals
                 self.t = float(goals[cursor - 1])
             else:
-                self._work(window, window.intervals - 1, length)
-                self.t += length
-            window.accept(window.intervals - 1, length)
+                self._work(window, 0, lengths)
+                self.t += window.length
+            window.accept(window.intervals - 1, float(lengths[-1]))
             self.ahead = min(2 * self.ahead, MOST_INTERVALS)
             self.same_instant = 0
+            self.sink.trial(self.t)
             return cursor
-        tau, law, exit_index = event
+        tau, n, arc, cell = event
+        law, exit_index = self.exit_pairs[n]
         interval, within = window.place(tau)
-        cut = t < tau
         now = window.all_at(tau)
-        points = [np.append(a[:, cut], x[:, None], axis=1) for a, x in zip((value, rate, second), now)]
-        self._peaks(window, np.append(t[cut], tau), *points)
-        self._between(window, tau)
+        fine.cut(arc, cell, tau, now)
+        self._peaks(coarse, fine, tau)
+        self._between(window, h, tau)
         self._sample(window, goals, cursor, interval)
-        self._work(window, interval, within)
+        self._work(window, interval, np.array([within]))
         self.u, self.v, _ = window.motion(interval, within)
         window.accept(interval, within)
         self.same_instant = self.same_instant + 1 if tau <= 1e-13 * max(1.0, self.t) else 0
         self.t = float(starts[interval]) + within
-        self.ahead = 1
+        self.ahead = AFTER
         self._switch(law, exit_index, float(now[0][law]), float(now[1][law]))
         return cursor + interval
+
+    def _intervals(self, goals: Array, cursor: int) -> tuple[Array, Array, float, bool]:
+        """Lengths and starts of the next window's intervals, the step of its fine grid, and whether they
+        are whole: an interval of too many steps is taken in pieces.
+        """
+        # twelve digits: intervals of equal length share their exponentials,
+        # whatever the rounding of the times
+        ends = goals[cursor : cursor + self.ahead + 1]
+        own = [float(f"{x:.12e}") for x in np.diff(np.append(self.t, ends)).tolist()]
+        usual = own[min(1, len(own) - 1)]
+        longest = max(own[0], usual)
+        h = self._grid_step(longest)
+        per_interval = int(np.ceil(longest / h * (1 - 1e-12)))
+        if per_interval > MOST_POINTS:
+            length = min(own[0], MOST_POINTS * h)
+            if length < own[0]:
+                self._resolvable(length)
+            return np.array([length]), np.array([self.t]), h, length == own[0]
+        count, most = 1, min(len(own), MOST_POINTS // per_interval)
+        while count < most and abs(own[count] - usual) <= 1e-11 * usual:
+            count += 1
+        lengths = np.array([own[0], *[usual] * (count - 1)])
+        return lengths, np.append(self.t, ends[: count - 1]), h, True
+
+    def _cell(self, bends: Array, h: float) -> float:
+        """Length of the coarse cells: a multiple of `h`, over which little can bend."""
+        if self.exit_pairs:
+            own, scale = self.exits, self.exits.scale(self.largest)
+        else:  # by their range so far
+            own, scale = self.followed, np.array([max(x.high - x.low, 0.0) for x in self.peaks])
+        most = own.bends(bends).max(axis=1, initial=0.0)
+        chosen = (scale > 0.0) & (most > 0.0)
+        if np.isinf(most).any():
+            return h
+        if not chosen.any():
+            return h * MOST_STEPS
+        cell = float(np.sqrt(8.0 * SLACK * (scale[chosen] / most[chosen]).min()))
+        # powers of four: few lengths, so that tables are found again
+        steps = 4.0 ** np.floor(np.log2(max(cell / h, 1.0)) / 2.0)
+        return h * float(min(steps, MOST_STEPS))
+
+    def _near(self, coarse: Arcs, bends: Array) -> NDArray[np.bool_]:
+        """Which cells may hold an event or a peak, shape (n, count)."""
+        out = np.zeros((len(coarse.width), coarse.t.shape[1] - 1), bool)
+        last = out.size
+        if self.exit_pairs:
+            g, slope = self.exits.of(coarse)
+            # what first_rise is sure to count
+            scale = np.maximum(self.exits.scale(self.largest), np.abs(g).max(axis=(1, 2)))
+            least = 1e3 * STILL * scale[:, None, None]
+            g[:, 0, 0] = np.minimum(g[:, 0, 0], 0.0)
+            out |= search.may_rise(g, slope, self.exits.bends(bends), coarse.widths).any(axis=0)
+            sure = ((g[..., 1:] > least) & (g[..., :-1] <= 0.0)).any(axis=0).ravel()
+            if sure.any():
+                last = int(sure.argmax())
+        if self.peaks:
+            value, slope = self.followed.of(coarse)
+            bend = self.followed.bends(bends)
+            out |= search.may_peak(value, slope, bend, coarse.widths, self.peaks).any(axis=0)
+        out.ravel()[last + 1 :] = False  # the run goes no further
+        return out
 
     def _resolvable(self, length: float) -> None:
         """Stop where the fastest mode cannot be followed: time would not advance, or too slowly."""
@@ -250,26 +318,55 @@ class Exact:
         )
 
     def _sample(self, window: Window, goals: Array, cursor: int, count: int) -> None:
-        """Add the work of the first `count` intervals and hand out the samples at their ends."""
-        if not count:
-            return
-        works = self.works + np.cumsum(self._measure(window, 0, count, window.length), axis=0)
-        u, v, a = window.ends(count)
-        self.put_in += float(np.abs(np.diff(works[:, 0], prepend=self.works[0])).sum())
-        kinetic = 0.5 * float(v[:, -1] @ self.scene.mass @ v[:, -1])
-        if not kinetic <= 10.0 * (self.held + self.put_in) + 1e-300:
-            raise self.stop("A504", RUNAWAY.format(kinetic))
+        """Note the work of the first `count` intervals and hand out the samples at their ends."""
+        before = self.account.rows
+        self._work(window, 0, window.lengths[:count])
         out = np.flatnonzero(self.is_output[cursor : cursor + count])
         if len(out):
-            self._hand_out(goals[cursor + out], u[:, out], v[:, out], a[:, out], works[out].T)
-        self.works = works[-1]
+            self._hand_out(goals[cursor + out], *window.ends(out), before + out + 1)
+        if self.account.rows > MOST_OPEN or cursor + count == len(goals):
+            self._settle()
+            _, v, _ = window.ends(np.array([count - 1]))
+            kinetic = 0.5 * float(v[:, 0] @ self.scene.mass @ v[:, 0])
+            if not kinetic <= 10.0 * (self.held + self.account.put_in) + 1e-300:
+                raise self.stop("A504", RUNAWAY.format(kinetic))
 
-    def _between(self, window: Window, end: float) -> None:
-        """Show the sink the motion between the samples, up to the local time `end`."""
-        tau, u, v, a = window.between(EACH, end)
-        self.sink.between(self.t + tau, u, v, a, float(np.diff(tau, append=end).max(initial=0.0)))
+    def _settle(self) -> None:
+        """Learn the works, and give the sink what waited for them.
 
-    def _hand_out(self, t: Array, u: Array, v: Array, a: Array, works: Array) -> None:
+        An interrupt on the way loses nothing: the sink passes over what it has been given already.
+        """
+        works, losses = self.account.measured()
+        self._show_seen()
+        if self.held_back:
+            times, *motion, laws, row = zip(*self.held_back)
+            u, v, a = (np.concatenate(x, axis=1) for x in motion)
+            by_law = LawValues(*(np.concatenate(x, axis=1) for x in zip(*laws)))
+            self.sink.sample(np.concatenate(times), u, v, a, by_law, works[np.concatenate(row)].T)
+        for law, loss in losses.items():
+            self.ledger.peaks.dashpot_losses[law] += loss
+        self.held_back.clear()
+        self.account.close(works)
+
+    def _show_seen(self) -> None:
+        """Give the sink the motions between the samples."""
+        if self.seen:
+            *motion, apart = zip(*self.seen)
+            t, u, v, a = (np.concatenate(x, axis=-1) for x in motion)
+            self.sink.between(t, u, v, a, max(apart))
+            self.seen.clear()
+
+    def _between(self, window: Window, h: float, end: float) -> None:
+        """Keep the motion between the samples, up to the local time `end`, for the sink."""
+        if not self.partition.shown.any():
+            return
+        tau, u, v, a = window.between(EACH * h, end)
+        self.seen.append((self.t + tau, u, v, a, float(np.diff(tau, append=end).max(initial=0.0))))
+        if sum(x[1].size for x in self.seen) > MOST_SEEN:
+            self._show_seen()
+
+    def _hand_out(self, t: Array, u: Array, v: Array, a: Array, row: NDArray[np.intp]) -> None:
+        """Keep samples for the sink, with the rows of the account that they stand at."""
         laws = law_values(self.scene, t, u, v, self.states)
         held = np.array([self.branches[i].held for i in self.rigid.laws], bool)
         if held.any():
@@ -278,64 +375,42 @@ class Exact:
             for i in range(len(t)):
                 now = self.rigid.forces(held, self.branches, u[:, i], v[:, i], s[:, i])
                 laws.force[self.rigid.laws, i] = now
-        self.sink.sample(t, u, v, a, laws, works)
+        self.held_back.append((t, u, v, a, laws, row))
 
-    def _work(self, window: Window, interval: int, tau: float) -> None:
-        """Add the work done over the first `tau` of an interval."""
-        if tau > 0.0:
-            self.works = self.works + self._measure(window, interval, interval + 1, tau)[0]
-
-    def _measure(self, window: Window, first: int, last: int, tau: float) -> Array:
-        """Work put in and lost in dashpots over `tau` of some intervals, shape (last - first, 3).
-
-        Laws' losses and contacts' impulses are noted on the way.
-        """
+    def _work(self, window: Window, first: int, lengths: Array) -> None:
+        """Note the work, and the contacts' impulses, over some `lengths` of intervals from `first` on."""
+        last = first + len(lengths)
         if self.scene.total:
-            each = [
-                work.total_work(
-                    self.scene,
-                    tau,
-                    self.partition.fastest,
-                    window.coefs[i],
-                    lambda x, i=i: window.path(i, x),  # type: ignore[misc]
-                    self.branches,
-                )
-                for i in range(first, last)
-            ]
-            damping, input_ = np.array([w.damping for w in each]), np.array([w.input for w in each])
-            losses = {
-                law: np.array([w.laws[n][1] for w in each]) for n, (law, _) in enumerate(each[0].laws)
-            }
-        else:
-            damping, input_, losses = window.works(slice(first, last), tau)
-        lost = np.zeros(last - first)
-        for law, loss in losses.items():
-            self.ledger.peaks.dashpot_losses[law] += float(loss.sum())
-            if self.laws[law].is_contact:
-                lost += loss
-            else:
-                damping = damping + loss
+            for i, tau in zip(range(first, last), lengths.tolist()):
+                self._total_work(window, i, tau)
+        elif len(lengths):
+            self.account.note(window, first, last, lengths)
         for law, collision in self.ledger.open.items():
-            collision.impulse += sum(window.impulse(law, i, tau) for i in range(first, last))
-        return np.column_stack([input_, damping, lost])
+            for i, tau in zip(range(first, last), lengths.tolist()):
+                collision.impulse += window.impulse(law, i, tau)
 
-    def _first_event(
-        self, window: Window, t: Array, value: Array, rate: Array, second: Array
-    ) -> tuple[float, int, int] | None:
-        row, (a, b, c) = self.exit_row, self.exit_factors
-        g, slope = a[:, None] * value[row] + c[:, None], a[:, None] * rate[row]
-        if self.bending:
-            g += b[:, None] * rate[row]
-            slope += b[:, None] * second[row]
-        scale = np.abs(a) * self.largest[0, row] + np.abs(b) * self.largest[1, row] + np.abs(c)
-        tol = STILL * np.maximum(scale, np.abs(g[:, :2]).max(axis=1))[:, None]
+    def _total_work(self, window: Window, interval: int, tau: float) -> None:
+        """Note the work over the first `tau` of an interval in the total form."""
+        found = work.total_work(
+            self.scene,
+            tau,
+            self.partition.fastest,
+            window.coefs[interval],
+            lambda x: window.path(interval, x),
+            self.branches,
+        )
+        entry = np.array([found.input, found.damping, 0.0])
+        for law, loss in found.laws:
+            self.ledger.peaks.dashpot_losses[law] += loss
+            entry[2 if self.laws[law].is_contact else 1] += loss
+        self.account.put(entry)
 
-        def exact(n: int, tau: float) -> tuple[float, float]:
-            d, v, w = window.at(int(row[n]), tau)
-            return float(a[n] * d + b[n] * v + c[n]), float(a[n] * v + b[n] * w)
-
-        found = search.first_rise(t, g, slope, tol, exact)
-        return None if found is None else (found[0], *self.exit_pairs[found[1]])
+    def _first_event(self, fine: Arcs) -> tuple[float, int, int, int] | None:
+        """Time, exit, arc and cell of the first event."""
+        g, slope = self.exits.of(fine)
+        scale = self.exits.scale(self.largest)
+        tol = STILL * np.maximum(scale, np.abs(g[:, 0, :2]).max(axis=1, initial=0.0))
+        return search.first_rise(fine.t, g, slope, tol[:, None, None], self.exits.at(fine))
 
     def _switch(self, law: int, exit_index: int, d: float, v: float) -> None:
         self.events += 1
@@ -382,9 +457,8 @@ class Exact:
         fastest = self.largest[1, r.laws]
         impulse, lost, after = r.strike(rates, touching, fastest)
         self.v = self.v - r.yielding @ impulse
-        done = float(impulse @ (r.inputs @ s[1]))  # by supports that move
-        self.works = self.works + np.array([done, 0.0, lost.sum()])
-        self.put_in += abs(done)
+        # input by supports that move
+        self.account.put(np.array([float(impulse @ (r.inputs @ s[1])), 0.0, lost.sum()]))
         still = touching & (after >= -NOISE * fastest)
         for i, law in enumerate(r.laws):
             self.ledger.peaks.dashpot_losses[law] += float(lost[i])
@@ -422,39 +496,26 @@ class Exact:
         rows = [self.partition.force_row[i] for i in r.laws]
         self.largest[0, rows] = np.maximum(self.largest[0, rows], size / np.diag(r.compliance))
 
-    def _peaks(self, window: Window, t: Array, value: Array, rate: Array, second: Array) -> None:
-        n, peaks = self.n_laws, self.ledger.peaks
-        if n:
-            np.maximum(self.largest, np.abs([value, rate]).max(axis=2), out=self.largest)
-        linear = [*peaks.deformation, *peaks.watch]
-        m = len(linear)
-        search.widen(linear, self.t, t, value[:m], rate[:m], lambda i, x: window.at(i, x)[:2])
-        # forces of springs, and of contacts that are pressed: those go to the collision that runs
-        acting = [i for i, spring in enumerate(self.laws) if not spring.is_contact or i in self.ledger.open]
-        if not acting:
+    def _peaks(self, coarse: Arcs, fine: Arcs, end: float) -> None:
+        """Count in what happened up to the local time `end`; the fine arcs are cut there."""
+        seen = coarse.t <= end
+        if self.n_laws:
+            both = np.abs([coarse.value[:, seen], coarse.rate[:, seen]]).max(axis=2)
+            np.maximum(self.largest, both, out=self.largest)
+            if fine.t.size:
+                both = np.abs([fine.value[..., -1], fine.rate[..., -1]]).max(axis=2)
+                np.maximum(self.largest, both, out=self.largest)
+        if not self.peaks:
             return
-        k, c, f0 = (
-            np.array([getattr(self.branches[i], x) for i in acting])[:, None]
-            for x in ("stiffness", "damping", "force0")
-        )
-        c *= np.array([[self.laws[i].is_contact] for i in acting])  # a spring's force is without damping
-        held = np.array([self.branches[i].held for i in acting])
-        k[held] = 1.0
-        rows = [self.partition.force_row[i] if x else i for i, x in zip(acting, held.tolist())]
-
-        def exact(i: int, tau: float) -> tuple[float, float]:
-            d, v, w = window.at(rows[i], tau)
-            return float(k[i, 0] * d + c[i, 0] * v + f0[i, 0]), float(k[i, 0] * v + c[i, 0] * w)
-
-        force, slope = k * value[rows] + c * rate[rows] + f0, k * rate[rows] + c * second[rows]
-        running = self.ledger.open
-        targets = [self.ledger.running(i) if i in running else peaks.force[i] for i in acting]
-        search.widen(targets, self.t, t, force, slope, exact)
-        for i, collision in running.items():
-            peaks.force[i].take(collision.peak, collision.t_peak)
+        search.count(self.peaks, self.t + coarse.t[seen], self.followed.of(coarse)[0][:, seen])
+        if fine.t.size:
+            search.widen(self.peaks, self.t, fine.t, *self.followed.of(fine), self.followed.at(fine))
+        for i, collision in self.ledger.open.items():
+            self.ledger.peaks.force[i].take(collision.peak, collision.t_peak)
 
     def outcome(self) -> Outcome:
         """What the run gathered."""
+        self._settle()
         flows = [r.flow for r in self.partition.regimes.values()]
         residual, condition = (
             max((f.residual for f in flows), default=0.0),
@@ -501,6 +562,11 @@ class Whole:
             works = works.copy()
             works[0] += self.small.put_in(t) - self.at_start
         self.sink.sample(t, u, v, a, laws, works)
+
+    @property
+    def shown(self) -> NDArray[np.bool_]:
+        """Which unknowns `between` looks at (see `integrate.base.Sink`)."""
+        return np.asarray(self.small.expand[self.sink.shown].any(axis=0))
 
     def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
         """Take the motion between samples (see `integrate.base.Sink`)."""

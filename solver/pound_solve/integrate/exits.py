@@ -31,6 +31,20 @@ def excess(w: Laws, i: int, e: int, d: float, v: float) -> tuple[float, float]:
     return fd * d + fv * v + fc, abs(fd) * w.f[i, MOST_D] + abs(fv) * w.f[i, MOST_V] + abs(fc)
 
 
+def behind(w: Laws, x: Motion, i: int, e: int) -> float:
+    """Excess at the start of the step, for an interpolation; NaN where it falls at first.
+
+    A law that has just come through an exit and moves on stands next to zero there: an interpolation would
+    take the way back to that exit, late in the step, for one at once.
+    """
+    d, v = w.f[i, LD], w.f[i, LV]
+    fd, fv = w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1]
+    slope = fd * v
+    if fv != 0.0:
+        slope += fv * along(w.rows, i, x.q, A)
+    return np.nan if slope < 0.0 else excess(w, i, e, d, v)[0]
+
+
 def first_exit(w: Laws, x: Motion, h: float) -> tuple[int, int, float]:
     """The first exit that is passed in the step of length `h` that was tried.
 

@@ -25,6 +25,7 @@ accelerograms); Foss KA (1958), J. Appl. Mech. 25: 361-364 (complex modes of dam
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import factorial
 from typing import Any
@@ -284,7 +285,8 @@ class Flow(ABC):
     fastest : float
         Largest |eigenvalue| [1/T]: what the sampling grid must resolve.
     u_q, v_q : ndarray, shape (n, n_q)
-        ``u = Re(u_q q) + u_p p``, ``v = Re(v_q q) + v_p p + u_p p'``.
+    u_p, v_p : ndarray, shape (n, n), or None
+        ``u = Re(u_q q) + u_p p``, ``v = Re(v_q q) + v_p p + u_p p'``; None without massless freedoms.
     condition, residual : float
         Of the matrix of modes; of its eigenvectors, relative to `fastest`.
     """
@@ -294,15 +296,12 @@ class Flow(ABC):
     residual: float
     u_q: NDArray[Any]
     v_q: NDArray[Any]
+    u_p: Array | None
+    v_p: Array | None
 
     def __init__(self, space: StateSpace, inputs: Array) -> None:
-        self.space = space
+        self.u_p, self.v_p = space.u_p, space.v_p
         self.inputs = inputs  # F, shape (n, n_inputs)
-
-    @property
-    def u_p(self) -> Array | None:
-        """Direct share of the forces in the displacements (massless freedoms), or None."""
-        return self.space.u_p
 
     @abstractmethod
     def enter(self, u: Array, v: Array) -> NDArray[Any]:
@@ -322,28 +321,28 @@ class Flow(ABC):
     def integral(self, q: NDArray[Any], g: NDArray[Any], t: float) -> NDArray[Any]:
         """Return the integral of q over (0, t)."""
 
-    @abstractmethod
-    def sample(self, q: NDArray[Any], g: NDArray[Any], h: float, count: int) -> NDArray[Any]:
-        """Return q at 0, h, ..., (count - 1) h, shape (n_q, count)."""
-
-    def march(self, q: NDArray[Any], gs: NDArray[Any], h: float) -> NDArray[Any]:
-        """Return q at the ends of successive intervals of length `h`,
+    def march(self, q: NDArray[Any], gs: NDArray[Any], lengths: Array) -> NDArray[Any]:
+        """Return q at the ends of successive intervals of some `lengths`,
         shape (n_q, n + 1), the start included.
 
         `gs`, shape (n, degree + 1, n_q), holds the forcing of each interval about its own start.
         """
         out = [q]
-        for g in gs:
-            out.append(self.at(out[-1], g, h))
+        for g, length in zip(gs, lengths.tolist()):
+            out.append(self.at(out[-1], g, length))
         return np.stack(out, axis=1)
 
-    def samples(self, qs: NDArray[Any], gs: NDArray[Any], h: float, count: int) -> NDArray[Any]:
-        """Return `sample` for several intervals with starts `qs`, shape (n_q, n, count)."""
-        return np.stack([self.sample(qs[:, i], g, h, count) for i, g in enumerate(gs)], axis=1)
+    @abstractmethod
+    def bends(self, qs: NDArray[Any], gs: NDArray[Any], lengths: Array) -> Array:
+        """Return bounds of the second and third derivatives of q over intervals of some `lengths` with
+        starts `qs` (n_q, n), shape (2, n_q, n); infinite where none is known.
+        """
 
-    def rates(self, samples: NDArray[Any], gs: NDArray[Any], t: NDArray[Any]) -> NDArray[Any]:
-        """Return `rate` for the samples of several intervals at local times `t`, same shape."""
-        return np.stack([self.rate(samples[:, i], g, t) for i, g in enumerate(gs)], axis=1)
+    @abstractmethod
+    def samples(self, qs: NDArray[Any], gs: NDArray[Any], h: float, count: int) -> NDArray[Any]:
+        """Return q at 0, h, ..., (count - 1) h of several intervals with starts `qs` (n_q, n) and
+        forcing `gs` (n, degree + 1, n_q), shape (n_q, n, count).
+        """
 
     @abstractmethod
     def at(self, q: NDArray[Any], g: NDArray[Any], t: float) -> NDArray[Any]:
@@ -375,10 +374,6 @@ class Flow(ABC):
     @abstractmethod
     def path(self, q: NDArray[Any], g: NDArray[Any], times: Array) -> NDArray[Any]:
         """Return q at rising `times`, shape (n_q, n_times)."""
-
-    @abstractmethod
-    def rate(self, q: NDArray[Any], g: NDArray[Any], t: Array | float) -> NDArray[Any]:
-        """Return dq/dt of samples `q` at times `t`."""
 
 
 def powers(t: NDArray[Any] | float, degree: int) -> Array:
@@ -429,10 +424,36 @@ class ModalFlow(Flow):
         self._force = left_full @ space.b
         self._input = self._force @ inputs
         self.fastest = float(np.abs(lam).max(initial=0.0))
+        self._keep_nothing()
+
+    def _keep_nothing(self) -> None:
         self._tables: dict[tuple[float, int], Complex] = {}
         self._powers: dict[float, Complex] = {}  # of eigenvalues times h, over their factorials
         # responses at a few times that recur
         self._single: dict[tuple[float, int], tuple[Complex, Complex]] = {}
+
+    @classmethod
+    def joined(cls, flows: Sequence[ModalFlow]) -> ModalFlow:
+        """Return the motion of several blocks without massless freedoms as that of one."""
+        out = cls.__new__(cls)
+        out.u_p = out.v_p = None
+        out.inputs, out._input = (
+            np.concatenate([getattr(f, x) for f in flows]) for x in ("inputs", "_input")
+        )
+        out.lam, out.scale = (np.concatenate([getattr(f, x) for f in flows]) for x in ("lam", "scale"))
+        before = np.cumsum([0, *(len(f.lam) for f in flows)])
+        out.a_rows, out.b_rows = (
+            np.concatenate([getattr(f, x) + n for f, n in zip(flows, before)]) for x in ("a_rows", "b_rows")
+        )
+        out.u_q, out.v_q = (diagonal([getattr(f, x) for f in flows]) for x in ("u_q", "v_q"))
+        out._enter_u, out._enter_v, out._force = (
+            diagonal([getattr(f, x) for f in flows]) for x in ("_enter_u", "_enter_v", "_force")
+        )
+        out.fastest, out.condition, out.residual = (
+            max(getattr(f, x) for f in flows) for x in ("fastest", "condition", "residual")
+        )
+        out._keep_nothing()
+        return out
 
     def enter(self, u: Array, v: Array) -> Complex:  # noqa: D102
         return self._enter_u @ u + self._enter_v @ v
@@ -484,9 +505,6 @@ class ModalFlow(Flow):
                 self._single[t, degree] = found
         return found
 
-    def sample(self, q: Complex, g: Complex, h: float, count: int) -> Complex:  # noqa: D102
-        return self.samples(q[:, None], g[None], h, count)[:, 0]
-
     def samples(self, qs: Complex, gs: Complex, h: float, count: int) -> Complex:  # noqa: D102
         start = np.concatenate([qs[:, :, None], gs.transpose(2, 0, 1)], axis=2)
         out = start @ self._table(h, count, gs.shape[1] - 1)
@@ -502,16 +520,35 @@ class ModalFlow(Flow):
             out = out[:, 0, 0]
         return out
 
-    def march(self, q: Complex, gs: Complex, h: float) -> Complex:  # noqa: D102
+    def march(self, q: Complex, gs: Complex, lengths: Array) -> Complex:  # noqa: D102
         if len(self.a_rows):
-            return super().march(q, gs, h)
-        e, table = self._once(h, gs.shape[1] - 1)
-        pushed = (table * gs).sum(axis=1)
+            return super().march(q, gs, lengths)
         out = np.empty((len(q), len(gs) + 1), complex)
-        out[:, 0] = q
-        for i, push in enumerate(pushed):
-            out[:, i + 1] = q = e * q + push
+        out[:, 0], out[:, 1] = q, self.at(q, gs[0], float(lengths[0]))
+        if len(gs) > 1:  # the others are equal
+            e, table = self._once(float(lengths[1]), gs.shape[1] - 1)
+            q = out[:, 1]
+            for i, push in enumerate((table * gs[1:]).sum(axis=1), 2):
+                out[:, i] = q = e * q + push
         return out
+
+    def bends(self, qs: Complex, gs: Complex, lengths: Array) -> Array:  # noqa: D102
+        # dq/dt = lambda q + g, and its derivatives likewise: what |exp(lambda t)| makes of their start,
+        # and all that the derivatives of g can add
+        a, b, g = self.a_rows, self.b_rows, gs.transpose(1, 2, 0)
+        start = qs
+        grow = np.exp(np.maximum(self.lam.real[:, None], 0.0) * lengths)
+        out = np.empty((3, *qs.shape))
+        for order in range(3):
+            before = start
+            start = self.lam[:, None] * start
+            if order < len(g):
+                start += factorial(order) * g[order]
+            start[a] += self.scale[:, None] * before[b]
+            later = polynomial.values(np.abs(gs), lengths, order + 1).T
+            out[order] = grow * (np.abs(start) + lengths * later)
+            out[order, a] += lengths * np.abs(self.scale[:, None]) * out[order, b]
+        return out[1:]
 
     def onward(self, rows: Complex) -> Complex:  # noqa: D102
         out = rows * self.lam
@@ -543,18 +580,15 @@ class ModalFlow(Flow):
             for k in range(gs.shape[1]):
                 out[a] += s * gs[:, k, b].T[:, :, None] * t ** (k + 2) / ((k + 1) * (k + 2))
 
-    def rate(self, q: Complex, g: Complex, t: Array | float) -> Complex:  # noqa: D102
-        one = q.ndim == 1
-        out = self.rates(q[:, None, None] if one else q[:, None], g[None], np.atleast_1d(t))[:, 0]
-        return out[:, 0] if one else out
 
-    def rates(self, samples: Complex, gs: Complex, t: NDArray[Any]) -> Complex:  # noqa: D102
-        out = self.lam[:, None, None] * samples
-        for k in range(gs.shape[1]):
-            out += gs[:, k].T[:, :, None] * t**k
-        if len(self.a_rows):
-            out[self.a_rows] += self.scale[:, None, None] * samples[self.b_rows]
-        return out
+def diagonal(blocks: Sequence[NDArray[Any]]) -> NDArray[Any]:
+    """Return matrices as the blocks of one, zero elsewhere."""
+    out = np.zeros(np.sum([b.shape for b in blocks], axis=0), np.result_type(*blocks))
+    i = j = 0
+    for b in blocks:
+        out[i : i + b.shape[0], j : j + b.shape[1]] = b
+        i, j = i + b.shape[0], j + b.shape[1]
+    return out
 
 
 class SeriesFlow(Flow):
@@ -562,6 +596,7 @@ class SeriesFlow(Flow):
 
     def __init__(self, space: StateSpace, inputs: Array) -> None:
         super().__init__(space, inputs)
+        self.space = space
         self.u_q, self.v_q = space.u_z, space.v_z
         self._input = space.b @ inputs
         self.norm = float(np.linalg.norm(space.a, 2))
@@ -583,6 +618,9 @@ class SeriesFlow(Flow):
     def integral(self, q: Array, g: Array, t: float) -> Array:  # noqa: D102
         w, points = gauss(t, self.fastest)
         return self.path(q, g, points) @ w
+
+    def bends(self, qs: Array, gs: Array, lengths: Array) -> Array:  # noqa: D102
+        return np.full((2, *qs.shape), np.inf)
 
     def onward(self, rows: Array) -> Array:  # noqa: D102
         return rows @ self.space.a
@@ -624,8 +662,8 @@ class SeriesFlow(Flow):
             q = total
         return q
 
-    def sample(self, q: Array, g: Array, h: float, count: int) -> Array:  # noqa: D102
-        size, degree = len(q), len(g) - 1
+    def samples(self, qs: Array, gs: Array, h: float, count: int) -> Array:  # noqa: D102
+        size, degree = len(qs), gs.shape[1] - 1
         key = (h, degree)
         if key not in self._maps:
             # the map of one step for (q, g_0, ..., g_degree), column by column
@@ -637,19 +675,13 @@ class SeriesFlow(Flow):
                     cols.append(self.at(np.zeros(size), unit, h))
                     unit[k, i] = 0.0
             self._maps[key] = np.array(cols).T
-        step = self._maps[key]
-        out = np.empty((size, count))
-        out[:, 0] = q
+        step, forcing = self._maps[key], gs.swapaxes(0, 1)
+        out = np.empty((*qs.shape, count))
+        out[:, :, 0] = qs
         for i in range(1, count):
-            local = polynomial.shift(g, (i - 1) * h)
-            out[:, i] = step @ np.concatenate([out[:, i - 1], local.ravel()])
+            local = polynomial.shift(forcing, (i - 1) * h).transpose(0, 2, 1)
+            out[:, :, i] = step @ np.concatenate([out[:, :, i - 1], *local])
         return out
-
-    def rate(self, q: Array, g: Array, t: Array | float) -> Array:  # noqa: D102
-        p = powers(t, len(g) - 1)
-        if q.ndim == 2:
-            return self.space.a @ q + np.einsum("ki,kt->it", g, p)
-        return self.space.a @ q + np.einsum("ki,k->i", g, p)
 
 
 _X, _W = np.polynomial.legendre.leggauss(12)

@@ -35,6 +35,7 @@ from pound_solve.integrate.arrays import (
     CLOSE,
     CODE,
     CONTACT,
+    CROWD,
     CURVED,
     CV,
     D0,
@@ -106,7 +107,7 @@ from pound_solve.integrate.arrays import (
     W,
     Y,
 )
-from pound_solve.integrate.exits import between, excess, first_exit, summit
+from pound_solve.integrate.exits import behind, between, excess, first_exit, summit
 from pound_solve.integrate.ldl import factor, solve, update
 from pound_solve.integrate.states import (
     along,
@@ -179,7 +180,9 @@ def attempt(
     m: Matrices, w: Laws, x: Motion, scheme: Scheme, f: Tables, coefs: Array, s1: float, h: float,
     at: int, count: Index,
 ) -> bool:  # fmt: skip
-    """Try a step of length `h` that ends at the local time `s1`; False where Newton does not converge."""
+    """Try a step of length `h` that ends at the local time `s1`; False where Newton does not converge, and
+    the law furthest from it in `count`.
+    """
     n, laws = x.q.shape[1], len(w.i)
     b2, g1 = h * h * (0.5 - scheme.beta), (1.0 - scheme.gamma) * h
     bk, gk = scheme.beta * h * h, scheme.gamma * h
@@ -209,7 +212,7 @@ def attempt(
         w.f[i, LD1], w.f[i, LV1] = dd, vv
     b = w.chords
     aim(w, x, s)
-    last = np.inf
+    last, off, count[WORST] = np.inf, -1, -1
     for _ in range(50):
         for i in range(n):
             x.q[A1, i] = x.q[BASE, i]
@@ -241,7 +244,8 @@ def attempt(
             damp, force = c[2] + own, c[0] + own * vv
             guess = w.f[i, K] * dd + w.f[i, C] * vv + w.f[i, F0]
             size = max(abs(force), abs(k * w.f[i, MOST_D]), 1e-300)
-            worst = max(worst, abs(force - guess) / size)
+            if abs(force - guess) > worst * size:
+                worst, off = abs(force - guess) / size, i
             change = bk * (k - w.f[i, K]) + gk * (damp - w.f[i, C])
             w.f[i, K], w.f[i, C], w.f[i, F0] = k, damp, force - k * dd - damp * vv
             count[UPDATES] += 1
@@ -266,6 +270,8 @@ def attempt(
                 count[UPDATES] = REFRESH + 1
         last = error
     else:
+        if worst > 1e-12:
+            count[WORST] = off
         return False
     for i in range(n):
         x.q[U1, i] += bk * x.q[A1, i]
@@ -706,7 +712,7 @@ def cut(
         tried last, or 0 where the exit is met at once.
     """
     low, high, third, stuck = 0.0, piece, np.nan, False
-    g_low = excess(w, law, way, w.f[law, LD], w.f[law, LV])[0]
+    g_low = behind(w, x, law, way)
     g_high, g_third = excess(w, law, way, w.f[law, LD1], w.f[law, LV1])[0], np.nan
     for turn in range(100):
         if tau <= CLOSE * h:
@@ -729,9 +735,9 @@ def cut(
         passed, exit2, tau2 = first_exit(w, x, tau)
         other = passed >= 0 and (passed != law or exit2 != way)
         if other:
-            law, way, g_low, g_third = passed, exit2, np.nan, np.nan
+            law, way, g_low, g_high = passed, exit2, np.nan, np.nan
             if low == 0.0:
-                g_low = excess(w, law, way, w.f[law, LD], w.f[law, LV])[0]
+                g_low = behind(w, x, law, way)
         g, size = excess(w, law, way, w.f[law, LD1], w.f[law, LV1])
         if abs(g) <= STILL * size or last or 0.0 <= tau - tau2 <= CLOSE * h:
             if passed < 0 and abs(g) > NEAR * size:
@@ -744,7 +750,7 @@ def cut(
         else:
             third, g_third, low, g_low = low, g_low, tau, g
         if passed >= 0 and g_low != g_low:
-            tau = tau2
+            tau = tau2 if g_third != g_third else between(high, third, np.nan, g_high, g_third, np.nan)
         elif passed >= 0:
             tau = between(high, low, third, g_high, g_low, g_third)
         else:
@@ -765,13 +771,15 @@ def whole_step(
     After the touch of a curved contact the pieces grow from a short one: forces like the fourth root
     of time begin there.
     """
-    left, first, same, changes = length, True, 0, 0
+    left, first, same = length, True, 0
     most = 100 + 8 * len(w.i)
     curved = False
     for i in range(len(w.i)):
         if w.i[i, CURVED]:
             curved = True
     while left > 0.0:
+        if len(z.log) - count[LOGGED] <= len(w.leans):
+            return CROWD
         t = clock[0]
         piece = left
         if clock[3] < left:
@@ -825,9 +833,9 @@ def whole_step(
             clock[3] = FIRST * h
         settle(m, w, x, h)
         note(m, w, x, clock[0], 0.0)
-        same, changes = same + 1, changes + 1
-        if same > most or changes > 2 * most:  # as many as `advance` keeps room for
-            count[WORST] = law
+        count[WORST] = law
+        same += 1
+        if same > most:
             return CHATTER
     return DONE
 
@@ -884,7 +892,7 @@ def advance(
     clock : ndarray, shape (4,)
         Time, length that the factor at hand is for, energy at the start, longest piece for now.
     """
-    room, pause = 216 + 16 * len(w.i), count[STEPS] + PAUSE  # changes of branch in one step
+    room, pause = len(z.log) // 2, count[STEPS] + PAUSE
     while count[GOAL] < len(goals):
         goal = count[GOAL]
         h = lengths[goal]

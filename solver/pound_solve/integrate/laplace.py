@@ -56,6 +56,7 @@ from pound_solve.integrate.base import (
 )
 from pound_solve.integrate.exact import condensed
 from pound_solve.integrate.flow import Mechanism, StateSpace, state_space
+from pound_solve.integrate.functionals import exits, followed
 from pound_solve.modes import massless
 from pound_solve.scene import Scene
 
@@ -75,6 +76,37 @@ def hermite(h: float, x: float, f: Array, slope: Array) -> tuple[Array, Array]:
     value = (1 - y) * f[0] + y * f[1] + y * (1 - y) * ((1 - y) * a + y * b)
     rate = d + (1 - 2 * y) * ((1 - y) * a + y * b) + y * (1 - y) * (b - a)
     return value, rate / h
+
+
+class Samples:
+    """Rows at samples of equal distance, an arc for `functionals`, and the cubics between them.
+
+    Parameters
+    ----------
+    t : ndarray, shape (n_t,)
+    value, rate, second : ndarray, shape (n_rows, n_t)
+    """
+
+    def __init__(self, t: Array, value: Array, rate: Array, second: Array) -> None:
+        self.t = t[None]
+        self.value, self.rate, self.second = (x[:, None] for x in (value, rate, second))
+
+    def at(self, row: int, arc: int, cell: int, tau: float) -> tuple[float, float, float]:
+        """Value, rate and second rate of a row at a time in a cell."""
+        h, x = float(self.t[0, cell + 1] - self.t[0, cell]), tau - float(self.t[0, cell])
+        d, v, w = (y[row, arc, cell : cell + 2] for y in (self.value, self.rate, self.second))
+        value = hermite(h, x, d, v)[0]
+        rate, second = hermite(h, x, v, w)
+        return float(value), float(rate), float(second)
+
+    def until(self, tau: float, ends: tuple[Array, Array, Array]) -> Samples:
+        """Those before `tau`, and there the rows `ends`."""
+        cut = self.t[0] < tau
+        known = (
+            np.append(x[:, 0, cut], y[:, None], axis=1)
+            for x, y in zip((self.value, self.rate, self.second), ends)
+        )
+        return Samples(np.append(self.t[0, cut], tau), *known)
 
 
 class Laplace:
@@ -228,9 +260,9 @@ class Laplace:
         value += self.row_constants[:, None]
         if not np.isfinite(value).all():
             raise self.stop("A504", "the motion grew beyond all numbers")
-        samples = np.stack([value, rate, second])
+        seen = Samples(t, value, rate, second)
         span = min(float(t[-1]), end - self.t)
-        event = self._first_event(t, samples)
+        event = self._first_event(seen)
         tau = span if event is None or event[0] >= span else event[0]
 
         def within(x: Array, slope: Array, at: float) -> tuple[Array, Array]:
@@ -248,10 +280,8 @@ class Laplace:
             bend = self._acceleration(now[:, None], speed[:, None], ex.value(goal)[:, None])[:, 0]
             self._hand_out(goal, now, speed, bend, done)
         self.works = done + self._work(at, tau, u, v, a)
-        cut = t < tau
         ends = within(value, rate, tau)[0], within(rate, second, tau)[0], within(rate, second, tau)[1]
-        known = [np.append(x[:, cut], y[:, None], axis=1) for x, y in zip(samples, ends)]
-        self._peaks(np.append(t[cut], tau), known, lambda i, x: self._local(samples, i, x))
+        self._peaks(seen.until(tau, ends))
         self.u, self.v = within(u, v, tau)[0], within(v, a, tau)[0]
         self.same_instant = self.same_instant + 1 if tau <= 1e-12 * max(1.0, self.t) else 0
         self.t += tau
@@ -260,34 +290,16 @@ class Laplace:
         self.put_in += abs(float(self.works[0] - done[0]))
         kinetic = 0.5 * float(self.v @ self.scene.mass @ self.v)
         if not kinetic <= 10.0 * (self.held + self.put_in + abs(float(self.works[0]))) + 1e-300:
-            seen = f" as samples {self.dt:g} apart see it: is DT too long for the excitation?"
-            raise self.stop("A504", RUNAWAY.format(kinetic) + seen)
+            why = f" as samples {self.dt:g} apart see it: is DT too long for the excitation?"
+            raise self.stop("A504", RUNAWAY.format(kinetic) + why)
 
-    def _local(self, samples: Array, row: int, at: float) -> tuple[float, float, float]:
-        """Value, rate and second rate of a row between the samples."""
-        i = min(int(at / self.dt), samples.shape[2] - 2)
-        two, x = samples[:, row, i : i + 2], at - i * self.dt
-        value = hermite(self.dt, x, two[0], two[1])[0]
-        rate, second = hermite(self.dt, x, two[1], two[2])
-        return float(value), float(rate), float(second)
-
-    def _first_event(self, t: Array, samples: Array) -> tuple[float, int, int] | None:
-        pairs = [(i, e) for i, b in enumerate(self.branches) for e in range(len(b.exits))]
+    def _first_event(self, seen: Samples) -> tuple[float, int, int] | None:
+        watched, pairs = exits(self.branches, {})
         if not pairs:
             return None
-        law = np.array([i for i, _ in pairs], np.intp)
-        a, b, c = np.array([self.branches[i].exits[e] for i, e in pairs]).T
-        value, rate, second = samples[:, law]
-        g = a[:, None] * value + b[:, None] * rate + c[:, None]
-        slope = a[:, None] * rate + b[:, None] * second
-        scale = np.abs(a) * self.largest[0, law] + np.abs(b) * self.largest[1, law] + np.abs(c)
-        tol = STILL * np.maximum(scale, np.abs(g[:, :2]).max(axis=1))[:, None]
-
-        def exact(n: int, at: float) -> tuple[float, float]:
-            d, v, w = self._local(samples, int(law[n]), at)
-            return float(a[n] * d + b[n] * v + c[n]), float(a[n] * v + b[n] * w)
-
-        found = search.first_rise(t, g, slope, tol, exact)
+        g, slope = watched.of(seen)
+        scale = np.maximum(watched.scale(self.largest), np.abs(g[:, 0, :2]).max(axis=1))
+        found = search.first_rise(seen.t, g, slope, STILL * scale[:, None, None], watched.at(seen))
         return None if found is None else (found[0], *pairs[found[1]])
 
     def _switch(self, law: int, exit_index: int, d: float, v: float) -> None:
@@ -339,33 +351,14 @@ class Laplace:
                 self.ledger.open[law].impulse += float(force @ weight)
         return np.array([float(power @ weight), damping, lost])
 
-    def _peaks(self, t: Array, known: list[Array], local: Any) -> None:
-        value, rate, second = known
-        n, peaks = len(self.laws), self.ledger.peaks
-        np.maximum(self.largest, np.abs([value[:n], rate[:n]]).max(axis=2), out=self.largest)
-        search.widen(
-            [*peaks.deformation, *peaks.watch], self.t, t, value, rate, lambda i, x: local(i, x)[:2]
-        )
-        acting = [i for i, s in enumerate(self.laws) if not s.is_contact or i in self.ledger.open]
-        if not acting:
-            return
-        k, c, f0 = np.array(
-            [
-                (b.stiffness, b.damping * self.laws[i].is_contact, b.force0)
-                for i, b in ((i, self.branches[i]) for i in acting)
-            ]
-        ).T[:, :, None]
-
-        def exact(i: int, at: float) -> tuple[float, float]:
-            d, v, w = local(acting[i], at)
-            return float(k[i, 0] * d + c[i, 0] * v + f0[i, 0]), float(k[i, 0] * v + c[i, 0] * w)
-
-        force, slope = k * value[acting] + c * rate[acting] + f0, k * rate[acting] + c * second[acting]
-        running = self.ledger.open
-        targets = [self.ledger.running(i) if i in running else peaks.force[i] for i in acting]
-        search.widen(targets, self.t, t, force, slope, exact)
-        for i, collision in running.items():
-            peaks.force[i].take(collision.peak, collision.t_peak)
+    def _peaks(self, seen: Samples) -> None:
+        n = len(self.laws)
+        both = np.abs([seen.value[:n, 0], seen.rate[:n, 0]]).max(axis=2)
+        np.maximum(self.largest, both, out=self.largest)
+        watched, kept = followed(self.ledger, self.branches, {})
+        search.widen(kept, self.t, seen.t, *watched.of(seen), watched.at(seen))
+        for i, collision in self.ledger.open.items():
+            self.ledger.peaks.force[i].take(collision.peak, collision.t_peak)
 
     def _hand_out(self, t: float, u: Array, v: Array, a: Array, works: Array) -> None:
         at, (u, v, a) = np.array([t]), np.stack([u, v, a])[:, :, None]

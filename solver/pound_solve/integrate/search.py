@@ -14,51 +14,103 @@ from pound_solve.integrate.base import Peak
 from pound_solve.integrate.exits import summit
 
 Array = NDArray[np.float64]
-Exact = Callable[[int, float], tuple[float, float]]  #: value and slope of function n at time t
+#: value and slope of function n in some arc and cell at time t
+Exact = Callable[[int, int, int, float], tuple[float, float]]
 
 
-def first_rise(t: Array, g: Array, slope: Array, tol: Array, exact: Exact) -> tuple[float, int] | None:
-    """Return when and which of some functions first rises through zero.
+def may_rise(g: Array, slope: Array, bend: Array, width: Array) -> NDArray[np.bool_]:
+    """Return in which cells functions may rise through zero: where they are above it at the end, or
+    where they turn and are not kept below it by how little they can bend.
+
+    A function keeps within ``bend width^2 / 8`` of its chord, and it is monotone where its mean slope
+    at both ends is above ``bend width / 2``.
 
     Parameters
     ----------
-    t : ndarray, shape (n_t,)
-        Grid times, the first being the start of a branch or where it was left off.
-    g, slope : ndarray, shape (n, n_t)
+    g, slope : ndarray, shape (n, n_arcs, n_points)
+    bend : ndarray, shape (n, n_arcs)
+        Bounds of the second derivatives.
+    width : ndarray, shape (n_arcs, n_points - 1)
+        Of the cells between the points.
+    """
+    bend = bend[:, :, None]
+    turns = np.abs(slope[..., :-1] + slope[..., 1:]) <= bend * width
+    above = np.maximum(g[..., :-1], g[..., 1:]) + bend * (width**2 / 8.0) > 0.0
+    return np.asarray((g[..., 1:] > 0.0) | (turns & above))
+
+
+def may_peak(
+    value: Array, slope: Array, bend: Array, width: Array, peaks: Sequence[Peak]
+) -> NDArray[np.bool_]:
+    """Return in which cells functions may go beyond their peaks and all points up to there
+    (see `may_rise`).
+    """
+    bend, shape = bend[:, :, None], value.shape
+    turns = np.abs(slope[..., :-1] + slope[..., 1:]) <= bend * width
+    known = np.array([[peak.high, peak.low] for peak in peaks])
+    slack = bend * (width**2 / 8.0)
+    flat = value.reshape(len(value), -1)
+    high = np.maximum(np.maximum.accumulate(flat, axis=1), known[:, :1]).reshape(shape)[..., 1:]
+    low = np.minimum(np.minimum.accumulate(flat, axis=1), known[:, 1:]).reshape(shape)[..., 1:]
+    beyond = (np.maximum(value[..., :-1], value[..., 1:]) + slack > high) | (
+        np.minimum(value[..., :-1], value[..., 1:]) - slack < low
+    )
+    return np.asarray(turns & beyond & (slack > 0.0))
+
+
+def first_rise(
+    t: Array, g: Array, slope: Array, tol: Array, exact: Exact
+) -> tuple[float, int, int, int] | None:
+    """Return when, which of some functions and where first rises through zero.
+
+    Parameters
+    ----------
+    t : ndarray, shape (n_arcs, n_points)
+        Rising times on arcs one after the other, the first being the start of a branch or where it was left
+        off.
+    g, slope : ndarray, shape (n, n_arcs, n_points)
         Sampled values and slopes; `g` is changed at the start, where a value above zero is rounding.
-    tol : ndarray, shape (n, 1)
+    tol : ndarray, shape (n, 1, 1)
         Values up to which a function counts as not above zero.
     exact : callable
-        Evaluates function n at a time.
+        Evaluates function n in a cell.
+
+    Returns
+    -------
+    tuple of (time, n, arc, cell), or None
     """
-    g[:, 0] = np.minimum(g[:, 0], 0.0)
-    crossed = (g[:, 1:] > tol) & (g[:, :-1] <= tol)
-    # up and down again within one interval: where the end tangents meet above zero it is looked at closely
-    turn = (slope[:, :-1] > 0) & (slope[:, 1:] < 0) & (g[:, 1:] <= tol) & (g[:, :-1] <= tol)
+    g[:, 0, 0] = np.minimum(g[:, 0, 0], 0.0)
+    g0, g1, s0, s1 = g[..., :-1], g[..., 1:], slope[..., :-1], slope[..., 1:]
+    crossed = (g1 > tol) & (g0 <= tol)
+    # up and down again within one cell: where the end tangents meet above zero it is looked at closely
+    turn = (s0 > 0) & (s1 < 0) & (g1 <= tol) & (g0 <= tol)
     if turn.any():
         with np.errstate(divide="ignore", invalid="ignore"):
-            x = (g[:, 1:] - g[:, :-1] - slope[:, 1:] * np.diff(t)) / (slope[:, :-1] - slope[:, 1:])
-            turn &= g[:, :-1] + slope[:, :-1] * x > tol
-    for j in np.flatnonzero((crossed | turn).any(axis=0)):
+            turn &= g0 + s0 * ((g1 - g0 - s1 * np.diff(t)) / (s0 - s1)) > tol
+    for k, j in np.argwhere((crossed | turn).any(axis=0)).tolist():
         best: tuple[float, int] | None = None
-        for n in np.flatnonzero(crossed[:, j] | turn[:, j]).tolist():
-            low, high = float(t[j]), float(t[j + 1])
-            if not crossed[n, j]:
-                top = turning(lambda x, n=n: exact(n, x)[1], low, high, slope[n, j], slope[n, j + 1])  # type: ignore[misc]
-                if exact(n, top)[0] <= tol[n, 0]:
+        for n in np.flatnonzero(crossed[:, k, j] | turn[:, k, j]).tolist():
+            low, high = float(t[k, j]), float(t[k, j + 1])
+
+            def own(x: float, n: int = n, k: int = k, j: int = j) -> tuple[float, float]:
+                return exact(n, k, j, x)
+
+            if not crossed[n, k, j]:
+                top = turning(lambda x, own=own: own(x)[1], low, high, slope[n, k, j], slope[n, k, j + 1])  # type: ignore[misc]
+                if own(top)[0] <= tol[n, 0, 0]:
                     continue
                 high = top
-            elif j == 0 and g[n, 0] == 0.0:
-                if slope[n, 0] > 0.0:
-                    return low, n  # it leaves at once
-                low = _dip(lambda x, n=n: exact(n, x)[0], low, high)  # type: ignore[misc]
-            if crossed[n, j] and low == t[j] and g[n, j] == 0.0:
-                return low, n  # it rises from the start, however slowly
-            at = _root(lambda x, n=n: exact(n, x), low, high)  # type: ignore[misc]
+            elif k == j == 0 and g[n, 0, 0] == 0.0:
+                if slope[n, 0, 0] > 0.0:
+                    return low, n, k, j  # it leaves at once
+                low = _dip(lambda x, own=own: own(x)[0], low, high)  # type: ignore[misc]
+            if crossed[n, k, j] and low == t[k, j] and g[n, k, j] == 0.0:
+                return low, n, k, j  # it rises from the start, however slowly
+            at = _root(own, low, high)
             if best is None or at < best[0]:
                 best = at, n
         if best is not None:
-            return best
+            return *best, k, j
     return None
 
 
@@ -114,6 +166,17 @@ def turning(slope: Callable[[float], float], low: float, high: float, s_low: flo
     return x
 
 
+def count(peaks: Sequence[Peak], t: Array, value: Array) -> None:
+    """Count sampled functions, shape (n, n_t), into their peaks."""
+    hi, lo = value.argmax(axis=1), value.argmin(axis=1)
+    every = np.arange(len(peaks))
+    for peak, x, j, y, k in zip(peaks, value[every, hi].tolist(), hi, value[every, lo].tolist(), lo):
+        if x > peak.high:
+            peak.take(x, float(t[j]))
+        if y < peak.low:
+            peak.take(y, float(t[k]))
+
+
 def widen(peaks: Sequence[Peak], t0: float, t: Array, value: Array, rate: Array, exact: Exact) -> None:
     """Count sampled functions into their peaks, and what rises beyond them between the samples, polished.
 
@@ -123,42 +186,34 @@ def widen(peaks: Sequence[Peak], t0: float, t: Array, value: Array, rate: Array,
         One for each function.
     t0 : float
         Time of the window's start [T]; `t` counts from it.
-    t : ndarray, shape (n_t,)
-    value, rate : ndarray, shape (n, n_t)
+    t : ndarray, shape (n_arcs, n_points)
+    value, rate : ndarray, shape (n, n_arcs, n_points)
     exact : callable
-        Evaluates function n at a local time.
+        Evaluates function n in a cell.
     """
-    if not len(peaks):
-        return
-    hi, lo = value.argmax(axis=1), value.argmin(axis=1)
-    every = np.arange(len(peaks))
-    for peak, x, j, y, k in zip(peaks, value[every, hi].tolist(), hi, value[every, lo].tolist(), lo):
-        if x > peak.high:
-            peak.take(x, t0 + float(t[j]))
-        if y < peak.low:
-            peak.take(y, t0 + float(t[k]))
-    f0, s0, s1 = value[:, :-1], rate[:, :-1], rate[:, 1:]
+    count(peaks, t0 + t.ravel(), value.reshape(len(value), t.size))
+    f0, s0, s1 = value[..., :-1], rate[..., :-1], rate[..., 1:]
     turn = s0 * s1 < 0
     if not turn.any():
         return
-    known = np.array([[peak.high, peak.low] for peak in peaks])[:, :, None]
+    known = np.array([[peak.high, peak.low] for peak in peaks])[:, :, None, None]
     with np.errstate(divide="ignore", invalid="ignore"):
         # where the end tangents meet bounds the turning point of a smooth arc
-        meet = f0 + s0 * (value[:, 1:] - f0 - s1 * np.diff(t)) / (s0 - s1)
+        meet = f0 + s0 * (value[..., 1:] - f0 - s1 * np.diff(t)) / (s0 - s1)
     beyond = turn & (((s0 > 0) & (meet > known[:, 0])) | ((s0 < 0) & (meet < known[:, 1])))
-    for i, j in zip(*np.nonzero(beyond)):
-        i, sign = int(i), 1.0 if s0[i, j] > 0 else -1.0
+    for i, k, j in np.argwhere(beyond).tolist():
+        sign = 1.0 if s0[i, k, j] > 0 else -1.0
         best = peaks[i].high if sign > 0 else -peaks[i].low
         f_low, f_high, s_low, s_high = (
-            sign * float(x) for x in (f0[i, j], value[i, j + 1], s0[i, j], s1[i, j])
+            sign * float(x) for x in (f0[i, k, j], value[i, k, j + 1], s0[i, k, j], s1[i, k, j])
         )
         # the cubic through both ends tells whether it can win; only then is it polished
-        top = summit(f_low, f_high, s_low, s_high, float(t[j + 1] - t[j]))[1]
+        top = summit(f_low, f_high, s_low, s_high, float(t[k, j + 1] - t[k, j]))[1]
         if top + 0.02 * (top - max(f_low, f_high)) <= best:
             continue
 
-        def slope(x: float, i: int = i, sign: float = sign) -> float:
-            return sign * exact(i, x)[1]
+        def slope(x: float, i: int = i, k: int = k, j: int = j, sign: float = sign) -> float:
+            return sign * exact(i, k, j, x)[1]
 
-        at = turning(slope, float(t[j]), float(t[j + 1]), s_low, s_high)
-        peaks[i].take(exact(i, at)[0], t0 + at)
+        at = turning(slope, float(t[k, j]), float(t[k, j + 1]), s_low, s_high)
+        peaks[i].take(exact(i, k, j, at)[0], t0 + at)

@@ -42,6 +42,7 @@ from pound_solve.integrate.base import (
     Watch,
     energy_at_start,
     goals,
+    not_linear,
     refuse_rigid,
 )
 from pound_solve.laws import MEMORY, PARAMETERS
@@ -427,15 +428,19 @@ class Stepper:
         if why == arrays.PIVOT:
             name = self.scene.name(int(self.order[worst]))
             return self.stop("A501", f"{name} has no mass and nothing holds it")
-        s = self.laws[worst] if self.laws else None
-        if why == arrays.CHATTER and s is not None:
-            branch = s.law.rule.branches[self.w.i[worst, arrays.AT]]
-            return self.stop(
-                "A503",
-                f"too many changes within one step, the last in element {s.element} ({s.rule}): {branch}; "
-                "a shorter DT may tell them apart",
-            )
-        return self.stop("A503", "Newton's iterations find no equilibrium, however short the step")
+        place, last = "the members' turning", ""
+        if worst >= 0:
+            s = self.laws[worst]
+            place = f"element {s.element} ({s.rule})"
+            last = f"the last in {place} to {s.law.rule.branches[self.w.i[worst, arrays.AT]]!r}"
+        if why == arrays.CHATTER:
+            told = f"laws change branch again and again at one instant, {last}"
+        elif why == arrays.CROWD:
+            told = f"laws change branch more than {len(self.z.log) // 2} times within one step, {last}"
+        else:
+            told = f"Newton's iterations find no equilibrium of {place}, however short the step"
+        exact = "" if not_linear(self.scene) else ", or METHOD=EXACT"
+        return self.stop("A503", f"{told}; try a DT well below {self.dt:g}{exact}")
 
     def outcome(self) -> Outcome:
         """What the run gathered."""

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from pound_solve import polynomial
 from pound_solve.integrate import phi
-from pound_solve.integrate.flow import RECURRING, ModalFlow, SeriesFlow, gauss, powers
+from pound_solve.integrate.flow import ModalFlow, SeriesFlow, gauss, powers
 from pound_solve.laws import Branch
 from pound_solve.scene import Scene
 
@@ -83,7 +83,6 @@ class Meter:
         self.lam = flow.lam
         self.form = self._form(flow.v_q, damping) if self.damped else np.zeros((0, 0))
         self.law_forms = [c * self._form(row[None, :] @ flow.v_q, np.eye(1)) for _, c, row in laws]
-        self._moments: dict[tuple[float, int], tuple[NDArray[np.bool_], Complex, Complex]] = {}
 
     def _form(self, v: Complex, c: Array) -> Array:
         """Return the quadratic form of the real and imaginary parts of free amplitudes whose change over
@@ -99,53 +98,44 @@ class Meter:
         # v = Re(V q): v^T C v = (q^T S1 q + q^H S2 q) / 2, real part
         return 0.5 * np.block([[(r1 + r2).real, -(r1 + r2).imag], [(r2 - r1).imag, (r2 - r1).real]])
 
-    def _split(self, qs: Complex, gs: Complex, tau: float) -> tuple[Complex, Complex, Complex, Complex]:
-        """Free amplitudes at 0 and tau (n_q, n), forced
-        polynomials (powers, n_q, n), moments (powers, n_q).
-        """
+    def _split(self, qs: Complex, gs: Complex, tau: Array) -> tuple[Complex, Complex, Complex, Complex]:
+        """Free amplitudes at 0 and tau (n_q, n), forced polynomials and moments (powers, n_q, n)."""
         degree = gs.shape[1] - 1
         g = gs.transpose(1, 2, 0)
-        slow, grown, moments = self._responses(tau, degree)
-        powers_used = len(moments)
+        # split into free and forced, a slow mode would be the small difference of large numbers: its
+        # power series serves instead (of a rigid-body mode it ends by itself)
+        slow = np.abs(self.lam) * tau.max() < SLOW
+        more = 0 if not slow.any() else 1 if not self.lam[slow].any() else TERMS
+        count = degree + 1 + more
+        # many intervals are of the same length
+        lengths, place = np.unique(tau, return_inverse=True)
+        z: Complex = np.where(slow, 0j, self.lam)[:, None] * lengths.astype(complex)
+        grown = np.exp(z)[:, place]
+        moments = (phi.moments(z, count - 1) * powers(lengths, count)[1:, None])[:, :, place]
         lam = np.where(slow, 1.0, self.lam)[:, None]
-        p = np.zeros((powers_used + 1, *qs.shape), complex)
+        p = np.zeros((count + 1, *qs.shape), complex)
         for k in range(degree, -1, -1):
             p[k] = ((k + 1) * p[k + 1] - g[k]) / lam
         p[:, slow] = 0.0
         c0 = np.where(slow[:, None], 0.0, qs - p[0])
         if slow.any():
-            own, force = np.empty((powers_used, slow.sum(), qs.shape[1]), complex), g[:, slow]
+            own, force = np.empty((count, slow.sum(), qs.shape[1]), complex), g[:, slow]
             own[0] = qs[slow]
-            for k in range(powers_used - 1):
+            for k in range(count - 1):
                 own[k + 1] = (self.lam[slow, None] * own[k] + (force[k] if k <= degree else 0.0)) / (k + 1)
-            p[:powers_used, slow] = own
-        return c0, c0 * grown[:, None], p[:powers_used], moments
-
-    def _responses(self, tau: float, degree: int) -> tuple[NDArray[np.bool_], Complex, Complex]:
-        """Which modes are slow, growth and moments (powers, n_q) of the others; kept if there is room."""
-        found = self._moments.get((tau, degree))
-        if found is None:
-            # split into free and forced, a slow mode would be the small difference of large numbers: its
-            # power series serves instead (of a rigid-body mode it ends by itself)
-            slow = np.abs(self.lam) * tau < SLOW
-            more = 0 if not slow.any() else 1 if not self.lam[slow].any() else TERMS
-            z = np.where(slow, 0.0, self.lam * tau)
-            count = degree + 1 + more
-            found = slow, np.exp(z), phi.moments(z, count - 1) * (tau ** np.arange(1, count + 1))[:, None]
-            if len(self._moments) < RECURRING:
-                self._moments[tau, degree] = found
-        return found
+            p[:count, slow] = own
+        return c0, c0 * grown, p[:count], moments
 
     def measures(
         self,
         qs: NDArray[Any],
         gs: NDArray[Any],
-        tau: float,
+        tau: Array,
         coefs: Array,
         constant: Array,
         ps: Array | None = None,
     ) -> Works:
-        """Return the work over several intervals of one length.
+        """Return the work over several intervals.
 
         Parameters
         ----------
@@ -153,8 +143,8 @@ class Meter:
             Modal states at their starts.
         gs : ndarray, shape (n, degree + 1, n_q)
             Their forcing.
-        tau : float
-            Their length [T].
+        tau : ndarray, shape (n,)
+            Their lengths [T].
         coefs : ndarray, shape (n, degree + 1, n_inputs)
             Inputs; their forces and `constant` loads (n_unknowns,) do the input work.
         ps : ndarray, shape (n, degree + 1, n_unknowns), or None
@@ -162,8 +152,8 @@ class Meter:
         """
         if not self.closed_form or gs.shape[1] > 2:
             each = [
-                self._quadrature(qs[:, i], gs[i], tau, coefs[i], constant, None if ps is None else ps[i])
-                for i in range(len(gs))
+                self._quadrature(qs[:, i], gs[i], length, coefs[i], constant, None if ps is None else ps[i])
+                for i, length in enumerate(tau.tolist())
             ]
             losses = [
                 (law, np.array([w.laws[n][1] for w in each])) for n, (law, _, _) in enumerate(self.laws)
@@ -174,9 +164,9 @@ class Meter:
         ends = np.concatenate([ends.real, ends.imag])
         # of the velocities: the forced polynomials, and the integrals of t^k times the free part, and all;
         # shape (powers, n, n_intervals) each
-        steady, free = ((self.flow.v_q @ x).real for x in (forced, c0 * moments[:, :, None]))
-        both = np.add.outer(np.arange(len(forced)), np.arange(1, len(forced) + 1))
-        whole = free + np.tensordot(tau**both / both, steady, axes=1)
+        steady, free = ((self.flow.v_q @ x).real for x in (forced, c0 * moments))
+        both = np.add.outer(np.arange(len(forced)), np.arange(1, len(forced) + 1))[:, :, None]
+        whole = free + np.einsum("kln,lin->kin", tau**both / both, steady)
         loss, losses = np.zeros(len(gs)), []
         if self.damped:
             loss = self._change(self.form, ends)
@@ -203,7 +193,7 @@ class Meter:
             value, slope = (
                 np.array([polynomial.value(p, float(x), order) for x in points]).T for order in (0, 1)
             )
-            v += self.flow.space.v_p @ value + self.flow.u_p @ slope
+            v += self.flow.v_p @ value + self.flow.u_p @ slope
         force = constant[:, None] + self.inputs @ np.einsum(
             "kj,kt->jt", coefs, powers(points, len(coefs) - 1)
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -55,6 +55,7 @@ METRE: Final[Mapping[str, float]] = MappingProxyType(
     {"m": 1.0, "cm": 100.0, "mm": 1000.0, "ft": 1.0 / 0.3048, "in": 1.0 / 0.0254}
 )
 
+Closed = tuple[Callable[[], Piecewise], Callable[[], Piecewise]]
 _STRONG, _WEAK = 3.0, 0.001  # [g]
 
 
@@ -97,8 +98,9 @@ class Motion:
     info : mapping
         What the report tells: ``kind name file format component npts dt unit scale start duration pga t_pga
         pgv pgd sha256 warnings`` and items of the kind's own.
-    closed : pair of Piecewise, or None
-        Velocity and displacement in closed form, where the kind has one.
+    closed : pair of callables, or None
+        Make velocity and displacement, where the kind has a closed form; they are not kept, because few
+        decks ask for them.
     about : tuple of two floats, [L]
     wave : float or None, [L/T]
         Speed of the wave that brings the motion to one support after the other; see `wave`.
@@ -110,7 +112,7 @@ class Motion:
     velocity0: float = 0.0
     displacement0: float = 0.0
     info: Mapping[str, Any] = field(default_factory=dict)
-    closed: tuple[Piecewise, Piecewise] | None = None
+    closed: Closed | None = None
     about: tuple[float, float] = (0.0, 0.0)
     wave: float | None = None
 
@@ -131,7 +133,10 @@ class Motion:
         closed = self.closed
         if closed:
             v, d = closed
-            closed = v.delayed(by, (self.velocity0,)), d.delayed(by, (lead, self.velocity0))
+            closed = (
+                lambda: v().delayed(by, (self.velocity0,)),
+                lambda: d().delayed(by, (lead, self.velocity0)),
+            )
         info = dict(self.info)
         if by:
             info["name"] = f"{info['name']}, {by:.6g} later"
@@ -143,15 +148,17 @@ class Motion:
     def velocity(self, t_end: float = 0.0) -> Piecewise:
         """Ground velocity [L/T] up to `t_end` at least, constant where the acceleration has ended."""
         if self.closed:
-            v = self.closed[0]
+            v = self.closed[0]()
             return v.extended(t_end, (v.value(v.end),))
         return self.acceleration.extended(t_end).integral(self.velocity0)
 
     def displacement(self, t_end: float = 0.0) -> Piecewise:
         """Ground displacement [L] up to `t_end` at least."""
         if self.closed:
-            v, d = self.closed
-            return d.extended(t_end, (d.value(d.end), v.value(v.end)))
+            d = self.closed[1]()
+            return (
+                d if t_end <= d.end else d.extended(t_end, (d.value(d.end), self.closed[0]().value(d.end)))
+            )
         return self.velocity(t_end).integral(self.displacement0)
 
 
@@ -162,7 +169,7 @@ def finish(
     info: Mapping[str, Any],
     velocity0: float = 0.0,
     displacement0: float = 0.0,
-    closed: tuple[Piecewise, Piecewise] | None = None,
+    closed: Closed | None = None,
 ) -> Motion:
     """Motion with the common items of its card, its peaks and the warnings about them.
 
@@ -176,7 +183,7 @@ def finish(
     info : mapping
         The kind's part of `Motion.info`.
     velocity0, displacement0 : float, [L/T], [L]
-    closed : pair of Piecewise, optional
+    closed : pair of callables, optional
         See `Motion`.
 
     Raises

@@ -82,7 +82,10 @@ def build(card_values: Mapping[str, Any], context: Context) -> Motion:
     if card_values.get("DIRECTION") == "R" and unit != "DECK":
         message = f"a turn is no share of gravity and no length, but the record is taken to be in {unit}"
         raise RecordError("R405", message, "write UNIT=DECK: radians per time squared", "DIRECTION")
-    factor = _factor(unit, context) * float(card_values.get("SCALE", 1.0))
+    scale = float(card_values.get("SCALE", 1.0))
+    factor = _factor(unit, context) * scale
+    if unit == "G" and abs(abs(scale) / context.gravity - 1.0) < 0.01:
+        warnings.append(f"SCALE={scale:g} is gravity, by which samples in G are multiplied anyway")
     shipped = known(name)
     if shipped and found.sha256 != shipped.sha256:
         warnings.append(

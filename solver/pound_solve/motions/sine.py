@@ -56,28 +56,25 @@ def build(card_values: Mapping[str, Any], context: Context) -> Motion:
         else _Long(card_values["DISPLACEMENT0"])
     )
 
-    if end > start:
-        breaks = intervals(w, start, end)
-        since = breaks[:-1].astype(_Long) - start
-        angle = w * since + _Long(phase)
-        quarter = np.arccos(_Long(-1)) / 2
-        drift, offset = v0 - steady_v, d0 + v0 * start - steady_d
-        acc = taylor(a, w, angle)
-        vel = taylor(-a / w, w, angle + quarter)
-        dis = taylor(-a / w**2, w, angle)
-        vel[0] += drift
-        dis[0] += offset + drift * since
-        dis[1] += drift
-        parts = [Piecewise(breaks, np.asarray(c, dtype=np.float64)) for c in (acc, vel, dis)]
-    else:
-        parts = []
-    lead = _lead(min(start, end), float(v0), float(d0))
-    acceleration, velocity, displacement = (
-        _joined(p) for p in zip(*(group for group in (lead, parts) if group))
-    )
+    quarter, drift, offset = np.arccos(_Long(-1)) / 2, v0 - steady_v, d0 + v0 * start - steady_d
+    lead = min(start, end)
+
+    def history(
+        amplitude: Any, turn: Any, before: list[Any], base: Any = 0.0, slope: Any = 0.0
+    ) -> Piecewise:
+        """A polynomial until the sine begins, then the sine about a straight line."""
+        parts = [Piecewise(np.array([0.0, lead]), np.array(before, float)[:, None])] if lead > 0 else []
+        if end > start:
+            breaks = intervals(w, start, end)
+            since = breaks[:-1].astype(_Long) - start
+            coefs = taylor(amplitude, w, w * since + _Long(phase) + turn, base + slope * since)
+            coefs[1] += float(slope)
+            parts.append(Piecewise(breaks, coefs))
+        return _joined(parts)
+
     return finish(
         card_values,
-        acceleration,
+        history(a, 0.0, [0.0]),
         context,
         {
             "kind": SPEC.name,
@@ -91,7 +88,10 @@ def build(card_values: Mapping[str, Any], context: Context) -> Motion:
         },
         float(v0),
         float(d0),
-        (velocity, displacement),
+        (
+            lambda: history(-a / w, quarter, [v0], drift),
+            lambda: history(-a / w**2, 0.0, [d0, v0], offset, drift),
+        ),
     )
 
 
@@ -124,22 +124,19 @@ def intervals(w: np.longdouble, start: float, end: float) -> Array:
     return np.linspace(start, end, pieces + 1)
 
 
-def taylor(amplitude: Any, w: np.longdouble, angle: Any) -> Any:
-    """Taylor coefficients of ``amplitude sin(w s + angle)`` in s, shape (degree + 1, len(angle))."""
-    turns = (np.sin(angle), np.cos(angle), -np.sin(angle), -np.cos(angle))
-    return np.stack([amplitude * w**k / math.factorial(k) * turns[k % 4] for k in range(_DEGREE + 1)])
+def taylor(amplitude: Any, w: np.longdouble, angle: Any, base: Any = 0.0) -> Array:
+    """Taylor coefficients of ``amplitude sin(w s + angle) + base`` in s, shape (degree + 1, len(angle))."""
+    out, turns = np.empty((_DEGREE + 1, len(angle))), (np.sin(angle), np.cos(angle))
+    for k in range(_DEGREE + 1):
+        sign = 1 - 2 * (k // 2 % 2)
+        out[k] = sign * amplitude * w**k / math.factorial(k) * turns[k % 2] + (base if k == 0 else 0.0)
+    return out
 
 
-def _lead(end: float, v0: float, d0: float) -> list[Piecewise]:
-    """Acceleration, velocity, displacement from t = 0 until the sine begins; empty if it begins at once."""
-    if end <= 0:
-        return []
-    breaks = np.array([0.0, end])
-    return [Piecewise(breaks, np.array(c)[:, None]) for c in ([0.0], [v0], [d0, v0])]
-
-
-def _joined(parts: tuple[Piecewise, ...]) -> Piecewise:
+def _joined(parts: list[Piecewise]) -> Piecewise:
     """Pieces that follow one another as one."""
+    if len(parts) == 1:
+        return parts[0]
     rows = max(len(p.coefs) for p in parts)
     coefs: list[Array] = [np.pad(p.coefs, ((0, rows - len(p.coefs)), (0, 0))) for p in parts]
     return Piecewise(

@@ -33,7 +33,7 @@ def histories(results: Results) -> Any:
 
 
 def energy(results: Results) -> Any:
-    """Energies over time, piled up against the work put in."""
+    """Energies over time, piled up against what was there at the start and the work put in."""
     t, values = results.time, results.history("energy")
     by_name = dict(zip(ENERGIES, values.T))
     figure = style.figure(8.0, 4.2, "Energy")
@@ -43,7 +43,9 @@ def energy(results: Results) -> Any:
     parts = ("kinetic", "strain", "damping", "hysteretic", "contact")
     colours = ("#9dc3e6", "#c9b3e0", "#f2c48d", "#e39a8b", "#a9cf9f")
     axes.stackplot(t, *(by_name[p] for p in parts), labels=parts, colors=colours)
-    axes.plot(t, by_name["input"], color="0.1", linewidth=1.2, label="input")
+    there = sum(by_name[p][0] for p in parts)  # strain under gravity, motion of INITIAL
+    label = "input" if there == 0.0 else "at the start, and input"
+    axes.plot(t, there + by_name["input"], color="0.1", linewidth=1.2, label=label)
     axes.legend(fontsize=7, loc="upper left")
     return figure
 
@@ -85,10 +87,16 @@ def loops(results: Results) -> Any:
     area = np.abs(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(deformation, axis=0), axis=0))
     scale = np.where(span * held > 0.0, span * held, 1.0)
     chosen = np.sort(np.argsort(-area / scale, kind="stable")[:MOST_LOOPS])
-    figure, all_axes = style.panels(len(chosen), "Springs and hinges")
+    more = f": {len(chosen)} of {len(labels)}, those that yielded most" if len(chosen) < len(labels) else ""
+    figure, all_axes = style.panels(len(chosen), f"Springs and hinges{more}")
     deformed = results.history_units("spring/deformation")
     for axes, k in zip(all_axes, chosen.tolist()):
-        style.grid(axes, f"deformation [{deformed[k]}]", f"force [{units[k]}]")
+        turns = deformed[k] == "rad"
+        style.grid(
+            axes,
+            f"{'rotation' if turns else 'deformation'} [{deformed[k]}]",
+            f"{'moment' if turns else 'force'} [{units[k]}]",
+        )
         axes.plot(deformation[:, k], force[:, k], color=style.BLUE, linewidth=0.8)
         axes.set_title(labels[k], fontsize=8)
     return figure

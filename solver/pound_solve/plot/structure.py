@@ -120,7 +120,8 @@ def deformed(results: Results) -> Any:
     factor = SHARE * s.size / size[at] if size[at] > 0.0 else 1.0
     moved = {n: factor * u[at, i] for i, n in enumerate(numbers)}
     figure = style.figure(
-        *s.shape(), title=f"t = {results.time[at]:.4g} {s.units.time}, {factor:.3g} times"
+        *s.shape(),
+        title=f"Displacements at {results.time[at]:.4g} {s.units.time}, drawn {factor:.3g} times as large",
     )
     axes = figure.add_subplot()
     s.frame(axes, 0.06 + SHARE)

@@ -1,0 +1,108 @@
+"""search: cells that may hold an event or a peak, and the first event in them."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from pound_solve.integrate import search
+from pound_solve.integrate.base import Extreme
+
+Array = NDArray[np.float64]
+
+waves = st.lists(
+    st.tuples(st.floats(0.1, 2.0), st.floats(0.5, 20.0), st.floats(0.0, 6.3)), min_size=1, max_size=4
+)
+
+
+class Waves:
+    """A sum of sines on a constant, with the bound of its second derivative."""
+
+    def __init__(self, terms: list[tuple[float, float, float]], constant: float) -> None:
+        self.a, self.w, self.p = np.array(terms).T[:, :, None]
+        self.constant = constant
+        self.bend = float((self.a * self.w**2).sum())
+
+    def value(self, t: Array) -> Array:
+        x = np.ravel(t)
+        return ((self.a * np.sin(self.w * x + self.p)).sum(axis=0) + self.constant).reshape(np.shape(t))
+
+    def slope(self, t: Array) -> Array:
+        x = np.ravel(t)
+        return (self.a * self.w * np.cos(self.w * x + self.p)).sum(axis=0).reshape(np.shape(t))
+
+
+def grid(step: float, arcs: int, cells: int) -> Array:
+    return step * (cells * np.arange(arcs)[:, None] + np.arange(cells + 1))
+
+
+@given(waves, st.floats(-4.0, 0.0), st.floats(0.01, 0.3))
+def test_no_rise_is_passed_over(terms: list[tuple[float, float, float]], c: float, step: float) -> None:
+    f, t = Waves(terms, c), grid(step, 3, 4)
+    bend = np.full((1, 3), f.bend)
+    marked = search.may_rise(
+        f.value(t)[None],
+        f.slope(t)[None],
+        bend,
+        np.diff(t),
+    )[0]
+    within = t[:, :-1, None] + np.diff(t)[:, :, None] * np.linspace(0.0, 1.0, 41)
+    above = (f.value(within) > 1e-12).any(axis=2) & (f.value(t)[:, :-1] <= 0.0)
+    assert not (above & ~marked).any()
+
+
+@given(waves, st.floats(0.01, 0.3))
+def test_no_peak_is_passed_over(terms: list[tuple[float, float, float]], step: float) -> None:
+    f, t = Waves(terms, 0.0), grid(step, 3, 4)
+    peak, seen = Extreme(), Extreme()
+    marked = search.may_peak(
+        f.value(t)[None], f.slope(t)[None], np.full((1, 3), f.bend), np.diff(t), [peak]
+    )[0]
+    search.count([seen], t.ravel(), f.value(t).reshape(1, -1))
+    within = t[:, :-1, None] + np.diff(t)[:, :, None] * np.linspace(0.0, 1.0, 41)
+    x = f.value(within[marked])
+    high = max(seen.high, x.max(initial=-np.inf))
+    low = min(seen.low, x.min(initial=np.inf))
+    assert f.value(within).max() <= high + 1e-12
+    assert f.value(within).min() >= low - 1e-12
+
+
+def test_cells_that_cannot_matter_are_left_out() -> None:
+    """A wave far below zero, and one that stays within its peaks."""
+    f, t = Waves([(1.0, 1.0, 0.0)], -2.0), grid(0.1, 2, 30)
+    value, slope, bend = f.value(t)[None], f.slope(t)[None], np.full((1, 2), f.bend)
+    assert not search.may_rise(value, slope, bend, np.diff(t)).any()
+    fresh, known = Extreme(), Extreme()
+    known.take(0.0, 0.0)
+    known.take(-4.0, 0.0)
+    assert not search.may_peak(value, slope, bend, np.diff(t), [known]).any()
+    # otherwise only where it turns: at pi/2 and 3 pi/2, and on the way down from its start nothing
+    marked = search.may_peak(value, slope, bend, np.diff(t), [fresh]).ravel()
+    assert 2 <= marked.sum() <= 6
+    assert marked[15] and marked[47]
+
+
+@given(waves, st.floats(-3.0, -0.1), st.integers(1, 3))
+def test_first_rise(terms: list[tuple[float, float, float]], c: float, arcs: int) -> None:
+    f = Waves(terms, c)
+    t = grid(0.01, arcs, 32)
+    if f.value(t)[0, 0] > -1e-9:
+        return
+
+    def exact(n: int, arc: int, cell: int, x: float) -> tuple[float, float]:
+        assert t[arc, cell] <= x <= t[arc, cell + 1]
+        return float(f.value(np.array([x]))[0]), float(f.slope(np.array([x]))[0])
+
+    g, slope = f.value(t)[None], f.slope(t)[None]
+    found = search.first_rise(t, g, slope, np.zeros((1, 1, 1)), exact)
+    fine = np.linspace(0.0, t[-1, -1], 20001)
+    above = np.flatnonzero(f.value(fine) > 1e-9)
+    if found is None:
+        assert not len(above)
+    else:
+        at, n, arc, cell = found
+        assert n == 0 and t[arc, cell] <= at <= t[arc, cell + 1]
+        assert abs(f.value(np.array([at]))[0]) < 1e-12 * f.bend
+        assert not len(above) or at <= fine[above[0]]
