@@ -209,19 +209,17 @@ ANALYSIS
 OUTPUT
  EVERY=0.1
 """
-SLIDING: Final = """GRAVITY 1
+OBLIQUE: Final = """GRAVITY 1
 NODES
  1 0 0 FIX=R
 ELEMENTS
  1 FLOOR 1
 PROPS
- FLOOR CONTACT GAP={gap!r} ANGLE=90 LAW={law} MU={mu!r} KT={kt!r}
+ FLOOR CONTACT GAP=0.05 ANGLE=90 LAW={law} MU=0.2 KT=1E6
 WEIGHTS
  1 1
 INITIAL
- 1 VX=1 VY={speed!r}
-LOADS
- 1 FY={push!r}
+ 1 VX=1 VY=1
 ANALYSIS
  HISTORY 0.5 METHOD=@METHOD
 OUTPUT
@@ -256,24 +254,6 @@ OWN_LOSS: Final = ("TABLE", "BILINEAR_IMPACT")  #: what they lose depends on the
 def last_speed(t: Array, u: Array) -> Array:
     """Mean velocities between the last two samples, shape (n_nodes,)."""
     return np.asarray((u[-1] - u[-2]) / (t[-1] - t[-2]))
-
-
-def braked(mu: float, push: float, kt: float) -> Callable[[Array], Array]:
-    """Way of a unit mass at unit speed on a floor: on the tangential spring up to mu N, then slipping,
-    then swinging on the spring about the place where it sticks.
-    """
-    hold, w = mu * push, math.sqrt(kt)
-    x1 = hold / kt
-    v1 = math.sqrt(1.0 - (w * x1) ** 2)
-    t1, way = math.asin(w * x1) / w, v1 * v1 / (2.0 * hold)
-    t2 = t1 + v1 / hold
-
-    def motion(t: Array) -> Array:
-        slip = x1 + v1 * (t - t1) - 0.5 * hold * (t - t1) ** 2
-        stick = way + x1 * np.cos(w * (t - t2))
-        return np.asarray(np.where(t < t1, np.sin(w * t) / w, np.where(t < t2, slip, stick)))[:, None]
-
-    return motion
 
 
 def contacts(spec: Spec) -> Iterator[Case]:
@@ -311,7 +291,10 @@ def contacts(spec: Spec) -> Iterator[Case]:
                 text = contact(spec, 1e3 * STOREY, 1.0, 2, **{name: value})
                 if name != "E":
                     text = text.replace("E=0.5 ", "")
-                yield case("restitution and dashpot of the contact", f"{name} {value:g}", pair(text))
+                yield case(
+                    "restitution and dashpot of the contact", f"{name} {value:g}", pair(text),
+                    step=STEP / 8,  # a strong dashpot's force rises and falls within a share of the impact
+                )  # fmt: skip
     for share in (0.0, 1.0, 10.0):
         deck = pair(plain, damping=damped(share))
         yield case("damping of the storeys over critical", f"{share:g}", deck)
@@ -322,9 +305,7 @@ def contacts(spec: Spec) -> Iterator[Case]:
         yield case("a contact that grazes", f"{gap:.9f} of the swing", pair(plain, gap=gap * swing))
     asked = re.search(r"\bE=(\S+)", plain)
     lost, wall = 0.2 * (1.0 + (float(asked[1]) if asked else 1.0)), law(bodies=1)
-    text = SLIDING.format(gap=0.0, law=wall, mu=0.5, kt=1e4, speed=0.0, push=10.0)
-    yield case("friction", "sliding to rest", text, right=braked(0.5, 10.0, 1e4))
-    text = SLIDING.format(gap=0.05, law=wall, mu=0.2, kt=1e6, speed=1.0, push=0.0)
+    text = OBLIQUE.format(law=wall)
     told = None if spec.name in OWN_LOSS else lambda t, v=1.0 - lost: np.array([v])
     yield case("friction", "oblique impact", text, step=1e-4, right=told, compared=last_speed)
     for ratio, end in ((250.0, 6.0), (1e6, 3.0)):
@@ -333,9 +314,11 @@ def contacts(spec: Spec) -> Iterator[Case]:
         yield case("a ball that comes to rest", f"stiffness {ratio:g}", deck, step=step)
     deck = BALL.format(gap=0, law=law(25.0, bodies=1), end=1.0)
     yield case("a ball that lies there", "gap 0", deck, step=STEP / 2)
-    for n, end in ((30, 0.3), (10_000, 0.1)):
-        deck = CROWD.format(n=n, law=law(bodies=1), end=end, k=STOREY)
-        yield case("many contacts at once", f"{n}", deck, heavy=n > 100)
+    crowd = {"law": law(bodies=1), "k": STOREY}
+    yield case("many contacts at once", "30", CROWD.format(n=30, end=0.3, **crowd))
+    if spec.name == "KELVIN_VOIGT":  # the number tries the program, not the law; all do as two of them do
+        decks = [CROWD.format(n=n, end=0.1, **crowd) for n in (10_000, 2)]
+        yield case("many contacts at once", "10000", decks[0], like=(decks[1], 1.0), heavy=True)
     for step in (1e-9, 1e-5, 0.05, 1.0):
         end = min(0.6, 200 * step) if step < 1e-4 else max(0.6, 2 * step)
         deck = pair(plain, gap=min(0.05, 0.1 * end), end=end, every=end / 10)
@@ -384,8 +367,8 @@ def storeys(rule: str, **given: object) -> str:
 
 
 def top(t: Array, u: Array) -> Array:
-    """The last node's motion: of two springs in line that yield without hardening, with no mass between,
-    either may have the other's share.
+    """The last node's motion: of two springs in line that yield without hardening, with hardly any mass
+    between, either may have the other's share.
     """
     return u[:, -1:]
 
@@ -402,7 +385,9 @@ def springs(spec: Spec) -> Iterator[Case]:
 
     plain = rule()
     for force in (0.0, 1e-9, 1e12):
-        elastic = storeys("ELASTIC") if force > 1.0 else ""
+        elastic = storeys("ELASTIC").replace("FX=4.0 RULE=ELASTIC", "") if force > 1.0 else ""
+        if "SLACK=" in plain:  # as wide as the yield deformation: nothing holds
+            elastic = ""
         deck = storeys(rule(force) if force else plain, fy=force)
         yield case("yield force", f"{force:g}", deck, like=(elastic, 1.0))
     for ratio in (1e-6, 1e-3, 1e3, 1e6, 1e12):
@@ -413,7 +398,7 @@ def springs(spec: Spec) -> Iterator[Case]:
     for ratio in (0.0, 1e-8, 1e8):
         yield case(
             "mass of the middle over the top's", f"{ratio:g}", storeys(plain, middle=ratio),
-            compared=top if ratio == 0.0 else every,
+            compared=top if ratio < 1.0 else every,
         )  # fmt: skip
     if spec.field("R") is not None:
         for r in (-0.05, -0.5):
@@ -422,7 +407,8 @@ def springs(spec: Spec) -> Iterator[Case]:
     if spec.field("DPC") is not None:
         deck = storeys(plain, motion="TABLE POINTS=0,6,1,6", end=3.0)
         yield case("falling branch to collapse", "capped", deck)
-    yield case("resonance", "20 periods", storeys(plain, end=20.0, every=0.5))
+    deck = storeys(plain, end=20.0, every=0.5)
+    yield case("resonance", "20 periods", deck, step=STEP / 8)  # what each period is off adds up
     for share in (1.0, 10.0):
         yield case("damping over critical", f"{share:g}", storeys(plain, damping=damped(share)))
     for name, motion in (("a spike", SPIKE), ("a step", JUMP), ("zeros", ZEROS)):
