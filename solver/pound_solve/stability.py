@@ -36,7 +36,7 @@ from pound_solve.extremes import KICK, METHOD, STEP, Case, cases, one
 Array = NDArray[np.float64]
 
 EXACT_WITHIN, AUTO_WITHIN = 1e-6, 2e-3  #: errors allowed, as shares of the largest displacement
-LIMIT: Final = 60.0  #: seconds until a case counts as endless
+LIMIT: Final = 180.0  #: seconds until a case counts as endless
 SETTLED: Final = 1e-3  #: share by which a reference by steps may still change when they are quartered
 MOST_STEPS: Final = 1e6  #: of such a reference
 ALONE: Final = "energy balances; nothing else to compare with"

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 import pound_solve
 from pound_solve import jit
 from pound_solve.hysteresis import bilinear, imk_bilinear
-from pound_solve.integrate import auto, exits, kernel, ldl, states, stepping
+from pound_solve.integrate import auto, exact, exits, kernel, ldl, states, stepping
 
 # two one-bay frames of which the left one yields at its hinges, slabs that meet with a dashpot
 POUNDING = """UNITS kN m s
@@ -284,6 +284,17 @@ def test_auto_hands_on_the_envelopes_of_its_last_run_alone(tmp_path, monkeypatch
     for a, b in zip(tabled(found), tabled(alone)):
         assert np.abs(a - b).max() <= 1e-9 * np.abs(b).max()
     assert found.note("node_envelope") == alone.note("node_envelope")
+
+
+def test_full_matrices_have_an_end(tmp_path, monkeypatch):
+    """EXACT and LAPLACE refuse more unknowns than they can hold, in words; AUTO takes steps."""
+    monkeypatch.setattr(exact, "MOST_UNKNOWNS", 2)
+    for method in ("EXACT", "LAPLACE DT=0.001"):
+        found = run(tmp_path, method, "")
+        assert found.status == "stopped" and "A505" in found.message
+        assert "unknowns are too many" in found.message and "NEWMARK" in found.message
+    found = run(tmp_path, "AUTO TOL=1e-2", "")
+    assert found.status == "done" and "NEWMARK" in str(found.table("scene"))
 
 
 @pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")

@@ -61,7 +61,7 @@ PLAIN = 100  #: times as much where nothing compiles the kernels
 
 def stepped(scene: Scene) -> Decision:
     """Why steps were taken."""
-    reason = not_linear(scene) or "the stiffness changes so often that EXACT would cost more"
+    reason = not_linear(scene) or "EXACT would cost more, for all its unknowns or changes of stiffness"
     return Decision("method", "NEWMARK", f"{reason}; steps are shortened until the peaks stand still")
 
 
@@ -108,9 +108,8 @@ class Replay:
 
 
 def cost_of_step(scene: Scene) -> float:
-    """Cost of a step, as those of `exact`."""
-    compiled = STEP + EACH * (scene.size + 2 * len(scene.structure.laws))
-    return compiled if jit.numba() else PLAIN * compiled
+    """Cost of a compiled step, as those of `exact`."""
+    return STEP + EACH * (scene.size + 2 * len(scene.structure.laws))
 
 
 class Rival:
@@ -120,7 +119,7 @@ class Rival:
         self.scene, self.start, self.watch, self.sink = scene, start, watch, sink
         # least cost of the whole run, so far as known
         self.whole = FREE if len(scene.structure.laws) > MANY else 0.0
-        if not_linear(scene):
+        if not_linear(scene) or scene.size > exact.MOST_UNKNOWNS:
             self.whole = np.inf
 
     def first(self) -> Outcome | None:
@@ -177,7 +176,7 @@ def to_tolerance(
     tol, length = options["TOL"], float(start.times[-1] - start.times[0])
     intervals = np.diff(goals(scene, start.times)[0], prepend=start.times[0])
     h = min(float(np.median(intervals)), length / 1000)
-    each = cost_of_step(scene)
+    each = cost_of_step(scene) * (1 if jit.numba() else PLAIN)
     before: tuple[int, Array] | None = None
     runs, error, events = 0, np.inf, 0
     best, stale = np.inf, 0

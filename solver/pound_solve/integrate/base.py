@@ -18,6 +18,7 @@ ENERGIES = ("input", "kinetic", "strain", "damping", "hysteretic", "contact")
 
 
 RUNAWAY = "the motion grows without bound: its energy {:.3g} is far above what was put in"
+CHATTER = "{} changes at one instant, the last in element {} ({}) to {!r}: try NEWMARK EVENTS=STEPPED"
 INTERRUPTED = "interrupted by the user; what was computed up to then is kept"
 
 

@@ -35,6 +35,7 @@ from pound_solve import polynomial
 from pound_solve.integrate import search, work
 from pound_solve.integrate.account import Account
 from pound_solve.integrate.base import (
+    CHATTER,
     INTERRUPTED,
     RUNAWAY,
     LawValues,
@@ -59,11 +60,12 @@ from pound_solve.scene import Condensed, Decision, Scene, condense
 
 Array = NDArray[np.float64]
 
+MOST_UNKNOWNS = 4000  #: of one run: a full matrix of as many takes 128 MB
 MOST_POINTS = 4096  #: points of the fine grid in one window
 MOST_STEPS = 64  #: of the fine grid in one cell
 SLACK = 0.05  #: share of an exit's scale that it may bend within a cell
 MOST_PIECES = 20_000  #: windows within one interval of the excitation
-MOST_INTERVALS = 32  #: intervals of one window
+MOST_INTERVALS = 128  #: intervals of one window
 AFTER = 8  #: of the first one after an event
 GRID = 1.0  #: grid interval times the fastest eigenvalue
 MOST_OPEN = 256  #: intervals whose work is put off
@@ -124,6 +126,7 @@ class Exact:
         # |value|, |rate| of all rows seen, the scale of the exits
         self.largest = np.zeros((2, len(self.partition.rows)))
         self.ahead = AFTER  # intervals of the next window
+        self.usual = 0.0  # length of most intervals
         self.events = self.windows = self.same_instant = self.pieces = 0
         self.held = energy_at_start(scene, start)
 
@@ -243,24 +246,26 @@ class Exact:
         """Lengths and starts of the next window's intervals, the step of its fine grid, and whether they
         are whole: an interval of too many steps is taken in pieces.
         """
-        # twelve digits: intervals of equal length share their exponentials,
-        # whatever the rounding of the times
         ends = goals[cursor : cursor + self.ahead + 1]
-        own = [float(f"{x:.12e}") for x in np.diff(np.append(self.t, ends)).tolist()]
+        own = np.diff(np.append(self.t, ends))
+        # intervals of equal length share their exponentials, whatever the rounding of the times
+        close = 1e-11 * own + 4.0 * np.spacing(ends)
+        if abs(own[-1] - self.usual) > close[-1]:
+            self.usual = float(f"{own[-1]:.12e}")
+        own = np.where(np.abs(own - self.usual) <= close, self.usual, own)
         usual = own[min(1, len(own) - 1)]
-        longest = max(own[0], usual)
+        longest = float(max(own[0], usual))
         h = self._grid_step(longest)
         per_interval = int(np.ceil(longest / h * (1 - 1e-12)))
         if per_interval > MOST_POINTS:
-            length = min(own[0], MOST_POINTS * h)
+            length = float(min(own[0], MOST_POINTS * h))
             if length < own[0]:
                 self._resolvable(length)
             return np.array([length]), np.array([self.t]), h, length == own[0]
-        count, most = 1, min(len(own), MOST_POINTS // per_interval)
-        while count < most and abs(own[count] - usual) <= 1e-11 * usual:
-            count += 1
-        lengths = np.array([own[0], *[usual] * (count - 1)])
-        return lengths, np.append(self.t, ends[: count - 1]), h, True
+        most = min(len(own), MOST_POINTS // per_interval)
+        other = np.flatnonzero(own[1:most] != usual)
+        count = int(other[0]) + 1 if len(other) else most
+        return own[:count], np.append(self.t, ends[: count - 1]), h, True
 
     def _cell(self, bends: Array, h: float) -> float:
         """Length of the coarse cells: a multiple of `h`, over which little can bend."""
@@ -420,7 +425,6 @@ class Exact:
 
     def _switch(self, law: int, exit_index: int, d: float, v: float) -> None:
         self.events += 1
-        before = self.branches[law].name
         try:
             if self.laws[law].law.rigid and not self.branches[law].held:
                 self._meet()
@@ -429,14 +433,10 @@ class Exact:
                 self._press()
         except ArithmeticError as err:
             raise self.stop("A503", str(err)) from None
-        after = self.branches[law]
         if self.same_instant > 50 + 4 * self.n_laws:
             s = self.laws[law]
-            raise self.stop(
-                "A503",
-                f"{self.same_instant} changes at one instant, "
-                f"the last in element {s.element} ({s.rule}): {before} to {after.name}",
-            )
+            why = CHATTER.format(self.same_instant, s.element, s.rule, self.branches[law].name)
+            raise self.stop("A503", why)
         self._form()
 
     def _leave(self, law: int, exit_index: int, d: float, v: float) -> None:
@@ -585,8 +585,19 @@ class Whole:
         self.sink.trial(t, doing)
 
 
-def condensed(scene: Scene, start: Start, watch: Watch, sink: Sink) -> tuple[Scene, Start, Watch, Sink]:
-    """What a method is given that works on full matrices: no massless freedoms that follow the others."""
+def condensed(
+    scene: Scene, start: Start, watch: Watch, sink: Sink, method: str
+) -> tuple[Scene, Start, Watch, Sink]:
+    """What a method is given that works on full matrices: no massless freedoms that follow the others.
+
+    Raises
+    ------
+    Stop
+        There are more unknowns than `MOST_UNKNOWNS`.
+    """
+    if scene.size > MOST_UNKNOWNS:
+        why = f"{method} works on full matrices, and {scene.size} unknowns are too many for them"
+        raise Stop("A505", float(start.times[0]), f"{why} ({MOST_UNKNOWNS} at most): NEWMARK takes them")
     small = condense(scene)
     return (
         small.scene,
@@ -615,13 +626,14 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     if why := not_linear(scene):
         why = f"EXACT needs linear pieces, and {why}: AUTO takes steps"
         raise Stop("A505", float(start.times[0]), why)
-    scene, start, watch, sink = condensed(scene, start, watch, sink)
+    scene, start, watch, sink = condensed(scene, start, watch, sink, "EXACT")
     try:
         run = Exact(scene, start, watch, options, sink)
     except Weightless as err:
         raise Stop("A505", float(start.times[0]), str(err)) from None
     try:
-        return run.run()
+        with np.errstate(over="ignore", invalid="ignore"):  # what grows beyond all numbers is told as such
+            return run.run()
     except KeyboardInterrupt:
         raise run.stop("A506", INTERRUPTED) from None
 

@@ -41,6 +41,7 @@ from numpy.typing import NDArray
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate import phi, search
 from pound_solve.integrate.base import (
+    CHATTER,
     INTERRUPTED,
     RUNAWAY,
     Ledger,
@@ -312,7 +313,7 @@ class Laplace:
         self.ledger.peaks.force[law].take(force, self.t)
         if self.same_instant > 50 + 4 * len(self.laws):
             s = self.laws[law]
-            why = f"{self.same_instant} changes at one instant, the last in element {s.element} ({s.rule})"
+            why = CHATTER.format(self.same_instant, s.element, s.rule, after.name)
             raise self.stop("A503", why)
 
     def _work(self, begin: float, end: float, u: Array, v: Array, a: Array) -> Array:
@@ -392,7 +393,7 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     refuse_rigid(scene, start, "LAPLACE")
     if why := not_linear(scene) or ("the supports move apart from each other" if scene.total else ""):
         raise Stop("A505", float(start.times[0]), f"LAPLACE cannot take this: {why}; AUTO can")
-    scene, start, watch, sink = condensed(scene, start, watch, sink)
+    scene, start, watch, sink = condensed(scene, start, watch, sink, "LAPLACE")
     run = Laplace(scene, start, watch, options, sink)
     try:
         return run.run()

@@ -9,10 +9,10 @@ a problem with one answer for :math:`M^{-1} B^T J`: the velocities nearest to v,
 energy, in which nothing approaches.  With restitution e the impulses are :math:`(1+e)J` (Moreau).
 Momentum is kept, and the energy :math:`\tfrac12(1-e^2) J^T w` is lost, never won.
 
-All contacts that approach and have one E strike together, which keeps what is symmetric symmetric;
-those of another E come after them; and what is then found to approach strikes next, at the same
-instant, so that a row of equal masses hands an impact through.  Forces of contacts that have closed follow
-from the same problem with accelerations for rates.
+The contact that approaches fastest strikes first, and with it all that approach and have its E, which
+keeps what is symmetric symmetric; what is then found to approach strikes next, at the same instant, so
+that a row of equal masses hands an impact through.  Forces of contacts that have closed follow from the
+same problem with accelerations for rates.
 
 References
 ----------
@@ -133,7 +133,7 @@ class Rigid:
             hit = touching & (rates > SLOW * fastest)
             if not hit.any():
                 break
-            e = float(self.restitution[hit].max())
+            e = float(self.restitution[np.argmax(np.where(hit, rates, 0.0))])
             hit &= self.restitution == e
             push = self.plastic(rates, hit)
             lost += 0.5 * (1.0 - e) * (1.0 + e) * push * rates
