@@ -24,7 +24,8 @@ CLOSE = 1e-9  #: share of a step within which two events are at one instant
 SHOWS = 4  #: steps between two outputs, at most, that the envelopes see
 PAUSE = 100_000  #: steps after which Python may look whether the user wants to stop
 FIRST = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
-INSTANT = 1e-6  #: share of the longest step that tells velocities of massless unknowns
+INSTANT = 1e-6  #: share of the longest step that the time which tells massless velocities keeps below
+DELAY = 1e-8  #: share of the longest C / K among massless unknowns that it is
 REFRESH = 200  #: updates of rank one before a factor is made anew
 COLUMNS = 10  #: of the log: law, branches before and after, t, d, v, force; peak, its time, impulse
 # rows of `Motion.q`: at the start (0) and the end (1) of a step; loads; residual; scratch; pivots
@@ -93,7 +94,7 @@ class Matrices(NamedTuple):
     shifts : bool
         Whether the stiffness of massless unknowns changes along a branch: by curved laws, or by chords.
     instant : float
-        A time that is tiny against a step.
+        A time that is tiny against a step, for massless unknowns.
     implicit : bool
         Whether the stiffness is in the pattern.
     diagonal : bool
@@ -220,7 +221,7 @@ class Motion(NamedTuple):
         Rows as above; `W` is zero between uses.
     l : ndarray, shape (4, n_entries of L)
         Factors for the nominal step, for a piece of one, of M (with ones for massless unknowns), and of
-        ``K + C / instant`` over the massless unknowns (with ones for the others).
+        ``K + C / e``, e a tiny time, over the massless unknowns (with ones for the others).
     ax : ndarray
         Values of A.
     peak : ndarray, shape (6, n_rows + 2 n_laws)

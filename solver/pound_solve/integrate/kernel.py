@@ -40,6 +40,7 @@ from pound_solve.integrate.arrays import (
     CV,
     D0,
     DASHPOT,
+    DELAY,
     DONE,
     EVENTS,
     F0,
@@ -455,9 +456,31 @@ def accept(m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, h: float)
         x.inputs[0, j], x.inputs[1, j] = x.inputs[2, j], x.inputs[3, j]
 
 
-def loosen(m: Matrices, w: Laws, x: Motion, s: int) -> None:
-    """Factorise ``K + C / e`` over the massless unknowns, e a tiny time, with the chords at columns `s`."""
-    one = 1.0 / m.instant
+def loosen(m: Matrices, w: Laws, x: Motion, s: int) -> float:
+    """Factorise ``K + C / e`` over the massless unknowns, e a tiny time, with the chords at columns `s`.
+
+    Returns
+    -------
+    float
+        1 / e: large enough to leave alone what dashpots hold, not so large that the springs are lost beside
+        them.
+    """
+    slow = 0.0
+    for i in range(x.q.shape[1]):
+        x.q[Y, i], x.q[BASE, i] = 0.0, 0.0
+    for q in range(len(x.ax)):
+        i = m.column[q]
+        if m.pattern.ai[q] == i and not m.heavy[i]:
+            x.q[Y, i], x.q[BASE, i] = m.a[2, q], m.a[1, q]
+    for i in range(len(w.i)):
+        for q in range(w.rows[0][i], w.rows[0][i + 1]):
+            j, square = w.rows[1][q], w.rows[2][q] * w.rows[2][q]
+            x.q[Y, j] += w.f[i, K] * square
+            x.q[BASE, j] += w.f[i, C] * square
+    for i in range(x.q.shape[1]):
+        if not m.heavy[i] and x.q[Y, i] > 0.0:
+            slow = max(slow, x.q[BASE, i] / x.q[Y, i])
+    one = max(1.0 / m.instant, 1.0 / (DELAY * slow) if slow > 0.0 else 0.0)
     for q in range(len(x.ax)):
         i, j = m.pattern.ai[q], m.column[q]
         x.ax[q] = 0.0
@@ -479,6 +502,7 @@ def loosen(m: Matrices, w: Laws, x: Motion, s: int) -> None:
     if factor(m.pattern, x.ax, x.l, LIGHT, x.q, D + LIGHT, W) >= 0:
         for i in range(x.q.shape[1]):  # what nothing holds goes on as it did
             x.q[D + LIGHT, i] = np.inf
+    return one
 
 
 def pull(m: Matrices, w: Laws, x: Motion, v: int, lv: int, rate: Array, out: int) -> None:
@@ -533,7 +557,7 @@ def release(m: Matrices, w: Laws, x: Motion) -> None:
     ``(C + e K) dv = p - C v - K u - f + e d(p - K u - f)/dt`` over the massless unknowns.
     """
     n = x.q.shape[1]
-    loosen(m, w, x, S0)
+    one = loosen(m, w, x, S0)
     pull(m, w, x, V, LV, x.inputs[1], A1)
     times(m.k, x.q, U, BASE)
     for i in range(n):
@@ -548,7 +572,7 @@ def release(m: Matrices, w: Laws, x: Motion) -> None:
         resist(w.chords, c, x.q, BASE, G0)
     for i in range(n):  # rounding, or an exit not met to the last digit, is no jump of a dashpot's force
         if not m.heavy[i] and abs(x.q[BASE, i]) > NEAR * x.q[Y, i]:
-            x.q[A1, i] += x.q[BASE, i] / m.instant
+            x.q[A1, i] += one * x.q[BASE, i]
     solve(m.pattern, x.l, LIGHT, x.q, D + LIGHT, A1)
     for i in range(n):
         x.q[V, i] += x.q[A1, i]
