@@ -542,3 +542,54 @@ def test_lines_and_rings_are_eliminated_from_both_ends_on_few_diagonals():
     rows, columns = np.nonzero(linked[np.ix_(own, own)])
     assert sum(abs(rows - columns) == 4) >= 2 * (n - 8)  # a line would have 2, both ends in turn have 4
     assert len(ldl.analyse(n, rows, columns).li) <= 2 * n
+
+
+SERIES = """PARAM  k = 1E4
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 0 FIX=YR
+ 3 0 0 FIX=YR
+ELEMENTS
+ 1 WEAK 1 2
+ 2 STRONG 2 3
+PROPS
+ WEAK   SPRING KX=k FX=20 RULE=BILINEAR R=0.1
+ STRONG SPRING KX=3*k FX=1000 RULE=BILINEAR R=0.1
+WEIGHTS
+ 3 50
+EQUAKE
+ TABLE POINTS={points}
+ANALYSIS
+ HISTORY 4 METHOD={method}
+"""
+
+
+@pytest.mark.parametrize(
+    "method", ["NEWMARK", "NEWMARK EVENTS=STEPPED", "HHT", "GENERALISED_ALPHA RHO=0.5"]
+)
+def test_springs_in_series_have_the_same_peaks(tmp_path, method):
+    """A mass on two springs, nothing between them: one force goes through both, within the steps too."""
+    rough = np.random.default_rng(1).normal(scale=5.0, size=401)
+    points = ",".join(f"{0.01 * i:.2f},{a:.6f}" for i, a in enumerate(rough))
+    deck = tmp_path / "series.inp"
+    deck.write_text(SERIES.format(points=points, method=f"{method} DT=0.01"))
+    found = pound_solve.run(deck).table("spring_envelope")
+    assert found["yield_events"][0] > 5 and found["yield_events"][1] == 0
+    for peak in (found["force_max"], found["force_min"]):
+        assert peak[0] == pytest.approx(peak[1], rel=1e-9)
+    assert found["deformation_max"][1] == pytest.approx(found["force_max"][0] / 3e4, rel=1e-9)
+
+
+@pytest.mark.parametrize("rule", ["TAKEDA", "CLOUGH", "BILINEAR"])
+def test_events_of_massless_hinges_are_as_many_however_short_the_step(tmp_path, rule):
+    """Rates of hinges, there and back, tell the same at any step: rounding turns none of them around."""
+    counts = []
+    for h in (1e-3, 3.3e-5, 6e-6):
+        deck = tmp_path / "frames.inp"
+        hinge = HINGED.replace("BILINEAR", rule)
+        text = POUNDING.format(method=f"NEWMARK DT={h}", hinge=hinge, turn="0", gap=0.02, every=0.1)
+        deck.write_text(text.replace("HISTORY 1.2", "HISTORY 0.42"))
+        found = pound_solve.run(deck)
+        assert found.status == "done", found.message
+        counts.append({x["item"]: x["value"] for x in found.table("run")}["events"])
+    assert int(counts[0]) > 4 and len(set(counts)) == 1, counts

@@ -15,7 +15,8 @@ Index = NDArray[np.int64]
 
 # why `advance` came back
 DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON = range(7)
-GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST, SINCE, SHOWN = range(10)  #: integers of `count`
+#: integers of `count`
+GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST, SINCE, SHOWN, STALE = range(11)
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 BACK = 1e-6  #: share of its largest rate that a law must move back with before it counts as turned
 NEAR = 1e-6  #: share of its largest value within which an exit is taken where it cannot be met better
@@ -23,12 +24,14 @@ CLOSE = 1e-9  #: share of a step within which two events are at one instant
 SHOWS = 4  #: steps between two outputs, at most, that the envelopes see
 PAUSE = 100_000  #: steps after which Python may look whether the user wants to stop
 FIRST = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
+INSTANT = 1e-6  #: share of the longest step that the time which tells massless velocities keeps below
+DELAY = 1e-8  #: share of the longest C / K among massless unknowns that it is
 REFRESH = 200  #: updates of rank one before a factor is made anew
 COLUMNS = 10  #: of the log: law, branches before and after, t, d, v, force; peak, its time, impulse
 # rows of `Motion.q`: at the start (0) and the end (1) of a step; loads; residual; scratch; pivots
 U, V, A, U1, V1, A1, CV, CA, CA1, P, P1, R, BASE, Y, W, D = range(16)
 HIGH, T_HIGH, LOW, T_LOW, SLOPE, VALUE = range(6)  #: rows of `Motion.peak`
-WHOLE, PIECE, MASS = range(3)  #: rows of `Motion.l`, and of its pivots
+WHOLE, PIECE, MASS, LIGHT = range(4)  #: rows of `Motion.l`, and of its pivots
 # columns of `Laws.f`: the linear piece, exits; entry of the state; motion; dashpot; what a contact counts
 K, C, F0, EXIT, D0, WORK = 0, 1, 2, 3, 12, 13
 LD, LV, LD1, LV1, MOST_D, MOST_V, BETA, DASHPOT, PEAK, T_PEAK, IMPULSE, SECANT, HELD = range(14, 27)
@@ -88,6 +91,10 @@ class Matrices(NamedTuple):
         Which unknowns have mass.
     inert : bool
         Whether all have.
+    shifts : bool
+        Whether the stiffness of massless unknowns changes along a branch: by curved laws, or by chords.
+    instant : float
+        A time that is tiny against a step, for massless unknowns.
     implicit : bool
         Whether the stiffness is in the pattern.
     diagonal : bool
@@ -116,6 +123,8 @@ class Matrices(NamedTuple):
     column: Index
     heavy: NDArray[np.bool_]
     inert: bool
+    shifts: bool
+    instant: float
     implicit: bool
     diagonal: bool
     explicit: bool
@@ -208,10 +217,11 @@ class Motion(NamedTuple):
 
     Attributes
     ----------
-    q : ndarray, shape (18, n)
+    q : ndarray, shape (19, n)
         Rows as above; `W` is zero between uses.
-    l : ndarray, shape (3, n_entries of L)
-        Factors for the nominal step, for a piece of one, and of M (with ones for massless unknowns).
+    l : ndarray, shape (4, n_entries of L)
+        Factors for the nominal step, for a piece of one, of M (with ones for massless unknowns), and of
+        ``K + C / e``, e a tiny time, over the massless unknowns (with ones for the others).
     ax : ndarray
         Values of A.
     peak : ndarray, shape (6, n_rows + 2 n_laws)

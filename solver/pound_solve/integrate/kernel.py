@@ -40,6 +40,7 @@ from pound_solve.integrate.arrays import (
     CV,
     D0,
     DASHPOT,
+    DELAY,
     DONE,
     EVENTS,
     F0,
@@ -54,6 +55,7 @@ from pound_solve.integrate.arrays import (
     KEPT,
     LD,
     LD1,
+    LIGHT,
     LOGGED,
     LOW,
     LV,
@@ -79,6 +81,7 @@ from pound_solve.integrate.arrays import (
     SINCE,
     SLOPE,
     SLOW,
+    STALE,
     STEP,
     STEPS,
     STILL,
@@ -283,6 +286,8 @@ def attempt(
         w.f[i, LV1] += gk * acc
     if len(w.leans) > 0:
         limit(w, f, x.q)
+    if m.implicit and not m.inert:
+        steady(m, w, x, h, count)
     return True
 
 
@@ -384,8 +389,11 @@ def accept(m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, h: float)
     times(m.c, x.q, A1, CA1)
     g1, gk = (1.0 - scheme.gamma) * h, scheme.gamma * h
     work, loss = 0.0, 0.0
-    for i in range(n):
-        x.q[Y, i] = x.q[CV, i] + g1 * x.q[CA, i] + gk * x.q[CA1, i]
+    if m.inert:
+        for i in range(n):
+            x.q[Y, i] = x.q[CV, i] + g1 * x.q[CA, i] + gk * x.q[CA1, i]
+    else:
+        times(m.c, x.q, V1, Y)
     loss += spent(x.q)
     if len(m.support_c) > 0:
         for i in range(n):
@@ -448,74 +456,136 @@ def accept(m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, h: float)
         x.inputs[0, j], x.inputs[1, j] = x.inputs[2, j], x.inputs[3, j]
 
 
-def release(m: Matrices, w: Laws, x: Motion, h: float) -> None:
-    """Give massless unknowns the velocities that the present branches ask for.
+def loosen(m: Matrices, w: Laws, x: Motion, s: int) -> float:
+    """Factorise ``K + C / e`` over the massless unknowns, e a tiny time, with the chords at columns `s`.
 
-    They have jumped where a stiffness did.  An implicit step of a tiny length e finds them,
-    ``(C + e K) v = p - K u - f + e dp/dt`` over the massless unknowns, whether dashpots or springs rule.
+    Returns
+    -------
+    float
+        1 / e: large enough to leave alone what dashpots hold, not so large that the springs are lost beside
+        them.
     """
-    e = 1e-6 * h
-    n, rate = x.q.shape[1], x.inputs[1]
-    times(m.k, x.q, U, BASE)
-    for i in range(n):  # heavy unknowns move as they do, the others are to be found
-        x.q[Y, i] = x.q[V, i] if m.heavy[i] else 0.0
-    times(m.k, x.q, Y, A1)
-    times(m.c, x.q, Y, V1)
-    for i in range(n):
-        change = 0.0
-        for j in range(len(rate)):
-            change += m.inputs[j, i] * rate[j]
-        x.q[A1, i] = x.q[P, i] - x.q[BASE, i] - x.q[V1, i] + e * (change - x.q[A1, i])
+    slow = 0.0
+    for i in range(x.q.shape[1]):
+        x.q[Y, i], x.q[BASE, i] = 0.0, 0.0
+    for q in range(len(x.ax)):
+        i = m.column[q]
+        if m.pattern.ai[q] == i and not m.heavy[i]:
+            x.q[Y, i], x.q[BASE, i] = m.a[2, q], m.a[1, q]
+    for i in range(len(w.i)):
+        for q in range(w.rows[0][i], w.rows[0][i + 1]):
+            j, square = w.rows[1][q], w.rows[2][q] * w.rows[2][q]
+            x.q[Y, j] += w.f[i, K] * square
+            x.q[BASE, j] += w.f[i, C] * square
+    for i in range(x.q.shape[1]):
+        if not m.heavy[i] and x.q[Y, i] > 0.0:
+            slow = max(slow, x.q[BASE, i] / x.q[Y, i])
+    one = max(1.0 / m.instant, 1.0 / (DELAY * slow) if slow > 0.0 else 0.0)
     for q in range(len(x.ax)):
         i, j = m.pattern.ai[q], m.column[q]
         x.ax[q] = 0.0
         if not m.heavy[i] and not m.heavy[j]:
-            x.ax[q] = m.a[1, q] + e * m.a[2, q]
+            x.ax[q] = m.a[2, q] + one * m.a[1, q]
         elif i == j:
             x.ax[q] = 1.0
     for i in range(len(w.i)):
-        k, c = w.f[i, K], w.f[i, C]
-        moved = along(w.rows, i, x.q, Y)
-        for j in range(len(rate)):
-            moved += w.inputs[i, j] * rate[j]
-        force = k * w.f[i, LD] + w.f[i, F0] + (c + e * k) * moved
-        for q in range(w.rows[0][i], w.rows[0][i + 1]):
-            x.q[A1, w.rows[1][q]] -= w.rows[2][q] * force
+        change = w.f[i, K] + one * w.f[i, C]
         for q in range(w.pairs[0][i], w.pairs[0][i + 1]):
             at = w.pairs[1][q]
             if not m.heavy[m.pattern.ai[at]] and not m.heavy[m.column[at]]:
-                x.ax[at] += (c + e * k) * w.pairs[2][q]
+                x.ax[at] += change * w.pairs[2][q]
     b = w.chords
-    locate(b, x.q, Y, rate, AHEAD)
-    for c in range(len(b.p)):
+    for c in range(len(b.p) * m.shifts):
         present = len(b.p) + c
-        bend_chord(b.p, c, b.s, S0, b.h, present)
+        bend_chord(b.p, c, b.s, s, b.h, present)
+        stiffen(m, b, x, c, present, 1.0, True)
+    if factor(m.pattern, x.ax, x.l, LIGHT, x.q, D + LIGHT, W) >= 0:
+        for i in range(x.q.shape[1]):  # what nothing holds goes on as it did
+            x.q[D + LIGHT, i] = np.inf
+    return one
+
+
+def pull(m: Matrices, w: Laws, x: Motion, v: int, lv: int, rate: Array, out: int) -> None:
+    """How fast the forces on the massless unknowns change, dashpots apart, at the velocities in row `v`
+    and the laws' rates in column `lv`, into row `out`.
+    """
+    times(m.k, x.q, v, out)
+    for i in range(x.q.shape[1]):
+        change = 0.0
+        for j in range(len(rate)):
+            change += m.inputs[j, i] * rate[j]
+        x.q[out, i] = change - x.q[out, i]
+    for i in range(len(w.i)):
+        for q in range(w.rows[0][i], w.rows[0][i + 1]):
+            x.q[out, w.rows[1][q]] -= w.rows[2][q] * w.f[i, K] * w.f[i, lv]
+    b = w.chords
+    if m.shifts:
+        locate(b, x.q, v, rate, AHEAD)
+    for c in range(len(b.p) * m.shifts):
         for j in range(6):
-            b.s[c, G1 + j] = b.s[c, G0 + j]
-            b.s[c, AHEAD + j] *= e
-        straight_force(b, c, present, AHEAD, G1, 1.0)
-        resist(b, c, x.q, A1, G1)
-        stiffen(m, b, x, c, present, e, True)
-    for i in range(n):
+            b.s[c, REST + j] = 0.0
+        straight_force(b, c, len(b.p) + c, AHEAD, REST, 1.0)
+        resist(b, c, x.q, out, REST)
+    for i in range(x.q.shape[1]):
         if m.heavy[i]:
-            x.q[A1, i] = x.q[V, i]
-    if factor(m.pattern, x.ax, x.l, PIECE, x.q, D + PIECE, W) >= 0:
-        return  # what nothing holds goes on as it did
-    solve(m.pattern, x.l, PIECE, x.q, D + PIECE, A1)
+            x.q[out, i] = 0.0
+
+
+def steady(m: Matrices, w: Laws, x: Motion, h: float, count: Index) -> None:
+    """Correct velocities of massless unknowns that no dashpot holds, at the end of a step of length `h`.
+
+    They follow from the rates of the forces, which stay in balance.  The method takes about twice their
+    mean over the step less those at its start, which would swing about the true ones for ever.
+    """
+    if m.shifts or count[STALE] != 0:
+        loosen(m, w, x, S1)
+        count[STALE] = 0
+    pull(m, w, x, V1, LV1, x.inputs[3], Y)
+    solve(m.pattern, x.l, LIGHT, x.q, D + LIGHT, Y)
+    for i in range(x.q.shape[1]):
+        if not m.heavy[i]:
+            x.q[V1, i] += x.q[Y, i]
+            x.q[A1, i] = (x.q[V1, i] - x.q[V, i]) / h
+    for i in range(len(w.i)):
+        w.f[i, LV1] += along(w.rows, i, x.q, Y)
+
+
+def release(m: Matrices, w: Laws, x: Motion) -> None:
+    """Give massless unknowns the velocities that the present branches ask for.
+
+    They have jumped where a stiffness or a dashpot did.  An implicit step of a tiny length e finds them,
+    ``(C + e K) dv = p - C v - K u - f + e d(p - K u - f)/dt`` over the massless unknowns.
+    """
+    n = x.q.shape[1]
+    one = loosen(m, w, x, S0)
+    pull(m, w, x, V, LV, x.inputs[1], A1)
+    times(m.k, x.q, U, BASE)
     for i in range(n):
-        x.q[V, i] = x.q[A1, i]
+        x.q[BASE, i] = x.q[P, i] - x.q[BASE, i] - x.q[CV, i]
+        x.q[Y, i] = abs(x.q[P, i]) + abs(m.k.diagonals[0, i] * x.q[U, i]) + abs(x.q[CV, i])
+    for i in range(len(w.i)):
+        force = w.f[i, K] * w.f[i, LD] + w.f[i, F0] + w.f[i, C] * w.f[i, LV]
+        for q in range(w.rows[0][i], w.rows[0][i + 1]):
+            x.q[BASE, w.rows[1][q]] -= w.rows[2][q] * force
+            x.q[Y, w.rows[1][q]] += abs(w.rows[2][q] * force)
+    for c in range(len(w.chords.p)):
+        resist(w.chords, c, x.q, BASE, G0)
+    for i in range(n):  # rounding, or an exit not met to the last digit, is no jump of a dashpot's force
+        if not m.heavy[i] and abs(x.q[BASE, i]) > NEAR * x.q[Y, i]:
+            x.q[A1, i] += one * x.q[BASE, i]
+    solve(m.pattern, x.l, LIGHT, x.q, D + LIGHT, A1)
+    for i in range(n):
+        x.q[V, i] += x.q[A1, i]
     times(m.c, x.q, V, CV)
     for i in range(len(w.i)):
-        w.f[i, LV] = along(w.rows, i, x.q, V)
-        for j in range(len(rate)):
-            w.f[i, LV] += w.inputs[i, j] * rate[j]
+        w.f[i, LV] += along(w.rows, i, x.q, A1)
 
 
-def settle(m: Matrices, w: Laws, x: Motion, h: float) -> None:
+def settle(m: Matrices, w: Laws, x: Motion) -> None:
     """Make velocities of massless unknowns and all accelerations consistent with the present branches."""
     turn_start(w, x, x.inputs[0])
     if m.implicit and not m.inert:
-        release(m, w, x, h)
+        release(m, w, x)
     n = x.q.shape[1]
     times(m.k, x.q, U, BASE)
     for i in range(n):
@@ -645,6 +715,7 @@ def uncut_step(
                 save(w, i)
             else:
                 restore(w, f, i)
+            count[STALE] = 1
             for _ in range(100):
                 way, where = next_exit(w, i, d, d1, w.f[i, LV1])
                 if way < 0:
@@ -680,7 +751,7 @@ def uncut_step(
     for i in range(laws):
         if w.i[i, SAVED] == 1:
             restore(w, f, i)
-    count[UPDATES] = REFRESH + 1
+    count[UPDATES], count[STALE] = REFRESH + 1, 1
     return NEWTON
 
 
@@ -831,7 +902,7 @@ def whole_step(
         switch(m, w, x, z, f, scheme, count, clock[0], h, law, way)
         if w.i[law, CURVED] and w.i[law, CONTACT] and w.f[law, LV] > 0.0:
             clock[3] = FIRST * h
-        settle(m, w, x, h)
+        settle(m, w, x)
         note(m, w, x, clock[0], 0.0)
         count[WORST] = law
         same += 1
@@ -886,9 +957,10 @@ def advance(
         Times that a step ends at, reached in `steps` steps of `lengths` each, on the motions' `pieces`;
         `outputs` tells whether a sample is taken; on the way to it the envelopes are shown the motion every
         so many steps as `shows` tells.
-    count : ndarray, shape (10,)
+    count : ndarray, shape (11,)
         Goal, step on the way to it, samples and log rows kept, steps, events, updates of the factor,
-        unknown or law at fault, steps since the motion was last shown or sampled, how often it was shown.
+        unknown or law at fault, steps since the motion was last shown or sampled, how often it was shown,
+        whether the factor of the massless unknowns must be made anew.
     clock : ndarray, shape (4,)
         Time, length that the factor at hand is for, energy at the start, longest piece for now.
     """
@@ -908,7 +980,7 @@ def advance(
                     leap = 1.0
                 x.q[P, i] = x.q[Y, i]
             if leap != 0.0:  # a load that jumps, and with it the acceleration
-                settle(m, w, x, h)
+                settle(m, w, x)
                 note(m, w, x, clock[0], 0.0)
         while count[STEP] < steps[goal]:
             if len(z.log) - count[LOGGED] < room or count[STEPS] >= pause:

@@ -151,7 +151,7 @@ class Stepper:
         self.rules = list(dict.fromkeys(s.law.rule for s in self.laws))
         self.tables = jit.tables(self.rules or [bilinear.RULE])  # never empty, which compiles to nothing
         self._lay_out(start)
-        self.count = np.zeros(10, np.int64)
+        self.count = np.zeros(11, np.int64)
         self.rush = np.zeros(2)  # v M v and a M a, summed over the samples
         self.seen = float(start.times[0])  # latest instant that the sink was shown
         self.clock = np.array([start.times[0], -1.0, energy_at_start(scene, start), np.inf])
@@ -173,6 +173,9 @@ class Stepper:
         mass, damping, stiffness = (a[grid] for a in (scene.mass, scene.damping, scene.stiffness))
         columns = np.repeat(np.arange(n), np.diff(pattern.ap))
         heavy = ~massless(mass)
+        light = o[~heavy]
+        bends = [columns for columns, _ in scene.chords.touched()]
+        bends += [row for (row, _), x in zip(by_rows(scene.law_rows), laws) if x.law.curved]
         lower = pattern.ai.astype(np.int64)
         on_pattern = [at(a, lower, columns) for a in (mass, damping, stiffness * stiff)]
         moved = scene.support_inputs
@@ -193,6 +196,8 @@ class Stepper:
             column=columns,
             heavy=heavy,
             inert=bool(heavy.all()),
+            shifts=any(len(np.intersect1d(x, light)) for x in bends),
+            instant=arrays.INSTANT * self.dt,
             implicit=stiff,
             diagonal=is_diagonal(mass),
             explicit=not (stiff or len(pattern.li) or damps.any()),
@@ -252,8 +257,8 @@ class Stepper:
             w.f[i, [arrays.MOST_D, arrays.MOST_V]] = abs(d[i]), abs(v[i])
             w.i[i, [arrays.NORMAL, arrays.PRESSED]] = self._leans_on(law)
         self.x = x = arrays.Motion(
-            np.zeros((18, n)),
-            np.zeros((3, len(pattern.li))),
+            np.zeros((19, n)),
+            np.zeros((4, len(pattern.li))),
             np.zeros(len(columns)),
             np.zeros((6, len(watch.names) + 2 * count)),
             np.zeros(4),
@@ -361,7 +366,7 @@ class Stepper:
         if jit.cold(kernel.advance):
             self.sink.trial(t0, "compiling the kernels, once for this version: some 40 s")
         with jit.compiling():
-            jit.compiled(kernel.settle)(m, w, x, self.dt)
+            jit.compiled(kernel.settle)(m, w, x)
         kernel.note(m, w, x, t0, 0.0)
         kernel.sample(w, x, z, self.tables, self.count, t0)
         ends, is_output = goals(scene, self.times)
