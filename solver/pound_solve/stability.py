@@ -13,17 +13,20 @@ The methods that take steps are allowed the share that the case names, EXACT and
 from __future__ import annotations
 
 import multiprocessing
+import os
 import re
 import tempfile
 import time
 import warnings
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
@@ -258,18 +261,31 @@ def matrix(
     progress : callable
         Told every row as it is there.
     limit : float
-        Seconds that a case may take, in a process of its own; 0: in this process, without a limit.
+        Seconds that a run may take, in one of as many processes as there are cores; 0: in this process,
+        without a limit.
     """
-    run = Runner(limit)
+    count = (os.cpu_count() or 1) if limit else 1
+    runners: SimpleQueue[Runner] = SimpleQueue()
+    for _ in range(count):
+        runners.put(Runner(limit))
+
+    def solved(case: Case) -> list[Row]:
+        run = runners.get()
+        run.kept.clear()
+        try:
+            return [judge(run, case, method) for method in methods()]
+        finally:
+            runners.put(run)
+
     try:
-        for case in filter(chosen, cases(families)):
-            run.kept.clear()
-            for method in methods():
-                row = judge(run, case, method)
-                progress(row)
-                yield row
+        with ThreadPoolExecutor(count) as pool:
+            for rows in pool.map(solved, filter(chosen, cases(families))):
+                for row in rows:
+                    progress(row)
+                    yield row
     finally:
-        run.close()
+        for _ in range(count):
+            runners.get().close()
 
 
 ENDS: Final = (RIGHT, TOLD, STOPPED, FAULT)
