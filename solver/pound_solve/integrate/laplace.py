@@ -66,6 +66,7 @@ Complex = NDArray[np.complex128]
 
 STARTS = 5  #: highest derivative at the start that is taken off
 DAMPING = 24.0  #: alpha times the window: 1e-10 in its first half
+TOGETHER = 64  #: pieces of the excitation that are transformed at once
 STILL = 1e-10  #: share of its largest value below which an exit counts as not reached
 
 
@@ -182,17 +183,30 @@ class Laplace:
         out = np.zeros((len(s), ex.coefs.shape[2]), complex)
         begin, end = self.t, self.t + self.points * self.dt
         first = ex.piece(begin + 1e-13 * max(1.0, begin))
-        for i in range(first, len(ex.coefs)):
-            left, right = max(begin, float(ex.breaks[i])), min(end, float(ex.breaks[i + 1]))
-            if left >= end:
-                break
-            if right <= left:
+        stop = int(np.searchsorted(ex.breaks[:-1], end))
+        left, right = (
+            np.maximum(begin, ex.breaks[first:stop]),
+            np.minimum(end, ex.breaks[first + 1 : stop + 1]),
+        )
+        coefs = ex.coefs[first:stop]
+        if stop > first:
+            coefs = np.concatenate([ex.local(first, begin)[None], coefs[1:]])
+        # pieces of one length in a row differ by a delay and by their coefficients
+        width = right - left
+        close = 1e-11 * width[1:] + 4.0 * np.spacing(right[1:])
+        edges = np.flatnonzero(np.abs(np.diff(width)) > close) + 1
+        for run in np.split(np.arange(len(width)), edges):
+            if not len(run) or width[run[0]] <= 0.0:
                 continue
-            length, coefs = right - left, ex.local(i, left)
-            kernels = phi.moments(-s * length, ex.degree)
-            shift = np.exp(-s * (left - begin))
-            for j, row in enumerate(coefs):
-                out += (shift * kernels[j] * length ** (j + 1))[:, None] * row
+            length = float(width[run[0]])
+            powers = length ** np.arange(1, ex.degree + 2)
+            kernels = phi.moments(-s * length, ex.degree) * powers[:, None]
+            delays = np.exp(-s[:, None] * length * np.arange(min(TOGETHER, len(run))))
+            for i in range(0, len(run), TOGETHER):
+                own = coefs[run[i : i + TOGETHER]]
+                sums = (delays[:, : len(own)] @ own.reshape(len(own), -1)).reshape(len(s), *own.shape[1:])
+                later = np.exp(-s * (left[run[i]] - begin))[:, None]
+                out += later * np.einsum("js,sjn->sn", kernels, sums)
         # beyond its end the excitation stands still: a jump there would be felt before it
         last = float(ex.breaks[-1])
         if last < end:
