@@ -372,3 +372,38 @@ def test_auto_takes_steps_and_meets_its_tolerance(law: str) -> None:
     v, k = 1.0, 1e6
     f = Impact(build(law, reduced, K=k, E=0.65).law, 0.0, v, (100.0, 50.0)).motion()[2].max()
     assert hit["peak_force"] == pytest.approx(f, rel=1e-3)
+
+
+CRITICAL = """UNITS kN m s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 1 FIX=YR
+ 3 1 0 FIX=XYR
+ 4 1 1 FIX=YR
+ELEMENTS
+ 1 STOREY 1 2
+ 2 STOREY 3 4
+ 3 MEET 2 4
+PROPS
+ STOREY SPRING KX=(2*pi)^2
+ MEET CONTACT GAP=0.05 ANGLE=0 LAW=TABLE DEPTHS=0.0025,0.0075,0.015 FORCES=200,280,600 KU=1E5
+WEIGHTS
+ 2,4 1
+DAMPING
+ RAYLEIGH ALPHA=4*pi BETA=0
+INITIAL
+ 2 VX=1
+ANALYSIS
+ HISTORY 0.6 METHOD={method}
+OUTPUT
+ EVERY=0.02
+"""
+
+
+def test_critically_damped_storeys_that_pound() -> None:
+    """Their modes do not span the space: the series knows no bounds, and yet no turn is passed over."""
+    exact, steps = (run_text(CRITICAL.format(method=m)) for m in ("EXACT", "NEWMARK DT=1E-5"))
+    forces = [r.tables["contact_summary"]["peak_force"][0] for r in (exact, steps)]
+    assert forces[0] == pytest.approx(forces[1], rel=1e-6)
+    assert exact.u[-1] == pytest.approx(steps.u[-1], rel=1e-6, abs=1e-9)

@@ -275,7 +275,7 @@ class Exact:
             own, scale = self.followed, np.array([max(x.high - x.low, 0.0) for x in self.peaks])
         most = own.bends(bends).max(axis=1, initial=0.0)
         chosen = (scale > 0.0) & (most > 0.0)
-        if np.isinf(most).any():
+        if not np.isfinite(most).all():
             return h
         if not chosen.any():
             return h * MOST_STEPS

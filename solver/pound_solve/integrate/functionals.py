@@ -67,7 +67,7 @@ class Functionals:
         shape (2, n_rows, n_arcs), which may be infinite.
         """
         a, b, _ = np.abs(self.factors)[:, :, None]
-        out = np.asarray(a * bends[0, self.row])
+        out = np.asarray(a * np.where(a != 0.0, bends[0, self.row], 0.0))
         if self.by_rate:
             out += b * np.where(b != 0.0, bends[1, self.row], 0.0)
         return out

@@ -92,13 +92,16 @@ class Window:
         for block in part.blocks:
             r = block.regime
             bends = r.flow.bends(block.qs[:, :-1], block.gs, self.lengths)
+            if r.reactions is not None:
+                out[:, r.reactions.place] = np.inf  # as the forces of rigid contacts
+            if not np.isfinite(bends).all():  # nothing is known
+                out[:, r.watched] = np.inf
+                continue
             for order in (0, 1):
                 out[order, r.watched] += r.size @ bends[order]
                 if block.ps is not None and r.flow.u_p is not None:
                     p = polynomial.values(np.abs(block.ps), self.lengths, order + 2)
                     out[order, r.watched] += np.abs(r.rows @ r.flow.u_p) @ p.T
-            if r.reactions is not None:
-                out[:, r.reactions.place] = np.inf  # as the forces of rigid contacts
         return out
 
     def all(self, h: float, bending: bool) -> Arcs:
