@@ -15,8 +15,8 @@ unknowns, and not measured, so that a deck takes the same way whenever it is run
 What is compared: the largest and smallest value of every drift, against the larger of the two (but no less
 than a millionth of the largest drift: what is smaller may be rounding, which never stands still); the peak
 force of every contact, against itself (but no less than a twentieth of the largest contact force);
-without either, the deformations of all springs in the same way as drifts; without any, all displacements,
-against the largest in their direction.
+without drifts, the deformations of all springs in the same way, and all displacements against the largest
+in their direction.
 """
 
 from __future__ import annotations
@@ -155,16 +155,16 @@ def figures(scene: Scene, peaks: Peaks, replay: Replay) -> tuple[Array, Array]:
     laws = scene.structure.laws
     contact = [i for i, s in enumerate(laws) if s.is_contact]
     force = np.array([max((c.peak for c in peaks.collisions if c.law == i), default=0.0) for i in contact])
-    swings: list[Extreme] = list(peaks.watch)
-    if not swings and not contact:
-        swings = peaks.deformation
+    springs = [e for e, s in zip(peaks.deformation, laws) if not s.is_contact]
+    swings: list[Extreme] = peaks.watch or springs
     values = [(e.high, e.low) for e in swings]
     size = np.repeat([max(abs(e.high), abs(e.low)) for e in swings], 2)
-    if not laws and not swings:
-        values = list(zip(np.ravel(replay.high), np.ravel(replay.low)))
+    if not peaks.watch:
         ways = np.array([d for _, d in scene.freedoms])
-        most = [np.abs(np.array(values)[ways == d]).max(initial=0.0) for d in range(3)]
-        size = np.repeat([most[d] for d in ways], 2)
+        seen = np.column_stack([np.ravel(replay.high), np.ravel(replay.low)])
+        most = [np.abs(seen[ways == d]).max(initial=0.0) for d in range(3)]
+        values = [*values, *map(tuple, seen.tolist())]
+        size = np.append(size, np.repeat([most[d] for d in ways], 2))
     against = [np.maximum(x, share * x.max(initial=0.0)) for x, share in ((size, 1e-6), (force, 0.05))]
     return np.concatenate([np.ravel(values), force]), np.concatenate(against)
 
