@@ -208,7 +208,9 @@ class Exact:
             fine = coarse.closer(self._near(coarse, bends), h, self.bending)
         self._spend(WINDOW + POINT * (coarse.t.size + fine.t.size) * len(self.u))
         self._spend(SEEN * window.length / (EACH * h) * self.partition.shown.sum())
-        event = self._first_event(fine) if self.exit_pairs and fine.t.size else None
+        event = None
+        if self.exit_pairs and fine.t.size:
+            event = self.exits.first_rise(fine, self.largest, STILL)
         if event is None:
             self._peaks(coarse, fine, window.length)
             self._between(window, h, window.length)
@@ -415,13 +417,6 @@ class Exact:
             self.ledger.peaks.dashpot_losses[law] += loss
             entry[2 if self.laws[law].is_contact else 1] += loss
         self.account.put(entry)
-
-    def _first_event(self, fine: Arcs) -> tuple[float, int, int, int] | None:
-        """Time, exit, arc and cell of the first event."""
-        g, slope = self.exits.of(fine)
-        scale = self.exits.scale(self.largest)
-        tol = STILL * np.maximum(scale, np.abs(g[:, 0, :2]).max(axis=1, initial=0.0))
-        return search.first_rise(fine.t, g, slope, tol[:, None, None], self.exits.at(fine))
 
     def _switch(self, law: int, exit_index: int, d: float, v: float) -> None:
         self.events += 1

@@ -77,6 +77,14 @@ class Functionals:
         a, b, c = np.abs(self.factors)
         return np.asarray(a * largest[0, self.row] + b * largest[1, self.row] + c)
 
+    def first_rise(self, seen: Sampled, largest: Array, still: float) -> tuple[float, int, int, int] | None:
+        """When, which of them and where first rises through zero (see `search.first_rise`), by more than a
+        share `still` of what makes it up.
+        """
+        g, slope = self.of(seen)
+        scale = np.maximum(self.scale(largest), np.abs(g[:, 0, :2]).max(axis=1, initial=0.0))
+        return search.first_rise(seen.t, g, slope, still * scale[:, None, None], self.at(seen))
+
     def at(self, seen: Sampled) -> search.Exact:
         """What evaluates one of them, its value and its slope, within a cell."""
         a, b, c = self.factors.tolist()

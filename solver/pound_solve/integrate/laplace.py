@@ -310,11 +310,7 @@ class Laplace:
 
     def _first_event(self, seen: Samples) -> tuple[float, int, int] | None:
         watched, pairs = exits(self.branches, {})
-        if not pairs:
-            return None
-        g, slope = watched.of(seen)
-        scale = np.maximum(watched.scale(self.largest), np.abs(g[:, 0, :2]).max(axis=1))
-        found = search.first_rise(seen.t, g, slope, STILL * scale[:, None, None], watched.at(seen))
+        found = watched.first_rise(seen, self.largest, STILL) if pairs else None
         return None if found is None else (found[0], *pairs[found[1]])
 
     def _switch(self, law: int, exit_index: int, d: float, v: float) -> None:
