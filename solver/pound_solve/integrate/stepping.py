@@ -347,7 +347,8 @@ class Stepper:
         except KeyboardInterrupt:
             raise self.stop("A506", INTERRUPTED) from None
 
-    def _run(self) -> Outcome:
+    def _begin(self, advance: jit.Function) -> None:
+        """Take the first sample, before a kernel advances."""
         m, w, x, z, scene = self.matrices, self.w, self.x, self.z, self.scene
         rubs = next((s for s in self.laws if s.normal), None)
         if rubs is not None and not self.scheme.locate:
@@ -363,12 +364,17 @@ class Stepper:
         x.inputs[:2] = scene.excitation.value(t0), scene.excitation.value(t0, 1)
         for i in w.leans.tolist():
             states.grip(w, self.tables, x.q, i)
-        if jit.cold(kernel.advance):
+        if jit.cold(advance):
             self.sink.trial(t0, "compiling the kernels, once for this version: some 40 s")
         with jit.compiling():
             jit.compiled(kernel.settle)(m, w, x)
         kernel.note(m, w, x, t0, 0.0)
         kernel.sample(w, x, z, self.tables, self.count, t0)
+
+    def _run(self) -> Outcome:
+        self._begin(kernel.advance)
+        m, w, x, z, scene = self.matrices, self.w, self.x, self.z, self.scene
+        t0 = float(self.times[0])
         ends, is_output = goals(scene, self.times)
         lengths = np.diff(ends, prepend=t0)
         steps = np.maximum(1, np.ceil(lengths / self.dt * (1 - 1e-9))).astype(np.int64)
@@ -381,16 +387,21 @@ class Stepper:
         begin = ends - lengths
         pieces = ex.pieces(begin + 1e-13 * np.maximum(1.0, begin)).astype(np.int64)
         coefs = np.ascontiguousarray(ex.coefs)
-        advance = jit.compiled(kernel.advance)
+        self._loop(
+            kernel.advance, m, w, x, z, self.tables, self.scheme, coefs, ex.breaks, ends, steps, h, is_output,
+            shows, pieces, self.count, self.clock,
+        )  # fmt: skip
+        return self.outcome()
+
+    def _loop(self, advance: jit.Function, *given: Any) -> None:
+        """Let a kernel advance to the end, and take in what it keeps."""
+        compiled = jit.compiled(advance)
         while True:
             with np.errstate(all="ignore"), jit.compiling():  # a runaway is told in words
-                why = advance(
-                    m, w, x, z, self.tables, self.scheme, coefs, ex.breaks, ends, steps, h, is_output,
-                    shows, pieces, self.count, self.clock,
-                )  # fmt: skip
+                why = compiled(*given)
             self._fetch()
             if why == arrays.DONE:
-                return self.outcome()
+                return
             if why != arrays.FULL:
                 raise self._trouble(why)
 

@@ -1,0 +1,109 @@
+r"""TAYLOR: event-driven integration by power series, explicit, without a time step to choose.
+
+Between events the scene is linear, so the motion has a power series that converges however far; its
+coefficients follow one from another by a product with the sparse K and C each (see `expansion`).  A step
+goes as far as `expansion.TERMS` terms are right to rounding, some four radians of the fastest mode that
+takes part.  Within it every exit of a law and every quantity whose peak is kept is a polynomial, whose
+first rise and extremes are found with proof (see `isolate`).
+
+It takes no decomposition into modes, and what a step costs grows with the unknowns like its products: where
+EXACT has to decompose many unknowns or many combinations of stiffnesses, TAYLOR is faster and just as exact.
+Where the fastest mode is far above the motion (a stiff node with little mass), it takes many steps.
+
+References
+----------
+Barrio R (2005), Performance of the Taylor series method for ODEs/DAEs, Appl. Math. Comput. 163: 525-545;
+Jorba A, Zou M (2005), A software package for the numerical integration of ODEs by means of high-order
+Taylor methods, Experimental Mathematics 14: 99-117.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from pound_deck.schema import Spec
+from pound_solve.integrate import arrays, expansion
+from pound_solve.integrate.base import Outcome, Sink, Start, Stop, Watch, goals, not_linear, refuse_rigid
+from pound_solve.integrate.exact import condensed
+from pound_solve.integrate.stepping import Stepper
+from pound_solve.modes import massless
+from pound_solve.scene import Scene
+
+POINTS = 8  #: of Gauss's rule for the works of a step
+MOST_STEPS = 100_000_000  #: of one run
+
+
+class Taylor(Stepper):
+    """One run; see the module's head."""
+
+    def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Sink) -> None:
+        length = float(start.times[-1] - start.times[0])
+        super().__init__(
+            scene, start, watch, sink, {"DT": length}, arrays.Scheme(0.0, 0.5), "TAYLOR, power series"
+        )
+        n, terms = scene.size, expansion.TERMS + 1
+        points, weights = np.polynomial.legendre.leggauss(POINTS)
+        self.series = expansion.Series(
+            u=np.zeros((terms + 2, n)),
+            d=np.zeros((len(self.laws), terms)),
+            rows=np.zeros((len(watch.names), terms)),
+            s=np.zeros((terms, scene.inputs.shape[1])),
+            p=np.zeros((2, terms)),
+            inverse=1.0 / self.matrices.m.diagonals[0],
+            gauss=np.array([0.5 * weights, 0.5 + 0.5 * points]),
+            step=np.array([length, 0.0]),
+            envelopes=bool(sink.shown.any()),
+        )
+
+    def _run(self) -> Outcome:
+        self._begin(expansion.march)
+        ex = self.scene.excitation
+        ends, is_output = goals(self.scene, self.times)
+        begin = np.append(self.times[0], ends[:-1])
+        pieces = ex.pieces(begin + 1e-13 * np.maximum(1.0, begin)).astype(np.int64)
+        self._loop(
+            expansion.march, self.matrices, self.w, self.x, self.z, self.tables, self.series,
+            np.ascontiguousarray(ex.coefs), ex.breaks, ends, is_output, pieces, self.count, self.clock,
+        )  # fmt: skip
+        return self.outcome()
+
+    def _trouble(self, why: int) -> Stop:
+        if why != expansion.SHORT:
+            return super()._trouble(why)
+        return self.stop("A502", "the fastest mode asks for steps shorter than the clock can tell")
+
+
+def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
+    """Integrate a scene by power series; see the module's head.
+
+    Raises
+    ------
+    Stop
+        A scene that is not piecewise linear, massless freedoms that cannot be condensed, too many changes at
+        one instant, too many steps, numbers beyond all bounds, or an interrupt.
+    """
+    refuse_rigid(scene, start, "TAYLOR")
+    if why := not_linear(scene):
+        raise Stop(
+            "A505", float(start.times[0]), f"TAYLOR needs linear pieces, and {why}: AUTO takes steps"
+        )
+    if massless(scene.mass).any():
+        scene, start, watch, sink = condensed(scene, start, watch, sink, "TAYLOR")
+    light = massless(scene.mass)
+    if light.any():
+        why = f"TAYLOR needs mass at {scene.name(int(np.argmax(light)))}: give it weight, or use EXACT or NEWMARK"
+        raise Stop("A505", float(start.times[0]), why)
+    return Taylor(scene, start, watch, sink).run()
+
+
+SPEC = Spec(
+    "method",
+    "TAYLOR",
+    "event-driven, power series between events",
+    (),
+    reference="Jorba & Zou 2005; Barrio 2005",
+    impl=integrate,
+)
