@@ -72,7 +72,7 @@ from pound_solve.integrate.arrays import (
     V,
     Y,
 )
-from pound_solve.integrate.isolate import POLYNOMIAL, first_rise, highest
+from pound_solve.integrate.isolate import POLYNOMIAL, first_rise, highest, size
 from pound_solve.integrate.kernel import power, sample, settle, write
 from pound_solve.integrate.ldl import solve
 from pound_solve.integrate.states import along, leave, load, motions, times
@@ -81,8 +81,8 @@ from pound_solve.jit import Tables, flat, loose
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-TERMS = 28  #: of a series, at most
-LEAST = 4  #: terms before a series may end
+TERMS = 32  #: of a series, at most
+CHECK = 4  #: terms after which it is seen whether they suffice
 SMALL = 1e-14  #: share of the motion that a term left out may be
 GROW = 2.0  #: how much longer than the last a step may be
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
@@ -164,14 +164,8 @@ def deform(w: Laws, e: Series, k: int, top: int) -> None:
 
 def share(m: Matrices, x: Motion, e: Series, k: int, h: float) -> float:
     """Twice the kinetic energy of the term `k`."""
-    if m.diagonal:
-        total = 0.0
-        for i in range(e.u.shape[1]):
-            total += m.m.diagonals[0, i] * e.u[k, i] * e.u[k, i]
-    else:
-        times(m.m, e.u, k, CC)
-        total = product(e.u, k, e.u, CC)
-    return total * (k / h) * (k / h)
+    times(m.m, e.u, k, CC)
+    return product(e.u, k, e.u, CC) * (k / h) * (k / h)
 
 
 def next_term(m: Matrices, w: Laws, x: Motion, e: Series, k: int, h: float, top: int) -> None:
@@ -211,6 +205,7 @@ def next_term(m: Matrices, w: Laws, x: Motion, e: Series, k: int, h: float, top:
     deform(w, e, k + 2, top)
 
 
+@flat
 def expand(
     m: Matrices, w: Laws, x: Motion, e: Series, coefs: Array, begin: float, h: float
 ) -> tuple[int, float]:
@@ -229,15 +224,18 @@ def expand(
         e.u[0, i], e.u[1, i] = x.q[U, i], h * x.q[V, i]
     deform(w, e, 0, top)
     deform(w, e, 1, top)
-    most = max(e.step[SPEED], share(m, x, e, 1, h))
-    last, now, terms = 0.0, 0.0, TERMS
-    for k in range(TERMS - 1):
-        next_term(m, w, x, e, k, h, top)
-        last, now = now, share(m, x, e, k + 2, h)
-        if k < 2:
-            most = max(most, now)
-        if k + 2 >= max(LEAST, top) and now + last <= SMALL * SMALL * most:
-            terms = k + 2
+    most, k, now, last = max(e.step[SPEED], share(m, x, e, 1, h)), 0, 0.0, 0.0
+    while k + 2 <= TERMS:
+        while True:
+            next_term(m, w, x, e, k, h, top)
+            k += 1
+            if (k + 1) % CHECK == 0:
+                break
+        terms = k + 1
+        now, last = share(m, x, e, terms, h), share(m, x, e, terms - 1, h)
+        if terms == CHECK:
+            most = max(most, share(m, x, e, 2, h), share(m, x, e, 3, h))
+        if terms >= top and now + last <= SMALL * SMALL * most:
             break
     if not now + last < np.inf:
         return terms, np.nan
@@ -309,17 +307,34 @@ def peaks(
         p[0] += m.row_constants[i]
         crest(w, x, e, terms, h, end, t, i, -1)
     for i in range(laws):
-        for k in range(terms + 1):
-            p[k] = e.d[i, k]
-        crest(w, x, e, terms, h, end, t, rows + i, -1)
+        d, far = e.d[i, 0], size(e.d, i, terms)
+        if d + far > x.peak[HIGH, rows + i] or d - far < x.peak[LOW, rows + i]:
+            for k in range(terms + 1):
+                p[k] = e.d[i, k]
+            crest(w, x, e, terms, h, end, t, rows + i, -1)
+        f, own = w.f[i, F0], rows + laws + i
         stiffness, damping = w.f[i, K], w.f[i, C] if w.i[i, CONTACT] else 0.0
-        for k in range(terms + 1):
-            p[k] = stiffness * e.d[i, k]
-        p[0] += w.f[i, F0]
-        if damping != 0.0:
-            for k in range(terms):
-                p[k] += damping * (k + 1) / h * e.d[i, k + 1]
-        crest(w, x, e, terms, h, end, t, rows + laws + i, i)
+        far *= abs(stiffness)
+        high = x.peak[HIGH, own]
+        if w.i[i, CONTACT]:
+            high = min(high, w.f[i, PEAK])
+        f += stiffness * d
+        if damping != 0.0 or f + far > high or f - far < x.peak[LOW, own]:
+            for k in range(terms + 1):
+                p[k] = stiffness * e.d[i, k]
+            p[0] += w.f[i, F0]
+            if damping != 0.0:
+                for k in range(terms):
+                    p[k] += damping * (k + 1) / h * e.d[i, k + 1]
+            crest(w, x, e, terms, h, end, t, own, i)
+
+
+def derived(k: int, order: int, h: float) -> float:
+    """What a derivative makes of the power `k`."""
+    out = 1.0
+    for j in range(order):
+        out *= (k - j) / h
+    return out
 
 
 def evaluate(e: Series, terms: int, s: float, h: float, x: Motion, order: int, out: int) -> None:
@@ -327,15 +342,34 @@ def evaluate(e: Series, terms: int, s: float, h: float, x: Motion, order: int, o
     n = e.u.shape[1]
     for i in range(n):
         x.q[out, i] = 0.0
-    for k in range(terms, order - 1, -1):
-        factor = 1.0
-        for j in range(order):
-            factor *= (k - j) / h
-        for i in range(n):
-            x.q[out, i] = x.q[out, i] * s + factor * e.u[k, i]
+    k = terms
+    while (
+        k >= order
+    ):  # four terms at once: rows are read and written more slowly than they are reckoned with
+        a, b, c, d = (
+            derived(k, order, h),
+            derived(k - 1, order, h),
+            derived(k - 2, order, h),
+            derived(k - 3, order, h),
+        )
+        s2, s3, s4 = s * s, s * s * s, s * s * s * s
+        if k - 3 >= order:
+            for i in range(n):
+                x.q[out, i] = (
+                    x.q[out, i] * s4
+                    + a * s3 * e.u[k, i]
+                    + b * s2 * e.u[k - 1, i]
+                    + c * s * e.u[k - 2, i]
+                    + d * e.u[k - 3, i]
+                )
+            k -= 4
+        else:
+            for i in range(n):
+                x.q[out, i] = x.q[out, i] * s + a * e.u[k, i]
+            k -= 1
 
 
-def law_at(w: Laws, e: Series, terms: int, s: float, h: float, i: int) -> tuple[float, float]:
+def law_at(e: Series, terms: int, s: float, h: float, i: int) -> tuple[float, float]:
     """Deformation and rate of a law at the place `s`."""
     d, v = e.d[i, terms], 0.0
     for k in range(terms - 1, -1, -1):
@@ -344,6 +378,7 @@ def law_at(w: Laws, e: Series, terms: int, s: float, h: float, i: int) -> tuple[
     return d, v / h
 
 
+@flat
 def works(
     m: Matrices, w: Laws, x: Motion, e: Series, coefs: Array, begin: float, terms: int, h: float, end: float
 ) -> None:
@@ -358,14 +393,15 @@ def works(
         x.works[1] += weight * product(x.q, V1, x.q, Y)
         motions(coefs, begin + s * h, x.inputs, 2)
         for i in range(len(w.i)):
-            d, v = law_at(w, e, terms, s, h, i)
-            w.f[i, LD1], w.f[i, LV1] = d, v
-            drag = w.f[i, C] * v
-            if drag != 0.0:
-                w.f[i, DASHPOT] += weight * drag * v
-                x.works[2 if w.i[i, CONTACT] else 1] += weight * drag * v
-            if w.i[i, CONTACT]:
-                w.f[i, IMPULSE] += weight * (w.f[i, K] * d + drag + w.f[i, F0])
+            drag = w.f[i, C]
+            if drag != 0.0 or moved or (w.i[i, CONTACT] and w.f[i, K] != 0.0):
+                d, v = law_at(e, terms, s, h, i)
+                w.f[i, LD1], w.f[i, LV1] = d, v
+                lost = weight * drag * v * v
+                w.f[i, DASHPOT] += lost
+                x.works[2 if w.i[i, CONTACT] else 1] += lost
+                if w.i[i, CONTACT]:
+                    w.f[i, IMPULSE] += weight * (w.f[i, K] * d + drag * v + w.f[i, F0])
         if moved:
             evaluate(e, terms, s, h, x, 0, U1)
             evaluate(e, terms, s, h, x, 2, A1)
@@ -389,7 +425,7 @@ def accept(w: Laws, x: Motion, e: Series, terms: int, h: float, end: float) -> N
     evaluate(e, terms, end, h, x, 0, U)
     evaluate(e, terms, end, h, x, 1, V)
     for i in range(len(w.i)):
-        d, v = law_at(w, e, terms, end, h, i)
+        d, v = law_at(e, terms, end, h, i)
         w.f[i, LD], w.f[i, LV] = d, v
         w.f[i, MOST_D], w.f[i, MOST_V] = max(w.f[i, MOST_D], abs(d)), max(w.f[i, MOST_V], abs(v))
 
@@ -404,7 +440,6 @@ def show(x: Motion, z: Samples, count: Index, t: float) -> None:
     count[SHOWN] += 1
 
 
-@flat
 def stride(
     m: Matrices, w: Laws, x: Motion, z: Samples, e: Series, coefs: Array, begin: float, goal: float,
     output: bool, count: Index, clock: Array, pause: int,

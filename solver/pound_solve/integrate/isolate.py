@@ -20,6 +20,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_solve.jit import loose
+
 Array = NDArray[np.float64]
 
 NARROW = 1e-13  #: share of the interval below which a cell is not halved any more
@@ -54,11 +56,20 @@ def slope(p: Array, terms: int, s: float) -> float:
     return total
 
 
-def reach(p: Array, row: int, terms: int, w: float) -> float:
-    """How far the polynomial in a row can come from its value at its place, up to `w` away."""
+def reach(p: Array, terms: int, w: float) -> float:
+    """How far the polynomial in row 1 can come from its value at its place, up to `w` away."""
     total = 0.0
     for k in range(terms, 0, -1):
-        total = (total + abs(p[row, k])) * w
+        total = (total + abs(p[ABOUT, k])) * w
+    return total
+
+
+@loose
+def size(p: Array, row: int, terms: int) -> float:
+    """How far the polynomial in a row can come from its value at 0, up to 1."""
+    total = 0.0
+    for k in range(1, terms + 1):
+        total += abs(p[row, k])
     return total
 
 
@@ -95,11 +106,11 @@ def zero(p: Array, terms: int, w: float) -> float:
 
 
 def first_rise(p: Array, terms: int, end: float, tol: float) -> float:
-    """First place in (0, end) where the polynomial in row 0 rises through zero, to above `tol`; -1 if nowhere.
+    """First place in (0, end), end at most 1, where the polynomial in row 0 rises through zero, to above `tol`; -1 if nowhere.
 
     A value above zero at 0 counts as rounding there: if it rises from it, then at once.
     """
-    if p[POLYNOMIAL, 0] + reach(p, POLYNOMIAL, terms, end) <= tol:
+    if p[POLYNOMIAL, 0] + size(p, POLYNOMIAL, terms) <= tol:
         return -1.0
     x, w = 0.0, end
     while x < end:
@@ -107,7 +118,7 @@ def first_rise(p: Array, terms: int, end: float, tol: float) -> float:
         about(p, terms, x)
         if x == 0.0:
             p[ABOUT, 0] = min(p[ABOUT, 0], 0.0)
-        if p[ABOUT, 0] + reach(p, ABOUT, terms, w) > tol:
+        if p[ABOUT, 0] + reach(p, terms, w) > tol:
             steep, bend = p[ABOUT, 1], swing(p, terms, w, 1)
             narrow = w <= NARROW * end
             if not narrow and abs(steep) <= bend:
@@ -125,7 +136,7 @@ def highest(p: Array, terms: int, end: float, known: float) -> tuple[float, floa
     `known`; else that and -1.
     """
     best, place = known, -1.0
-    if p[POLYNOMIAL, 0] + reach(p, POLYNOMIAL, terms, end) <= known:
+    if p[POLYNOMIAL, 0] + size(p, POLYNOMIAL, terms) <= known:
         return best, place
     if p[POLYNOMIAL, 0] > best:
         best, place = p[POLYNOMIAL, 0], 0.0
@@ -133,7 +144,7 @@ def highest(p: Array, terms: int, end: float, known: float) -> tuple[float, floa
     while x < end:
         w = min(w, end - x)
         about(p, terms, x)
-        if p[ABOUT, 0] + reach(p, ABOUT, terms, w) > best:
+        if p[ABOUT, 0] + reach(p, terms, w) > best:
             if abs(p[ABOUT, 1]) <= swing(p, terms, w, 1):
                 bend = 2.0 * p[ABOUT, 2]
                 if abs(bend) <= swing(p, terms, w, 2) and w > NARROW * end:

@@ -64,7 +64,8 @@ COMMON = (
     ),
 )  #: fields of every implicit method
 
-SAMPLES, LOG = 64, 4096  #: samples and changes of branches kept between two visits of Python
+#: samples and changes of branches kept between two visits of Python, which cost 2 ms each
+SAMPLES, LOG = 1024, 4096
 RESOLVED = 10  #: steps in a period or a collision at least, which gives peaks to a few parts in a hundred
 QUIET = 1e-9  #: share of the energy below which a motion is rounding
 HELD = 2**20  #: numbers of one kind in those samples, at most, but for two
@@ -160,9 +161,11 @@ class Stepper:
         scene, watch, laws = self.scene, self.watch, self.laws
         n, count = scene.size, len(laws)
         damps = np.array([bool(s.facts.get("c") or s.beta or s.secant) or s.law.curved for s in laws], bool)
-        stiff = self.scheme.beta > 0.0
-        linked = [entries(a)[:2] for a in (scene.mass, scene.damping, *[scene.stiffness] * stiff)]
-        touched = [row for (row, _), acts in zip(by_rows(scene.law_rows), damps | stiff) if acts]
+        stiff, damped = self.scheme.beta > 0.0, self.scheme.gamma > 0.0
+        solved = (scene.mass, *[scene.damping] * damped, *[scene.stiffness] * stiff)
+        linked = [entries(a)[:2] for a in solved]
+        joined = damps & damped | stiff
+        touched = [row for (row, _), joins in zip(by_rows(scene.law_rows), joined) if joins]
         if stiff:
             touched += [columns for columns, _ in scene.chords.touched()]
         linked.append(coupled(touched))
@@ -177,7 +180,7 @@ class Stepper:
         bends = [columns for columns, _ in scene.chords.touched()]
         bends += [row for (row, _), x in zip(by_rows(scene.law_rows), laws) if x.law.curved]
         lower = pattern.ai.astype(np.int64)
-        on_pattern = [at(a, lower, columns) for a in (mass, damping, stiffness * stiff)]
+        on_pattern = [at(a, lower, columns) for a in (mass, damping * damped, stiffness * stiff)]
         moved = scene.support_inputs
         s = scene.structure
         free = np.array(scene.columns, int)[o]
@@ -219,7 +222,7 @@ class Stepper:
         position = {(int(i), int(j)): q for q, (i, j) in enumerate(zip(pattern.ai, columns))}
         pairs: list[list[tuple[int, float]]] = [[] for _ in laws]
         for i in range(count):
-            if not (stiff or damps[i]):
+            if not joined[i]:
                 continue
             span = range(rows[0][i], rows[0][i + 1])
             on, own = [int(rows[1][q]) for q in span], [float(rows[2][q]) for q in span]

@@ -42,7 +42,7 @@ class Taylor(Stepper):
     def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Sink) -> None:
         length = float(start.times[-1] - start.times[0])
         super().__init__(
-            scene, start, watch, sink, {"DT": length}, arrays.Scheme(0.0, 0.5), "TAYLOR, power series"
+            scene, start, watch, sink, {"DT": length}, arrays.Scheme(0.0, 0.0), "TAYLOR, power series"
         )
         n, terms = scene.size, expansion.TERMS + 1
         points, weights = np.polynomial.legendre.leggauss(POINTS)
