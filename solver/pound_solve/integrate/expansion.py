@@ -87,7 +87,7 @@ SMALL = 1e-14  #: share of the motion that a term left out may be
 GROW = 2.0  #: how much longer than the last a step may be
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
 KC, CC = TERMS + 1, TERMS + 2  #: rows of `Series.u` for products with K and C
-LENGTH, SPEED = range(2)  #: columns of `Series.step`: length to try next, most of v M v so far
+LENGTH, SPEED, SHORTEST = range(3)  #: of `Series.step`: length to try next, most of v M v, shortest step
 SHORT = 7  #: why `march` came back, beside those of `arrays`: steps are too short for the clock
 SAME = STEP  #: integer of `count`: changes of branch at one instant
 
@@ -101,8 +101,6 @@ class Series(NamedTuple):
         Coefficients of the unknowns; scratch.
     d : ndarray, shape (n_laws, TERMS + 1)
         Of the deformations.
-    rows : ndarray, shape (n_rows, TERMS + 1)
-        Of the quantities whose peaks are kept.
     s : ndarray, shape (TERMS + 1, n_inputs)
         Of the inputs.
     p : ndarray, shape (2, TERMS + 1)
@@ -111,7 +109,7 @@ class Series(NamedTuple):
         Of a diagonal mass.
     gauss : ndarray, shape (2, n_points)
         Weights and points on (0, 1).
-    step : ndarray, shape (2,)
+    step : ndarray, shape (3,)
         Columns as above.
     envelopes : bool
         Whether somebody looks at the motion between the samples.
@@ -119,7 +117,6 @@ class Series(NamedTuple):
 
     u: Array
     d: Array
-    rows: Array
     s: Array
     p: Array
     inverse: Array
@@ -216,7 +213,8 @@ def expand(
     terms : int
         Its highest power.
     end : float
-        Part of the step, or multiple of it, up to which it is right; NaN where numbers are beyond all bounds.
+        Part of the step, or multiple of it, up to which it is right; NaN where numbers are beyond all
+        bounds.
     """
     n, top = e.u.shape[1], len(coefs)
     inputs(e, coefs, begin, h)
@@ -471,6 +469,8 @@ def stride(
             works(m, w, x, e, coefs, t - begin, terms, h, at)
             accept(w, x, e, terms, h, at)
         count[STEPS] += 1
+        if law < 0 and not whole:
+            e.step[SHORTEST] = min(e.step[SHORTEST], at * h)
         clock[0] = goal if law < 0 and whole else t + at * h
         if law >= 0:
             return DONE, law, way

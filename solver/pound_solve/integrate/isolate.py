@@ -1,7 +1,7 @@
 r"""Kernels that find the first rise and the extremes of a polynomial, with proof.
 
-About any place x of its interval a polynomial is written in powers of :math:`s - x`.  Over a cell of width w
-it keeps within
+About any place x of its interval a polynomial is written in powers of :math:`s - x`.  Over a cell of
+width w it keeps within
 
 .. math:: B = \sum_{k \ge 1} |p_k|\, w^k
 
@@ -83,8 +83,8 @@ def swing(p: Array, terms: int, w: float, order: int) -> float:
 
 
 def zero(p: Array, terms: int, w: float) -> float:
-    """Where the polynomial in row 1, not above zero at its place and monotone, rises through zero before `w`:
-    Newton's method, kept in its bracket.
+    """Where the polynomial in row 1, monotone and not above zero at its place, rises through zero before
+    `w`: Newton's method, kept in its bracket.
     """
     low, high, at, last = 0.0, w, 0.5 * w, np.inf
     for _ in range(200):
@@ -99,14 +99,15 @@ def zero(p: Array, terms: int, w: float) -> float:
         if not low < new < high or abs(new - at) > 0.5 * last:
             new = 0.5 * (low + high)
         last = abs(new - at)
-        if last <= 2e-16 * high or new == low or new == high:
+        if last <= 2e-16 * high or new in (low, high):
             return new
         at = new
     return at
 
 
 def first_rise(p: Array, terms: int, end: float, tol: float) -> float:
-    """First place in (0, end), end at most 1, where the polynomial in row 0 rises through zero, to above `tol`; -1 if nowhere.
+    """First place before `end`, which is 1 at most, where the polynomial in row 0 rises through zero, to
+    above `tol`; -1 if there is none.
 
     A value above zero at 0 counts as rounding there: if it rises from it, then at once.
     """

@@ -132,6 +132,8 @@ class Stepper:
         For the report.
     """
 
+    exact = False  #: whether there is no error but rounding
+
     def __init__(
         self,
         scene: Scene,
@@ -391,8 +393,8 @@ class Stepper:
         pieces = ex.pieces(begin + 1e-13 * np.maximum(1.0, begin)).astype(np.int64)
         coefs = np.ascontiguousarray(ex.coefs)
         self._loop(
-            kernel.advance, m, w, x, z, self.tables, self.scheme, coefs, ex.breaks, ends, steps, h, is_output,
-            shows, pieces, self.count, self.clock,
+            kernel.advance, m, w, x, z, self.tables, self.scheme, coefs, ex.breaks, ends, steps, h,
+            is_output, shows, pieces, self.count, self.clock,
         )  # fmt: skip
         return self.outcome()
 
@@ -477,16 +479,19 @@ class Stepper:
             found[rest + n :],
         )
         peaks.dashpot_losses = self.w.f[:, arrays.DASHPOT].tolist()
-        figures: dict[str, Any] = {
+        f, i = self.w.f, self.w.i
+        states = zip(i[:, arrays.AT].tolist(), f[:, arrays.D0].tolist(), f[:, arrays.WORK].tolist(),
+                     map(tuple, self.w.memory.tolist()))  # fmt: skip
+        return Outcome(peaks, self._figures(), tuple(states), self._checks(peaks), self.exact)
+
+    def _figures(self) -> dict[str, Any]:
+        """What the report tells of the run."""
+        return {
             "method": self.name,
             "time step": f"{self.dt:.6g}",
             "steps": int(self.count[arrays.STEPS]),
             "events": int(self.count[arrays.EVENTS]),
         }
-        f, i = self.w.f, self.w.i
-        states = zip(i[:, arrays.AT].tolist(), f[:, arrays.D0].tolist(), f[:, arrays.WORK].tolist(),
-                     map(tuple, self.w.memory.tolist()))  # fmt: skip
-        return Outcome(peaks, figures, tuple(states), self._checks(peaks))
 
     def _checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
         """Whether the steps resolve the motion, and the hardest collision of every contact.

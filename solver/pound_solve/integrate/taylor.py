@@ -1,14 +1,15 @@
 r"""TAYLOR: event-driven integration by power series, explicit, without a time step to choose.
 
 Between events the scene is linear, so the motion has a power series that converges however far; its
-coefficients follow one from another by a product with the sparse K and C each (see `expansion`).  A step
-goes as far as `expansion.TERMS` terms are right to rounding, some four radians of the fastest mode that
-takes part.  Within it every exit of a law and every quantity whose peak is kept is a polynomial, whose
-first rise and extremes are found with proof (see `isolate`).
+coefficients follow one from another by products with the sparse K and C (see `expansion`).  A step goes as
+far as `expansion.TERMS` terms are right to rounding, some five radians of the fastest mode that takes part.
+Within it every exit of a law and every quantity whose peak is kept is a polynomial, whose first rise and
+extremes are found with proof (see `isolate`).  Works are integrated by Gauss's rule, each on its own, so
+that the balance of energies remains a check.
 
-It takes no decomposition into modes, and what a step costs grows with the unknowns like its products: where
-EXACT has to decompose many unknowns or many combinations of stiffnesses, TAYLOR is faster and just as exact.
-Where the fastest mode is far above the motion (a stiff node with little mass), it takes many steps.
+There is no decomposition into modes, and a step costs what its products cost: where EXACT has to decompose
+many unknowns, or many combinations of stiffnesses, TAYLOR is faster, and as exact.  Where the fastest mode
+is far above the motion (a stiff node with little mass, a strong dashpot), it takes many steps.
 
 References
 ----------
@@ -26,35 +27,47 @@ import numpy as np
 
 from pound_deck.schema import Spec
 from pound_solve.integrate import arrays, expansion
-from pound_solve.integrate.base import Outcome, Sink, Start, Stop, Watch, goals, not_linear, refuse_rigid
+from pound_solve.integrate.base import (
+    Outcome,
+    Peaks,
+    Sink,
+    Start,
+    Stop,
+    Watch,
+    goals,
+    not_linear,
+    refuse_rigid,
+)
 from pound_solve.integrate.exact import condensed
 from pound_solve.integrate.stepping import Stepper
 from pound_solve.modes import massless
 from pound_solve.scene import Scene
 
 POINTS = 8  #: of Gauss's rule for the works of a step
-MOST_STEPS = 100_000_000  #: of one run
+MOST_STEPS = 20_000_000  #: that a run may come to
 
 
 class Taylor(Stepper):
     """One run; see the module's head."""
 
+    exact = True
+
     def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Sink) -> None:
         length = float(start.times[-1] - start.times[0])
+        nothing_to_solve = arrays.Scheme(0.0, 0.0)
         super().__init__(
-            scene, start, watch, sink, {"DT": length}, arrays.Scheme(0.0, 0.0), "TAYLOR, power series"
+            scene, start, watch, sink, {"DT": length}, nothing_to_solve, "TAYLOR, power series"
         )
-        n, terms = scene.size, expansion.TERMS + 1
+        terms = expansion.TERMS + 1
         points, weights = np.polynomial.legendre.leggauss(POINTS)
         self.series = expansion.Series(
-            u=np.zeros((terms + 2, n)),
+            u=np.zeros((terms + 2, scene.size)),
             d=np.zeros((len(self.laws), terms)),
-            rows=np.zeros((len(watch.names), terms)),
             s=np.zeros((terms, scene.inputs.shape[1])),
             p=np.zeros((2, terms)),
             inverse=1.0 / self.matrices.m.diagonals[0],
-            gauss=np.array([0.5 * weights, 0.5 + 0.5 * points]),
-            step=np.array([length, 0.0]),
+            gauss=0.5 * np.array([weights, 1.0 + points]),
+            step=np.array([length, 0.0, np.inf]),
             envelopes=bool(sink.shown.any()),
         )
 
@@ -70,10 +83,27 @@ class Taylor(Stepper):
         )  # fmt: skip
         return self.outcome()
 
+    def _fetch(self) -> None:
+        super()._fetch()
+        done, steps = float(self.clock[0] - self.times[0]), int(self.count[arrays.STEPS])
+        if steps > arrays.PAUSE // 2 and steps * self.dt > MOST_STEPS * done:
+            count = f"some {steps * self.dt / done:.1g}" if done else "far too many"
+            step = self.series.step[expansion.LENGTH]
+            why = f"the fastest mode asks for {count} steps (now {step:.3g} long)"
+            raise self.stop("A502", f"{why}: EXACT or NEWMARK need not follow it")
+
     def _trouble(self, why: int) -> Stop:
-        if why != expansion.SHORT:
-            return super()._trouble(why)
-        return self.stop("A502", "the fastest mode asks for steps shorter than the clock can tell")
+        if why == expansion.SHORT:
+            return self.stop("A502", "the fastest mode asks for steps too short to tell the times apart")
+        return super()._trouble(why)
+
+    def _figures(self) -> dict[str, Any]:
+        whole = super()._figures()
+        shortest = f"{self.series.step[expansion.SHORTEST]:.4g}"
+        return {k: v for k, v in whole.items() if k != "time step"} | {"shortest step": shortest}
+
+    def _checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
+        return []
 
 
 def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
@@ -82,20 +112,19 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     Raises
     ------
     Stop
-        A scene that is not piecewise linear, massless freedoms that cannot be condensed, too many changes at
-        one instant, too many steps, numbers beyond all bounds, or an interrupt.
+        A scene that is not piecewise linear, massless freedoms that cannot be condensed, too many changes
+        at one instant, too many steps, numbers beyond all bounds, or an interrupt.
     """
     refuse_rigid(scene, start, "TAYLOR")
+    begin = float(start.times[0])
     if why := not_linear(scene):
-        raise Stop(
-            "A505", float(start.times[0]), f"TAYLOR needs linear pieces, and {why}: AUTO takes steps"
-        )
+        raise Stop("A505", begin, f"TAYLOR needs linear pieces, and {why}: AUTO takes steps")
     if massless(scene.mass).any():
         scene, start, watch, sink = condensed(scene, start, watch, sink, "TAYLOR")
     light = massless(scene.mass)
     if light.any():
-        why = f"TAYLOR needs mass at {scene.name(int(np.argmax(light)))}: give it weight, or use EXACT or NEWMARK"
-        raise Stop("A505", float(start.times[0]), why)
+        name = scene.name(int(np.argmax(light)))
+        raise Stop("A505", begin, f"TAYLOR needs mass at {name}: give it weight, or use EXACT or NEWMARK")
     return Taylor(scene, start, watch, sink).run()
 
 
