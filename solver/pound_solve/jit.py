@@ -17,6 +17,7 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -68,13 +69,18 @@ def folder() -> Path:
         return Path(tempfile.mkdtemp(prefix="pound-solve-"))
 
 
-@cache
-def numba() -> Any:
-    """numba, told where to keep what it compiles; None where it is not installed or switched off.
+def available() -> bool:
+    """Whether there is numba, which is not imported yet.
 
     POUND_COMPILE=0 in the environment switches it off.
     """
-    if os.environ.get("POUND_COMPILE") == "0":
+    return os.environ.get("POUND_COMPILE") != "0" and find_spec("numba") is not None
+
+
+@cache
+def numba() -> Any:
+    """numba, told where to keep what it compiles; None where it is not `available`."""
+    if not available():
         return None
     try:
         import numba as found

@@ -65,7 +65,9 @@ class Plan:
         Seconds that one run may take.
     """
 
-    methods: tuple[str, ...] = ("EXACT", "NEWMARK", "HHT", "GENERALISED_ALPHA", "CENTRAL", "AUTO")
+    methods: tuple[str, ...] = (
+        "EXACT", "TAYLOR", "NEWMARK", "HHT", "GENERALISED_ALPHA", "CENTRAL", "AUTO",
+    )  # fmt: skip
     steps: tuple[float, ...] = ()
     tols: tuple[float, ...] = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
     repeat: int = 3
@@ -239,13 +241,18 @@ class _Bench:
             if not out["EXACT"][0].stopped:
                 own = errors(out["EXACT"][0].peaks, fine.peaks)
                 reference = Reference(fine.peaks, own, "EXACT with REFINE=2")
-        stepping = [m for m in plan.methods if "DT" in {f.name for f in self.methods[m].fields}]
+        asks = {m: {f.name for f in self.methods[m].fields} for m in plan.methods}
+        stepping = [m for m in plan.methods if "DT" in asks[m]]
         if reference is None:
             reference = self._stepped(stepping, out)
         for method in plan.methods:
             if method not in out:
-                ways = self._ladder if method in stepping else self._tolerances
-                out[method] = ways(method, reference)
+                if method in stepping:
+                    out[method] = self._ladder(method, reference)
+                else:
+                    out[method] = (
+                        self._tolerances(method) if "TOL" in asks[method] else [self.trial(method)]
+                    )
         known = reference
         return [
             replace(t, errors=errors(t.peaks, known.peaks)) for m in plan.methods for t in out[m]
@@ -293,13 +300,14 @@ class _Bench:
                 break
         return out
 
-    def _tolerances(self, method: str, reference: Reference) -> list[Trial]:
+    def _tolerances(self, method: str) -> list[Trial]:
         """Trials of AUTO."""
         out: list[Trial] = []
         for tol in self.plan.tols:
             out.append(self.trial(method, TOL=tol))
-            if out[-1].method != method:  # it takes EXACT, whatever the tolerance
-                return [] if "EXACT" in self.plan.methods else out
+            taken = out[-1].method.removeprefix(f"{method}: ")
+            if taken != out[-1].method:  # it takes a method without steps, and will for less
+                return [] if len(out) == 1 and taken in self.plan.methods else out
             if not out[-1].stopped and 4.0 * out[-1].time > self.plan.longest:
                 break
         return out
@@ -359,7 +367,7 @@ class _Bench:
             if method == "EXACT" and verdict != "good":  # it must not become the reference
                 return 0.0, Trial(method, setting, stopped=f"{RESIDUAL}: {residual}; {verdict}")
             out = Trial(
-                "AUTO: EXACT" if (method, name) == ("AUTO", "EXACT") else method,
+                f"AUTO: {name}" if method == "AUTO" and "steps" not in figures else method,
                 setting,
                 steps=int(figures.get("steps", 0)),
                 events=int(figures["events"]),

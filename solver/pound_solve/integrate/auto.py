@@ -1,16 +1,19 @@
-r"""AUTO: EXACT where it pays, else NEWMARK with the step that meets a tolerance.
+r"""AUTO: EXACT where it pays, or TAYLOR, else NEWMARK with the step that meets a tolerance.
 
 EXACT needs no step, but linear pieces, and every combination of stiffnesses that is new costs it a
-decomposition.  The whole run by steps is repeated with a shorter step until the peaks no longer change, or
-shorter steps bring nothing any more (a force that rings at a node without mass):
+decomposition.  TAYLOR has no error either; it follows the fastest mode.  By NEWMARK the whole run is
+repeated with a shorter step until the peaks no longer change, or shorter steps bring nothing any more (a
+force that rings at a node without mass):
 between two runs of which the second takes r times the steps of the first the peaks differ by
 :math:`\Delta`, and the error left in the second is estimated as :math:`\Delta/(r-1)`, as if the method
 were of first order only.  It is of second order, so that the estimate errs on the safe side.
 
-Which of the two pays shows on the way.  Where few laws change stiffness EXACT may begin with a little; if
-that does not last, steps are taken, and before every run of them EXACT may go as far as that run's cost, if
-by what it has shown it would get to the end.  Costs are counted from windows, decompositions, steps and
-unknowns, and not measured, so that a deck takes the same way whenever it is run.
+What TAYLOR costs is known beforehand, which of the others pays shows on the way.  Where few laws change
+stiffness, and a handful of decompositions does not cost more than TAYLOR, EXACT may begin with a little;
+if that does not last, TAYLOR takes over where it costs no more than the runs by steps to come, and before
+every such run EXACT may go as far as that run's cost, if by what it has shown it would get to the end.
+Costs are counted from windows, decompositions, steps and unknowns, and not measured, so that a deck takes
+the same way whenever it is run.
 
 What is compared: the largest and smallest value of every drift, against the larger of the two (but no less
 than a millionth of the largest drift: what is smaller may be rounding, which never stands still); the peak
@@ -29,7 +32,7 @@ from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve import jit
-from pound_solve.integrate import exact, newmark
+from pound_solve.integrate import blocks, exact, newmark, taylor
 from pound_solve.integrate.base import (
     Extreme,
     Keeper,
@@ -43,6 +46,7 @@ from pound_solve.integrate.base import (
     not_linear,
     refuse_rigid,
 )
+from pound_solve.modes import massless
 from pound_solve.scene import Decision, Scene
 
 Array = NDArray[np.float64]
@@ -51,9 +55,11 @@ MOST_STEPS = 50_000_000  #: of one run
 STALE = 4  #: runs in a row that do not halve the error, after which shorter steps are given up
 MARGIN = 0.6  #: of the tolerance that the next step aims at
 FREE = 1.0  #: what EXACT may cost before steps are thought of: loading their kernels costs as much
+TRIAL = 0.3  #: share of that after which it is seen whether it comes to more than TAYLOR
+HANDFUL = 8  #: combinations of stiffnesses of all unknowns together that a run is taken to meet
 FEW = 24  #: combinations of stiffnesses that it may meet by then: where they do not return, more will come
 MANY = 12  #: laws; with more, EXACT is taken to cost more than that: combinations seldom return
-RADIAN = 5  #: steps that it takes to follow the fastest mode through a radian
+RADIAN = 5  #: steps of NEWMARK that it takes to follow the fastest mode through a radian
 STEP, EACH = 3e-7, 2.5e-8  #: cost of a step and of each of its unknowns, of a law twice, as `exact.WINDOW`
 EVENT = 10  #: steps that a located event costs as much as
 PLAIN = 100  #: times as much where nothing compiles the kernels
@@ -112,6 +118,21 @@ def cost_of_step(scene: Scene) -> float:
     return STEP + EACH * (scene.size + 2 * len(scene.structure.laws))
 
 
+def has_series(scene: Scene) -> bool:
+    """Whether TAYLOR may be taken."""
+    return not not_linear(scene) and not massless(scene.mass).any() and jit.available()
+
+
+def cost_of_radian(scene: Scene) -> float:
+    """Cost of a run that follows the fastest mode, for each of its radians."""
+    return taylor.cost_of_radian(scene) if has_series(scene) else RADIAN * cost_of_step(scene)
+
+
+def cost_of_series(scene: Scene, length: float) -> float:
+    """Cost of TAYLOR for a time; infinite where it cannot be taken."""
+    return length * taylor.rate(scene) * taylor.cost_of_radian(scene) if has_series(scene) else np.inf
+
+
 class Rival:
     """EXACT, tried for no more than a cost."""
 
@@ -122,11 +143,15 @@ class Rival:
         if not_linear(scene) or scene.size > exact.MOST_UNKNOWNS:
             self.whole = np.inf
 
-    def first(self) -> Outcome | None:
-        """Its run, if that costs little, or no more than steps that resolve the fastest mode, and meets few
-        linear regimes; None where it does not.
+    def first(self, other: float) -> Outcome | None:
+        """Its run, if that costs little, or no more than to follow the fastest mode, and meets few linear
+        regimes; None where it does not.  Another method costs `other`.
         """
-        return self.run(FREE, {"REGIMES": FEW, "PER_RADIAN": RADIAN * cost_of_step(self.scene)})
+        count = min(1 + len(self.scene.structure.laws), HANDFUL)
+        if count * blocks.MODES * self.scene.size**3 > FREE + other:
+            return None
+        trial = FREE * (TRIAL if np.isfinite(other) else 1.0)
+        return self.run(FREE, {"REGIMES": FEW, "PER_RADIAN": cost_of_radian(self.scene), "TRIAL": trial})
 
     def run(self, cost: float, limits: Mapping[str, float] | None = None) -> Outcome | None:
         """Its run, if that costs no more and keeps the limits (see `exact.integrate`); else None."""
@@ -170,17 +195,30 @@ def figures(scene: Scene, peaks: Peaks, replay: Replay) -> tuple[Array, Array]:
 
 
 def to_tolerance(
-    scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Keeper, rival: Rival
+    scene: Scene,
+    start: Start,
+    watch: Watch,
+    options: Mapping[str, Any],
+    sink: Keeper,
+    rival: Rival,
+    series: float,
 ) -> Outcome:
-    """Repeat the run with shorter steps until the peaks stand still, or the rival costs less."""
+    """Repeat the run with shorter steps until the peaks stand still, or the rival costs less, or TAYLOR,
+    which costs `series`.
+    """
     tol, length = options["TOL"], float(start.times[-1] - start.times[0])
     intervals = np.diff(goals(scene, start.times)[0], prepend=start.times[0])
     h = min(float(np.median(intervals)), length / 1000)
     each = cost_of_step(scene) * (1 if jit.numba() else PLAIN)
+    aim = h  # step that is likely to do
     before: tuple[int, Array] | None = None
     runs, error, events = 0, np.inf, 0
     best, stale = np.inf, 0
     while True:
+        if series <= each * (length / aim + EVENT * events):
+            why = "all laws are piecewise linear, and it costs less than steps: no time step is needed"
+            scene.decisions.append(Decision("method", "TAYLOR", why))
+            return taylor.integrate(scene, start, watch, {}, sink)
         if (exactly := rival.run(each * (length / h + EVENT * events))) is not None:
             return exactly
         replay = Replay(sink)
@@ -191,6 +229,7 @@ def to_tolerance(
             coarse = stop.code == "A503" or (stop.code == "A504" and before is None)
             if coarse and h > 1e-6 * length:
                 h, before = 0.25 * h, None
+                aim = h
                 events = max(events, stop.outcome.figures["events"] if stop.outcome else 0)
                 continue
             scene.decisions.append(stepped(scene))
@@ -209,7 +248,9 @@ def to_tolerance(
             if error <= tol or stale == STALE or length / h * 2.0 > MOST_STEPS:
                 break
         before = steps, now
-        h *= 0.5 if not np.isfinite(error) else float(np.clip(np.sqrt(MARGIN * tol / error), 1 / 4, 1 / 2))
+        aim = h * (float(np.sqrt(MARGIN * tol / error)) if np.isfinite(error) else 0.5)
+        h = float(np.clip(aim, h / 4, h / 2))
+        aim = min(aim, h)
     scene.decisions.append(stepped(scene))
     replay.hand_on()
     outcome.figures = {**outcome.figures, "runs": runs}
@@ -233,7 +274,8 @@ def integrate(
         scene.decisions.append(Decision("method", "EXACT", "rigid contacts: no other method knows them"))
         return exact.integrate(scene, start, watch, {}, sink)
     rival = Rival(scene, start, watch, sink)
-    return rival.first() or to_tolerance(scene, start, watch, options, sink, rival)
+    series = cost_of_series(scene, float(start.times[-1] - start.times[0]))
+    return rival.first(series) or to_tolerance(scene, start, watch, options, sink, rival, series)
 
 
 SPEC = Spec(

@@ -94,6 +94,7 @@ class Exact:
         self.scene, self.sink, self.times = scene, sink, start.times
         self.refine = 2.0 ** -int(options.get("REFINE") or 0)
         self.spent, self.most = 0.0, options.get("COST", np.inf)
+        self.trial = options.get("TRIAL", self.most)
         self.per_radian = options.get("PER_RADIAN", 0.0)
         self.most_regimes = options.get("REGIMES", np.inf)
         self.begin, self.end = float(start.times[0]), float(start.times[-1])
@@ -152,7 +153,7 @@ class Exact:
         self.spent += cost
         if len(self.partition.regimes) > self.most_regimes:
             raise CostlyError(self.spent, self.t)
-        if self.spent > self.most:
+        if self.spent > self.trial:
             length = self.end - self.begin
             whole = self.spent * length / max(self.t - self.begin, 1e-300)
             if whole > self.most + self.per_radian * self.partition.fastest * length:
@@ -615,8 +616,8 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     Stop
         Too many changes at one instant, a mechanism, numbers beyond all bounds, or an interrupt.
     CostlyError
-        It costs more than COST and will cost more than that and PER_RADIAN for each radian of the fastest
-        mode, or takes more than REGIMES, of the options; no deck sets them.
+        It has cost more than TRIAL and will cost more than COST and PER_RADIAN for each radian of the
+        fastest mode, or takes more than REGIMES, of the options; no deck sets them.
     """
     if why := not_linear(scene):
         why = f"EXACT needs linear pieces, and {why}: AUTO takes steps"
