@@ -20,6 +20,7 @@ from pair_cole import (
     DURATION,
     OURS,
     PEER,
+    STEPLESS,
     STEPPED,
     answer,
     at_equal_error,
@@ -76,7 +77,7 @@ def main():
         for case in args.case:
             k, c = CONTACTS[case]
             params, contact = {"kc": k, "cc": c}, (f"--k-contact={k}", f"--c-contact={c}")
-            best = best_of([lambda p=params: ours(deck, folder, p)], OURS)
+            best = best_of([lambda m=m, p=params: ours(deck, folder, p, m) for m in STEPLESS], OURS)
             mine = [
                 lambda m=method, dt=dt, p=params: ours(deck, folder, p, m, dt)
                 for method in STEPPED
