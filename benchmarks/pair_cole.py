@@ -3,9 +3,10 @@
     python benchmarks/pair_cole.py --n 20
 
 TAYLOR of pound-solve, which has no step, is the reference, and EXACT, which is found another way, shows
-whether it is right; the peer steps through the same motion with each method and each dt.  Times are CPU seconds of the solution alone.  Only ratios from one go mean anything, so
-both sides always run here, one after the other, on one thread each.  Below the table stands what each
-method of the peer would need for the errors of EQUAL.
+whether it is right; the peer steps through the same motion with each method and each dt.  Times are CPU
+seconds of the solution alone.  Only ratios from one go mean anything, so both sides always run here, one
+after the other, on one thread each.  Below the table stands what each method with steps would need for the
+errors of EQUAL.
 """
 
 import argparse

@@ -246,27 +246,34 @@ def expand(
     return terms, end
 
 
+def exit_of(w: Laws, e: Series, terms: int, h: float, end: float, i: int) -> tuple[int, float]:
+    """The first exit that law `i` passes before `end`, and where; -1 where there is none."""
+    way = -1
+    for out in range(w.i[i, N_EXITS]):
+        fd, fv, fc = w.f[i, EXIT + 3 * out], w.f[i, EXIT + 3 * out + 1], w.f[i, EXIT + 3 * out + 2]
+        if fd == 0.0 and fv == 0.0:
+            continue
+        p = e.p[POLYNOMIAL]
+        for k in range(terms + 1):
+            p[k] = fd * e.d[i, k]
+        p[0] += fc
+        if fv != 0.0:
+            for k in range(terms):
+                p[k] += fv * (k + 1) / h * e.d[i, k + 1]
+        most = abs(fd) * w.f[i, MOST_D] + abs(fv) * w.f[i, MOST_V] + abs(fc)
+        at = first_rise(e.p, terms, end, STILL * most)
+        if at >= 0.0 and (way < 0 or at < end):
+            way, end = out, at
+    return way, end
+
+
 def first_exit(w: Laws, e: Series, terms: int, h: float, end: float) -> tuple[int, int, float]:
-    """The first exit that is passed before `end`: law, exit and place; law -1 where there is none."""
+    """The first exit that any law passes before `end`: law, exit and place; law -1 where there is none."""
     law, way = -1, -1
     for i in range(len(w.i)):
-        for out in range(w.i[i, N_EXITS]):
-            fd, fv, fc = w.f[i, EXIT + 3 * out], w.f[i, EXIT + 3 * out + 1], w.f[i, EXIT + 3 * out + 2]
-            if fd == 0.0 and fv == 0.0:
-                continue
-            p = e.p[POLYNOMIAL]
-            for k in range(terms + 1):
-                p[k] = fd * e.d[i, k]
-            p[0] += fc
-            if fv != 0.0:
-                for k in range(terms):
-                    p[k] += fv * (k + 1) / h * e.d[i, k + 1]
-            size = abs(fd) * w.f[i, MOST_D] + abs(fv) * w.f[i, MOST_V] + abs(fc)
-            at = first_rise(e.p, terms, end, STILL * size)
-            if at >= 0.0 and (law < 0 or at < end):
-                law, way, end = i, out, at
-                if at == 0.0:
-                    return law, way, end
+        out, at = exit_of(w, e, terms, h, end, i)
+        if out >= 0 and (law < 0 or at < end):
+            law, way, end = i, out, at
     return law, way, end
 
 
@@ -438,18 +445,32 @@ def show(x: Motion, z: Samples, count: Index, t: float) -> None:
     count[SHOWN] += 1
 
 
+def change(w: Laws, z: Samples, f: Tables, count: Index, t: float, law: int, way: int) -> None:
+    """Let a law leave its branch."""
+    before = w.i[law, AT]
+    leave(w, f, law, way, w.f[law, LD], w.f[law, LV])
+    force = w.f[law, K] * w.f[law, LD] + w.f[law, C] * w.f[law, LV] + w.f[law, F0]
+    if before != w.i[law, AT]:
+        write(w, z, count, law, before, t, force)
+    count[EVENTS] += 1
+    count[WORST] = law
+
+
 def stride(
-    m: Matrices, w: Laws, x: Motion, z: Samples, e: Series, coefs: Array, begin: float, goal: float,
-    output: bool, count: Index, clock: Array, pause: int,
-) -> tuple[int, int, int]:  # fmt: skip
-    """Take steps on one piece of the motions up to a goal, the next event, or until Python must look at it.
+    m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, e: Series, coefs: Array, begin: float,
+    goal: float, output: bool, count: Index, clock: Array, pause: int,
+) -> int:  # fmt: skip
+    """Take steps on one piece of the motions up to a goal, or until Python must look at it.
 
     Returns
     -------
-    why, law, way : int, int, int
-        DONE, or what is wrong; the law that leaves its branch, and by which exit; -1 if none does.
+    int
+        DONE, or what is wrong.
     """
-    while clock[0] < goal and count[STEPS] < pause and count[SHOWN] < len(z.when):
+    room = len(z.log) // 2
+    while clock[0] < goal:
+        if len(z.log) - count[LOGGED] < room or count[STEPS] >= pause or count[SHOWN] == len(z.when):
+            return FULL
         t = clock[0]
         left = goal - t
         h = left / np.ceil(max(left / e.step[LENGTH], 1.0) * (1.0 - 1e-9))
@@ -458,7 +479,7 @@ def stride(
         whole = end == 1.0 and h == left
         if not fit > 0.0 or not (whole or t + end * h > t):
             if not t + h / 16.0 > t:
-                return SHORT, -1, -1
+                return SHORT
             e.step[LENGTH] = h / 16.0
             continue
         # terms that were not needed make room for a longer step
@@ -469,15 +490,27 @@ def stride(
             works(m, w, x, e, coefs, t - begin, terms, h, at)
             accept(w, x, e, terms, h, at)
         count[STEPS] += 1
-        if law < 0 and not whole:
-            e.step[SHORTEST] = min(e.step[SHORTEST], at * h)
-        clock[0] = goal if law < 0 and whole else t + at * h
-        if law >= 0:
-            return DONE, law, way
-        if e.envelopes and not (whole and output):
-            evaluate(e, terms, at, h, x, 2, A)
-            show(x, z, count, clock[0])
-    return DONE, -1, -1
+        if law < 0:
+            if not whole:
+                e.step[SHORTEST] = min(e.step[SHORTEST], at * h)
+            clock[0] = goal if whole else t + at * h
+            if e.envelopes and not (whole and output):
+                evaluate(e, terms, at, h, x, 2, A)
+                show(x, z, count, clock[0])
+            continue
+        now = clock[0] = t + at * h
+        instant = INSTANT * max(1.0, now)
+        change(w, z, f, count, now, law, way)
+        for i in range(len(w.i)):  # others that leave at the same instant
+            if i != law:
+                way, _ = exit_of(w, e, terms, h, min(at + instant / h, end), i)
+                if way >= 0:
+                    change(w, z, f, count, now, i, way)
+        count[SAME] = count[SAME] + 1 if now - clock[3] <= instant else 0
+        clock[3] = now
+        if count[SAME] > 50 + 4 * len(w.i):
+            return CHATTER
+    return DONE
 
 
 def march(
@@ -485,31 +518,15 @@ def march(
     goals: Array, outputs: NDArray[np.bool_], pieces: Index, count: Index, clock: Array,
 ) -> int:  # fmt: skip
     """Integrate to the last goal, or until Python must look at something (see `kernel.advance`)."""
-    room, pause = len(z.log) // 2, count[STEPS] + PAUSE
+    pause = count[STEPS] + PAUSE
     while count[GOAL] < len(goals):
         goal = count[GOAL]
         begin = breaks[pieces[goal]]
-        while clock[0] < goals[goal]:
-            if len(z.log) - count[LOGGED] < room or count[STEPS] >= pause or count[SHOWN] == len(z.when):
-                return FULL
-            why, law, way = stride(
-                m, w, x, z, e, coefs[pieces[goal]], begin, goals[goal], outputs[goal], count, clock, pause
-            )
-            if why != DONE:
-                return why
-            if law < 0:
-                continue
-            before = w.i[law, AT]
-            leave(w, f, law, way, w.f[law, LD], w.f[law, LV])
-            force = w.f[law, K] * w.f[law, LD] + w.f[law, C] * w.f[law, LV] + w.f[law, F0]
-            if before != w.i[law, AT]:
-                write(w, z, count, law, before, clock[0], force)
-            count[EVENTS] += 1
-            count[WORST] = law
-            count[SAME] = count[SAME] + 1 if clock[0] - clock[3] <= INSTANT * max(1.0, clock[0]) else 0
-            clock[3] = clock[0]
-            if count[SAME] > 50 + 4 * len(w.i):
-                return CHATTER
+        why = stride(
+            m, w, x, z, f, e, coefs[pieces[goal]], begin, goals[goal], outputs[goal], count, clock, pause
+        )
+        if why != DONE:
+            return why
         times(m.m, x.q, V, Y)
         kinetic = 0.5 * product(x.q, V, x.q, Y)
         if not kinetic <= 10.0 * (clock[2] + x.works[3]) + 1e-300:

@@ -11,7 +11,7 @@ This is exclusion by a Taylor form, as interval arithmetic does it.
 
 References
 ----------
-Neumaier A (1990), Interval Methods for Systems of Equations, Cambridge University Press, chapter 2
+Neumaier A (1990), Interval Methods for Systems of Equations, Cambridge University Press
 (centred forms and exclusion).
 """
 
