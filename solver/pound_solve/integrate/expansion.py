@@ -85,6 +85,7 @@ TERMS = 32  #: of a series, at most
 CHECK = 4  #: terms after which it is seen whether they suffice
 SMALL = 1e-14  #: share of the motion that a term left out may be
 GROW = 2.0  #: how much longer than the last a step may be
+AHEAD = 1e-3  #: part of a step that laws are looked at for which may leave at the instant of another
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
 KC, CC = TERMS + 1, TERMS + 2  #: rows of `Series.u` for products with K and C
 LENGTH, SPEED, SHORTEST = range(3)  #: of `Series.step`: length to try next, most of v M v, shortest step
@@ -503,8 +504,8 @@ def stride(
         change(w, z, f, count, now, law, way)
         for i in range(len(w.i)):  # others that leave at the same instant
             if i != law:
-                way, _ = exit_of(w, e, terms, h, min(at + instant / h, end), i)
-                if way >= 0:
+                way, place = exit_of(w, e, terms, h, min(at + AHEAD, end), i)
+                if way >= 0 and place <= at + instant / h:
                     change(w, z, f, count, now, i, way)
         count[SAME] = count[SAME] + 1 if now - clock[3] <= instant else 0
         clock[3] = now

@@ -45,7 +45,7 @@ from pound_solve.modes import fastest, massless
 from pound_solve.scene import Scene
 
 POINTS = 8  #: of Gauss's rule for the works of a step
-MOST_STEPS = 20_000_000  #: that a run may come to
+MOST_STEPS = 5_000_000  #: that a run may come to
 RADIANS = 5.0  #: of the fastest mode in a step
 STEP, EACH = 9e-6, 5.5e-8  #: cost of a step and of each of its unknowns, as `exact.WINDOW`
 
