@@ -8,6 +8,7 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import contract
@@ -222,6 +223,26 @@ def test_table_of_convergence_is_what_the_methods_do(tmp_path):
         assert errors == pytest.approx([float(row[n]) for row in rows], rel=0.01)
         order = math.log(errors[0] / errors[1]) / math.log(float(rows[0][0]) / float(rows[1][0]))
         assert order == pytest.approx(2.0, abs=0.2 if method == "HHT" else 0.05)
+
+
+def test_table_of_taylor_is_what_it_does(tmp_path):
+    """The same series and events; differences to EXACT, which are rounding, up to ten times the table's."""
+    rows = table("theory-integration.md", "taylor")
+    for name, unknowns, series, events, drifts, forces in rows[:3]:
+        deck, _, n = name.partition(" n=")
+        found = []
+        for method in ("EXACT", "TAYLOR"):
+            where = MANUAL.parent / "examples" / "cole2011" / deck
+            with run(where, params={"n": n} if n else {}, out=tmp_path / method, method=method) as results:
+                envelope, contacts = results.table("drift_envelope"), results.table("contact_summary")
+                figures = dict(results.table("run").tolist())
+                extremes = np.array([envelope["max"], envelope["min"]])
+                found.append((extremes, contacts["peak_force"]))
+        assert (figures["unknowns"], figures["events"]) == (unknowns, events)
+        assert int(figures["series"]) == pytest.approx(int(series), rel=0.01)
+        (drift, force), (other, peak) = found
+        assert (np.abs(other - drift).max(axis=0) / np.abs(drift).max(axis=0)).max() < 10 * float(drifts)
+        assert (np.abs(peak - force) / force).max() < 10 * float(forces)
 
 
 # ---------------------------------------------------------------- the developer guide's examples

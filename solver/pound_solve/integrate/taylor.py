@@ -101,10 +101,11 @@ class Taylor(Stepper):
         return super()._trouble(why)
 
     def _figures(self) -> dict[str, Any]:
+        shortest = float(self.series.step[expansion.SHORTEST])
         return {
             "method": self.name,
             "series": int(self.count[arrays.STEPS]),
-            "shortest series": f"{self.series.step[expansion.SHORTEST]:.4g}",
+            **({"shortest series": f"{shortest:.4g}"} if np.isfinite(shortest) else {}),
             "events": int(self.count[arrays.EVENTS]),
         }
 
