@@ -220,36 +220,37 @@ GROWTH = {
         "freedoms of an elastic chain, 2 s, steps of 10 ms",
         (10, 100, 1000, 10_000, 100_000),
         chain,
-        {"NEWMARK": ({"dt": 0.01}, 100_000), "EXACT": ({}, 1000)},
-        "one sparse factor, each step passes once over its entries; EXACT: all modes, dense",
+        {"NEWMARK": ({"dt": 0.01}, 100_000), "TAYLOR": ({}, 100_000), "EXACT": ({}, 1000)},
+        "a step passes once over the entries of the factor, a series some 30 times over those of K; "
+        "EXACT: all modes, dense",
     ),
     "contacts": (
         "contacts in a row of one-storey buildings, 5 s, steps of 1 ms",
         (1, 3, 10, 100, 1000),
         lambda n: row(n + 1, t=5.0),
-        {"NEWMARK": ({"dt": 1e-3}, 1000), "EXACT": ({}, 10)},
-        "a step passes over all laws, and events, as many again, cost some steps over all; EXACT: a "
-        "window and new modes for each event",
+        {"NEWMARK": ({"dt": 1e-3}, 1000), "TAYLOR": ({}, 1000), "EXACT": ({}, 10)},
+        "a step passes over all laws, and events, as many again, cost some steps, or a series, over all; "
+        "EXACT: a window and new modes for each event",
     ),
     "events": (
         "changes of one mass between two walls, a hundred a second, steps of 1 ms",
         (10, 100, 1000, 10_000, 100_000),
         bouncer,
-        {"NEWMARK": ({"dt": 1e-3}, 100_000), "EXACT": ({}, 1000)},
+        {"NEWMARK": ({"dt": 1e-3}, 100_000), "TAYLOR": ({}, 100_000), "EXACT": ({}, 1000)},
         "every event costs the same, and every closure leaves a row",
     ),
     "record": (
         "seconds of a record with 100 samples a second, ten elastic masses, ten times stored",
         (10.0, 100.0, 1000.0, 10_000.0),
         lambda t: chain(10, t, t / 10),
-        {"NEWMARK": ({"dt": 0.01}, 10_000.0), "EXACT": ({}, 1000.0)},
+        {"NEWMARK": ({"dt": 0.01}, 10_000.0), "TAYLOR": ({}, 10_000.0), "EXACT": ({}, 1000.0)},
         "the same work for every sample; memory: the record itself",
     ),
     "output": (
         "stored rows, ten elastic masses, 10 s, steps of 10 ms",
         (100, 1000, 10_000, 100_000),
         lambda rows: chain(10, 10.0, 10.0 / rows),
-        {"NEWMARK": ({"dt": 0.01}, 100_000), "EXACT": ({}, 100_000)},
+        {"NEWMARK": ({"dt": 0.01}, 100_000), "TAYLOR": ({}, 100_000), "EXACT": ({}, 100_000)},
         "a row costs its step and its passage through Python; memory: blocks, written as they fill",
     ),
 }  # fmt: skip
@@ -301,8 +302,8 @@ def exponent(sizes, costs):
 
 
 def changeover(args, folder):
-    """EXACT, steps and AUTO on scenes of different size."""
-    heads = "unknowns", "EXACT s", "steps s", "AUTO s", "took", "of best"
+    """EXACT, TAYLOR, steps and AUTO on scenes of different size."""
+    heads = "unknowns", "EXACT s", "TAYLOR s", "steps s", "AUTO s", "took", "of best"
     print("\n{:20}".format("scene"), *(f"{h:>9}" for h in heads))
     for name, (source, params) in SCENES.items():
         if args.only and name not in args.only:
@@ -311,20 +312,24 @@ def changeover(args, folder):
         if isinstance(source, str):
             path = Path(folder, "scene.inp")
             path.write_text(source, encoding="utf-8")
-        ways = ("EXACT", False), ("AUTO", True), ("AUTO", False)
-        exact, steps, auto = (process(path, params, method, args.tol, barred) for method, barred in ways)
+        ways = ("EXACT", False), ("TAYLOR", False), ("AUTO", True), ("AUTO", False)
+        exact, series, steps, auto = (
+            process(path, params, method, args.tol, barred) for method, barred in ways
+        )
         if auto is None:
             print(f"{name:20} AUTO gives no answer")
             continue
-        best = min(r.seconds for r in (exact, steps) if r is not None)
+        best = min(r.seconds for r in (exact, series, steps) if r is not None)
         over = auto.seconds / best
         took = auto.facts["method"].split(",")[0]
-        cells = [f"{r.seconds:9.2f}" if r else f"{'-':>9}" for r in (exact, steps, auto)]
+        cells = [f"{r.seconds:9.2f}" if r else f"{'-':>9}" for r in (exact, series, steps, auto)]
         print(f"{name:20}", f"{auto.facts['unknowns']:>9}", *cells, f"{took:>9} {over:9.2f}", end="  ")
         print("look" if over > WITHIN else "    ", end="")
         if exact:
             facts = (f"{exact.facts[k]} {k}" for k in ("events", "windows", "linear regimes"))
             print("  EXACT:", *facts, f"{exact.facts['solving']:.2f} s", end="")
+        if series:
+            print(f"; TAYLOR: {series.facts['series']} series, {series.facts['solving']:.2f} s", end="")
         if steps:
             facts = (f"{steps.facts[k]} {k}" for k in ("steps", "runs"))
             print("; steps:", *facts, f"{steps.facts['solving']:.2f} s", end="")

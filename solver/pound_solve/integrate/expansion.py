@@ -104,7 +104,7 @@ class Series(NamedTuple):
         Of the deformations.
     s : ndarray, shape (TERMS + 1, n_inputs)
         Of the inputs.
-    p : ndarray, shape (2, TERMS + 1)
+    p : ndarray, shape `isolate.room`
         What `isolate` works on.
     inverse : ndarray, shape (n,)
         Of a diagonal mass.

@@ -1,18 +1,18 @@
 r"""Kernels that find the first rise and the extremes of a polynomial, with proof.
 
-About any place x of its interval a polynomial is written in powers of :math:`s - x`.  Over a cell of
-width w it keeps within
+On a cell of width w a polynomial of degree n is written in Bernstein's form,
 
-.. math:: B = \sum_{k \ge 1} |p_k|\, w^k
+.. math:: p(x + w\sigma) = \sum_j b_j \binom{n}{j} \sigma^j (1-\sigma)^{n-j}, \qquad 0 \le \sigma \le 1 .
 
-of its value :math:`p_0` there, and it is monotone where :math:`|p_1| > \sum_{k \ge 2} k |p_k|\, w^{k-1}`.
-A cell that can be settled neither way is halved.  So nothing is missed between samples: there are none.
-This is exclusion by a Taylor form, as interval arithmetic does it.
+It lies between the least and the largest :math:`b_j`, and its derivative has no more zeros there than the
+differences of the :math:`b_j` have changes of sign.  So a cell either cannot hold what is looked for, or it
+holds one root or summit, which Newton's method finds in its bracket, or it is halved.  Nothing is missed
+between samples: there are none.
 
 References
 ----------
-Neumaier A (1990), Interval Methods for Systems of Equations, Cambridge University Press
-(centred forms and exclusion).
+Lane JM, Riesenfeld RF (1981), Bounds on a polynomial, BIT 21: 112-117; Farouki RT (2012), The Bernstein
+polynomial basis: a centennial retrospective, Comput. Aided Geom. Design 29: 379-419.
 """
 
 from __future__ import annotations
@@ -24,44 +24,16 @@ from pound_solve.jit import loose
 
 Array = NDArray[np.float64]
 
-NARROW = 1e-13  #: share of the interval below which a cell is not halved any more
-POLYNOMIAL, ABOUT = range(
-    2
-)  #: rows of what these kernels work on: a polynomial, and it about another place
+DEPTH = 44  #: halvings of a cell, at most
+NOISE = 1e-15  #: share of the sum of the coefficients that is rounding
+#: what the kernels work on has the polynomial in row 0, cells in the others, of which the last is looked
+#: at; the columns after their coefficients are their place and their width
+POLYNOMIAL, CELLS = range(2)
 
 
-def about(p: Array, terms: int, x: float) -> None:
-    """Write the polynomial in row 0 about the place `x`, into row 1."""
-    for k in range(terms + 1):
-        p[ABOUT, k] = p[POLYNOMIAL, k]
-    if x != 0.0:
-        for i in range(terms):
-            for k in range(terms - 1, i - 1, -1):
-                p[ABOUT, k] += x * p[ABOUT, k + 1]
-
-
-def value(p: Array, terms: int, s: float) -> float:
-    """Value of the polynomial in row 1, `s` away from its place."""
-    total = p[ABOUT, terms]
-    for k in range(terms - 1, -1, -1):
-        total = total * s + p[ABOUT, k]
-    return total
-
-
-def slope(p: Array, terms: int, s: float) -> float:
-    """Slope of the polynomial in row 1, `s` away from its place."""
-    total = terms * p[ABOUT, terms]
-    for k in range(terms - 1, 0, -1):
-        total = total * s + k * p[ABOUT, k]
-    return total
-
-
-def reach(p: Array, terms: int, w: float) -> float:
-    """How far the polynomial in row 1 can come from its value at its place, up to `w` away."""
-    total = 0.0
-    for k in range(terms, 0, -1):
-        total = (total + abs(p[ABOUT, k])) * w
-    return total
+def room(terms: int) -> tuple[int, int]:
+    """Shape of what the kernels work on."""
+    return DEPTH + 2, terms + 3
 
 
 @loose
@@ -73,22 +45,79 @@ def size(p: Array, row: int, terms: int) -> float:
     return total
 
 
-def swing(p: Array, terms: int, w: float, order: int) -> float:
-    """How far the derivative of an order, 1 or 2, of that in row 1 can come from its value at its place."""
-    total = 0.0
-    for k in range(terms, order, -1):
-        share = k if order == 1 else k * (k - 1)
-        total = (total + share * abs(p[ABOUT, k])) * w
+def value(p: Array, terms: int, s: float) -> float:
+    """Value of the polynomial."""
+    total = p[POLYNOMIAL, terms]
+    for k in range(terms - 1, -1, -1):
+        total = total * s + p[POLYNOMIAL, k]
     return total
 
 
-def zero(p: Array, terms: int, w: float) -> float:
-    """Where the polynomial in row 1, monotone and not above zero at its place, rises through zero before
-    `w`: Newton's method, kept in its bracket.
+def slopes(p: Array, terms: int, s: float) -> tuple[float, float]:
+    """First two derivatives of the polynomial."""
+    first, second = 0.0, 0.0
+    for k in range(terms, 0, -1):
+        second = second * s + first
+        first = first * s + k * p[POLYNOMIAL, k]
+    return first, second
+
+
+def enclose(p: Array, terms: int, end: float) -> None:
+    """Write the polynomial on [0, end] in Bernstein's form, into the first cell."""
+    place, width = p.shape[1] - 2, p.shape[1] - 1
+    scale = 1.0
+    for k in range(terms + 1):
+        p[CELLS, k] = p[POLYNOMIAL, k] * scale
+        scale *= end * (k + 1) / (terms - k) if k < terms else 1.0
+    for i in range(1, terms + 1):
+        for j in range(terms, i - 1, -1):
+            p[CELLS, j] += p[CELLS, j - 1]
+    p[CELLS, place], p[CELLS, width] = 0.0, end
+
+
+def halve(p: Array, terms: int, row: int) -> None:
+    """Leave the right half of a cell in its row, and put the left one into the next (de Casteljau)."""
+    place, width = p.shape[1] - 2, p.shape[1] - 1
+    p[row + 1, 0] = p[row, 0]
+    for i in range(1, terms + 1):
+        for j in range(terms - i + 1):
+            p[row, j] = 0.5 * (p[row, j] + p[row, j + 1])
+        p[row + 1, i] = p[row, 0]
+    half = 0.5 * p[row, width]
+    p[row + 1, place], p[row + 1, width] = p[row, place], half
+    p[row, place], p[row, width] = p[row, place] + half, half
+
+
+def bends(p: Array, terms: int, row: int, noise: float) -> tuple[float, int]:
+    """Sign of the first difference of a cell's coefficients, and how often the sign of these changes."""
+    first, last, count = 0.0, 0.0, 0
+    for j in range(terms):
+        step = p[row, j + 1] - p[row, j]
+        if abs(step) <= noise:
+            continue
+        if last == 0.0:
+            first = step
+        elif step * last < 0.0:
+            count += 1
+        last = step
+    return first, count
+
+
+def highest_of(p: Array, terms: int, row: int) -> float:
+    """Largest coefficient of a cell."""
+    most = p[row, 0]
+    for j in range(1, terms + 1):
+        most = max(most, p[row, j])
+    return most
+
+
+def zero(p: Array, terms: int, low: float, high: float) -> float:
+    """Where the polynomial, not above zero at `low`, rises through it before `high`: Newton's method, kept
+    in its bracket.
     """
-    low, high, at, last = 0.0, w, 0.5 * w, np.inf
+    at, last = 0.5 * (low + high), np.inf
     for _ in range(200):
-        g, rate = value(p, terms, at), slope(p, terms, at)
+        g, rate = value(p, terms, at), slopes(p, terms, at)[0]
         if g == 0.0:
             return at
         if g > 0.0:
@@ -105,72 +134,11 @@ def zero(p: Array, terms: int, w: float) -> float:
     return at
 
 
-def first_rise(p: Array, terms: int, end: float, tol: float) -> float:
-    """First place before `end`, which is 1 at most, where the polynomial in row 0 rises through zero, to
-    above `tol`; -1 if there is none.
-
-    A value above zero at 0 counts as rounding there: if it rises from it, then at once.
-    """
-    if p[POLYNOMIAL, 0] + size(p, POLYNOMIAL, terms) <= tol:
-        return -1.0
-    x, w = 0.0, end
-    while x < end:
-        w = min(w, end - x)
-        about(p, terms, x)
-        if x == 0.0:
-            p[ABOUT, 0] = min(p[ABOUT, 0], 0.0)
-        if p[ABOUT, 0] + reach(p, terms, w) > tol:
-            steep, bend = p[ABOUT, 1], swing(p, terms, w, 1)
-            narrow = w <= NARROW * end
-            if not narrow and abs(steep) <= bend:
-                w *= 0.5
-                continue
-            if (steep > 0.0 or narrow) and value(p, terms, w) > tol:
-                return x if p[ABOUT, 0] >= 0.0 else x + zero(p, terms, w)
-        x += w
-        w *= 2.0
-    return -1.0
-
-
-def highest(p: Array, terms: int, end: float, known: float) -> tuple[float, float]:
-    """Largest value in [0, end] of the polynomial in row 0, and its place, if it is above one that is
-    `known`; else that and -1.
-    """
-    best, place = known, -1.0
-    if p[POLYNOMIAL, 0] + size(p, POLYNOMIAL, terms) <= known:
-        return best, place
-    if p[POLYNOMIAL, 0] > best:
-        best, place = p[POLYNOMIAL, 0], 0.0
-    x, w = 0.0, end
-    while x < end:
-        w = min(w, end - x)
-        about(p, terms, x)
-        if p[ABOUT, 0] + reach(p, terms, w) > best:
-            if abs(p[ABOUT, 1]) <= swing(p, terms, w, 1):
-                bend = 2.0 * p[ABOUT, 2]
-                if abs(bend) <= swing(p, terms, w, 2) and w > NARROW * end:
-                    w *= 0.5
-                    continue
-                if p[ABOUT, 1] > 0.0 and bend < 0.0 and slope(p, terms, w) < 0.0:  # one summit
-                    top = summit(p, terms, w)
-                    high = value(p, terms, top)
-                    if high > best:
-                        best, place = high, x + top
-            high = value(p, terms, w)
-            if high > best:
-                best, place = high, x + w
-        x += w
-        w *= 2.0
-    return best, place
-
-
-def summit(p: Array, terms: int, w: float) -> float:
-    """Where the slope of the polynomial in row 1, which falls all the way, is zero before `w`."""
-    low, high, at, last = 0.0, w, 0.5 * w, np.inf
+def summit(p: Array, terms: int, low: float, high: float) -> float:
+    """Where the slope of the polynomial falls through zero between `low` and `high`."""
+    at, last = 0.5 * (low + high), np.inf
     for _ in range(100):
-        rate, bend = slope(p, terms, at), 0.0
-        for k in range(terms, 1, -1):
-            bend = bend * at + k * (k - 1) * p[ABOUT, k]
+        rate, bend = slopes(p, terms, at)
         if rate > 0.0:
             low = at
         else:
@@ -183,3 +151,65 @@ def summit(p: Array, terms: int, w: float) -> float:
             return new
         at = new
     return at
+
+
+def first_rise(p: Array, terms: int, end: float, tol: float) -> float:
+    """First place before `end`, which is 1 at most, where the polynomial in row 0 rises through zero, to
+    above `tol`; -1 if there is none.
+
+    A value above zero at 0 counts as rounding there: if it rises from it, then at once.
+    """
+    far = size(p, POLYNOMIAL, terms)
+    if p[POLYNOMIAL, 0] + far <= tol:
+        return -1.0
+    place, width = p.shape[1] - 2, p.shape[1] - 1
+    noise = NOISE * (abs(p[POLYNOMIAL, 0]) + far)
+    p[POLYNOMIAL, 0] = min(p[POLYNOMIAL, 0], 0.0)
+    enclose(p, terms, end)
+    row = CELLS
+    while row >= CELLS:
+        if highest_of(p, terms, row) > tol:
+            first, count = bends(p, terms, row, noise)
+            if count > 0 and row - CELLS < DEPTH:
+                halve(p, terms, row)
+                row += 1
+                continue
+            if p[row, terms] > tol and (first >= 0.0 or count > 0):
+                at = p[row, place]
+                return at if p[row, 0] >= 0.0 else zero(p, terms, at, at + p[row, width])
+        row -= 1
+    return -1.0
+
+
+def highest(p: Array, terms: int, end: float, known: float) -> tuple[float, float]:
+    """Largest value in [0, end], end being 1 at most, of the polynomial in row 0, and its place, if it is
+    above one that is `known`; else that and -1.
+    """
+    best, where = known, -1.0
+    far = size(p, POLYNOMIAL, terms)
+    if p[POLYNOMIAL, 0] + far <= known:
+        return best, where
+    place, width = p.shape[1] - 2, p.shape[1] - 1
+    noise = NOISE * (abs(p[POLYNOMIAL, 0]) + far)
+    enclose(p, terms, end)
+    row = CELLS
+    while row >= CELLS:
+        if highest_of(p, terms, row) > best:
+            first, count = bends(p, terms, row, noise)
+            if count > 1 and row - CELLS < DEPTH:
+                halve(p, terms, row)
+                row += 1
+                continue
+            low = p[row, place]
+            high = low + p[row, width]
+            if p[row, 0] > best:
+                best, where = p[row, 0], low
+            if p[row, terms] > best:
+                best, where = p[row, terms], high
+            if count > 0 and first > 0.0:
+                at = summit(p, terms, low, high)
+                top = value(p, terms, at)
+                if top > best:
+                    best, where = top, at
+        row -= 1
+    return best, where

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from pound_deck.schema import Spec
-from pound_solve.integrate import arrays, expansion
+from pound_solve.integrate import arrays, expansion, isolate
 from pound_solve.integrate.base import (
     Outcome,
     Peaks,
@@ -67,7 +67,7 @@ class Taylor(Stepper):
             u=np.zeros((terms + 2, scene.size)),
             d=np.zeros((len(self.laws), terms)),
             s=np.zeros((terms, scene.inputs.shape[1])),
-            p=np.zeros((2, terms)),
+            p=np.zeros(isolate.room(expansion.TERMS)),
             inverse=1.0 / self.matrices.m.diagonals[0],
             gauss=0.5 * np.array([weights, 1.0 + points]),
             step=np.array([length, 0.0, np.inf]),
