@@ -7,7 +7,8 @@ With :math:`s = t/h` the coefficients of :math:`u = \sum_k c_k s^k` follow from 
 
 :math:`f_{ik} = k_i d_{ik} + (k+1) c_i d_{i,k+1}/h` those of the laws' forces on their present branches.
 Terms are taken until two in a row are below a share `SMALL` of the motion in the norm of energy,
-:math:`k^2 c_k^T M c_k / h^2`; where even the last are not, the step ends where they would be.
+:math:`k^2 c_k^T M c_k / h^2`; where even the last are not, the step ends where they would be, or is tried
+again if that is far from its end.
 
 Everything that is looked for within a step is a polynomial: exits of laws, deformations, forces.
 """
@@ -85,6 +86,7 @@ TERMS = 32  #: of a series, at most
 CHECK = 4  #: terms after which it is seen whether they suffice
 SMALL = 1e-14  #: share of the motion that a term left out may be
 GROW = 2.0  #: how much longer than the last a step may be
+CUT = 0.5  #: part of a step, as it was tried, that is taken at least
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
 KC, CC = TERMS + 1, TERMS + 2  #: rows of `Series.u` for products with K and C
 LENGTH, SPEED, SHORTEST = range(3)  #: of `Series.step`: length to try next, most of v M v, shortest step
@@ -107,8 +109,8 @@ class Series(NamedTuple):
         What `isolate` works on.
     inverse : ndarray, shape (n,)
         Of a diagonal mass.
-    gauss : ndarray, shape (2, n_points)
-        Weights and points on (0, 1).
+    gauss : ndarray, shape (TERMS // CHECK + 1, 2, most points)
+        Weights and points on (0, 1), for every number of terms.
     step : ndarray, shape (3,)
         Columns as above.
     envelopes : bool
@@ -222,7 +224,8 @@ def expand(
         e.u[0, i], e.u[1, i] = x.q[U, i], h * x.q[V, i]
     deform(w, e, 0, top)
     deform(w, e, 1, top)
-    most, k, now, last = max(e.step[SPEED], share(m, x, e, 1, h)), 0, 0.0, 0.0
+    e.step[SPEED] = max(e.step[SPEED], share(m, x, e, 1, h))
+    most, k, now, last = e.step[SPEED], 0, 0.0, 0.0
     while k + 2 <= TERMS:
         while True:
             next_term(m, w, x, e, k, h, top)
@@ -231,13 +234,12 @@ def expand(
                 break
         terms = k + 1
         now, last = share(m, x, e, terms, h), share(m, x, e, terms - 1, h)
-        if terms == CHECK:
-            most = max(most, share(m, x, e, 2, h), share(m, x, e, 3, h))
-        if terms >= top and now + last <= SMALL * SMALL * most:
+        if most == 0.0:  # from rest
+            most = max(share(m, x, e, 2, h), last, now)
+        if terms > top and now + last <= SMALL * SMALL * most:
             break
     if not now + last < np.inf:
         return terms, np.nan
-    e.step[SPEED] = most
     end = GROW
     if now > 0.0:
         end = min(end, (SMALL * SMALL * most / now) ** (0.5 / terms))
@@ -376,6 +378,13 @@ def law_at(e: Series, terms: int, s: float, h: float, i: int) -> tuple[float, fl
     return d, v / h
 
 
+def points(terms: int) -> int:
+    """How many points of Gauss's rule powers need: motions of at most five radians of the fastest mode, as
+    `terms` follow, square to powers that so many integrate to 1e-11.
+    """
+    return (3 * terms + 4) // 8
+
+
 @flat
 def works(
     m: Matrices, w: Laws, x: Motion, e: Series, coefs: Array, begin: float, terms: int, h: float, end: float
@@ -384,15 +393,15 @@ def works(
     moved = len(m.support_c) > 0
     n = x.q.shape[1]
     put = 0.0
-    for g in range(e.gauss.shape[1]):
-        weight, s = e.gauss[0, g] * end * h, e.gauss[1, g] * end
+    for g in range(points(terms)):
+        weight, s = e.gauss[terms // CHECK, 0, g] * end * h, e.gauss[terms // CHECK, 1, g] * end
         evaluate(e, terms, s, h, x, 1, V1)
         times(m.c, x.q, V1, Y)
         x.works[1] += weight * product(x.q, V1, x.q, Y)
         motions(coefs, begin + s * h, x.inputs, 2)
         for i in range(len(w.i)):
             drag = w.f[i, C]
-            if drag != 0.0 or moved or (w.i[i, CONTACT] and w.f[i, K] != 0.0):
+            if drag != 0.0 or moved or (w.i[i, CONTACT] and (w.f[i, K] != 0.0 or w.f[i, F0] != 0.0)):
                 d, v = law_at(e, terms, s, h, i)
                 w.f[i, LD1], w.f[i, LV1] = d, v
                 lost = weight * drag * v * v
@@ -453,14 +462,18 @@ def stride(
         t = clock[0]
         left = goal - t
         h = left / np.ceil(max(left / e.step[LENGTH], 1.0) * (1.0 - 1e-9))
+        if h < left:
+            h = t + h - t  # the motion goes as far as the clock does, which is rounded
+        if h == 0.0:
+            return SHORT, -1, -1
         terms, fit = expand(m, w, x, e, coefs, t - begin, h)
-        end = min(fit, 1.0)
-        whole = end == 1.0 and h == left
-        if not fit > 0.0 or not (whole or t + end * h > t):
-            if not t + h / 16.0 > t:
-                return SHORT, -1, -1
-            e.step[LENGTH] = h / 16.0
+        if not fit >= CUT:  # what is known of the motion from terms far too large misleads
+            e.step[LENGTH] = h * fit if fit > 1.0 / 16.0 else h / 16.0
             continue
+        end = 1.0 if fit >= 1.0 else (t + fit * h - t) / h
+        if end == 0.0:
+            return SHORT, -1, -1
+        whole = end == 1.0 and h == left
         # terms that were not needed make room for a longer step
         e.step[LENGTH] = max(h * min(fit * TERMS / terms, GROW), e.step[LENGTH] if end == 1.0 else 0.0)
         law, way, at = first_exit(w, e, terms, h, end)

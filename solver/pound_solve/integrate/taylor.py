@@ -43,7 +43,6 @@ from pound_solve.integrate.stepping import Stepper
 from pound_solve.modes import massless
 from pound_solve.scene import Scene
 
-POINTS = 8  #: of Gauss's rule for the works of a step
 MOST_STEPS = 20_000_000  #: that a run may come to
 
 
@@ -59,14 +58,18 @@ class Taylor(Stepper):
             scene, start, watch, sink, {"DT": length}, nothing_to_solve, "TAYLOR, power series"
         )
         terms = expansion.TERMS + 1
-        points, weights = np.polynomial.legendre.leggauss(POINTS)
+        gauss = np.zeros((expansion.TERMS // expansion.CHECK + 1, 2, expansion.points(expansion.TERMS)))
+        for i in range(1, len(gauss)):
+            count = expansion.points(i * expansion.CHECK)
+            places, weights = np.polynomial.legendre.leggauss(count)
+            gauss[i, :, :count] = 0.5 * weights, 0.5 * (1.0 + places)
         self.series = expansion.Series(
             u=np.zeros((terms + 2, scene.size)),
             d=np.zeros((len(self.laws), terms)),
             s=np.zeros((terms, scene.inputs.shape[1])),
             p=np.zeros((2, terms)),
             inverse=1.0 / self.matrices.m.diagonals[0],
-            gauss=0.5 * np.array([weights, 1.0 + points]),
+            gauss=gauss,
             step=np.array([length, 0.0, np.inf]),
             envelopes=bool(sink.shown.any()),
         )
