@@ -60,7 +60,6 @@ from pound_solve.integrate.arrays import (
     U1,
     V1,
     WORST,
-    A,
     C,
     D,
     K,
@@ -86,6 +85,7 @@ TERMS = 32  #: of a series, at most
 CHECK = 4  #: terms after which it is seen whether they suffice
 SMALL = 1e-14  #: share of the motion that a term left out may be
 GROW = 2.0  #: how much longer than the last a step may be
+LOOKS = 2  #: instants of a step that envelopes of nodes and members see: some 2.5 radians apart
 CUT = 0.5  #: part of a step, as it was tried, that is taken at least
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
 KC, CC = TERMS + 1, TERMS + 2  #: rows of `Series.u` for products with K and C
@@ -437,19 +437,24 @@ def accept(w: Laws, x: Motion, e: Series, terms: int, h: float, end: float) -> N
         w.f[i, MOST_D], w.f[i, MOST_V] = max(w.f[i, MOST_D], abs(d)), max(w.f[i, MOST_V], abs(v))
 
 
-def show(x: Motion, z: Samples, count: Index, t: float) -> None:
-    """Keep the motion of the present."""
-    at = count[SHOWN]
-    z.when[at] = t
-    for j in range(3):
-        for i in range(x.q.shape[1]):
-            z.shown[at, j, i] = x.q[U + j, i]
-    count[SHOWN] += 1
+@flat
+def show(
+    x: Motion, z: Samples, e: Series, terms: int, h: float, end: float, count: Index, t: float
+) -> None:
+    """Keep the motion at the start of the step, where its acceleration may have jumped, and on its way."""
+    for look in range(LOOKS):
+        s, at = look * end / LOOKS, count[SHOWN]
+        for j in range(3):
+            evaluate(e, terms if look else j, s, h, x, j, U1 + j)
+            for i in range(x.q.shape[1]):
+                z.shown[at, j, i] = x.q[U1 + j, i]
+        z.when[at] = t + s * h
+        count[SHOWN] += 1
 
 
 def stride(
     m: Matrices, w: Laws, x: Motion, z: Samples, e: Series, coefs: Array, begin: float, goal: float,
-    output: bool, count: Index, clock: Array, pause: int,
+    count: Index, clock: Array, pause: int,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Take steps on one piece of the motions up to a goal, the next event, or until Python must look at it.
 
@@ -458,7 +463,7 @@ def stride(
     why, law, way : int, int, int
         DONE, or what is wrong; the law that leaves its branch, and by which exit; -1 if none does.
     """
-    while clock[0] < goal and count[STEPS] < pause and count[SHOWN] < len(z.when):
+    while clock[0] < goal and count[STEPS] < pause and count[SHOWN] + LOOKS <= len(z.when):
         t = clock[0]
         left = goal - t
         h = left / np.ceil(max(left / e.step[LENGTH], 1.0) * (1.0 - 1e-9))
@@ -479,6 +484,8 @@ def stride(
         law, way, at = first_exit(w, e, terms, h, end)
         peaks(m, w, x, e, terms, h, at, t, len(coefs))
         if at > 0.0:
+            if e.envelopes:
+                show(x, z, e, terms, h, at, count, t)
             works(m, w, x, e, coefs, t - begin, terms, h, at)
             accept(w, x, e, terms, h, at)
         count[STEPS] += 1
@@ -487,9 +494,6 @@ def stride(
         clock[0] = goal if law < 0 and whole else t + at * h
         if law >= 0:
             return DONE, law, way
-        if e.envelopes and not (whole and output):
-            evaluate(e, terms, at, h, x, 2, A)
-            show(x, z, count, clock[0])
     return DONE, -1, -1
 
 
@@ -503,10 +507,12 @@ def march(
         goal = count[GOAL]
         begin = breaks[pieces[goal]]
         while clock[0] < goals[goal]:
-            if len(z.log) - count[LOGGED] < room or count[STEPS] >= pause or count[SHOWN] == len(z.when):
+            if len(z.log) - count[LOGGED] < room or count[STEPS] >= pause:
+                return FULL
+            if count[SHOWN] + LOOKS > len(z.when):
                 return FULL
             why, law, way = stride(
-                m, w, x, z, e, coefs[pieces[goal]], begin, goals[goal], outputs[goal], count, clock, pause
+                m, w, x, z, e, coefs[pieces[goal]], begin, goals[goal], count, clock, pause
             )
             if why != DONE:
                 return why
