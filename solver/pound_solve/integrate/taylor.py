@@ -28,6 +28,8 @@ import numpy as np
 from pound_deck.schema import Spec
 from pound_solve.integrate import arrays, expansion
 from pound_solve.integrate.base import (
+    CHATTER,
+    RUNAWAY,
     Outcome,
     Peaks,
     Sink,
@@ -98,6 +100,13 @@ class Taylor(Stepper):
     def _trouble(self, why: int) -> Stop:
         if why == expansion.SHORT:
             return self.stop("A502", "the fastest mode asks for steps too short to tell the times apart")
+        if why == arrays.RUNAWAY:
+            return self.stop("A504", RUNAWAY.format(self.clock[2]))
+        if why == arrays.CHATTER:
+            worst = int(self.count[arrays.WORST])
+            s, at = self.laws[worst], self.w.i[worst, arrays.AT]
+            told = (int(self.count[expansion.SAME]), s.element, s.rule, s.law.rule.branches[at])
+            return self.stop("A503", CHATTER.format(*told))
         return super()._trouble(why)
 
     def _figures(self) -> dict[str, Any]:
