@@ -136,7 +136,8 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     light = massless(scene.mass)
     if light.any():
         name = scene.name(int(np.argmax(light)))
-        raise Stop("A505", begin, f"TAYLOR needs mass at {name}: give it weight, or use EXACT or NEWMARK")
+        weight = "give it weight, or " if name.startswith("node") else ""
+        raise Stop("A505", begin, f"TAYLOR needs mass at {name}: {weight}use EXACT or NEWMARK")
     return Taylor(scene, start, watch, sink).run()
 
 
