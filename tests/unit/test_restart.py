@@ -35,7 +35,8 @@ OUTPUT
  EVERY=0.02
 """
 
-METHODS = ["EXACT", "NEWMARK DT=1e-3", "HHT DT=1e-3", "GENERALISED_ALPHA DT=1e-3", "CENTRAL DT=1e-3"]
+STEPS = ["NEWMARK DT=1e-3", "HHT DT=1e-3", "GENERALISED_ALPHA DT=1e-3", "CENTRAL DT=1e-3"]
+METHODS = ["EXACT", "TAYLOR", *STEPS]
 
 
 def run(folder, name, method, end=6, more=""):

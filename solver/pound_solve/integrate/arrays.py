@@ -251,7 +251,9 @@ class Samples(NamedTuple):
     works : ndarray, shape (n_samples, 4)
         Time, and the first three works.
     log : ndarray, shape (n_log, COLUMNS)
-    shown : ndarray, shape (n_shown, 3, n)
+    which : ndarray, shape (n_which,)
+        Unknowns that the envelopes look at.
+    shown : ndarray, shape (n_shown, 3, n_which)
         The motion between the samples.
     when : ndarray, shape (n_shown,)
         Its times.
@@ -261,6 +263,7 @@ class Samples(NamedTuple):
     laws: Array
     works: Array
     log: Array
+    which: Index
     shown: Array
     when: Array
 

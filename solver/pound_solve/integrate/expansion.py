@@ -7,7 +7,8 @@ With :math:`s = t/h` the coefficients of :math:`u = \sum_k c_k s^k` follow from 
 
 :math:`f_{ik} = k_i d_{ik} + (k+1) c_i d_{i,k+1}/h` those of the laws' forces on their present branches.
 Terms are taken until two in a row are below a share `SMALL` of the motion in the norm of energy,
-:math:`k^2 c_k^T M c_k / h^2`; where even the last are not, the step ends where they would be.
+:math:`k^2 c_k^T M c_k / h^2`; where even the last are not, the step ends where they would be, or is tried
+again if that is far from its end.
 
 Everything that is looked for within a step is a polynomial: exits of laws, deformations, forces.
 """
@@ -59,7 +60,6 @@ from pound_solve.integrate.arrays import (
     U1,
     V1,
     WORST,
-    A,
     C,
     D,
     K,
@@ -84,11 +84,15 @@ Index = NDArray[np.int64]
 TERMS = 32  #: of a series, at most
 CHECK = 4  #: terms after which it is seen whether they suffice
 SMALL = 1e-14  #: share of the motion that a term left out may be
+QUIET = 1e-13  #: share of its energy that a term may carry that works need not see
 GROW = 2.0  #: how much longer than the last a step may be
 AHEAD = 1e-3  #: part of a step that laws are looked at for which may leave at the instant of another
+LOOKS = 2  #: instants of a step that envelopes of nodes and members see: some 2.5 radians apart
+CUT = 0.5  #: part of a step, as it was tried, that is taken at least
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
 KC, CC = TERMS + 1, TERMS + 2  #: rows of `Series.u` for products with K and C
-LENGTH, SPEED, SHORTEST = range(3)  #: of `Series.step`: length to try next, most of v M v, shortest step
+#: columns of `Series.step`: length to try next, most of v M v, shortest step, terms that carry energy
+LENGTH, SPEED, SHORTEST, CARRIED = range(4)
 SHORT = 7  #: why `march` came back, beside those of `arrays`: steps are too short for the clock
 SAME = STEP  #: integer of `count`: changes of branch at one instant
 
@@ -108,12 +112,10 @@ class Series(NamedTuple):
         What `isolate` works on.
     inverse : ndarray, shape (n,)
         Of a diagonal mass.
-    gauss : ndarray, shape (2, n_points)
-        Weights and points on (0, 1).
-    step : ndarray, shape (3,)
+    gauss : ndarray, shape (TERMS // CHECK + 1, 2, most points)
+        Weights and points on (0, 1), two more than half of the terms that carry energy.
+    step : ndarray, shape (4,)
         Columns as above.
-    envelopes : bool
-        Whether somebody looks at the motion between the samples.
     """
 
     u: Array
@@ -123,7 +125,6 @@ class Series(NamedTuple):
     inverse: Array
     gauss: Array
     step: Array
-    envelopes: bool
 
 
 @loose
@@ -223,7 +224,8 @@ def expand(
         e.u[0, i], e.u[1, i] = x.q[U, i], h * x.q[V, i]
     deform(w, e, 0, top)
     deform(w, e, 1, top)
-    most, k, now, last = max(e.step[SPEED], share(m, x, e, 1, h)), 0, 0.0, 0.0
+    e.step[SPEED] = max(e.step[SPEED], share(m, x, e, 1, h))
+    most, k, now, last, e.step[CARRIED] = e.step[SPEED], 0, 0.0, 0.0, CHECK
     while k + 2 <= TERMS:
         while True:
             next_term(m, w, x, e, k, h, top)
@@ -232,13 +234,14 @@ def expand(
                 break
         terms = k + 1
         now, last = share(m, x, e, terms, h), share(m, x, e, terms - 1, h)
-        if terms == CHECK:
-            most = max(most, share(m, x, e, 2, h), share(m, x, e, 3, h))
-        if terms >= top and now + last <= SMALL * SMALL * most:
+        if most == 0.0:  # from rest
+            most = max(share(m, x, e, 2, h), last, now)
+        if now + last > QUIET * most:
+            e.step[CARRIED] = terms + CHECK
+        if terms > top and now + last <= SMALL * SMALL * most:
             break
     if not now + last < np.inf:
         return terms, np.nan
-    e.step[SPEED] = most
     end = GROW
     if now > 0.0:
         end = min(end, (SMALL * SMALL * most / now) ** (0.5 / terms))
@@ -392,15 +395,16 @@ def works(
     moved = len(m.support_c) > 0
     n = x.q.shape[1]
     put = 0.0
-    for g in range(e.gauss.shape[1]):
-        weight, s = e.gauss[0, g] * end * h, e.gauss[1, g] * end
+    rule = min(int(e.step[CARRIED]), TERMS) // CHECK
+    for g in range(2 * (rule + 1)):
+        weight, s = e.gauss[rule, 0, g] * end * h, e.gauss[rule, 1, g] * end
         evaluate(e, terms, s, h, x, 1, V1)
         times(m.c, x.q, V1, Y)
         x.works[1] += weight * product(x.q, V1, x.q, Y)
         motions(coefs, begin + s * h, x.inputs, 2)
         for i in range(len(w.i)):
             drag = w.f[i, C]
-            if drag != 0.0 or moved or (w.i[i, CONTACT] and w.f[i, K] != 0.0):
+            if drag != 0.0 or moved or (w.i[i, CONTACT] and (w.f[i, K] != 0.0 or w.f[i, F0] != 0.0)):
                 d, v = law_at(e, terms, s, h, i)
                 w.f[i, LD1], w.f[i, LV1] = d, v
                 lost = weight * drag * v * v
@@ -436,14 +440,19 @@ def accept(w: Laws, x: Motion, e: Series, terms: int, h: float, end: float) -> N
         w.f[i, MOST_D], w.f[i, MOST_V] = max(w.f[i, MOST_D], abs(d)), max(w.f[i, MOST_V], abs(v))
 
 
-def show(x: Motion, z: Samples, count: Index, t: float) -> None:
-    """Keep the motion of the present."""
-    at = count[SHOWN]
-    z.when[at] = t
-    for j in range(3):
-        for i in range(x.q.shape[1]):
-            z.shown[at, j, i] = x.q[U + j, i]
-    count[SHOWN] += 1
+@flat
+def show(
+    x: Motion, z: Samples, e: Series, terms: int, h: float, end: float, count: Index, t: float
+) -> None:
+    """Keep the motion at the start of the step, where its acceleration may have jumped, and on its way."""
+    for look in range(LOOKS):
+        s, at = look * end / LOOKS, count[SHOWN]
+        for j in range(3):
+            evaluate(e, terms if look else j, s, h, x, j, U1 + j)
+            for i in range(len(z.which)):
+                z.shown[at, j, i] = x.q[U1 + j, z.which[i]]
+        z.when[at] = t + s * h
+        count[SHOWN] += 1
 
 
 def change(w: Laws, z: Samples, f: Tables, count: Index, t: float, law: int, way: int) -> None:
@@ -459,7 +468,7 @@ def change(w: Laws, z: Samples, f: Tables, count: Index, t: float, law: int, way
 
 def stride(
     m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, e: Series, coefs: Array, begin: float,
-    goal: float, output: bool, count: Index, clock: Array, pause: int,
+    goal: float, count: Index, clock: Array, pause: int,
 ) -> int:  # fmt: skip
     """Take steps on one piece of the motions up to a goal, or until Python must look at it.
 
@@ -470,24 +479,30 @@ def stride(
     """
     room = len(z.log) // 2
     while clock[0] < goal:
-        if len(z.log) - count[LOGGED] < room or count[STEPS] >= pause or count[SHOWN] == len(z.when):
+        if len(z.log) - count[LOGGED] < room or count[STEPS] >= pause or count[SHOWN] + LOOKS > len(z.when):
             return FULL
         t = clock[0]
         left = goal - t
         h = left / np.ceil(max(left / e.step[LENGTH], 1.0) * (1.0 - 1e-9))
+        if h < left:
+            h = t + h - t  # the motion goes as far as the clock does, which is rounded
+        if h == 0.0:
+            return SHORT
         terms, fit = expand(m, w, x, e, coefs, t - begin, h)
-        end = min(fit, 1.0)
-        whole = end == 1.0 and h == left
-        if not fit > 0.0 or not (whole or t + end * h > t):
-            if not t + h / 16.0 > t:
-                return SHORT
-            e.step[LENGTH] = h / 16.0
+        if not fit >= CUT:  # what is known of the motion from terms far too large misleads
+            e.step[LENGTH] = h * fit if fit > 1.0 / 16.0 else h / 16.0
             continue
+        end = 1.0 if fit >= 1.0 else (t + fit * h - t) / h
+        if end == 0.0:
+            return SHORT
+        whole = end == 1.0 and h == left
         # terms that were not needed make room for a longer step
         e.step[LENGTH] = max(h * min(fit * TERMS / terms, GROW), e.step[LENGTH] if end == 1.0 else 0.0)
         law, way, at = first_exit(w, e, terms, h, end)
         peaks(m, w, x, e, terms, h, at, t, len(coefs))
         if at > 0.0:
+            if len(z.which) > 0:
+                show(x, z, e, terms, h, at, count, t)
             works(m, w, x, e, coefs, t - begin, terms, h, at)
             accept(w, x, e, terms, h, at)
         count[STEPS] += 1
@@ -495,12 +510,9 @@ def stride(
             if not whole:
                 e.step[SHORTEST] = min(e.step[SHORTEST], at * h)
             clock[0] = goal if whole else t + at * h
-            if e.envelopes and not (whole and output):
-                evaluate(e, terms, at, h, x, 2, A)
-                show(x, z, count, clock[0])
             continue
         now = clock[0] = t + at * h
-        instant = INSTANT * max(1.0, now)
+        instant = INSTANT * max(now, h)
         change(w, z, f, count, now, law, way)
         for i in range(len(w.i)):  # others that leave at the same instant
             if i != law:
@@ -523,9 +535,7 @@ def march(
     while count[GOAL] < len(goals):
         goal = count[GOAL]
         begin = breaks[pieces[goal]]
-        why = stride(
-            m, w, x, z, f, e, coefs[pieces[goal]], begin, goals[goal], outputs[goal], count, clock, pause
-        )
+        why = stride(m, w, x, z, f, e, coefs[pieces[goal]], begin, goals[goal], count, clock, pause)
         if why != DONE:
             return why
         times(m.m, x.q, V, Y)

@@ -69,9 +69,11 @@ def enclose(p: Array, terms: int, end: float) -> None:
     for k in range(terms + 1):
         p[CELLS, k] = p[POLYNOMIAL, k] * scale
         scale *= end * (k + 1) / (terms - k) if k < terms else 1.0
-    for i in range(1, terms + 1):
-        for j in range(terms, i - 1, -1):
-            p[CELLS, j] += p[CELLS, j - 1]
+    for i in range(1, terms + 1):  # to and fro between two rows, several at once
+        for j in range(i, terms + 1):
+            p[CELLS + 1, j] = p[CELLS, j] + p[CELLS, j - 1]
+        for j in range(i, terms + 1):
+            p[CELLS, j] = p[CELLS + 1, j]
     p[CELLS, place], p[CELLS, width] = 0.0, end
 
 

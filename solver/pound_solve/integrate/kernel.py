@@ -679,13 +679,13 @@ def sample(w: Laws, x: Motion, z: Samples, f: Tables, count: Index, t: float) ->
 def show(x: Motion, z: Samples, count: Index, t: float, each: int) -> None:
     """Keep the motion after every `each`-th step between two outputs."""
     count[SINCE] += 1
-    if count[SINCE] < each:
+    if count[SINCE] < each or len(z.which) == 0:
         return
     at = count[SHOWN]
     z.when[at] = t
     for j in range(3):
-        for i in range(x.q.shape[1]):
-            z.shown[at, j, i] = x.q[U + j, i]
+        for i in range(len(z.which)):
+            z.shown[at, j, i] = x.q[U + j, z.which[i]]
     count[SINCE] = 0
     count[SHOWN] += 1
 

@@ -279,13 +279,15 @@ class Stepper:
         else:
             ldl.factor(pattern, padded, x.l, arrays.MASS, x.q, arrays.D + arrays.MASS, arrays.W)
         samples = min(SAMPLES, max(HELD // (3 * max((1 + arrays.SHOWS) * n, count, 1)), 2))
-        shown = samples * arrays.SHOWS
+        which = place[np.flatnonzero(self.sink.shown)]
+        shown = max(samples * arrays.SHOWS, min(16 * SAMPLES, HELD // (3 * max(len(which), 1))))
         self.z = arrays.Samples(
             np.zeros((samples, 3, n)),
             np.zeros((samples, 3, count)),
             np.zeros((samples, 4)),
             np.zeros((LOG + 16 * count, arrays.COLUMNS)),
-            np.zeros((shown, 3, n)),
+            which,
+            np.zeros((shown, 3, len(which))),
             np.zeros(shown),
         )
         for i in range(count):
@@ -423,8 +425,9 @@ class Stepper:
         shown, kept = count[arrays.SHOWN], count[arrays.KEPT]
         if shown:
             seen = np.sort(np.concatenate([[self.seen], z.when[:shown], z.works[:kept, 0]]))
-            u, v, a = z.shown[:shown, :, back].transpose(1, 2, 0)
-            self.sink.between(z.when[:shown].copy(), u, v, a, float(np.diff(seen).max()))
+            motion = np.zeros((3, len(back), shown))
+            motion[:, self.order[z.which]] = z.shown[:shown].transpose(1, 2, 0)
+            self.sink.between(z.when[:shown].copy(), *motion, float(np.diff(seen).max()))
             self.seen = seen[-1]
         if kept:
             t, *works = z.works[:kept].T.copy()

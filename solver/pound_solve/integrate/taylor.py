@@ -28,6 +28,8 @@ import numpy as np
 from pound_deck.schema import Spec
 from pound_solve.integrate import arrays, expansion, isolate
 from pound_solve.integrate.base import (
+    CHATTER,
+    RUNAWAY,
     Outcome,
     Peaks,
     Sink,
@@ -44,7 +46,6 @@ from pound_solve.matrices import weighted
 from pound_solve.modes import fastest, massless
 from pound_solve.scene import Scene
 
-POINTS = 8  #: of Gauss's rule for the works of a step
 MOST_STEPS = 5_000_000  #: that a run may come to
 RADIANS = 5.0  #: of the fastest mode in a step
 STEP, EACH = 9e-6, 5.5e-8  #: cost of a step and of each of its unknowns, as `exact.WINDOW`
@@ -62,16 +63,20 @@ class Taylor(Stepper):
             scene, start, watch, sink, {"DT": length}, nothing_to_solve, "TAYLOR, power series"
         )
         terms = expansion.TERMS + 1
-        points, weights = np.polynomial.legendre.leggauss(POINTS)
+        rules = expansion.TERMS // expansion.CHECK + 1
+        gauss = np.zeros((rules, 2, 2 * rules))
+        for i in range(rules):
+            count = 2 * (i + 1)
+            places, weights = np.polynomial.legendre.leggauss(count)
+            gauss[i, :, :count] = 0.5 * weights, 0.5 * (1.0 + places)
         self.series = expansion.Series(
             u=np.zeros((terms + 2, scene.size)),
             d=np.zeros((len(self.laws), terms)),
             s=np.zeros((terms, scene.inputs.shape[1])),
             p=np.zeros(isolate.room(expansion.TERMS)),
             inverse=1.0 / self.matrices.m.diagonals[0],
-            gauss=0.5 * np.array([weights, 1.0 + points]),
-            step=np.array([length, 0.0, np.inf]),
-            envelopes=bool(sink.shown.any()),
+            gauss=gauss,
+            step=np.array([length, 0.0, np.inf, 0.0]),
         )
 
     def _run(self) -> Outcome:
@@ -98,6 +103,13 @@ class Taylor(Stepper):
     def _trouble(self, why: int) -> Stop:
         if why == expansion.SHORT:
             return self.stop("A502", "the fastest mode asks for steps too short to tell the times apart")
+        if why == arrays.RUNAWAY:
+            return self.stop("A504", RUNAWAY.format(self.clock[2]))
+        if why == arrays.CHATTER:
+            worst = int(self.count[arrays.WORST])
+            s, at = self.laws[worst], self.w.i[worst, arrays.AT]
+            told = (int(self.count[expansion.SAME]), s.element, s.rule, s.law.rule.branches[at])
+            return self.stop("A503", CHATTER.format(*told))
         return super()._trouble(why)
 
     def _figures(self) -> dict[str, Any]:
@@ -145,7 +157,8 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     light = massless(scene.mass)
     if light.any():
         name = scene.name(int(np.argmax(light)))
-        raise Stop("A505", begin, f"TAYLOR needs mass at {name}: give it weight, or use EXACT or NEWMARK")
+        weight = "give it weight, or " if name.startswith("node") else ""
+        raise Stop("A505", begin, f"TAYLOR needs mass at {name}: {weight}use EXACT or NEWMARK")
     return Taylor(scene, start, watch, sink).run()
 
 

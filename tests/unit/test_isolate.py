@@ -1,0 +1,336 @@
+"""First rises and extremes of polynomials: against roots and dense samples, and what the search costs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from pound_solve.integrate import isolate
+from pound_solve.integrate.isolate import ABOUT, POLYNOMIAL
+
+Array = NDArray[np.float64]
+
+TERMS = 32
+EPS = 2.3e-16
+
+
+def rows(coefficients: Array | list[float]) -> tuple[Array, int]:
+    """A polynomial as the kernels take it."""
+    c = np.asarray(coefficients, float)
+    p = np.zeros((2, len(c)))
+    p[POLYNOMIAL] = c
+    return p, len(c) - 1
+
+
+def placed(coefficients: Array | list[float], x: float = 0.0) -> tuple[Array, int]:
+    """The same, written about a place."""
+    p, terms = rows(coefficients)
+    isolate.about(p, terms, x)
+    return p, terms
+
+
+def with_roots(*roots: float, lead: float = 1.0) -> Array:
+    """Coefficients of a polynomial with these roots."""
+    return lead * np.polynomial.polynomial.polyfromroots(roots)
+
+
+def on(c: Array, s: Array | float) -> Array:
+    """Values."""
+    return np.polynomial.polynomial.polyval(s, c)
+
+
+def noise(c: Array) -> float:
+    """What values in [0, 1] may be off by rounding."""
+    return 40 * EPS * float(np.abs(c).sum())
+
+
+#: motions as they come: a few radians of some modes
+waves = st.lists(
+    st.tuples(st.floats(-1, 1), st.floats(0.1, 6.0), st.floats(0, 2 * np.pi), st.floats(-3.0, 0.5)),
+    min_size=1,
+    max_size=3,
+)
+#: any coefficients
+anything = st.lists(st.floats(-10, 10).map(lambda x: round(x, 3)), min_size=1, max_size=9).map(np.array)
+
+
+def series(parts: list[tuple[float, float, float, float]], shift: float = 0.0) -> Array:
+    """Coefficients of damped waves on [0, 1]."""
+    c = np.zeros(TERMS + 1)
+    for a, w, phase, damping in parts:
+        z, term = damping + 1j * w, a * np.exp(1j * phase)
+        for k in range(TERMS + 1):
+            c[k] += term.real
+            term *= z / (k + 1)
+    c[0] += shift
+    return c
+
+
+polynomials = st.one_of(anything, st.builds(series, waves, st.floats(-1.5, 0.5)))
+
+
+@pytest.fixture
+def looks(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[float]]:
+    """The places that a search looks at."""
+    seen: list[float] = []
+    own = isolate.about
+
+    def about(p: Array, terms: int, x: float) -> None:
+        seen.append(x)
+        assert len(seen) < 5000, "no end"
+        own(p, terms, x)
+
+    monkeypatch.setattr(isolate, "about", about)
+    yield seen
+
+
+# ---------------------------------------------------------------- the parts
+
+
+@given(c=anything, x=st.floats(0, 1).map(lambda x: round(x, 6)))
+def test_another_place_by_exact_fractions(c: Array, x: float) -> None:
+    """p(x + s) = sum of p_k (x + s)^k, in rational numbers."""
+    p, terms = placed(c, x)
+    exact = [Fraction(v) for v in c.tolist()]
+    for i in range(terms):
+        for k in range(terms - 1, i - 1, -1):
+            exact[k] += Fraction(x) * exact[k + 1]
+    size = np.abs(c).sum() * 2.0**terms
+    assert np.abs(p[ABOUT] - np.array([float(v) for v in exact])).max() <= 20 * EPS * size
+    assert np.array_equal(p[POLYNOMIAL], c)
+
+
+@given(c=anything, x=st.floats(0, 1), w=st.floats(1e-6, 1))
+def test_bounds_hold_for_values_slopes_and_curvatures(c: Array, x: float, w: float) -> None:
+    p, terms = placed(c, x)
+    s = np.linspace(0.0, w, 50)
+    wide = 100 * EPS * np.abs(p[ABOUT]).sum() * terms * terms + 1e-300
+    own = p[ABOUT]
+    for order, bound in (
+        (0, isolate.reach(p, terms, w)),
+        (1, isolate.swing(p, terms, w, 1)),
+        (2, isolate.swing(p, terms, w, 2)),
+    ):
+        d = np.polynomial.polynomial.polyder(own, order) if order else own
+        assert np.abs(on(d, s) - on(d, 0.0)).max() <= bound + wide
+    assert isolate.size(p, POLYNOMIAL, terms) == pytest.approx(np.abs(c[1:]).sum(), rel=1e-14)
+    at = float(s[17])
+    assert isolate.value(p, terms, at) == pytest.approx(float(on(own, at)), abs=wide)
+    slope = float(on(np.polynomial.polynomial.polyder(own), at)) if terms else 0.0
+    assert isolate.slope(p, terms, at) == pytest.approx(slope, abs=wide)
+
+
+@given(root=st.floats(1e-9, 1), more=st.lists(st.floats(1.5, 9), max_size=5))
+def test_the_zero_of_a_rise(root: float, more: list[float]) -> None:
+    """Other roots lie beyond: to the right it rises no more."""
+    c = with_roots(root, *more)
+    c = c if on(c, 0.0) < 0 else -c
+    inner = np.polynomial.polynomial.polyder(c)
+    top = min([x.real for x in np.roots(inner[::-1]) if abs(x.imag) < 1e-9 and x.real > root] + [9.0])
+    w = min(1.0, root + 0.9 * (top - root))
+    p, terms = placed(c)
+    found = isolate.zero(p, terms, w)
+    assert found == pytest.approx(root, abs=noise(c) / abs(float(on(inner, root))) + 4 * EPS)
+
+
+@pytest.mark.parametrize("degree", [3, 7, 15])
+def test_the_zero_of_a_rise_that_starts_flat(degree: int) -> None:
+    """s^n - 2^-n: Newton's steps from the flat part would leave the bracket."""
+    p, terms = placed([-(0.01**degree), *[0.0] * (degree - 1), 1.0])
+    assert isolate.zero(p, terms, 1.0) == pytest.approx(0.01, rel=1e-14)
+
+
+@given(at=st.floats(1e-6, 0.999), bend=st.floats(0.1, 50), tilt=st.floats(-0.05, 0.05))
+def test_the_summit_of_a_hill(at: float, bend: float, tilt: float) -> None:
+    """c - bend (s - at)^2 (1 + tilt (s - at)): its slope is zero at `at`."""
+    s = np.polynomial.polynomial.Polynomial([-at, 1.0])
+    c = (3.0 - bend * s**2 * (1.0 + tilt * s)).coef
+    p, terms = placed(c)
+    assert isolate.summit(p, terms, 1.0) == pytest.approx(at, rel=1e-8, abs=1e-14)
+
+
+# ---------------------------------------------------------------- the first rise
+
+
+def judge(c: Array, end: float, tol: float) -> None:
+    """Nothing above `tol` comes before what is found, and there it rises through zero."""
+    p, terms = rows(c)
+    found = isolate.first_rise(p, terms, end, tol)
+    slack = noise(c)
+    dense = np.linspace(0.0, end, 4001)
+    if found < 0.0:
+        assert found == -1.0
+        last = dense
+    else:
+        assert 0.0 <= found < end or found == pytest.approx(end, rel=1e-14)
+        last = dense[dense < found]
+    values = on(c, last)
+    if c[0] <= 0.0:  # else it comes from above, and must fall first
+        assert values.max(initial=-np.inf) <= tol + slack
+    if found > 0.0 and c[0] <= 0.0:
+        assert abs(on(c, found)) <= tol + slack
+    if found >= 0.0:  # and it does rise beyond the tolerance, without another return
+        beyond = dense[dense > found]
+        after = on(c, np.append(beyond, np.linspace(found, min(end, found + 1e-3), 500)))
+        fine = np.append(after, on(c, found + (end - found) * np.geomspace(1e-15, 1, 400)))
+        assert fine.max() > tol - slack
+
+
+@settings(max_examples=400, deadline=None)
+@given(
+    c=polynomials,
+    end=st.sampled_from([1.0, 0.37, 1e-3]),
+    tol=st.sampled_from([1e-12, 1e-9, 1e-3]),
+)
+@example(c=np.array([-1.0]), end=1.0, tol=1e-12)
+@example(c=np.array([0.0]), end=1.0, tol=0.0)
+@example(c=np.array([0.0, 0.0, 1.0]), end=1.0, tol=1e-12)
+@example(c=np.array([0.0, -1.0, 1.5]), end=1.0, tol=1e-12)
+@example(c=np.array([1e-17, 1.0]), end=1.0, tol=1e-12)
+def test_no_rise_is_missed(c: Array, end: float, tol: float) -> None:
+    judge(c, end, tol)
+
+
+@settings(max_examples=300, deadline=None)
+@given(roots=st.lists(st.floats(-0.5, 1.5), min_size=1, max_size=7), sign=st.sampled_from([-1.0, 1.0]))
+def test_the_first_rise_among_known_roots(roots: list[float], sign: float) -> None:
+    """Well apart, they are found; a value above zero at the start is no rise."""
+    roots = sorted(roots)
+    near = np.diff(np.array([0.0, *(r for r in roots if r > 0.0)]))
+    c = with_roots(*roots, lead=sign)
+    rises = [
+        r for i, r in enumerate(roots) if 0.0 < r < 1.0 and sign * (-1.0) ** (len(roots) - 1 - i) > 0.0
+    ]
+    if near.min(initial=1.0) < 0.02 or any(abs(r) < 0.02 or abs(r - 1.0) < 0.02 for r in roots):
+        return
+    if c[0] > 0.0:
+        return
+    p, terms = rows(c)
+    found = isolate.first_rise(p, terms, 1.0, 1e-12 * np.abs(c).sum())
+    if not rises:
+        assert found == -1.0
+        return
+    steep = abs(float(on(np.polynomial.polynomial.polyder(c), rises[0])))
+    assert found == pytest.approx(rises[0], abs=noise(c) / steep + 4 * EPS)
+
+
+@settings(deadline=None)
+@given(at=st.floats(0.05, 0.95), narrow=st.floats(1e-4, 0.04), bend=st.floats(0.5, 20))
+def test_two_crossings_however_near_are_not_passed(at: float, narrow: float, bend: float) -> None:
+    """-bend (s - a)(s - b), above zero between: as high as bend (b - a)^2 / 4, well above 1e-12."""
+    c = with_roots(at, at + narrow, lead=-bend)
+    p, terms = rows(c)
+    found = isolate.first_rise(p, terms, 1.0, 1e-12)
+    # at the first crossing, or where it is still within the tolerance
+    within = 1e-12 / (0.5 * bend * narrow)
+    assert at - EPS - noise(c) / (bend * narrow) <= found + 4 * EPS
+    assert found <= at + within + 4 * noise(c) / (bend * narrow)
+
+
+@settings(deadline=None)
+@given(at=st.floats(0.0, 1.0), bend=st.floats(0.1, 30), lift=st.floats(-1.0, 0.99))
+def test_a_touch_that_rises_by_less_than_the_tolerance_is_none(at: float, bend: float, lift: float) -> None:
+    tol = 1e-10
+    s = np.polynomial.polynomial.Polynomial([-at, 1.0])
+    c = (lift * tol - bend * s**2).coef
+    p, terms = rows(c)
+    assert isolate.first_rise(p, terms, 1.0, tol) == -1.0
+    # beyond it is one, from where it is zero or within the tolerance of it
+    c[0] += (2.0 - lift) * tol
+    p, terms = rows(c)
+    found = isolate.first_rise(p, terms, 1.0, tol)
+    if 1e-3 < at < 0.999:
+        assert abs(found - (at - np.sqrt(2 * tol / bend))) < 1e-3 and -tol < on(c, found) <= tol + noise(c)
+
+
+@pytest.mark.parametrize("order", [2, 3, 4, 8])
+@pytest.mark.parametrize("at", [0.0, 0.3, 0.5, 1.0])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("tol", [0.0, 1e-12])
+def test_roots_of_higher_order_end(
+    looks: list[float], order: int, at: float, sign: float, tol: float
+) -> None:
+    """Where everything is rounding the search goes on all the same: without a tolerance too."""
+    judge_end = with_roots(*[at] * order, lead=sign)
+    p, terms = rows(judge_end)
+    if judge_end[0] <= 0.0:
+        judge(judge_end, 1.0, max(tol, noise(judge_end)))
+    isolate.first_rise(p, terms, 1.0, tol)
+    isolate.highest(p, terms, 1.0, -np.inf)
+    p[POLYNOMIAL] *= -1
+    isolate.highest(p, terms, 1.0, -np.inf)
+    assert len(looks) < 3000
+
+
+def test_a_rise_at_the_start() -> None:
+    """From zero, or from rounding above it: at once; falling from there: not; after a fall: at its own."""
+    for c, expected, near in (
+        ([0.0, 1.0], 0.0, 0.0),
+        ([1e-17, 1.0], 0.0, 0.0),
+        ([0.0, 0.0, 1.0], 0.0, 1e-6),  # there it is at the tolerance
+        ([1e-17, -1.0], -1.0, 0.0),
+        ([0.0, -1.0, 2.0], 0.5, 1e-15),
+        ([1e-17, -1.0, 2.0], 0.5, 1e-15),
+        ([-1e-17, 1.0], 1e-17, 1e-30),
+        ([0.0, 1e-13], -1.0, 0.0),
+    ):
+        p, terms = rows(c)
+        assert isolate.first_rise(p, terms, 1.0, 1e-12) == pytest.approx(expected, abs=near), c
+
+
+# ---------------------------------------------------------------- extremes
+
+
+@settings(max_examples=400, deadline=None)
+@given(c=polynomials, end=st.sampled_from([1.0, 0.4, 1e-3]))
+@example(c=np.array([2.0]), end=1.0)
+@example(c=with_roots(*[0.5] * 8, lead=-1.0), end=1.0)
+def test_the_highest_value(c: Array, end: float) -> None:
+    p, terms = rows(c)
+    high, place = isolate.highest(p, terms, end, -np.inf)
+    slack = noise(c)
+    dense = np.linspace(0.0, end, 3001)
+    slopes = np.roots(np.polynomial.polynomial.polyder(c)[::-1]) if terms < 9 else np.zeros(0)
+    flat = slopes.real[(np.abs(slopes.imag) < 1e-7) & (slopes.real > 0) & (slopes.real < end)]
+    assert high >= on(c, np.append(dense, flat)).max() - slack
+    assert 0.0 <= place <= end and high == pytest.approx(float(on(c, place)), abs=slack)
+    # what is known already counts
+    assert isolate.highest(p, terms, end, high + slack) == (high + slack, -1.0)
+    if slack < 1e-3:
+        lower = isolate.highest(p, terms, end, high - 2e-3)
+        assert lower[0] == pytest.approx(high, abs=slack) and lower[1] >= 0.0
+
+
+def test_an_interval_of_no_length_is_its_start() -> None:
+    p, terms = rows([1.0, 2.0])
+    assert isolate.highest(p, terms, 0.0, 0.5) == (1.0, 0.0)
+    assert isolate.first_rise(p, terms, 0.0, 1e-12) == -1.0
+
+
+@settings(max_examples=200, deadline=None)
+@given(parts=waves, shift=st.floats(-1.5, 0.5), tiny=st.sampled_from([1.0, 1e-9, 1e-18]))
+def test_waves_are_searched_in_few_cells(parts: list, shift: float, tiny: float) -> None:  # type: ignore[type-arg]
+    """Some ten cells for a motion of six radians, however small it is beside its constant."""
+    c = series(parts)
+    c *= tiny
+    c[0] += shift
+    p, terms = rows(c)
+    count, own = [0], isolate.about
+
+    def about(*given: object) -> None:
+        count[0] += 1
+        own(*given)  # type: ignore[arg-type]
+
+    isolate.about = about
+    try:
+        isolate.first_rise(p, terms, 1.0, 1e-12)
+        isolate.highest(p, terms, 1.0, -np.inf)
+    finally:
+        isolate.about = own
+    assert count[0] < 400
