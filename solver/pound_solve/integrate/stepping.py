@@ -67,6 +67,7 @@ COMMON = (
 #: samples and changes of branches kept between two visits of Python, which cost 2 ms each
 SAMPLES, LOG = 1024, 4096
 RESOLVED = 10  #: steps in a period or a collision at least, which gives peaks to a few parts in a hundred
+SHARP = 1e-2  #: share of a spring's largest force that rounding may be
 QUIET = 1e-9  #: share of the energy below which a motion is rounding
 HELD = 2**20  #: numbers of one kind in those samples, at most, but for two
 
@@ -154,7 +155,7 @@ class Stepper:
         self.rules = list(dict.fromkeys(s.law.rule for s in self.laws))
         self.tables = jit.tables(self.rules or [bilinear.RULE])  # never empty, which compiles to nothing
         self._lay_out(start)
-        self.count = np.zeros(11, np.int64)
+        self.count = np.zeros(12, np.int64)
         self.rush = np.zeros(2)  # v M v and a M a, summed over the samples
         self.seen = float(start.times[0])  # latest instant that the sink was shown
         self.clock = np.array([start.times[0], -1.0, energy_at_start(scene, start), np.inf])
@@ -265,7 +266,7 @@ class Stepper:
             np.zeros((19, n)),
             np.zeros((4, len(pattern.li))),
             np.zeros(len(columns)),
-            np.zeros((6, len(watch.names) + 2 * count)),
+            np.zeros((7, len(watch.names) + 2 * count)),
             np.zeros(4),
             np.zeros((4, scene.inputs.shape[1])),
         )
@@ -505,6 +506,10 @@ class Stepper:
         if moves and rush > 0.0:
             count = 2.0 * np.pi * (speed / rush) ** 0.5 / self.dt
             out.append(("steps in a period of the motion, about", f"{count:.3g}", _enough(count)))
+        if falls := int(self.count[arrays.FALLING]):
+            told = "look: a DT that follows how it gives way, or EXACT"
+            out.append(("steps too long for a branch that falls", str(falls), told))
+        out += self._springs(peaks)
         ended = [c for c in peaks.collisions if c.t_end > c.t_start]
         hardest = [
             max((c for c in ended if c.law == law), key=lambda c: c.peak) for law in {c.law for c in ended}
@@ -512,6 +517,26 @@ class Stepper:
         if hardest:
             count = min(c.t_end - c.t_start for c in hardest) / self.dt
             out.append(("steps in the hardest collision of a contact", f"{count:.3g}", _enough(count)))
+        return out
+
+    def _springs(self, peaks: Peaks) -> list[tuple[str, str, str]]:
+        """Whether the steps follow the springs' forces, and the digits of their deformations tell them."""
+        steepest = self.x.peak[arrays.STEEPEST, len(self.x.peak[0]) - len(self.laws) :].tolist()
+        count, blurred = np.inf, 0.0
+        for s, d, f, slope in zip(self.laws, peaks.deformation, peaks.force, steepest):
+            force = max(abs(f.high), abs(f.low))
+            if s.is_contact or not force > 0.0:
+                continue
+            if slope > 0.0:
+                count = min(count, force / (slope * self.dt))
+            blurred = max(blurred, arrays.STILL * s.law.p[0] * max(abs(d.high), abs(d.low)) / force)
+        out = []
+        if count < 1.0:
+            told = "look: 1 at least, by a shorter DT, or EXACT"
+            out.append(("steps in which a spring's force rises to its largest", f"{count:.3g}", told))
+        if blurred > SHARP:
+            told = "look: a softer spring tells the same"
+            out.append(("force that the last digits of a spring's deformation make", f"{blurred:.1e}", told))
         return out
 
     def stop(self, code: str, why: str) -> Stop:
