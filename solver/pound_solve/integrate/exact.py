@@ -45,6 +45,7 @@ from pound_solve.integrate.base import (
     Start,
     Stop,
     Watch,
+    blurred,
     energy_at_start,
     law_values,
     not_linear,
@@ -542,7 +543,9 @@ class Exact:
         ]
         if any(isinstance(f, SeriesFlow) for f in flows):
             checks.append(("defective modes, integrated by the exponential series", "present", "good"))
-        return Outcome(self.ledger.close(), figures, tuple(self.states), checks, exact=True)
+        peaks = self.ledger.close()
+        checks += blurred(self.scene.structure.laws, peaks, STILL)
+        return Outcome(peaks, figures, tuple(self.states), checks, exact=True)
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""

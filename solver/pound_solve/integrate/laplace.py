@@ -50,6 +50,7 @@ from pound_solve.integrate.base import (
     Start,
     Stop,
     Watch,
+    blurred,
     energy_at_start,
     law_values,
     not_linear,
@@ -384,7 +385,9 @@ class Laplace:
             "transforms": self.transforms,
             "linear regimes": len(self._regimes),
         }
-        return Outcome(self.ledger.close(), figures, tuple(self.states))
+        peaks = self.ledger.close()
+        checks = blurred(self.laws, peaks, STILL)
+        return Outcome(peaks, figures, tuple(self.states), checks)
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""

@@ -40,6 +40,7 @@ from pound_solve.integrate.base import (
     Start,
     Stop,
     Watch,
+    blurred,
     energy_at_start,
     goals,
     not_linear,
@@ -67,7 +68,6 @@ COMMON = (
 #: samples and changes of branches kept between two visits of Python, which cost 2 ms each
 SAMPLES, LOG = 1024, 4096
 RESOLVED = 10  #: steps in a period or a collision at least, which gives peaks to a few parts in a hundred
-SHARP = 1e-2  #: share of a spring's largest force that rounding may be
 QUIET = 1e-9  #: share of the energy below which a motion is rounding
 HELD = 2**20  #: numbers of one kind in those samples, at most, but for two
 
@@ -509,7 +509,7 @@ class Stepper:
         if falls := int(self.count[arrays.FALLING]):
             told = "look: a DT that follows how it gives way, or EXACT"
             out.append(("steps too long for a branch that falls", str(falls), told))
-        out += self._springs(peaks)
+        out += [*self._springs(peaks), *blurred(self.laws, peaks, arrays.STILL)]
         ended = [c for c in peaks.collisions if c.t_end > c.t_start]
         hardest = [
             max((c for c in ended if c.law == law), key=lambda c: c.peak) for law in {c.law for c in ended}
@@ -520,24 +520,18 @@ class Stepper:
         return out
 
     def _springs(self, peaks: Peaks) -> list[tuple[str, str, str]]:
-        """Whether the steps follow the springs' forces, and the digits of their deformations tell them."""
+        """Whether the steps follow the springs' forces."""
         steepest = self.x.peak[arrays.STEEPEST, len(self.x.peak[0]) - len(self.laws) :].tolist()
-        count, blurred = np.inf, 0.0
-        for s, d, f, slope in zip(self.laws, peaks.deformation, peaks.force, steepest):
-            force = max(abs(f.high), abs(f.low))
-            if s.is_contact or not force > 0.0:
-                continue
-            if slope > 0.0:
-                count = min(count, force / (slope * self.dt))
-            blurred = max(blurred, arrays.STILL * s.law.p[0] * max(abs(d.high), abs(d.low)) / force)
-        out = []
-        if count < 1.0:
-            told = "look: 1 at least, by a shorter DT, or EXACT"
-            out.append(("steps in which a spring's force rises to its largest", f"{count:.3g}", told))
-        if blurred > SHARP:
-            told = "look: a softer spring tells the same"
-            out.append(("force that the last digits of a spring's deformation make", f"{blurred:.1e}", told))
-        return out
+        rises = [
+            max(abs(f.high), abs(f.low)) / (slope * self.dt)
+            for s, f, slope in zip(self.laws, peaks.force, steepest)
+            if not s.is_contact and slope > 0.0
+        ]
+        count = min(rises, default=np.inf)
+        if count >= 1.0:
+            return []
+        told = "look: 1 at least, by a shorter DT, or EXACT"
+        return [("steps in which a spring's force rises to its largest", f"{count:.2g}", told)]
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""
