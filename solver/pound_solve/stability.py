@@ -6,7 +6,8 @@ NaN, an exception, or no end.
 
 Right is the closed form where there is one; else what EXACT finds on a search grid eight times finer; for
 curved laws, which EXACT does not take, NEWMARK with steps so short that a quarter of them changes nothing.
-Displacements and the laws' forces are compared, at all times of output.  The methods that take steps are
+Displacements and the springs' forces are compared at all times of output, of contacts the largest force
+(one that a dashpot makes jump has no value at the instant of touch).  The methods that take steps are
 allowed the share that the case names, EXACT `EXACT_WITHIN`.  AUTO is judged by what it promises: its peaks
 by `AUTO_WITHIN`, its histories as those of steps.
 
@@ -61,22 +62,25 @@ REFUSED: Final = re.compile(r"\.inp:\d+:\d+: error [A-Z]\d{3}: ")
 
 
 class Found(NamedTuple):
-    """What a run gave: times, displacements, forces of springs and contacts; peaks of the springs'
-    deformations, both ways, and of the contacts' forces, with what their errors are measured against;
-    the stop's or refusal's message; checks that say "look"; what is wrong with it; seconds.
+    """What a run gave: times, displacements, forces of springs; the springs' largest deformations both
+    ways, shape (n_springs, 2), the contacts' largest forces; the stop's or refusal's message; checks that
+    say "look"; what is wrong with it; seconds.
     """
 
     t: Array
     u: Array
     f: Array
-    peaks: tuple[Array, Array]
+    swings: Array
+    blows: Array
     stop: str
     looks: tuple[str, ...]
     wrong: str
     seconds: float
 
 
-NOTHING: Final = Found(np.zeros(0), np.zeros(0), np.zeros((0, 0)), (np.zeros(0),) * 2, "", (), "", 0.0)
+NOTHING: Final = Found(
+    np.zeros(0), np.zeros(0), np.zeros((0, 0)), np.zeros((0, 2)), np.zeros(0), "", (), "", 0.0
+)
 
 
 @dataclass(frozen=True)
@@ -104,20 +108,21 @@ class Row:
     seconds: float
 
 
-def peaks(results: Results) -> tuple[Array, Array]:
-    """What AUTO promises of a scene without drifts, and what that is measured against (see `auto`)."""
-    springs, contacts = (
-        results.table(x) if x in results.tables else None for x in ("spring_envelope", "contact_summary")
-    )
-    d = (
-        np.zeros((0, 2))
-        if springs is None
-        else np.column_stack([springs[x] for x in ("deformation_max", "deformation_min")])
-    )
-    f = np.zeros(0) if contacts is None else contacts["peak_force"]
-    swing = np.repeat(np.abs(d).max(axis=1, initial=0.0), 2)
-    size = [np.maximum(x, share * x.max(initial=0.0)) for x, share in ((swing, 1e-6), (f, 0.05))]
-    return np.concatenate([d.ravel(), f]), np.concatenate(size)
+def motion(results: Results) -> dict[str, Array]:
+    """What is compared of a run, as `Found` has it."""
+    tables = {x: results.table(x) for x in ("spring_envelope", "contact_summary") if x in results.tables}
+    out = {}
+    if "node/u" in results.histories:
+        out = {"t": results.time.copy(), "u": results.history("node/u")[:, :, 0].copy()}
+        out["f"] = np.zeros((len(out["t"]), 0))
+    if "spring/force" in results.histories:
+        out["f"] = results.history("spring/force").copy()
+    if "spring_envelope" in tables:
+        springs = tables["spring_envelope"]
+        out["swings"] = np.column_stack([springs["deformation_max"], springs["deformation_min"]])
+    if "contact_summary" in tables:
+        out["blows"] = tables["contact_summary"]["peak_force"].copy()
+    return out
 
 
 def solve(deck: str, files: Mapping[str, str]) -> Found:
@@ -141,14 +146,7 @@ def solve(deck: str, files: Mapping[str, str]) -> Found:
         except Exception as err:
             return found(wrong=f"{type(err).__name__}: {err}")
         with results:
-            stop, motion = results.message, dict[str, Any]()
-            if "node/u" in results.histories:
-                motion = {"t": results.time.copy(), "u": results.history("node/u")[:, :, 0].copy()}
-                forces = [x for x in ("spring/force", "contact/force") if x in results.histories]
-                motion["f"] = np.column_stack(
-                    [results.history(x) for x in forces] or [np.zeros((len(motion["t"]), 0))]
-                )
-                motion["peaks"] = peaks(results)
+            stop, moved = results.message, motion(results)
             looks = (
                 [c for c in results.table("checks") if c["verdict"].startswith("look")]
                 if "checks" in results.tables
@@ -156,10 +154,10 @@ def solve(deck: str, files: Mapping[str, str]) -> Found:
             )
             bad = [name for name in results.histories if not np.isfinite(results.history(name)).all()]
         if bad:
-            return found(**motion, wrong=f"numbers that are none in {', '.join(bad)}")
+            return found(**moved, wrong=f"numbers that are none in {', '.join(bad)}")
         if stop and not CLEAR.match(stop):
-            return found(**motion, wrong=f"unclear stop: {stop}")
-        return found(**motion, stop=stop, looks=tuple(f"{c['check']}: {c['value']}" for c in looks))
+            return found(**moved, wrong=f"unclear stop: {stop}")
+        return found(**moved, stop=stop, looks=tuple(f"{c['check']}: {c['value']}" for c in looks))
 
 
 def serve(line: Connection) -> None:
@@ -242,7 +240,7 @@ def reference(run: Runner, case: Case) -> tuple[Found, str, float] | None:
         if found.stop or found.wrong:
             return None
         if len(before.t) and not found.looks:
-            changes = shares(found.u, before.u), shares(found.f, before.f)
+            changes = [shares(x, y) for x, y in zip(found[1:5], before[1:5])]
             if max(x.max(initial=0.0) for x in changes) <= SETTLED:
                 return found, method, SETTLED
         step, before = step / 4.0, found
@@ -298,13 +296,12 @@ def judge(run: Runner, case: Case, method: str) -> Row:
         within += doubt
         u = case.compared(right.t, case.like[1] * right.u)
         offs = {"displacements": (shares(case.compared(found.t, found.u), u), within)}
-        if case.compared is every and found.f.shape == right.f.shape:
-            offs["forces"] = shares(found.f, right.f), within
+        if case.compared is every:
+            offs |= forces(found, right, within)
         if method == "AUTO" and whole:
-            change, size = np.abs(found.peaks[0] - right.peaks[0]), right.peaks[1]
-            offs["peaks"] = change / np.where(size > 0.0, size, 1.0), AUTO_WITHIN + doubt
+            offs |= promised(found, right, AUTO_WITHIN + doubt)
         if beyond(offs) and (n := known(run, case, right, by, within)) < len(found.t):
-            offs = {x: (off[:n], most) for x, (off, most) in offs.items() if x != "peaks"}
+            offs = {x: (off[:n], most) for x, (off, most) in offs.items() if not x.startswith("largest")}
             says = says or f"{PARTLY}{found.t[n - 1]:g}"
     error = float(offs["displacements"][0].max(initial=0.0))
     if wrong := beyond(offs):
@@ -312,7 +309,38 @@ def judge(run: Runner, case: Case, method: str) -> Row:
     return row(RIGHT, says, error)
 
 
-def beyond(offs: Mapping[str, tuple[Array, float]]) -> str:
+Offs = dict[str, tuple[Array, float]]  #: how far quantities are off, and how far they may be
+
+
+def forces(found: Found, right: Found, within: float) -> Offs:
+    """How far forces are off, where both runs have the same springs and contacts."""
+    out = {}
+    if found.f.shape == right.f.shape:
+        out["spring forces"] = shares(found.f, right.f), within
+    if found.blows.shape == right.blows.shape:
+        out["largest contact forces"] = parts(found.blows, right.blows, 0.05), within
+    return out
+
+
+def promised(found: Found, right: Found, within: float) -> Offs:
+    """How far off the figures are that AUTO brings to its tolerance (see `auto`)."""
+    swings = np.abs(right.swings).max(axis=1, keepdims=True, initial=0.0)
+    return {
+        "largest deformations": (parts(found.swings, right.swings, 1e-6, swings), within),
+        "largest contact forces": (parts(found.blows, right.blows, 0.05), within),
+    }
+
+
+def parts(x: Array, right: Array, floor: float, size: Array | None = None) -> Array:
+    """How far some values are off, each as a share of its own right size, but of no less than a share
+    `floor` of the largest.
+    """
+    size = np.abs(right) if size is None else size
+    size = np.maximum(size, floor * size.max(initial=0.0))
+    return np.asarray(np.abs(x - right) / np.where(size > 0.0, size, 1.0))
+
+
+def beyond(offs: Offs) -> str:
     """What is further off than allowed, in words."""
     bad = [(x, off.max(), most) for x, (off, most) in offs.items() if not (off <= most).all()]
     return ", ".join(f"{x} {off:.2g} off, above {most:g}" for x, off, most in bad)
