@@ -126,9 +126,24 @@ def test_nothing_is_judged_beyond_what_other_digits_of_the_masses_change():
     late[6:], early[4:] = 0.0, 0.0
     nudged = RIGHT_RUN._replace(u=late[:, None])
     row = compared("EXACT", RIGHT_RUN._replace(u=2.0 * late[:, None] - RIGHT_RUN.u), nudged)
-    assert row.end == stability.RIGHT and row.says == f"{stability.PARTLY}0.5"
+    assert row.end == stability.RIGHT and row.says == f"{stability.PARTLY}, up to t = 0.5"
     assert compared("EXACT", RIGHT_RUN._replace(u=early[:, None]), nudged).end == stability.FAULT
     assert compared("EXACT", RIGHT_RUN._replace(u=early[:, None])).end == stability.FAULT
+
+
+def test_a_contact_that_other_digits_of_the_masses_undo_is_not_judged():
+    grazed = RIGHT_RUN._replace(blows=np.array([2.0, 1.0]))
+    case = extremes.Case("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
+
+    def run(other):
+        def found(case, deck, method):
+            return RIGHT_RUN if "REFINE" not in method else grazed if deck == case.deck else other
+
+        return found
+
+    touching, parted = (stability.judge(run(x), case, "NEWMARK") for x in (grazed, RIGHT_RUN))
+    assert touching.end == stability.FAULT
+    assert parted.end == stability.RIGHT and parted.says == stability.PARTLY
 
 
 def test_masses_are_nudged_by_their_share():
