@@ -14,7 +14,7 @@ by `AUTO_WITHIN`, its histories as those of steps.
 Some answers hang on the last digits of the deck: two motions of a chaotic scene part from each other,
 however close they begin, and a contact that just touches may as well just not.  Where something is off, the
 reference is therefore run again with all masses changed by a `NUDGE` of the error allowed.  What that alone
-changes by more than is allowed (a motion from some time on, a largest force) nobody knows: it is not judged.
+changes by more than is allowed (a motion from some time on, a largest force) nobody knows: not judged.
 """
 
 from __future__ import annotations
