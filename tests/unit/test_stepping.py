@@ -653,3 +653,41 @@ def test_springs_too_stiff_for_the_way_they_slip_are_told(tmp_path, method, digi
         assert ("share of the force o" in found) is told
         if told:
             assert found["share of the force o"] == pytest.approx(share, rel=0.1)
+
+
+TOUCHED = """UNITS kN m s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 1 FIX=YR
+ 3 1 0 FIX=XYR
+ 4 1 1 FIX=YR
+ELEMENTS
+ 1 STOREY 1 2
+ 2 STOREY 3 4
+ 3 MEET 2 4
+PROPS
+ STOREY SPRING KX=40
+ MEET CONTACT GAP=0.05 ANGLE=0 LAW=KELVIN_VOIGT E=0.5 K=40000 MASSES=1,1
+WEIGHTS
+ 2 1
+INITIAL
+ 2 VX=1
+ANALYSIS
+ HISTORY 0.4 METHOD={method}
+OUTPUT
+ EVERY=0.001
+"""
+
+
+@pytest.mark.parametrize(
+    "method", ["EXACT", "LAPLACE DT=0.001", "NEWMARK DT=0.001", "NEWMARK DT=0.0001", "HHT DT=0.001"]
+)
+def test_the_dashpot_of_a_contact_does_not_hit_a_node_without_mass(tmp_path, method):
+    """The node is carried along at once: the contact has no more force than the storey behind it."""
+    deck = tmp_path / "touched.inp"
+    deck.write_text(TOUCHED.format(method=method))
+    results = pound_solve.run(deck)
+    peak = results.table("contact_summary")["peak_force"][0]
+    u = results.history("node/u")[:, 3, 0]
+    assert peak == pytest.approx(40.0 * u.max(), rel=1e-4)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pound_solve.elements.base import LawSpring
 from pound_solve.laws import State
+from pound_solve.modes import massless
 from pound_solve.scene import Scene
 
 Array = NDArray[np.float64]
@@ -261,6 +262,13 @@ def not_linear(scene: Scene) -> str:
         return f"members change their stiffness as they move (GEOMETRY {scene.structure.model.geometry})"
     curved = next((s for s in scene.structure.laws if s.law.curved), None)
     return "" if curved is None else f"the law {curved.rule} of element {curved.element} is curved"
+
+
+def light(scene: Scene) -> NDArray[np.bool_]:
+    """Which laws hold an unknown without mass, whose velocity may jump, shape (n_laws,): the force of their
+    dashpots is only known when the velocities have settled.
+    """
+    return np.asarray((scene.law_rows[:, massless(scene.mass)] != 0.0).any(axis=1))
 
 
 def blurred(laws: Sequence[LawSpring], peaks: Peaks, still: float) -> list[tuple[str, str, str]]:

@@ -48,6 +48,7 @@ from pound_solve.integrate.base import (
     blurred,
     energy_at_start,
     law_values,
+    light,
     not_linear,
 )
 from pound_solve.integrate.base import goals as goals_of
@@ -100,6 +101,7 @@ class Exact:
         self.begin, self.end = float(start.times[0]), float(start.times[-1])
         self.laws = scene.structure.laws
         n = self.n_laws = len(self.laws)
+        self.light = light(scene)
         self.states = list(start.states)
         self.branches: list[Branch] = [s.branch(x) for s, x in zip(self.laws, self.states)]
         # the rows that are followed: deformations of the laws, then the drifts
@@ -439,7 +441,7 @@ class Exact:
         before = self.branches[law].name
         self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, d, v)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
-        force = self.laws[law].force(self.states[law], d, v)
+        force = self.laws[law].force(self.states[law], d, 0.0 if self.light[law] else v)
         self.ledger.switched(law, before, after.name, self.t, d, v, force)
         self.ledger.peaks.force[law].take(force, self.t)
 

@@ -346,6 +346,8 @@ def note(m: Matrices, w: Laws, x: Motion, t: float, since: float) -> None:
             if w.i[law, CONTACT] and w.f[law, C] != 0.0:  # damping is no part of a spring's force
                 value += w.f[law, C] * w.f[law, LV]
                 slope += w.f[law, C] * along(w.rows, law, x.q, A)
+                if light(m, w, law):  # its acceleration is a jump of its velocity over a step, or a part
+                    slope = 0.0
         take(w, x, i - rows - laws, i, value, t)
         if since > 0.0 and x.peak[SLOPE, i] * slope < 0.0:
             sign = 1.0 if x.peak[SLOPE, i] > 0.0 else -1.0
@@ -355,6 +357,15 @@ def note(m: Matrices, w: Laws, x: Motion, t: float, since: float) -> None:
             take(w, x, i - rows - laws, i, sign * top, t - since + place)
         x.peak[VALUE, i], x.peak[SLOPE, i] = value, slope
         x.peak[STEEPEST, i] = max(x.peak[STEEPEST, i], abs(slope))
+
+
+def light(m: Matrices, w: Laws, i: int) -> bool:
+    """Whether law `i` holds an unknown without mass, whose velocity may jump."""
+    if not m.inert:
+        for q in range(w.rows[0][i], w.rows[0][i + 1]):
+            if not m.heavy[w.rows[1][q]]:
+                return True
+    return False
 
 
 def take(w: Laws, x: Motion, law: int, i: int, value: float, t: float) -> None:
@@ -640,6 +651,8 @@ def switch(
         if count[UPDATES] > REFRESH or not change_factor(m, w, x, i, change, WHOLE):
             count[UPDATES] = REFRESH + 1
     force = w.f[i, K] * w.f[i, LD] + w.f[i, C] * w.f[i, LV] + w.f[i, F0]
+    if w.i[i, CONTACT] and light(m, w, i):  # the dashpot's is only known when the velocities have settled
+        force -= w.f[i, C] * w.f[i, LV]
     if before != w.i[i, AT]:
         write(w, z, count, i, before, t, force)
     count[EVENTS] += 1
