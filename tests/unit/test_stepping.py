@@ -593,3 +593,101 @@ def test_events_of_massless_hinges_are_as_many_however_short_the_step(tmp_path, 
         assert found.status == "done", found.message
         counts.append({x["item"]: x["value"] for x in found.table("run")}["events"])
     assert int(counts[0]) > 4 and len(set(counts)) == 1, counts
+
+
+SPRUNG = """UNITS kN m s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=YR
+ELEMENTS
+ 1 COL 1 2
+PROPS
+ COL SPRING KX={k} FX={fy} RULE={rule}
+WEIGHTS
+ 2 1
+INITIAL
+ 2 VX={speed}
+ANALYSIS
+ HISTORY {end} METHOD={method}
+OUTPUT
+ EVERY={end}
+"""
+
+
+def looks(folder, method, rule, k=100.0, fy=1.0, speed=1.0, end=1.0):
+    """Checks of one mass on one spring that say "look", by the heads of their names, and the results."""
+    deck = folder / "sprung.inp"
+    deck.write_text(SPRUNG.format(method=method, rule=rule, k=k, fy=fy, speed=speed, end=end))
+    results = pound_solve.run(deck)
+    told = [x for x in results.table("checks") if x["verdict"].startswith("look")]
+    return {x["check"][:20]: float(x["value"]) for x in told}, results
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.98, False), (1.02, True)])
+def test_steps_longer_than_a_falling_branch_allows_are_told(tmp_path, share, told):
+    """m + h^2/4 k_t is negative for h above 2 sqrt(m / -k_t)."""
+    h = share * 2.0 / 50.0**0.5
+    found, _ = looks(tmp_path, f"NEWMARK DT={h!r}", "BILINEAR R=-0.5", end=6 * h)
+    assert ("steps too long for a" in found) is told
+
+
+@pytest.mark.parametrize(("dt", "told"), [(0.09, False), (0.2, True)])
+def test_steps_that_a_springs_force_leaves_behind_are_told(tmp_path, dt, told):
+    """In free vibration the force rises by omega h of its largest in a step, at most."""
+    found, _ = looks(tmp_path, f"NEWMARK DT={dt}", "BILINEAR R=0", fy=1e6, end=20.0)
+    assert ("steps in which a spr" in found) is told
+    if told:
+        assert found["steps in which a spr"] == pytest.approx(1.0 / (10.0 * dt), rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("method", "digits"), [("NEWMARK DT=0.01", 1e-12), ("EXACT", 1e-12), ("LAPLACE DT=0.01", 1e-10)]
+)
+def test_springs_too_stiff_for_the_way_they_slip_are_told(tmp_path, method, digits):
+    """A block that slips 0.9 m on hardly any friction `fy`, held by 100 kN/m where it sticks."""
+    for share, told in ((2e-3, False), (0.2, True)):
+        fy = digits * 100.0 * 0.9 / share
+        found, results = looks(tmp_path, method, "ELASTO_PLASTIC", fy=fy, end=0.9)
+        assert results.table("spring_envelope")["deformation_max"][0] == pytest.approx(0.9, rel=1e-3)
+        assert ("share of the force o" in found) is told
+        if told:
+            assert found["share of the force o"] == pytest.approx(share, rel=0.1)
+
+
+TOUCHED = """UNITS kN m s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 1 FIX=YR
+ 3 1 0 FIX=XYR
+ 4 1 1 FIX=YR
+ELEMENTS
+ 1 STOREY 1 2
+ 2 STOREY 3 4
+ 3 MEET 2 4
+PROPS
+ STOREY SPRING KX=40
+ MEET CONTACT GAP=0.05 ANGLE=0 LAW=KELVIN_VOIGT E=0.5 K=40000 MASSES=1,1
+WEIGHTS
+ 2 1
+INITIAL
+ 2 VX=1
+ANALYSIS
+ HISTORY 0.4 METHOD={method}
+OUTPUT
+ EVERY=0.001
+"""
+
+
+@pytest.mark.parametrize(
+    "method", ["EXACT", "LAPLACE DT=0.001", "NEWMARK DT=0.001", "NEWMARK DT=0.0001", "HHT DT=0.001"]
+)
+def test_the_dashpot_of_a_contact_does_not_hit_a_node_without_mass(tmp_path, method):
+    """The node is carried along at once: the contact has no more force than the storey behind it."""
+    deck = tmp_path / "touched.inp"
+    deck.write_text(TOUCHED.format(method=method))
+    results = pound_solve.run(deck)
+    peak = results.table("contact_summary")["peak_force"][0]
+    u = results.history("node/u")[:, 3, 0]
+    assert peak == pytest.approx(40.0 * u.max(), rel=1e-4)

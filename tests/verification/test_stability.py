@@ -69,10 +69,9 @@ def test_study_says_which_options_belong_together(words, told, capsys):
 
 def judged(case, **given):
     """How a made-up run of a case is judged."""
-    plain = {"t": np.zeros(2), "u": np.zeros((2, 1)), "stop": "", "looks": (), "wrong": "", "seconds": 0.0}
 
     def run(case, deck, method):
-        return stability.Found(**{**plain, **given})
+        return stability.NOTHING._replace(**{"t": np.zeros(2), "u": np.zeros((2, 1)), **given})
 
     return stability.judge(run, case, "NEWMARK").end
 
@@ -85,6 +84,71 @@ def test_the_judge_tells_right_from_wrong():
     assert judged(case, u=ends[1], looks=("energy: 2",)) == stability.TOLD
     assert judged(case, stop="A503 at t = 1 s: why") == stability.STOPPED
     assert judged(case, wrong="numbers that are none") == stability.FAULT
+
+
+LINE = np.linspace(0.0, 1.0, 11)
+RIGHT_RUN = stability.NOTHING._replace(
+    t=LINE, u=LINE[:, None], f=LINE[:, None], swings=np.array([[1.0, 0.0]]), blows=np.array([2.0, 1e-3])
+)
+
+
+def compared(method, off=RIGHT_RUN, nudged=RIGHT_RUN):
+    """How a made-up run is judged against a reference that `nudged` stands for with other masses."""
+    case = extremes.Case("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
+
+    def run(case, deck, method):
+        return (RIGHT_RUN if deck == case.deck else nudged) if "REFINE" in method else off
+
+    return stability.judge(run, case, method)
+
+
+@pytest.mark.parametrize(
+    ("method", "off", "end"),
+    [
+        ("NEWMARK", {"f": 1.05 * LINE[:, None]}, stability.RIGHT),
+        ("NEWMARK", {"f": 1.2 * LINE[:, None]}, stability.FAULT),
+        ("NEWMARK", {"blows": np.array([2.0, 2e-3])}, stability.RIGHT),  # a touch, beside the other
+        ("NEWMARK", {"blows": np.array([2.3, 1e-3])}, stability.FAULT),
+        ("NEWMARK", {"swings": np.array([[1.01, 0.0]])}, stability.RIGHT),
+        ("AUTO", {"swings": np.array([[1.01, 0.0]])}, stability.FAULT),
+        ("AUTO", {"blows": np.array([2.01, 1e-3])}, stability.FAULT),
+        ("AUTO", {"u": 1.05 * LINE[:, None]}, stability.RIGHT),
+        ("EXACT", {"u": (1.0 + 1e-5) * LINE[:, None]}, stability.FAULT),
+    ],
+)
+def test_forces_are_judged_and_auto_by_what_it_promises(method, off, end):
+    assert compared(method, RIGHT_RUN._replace(**off)).end == end
+
+
+def test_nothing_is_judged_beyond_what_other_digits_of_the_masses_change():
+    """The answer is known up to t = 0.5 here: what is off earlier counts, what is off later does not."""
+    late, early = LINE.copy(), LINE.copy()
+    late[6:], early[4:] = 0.0, 0.0
+    nudged = RIGHT_RUN._replace(u=late[:, None])
+    row = compared("EXACT", RIGHT_RUN._replace(u=2.0 * late[:, None] - RIGHT_RUN.u), nudged)
+    assert row.end == stability.RIGHT and row.says == f"{stability.PARTLY}, up to t = 0.5"
+    assert compared("EXACT", RIGHT_RUN._replace(u=early[:, None]), nudged).end == stability.FAULT
+    assert compared("EXACT", RIGHT_RUN._replace(u=early[:, None])).end == stability.FAULT
+
+
+def test_a_contact_that_other_digits_of_the_masses_undo_is_not_judged():
+    grazed = RIGHT_RUN._replace(blows=np.array([2.0, 1.0]))
+    case = extremes.Case("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
+
+    def run(other):
+        def found(case, deck, method):
+            return RIGHT_RUN if "REFINE" not in method else grazed if deck == case.deck else other
+
+        return found
+
+    touching, parted = (stability.judge(run(x), case, "NEWMARK") for x in (grazed, RIGHT_RUN))
+    assert touching.end == stability.FAULT
+    assert parted.end == stability.RIGHT and parted.says == stability.PARTLY
+
+
+def test_masses_are_nudged_by_their_share():
+    deck = stability.nudged(extremes.one(""), 1e-3)
+    assert "\nGRAVITY 0.999000999" in deck and stability.nudged("NODES\n", 1e-3) == "NODES\n"
 
 
 @pytest.mark.parametrize(

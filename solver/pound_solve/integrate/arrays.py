@@ -16,7 +16,7 @@ Index = NDArray[np.int64]
 # why `advance` came back
 DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON = range(7)
 #: integers of `count`
-GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST, SINCE, SHOWN, STALE = range(11)
+GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST, SINCE, SHOWN, STALE, FALLING = range(12)
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 BACK = 1e-6  #: share of its largest rate that a law must move back with before it counts as turned
 NEAR = 1e-6  #: share of its largest value within which an exit is taken where it cannot be met better
@@ -30,7 +30,7 @@ REFRESH = 200  #: updates of rank one before a factor is made anew
 COLUMNS = 10  #: of the log: law, branches before and after, t, d, v, force; peak, its time, impulse
 # rows of `Motion.q`: at the start (0) and the end (1) of a step; loads; residual; scratch; pivots
 U, V, A, U1, V1, A1, CV, CA, CA1, P, P1, R, BASE, Y, W, D = range(16)
-HIGH, T_HIGH, LOW, T_LOW, SLOPE, VALUE = range(6)  #: rows of `Motion.peak`
+HIGH, T_HIGH, LOW, T_LOW, SLOPE, VALUE, STEEPEST = range(7)  #: rows of `Motion.peak`
 WHOLE, PIECE, MASS, LIGHT = range(4)  #: rows of `Motion.l`, and of its pivots
 # columns of `Laws.f`: the linear piece, exits; entry of the state; motion; dashpot; what a contact counts
 K, C, F0, EXIT, D0, WORK = 0, 1, 2, 3, 12, 13

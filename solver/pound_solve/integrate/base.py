@@ -9,7 +9,9 @@ from typing import Any, NamedTuple, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_solve.elements.base import LawSpring
 from pound_solve.laws import State
+from pound_solve.modes import massless
 from pound_solve.scene import Scene
 
 Array = NDArray[np.float64]
@@ -17,6 +19,7 @@ Array = NDArray[np.float64]
 ENERGIES = ("input", "kinetic", "strain", "damping", "hysteretic", "contact")
 
 
+SHARP = 1e-2  #: share of a spring's largest force that rounding may make
 RUNAWAY = "the motion grows without bound: its energy {:.3g} is far above what was put in"
 CHATTER = "{} changes at one instant, the last in element {} ({}) to {!r}: try NEWMARK EVENTS=STEPPED"
 INTERRUPTED = "interrupted by the user; what was computed up to then is kept"
@@ -259,6 +262,29 @@ def not_linear(scene: Scene) -> str:
         return f"members change their stiffness as they move (GEOMETRY {scene.structure.model.geometry})"
     curved = next((s for s in scene.structure.laws if s.law.curved), None)
     return "" if curved is None else f"the law {curved.rule} of element {curved.element} is curved"
+
+
+def light(scene: Scene) -> NDArray[np.bool_]:
+    """Which laws hold an unknown without mass, whose velocity may jump, shape (n_laws,): the force of their
+    dashpots is only known when the velocities have settled.
+    """
+    return np.asarray((scene.law_rows[:, massless(scene.mass)] != 0.0).any(axis=1))
+
+
+def blurred(laws: Sequence[LawSpring], peaks: Peaks, still: float) -> list[tuple[str, str, str]]:
+    """Check whether springs are so stiff that their force is lost in the last digits of their deformation,
+    of which a share `still` of the largest cannot be told from none.
+    """
+    worst, place = SHARP, None
+    for s, d, f in zip(laws, peaks.deformation, peaks.force):
+        force = max(abs(f.high), abs(f.low))
+        off = still * s.law.p[0] * max(abs(d.high), abs(d.low))
+        if not s.is_contact and off > worst * force > 0.0:
+            worst, place = off / force, s.element
+    if place is None:
+        return []
+    name = f"share of the force of element {place} that rounding of its deformation makes"
+    return [(name, f"{worst:.1e}", "look: too stiff for the distance that it gives way")]
 
 
 def refuse_rigid(scene: Scene, start: Start, method: str) -> None:

@@ -45,8 +45,10 @@ from pound_solve.integrate.base import (
     Start,
     Stop,
     Watch,
+    blurred,
     energy_at_start,
     law_values,
+    light,
     not_linear,
 )
 from pound_solve.integrate.base import goals as goals_of
@@ -100,6 +102,7 @@ class Exact:
         self.begin, self.end = float(start.times[0]), float(start.times[-1])
         self.laws = scene.structure.laws
         n = self.n_laws = len(self.laws)
+        self.light = light(scene)
         self.states = list(start.states)
         self.branches: list[Branch] = [s.branch(x) for s, x in zip(self.laws, self.states)]
         # the rows that are followed: deformations of the laws, then the drifts
@@ -439,7 +442,7 @@ class Exact:
         before = self.branches[law].name
         self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, d, v)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
-        force = self.laws[law].force(self.states[law], d, v)
+        force = self.laws[law].force(self.states[law], d, 0.0 if self.light[law] else v)
         self.ledger.switched(law, before, after.name, self.t, d, v, force)
         self.ledger.peaks.force[law].take(force, self.t)
 
@@ -543,7 +546,9 @@ class Exact:
         ]
         if any(isinstance(f, SeriesFlow) for f in flows):
             checks.append(("defective modes, integrated by the exponential series", "present", "good"))
-        return Outcome(self.ledger.close(), figures, tuple(self.states), checks, exact=True)
+        peaks = self.ledger.close()
+        checks += blurred(self.scene.structure.laws, peaks, STILL)
+        return Outcome(peaks, figures, tuple(self.states), checks, exact=True)
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""

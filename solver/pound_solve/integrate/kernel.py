@@ -44,6 +44,7 @@ from pound_solve.integrate.arrays import (
     DONE,
     EVENTS,
     F0,
+    FALLING,
     FIRST,
     FULL,
     G0,
@@ -82,6 +83,7 @@ from pound_solve.integrate.arrays import (
     SLOPE,
     SLOW,
     STALE,
+    STEEPEST,
     STEP,
     STEPS,
     STILL,
@@ -344,6 +346,8 @@ def note(m: Matrices, w: Laws, x: Motion, t: float, since: float) -> None:
             if w.i[law, CONTACT] and w.f[law, C] != 0.0:  # damping is no part of a spring's force
                 value += w.f[law, C] * w.f[law, LV]
                 slope += w.f[law, C] * along(w.rows, law, x.q, A)
+                if light(m, w, law):  # its acceleration is a jump of its velocity over a step, or a part
+                    slope = 0.0
         take(w, x, i - rows - laws, i, value, t)
         if since > 0.0 and x.peak[SLOPE, i] * slope < 0.0:
             sign = 1.0 if x.peak[SLOPE, i] > 0.0 else -1.0
@@ -352,6 +356,16 @@ def note(m: Matrices, w: Laws, x: Motion, t: float, since: float) -> None:
             )
             take(w, x, i - rows - laws, i, sign * top, t - since + place)
         x.peak[VALUE, i], x.peak[SLOPE, i] = value, slope
+        x.peak[STEEPEST, i] = max(x.peak[STEEPEST, i], abs(slope))
+
+
+def light(m: Matrices, w: Laws, i: int) -> bool:
+    """Whether law `i` holds an unknown without mass, whose velocity may jump."""
+    if not m.inert:
+        for q in range(w.rows[0][i], w.rows[0][i + 1]):
+            if not m.heavy[w.rows[1][q]]:
+                return True
+    return False
 
 
 def take(w: Laws, x: Motion, law: int, i: int, value: float, t: float) -> None:
@@ -382,9 +396,20 @@ def gained(q: Array) -> float:
     return work
 
 
-def accept(m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, h: float) -> None:
-    """Make the end of the step that was tried the start of the next."""
+def accept(
+    m: Matrices, w: Laws, x: Motion, f: Tables, scheme: Scheme, h: float, at: int, count: Index
+) -> None:
+    """Make the end of the step that was tried the start of the next; count it, if it is longer than the
+    time in which a falling branch gives way.
+
+    A then has a negative eigenvalue, which its pivots in row `at` tell (Sylvester's law of inertia): along
+    that mode the method goes against the force, where the motion goes with it.
+    """
     n = x.q.shape[1]
+    for i in range(n):
+        if x.q[D + at, i] < 0.0:
+            count[FALLING] += 1
+            break
     before = x.works[0]
     times(m.c, x.q, A1, CA1)
     g1, gk = (1.0 - scheme.gamma) * h, scheme.gamma * h
@@ -626,6 +651,8 @@ def switch(
         if count[UPDATES] > REFRESH or not change_factor(m, w, x, i, change, WHOLE):
             count[UPDATES] = REFRESH + 1
     force = w.f[i, K] * w.f[i, LD] + w.f[i, C] * w.f[i, LV] + w.f[i, F0]
+    if w.i[i, CONTACT] and light(m, w, i):  # the dashpot's is only known when the velocities have settled
+        force -= w.f[i, C] * w.f[i, LV]
     if before != w.i[i, AT]:
         write(w, z, count, i, before, t, force)
     count[EVENTS] += 1
@@ -739,7 +766,7 @@ def uncut_step(
                             return PIVOT
         if changed:
             continue
-        accept(m, w, x, f, scheme, length)
+        accept(m, w, x, f, scheme, length, WHOLE, count)
         clock[0] += length
         count[EVENTS] += driven
         for i in range(laws):
@@ -877,7 +904,7 @@ def whole_step(
         tried = False
         law, way, tau = first_exit(w, x, piece)
         if law < 0:
-            accept(m, w, x, f, scheme, piece)
+            accept(m, w, x, f, scheme, piece, slot, count)
             clock[3] *= 2.0
             left -= piece
             clock[0] = t + piece
@@ -891,7 +918,7 @@ def whole_step(
         if why != DONE:
             return why
         if at > 0.0:
-            accept(m, w, x, f, scheme, at)
+            accept(m, w, x, f, scheme, at, PIECE, count)
             left -= at
             clock[0] = t + at
             note(m, w, x, clock[0], at)
@@ -933,7 +960,7 @@ def stride(
             for i in range(len(w.i)):
                 if next_exit(w, i, w.f[i, LD], w.f[i, LD1], w.f[i, LV1])[0] >= 0:
                     return True
-        accept(m, w, x, f, scheme, h)
+        accept(m, w, x, f, scheme, h, WHOLE, count)
         clock[0] += h
         note(m, w, x, clock[0], h)
         count[STEP] += 1

@@ -50,8 +50,10 @@ from pound_solve.integrate.base import (
     Start,
     Stop,
     Watch,
+    blurred,
     energy_at_start,
     law_values,
+    light,
     not_linear,
     refuse_rigid,
 )
@@ -129,7 +131,7 @@ class Laplace:
         self.row_inputs = np.vstack([scene.law_inputs, watch.input_rows])
         self.row_constants = np.concatenate([np.zeros(len(self.laws)), watch.constants])
         self.largest = np.zeros((2, len(self.laws)))
-        self.heavy = np.flatnonzero(~massless(scene.mass))
+        self.heavy, self.light = np.flatnonzero(~massless(scene.mass)), light(scene)
         self.events = self.transforms = self.same_instant = 0
         self.held, self.put_in = energy_at_start(scene, start), 0.0
         self.s = (DAMPING + 2j * np.pi * np.arange(self.points // 2 + 1)) / (self.points * self.dt)
@@ -317,7 +319,7 @@ class Laplace:
         before = self.branches[law].name
         self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, d, v)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
-        force = self.laws[law].force(self.states[law], d, v)
+        force = self.laws[law].force(self.states[law], d, 0.0 if self.light[law] else v)
         self.events += 1
         self.ledger.switched(law, before, after.name, self.t, d, v, force)
         self.ledger.peaks.force[law].take(force, self.t)
@@ -384,7 +386,9 @@ class Laplace:
             "transforms": self.transforms,
             "linear regimes": len(self._regimes),
         }
-        return Outcome(self.ledger.close(), figures, tuple(self.states))
+        peaks = self.ledger.close()
+        checks = blurred(self.laws, peaks, STILL)
+        return Outcome(peaks, figures, tuple(self.states), checks)
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""

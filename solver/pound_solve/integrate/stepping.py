@@ -40,6 +40,7 @@ from pound_solve.integrate.base import (
     Start,
     Stop,
     Watch,
+    blurred,
     energy_at_start,
     goals,
     not_linear,
@@ -154,7 +155,7 @@ class Stepper:
         self.rules = list(dict.fromkeys(s.law.rule for s in self.laws))
         self.tables = jit.tables(self.rules or [bilinear.RULE])  # never empty, which compiles to nothing
         self._lay_out(start)
-        self.count = np.zeros(11, np.int64)
+        self.count = np.zeros(12, np.int64)
         self.rush = np.zeros(2)  # v M v and a M a, summed over the samples
         self.seen = float(start.times[0])  # latest instant that the sink was shown
         self.clock = np.array([start.times[0], -1.0, energy_at_start(scene, start), np.inf])
@@ -265,7 +266,7 @@ class Stepper:
             np.zeros((19, n)),
             np.zeros((4, len(pattern.li))),
             np.zeros(len(columns)),
-            np.zeros((6, len(watch.names) + 2 * count)),
+            np.zeros((7, len(watch.names) + 2 * count)),
             np.zeros(4),
             np.zeros((4, scene.inputs.shape[1])),
         )
@@ -508,6 +509,10 @@ class Stepper:
         if moves and rush > 0.0:
             count = 2.0 * np.pi * (speed / rush) ** 0.5 / self.dt
             out.append(("steps in a period of the motion, about", f"{count:.3g}", _enough(count)))
+        if falls := int(self.count[arrays.FALLING]):
+            told = "look: a DT that follows how it gives way, or EXACT"
+            out.append(("steps too long for a branch that falls", str(falls), told))
+        out += [*self._springs(peaks), *blurred(self.laws, peaks, arrays.STILL)]
         ended = [c for c in peaks.collisions if c.t_end > c.t_start]
         hardest = [
             max((c for c in ended if c.law == law), key=lambda c: c.peak) for law in {c.law for c in ended}
@@ -516,6 +521,20 @@ class Stepper:
             count = min(c.t_end - c.t_start for c in hardest) / self.dt
             out.append(("steps in the hardest collision of a contact", f"{count:.3g}", _enough(count)))
         return out
+
+    def _springs(self, peaks: Peaks) -> list[tuple[str, str, str]]:
+        """Whether the steps follow the springs' forces."""
+        steepest = self.x.peak[arrays.STEEPEST, len(self.x.peak[0]) - len(self.laws) :].tolist()
+        rises = [
+            max(abs(f.high), abs(f.low)) / (slope * self.dt)
+            for s, f, slope in zip(self.laws, peaks.force, steepest)
+            if not s.is_contact and slope > 0.0
+        ]
+        count = min(rises, default=np.inf)
+        if count >= 1.0:
+            return []
+        told = "look: 1 at least, by a shorter DT, or EXACT"
+        return [("steps in which a spring's force rises to its largest", f"{count:.2g}", told)]
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""
