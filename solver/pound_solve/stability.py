@@ -8,8 +8,8 @@ Right is the closed form where there is one; else what EXACT finds on a search g
 curved laws, which EXACT does not take, NEWMARK with steps so short that a quarter of them changes nothing.
 Displacements and the springs' forces are compared at all times of output, of contacts the largest force
 (one that a dashpot makes jump has no value at the instant of touch).  The methods that take steps are
-allowed the share that the case names, EXACT `EXACT_WITHIN`.  AUTO is judged by what it promises: its peaks
-by `AUTO_WITHIN`, its histories as those of steps.
+allowed the share that the case names, EXACT and TAYLOR `EXACT_WITHIN`.  AUTO is judged by what it
+promises: its peaks by `AUTO_WITHIN`, its histories as those of steps.
 
 Some answers hang on the last digits of the deck: two motions of a chaotic scene part from each other,
 however close they begin, and a contact that just touches may as well just not.  Where something is off, the
@@ -48,6 +48,7 @@ from pound_solve.study import RESIDUAL
 
 Array = NDArray[np.float64]
 
+STEPLESS: Final = ("EXACT", "TAYLOR")  #: methods without an error but rounding
 EXACT_WITHIN, AUTO_WITHIN = 1e-6, 2e-3  #: errors allowed, as shares of the largest value
 NUDGE: Final = 1e-6  #: share of the error allowed by which masses are changed
 LIMIT: Final = 180.0  #: seconds until a case counts as endless
@@ -217,7 +218,7 @@ class Runner:
 
 def methods() -> list[str]:
     """Names of the catalog's methods, those that need no step first."""
-    return sorted(catalog().family("method"), key=lambda name: (name != "EXACT", name != "AUTO", name))
+    return sorted(catalog().family("method"), key=lambda name: (name not in STEPLESS, name != "AUTO", name))
 
 
 def written(method: str, step: float) -> str:
@@ -279,8 +280,8 @@ def judge(run: Runner, case: Case, method: str) -> Row:
     says = "; ".join(found.looks)
     whole = case.right is None and not case.like[0] and case.compared is every  # all there is is comparable
     within = case.within
-    if method == "EXACT" or (method == "AUTO" and not whole):
-        within = EXACT_WITHIN if method == "EXACT" else AUTO_WITHIN
+    if method in STEPLESS or (method == "AUTO" and not whole):
+        within = EXACT_WITHIN if method in STEPLESS else AUTO_WITHIN
     if case.right is not None:
         offs = {"displacements": (shares(case.compared(found.t, found.u), case.right(found.t)), within)}
     else:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_solve.elements.base import LawSpring
-from pound_solve.laws import State
+from pound_solve.laws import Branch, State
 from pound_solve.modes import massless
 from pound_solve.scene import Scene
 
@@ -313,6 +313,16 @@ class Ledger:
             [0.0] * n,
         )
         self.open: dict[int, Collision] = {}
+
+    def begin(self, scene: Scene, t: float, u: Array, v: Array, branches: Sequence[Branch]) -> None:
+        """Note the contacts that are closed at the start."""
+        ex = scene.excitation
+        d = scene.law_rows @ u + scene.law_inputs @ ex.value(t)
+        rate = scene.law_rows @ v + scene.law_inputs @ ex.value(t, 1)
+        for i, (s, b) in enumerate(zip(self.laws, branches)):
+            if s.is_contact and b.name.startswith("pressed"):
+                x, y = float(d[i]), float(rate[i])
+                self.switched(i, "open", "pressed", t, x, y, b.force(x, y))
 
     def switched(
         self, law: int, before: str, after: str, t: float, d: float, v: float, force_after: float

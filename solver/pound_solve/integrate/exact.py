@@ -136,10 +136,7 @@ class Exact:
 
     def run(self) -> Outcome:
         """Integrate to the last output time."""
-        for i, s in enumerate(self.laws):
-            if s.is_contact and self.branches[i].name.startswith("pressed"):
-                d, v = float(self.scene.law_rows[i] @ self.u), float(self.scene.law_rows[i] @ self.v)
-                self.ledger.switched(i, "open", "pressed", 0.0, d, v, self.branches[i].force(d, v))
+        self.ledger.begin(self.scene, self.t, self.u, self.v, self.branches)
         self._no_overlap()
         self._form()
         goals, self.is_output = goals_of(self.scene, self.times)

@@ -161,7 +161,7 @@ def deform(w: Laws, e: Series, k: int, top: int) -> None:
         e.d[i, k] = d
 
 
-def share(m: Matrices, x: Motion, e: Series, k: int, h: float) -> float:
+def share(m: Matrices, e: Series, k: int, h: float) -> float:
     """Twice the kinetic energy of the term `k`."""
     times(m.m, e.u, k, CC)
     return product(e.u, k, e.u, CC) * (k / h) * (k / h)
@@ -224,7 +224,7 @@ def expand(
         e.u[0, i], e.u[1, i] = x.q[U, i], h * x.q[V, i]
     deform(w, e, 0, top)
     deform(w, e, 1, top)
-    e.step[SPEED] = max(e.step[SPEED], share(m, x, e, 1, h))
+    e.step[SPEED] = max(e.step[SPEED], share(m, e, 1, h))
     most, k, now, last, e.step[CARRIED] = e.step[SPEED], 0, 0.0, 0.0, CHECK
     while k + 2 <= TERMS:
         while True:
@@ -233,9 +233,9 @@ def expand(
             if (k + 1) % CHECK == 0:
                 break
         terms = k + 1
-        now, last = share(m, x, e, terms, h), share(m, x, e, terms - 1, h)
+        now, last = share(m, e, terms, h), share(m, e, terms - 1, h)
         if most == 0.0:  # from rest
-            most = max(share(m, x, e, 2, h), last, now)
+            most = max(share(m, e, 2, h), last, now)
         if now + last > QUIET * most:
             e.step[CARRIED] = terms + CHECK
         if terms > top and now + last <= SMALL * SMALL * most:

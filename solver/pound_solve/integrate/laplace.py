@@ -139,10 +139,7 @@ class Laplace:
 
     def run(self) -> Outcome:
         """Integrate to the last output time."""
-        for i, s in enumerate(self.laws):
-            if s.is_contact and self.branches[i].name.startswith("pressed"):
-                d, v = float(self.scene.law_rows[i] @ self.u), float(self.scene.law_rows[i] @ self.v)
-                self.ledger.switched(i, "open", "pressed", self.t, d, v, self.branches[i].force(d, v))
+        self.ledger.begin(self.scene, self.t, self.u, self.v, self.branches)
         first, end = True, float(self.times[-1])
         while first or end - self.t > 1e-12 * max(1.0, end):
             self._piece(end, first)

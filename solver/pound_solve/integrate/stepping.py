@@ -426,9 +426,9 @@ class Stepper:
         shown, kept = count[arrays.SHOWN], count[arrays.KEPT]
         if shown:
             seen = np.sort(np.concatenate([[self.seen], z.when[:shown], z.works[:kept, 0]]))
-            motion = np.zeros((3, len(back), shown))
+            u, v, a = motion = np.zeros((3, len(back), shown))
             motion[:, self.order[z.which]] = z.shown[:shown].transpose(1, 2, 0)
-            self.sink.between(z.when[:shown].copy(), *motion, float(np.diff(seen).max()))
+            self.sink.between(z.when[:shown].copy(), u, v, a, float(np.diff(seen).max()))
             self.seen = seen[-1]
         if kept:
             t, *works = z.works[:kept].T.copy()
