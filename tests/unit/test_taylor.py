@@ -139,7 +139,7 @@ def test_no_error_gathers_over_thousands_of_periods(every: float, v: float) -> N
     off = r.u[:, 1, 0] - free(r.time, w, 0.0, -1.0, v)
     assert np.abs(off).max() < 2e-11  # 2e4 radians, known to 2e-12
     assert r.check() < 1e-11
-    steps = int(item(r, "steps"))
+    steps = int(item(r, "series"))
     assert w * 2 / 6 < steps < w * 2 / (3 if every < 1 else 4)
 
 

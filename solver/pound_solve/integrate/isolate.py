@@ -99,7 +99,7 @@ def bends(p: Array, terms: int, row: int, noise: float) -> tuple[float, int]:
             continue
         if last == 0.0:
             first = step
-        elif step * last < 0.0:
+        elif (step > 0.0) != (last > 0.0):
             count += 1
         last = step
     return first, count
