@@ -106,3 +106,38 @@ def test_first_rise(terms: list[tuple[float, float, float]], c: float, arcs: int
         assert n == 0 and t[arc, cell] <= at <= t[arc, cell + 1]
         assert abs(f.value(np.array([at]))[0]) < 1e-12 * f.bend
         assert not len(above) or at <= fine[above[0]]
+
+
+@given(
+    st.floats(0.1, 0.4),
+    st.floats(0.6, 0.9),
+    st.floats(0.05, 0.95),
+    st.sampled_from([1.0, -1.0]),
+)
+def test_two_turns_within_one_cell_are_seen(first: float, second: float, share: float, sign: float) -> None:
+    """A cubic that turns at two places between two samples, where its slopes have one sign: the hump
+    rises through zero, its summit and its trough are the peaks.
+    """
+    rate = sign * np.polynomial.Polynomial.fromroots([first, second])
+    shape = rate.integ()
+    top, bottom = sorted((shape(first), shape(second)), reverse=True)
+    ends = shape(np.array([0.0, 1.0]))
+    low = max(ends.max() if sign > 0 else ends[0], bottom)
+    if top - low < 1e-3 or (sign < 0 and ends[1] > top):
+        return
+    g = shape - (low + share * (top - low))  # zero between the ends, or the trough, and the summit
+    t = np.array([[0.0, 1.0]])
+
+    def exact(n: int, arc: int, cell: int, x: float) -> tuple[float, float]:
+        return float(g(x)), float(rate(x))
+
+    value, slope = g(t)[None], rate(t)[None]
+    peak = Extreme()
+    search.widen([peak], 0.0, t, value, slope, exact)
+    assert abs(peak.high - max(g(np.array([0.0, 1.0, first, second])))) < 1e-12
+    assert abs(peak.low - min(g(np.array([0.0, 1.0, first, second])))) < 1e-12
+    if value.max() > 1e-9:
+        return  # it ends above zero: a crossing that samples show
+    found = search.first_rise(t, value.copy(), slope, np.full((1, 1, 1), 1e-12), exact)
+    assert found is not None
+    assert abs(g(found[0])) < 1e-9 and rate(found[0]) > 0.0

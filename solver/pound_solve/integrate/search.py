@@ -16,6 +16,7 @@ from pound_solve.integrate.exits import summit
 Array = NDArray[np.float64]
 #: value and slope of function n in some arc and cell at time t
 Exact = Callable[[int, int, int, float], tuple[float, float]]
+Ends = tuple[float, float, float]  #: a time, and value and slope there
 
 
 def may_rise(g: Array, slope: Array, bend: Array, width: Array) -> NDArray[np.bool_]:
@@ -58,6 +59,20 @@ def may_peak(
     return np.asarray(turns & beyond & (slack > 0.0))
 
 
+def waves(t: Array, value: Array, slope: Array) -> tuple[NDArray[np.bool_], Array]:
+    """Return in which cells functions may turn twice, their slopes having one sign at both ends: where the
+    cubics through both ends do; and where that turns from one to the other, as a time.
+    """
+    width = np.diff(t)
+    s0, s1 = slope[..., :-1], slope[..., 1:]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = np.diff(value) / width
+        a, b = s0 + s1 - 2.0 * mean, 3.0 * mean - 2.0 * s0 - s1
+        at = -b / (3.0 * a)  # where the cubic's slope, s0 + 2 b x + 3 a x^2, is least or largest
+        twice = (s0 * s1 > 0.0) & (at > 0.0) & (at < 1.0) & ((s0 + b * at) * s0 < 0.0)
+    return twice, t[..., :-1] + at * width
+
+
 def first_rise(
     t: Array, g: Array, slope: Array, tol: Array, exact: Exact
 ) -> tuple[float, int, int, int] | None:
@@ -83,10 +98,14 @@ def first_rise(
     g0, g1, s0, s1 = g[..., :-1], g[..., 1:], slope[..., :-1], slope[..., 1:]
     crossed = (g1 > tol) & (g0 <= tol)
     # up and down again within one cell: where the end tangents meet above zero it is looked at closely
-    turn = (s0 > 0) & (s1 < 0) & (g1 <= tol) & (g0 <= tol)
+    below = (g1 <= tol) & (g0 <= tol)
+    turn = (s0 > 0) & (s1 < 0) & below
     if turn.any():
         with np.errstate(divide="ignore", invalid="ignore"):
             turn &= g0 + s0 * ((g1 - g0 - s1 * np.diff(t)) / (s0 - s1)) > tol
+    twice, split = waves(t, g, slope)
+    twice &= below
+    turn |= twice
     for k, j in np.argwhere((crossed | turn).any(axis=0)).tolist():
         best: tuple[float, int] | None = None
         for n in np.flatnonzero(crossed[:, k, j] | turn[:, k, j]).tolist():
@@ -96,7 +115,17 @@ def first_rise(
                 return exact(n, k, j, x)
 
             if not crossed[n, k, j]:
-                top = turning(lambda x, own=own: own(x)[1], low, high, slope[n, k, j], slope[n, k, j + 1])  # type: ignore[misc]
+                start, s_start, s_end = low, float(slope[n, k, j]), float(slope[n, k, j + 1])
+                if twice[n, k, j]:
+                    middle = float(split[n, k, j])
+                    s_middle = own(middle)[1]
+                    if s_middle * s_start >= 0.0:
+                        continue
+                    if s_start > 0.0:
+                        high, s_end = middle, s_middle
+                    else:
+                        start, s_start = middle, s_middle
+                top = turning(lambda x, own=own: own(x)[1], start, high, s_start, s_end)  # type: ignore[misc]
                 if own(top)[0] <= tol[n, 0, 0]:
                     continue
                 high = top
@@ -196,26 +225,38 @@ def widen(peaks: Sequence[Peak], t0: float, t: Array, value: Array, rate: Array,
     count(peaks, t0 + t.ravel(), value.reshape(len(value), -1))
     f0, s0, s1 = value[..., :-1], rate[..., :-1], rate[..., 1:]
     turn = s0 * s1 < 0
-    if not turn.any():
+    twice, split = waves(t, value, rate)
+    if not (turn.any() or twice.any()):
         return
     known = np.array([[peak.high, peak.low] for peak in peaks])[:, :, None, None]
     with np.errstate(divide="ignore", invalid="ignore"):
         # where the end tangents meet bounds the turning point of a smooth arc
         meet = f0 + s0 * (value[..., 1:] - f0 - s1 * np.diff(t)) / (s0 - s1)
     beyond = turn & (((s0 > 0) & (meet > known[:, 0])) | ((s0 < 0) & (meet < known[:, 1])))
-    for i, k, j in np.argwhere(beyond).tolist():
-        sign = 1.0 if s0[i, k, j] > 0 else -1.0
-        best = peaks[i].high if sign > 0 else -peaks[i].low
-        f_low, f_high, s_low, s_high = (
-            sign * float(x) for x in (f0[i, k, j], value[i, k, j + 1], s0[i, k, j], s1[i, k, j])
-        )
-        # the cubic through both ends tells whether it can win; only then is it polished
-        top = summit(f_low, f_high, s_low, s_high, float(t[k, j + 1] - t[k, j]))[1]
-        if top + 0.02 * (top - max(f_low, f_high)) <= best:
-            continue
 
-        def slope(x: float, i: int = i, k: int = k, j: int = j, sign: float = sign) -> float:
+    def polish(i: int, k: int, j: int, low: Ends, high: Ends) -> None:
+        """Count in the turning point between two places, where the slopes differ in sign."""
+        sign = 1.0 if low[2] > 0 else -1.0
+        best = peaks[i].high if sign > 0 else -peaks[i].low
+        f_low, f_high, s_low, s_high = (sign * float(x) for x in (low[1], high[1], low[2], high[2]))
+        # the cubic through both ends tells whether it can win; only then is it polished
+        top = summit(f_low, f_high, s_low, s_high, high[0] - low[0])[1]
+        if top + 0.02 * (top - max(f_low, f_high)) <= best:
+            return
+
+        def slope(x: float) -> float:
             return sign * exact(i, k, j, x)[1]
 
-        at = turning(slope, float(t[k, j]), float(t[k, j + 1]), s_low, s_high)
+        at = turning(slope, low[0], high[0], s_low, s_high)
         peaks[i].take(exact(i, k, j, at)[0], t0 + at)
+
+    for i, k, j in np.argwhere(beyond | twice).tolist():
+        low, high = ((float(t[k, n]), float(value[i, k, n]), float(rate[i, k, n])) for n in (j, j + 1))
+        if not twice[i, k, j]:
+            polish(i, k, j, low, high)
+            continue
+        middle = float(split[i, k, j])
+        between = (middle, *exact(i, k, j, middle))
+        if between[2] * low[2] < 0.0:
+            polish(i, k, j, low, between)
+            polish(i, k, j, between, high)
