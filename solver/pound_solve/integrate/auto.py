@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve import jit
-from pound_solve.integrate import blocks, exact, newmark, taylor
+from pound_solve.integrate import arrays, blocks, exact, newmark, taylor
 from pound_solve.integrate.base import (
     Extreme,
     Keeper,
@@ -42,6 +42,7 @@ from pound_solve.integrate.base import (
     Start,
     Stop,
     Watch,
+    blurred,
     goals,
     not_linear,
     refuse_rigid,
@@ -259,7 +260,8 @@ def to_tolerance(
             f"estimated error of drifts and contact forces, TOL {tol:g}",
             f"{error:.1e}",
             "met" if error <= tol else f"look: not met with {steps} steps, {GIVEN_UP[stale == STALE]}",
-        )
+        ),
+        *blurred(scene.structure.laws, outcome.peaks, arrays.STILL),
     ]
     return outcome
 

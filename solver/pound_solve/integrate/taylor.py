@@ -36,6 +36,7 @@ from pound_solve.integrate.base import (
     Start,
     Stop,
     Watch,
+    blurred,
     goals,
     not_linear,
     refuse_rigid,
@@ -122,7 +123,7 @@ class Taylor(Stepper):
         }
 
     def _checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
-        return []
+        return blurred(self.laws, peaks, arrays.STILL)
 
 
 def rate(scene: Scene) -> float:
