@@ -247,7 +247,8 @@ def reference(run: Runner, case: Case) -> tuple[Found, str, float] | None:
         if found.stop or found.wrong:
             return None
         if len(before.t) and holds(found):
-            changes = [shares(x, y) for x, y in zip(found[1:5], before[1:5])]
+            changes = [shares(found.u, before.u), shares(found.f, before.f)]
+            changes += [off for off, _ in promised(found, before, SETTLED).values()]
             if max(x.max(initial=0.0) for x in changes) <= SETTLED:
                 return found, method, SETTLED
         step, before = step / 4.0, found
