@@ -50,6 +50,7 @@ Array = NDArray[np.float64]
 
 STEPLESS: Final = ("EXACT", "TAYLOR")  #: methods without an error but rounding
 EXACT_WITHIN, AUTO_WITHIN = 1e-6, 2e-3  #: errors allowed, as shares of the largest value
+FASTER: Final = 1.5  #: forces carry more of fast modes than displacements: their share of an error allowed
 NUDGE: Final = 1e-6  #: share of the error allowed by which masses are changed
 LIMIT: Final = 180.0  #: seconds until a case counts as endless
 SETTLED: Final = 1e-3  #: share by which a reference by steps may still change when they are quartered
@@ -323,9 +324,9 @@ def forces(found: Found, right: Found, within: float) -> Offs:
     """How far forces are off, where both runs have the same springs and contacts."""
     out = {}
     if found.f.shape == right.f.shape:
-        out["spring forces"] = shares(found.f, right.f), within
+        out["spring forces"] = shares(found.f, right.f), FASTER * within
     if found.blows.shape == right.blows.shape:
-        out[f"{PEAKS}contact forces"] = parts(found.blows, right.blows, 0.05), within
+        out[f"{PEAKS}contact forces"] = parts(found.blows, right.blows, 0.05), FASTER * within
     return out
 
 
