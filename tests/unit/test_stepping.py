@@ -12,6 +12,7 @@ import pound_solve
 from pound_solve import jit
 from pound_solve.hysteresis import bilinear, imk_bilinear
 from pound_solve.integrate import auto, exact, exits, kernel, ldl, states, stepping
+from pound_solve.integrate.base import Outcome, Peaks, Start, Stop
 
 # two one-bay frames of which the left one yields at its hinges, slabs that meet with a dashpot
 POUNDING = """UNITS kN m s
@@ -691,3 +692,16 @@ def test_the_dashpot_of_a_contact_does_not_hit_a_node_without_mass(tmp_path, met
     peak = results.table("contact_summary")["peak_force"][0]
     u = results.history("node/u")[:, 3, 0]
     assert peak == pytest.approx(40.0 * u.max(), rel=1e-4)
+
+
+def test_auto_gives_up_what_would_cost_too_much():
+    """After a run that stopped: four times its cost, as far as the whole length is beyond the time reached."""
+    figures = {"steps": 1000, "events": 900}  # the cost of 10 000 steps
+    start = Start(np.zeros(1), np.zeros(1), (), np.array([0.0, 1.0, 2.0]))
+    peaks = Peaks([], [], [], [], [])
+    stop = Stop("A503", 0.5, "", Outcome(peaks, figures, ()))
+    limit = auto.MOST / (4.0 * 10_000 * 4.0)
+    assert auto.hopeless(stop, start, 1.001 * limit)
+    assert not auto.hopeless(stop, start, 0.999 * limit)
+    assert auto.hopeless(Stop("A503", 0.0, "", Outcome(peaks, figures, ())), start, 1e-12)
+    assert not auto.hopeless(Stop("A503", 0.0, ""), start, 1.0)

@@ -53,6 +53,7 @@ from pound_solve.scene import Decision, Scene
 Array = NDArray[np.float64]
 
 MOST_STEPS = 50_000_000  #: of one run
+MOST = 20.0  #: cost up to which a run is tried after one that came to a stop
 STALE = 4  #: runs in a row that do not halve the error, after which shorter steps are given up
 MARGIN = 0.6  #: of the tolerance that the next step aims at
 FREE = 1.0  #: what EXACT may cost before steps are thought of: loading their kernels costs as much
@@ -70,6 +71,16 @@ def stepped(scene: Scene) -> Decision:
     """Why steps were taken."""
     reason = not_linear(scene) or "EXACT would cost more, for all its unknowns or changes of stiffness"
     return Decision("method", "NEWMARK", f"{reason}; steps are shortened until the peaks stand still")
+
+
+def hopeless(stop: Stop, start: Start, each: float) -> bool:
+    """Whether a run with a quarter of the steps that came to a stop would cost more than `MOST`; a step
+    costs `each`.
+    """
+    begin, *_, end = start.times
+    done = stop.outcome.figures if stop.outcome else {"steps": 0, "events": 0}
+    spent = each * (done["steps"] + EVENT * done["events"])
+    return bool(4.0 * spent * (end - begin) > MOST * (stop.t - begin))
 
 
 GIVEN_UP = ("the most that are tried", "nor nearer than with far fewer")  #: why no shorter steps are tried
@@ -228,7 +239,7 @@ def to_tolerance(
         except Stop as stop:
             # too coarse to go on says nothing of the structure; growth may, if a finer step grows too
             coarse = stop.code == "A503" or (stop.code == "A504" and before is None)
-            if coarse and h > 1e-6 * length:
+            if coarse and h > 1e-6 * length and not hopeless(stop, start, each):
                 h, before = 0.25 * h, None
                 aim = h
                 events = max(events, stop.outcome.figures["events"] if stop.outcome else 0)
