@@ -695,7 +695,7 @@ def test_the_dashpot_of_a_contact_does_not_hit_a_node_without_mass(tmp_path, met
 
 
 def test_auto_gives_up_what_would_cost_too_much():
-    """After a run that stopped: four times its cost, as far as the whole length is beyond the time reached."""
+    """After a run that stopped: four times its cost for the time that it reached, over the whole length."""
     figures = {"steps": 1000, "events": 900}  # the cost of 10 000 steps
     start = Start(np.zeros(1), np.zeros(1), (), np.array([0.0, 1.0, 2.0]))
     peaks = Peaks([], [], [], [], [])
