@@ -57,6 +57,7 @@ MOST = 20.0  #: cost up to which a run is tried after one that came to a stop
 STALE = 4  #: runs in a row that do not halve the error, after which shorter steps are given up
 MARGIN = 0.6  #: of the tolerance that the next step aims at
 FREE = 1.0  #: what EXACT may cost before steps are thought of: loading their kernels costs as much
+LOADING = 0.1  #: what it costs to load the kernels of steps beside those of TAYLOR
 TRIAL = 0.3  #: share of that after which it is seen whether it comes to more than TAYLOR
 HANDFUL = 8  #: combinations of stiffnesses of all unknowns together that a run is taken to meet
 FEW = 24  #: combinations of stiffnesses that it may meet by then: where they do not return, more will come
@@ -140,9 +141,13 @@ def cost_of_radian(scene: Scene) -> float:
     return taylor.cost_of_radian(scene) if has_series(scene) else RADIAN * cost_of_step(scene)
 
 
-def cost_of_series(scene: Scene, length: float) -> float:
-    """Cost of TAYLOR for a time; infinite where it cannot be taken."""
-    return length * taylor.rate(scene) * taylor.cost_of_radian(scene) if has_series(scene) else np.inf
+def cost_of_series(scene: Scene, start: Start) -> float:
+    """Cost of TAYLOR; infinite where it cannot be taken."""
+    if not has_series(scene):
+        return np.inf
+    count = taylor.RADIANS * len(goals(scene, start.times)[0])  # each is the end of a step
+    length = float(start.times[-1] - start.times[0])
+    return taylor.cost_of_radian(scene) * (length * taylor.rate(scene) + count)
 
 
 class Rival:
@@ -160,7 +165,7 @@ class Rival:
         regimes; None where it does not.  Another method costs `other`.
         """
         count = min(1 + len(self.scene.structure.laws), HANDFUL)
-        if count * blocks.MODES * self.scene.size**3 > FREE + other:
+        if count * blocks.cost_of_regime(self.scene.size) > FREE + other:
             return None
         trial = FREE * (TRIAL if np.isfinite(other) else 1.0)
         return self.run(FREE, {"REGIMES": FEW, "PER_RADIAN": cost_of_radian(self.scene), "TRIAL": trial})
@@ -227,7 +232,7 @@ def to_tolerance(
     runs, error, events = 0, np.inf, 0
     best, stale = np.inf, 0
     while True:
-        if series <= each * (length / aim + EVENT * events):
+        if series <= max(LOADING, each * (length / aim + EVENT * events)):
             why = "all laws are piecewise linear, and it costs less than steps: no time step is needed"
             scene.decisions.append(Decision("method", "TAYLOR", why))
             return taylor.integrate(scene, start, watch, {}, sink)
@@ -287,7 +292,7 @@ def integrate(
         scene.decisions.append(Decision("method", "EXACT", "rigid contacts: no other method knows them"))
         return exact.integrate(scene, start, watch, {}, sink)
     rival = Rival(scene, start, watch, sink)
-    series = cost_of_series(scene, float(start.times[-1] - start.times[0]))
+    series = cost_of_series(scene, start)
     return rival.first(series) or to_tolerance(scene, start, watch, options, sink, rival, series)
 
 

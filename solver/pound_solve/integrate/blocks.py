@@ -27,6 +27,11 @@ REGIME, PRODUCTS, MODES = 8e-4, 1.5e-6, 8e-9
 SMALL = 128  #: modes that blocks put together may have
 
 
+def cost_of_regime(n: int) -> float:
+    """Cost of a new combination of stiffnesses of `n` unknowns."""
+    return REGIME + PRODUCTS * n**2 + MODES * n**3
+
+
 @dataclass(frozen=True)
 class Reactions:
     """Forces of the rigid contacts that a block holds closed: ``on_q q + on_p p + on_rate p'``.
@@ -234,7 +239,7 @@ class Partition:
                 *((int(i), branches[i].stiffness, branches[i].damping, branches[i].held) for i in laws),
             )
             if key not in self.regimes:
-                spend(REGIME + PRODUCTS * len(index) ** 2 + MODES * len(index) ** 3)
+                spend(cost_of_regime(len(index)))
                 self.regimes[key] = self._regime(index, laws, branches)
             own = [branches[i].force0 for i in laws]
             found.append((key, scene.constant[index] - scene.law_rows[np.ix_(laws, index)].T @ own))
