@@ -51,7 +51,7 @@ def on(c: Array, s: Array | float) -> Array:
 
 def noise(c: Array) -> float:
     """What values in [0, 1] may be off by rounding."""
-    return 40 * EPS * float(np.abs(c).sum())
+    return 40 * EPS * float(np.abs(c).sum()) + 1e-300
 
 
 #: motions as they come: a few radians of some modes
