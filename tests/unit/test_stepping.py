@@ -295,7 +295,8 @@ def test_full_matrices_have_an_end(tmp_path, monkeypatch):
         assert found.status == "stopped" and "A505" in found.message
         assert "unknowns are too many" in found.message and "NEWMARK" in found.message
     found = run(tmp_path, "AUTO TOL=1e-2", "")
-    assert found.status == "done" and dict(found.table("run").tolist())["method"][:6] in ("TAYLOR", "NEWMAR")
+    took = dict(found.table("run").tolist())["method"].split(",")[0]
+    assert found.status == "done" and took in ("TAYLOR", "NEWMARK")
 
 
 @pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
