@@ -1,4 +1,4 @@
-"""What a run costs against the size of its scene, and where AUTO goes over from EXACT to steps.
+"""What a run costs against the size of its scene, and where AUTO goes over from EXACT to other methods.
 
     python benchmarks/scale.py                              # all; some eight minutes
     python benchmarks/scale.py growth --only contacts
@@ -33,6 +33,7 @@ EXAMPLES = HERE.parent / "examples"
 TOL = 1e-3
 WITHIN = 1.2  #: AUTO may cost so many times the best
 ROUNDS, LONG = 4, 2.0  #: rounds, of which the first warms up; after so many seconds in all there is none
+LIMIT = 60.0  #: seconds that a process may take
 FITTED = 3  #: sizes that an exponent is fitted to, at most
 
 
@@ -188,7 +189,10 @@ def process(path, params, method, tol, barred=False):
     best = None
     for _ in range(3):
         before = os.times()
-        done = subprocess.run(command, capture_output=True, text=True)
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT)
+        except subprocess.TimeoutExpired:
+            return best
         after = os.times()
         if done.returncode:
             return None
