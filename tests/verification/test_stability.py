@@ -108,7 +108,7 @@ def compared(method, off=RIGHT_RUN, nudged=RIGHT_RUN):
         ("NEWMARK", {"f": 1.05 * LINE[:, None]}, stability.RIGHT),
         ("NEWMARK", {"f": 1.2 * LINE[:, None]}, stability.FAULT),
         ("NEWMARK", {"blows": np.array([2.0, 2e-3])}, stability.RIGHT),  # a touch, beside the other
-        ("NEWMARK", {"blows": np.array([2.3, 1e-3])}, stability.FAULT),
+        ("NEWMARK", {"blows": np.array([2.4, 1e-3])}, stability.FAULT),
         ("NEWMARK", {"swings": np.array([[1.01, 0.0]])}, stability.RIGHT),
         ("AUTO", {"swings": np.array([[1.01, 0.0]])}, stability.FAULT),
         ("AUTO", {"blows": np.array([2.01, 1e-3])}, stability.FAULT),
