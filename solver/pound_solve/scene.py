@@ -88,17 +88,21 @@ class Excitation:
         """`piece` at several times, shape (n_times,)."""
         return np.clip(np.searchsorted(self.breaks, t, side="right") - 1, 0, len(self.coefs) - 1)
 
+    def pieces_after(self, t: Array) -> NDArray[np.intp]:
+        """Indices of the pieces that begin at some times or before, shape (n_times,); a hair after them:
+        rounding never puts us on the one that has just ended.
+        """
+        return self.pieces(t + 1e-13 * np.maximum(1.0, t))
+
     def local(self, piece: int, t: float) -> Array:
         """Coefficients about `t`, shape (degree + 1, n_inputs)."""
         return polynomial.shift(self.coefs[piece], t - float(self.breaks[piece]))
 
     def about(self, t: Array) -> Array:
-        """Coefficients about each of several times, each on the piece that begins there or before
-        (a hair after it: rounding never puts us on the one that has just ended),
+        """Coefficients about each of several times, each on the piece that begins there or before,
         shape (n_times, degree + 1, n_inputs).
         """
-        after = t + 1e-13 * np.maximum(1.0, t)
-        i = np.clip(np.searchsorted(self.breaks, after, side="right") - 1, 0, len(self.coefs) - 1)
+        i = self.pieces_after(t)
         own, since = self.coefs[i], t - self.breaks[i]
         if not since.any():
             return own

@@ -17,12 +17,12 @@ Index = NDArray[np.int64]
 DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON = range(7)
 #: integers of `count`
 GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST, SINCE, SHOWN, STALE, FALLING = range(12)
-STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 BACK = 1e-6  #: share of its largest rate that a law must move back with before it counts as turned
 NEAR = 1e-6  #: share of its largest value within which an exit is taken where it cannot be met better
 CLOSE = 1e-9  #: share of a step within which two events are at one instant
 SHOWS = 4  #: steps between two outputs, at most, that the envelopes see
-PAUSE = 100_000  #: steps after which Python may look whether the user wants to stop
+#: steps, and steps times unknowns, after which Python may look whether the user wants to stop
+PAUSE, BUSY = 100_000, 10_000_000
 FIRST = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
 INSTANT = 1e-6  #: share of the longest step that the time which tells massless velocities keeps below
 DELAY = 1e-8  #: share of the longest C / K among massless unknowns that it is

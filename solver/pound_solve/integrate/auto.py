@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve import jit
-from pound_solve.integrate import arrays, blocks, exact, newmark, taylor
+from pound_solve.integrate import blocks, exact, newmark, taylor
 from pound_solve.integrate.base import (
     Extreme,
     Keeper,
@@ -277,7 +277,7 @@ def to_tolerance(
             f"{error:.1e}",
             "met" if error <= tol else f"look: not met with {steps} steps, {GIVEN_UP[stale == STALE]}",
         ),
-        *blurred(scene.structure.laws, outcome.peaks, arrays.STILL),
+        *blurred(scene.structure.laws, outcome.peaks),
     ]
     return outcome
 

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 ENERGIES = ("input", "kinetic", "strain", "damping", "hysteretic", "contact")
 
 
+STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 SHARP = 1e-2  #: share of a spring's largest force that rounding may make
 RUNAWAY = "the motion grows without bound: its energy {:.3g} is far above what was put in"
 CHATTER = "{} changes at one instant, the last in element {} ({}) to {!r}: try NEWMARK EVENTS=STEPPED"
@@ -271,7 +272,7 @@ def light(scene: Scene) -> NDArray[np.bool_]:
     return np.asarray((scene.law_rows[:, massless(scene.mass)] != 0.0).any(axis=1))
 
 
-def blurred(laws: Sequence[LawSpring], peaks: Peaks, still: float) -> list[tuple[str, str, str]]:
+def blurred(laws: Sequence[LawSpring], peaks: Peaks, still: float = STILL) -> list[tuple[str, str, str]]:
     """Check whether springs are so stiff that their force is lost in the last digits of their deformation,
     of which a share `still` of the largest cannot be told from none.
     """

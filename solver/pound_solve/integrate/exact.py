@@ -38,6 +38,7 @@ from pound_solve.integrate.base import (
     CHATTER,
     INTERRUPTED,
     RUNAWAY,
+    STILL,
     LawValues,
     Ledger,
     Outcome,
@@ -73,7 +74,6 @@ GRID = 1.0  #: grid interval times the fastest eigenvalue
 MOST_OPEN = 256  #: intervals whose work is put off
 MOST_SEEN = 2**19  #: displacements between the samples that wait for the sink
 EACH = 4  #: grid points from one that envelopes of nodes and members are taken at to the next
-STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 # what it costs, in seconds of some machine: counted, not measured, so that a choice by it repeats
 WINDOW, POINT = 1.3e-3, 2e-8  #: a window; each of its grid points times each unknown
 SEEN = 5e-8  #: each point for the envelopes times each unknown that they look at
@@ -544,7 +544,7 @@ class Exact:
         if any(isinstance(f, SeriesFlow) for f in flows):
             checks.append(("defective modes, integrated by the exponential series", "present", "good"))
         peaks = self.ledger.close()
-        checks += blurred(self.scene.structure.laws, peaks, STILL)
+        checks += blurred(self.scene.structure.laws, peaks)
         return Outcome(peaks, figures, tuple(self.states), checks, exact=True)
 
     def stop(self, code: str, why: str) -> Stop:

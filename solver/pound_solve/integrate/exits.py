@@ -15,11 +15,11 @@ from pound_solve.integrate.arrays import (
     MOST_D,
     MOST_V,
     N_EXITS,
-    STILL,
     A,
     Laws,
     Motion,
 )
+from pound_solve.integrate.base import STILL
 from pound_solve.integrate.states import along
 
 

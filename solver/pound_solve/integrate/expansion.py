@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from pound_solve.integrate.arrays import (
     A1,
     AT,
+    BUSY,
     CHATTER,
     CONTACT,
     CV,
@@ -53,7 +54,6 @@ from pound_solve.integrate.arrays import (
     SHOWN,
     STEP,
     STEPS,
-    STILL,
     T_HIGH,
     T_LOW,
     T_PEAK,
@@ -72,6 +72,7 @@ from pound_solve.integrate.arrays import (
     V,
     Y,
 )
+from pound_solve.integrate.base import STILL
 from pound_solve.integrate.isolate import POLYNOMIAL, first_rise, highest, size
 from pound_solve.integrate.kernel import power, sample, settle, write
 from pound_solve.integrate.ldl import solve
@@ -531,7 +532,7 @@ def march(
     goals: Array, outputs: NDArray[np.bool_], pieces: Index, count: Index, clock: Array,
 ) -> int:  # fmt: skip
     """Integrate to the last goal, or until Python must look at something (see `kernel.advance`)."""
-    pause = count[STEPS] + PAUSE
+    pause = count[STEPS] + min(PAUSE, 1 + BUSY // (1 + x.q.shape[1]))
     while count[GOAL] < len(goals):
         goal = count[GOAL]
         begin = breaks[pieces[goal]]

@@ -159,7 +159,8 @@ def first_rise(p: Array, terms: int, end: float, tol: float) -> float:
     """First place before `end`, which is 1 at most, where the polynomial in row 0 rises through zero, to
     above `tol`; -1 if there is none.
 
-    A value above zero at 0 counts as rounding there: if it rises from it, then at once.
+    A value above zero at 0 counts as rounding there, and is set to zero in row 0: if it rises from it, then
+    at once.
     """
     far = size(p, POLYNOMIAL, terms)
     if p[POLYNOMIAL, 0] + far <= tol:

@@ -29,6 +29,7 @@ from pound_solve.integrate.arrays import (
     AHEAD,
     AT,
     BASE,
+    BUSY,
     CA,
     CA1,
     CHATTER,
@@ -86,7 +87,6 @@ from pound_solve.integrate.arrays import (
     STEEPEST,
     STEP,
     STEPS,
-    STILL,
     T_HIGH,
     T_LOW,
     T_PEAK,
@@ -112,6 +112,7 @@ from pound_solve.integrate.arrays import (
     W,
     Y,
 )
+from pound_solve.integrate.base import STILL
 from pound_solve.integrate.exits import behind, between, excess, first_exit, summit
 from pound_solve.integrate.ldl import factor, solve, update
 from pound_solve.integrate.states import (
@@ -991,7 +992,7 @@ def advance(
     clock : ndarray, shape (4,)
         Time, length that the factor at hand is for, energy at the start, longest piece for now.
     """
-    room, pause = len(z.log) // 2, count[STEPS] + PAUSE
+    room, pause = len(z.log) // 2, count[STEPS] + min(PAUSE, 1 + BUSY // (1 + x.q.shape[1]))
     while count[GOAL] < len(goals):
         goal = count[GOAL]
         h = lengths[goal]

@@ -69,7 +69,7 @@ Complex = NDArray[np.complex128]
 STARTS = 5  #: highest derivative at the start that is taken off
 DAMPING = 24.0  #: alpha times the window: 1e-10 in its first half
 TOGETHER = 64  #: pieces of the excitation that are transformed at once
-STILL = 1e-10  #: share of its largest value below which an exit counts as not reached
+STILL = 1e-10  #: as that of `base`; the transforms have ten digits
 
 
 def hermite(h: float, x: float, f: Array, slope: Array) -> tuple[Array, Array]:

@@ -392,8 +392,7 @@ class Stepper:
         output = np.concatenate([[0], np.cumsum(is_output)[:-1]])
         shows = -(-np.bincount(output, steps).astype(np.int64) // (arrays.SHOWS + 1))[output]
         ex = scene.excitation
-        begin = ends - lengths
-        pieces = ex.pieces(begin + 1e-13 * np.maximum(1.0, begin)).astype(np.int64)
+        pieces = ex.pieces_after(ends - lengths)
         coefs = np.ascontiguousarray(ex.coefs)
         self._loop(
             kernel.advance, m, w, x, z, self.tables, self.scheme, coefs, ex.breaks, ends, steps, h,
@@ -512,7 +511,7 @@ class Stepper:
         if falls := int(self.count[arrays.FALLING]):
             told = "look: a DT that follows how it gives way, or EXACT"
             out.append(("steps too long for a branch that falls", str(falls), told))
-        out += [*self._springs(peaks), *blurred(self.laws, peaks, arrays.STILL)]
+        out += [*self._springs(peaks), *blurred(self.laws, peaks)]
         ended = [c for c in peaks.collisions if c.t_end > c.t_start]
         hardest = [
             max((c for c in ended if c.law == law), key=lambda c: c.peak) for law in {c.law for c in ended}

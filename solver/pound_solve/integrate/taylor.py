@@ -84,8 +84,7 @@ class Taylor(Stepper):
         self._begin(expansion.march)
         ex = self.scene.excitation
         ends, is_output = goals(self.scene, self.times)
-        begin = np.append(self.times[0], ends[:-1])
-        pieces = ex.pieces(begin + 1e-13 * np.maximum(1.0, begin)).astype(np.int64)
+        pieces = ex.pieces_after(np.append(self.times[0], ends[:-1]))
         self._loop(
             expansion.march, self.matrices, self.w, self.x, self.z, self.tables, self.series,
             np.ascontiguousarray(ex.coefs), ex.breaks, ends, is_output, pieces, self.count, self.clock,
@@ -123,7 +122,7 @@ class Taylor(Stepper):
         }
 
     def _checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
-        return blurred(self.laws, peaks, arrays.STILL)
+        return blurred(self.laws, peaks)
 
 
 def rate(scene: Scene) -> float:
