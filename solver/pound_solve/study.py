@@ -32,7 +32,7 @@ KINDS: Final = ("drift", "member", "contact")  #: of extremes, in the order of t
 MARGIN: Final = 5.0  #: errors of another record may be that much larger than those of this one
 ORDER: Final = 2  #: of every stepping method
 HALVINGS: Final = 16  #: of the first step, at most
-NOISY: Final = 0.25  #: spread of repeats above which times are not to be trusted
+NOISY: Final = 0.25  #: share that times may differ by and be alike; repeats that differ by more are noise
 SHORT: Final = 0.01  #: a spread is not looked at below this time [s]
 TOO_LONG: Final = "takes longer than --longest"
 RESIDUAL: Final = "largest energy residual over the largest energy"  #: row of the table `checks`
@@ -457,7 +457,7 @@ def order(coarse: Trial, fine: Trial) -> float:
 
 
 def advise(trials: Sequence[Trial], reference: Reference) -> tuple[Advice, ...]:
-    """The trial of least time for each target.
+    """The trial of least time for each target; of several that take as long, the one of least error.
 
     The error that is allowed for is `MARGIN` times the largest of the trial's own and of what its two
     neighbours in the ladder make of it by the order of the method, so that no zero crossing of an error is
@@ -466,12 +466,10 @@ def advise(trials: Sequence[Trial], reference: Reference) -> tuple[Advice, ...]:
     """
     out = []
     for target in TARGETS:
-        fit = [
-            (t.time, n, t, sure)
-            for n, (t, sure) in enumerate(zip(trials, allowed(trials, reference)))
-            if sure <= target
-        ]
-        out.append(Advice(target, *min(fit)[2:]) if fit else Advice(target))
+        fit = [(t, sure) for t, sure in zip(trials, allowed(trials, reference)) if sure <= target]
+        longest = (1.0 + NOISY) * min((t.time for t, _ in fit), default=0.0)
+        alike = [(sure, t.time, n) for n, (t, sure) in enumerate(fit) if t.time <= longest]
+        out.append(Advice(target, *fit[min(alike)[2]]) if fit else Advice(target))
     return tuple(out)
 
 

@@ -128,6 +128,11 @@ def test_advice_takes_the_least_time_that_meets_the_target():
     assert (one.trial, tenth.trial, fine.trial) == (trials[1], trials[0], trials[0])
     assert str(one).startswith("1 %: NEWMARK DT=0.01") and str(fine).startswith("1e-6: EXACT")
     assert study.advise(trials[1:], EXACTLY)[2].trial is None
+    # a fifth of the time more is no reason to take the larger error
+    alike = [trial(0, 0.0, 0.12, "EXACT"), *trials[1:]]
+    assert study.advise(alike, EXACTLY)[0].trial == alike[0]
+    apart = [trial(0, 0.0, 0.13, "EXACT"), *trials[1:]]
+    assert study.advise(apart, EXACTLY)[0].trial == apart[1]
 
 
 def test_no_step_is_named_where_no_contact_closed(tmp_path):
