@@ -211,6 +211,10 @@ def _run(args: argparse.Namespace) -> int:
         return app.MISTAKES
     except ResultsError as err:
         return _complain(str(err))
+    except Exception:
+        if progress.interrupted:  # a library swallowed it, and could not go on
+            raise KeyboardInterrupt from None
+        raise
     progress.end()
     if ready.warnings and not args.quiet:
         print(render(ready.warnings, ready.files), file=sys.stderr)

@@ -20,7 +20,7 @@ from pound_solve.analyses.path import Unstable
 from pound_solve.assemble import Structure
 from pound_solve.diaphragms import meetings
 from pound_solve.forces.base import Force
-from pound_solve.integrate.base import ENERGIES, Outcome, Peaks, Stop
+from pound_solve.integrate.base import ENERGIES, INTERRUPTED, Outcome, Peaks, Stop
 from pound_solve.motions.base import Motion
 from pound_solve.results import Layout, Writer
 
@@ -122,6 +122,8 @@ class Course:
             return f"A505 {err}"
         except Stop as err:
             return f"{err.code} at t = {err.t:.9g} {self.model.units.time}: {err}"
+        except KeyboardInterrupt:
+            return f"A506 {doing}: {INTERRUPTED}"
         finally:
             self._figures()
         return ""
@@ -282,6 +284,8 @@ class Course:
         except Stop as err:
             stop = err
             parts += [err.outcome] if err.outcome is not None else []
+        except KeyboardInterrupt:  # before a method took its first step, or between two
+            stop = Stop("A506", max(recorder.reached, 0.0), INTERRUPTED)
         self.solve_seconds += time.perf_counter() - began
         self.cpu_seconds += time.process_time() - used
         recorder.flush()

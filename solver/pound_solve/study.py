@@ -280,11 +280,11 @@ class _Bench:
         out: list[Trial] = []
         for dt in self.plan.steps or [self.first / 2**k for k in range(HALVINGS)]:
             trial = self.trial(method, DT=dt)
-            if out and trial.steps and trial.steps == out[-1].steps:
-                continue  # the record and the output times ask for more steps than DT
             if self.plan.steps:
                 out.append(trial)
                 continue
+            if out and trial.steps and trial.steps == out[-1].steps:
+                continue  # the record and the output times ask for more steps than DT
             if out and out[-1].stopped and trial.stopped:
                 out.pop()  # the finest of those that stop tells enough
             out.append(trial)

@@ -195,6 +195,41 @@ def test_auto_gives_up_where_shorter_steps_bring_nothing(tmp_path, monkeypatch):
     assert float(check["value"]) > 1e-2 and found.status == "done"
 
 
+def test_auto_keeps_its_last_whole_run_when_it_is_interrupted(tmp_path, monkeypatch):
+    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
+    runs = []
+
+    class Interrupted(auto.Replay):
+        def __init__(self, sink):
+            super().__init__(sink)
+            runs.append(self)
+
+        def sample(self, t, *motion):
+            if len(runs) == 3 and t[-1] > 0.5:
+                raise KeyboardInterrupt
+            super().sample(t, *motion)
+
+    monkeypatch.setattr(auto, "Replay", Interrupted)
+    found = run(tmp_path, "AUTO TOL=1e-6")
+    assert len(runs) == 3 and found.status == "stopped" and found.message.startswith("A506 at t = ")
+    second = np.concatenate([told[1][:, -1] for told in runs[1].told[-1:]])
+    assert found.time[-1] == runs[1].told[-1][0][-1] > 0.5
+    assert np.abs(found.history("node/u")[-1]).max() == pytest.approx(np.abs(second).max(), rel=1e-12)
+    (check,) = [c for c in found.table("checks") if "estimated error" in c["check"]]
+    assert check["verdict"].startswith("look: not met") and check["verdict"].endswith("interrupted")
+    assert found.table("contact_summary")["closures"][0] >= 1
+
+
+def test_an_interrupt_between_two_runs_ends_with_a_report(tmp_path, monkeypatch):
+    def interrupt(*given):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
+    monkeypatch.setattr(auto, "figures", interrupt)
+    found = run(tmp_path, "AUTO TOL=1e-3")
+    assert found.status == "stopped" and found.message.startswith("A506 at t = 0 s: interrupted")
+
+
 @pytest.mark.parametrize("few", [0, 3, 10**6])
 def test_auto_takes_one_way_and_the_same_again(tmp_path, monkeypatch, few):
     """EXACT given up at once, on its way, or never: one method is named, and all figures return."""

@@ -367,6 +367,11 @@ class Recorder:
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take some samples (see `integrate.base.Sink`)."""
+        self.keep(t, u, v, a, laws, works)
+        self._progress(self.reached, "")
+
+    def keep(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take some samples whose progress was told before (see `integrate.base.Keeper`)."""
         new = t > self.reached  # but not the start of a part, where another ended
         if not new.any():
             return
@@ -374,7 +379,6 @@ class Recorder:
         self._blocks.append(block if new.all() else tuple(x[..., new] for x in block))
         self.last = u[:, -1], v[:, -1], works[:, -1]
         self.reached = float(t[-1])
-        self._progress(self.reached, "")
         if sum(len(x[0]) for x in self._blocks) >= self._most:
             self.flush()
 

@@ -11,7 +11,7 @@ were of first order only.  It is of second order, so that the estimate errs on t
 What TAYLOR costs is known beforehand, which of the others pays shows on the way.  Where few laws change
 stiffness, and a handful of decompositions does not cost more than TAYLOR, EXACT may begin with a little;
 if that does not last, TAYLOR takes over where it costs no more than the runs by steps to come, and before
-every such run EXACT may go as far as that run's cost, if by what it has shown it would get to the end.
+every such run EXACT may spend as much as these, if by what it has shown it would get to the end.
 Costs are counted from windows, decompositions, steps and unknowns, and not measured, so that a deck takes
 the same way whenever it is run.
 
@@ -34,6 +34,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve import jit
 from pound_solve.integrate import blocks, exact, newmark, taylor
 from pound_solve.integrate.base import (
+    INTERRUPTED,
     Extreme,
     Keeper,
     LawValues,
@@ -58,10 +59,14 @@ STALE = 4  #: runs in a row that do not halve the error, after which shorter ste
 MARGIN = 0.6  #: of the tolerance that the next step aims at
 FREE = 1.0  #: what EXACT may cost before steps are thought of: loading their kernels costs as much
 LOADING = 0.1  #: what it costs to load the kernels of steps beside those of TAYLOR
-TRIAL = 0.3  #: share of that after which it is seen whether it comes to more than TAYLOR
+TRIAL = 0.3  #: share of that after which it is seen whether it comes to more than that, or than TAYLOR
 HANDFUL = 8  #: combinations of stiffnesses of all unknowns together that a run is taken to meet
-FEW = 24  #: combinations of stiffnesses that it may meet by then: where they do not return, more will come
-MANY = 12  #: laws; with more, EXACT is taken to cost more than that: combinations seldom return
+#: combinations of stiffnesses that it may meet by then (where they do not return, more will come), and laws
+#: from which on it is taken to meet more (combinations seldom return), both for the tolerance USUAL: the
+#: steps that a smaller one asks for are more as its root
+FEW, MANY, USUAL = 24, 12, 1e-3
+AHEAD = 4.0  #: times the cost of the next run by steps that EXACT may spend where shorter ones are to come
+TASTE = 0.1  #: share of that after which it is seen whether it will do
 RADIAN = 5  #: steps of NEWMARK that it takes to follow the fastest mode through a radian
 STEP, EACH = 3e-7, 2.5e-8  #: cost of a step and of each of its unknowns, of a law twice, as `exact.WINDOW`
 EVENT = 10  #: steps that a located event costs as much as
@@ -88,7 +93,7 @@ GIVEN_UP = ("the most that are tried", "nor nearer than with far fewer")  #: why
 
 
 class Replay:
-    """Keeps what a run tells its sink, to hand it on if it is the last; knows the extremes of u.
+    """Keeps what a run tells its sink, to hand it on if it is the one that counts; knows the extremes of u.
 
     Of what is between the samples only the envelopes are kept.
     """
@@ -123,7 +128,7 @@ class Replay:
         """Tell the sink all of it."""
         self.sink.survey.widen(self.survey)
         for what in self.told:
-            self.sink.sample(*what)
+            self.sink.keep(*what)
 
 
 def cost_of_step(scene: Scene) -> float:
@@ -153,10 +158,11 @@ def cost_of_series(scene: Scene, start: Start) -> float:
 class Rival:
     """EXACT, tried for no more than a cost."""
 
-    def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Keeper) -> None:
+    def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Keeper, tol: float) -> None:
         self.scene, self.start, self.watch, self.sink = scene, start, watch, sink
+        self.ease = max(USUAL / tol, 1.0) ** 0.5
         # least cost of the whole run, so far as known
-        self.whole = FREE if len(scene.structure.laws) > MANY else 0.0
+        self.whole = FREE if len(scene.structure.laws) > self.ease * MANY else 0.0
         if not_linear(scene) or scene.size > exact.MOST_UNKNOWNS:
             self.whole = np.inf
 
@@ -167,17 +173,17 @@ class Rival:
         count = min(1 + len(self.scene.structure.laws), HANDFUL)
         if count * blocks.cost_of_regime(self.scene.size) > FREE + other:
             return None
-        trial = FREE * (TRIAL if np.isfinite(other) else 1.0)
-        return self.run(FREE, {"REGIMES": FEW, "PER_RADIAN": cost_of_radian(self.scene), "TRIAL": trial})
+        limits = {"REGIMES": self.ease * FEW, "PER_RADIAN": cost_of_radian(self.scene)}
+        return self.run(FREE, {**limits, "TRIAL": TRIAL * FREE})
 
-    def run(self, cost: float, limits: Mapping[str, float] | None = None) -> Outcome | None:
+    def run(self, cost: float, limits: Mapping[str, float]) -> Outcome | None:
         """Its run, if that costs no more and keeps the limits (see `exact.integrate`); else None."""
         if self.whole >= cost:
             return None
         replay, decisions = Replay(self.sink), self.scene.decisions
-        known, limits = len(decisions), {"COST": cost, **(limits or {})}
+        known = len(decisions)
         try:
-            outcome = exact.integrate(self.scene, self.start, self.watch, limits, replay)
+            outcome = exact.integrate(self.scene, self.start, self.watch, {"COST": cost, **limits}, replay)
         except exact.CostlyError as err:
             del decisions[known:]
             begin, *_, end = self.start.times
@@ -231,12 +237,14 @@ def to_tolerance(
     before: tuple[int, Array] | None = None
     runs, error, events = 0, np.inf, 0
     best, stale = np.inf, 0
+    done: tuple[Outcome, Replay] | None = None  # the last run that came to its end
     while True:
         if series <= max(LOADING, each * (length / aim + EVENT * events)):
             why = "all laws are piecewise linear, and it costs less than steps: no time step is needed"
             scene.decisions.append(Decision("method", "TAYLOR", why))
             return taylor.integrate(scene, start, watch, {}, sink)
-        if (exactly := rival.run(each * (length / h + EVENT * events))) is not None:
+        budget = each * (min(length / aim, AHEAD * length / h) + EVENT * events)
+        if (exactly := rival.run(budget, {"TRIAL": TASTE * budget})) is not None:
             return exactly
         replay = Replay(sink)
         try:
@@ -250,8 +258,12 @@ def to_tolerance(
                 events = max(events, stop.outcome.figures["events"] if stop.outcome else 0)
                 continue
             scene.decisions.append(stepped(scene))
+            if stop.code == "A506" and done is not None:
+                outcome, replay = done
+                stop = Stop("A506", float(start.times[-1]), INTERRUPTED, outcome)
+                outcome.checks = judged(scene, outcome, error, tol, "interrupted")
             replay.hand_on()
-            raise
+            raise stop from None
         runs += 1
         now, against = figures(scene, outcome.peaks, replay)
         steps, events = outcome.figures["steps"], outcome.figures["events"]
@@ -264,22 +276,27 @@ def to_tolerance(
             best = min(best, error)
             if error <= tol or stale == STALE or length / h * 2.0 > MOST_STEPS:
                 break
-        before = steps, now
+        before, done = (steps, now), (outcome, replay)
         aim = h * (float(np.sqrt(MARGIN * tol / error)) if np.isfinite(error) else 0.5)
         h = float(np.clip(aim, h / 4, h / 2))
         aim = min(aim, h)
     scene.decisions.append(stepped(scene))
     replay.hand_on()
     outcome.figures = {**outcome.figures, "runs": runs}
-    outcome.checks = [  # it says more than those of a single run
-        (
-            f"estimated error of drifts and contact forces, TOL {tol:g}",
-            f"{error:.1e}",
-            "met" if error <= tol else f"look: not met with {steps} steps, {GIVEN_UP[stale == STALE]}",
-        ),
+    outcome.checks = judged(scene, outcome, error, tol, GIVEN_UP[stale == STALE])
+    return outcome
+
+
+def judged(
+    scene: Scene, outcome: Outcome, error: float, tol: float, ended: str
+) -> list[tuple[str, str, str]]:
+    """Checks that say more than those of a single run; `ended` is why no shorter steps follow."""
+    steps = outcome.figures["steps"]
+    verdict = "met" if error <= tol else f"look: not met with {steps} steps, {ended}"
+    return [
+        (f"estimated error of drifts and contact forces, TOL {tol:g}", f"{error:.1e}", verdict),
         *blurred(scene.structure.laws, outcome.peaks),
     ]
-    return outcome
 
 
 def integrate(
@@ -291,7 +308,7 @@ def integrate(
     elif any(s.law.rigid for s in scene.structure.laws):
         scene.decisions.append(Decision("method", "EXACT", "rigid contacts: no other method knows them"))
         return exact.integrate(scene, start, watch, {}, sink)
-    rival = Rival(scene, start, watch, sink)
+    rival = Rival(scene, start, watch, sink, options["TOL"])
     series = cost_of_series(scene, start)
     return rival.first(series) or to_tolerance(scene, start, watch, options, sink, rival, series)
 

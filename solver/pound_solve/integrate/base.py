@@ -22,7 +22,8 @@ ENERGIES = ("input", "kinetic", "strain", "damping", "hysteretic", "contact")
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 SHARP = 1e-2  #: share of a spring's largest force that rounding may make
 RUNAWAY = "the motion grows without bound: its energy {:.3g} is far above what was put in"
-CHATTER = "{} changes at one instant, the last in element {} ({}) to {!r}: try NEWMARK EVENTS=STEPPED"
+CHATTER = "{} changes at one instant, the last in element {} ({}) to {!r}: try {}"
+STEPPED = "NEWMARK EVENTS=STEPPED"  #: which passes over them
 INTERRUPTED = "interrupted by the user; what was computed up to then is kept"
 
 
@@ -218,7 +219,11 @@ class Sink(Protocol):
 
 
 class Keeper(Sink, Protocol):
-    """A sink that keeps envelopes."""
+    """A sink that keeps envelopes, and takes samples of a run that is over."""
+
+    def keep(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take some samples, as `sample` does, whose progress was told before."""
+        ...
 
     @property
     def survey(self) -> Survey:

@@ -38,6 +38,7 @@ from pound_solve.integrate.base import (
     CHATTER,
     INTERRUPTED,
     RUNAWAY,
+    STEPPED,
     STILL,
     LawValues,
     Ledger,
@@ -431,7 +432,7 @@ class Exact:
             raise self.stop("A503", str(err)) from None
         if self.same_instant > 50 + 4 * self.n_laws:
             s = self.laws[law]
-            why = CHATTER.format(self.same_instant, s.element, s.rule, self.branches[law].name)
+            why = CHATTER.format(self.same_instant, s.element, s.rule, self.branches[law].name, STEPPED)
             raise self.stop("A503", why)
         self._form()
 

@@ -322,7 +322,7 @@ class Laplace:
         self.ledger.peaks.force[law].take(force, self.t)
         if self.same_instant > 50 + 4 * len(self.laws):
             s = self.laws[law]
-            why = CHATTER.format(self.same_instant, s.element, s.rule, after.name)
+            why = CHATTER.format(self.same_instant, s.element, s.rule, after.name, "EXACT")
             raise self.stop("A503", why)
 
     def _work(self, begin: float, end: float, u: Array, v: Array, a: Array) -> Array:

@@ -30,6 +30,7 @@ from pound_solve.integrate import arrays, expansion, isolate
 from pound_solve.integrate.base import (
     CHATTER,
     RUNAWAY,
+    STEPPED,
     Outcome,
     Peaks,
     Sink,
@@ -109,7 +110,7 @@ class Taylor(Stepper):
             worst = int(self.count[arrays.WORST])
             s, at = self.laws[worst], self.w.i[worst, arrays.AT]
             told = (int(self.count[expansion.SAME]), s.element, s.rule, s.law.rule.branches[at])
-            return self.stop("A503", CHATTER.format(*told))
+            return self.stop("A503", CHATTER.format(*told, STEPPED))
         return super()._trouble(why)
 
     def _figures(self) -> dict[str, Any]:
