@@ -290,8 +290,8 @@ class Course:
         self.cpu_seconds += time.process_time() - used
         recorder.flush()
         self._scene_tables(place)
-        self._sample_tables(place, recorder)
         outcome = restart.join(parts) if parts else None
+        self._sample_tables(place, recorder, outcome is not None and outcome.turns)
         if outcome is not None:
             self._peak_tables(recorder, outcome.peaks, EXACT if outcome.exact else STEPS)
             self._spring_tables(recorder, outcome, stop is None)
@@ -344,8 +344,10 @@ class Course:
         )
         self.writer.table("scene", rows)
 
-    def _sample_tables(self, place: scene.Scene, recorder: history.Recorder) -> None:
-        """Envelopes of nodes and members and the energies: what the samples tell."""
+    def _sample_tables(self, place: scene.Scene, recorder: history.Recorder, turns: bool) -> None:
+        """Envelopes of nodes and members and the energies: what the samples tell, among which are the
+        instants at which displacements turn or not.
+        """
         w, units = self.writer, self.model.units
         rows: list[tuple[Any, ...]] = []
         found = {q: e.rows() for q, e in recorder.survey.node.items()}
@@ -362,9 +364,10 @@ class Course:
                         rows.append((node, "XYR"[axis], word, unit, *extremes))
         seen, apart = recorder.survey.seen, recorder.survey.apart
         if seen:
+            peaks = "peaks of displacements are among them, others" if turns else "peaks"
             how = (
                 f"Seen at {seen} instants, at most {apart:.3g} {units.time} apart, "
-                "and at the output times; peaks between them are not. "
+                f"and at the output times; {peaks} between them are not. "
             )
         else:
             how = (

@@ -233,6 +233,10 @@ class Survey:
         self._count(t, u, v, a, [self.scene.excitation.values(t, order).T for order in range(3)])
         self.seen, self.apart = self.seen + len(t), max(self.apart, apart)
 
+    def turned(self, t: Array, u: Array) -> None:
+        """Count in displacements that turn between those instants (see `integrate.base.Sink`)."""
+        self.node["u"].take(self._on_nodes(u, self.scene.excitation.values(t).T, "u"), t, self.moving)
+
     def take(
         self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]
     ) -> tuple[dict[str, Array], Array]:
@@ -252,12 +256,8 @@ class Survey:
         """Count in some instants, but for what never moves; return the motion of the rest,
         shape (n_moving, nt) each, and the members' forces.
         """
-        node = {q: self.on_inputs @ y for q, y in zip("uva", s)}
-        node["u"] += self.at_rest
+        node = {q: self._on_nodes(x, y, q) for q, x, y in zip("uva", (u, v, a), s)}
         node["a"] += self.ground @ s[0]  # they are total
-        for q, x in zip("uva", (u, v, a)):
-            for columns, factors in self.layers:
-                node[q] += x[columns] * factors[:, None]
         out = self.of_u @ u + self.out_s @ s[0] + self.constants[:, None]
         if self.damped:
             out += self.of_v @ v + self.out_rate @ s[1]
@@ -269,6 +269,17 @@ class Survey:
             self.node[q].take(values, t, self.moving)
         self.output.take(out, t)
         return node, out
+
+    def _on_nodes(self, x: Array, s: Array, quantity: str) -> Array:
+        """Displacements "u", velocities "v" or accelerations "a" of the nodes, but for what never moves,
+        from those of the unknowns and the inputs.
+        """
+        out: Array = self.on_inputs @ s
+        if quantity == "u":
+            out += self.at_rest
+        for columns, factors in self.layers:
+            out += x[columns] * factors[:, None]
+        return out
 
 
 class Recorder:
@@ -385,6 +396,10 @@ class Recorder:
     def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
         """Widen the envelopes only (see `integrate.base.Sink`)."""
         self.survey.between(t, u, v, a, apart)
+
+    def turned(self, t: Array, u: Array) -> None:
+        """Widen the envelopes of displacements only (see `integrate.base.Sink`)."""
+        self.survey.turned(t, u)
 
     @property
     def shown(self) -> NDArray[np.bool_]:

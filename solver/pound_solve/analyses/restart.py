@@ -8,7 +8,7 @@ as the whole run.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,7 +112,7 @@ def join(parts: Sequence[Outcome]) -> Outcome:
             for key, value in whole.figures.items()
         }
         checks = [*before.checks, *(c for c in whole.checks if c not in before.checks)]
-        whole = Outcome(_both(before.peaks, whole.peaks), figures, whole.states, checks, whole.exact)
+        whole = replace(whole, peaks=_both(before.peaks, whole.peaks), figures=figures, checks=checks)
     return whole
 
 

@@ -115,6 +115,10 @@ class Replay:
         """Take the motion between samples (see `integrate.base.Sink`)."""
         self.survey.between(t, u, v, a, apart)
 
+    def turned(self, t: Array, u: Array) -> None:
+        """Take displacements that turn (see `integrate.base.Sink`)."""
+        self.survey.turned(t, u)
+
     @property
     def shown(self) -> NDArray[np.bool_]:
         """Which unknowns `between` looks at (see `integrate.base.Sink`)."""

@@ -180,6 +180,10 @@ class Survey(Protocol):
         """Count in the motion at some times, as `Sink.between`."""
         ...
 
+    def turned(self, t: Array, u: Array) -> None:
+        """Count in displacements that turn between those instants."""
+        ...
+
     def blank(self) -> Self:
         """Return one that has seen nothing."""
         ...
@@ -213,6 +217,10 @@ class Sink(Protocol):
         """
         ...
 
+    def turned(self, t: Array, u: Array) -> None:
+        """Take displacements at instants at which some of them turn, shapes as in `between`."""
+        ...
+
     def trial(self, t: float, doing: str = "") -> None:
         """Be told the time reached by a run whose samples may not count, or what keeps it waiting there."""
         ...
@@ -234,7 +242,7 @@ class Keeper(Sink, Protocol):
 @dataclass
 class Outcome:
     """How an integration went: its peaks, whether they are exact, figures, self-checks;
-    the laws' states at its end.
+    the laws' states at its end; whether it told the sink of the instants at which displacements turn.
     """
 
     peaks: Peaks
@@ -242,6 +250,7 @@ class Outcome:
     states: tuple[State, ...]
     checks: list[tuple[str, str, str]] = field(default_factory=list)
     exact: bool = False
+    turns: bool = False
 
 
 class Stop(Exception):

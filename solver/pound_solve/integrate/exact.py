@@ -75,6 +75,7 @@ GRID = 1.0  #: grid interval times the fastest eigenvalue
 MOST_OPEN = 256  #: intervals whose work is put off
 MOST_SEEN = 2**19  #: displacements between the samples that wait for the sink
 EACH = 4  #: grid points from one that envelopes of nodes and members are taken at to the next
+BEYOND = 1e-6  #: share of its range by which a displacement must turn outside it for that instant to count
 # what it costs, in seconds of some machine: counted, not measured, so that a choice by it repeats
 WINDOW, POINT = 1.3e-3, 2e-8  #: a window; each of its grid points times each unknown
 SEEN = 5e-8  #: each point for the envelopes times each unknown that they look at
@@ -86,6 +87,16 @@ class CostlyError(Exception):
     def __init__(self, spent: float, t: float) -> None:
         super().__init__(f"more than {spent:g}, at {t:g}")
         self.spent, self.t = spent, t
+
+
+def turn(u0: Array, u1: Array, v0: Array, v1: Array) -> tuple[Array, Array]:
+    """Place from 0 to 1, and value, of the extreme of cubics with values and slopes at 0 and 1, which
+    have slopes of different sign there; shape (n,) each.
+    """
+    rise = u1 - u0
+    b, c = 3.0 * rise - 2.0 * v0 - v1, v0 + v1 - 2.0 * rise  # slope: v0 + 2 b s + 3 c s^2
+    s = v0 / (np.copysign(np.sqrt(b * b - 3.0 * c * v0), v0) - b)
+    return s, u0 + s * (v0 + s * (b + s * c))
 
 
 class Exact:
@@ -127,6 +138,8 @@ class Exact:
         # what waits for the sink: samples whose works are not known yet, and motions between them
         self.held_back: list[tuple[Any, ...]] = []
         self.seen: list[tuple[Any, ...]] = []
+        self.turned: list[tuple[Array, Array]] = []  # where displacements turn between those
+        self.range = np.array([self.u, self.u])[:, self.partition.shown]  # of the displacements there
         self.rigid = self.partition.rigid
         # |value|, |rate| of all rows seen, the scale of the exits
         self.largest = np.zeros((2, len(self.partition.rows)))
@@ -370,6 +383,39 @@ class Exact:
             t, u, v, a = (np.concatenate(x, axis=-1) for x in motion)
             self.sink.between(t, u, v, a, max(apart))
             self.seen.clear()
+        if self.turned:
+            t, u = (np.concatenate(x, axis=-1) for x in zip(*self.turned))
+            self.sink.turned(t, u)
+            self.turned.clear()
+
+    def _turn(self, window: Window, tau: Array, u: Array, v: Array, end: float) -> None:
+        """Keep the displacements at the instants at which one that the envelopes look at turns beyond its
+        range so far, for the sink: of each the highest and the lowest, from the cubic from one point to
+        the next and a step of Newton's method on the motion itself.
+        """
+        shown, known = np.flatnonzero(self.partition.shown), self.range
+        last = window.motion(*window.place(end))
+        x, rate = (np.column_stack([y[shown], z[shown]]) for y, z in zip((u, v), last))
+        known[0] = np.maximum(known[0], x.max(axis=1))
+        known[1] = np.minimum(known[1], x.min(axis=1))
+        row, at = np.nonzero(rate[:, :-1] * rate[:, 1:] < 0.0)
+        length = np.diff(tau, append=end)[at]
+        s, value = turn(x[row, at], x[row, at + 1], rate[row, at] * length, rate[row, at + 1] * length)
+        margin = BEYOND * (known[0] - known[1])
+        best = np.array([known[0] + margin, margin - known[1]])
+        for sign, most in zip((1.0, -1.0), best):
+            np.maximum.at(most, row, sign * value)
+        chosen = np.flatnonzero((value == best[0][row]) | (-value == best[1][row]))
+        if not len(chosen):
+            return
+        times, freedom = (tau[at] + s * length)[chosen], shown[row[chosen]]
+        _, v, a = (y[freedom, np.arange(len(chosen))] for y in window.at(times))
+        times -= np.divide(v, a, out=np.zeros_like(v), where=np.abs(v) < 0.1 * np.abs(a) * length[chosen])
+        times = np.unique(np.clip(times, 0.0, end))
+        u = window.at(times)[0]
+        known[0] = np.maximum(known[0], u[shown].max(axis=1))
+        known[1] = np.minimum(known[1], u[shown].min(axis=1))
+        self.turned.append((self.t + times, u))
 
     def _between(self, window: Window, h: float, end: float) -> None:
         """Keep the motion between the samples, up to the local time `end`, for the sink."""
@@ -377,6 +423,7 @@ class Exact:
             return
         tau, u, v, a = window.between(EACH * h, end)
         self.seen.append((self.t + tau, u, v, a, float(np.diff(tau, append=end).max(initial=0.0))))
+        self._turn(window, tau, u, v, end)
         if sum(x[1].size for x in self.seen) > MOST_SEEN:
             self._show_seen()
 
@@ -546,7 +593,7 @@ class Exact:
             checks.append(("defective modes, integrated by the exponential series", "present", "good"))
         peaks = self.ledger.close()
         checks += blurred(self.scene.structure.laws, peaks)
-        return Outcome(peaks, figures, tuple(self.states), checks, exact=True)
+        return Outcome(peaks, figures, tuple(self.states), checks, exact=True, turns=True)
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""
@@ -578,6 +625,10 @@ class Whole:
         ex = self.small.scene.excitation
         u, v, a = (self.small.all(x, ex.values(t, order).T, order) for order, x in enumerate((u, v, a)))
         self.sink.between(t, u, v, a, apart)
+
+    def turned(self, t: Array, u: Array) -> None:
+        """Take displacements that turn (see `integrate.base.Sink`)."""
+        self.sink.turned(t, self.small.all(u, self.small.scene.excitation.values(t).T))
 
     def trial(self, t: float, doing: str = "") -> None:
         """Pass it on."""

@@ -134,6 +134,16 @@ class Window:
 
         return self._motions(np.array([interval]), times[None], states)
 
+    def at(self, times: Array) -> tuple[Array, Array, Array]:
+        """`motion` at several local times, shape (n, n_times) each."""
+        interval = np.clip(np.searchsorted(self.edges, times, "right") - 1, 0, self.intervals - 1)
+        out = np.zeros((3, self.partition.scene.size, len(times)))
+        for i in np.unique(interval).tolist():
+            here = interval == i
+            out[:, :, here] = self.path(i, times[here] - self.edges[i])
+        u, v, a = out
+        return u, v, a
+
     def ends(self, chosen: Index) -> tuple[Array, Array, Array]:
         """`motion` at the ends of some intervals, shape (n, n_chosen) each."""
         t = self.lengths[chosen, None]
