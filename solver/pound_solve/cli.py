@@ -110,7 +110,7 @@ def parser() -> argparse.ArgumentParser:
     listing.add_argument(
         "family",
         nargs="?",
-        help="section, element, hysteresis, contact, damping, motion, record, analysis or method",
+        help="section, element, hysteresis, contact, damping, motion, force, record, analysis or method",
     )
     listing.add_argument("name", nargs="?", help="one member: its items")
     text = "drive a hysteresis rule or contact law along a path; print and draw its loop"

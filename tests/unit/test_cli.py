@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -13,6 +14,7 @@ import pytest
 from pound_solve import run
 from pound_solve.app import DeckError
 from pound_solve.cli import _Progress, main
+from pound_solve.reference import vocabulary
 from pound_solve.results import Results
 
 DECK = """TITLE  A mass between two walls
@@ -186,6 +188,13 @@ def test_export_writes_tables_and_histories(deck, capsys):
     assert main(["export", str(deck.with_suffix(".h5"))]) == 0
     names = {Path(line).name for line in capsys.readouterr().out.split()}
     assert {"collisions.csv", "history_drift.csv"} & names and "collisions.csv" in names
+
+
+def test_the_help_of_list_names_every_family(capsys):
+    with pytest.raises(SystemExit):
+        main(["list", "--help"])
+    told = set(re.findall(r"\w+", capsys.readouterr().out))
+    assert set(vocabulary().families()) <= told
 
 
 def test_the_version_needs_no_numerics():
