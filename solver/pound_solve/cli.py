@@ -183,7 +183,11 @@ def _complain(text: str, status: int = 3) -> int:
 
 def _request(args: argparse.Namespace) -> object:
     from pound_solve.app import Request
+    from pound_solve.results import is_hdf5
 
+    if is_hdf5(args.deck):
+        text = f"{args.deck} is a results file, not a deck: report, export, plot and separation read it"
+        raise SystemExit(_complain(text, 2))
     params = {}
     for item in args.set:
         name, equals, value = item.partition("=")

@@ -421,6 +421,11 @@ class Results:
         return _find(self._datasets, name, "history", name, self.histories)
 
 
+def is_hdf5(path: str | Path) -> bool:
+    """Whether there is a file of the format of results, ours or not."""
+    return bool(h5py.is_hdf5(path))
+
+
 def _checked(table: str, column: Column, values: Sequence[Any]) -> Sequence[Any]:
     """The values of one column, ready to store."""
     kind: type = {"text": str, "int": Integral}.get(column.fmt, Real)

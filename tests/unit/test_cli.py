@@ -103,6 +103,17 @@ def test_what_cannot_be_done_is_said_in_a_line_or_two_with_its_status(deck, caps
     assert told in err and "Traceback" not in err
 
 
+@pytest.mark.parametrize("verb", [[], ["check"], ["study"]])
+def test_a_results_file_in_place_of_a_deck_is_told_with_the_verbs_that_read_it(deck, capsys, verb):
+    main([str(deck), "--quiet"])
+    before = deck.with_suffix(".h5").read_bytes()
+    with pytest.raises(SystemExit) as end:
+        main([*verb, str(deck.with_suffix(".h5"))])
+    told = "is a results file, not a deck: report, export, plot and separation read it"
+    assert end.value.code == 2 and told in capsys.readouterr().err
+    assert deck.with_suffix(".h5").read_bytes() == before
+
+
 def test_check_tells_all_mistakes_and_runs_nothing(tmp_path, capsys):
     path = tmp_path / "bad.inp"
     path.write_text(DECK.replace("KX=k", "KX=kk").replace("E=0.65", "E=1.65"))
