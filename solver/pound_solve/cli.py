@@ -20,6 +20,7 @@ PICTURES = (
     "frame", "modes", "deformed", "envelopes", "histories", "energy", "loops", "contacts", "collisions",
     "study",
 )  # fmt: skip
+FORMATS = ("svg", "png", "pdf")  #: of pictures by matplotlib
 WIDTH = 69  #: of the line that tells the progress
 VERBS = ("run", "check", "study", "report", "export", "plot", "separation", "list", "loop")
 #: threads of numpy's linear algebra, as its builds know them
@@ -73,7 +74,8 @@ def parser() -> argparse.ArgumentParser:
     study.add_argument("--tols", metavar="TOL,TOL,...", help="tolerances of AUTO")
     study.add_argument("--repeat", type=int, metavar="N", help="timed runs of each (default 3)")
     study.add_argument("--longest", type=float, metavar="S", help="seconds a run may take (default 5)")
-    study.add_argument("--picture", type=Path, metavar="FILE", help="draw error against time into a file")
+    text = f"draw error against time into a file, ending in {', '.join(FORMATS)}"
+    study.add_argument("--picture", type=_picture, metavar="FILE", help=text)
     study.add_argument(
         "-o", "--out", type=Path, metavar="DIR", help="folder of the study (default: the deck's)"
     )
@@ -96,7 +98,7 @@ def parser() -> argparse.ArgumentParser:
         "pictures", nargs="*", metavar="PICTURE", help=f"{', '.join(PICTURES)} (default: all)"
     )
     plot.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: the file's)")
-    plot.add_argument("--as", dest="ending", default="svg", choices=("svg", "png", "pdf"), help="format")
+    plot.add_argument("--as", dest="ending", default="svg", choices=FORMATS, help="format")
     text = "separation of the buildings by ABS, SRSS and DDC from the peaks of a results file"
     separation = verbs.add_parser("separation", help=text, description=text)
     separation.add_argument("results", help="results file (.h5)")
@@ -125,9 +127,17 @@ def parser() -> argparse.ArgumentParser:
         metavar="V",
         help="speed of the deformation (default: infinitely slow; of a contact 1)",
     )
-    loop.add_argument("--png", type=Path, metavar="FILE", help="draw with matplotlib into a file")
+    loop.add_argument("--png", type=_picture, metavar="FILE", help="draw with matplotlib into a file")
     loop.add_argument("--svg", type=Path, metavar="FILE", help="draw into an SVG file")
     return out
+
+
+def _picture(word: str) -> Path:
+    """File of a picture by matplotlib, whose ending names the format."""
+    path = Path(word)
+    if path.suffix.removeprefix(".") not in FORMATS:
+        raise argparse.ArgumentTypeError(f"{word}: a picture ends in .{', .'.join(FORMATS)}")
+    return path
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -322,6 +332,14 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
     assert isinstance(request, app.Request)
     live = sys.stderr.isatty()
 
+    if args.picture:
+        from pound_solve import plot
+
+        try:
+            plot.ready(args.picture.parent)
+        except ImportError:
+            return _complain('--picture needs matplotlib: pip install "pound-solve[plot]"', 2)
+
     def tell(text: str) -> None:
         if live:
             print(f"\r {text:<70}", end="", file=sys.stderr, flush=True)
@@ -348,12 +366,7 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
         print(text)
         print(f"{found.sentence}\n{request.path('.study.rpt')}\n{request.path('.study.h5')}")
         if args.picture:
-            from pound_solve import plot
-
-            try:
-                plot.draw_into(results, "study", args.picture)
-            except ImportError:
-                return _complain('--picture needs matplotlib: pip install "pound-solve[plot]"', 2)
+            plot.draw_into(results, "study", args.picture)
     return 0
 
 

@@ -10,9 +10,10 @@ from typing import Any
 from pound_solve.plot import course, structure, style
 from pound_solve.plot.loop import loop
 from pound_solve.plot.study import study
+from pound_solve.plot.style import ready
 from pound_solve.results import Results
 
-__all__ = ("PICTURES", "draw", "draw_into", "loop", "possible")
+__all__ = ("PICTURES", "draw", "draw_into", "loop", "possible", "ready")
 
 #: Every picture: what draws it, and the tables and histories that it needs.
 PICTURES: Mapping[str, tuple[Callable[[Results], Any], tuple[str, ...]]] = MappingProxyType(
@@ -59,7 +60,7 @@ def draw(results: Results, names: Sequence[str], folder: Path, ending: str = "sv
     ImportError
         matplotlib is not installed.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    ready(folder)
     out = []
     for name in names:
         out.append(folder / f"{results.path.stem}_{name}.{ending}")
