@@ -427,15 +427,18 @@ def _plot(args: argparse.Namespace) -> int:
             if lacking := [name for name in args.pictures if name not in can]:
                 needs = ", ".join(plot.PICTURES[lacking[0]][1])
                 return _complain(f"{args.results} lacks what the picture {lacking[0]} needs: {needs}", 2)
-            for path in plot.draw(
-                results, args.pictures or can, args.out or results.path.parent, args.ending
-            ):
-                print(path)
+            folder = args.out or results.path.parent
+            drawn, left_out = plot.draw(results, args.pictures or can, folder, args.ending)
     except ResultsError as err:
         return _complain(str(err))
     except ImportError:
         return _complain('pictures need matplotlib: pip install "pound-solve[plot]"', 2)
-    return 0
+    for path in drawn:
+        print(path)
+    if left_out:
+        told = "; ".join(f"{', '.join(names)} (no {what})" for what, names in left_out.items())
+        print(f"pound-solve: left out, nothing to draw: {told}", file=sys.stderr)
+    return 0 if drawn else 2
 
 
 def _two(word: str) -> tuple[float, float]:

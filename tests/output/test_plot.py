@@ -39,9 +39,9 @@ def test_every_picture_is_drawn_and_repeats(results: Results, tmp_path: Path) ->
     names = plot.possible(results)
     assert {"frame", "histories", "energy", "contacts", "collisions"} <= set(names)
     for ending in ("svg", "png", "pdf"):
-        first = plot.draw(results, names, tmp_path / "a", ending)
-        again = plot.draw(results, names, tmp_path / "b", ending)
-        assert len(first) == len(names)
+        first, left_out = plot.draw(results, names, tmp_path / "a", ending)
+        again, _ = plot.draw(results, names, tmp_path / "b", ending)
+        assert len(first) == len(names) and not left_out
         for a, b in zip(first, again):
             assert a.read_bytes() == b.read_bytes()
             assert a.stat().st_size > 5000
@@ -129,3 +129,77 @@ def test_what_cannot_be_drawn_is_said(results: Results, tmp_path: Path, capsys: 
     assert main(["plot", str(tmp_path / "none.h5")]) == 3
     assert main(["plot", file, "energy", "-o", str(tmp_path / "pictures"), "--as", "png"]) == 0
     assert (tmp_path / "pictures" / "two_oscillators_energy.png").exists()
+
+
+ALONE = """
+UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 {place} FIX=YR
+ 3 {beyond} FIX=YR
+ELEMENTS
+ 1 COLUMN 1 2
+ 2 WALL   2
+ 3 COLUMN 2 3
+PROPS
+ COLUMN SPRING KX=4000
+ WALL   CONTACT GAP=0.01 ANGLE={angle} K=1E6
+WEIGHTS
+ 2,3 981
+EQUAKE
+ SINE AMPLITUDE=2 PERIOD=1 DURATION=2
+{drift}
+ANALYSIS
+ HISTORY 1 {method}
+"""
+
+
+def alone(folder: Path, method: str = "", upright: bool = False, angle: int = 0, drift: str = "") -> Path:
+    """Results of two masses in a row, or above each other, the first of which meets a wall."""
+    place, beyond = ("0 3", "0 6") if upright else ("3 0", "6 0")
+    deck = folder / "alone.inp"
+    words = ALONE.format(method=method, place=place, beyond=beyond, angle=angle, drift=drift)
+    deck.write_text(words, encoding="utf-8")
+    pound_solve.run(deck, out=folder).close()
+    return folder / "alone.h5"
+
+
+def test_of_a_run_that_stopped_at_its_start_all_is_drawn_and_exported_that_is_there(
+    tmp_path: Path, capsys: Any
+) -> None:
+    file = str(alone(tmp_path, "METHOD=CENTRAL DT=1"))
+    capsys.readouterr()
+    assert main(["plot", file]) == 0
+    out, err = capsys.readouterr()
+    assert out.splitlines() == [str(tmp_path / "alone_frame.svg")]
+    told = "pound-solve: left out, nothing to draw: deformed, energy, contacts"
+    assert err.startswith(told) and "(no history)" in err and len(err.splitlines()) == 1
+    assert main(["plot", file, "energy"]) == 2  # nothing at all
+    assert "energy (no history)" in capsys.readouterr().err
+    assert main(["export", file]) == 0
+    text = (tmp_path / "alone" / "history_contact_gap.csv").read_text("utf-8")
+    assert text == "time [s],2 [m]\n"
+
+
+def test_envelopes_show_what_there_is(tmp_path: Path, capsys: Any) -> None:
+    with Results.open(alone(tmp_path)) as results, pytest.raises(plot.Nothing, match="no columns"):
+        structure.envelopes(results)
+    assert main(["plot", str(results.path)]) == 0
+    assert "envelopes (no drifts, no columns of nodes)" in capsys.readouterr().err
+    assert not (tmp_path / "alone_envelopes.svg").exists()
+    drift = "DRIFT\n top 1 2"
+    for upright, cards, titles in (
+        (True, "", ["height"]),
+        (False, drift, ["drifts"]),
+        (True, drift, ["drifts", "height"]),
+    ):
+        with Results.open(alone(tmp_path, upright=upright, drift=cards)) as results:
+            axes = structure.envelopes(results).axes
+            assert len(axes) == len(titles) and all(w in a.get_title() for w, a in zip(titles, axes))
+            table = results.table("node_envelope")
+    # the column's line is that of the table: extremes along X of nodes 2 and 3
+    own = table[(table["direction"] == "X") & (table["quantity"] == "displacement")]
+    low, high = lines(axes[1])[:2]
+    assert own["node"].tolist() == [2, 3]
+    assert np.array_equal(low, np.column_stack([own["min"], [3.0, 6.0]]))
+    assert np.array_equal(high, np.column_stack([own["max"], [3.0, 6.0]]))

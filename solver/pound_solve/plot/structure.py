@@ -134,30 +134,46 @@ def deformed(results: Results) -> Any:
 
 
 def envelopes(results: Results) -> Any:
-    """Extremes of the drifts, in the order of the deck, and of horizontal displacements over the height."""
-    figure = style.figure(9.5, 4.6)
-    drifts = results.table("drift_envelope")
-    left, right = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2)
-    rows = np.arange(len(drifts))
-    style.grid(left, f"drift [{results.units.length}]")
-    left.barh(rows, drifts["max"], color=style.BLUE, height=0.6)
-    left.barh(rows, drifts["min"], color=style.COLOURS[1], height=0.6)
-    left.axvline(0.0, color="0.3", linewidth=0.8)
-    left.set_yticks(rows, [str(n) for n in drifts["name"]], fontsize=7)
-    left.set_title("largest drifts either way", fontsize=9)
-    s, table = Structure(results), results.table("node_envelope")
-    own = table[(table["direction"] == "X") & (table["quantity"] == "displacement")]
-    style.grid(right, f"displacement X [{s.units.length}]", f"height [{s.units.length}]")
-    for x in sorted({float(s.place[int(r["node"])][0]) for r in own}):
-        line = sorted(
-            (float(s.place[int(r["node"])][1]), float(r["min"]), float(r["max"]))
-            for r in own
-            if s.place[int(r["node"])][0] == x
-        )
-        if len(line) > 1:
-            height, low, high = np.array(line).T
-            right.plot(low, height, color=style.COLOURS[1], linewidth=1, marker=".")
-            right.plot(high, height, color=style.BLUE, linewidth=1, marker=".")
-    right.axvline(0.0, color="0.3", linewidth=0.8)
-    right.set_title("extremes of the nodes over the height, a line a column", fontsize=9)
+    """Extremes of the drifts, in the order of the deck, and of horizontal displacements over the height:
+    what there is of the two.
+    """
+    drifts = results.holds("drift_envelope")
+    columns = _columns(results)
+    count = drifts + bool(columns)
+    if not count:
+        raise style.Nothing("drifts, no columns of nodes")
+    figure = style.figure(4.75 * count, 4.6)
+    if drifts:
+        _drifts(figure.add_subplot(1, count, 1), results)
+    if columns:
+        axes = figure.add_subplot(1, count, count)
+        unit = results.units.length
+        style.grid(axes, f"displacement X [{unit}]", f"height [{unit}]")
+        for height, low, high in columns:
+            axes.plot(low, height, color=style.COLOURS[1], linewidth=1, marker=".")
+            axes.plot(high, height, color=style.BLUE, linewidth=1, marker=".")
+        axes.axvline(0.0, color="0.3", linewidth=0.8)
+        axes.set_title("extremes of the nodes over the height, a line a column", fontsize=9)
     return figure
+
+
+def _drifts(axes: Any, results: Results) -> None:
+    drifts = results.table("drift_envelope")
+    rows = np.arange(len(drifts))
+    style.grid(axes, f"drift [{results.units.length}]")
+    axes.barh(rows, drifts["max"], color=style.BLUE, height=0.6)
+    axes.barh(rows, drifts["min"], color=style.COLOURS[1], height=0.6)
+    axes.axvline(0.0, color="0.3", linewidth=0.8)
+    axes.set_yticks(rows, [str(n) for n in drifts["name"]], fontsize=7)
+    axes.set_title("largest drifts either way", fontsize=9)
+
+
+def _columns(results: Results) -> list[Array]:
+    """Heights, smallest and largest displacements X of the nodes above each other, shape (3, n) each."""
+    place, table = Structure(results).place, results.table("node_envelope")
+    own = table[(table["direction"] == "X") & (table["quantity"] == "displacement")]
+    lines: dict[float, list[tuple[float, float, float]]] = {}
+    for row in own:
+        x, y = place[int(row["node"])].tolist()
+        lines.setdefault(x, []).append((y, float(row["min"]), float(row["max"])))
+    return [np.array(sorted(line)).T for line in lines.values() if len(line) > 1]
