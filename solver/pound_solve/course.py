@@ -286,8 +286,9 @@ class Course:
         self.cpu_seconds += time.process_time() - used
         recorder.flush()
         self._scene_tables(place)
-        self._sample_tables(place, recorder)
-        outcome = restart.join(parts) if parts else None
+        if recorder.started:
+            self._sample_tables(place, recorder)
+        outcome = restart.join(parts) if parts and recorder.started else None
         if outcome is not None:
             self._peak_tables(recorder, outcome.peaks, EXACT if outcome.exact else STEPS)
             self._spring_tables(recorder, outcome, stop is None)

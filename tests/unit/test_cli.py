@@ -16,6 +16,7 @@ from pound_solve.app import DeckError
 from pound_solve.cli import _Progress, main
 from pound_solve.reference import vocabulary
 from pound_solve.results import Results
+from pound_solve.tables import SECTIONS
 
 DECK = """TITLE  A mass between two walls
 UNITS  kN m s
@@ -140,6 +141,19 @@ def test_an_analysis_that_cannot_go_on_says_when_where_and_why(deck, capsys):
     results = Results.open(deck.with_suffix(".h5"))
     assert results.status == "stopped" and "modes" in results.tables
     assert "stability limit" in deck.with_suffix(".rpt").read_text()
+
+
+@pytest.mark.parametrize("method", ["CENTRAL DT=0.5", "LAPLACE DT=1"])
+def test_a_history_that_a_method_refuses_leaves_no_tables(deck, method):
+    linear = "\n".join(line for line in DECK.splitlines() if "WALL" not in line)
+    deck.write_text(linear.replace("HISTORY 3", f"HISTORY 3 METHOD={method}"))
+    assert main([str(deck)]) == 1
+    with Results.open(deck.with_suffix(".h5")) as results:
+        present = {heading: set(names) & set(results.tables) for heading, names in SECTIONS}
+    assert present["Free vibration"] and present["Scene and problem size"]
+    for heading in ("Envelopes of the time history", "Members and springs", "Contacts and collisions"):
+        assert not present[heading]
+    assert not present["Energy and checks"]
 
 
 def test_a_mechanism_under_load_is_named(deck, capsys):
