@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,10 @@ from pound_solve.cli import PICTURES, main
 
 pytest.importorskip("matplotlib")
 
+from output import sample
 from pound_solve import plot
-from pound_solve.plot import course, structure
-from pound_solve.results import Results
+from pound_solve.plot import course, structure, style
+from pound_solve.results import Results, Writer
 
 ROOT = Path(__file__).parents[2]
 
@@ -203,3 +205,53 @@ def test_envelopes_show_what_there_is(tmp_path: Path, capsys: Any) -> None:
     assert own["node"].tolist() == [2, 3]
     assert np.array_equal(low, np.column_stack([own["min"], [3.0, 6.0]]))
     assert np.array_equal(high, np.column_stack([own["max"], [3.0, 6.0]]))
+
+
+@pytest.mark.parametrize(
+    ("angle", "way"), [(0, (1, 0)), (180, (-1, 0)), (60, (0.5, 0.75**0.5)), (-30, (0.75**0.5, -0.5))]
+)
+def test_a_wall_stands_on_its_side(tmp_path: Path, angle: int, way: tuple[float, float]) -> None:
+    with Results.open(alone(tmp_path, angle=angle)) as results:
+        figure = structure.frame(results)
+    link, wall, *hatches = [x for x in figure.axes[0].get_lines() if x.get_color() == style.RED]
+    start, front = np.column_stack(link.get_data())
+    ends = np.column_stack(wall.get_data())
+    assert start.tolist() == [3.0, 0.0]
+    ahead = (front - start) / np.linalg.norm(front - start)
+    assert ahead == pytest.approx(way, abs=1e-12)
+    assert ends.mean(axis=0) == pytest.approx(front) and (ends[1] - ends[0]) @ ahead == pytest.approx(0.0)
+    assert len(hatches) > 3
+    for hatch in hatches:  # behind the wall
+        behind = (np.column_stack(hatch.get_data()) - front) @ ahead
+        assert behind[0] == pytest.approx(0.0, abs=1e-12) and behind[1] > 0.0
+    (x0, x1), (y0, y1) = figure.axes[0].get_xlim(), figure.axes[0].get_ylim()
+    assert all(x0 < x < x1 and y0 < y < y1 for x, y in ends)
+
+
+@pytest.mark.parametrize(
+    "seconds", [(0.03, 0.05, 0.2), (0.025, 0.1, 0.25), (0.9, 1.1, 1.3), (0.02, 0.3, 40.0)]
+)
+def test_numbers_at_the_axes_of_a_study_do_not_touch(tmp_path: Path, seconds: tuple[float, ...]) -> None:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    with Writer(tmp_path / "x.h5", title="x", units=sample.UNITS, program_version="0") as writer:
+        found = zip(seconds, (400, 800, 1600), (4e-2, 9e-3, 2.2e-3))
+        runs = [("NEWMARK", "", t, n, 0, e, np.nan, np.nan, 2.0, 1, 0.0) for t, n, e in found]
+        writer.table("study", runs)
+        writer.table("study_advice", [(0.01, "NEWMARK", "", 0.04, 9e-3, 9e-3)])
+        writer.finish("done")
+    with Results.open(tmp_path / "x.h5") as results:
+        figure = plot.PICTURES["study"][0](results)
+    FigureCanvasAgg(figure).draw()
+    for axes in figure.axes:
+        for axis, way in ((axes.xaxis, 0), (axes.yaxis, 1)):
+            low, high = sorted(axis.get_view_interval())
+            shown = [
+                label.get_window_extent().get_points()[:, way]
+                for minor in (False, True)
+                for place, label in zip(axis.get_ticklocs(minor=minor), axis.get_ticklabels(minor=minor))
+                if label.get_visible() and label.get_text() and low <= place <= high
+            ]
+            shown.sort(key=lambda ends: ends[0])
+            assert len(shown) >= 2
+            assert all(a[1] < b[0] for a, b in pairwise(shown))

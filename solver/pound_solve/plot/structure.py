@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_solve.elements.base import axes as own_axes
 from pound_solve.plot import style
 from pound_solve.results import Results
 
@@ -15,6 +16,8 @@ Array = NDArray[np.float64]
 MOST_NUMBERS = 60  #: nodes up to which their numbers are written
 MOST_MODES = 8
 SHARE = 0.08  #: largest drawn displacement as a share of the structure's size
+WALL = 0.035  #: half the length of a wall, and about its distance, as a share of that size
+HATCHES = 6
 
 
 class Structure:
@@ -69,15 +72,18 @@ def frame(results: Results) -> Any:
     axes = figure.add_subplot()
     s.frame(axes)
     s.draw(axes, color=style.BLUE, linewidth=1.4)
-    for e in s.elements:
-        if e["kind"] != "CONTACT":
-            continue
-        i, j = s.place[int(e["i"])], s.place.get(int(e["j"]))
-        end = j if j is not None else i
-        axes.plot(*zip(i, end), color=style.RED, linewidth=2.0, marker="|", markersize=10)
+    angles = dict(results.table("contact_laws")[["contact", "angle"]].tolist())
+    for e in s.elements[s.elements["kind"] == "CONTACT"]:
+        name, i = str(e["name"] or e["element"]), s.place[int(e["i"])]
+        if e["j"]:
+            end = s.place[int(e["j"])]
+            axes.plot(*zip(i, end), color=style.RED, linewidth=2.0, marker="|", markersize=10)
+            above, room = (i + end) / 2, 7
+        else:
+            above, room = _wall(axes, i, angles[name], WALL * s.size), 3
         axes.annotate(
-            str(e["name"] or e["element"]), (i + end) / 2, fontsize=7, color=style.RED, ha="center",
-            xytext=(0, 7), textcoords="offset points",
+            name, above, fontsize=7, color=style.RED, ha="center",
+            xytext=(0, room), textcoords="offset points",
         )  # fmt: skip
     heaviest = max(s.mass.values(), default=0.0)
     for node, (x, y) in s.place.items():
@@ -90,6 +96,21 @@ def frame(results: Results) -> Any:
             axes.annotate(str(node), (x, y), fontsize=6, xytext=(3, 3), textcoords="offset points")
     axes.set_title("triangles: supports; dots: masses; red: contacts", fontsize=7, color="0.4")
     return figure
+
+
+def _wall(axes: Any, node: Array, angle: float, half: float) -> Array:
+    """Draw the wall that a node meets in a direction [deg], `half` as long on each side, hatched behind;
+    return its highest point.
+    """
+    across, along = np.array(own_axes(angle))
+    ends = node + half * across + half * np.array([along, -along])
+    axes.plot(*zip(node, node + half * across), color=style.RED, linewidth=2.0)
+    axes.plot(*ends.T, color=style.RED, linewidth=1.4)
+    for share in np.linspace(0.0, 1.0, HATCHES):
+        front = ends[0] + share * (ends[1] - ends[0])
+        back = front + 0.4 * half * (across + along)
+        axes.plot(*zip(front, back), color=style.RED, linewidth=0.7)
+    return max(ends, key=lambda p: p[1])
 
 
 def modes(results: Results) -> Any:
