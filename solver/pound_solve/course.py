@@ -144,19 +144,7 @@ class Course:
         w.table("collision_theory", echo.collision_theory(s, self.meetings))
         w.table("motions", echo.motions(self.motions))
         w.table("forces", echo.forces(self.forces))
-        contacts = sum(x.is_contact for x in s.laws)
-        w.table(
-            "size",
-            [
-                ("nodes", str(len(m.nodes))),
-                ("elements", str(len(m.elements))),
-                ("freedoms", str(3 * len(m.nodes))),
-                ("unknowns before reduction", str(s.n_free)),
-                ("prescribed freedoms", str(len(s.freedoms.moved))),
-                ("hysteretic components", str(len(s.laws) - contacts)),
-                ("contacts", str(contacts)),
-            ],
-        )
+        w.table("size", echo.size(s))
 
     def _static(self) -> static.StaticState:
         s, cards = self.structure, self.model.analyses
