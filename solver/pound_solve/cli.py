@@ -20,6 +20,7 @@ PICTURES = (
     "frame", "modes", "deformed", "envelopes", "histories", "energy", "loops", "contacts", "collisions",
     "study",
 )  # fmt: skip
+FORMATS = ("svg", "png", "pdf")  #: of pictures by matplotlib
 WIDTH = 69  #: of the line that tells the progress
 VERBS = ("run", "check", "study", "report", "export", "plot", "separation", "list", "loop")
 #: threads of numpy's linear algebra, as its builds know them
@@ -73,7 +74,8 @@ def parser() -> argparse.ArgumentParser:
     study.add_argument("--tols", metavar="TOL,TOL,...", help="tolerances of AUTO")
     study.add_argument("--repeat", type=int, metavar="N", help="timed runs of each (default 3)")
     study.add_argument("--longest", type=float, metavar="S", help="seconds a run may take (default 5)")
-    study.add_argument("--picture", type=Path, metavar="FILE", help="draw error against time into a file")
+    text = f"draw error against time into a file, ending in {', '.join(FORMATS)}"
+    study.add_argument("--picture", type=_picture, metavar="FILE", help=text)
     study.add_argument(
         "-o", "--out", type=Path, metavar="DIR", help="folder of the study (default: the deck's)"
     )
@@ -96,7 +98,7 @@ def parser() -> argparse.ArgumentParser:
         "pictures", nargs="*", metavar="PICTURE", help=f"{', '.join(PICTURES)} (default: all)"
     )
     plot.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: the file's)")
-    plot.add_argument("--as", dest="ending", default="svg", choices=("svg", "png", "pdf"), help="format")
+    plot.add_argument("--as", dest="ending", default="svg", choices=FORMATS, help="format")
     text = "separation of the buildings by ABS, SRSS and DDC from the peaks of a results file"
     separation = verbs.add_parser("separation", help=text, description=text)
     separation.add_argument("results", help="results file (.h5)")
@@ -110,7 +112,7 @@ def parser() -> argparse.ArgumentParser:
     listing.add_argument(
         "family",
         nargs="?",
-        help="section, element, hysteresis, contact, damping, motion, record, analysis or method",
+        help="section, element, hysteresis, contact, damping, motion, force, record, analysis or method",
     )
     listing.add_argument("name", nargs="?", help="one member: its items")
     text = "drive a hysteresis rule or contact law along a path; print and draw its loop"
@@ -125,9 +127,17 @@ def parser() -> argparse.ArgumentParser:
         metavar="V",
         help="speed of the deformation (default: infinitely slow; of a contact 1)",
     )
-    loop.add_argument("--png", type=Path, metavar="FILE", help="draw with matplotlib into a file")
+    loop.add_argument("--png", type=_picture, metavar="FILE", help="draw with matplotlib into a file")
     loop.add_argument("--svg", type=Path, metavar="FILE", help="draw into an SVG file")
     return out
+
+
+def _picture(word: str) -> Path:
+    """File of a picture by matplotlib, whose ending names the format."""
+    path = Path(word)
+    if path.suffix.removeprefix(".") not in FORMATS:
+        raise argparse.ArgumentTypeError(f"{word}: a picture ends in .{', .'.join(FORMATS)}")
+    return path
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -183,7 +193,11 @@ def _complain(text: str, status: int = 3) -> int:
 
 def _request(args: argparse.Namespace) -> object:
     from pound_solve.app import Request
+    from pound_solve.results import is_hdf5
 
+    if is_hdf5(args.deck):
+        text = f"{args.deck} is a results file, not a deck: report, export, plot and separation read it"
+        raise SystemExit(_complain(text, 2))
     params = {}
     for item in args.set:
         name, equals, value = item.partition("=")
@@ -322,6 +336,14 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
     assert isinstance(request, app.Request)
     live = sys.stderr.isatty()
 
+    if args.picture:
+        from pound_solve import plot
+
+        try:
+            plot.ready(args.picture.parent)
+        except ImportError:
+            return _complain('--picture needs matplotlib: pip install "pound-solve[plot]"', 2)
+
     def tell(text: str) -> None:
         if live:
             print(f"\r {text:<70}", end="", file=sys.stderr, flush=True)
@@ -348,12 +370,7 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
         print(text)
         print(f"{found.sentence}\n{request.path('.study.rpt')}\n{request.path('.study.h5')}")
         if args.picture:
-            from pound_solve import plot
-
-            try:
-                plot.draw_into(results, "study", args.picture)
-            except ImportError:
-                return _complain('--picture needs matplotlib: pip install "pound-solve[plot]"', 2)
+            plot.draw_into(results, "study", args.picture)
     return 0
 
 
@@ -414,15 +431,18 @@ def _plot(args: argparse.Namespace) -> int:
             if lacking := [name for name in args.pictures if name not in can]:
                 needs = ", ".join(plot.PICTURES[lacking[0]][1])
                 return _complain(f"{args.results} lacks what the picture {lacking[0]} needs: {needs}", 2)
-            for path in plot.draw(
-                results, args.pictures or can, args.out or results.path.parent, args.ending
-            ):
-                print(path)
+            folder = args.out or results.path.parent
+            drawn, left_out = plot.draw(results, args.pictures or can, folder, args.ending)
     except ResultsError as err:
         return _complain(str(err))
     except ImportError:
         return _complain('pictures need matplotlib: pip install "pound-solve[plot]"', 2)
-    return 0
+    for path in drawn:
+        print(path)
+    if left_out:
+        told = "; ".join(f"{', '.join(names)} (no {what})" for what, names in left_out.items())
+        print(f"pound-solve: left out, nothing to draw: {told}", file=sys.stderr)
+    return 0 if drawn else 2
 
 
 def _two(word: str) -> tuple[float, float]:

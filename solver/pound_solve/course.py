@@ -40,6 +40,11 @@ PREDICTED = (
     "contacts stay below it. The plateau is the impulse over the time of contact, or over the shorter "
     "time that the predicted force would take for it; of a coarse mesh it may lie above the peak."
 )
+ALPHA = "An elastic collision changes a diaphragm's velocity by 2 alpha times the approach velocity."
+LUMPED = (
+    "The lumped error is (1 + e) / (1 + e_eff exact) - 1 with the restitution e of the contact where "
+    "DIAPHRAGMS stands on its card, else with e = 1."
+)
 DUST = 1e-12  #: share of the largest value below which a number is rounding
 MOST_ROWS = 5_000_000  #: of stored histories
 ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
@@ -142,23 +147,12 @@ class Course:
         w.table("member_loads", echo.member_loads(m))
         w.table("damping", echo.damping(s))
         w.table("contact_laws", echo.contact_laws(s))
-        w.table("diaphragms", echo.diaphragms(s, self.meetings))
-        w.table("collision_theory", echo.collision_theory(s, self.meetings))
+        theory = any(x.pair for x in self.meetings.values())
+        w.table("diaphragms", echo.diaphragms(s, self.meetings), ALPHA if theory else None)
+        w.table("collision_theory", echo.collision_theory(s, self.meetings), LUMPED if theory else None)
         w.table("motions", echo.motions(self.motions))
         w.table("forces", echo.forces(self.forces))
-        contacts = sum(x.is_contact for x in s.laws)
-        w.table(
-            "size",
-            [
-                ("nodes", str(len(m.nodes))),
-                ("elements", str(len(m.elements))),
-                ("freedoms", str(3 * len(m.nodes))),
-                ("unknowns before reduction", str(s.n_free)),
-                ("prescribed freedoms", str(len(s.freedoms.moved))),
-                ("hysteretic components", str(len(s.laws) - contacts)),
-                ("contacts", str(contacts)),
-            ],
-        )
+        w.table("size", echo.size(s))
 
     def _static(self) -> static.StaticState:
         s, cards = self.structure, self.model.analyses
@@ -290,8 +284,9 @@ class Course:
         self.cpu_seconds += time.process_time() - used
         recorder.flush()
         self._scene_tables(place)
-        outcome = restart.join(parts) if parts else None
-        self._sample_tables(place, recorder, outcome is not None and outcome.turns)
+        outcome = restart.join(parts) if parts and recorder.started else None
+        if recorder.started:
+            self._sample_tables(place, recorder, outcome is not None and outcome.turns)
         if outcome is not None:
             self._peak_tables(recorder, outcome.peaks, EXACT if outcome.exact else STEPS)
             self._spring_tables(recorder, outcome, stop is None)

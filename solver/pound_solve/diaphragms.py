@@ -101,7 +101,8 @@ def _meeting(structure: Structure, members: Mapping[int, Sequence[int]], spring:
     rigid = [n for n, d in zip("IJ", both) if math.isinf(d.stiffness) and not math.isinf(d.mass)]
     if rigid and not given:
         # a mass at a column is no floor: what holds it matters, and the theory does not know it
-        what = f"{' and '.join(rigid)} rigid, no member behind: a theory only with DIAPHRAGMS under PROPS"
+        who = " and ".join(rigid)
+        what = f"no theory: {who} rigid, no member behind; DIAPHRAGMS under PROPS gives a stiffness"
         return Meeting(both, None, math.nan, what)
     pair = Pair(first, second)
     plasticity = prop["R"] if spring.rule == "EQUIVALENT" else 1.0

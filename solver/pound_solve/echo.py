@@ -224,6 +224,28 @@ def collision_theory(structure: Structure, meetings: Mapping[int, Meeting]) -> R
     return out
 
 
+def size(structure: Structure) -> Rows:
+    """Rows of ``size``; those of the freedoms add up to the unknowns."""
+    nodes, moved = structure.model.nodes.values(), len(structure.freedoms.moved)
+    fixed = sum(len(n.fixed) for n in nodes) - moved
+    slaved = sum(len(set(n.slaved) - set(n.fixed)) for n in nodes)
+    internal = sum(d >= 3 for _, d in structure.freedoms.free)
+    contacts = sum(x.is_contact for x in structure.laws)
+    counts = {
+        "nodes": len(nodes),
+        "elements": len(structure.model.elements),
+        "freedoms of nodes": 3 * len(nodes),
+        "less fixed": fixed,
+        "less prescribed at moved supports": moved,
+        "less slaved": slaved,
+        "plus internal of elements (hinges)": internal,
+        "unknowns before reduction": structure.n_free,
+        "hysteretic components": len(structure.laws) - contacts,
+        "contacts": contacts,
+    }
+    return [(item, str(count)) for item, count in counts.items()]
+
+
 def motions(items: Sequence[Motion]) -> Rows:
     """Rows of ``motions``."""
     out = []

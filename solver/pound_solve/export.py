@@ -46,10 +46,10 @@ def _table(results: Results, name: str, folder: Path) -> Path:
 
 
 def _history(results: Results, name: str, folder: Path) -> Path:
-    time, values = results.time, results.history(name)
-    values = values.reshape(len(values), -1)
+    time, labels = results.time, results.labels(name)
+    values = results.history(name).reshape(len(time), len(labels))
     heads = [_head("time", results.history_units("time")[0])]
-    heads += map(_head, results.labels(name), results.history_units(name))
+    heads += map(_head, labels, results.history_units(name))
     rows = (
         [t, *row]
         for start in range(0, len(time), _BLOCK)

@@ -93,8 +93,7 @@ def _warning(results: Results) -> Iterator[str]:
         scope = "There is no time history; only what stands below was computed."
     else:
         when = f"{_times([results.last_time])[0]} {results.units.time}"
-        head += f": TIME {when}"
-        scope = f"Everything below that is taken from the time history holds up to {when} only."
+        scope = f"The last sample of the time history is that at {when}: what is taken from it ends there."
     inner = WIDTH - 8
     yield "*" * WIDTH
     for text in (head, "", why, "", scope):

@@ -366,6 +366,12 @@ class Results:
         dataset = _find(self._file["input"], _escape(name), "text", name, self.texts)
         return str(dataset.asstr()[()])
 
+    def holds(self, name: str) -> bool:
+        """Whether the history of that name has an instant, or else the table of that name a row."""
+        if name in self._datasets:
+            return self._length > 0
+        return name in self.tables and len(self._table(name)) > 0
+
     def table(self, name: str) -> NDArray[Any]:
         """Table as structured array, texts as str; KeyError where the file has none of that name."""
         stored = self._table(name)[()]
@@ -419,6 +425,11 @@ class Results:
 
     def _dataset(self, name: str) -> h5py.Dataset:
         return _find(self._datasets, name, "history", name, self.histories)
+
+
+def is_hdf5(path: str | Path) -> bool:
+    """Whether there is a file of the format of results, ours or not."""
+    return bool(h5py.is_hdf5(path))
 
 
 def _checked(table: str, column: Column, values: Sequence[Any]) -> Sequence[Any]:

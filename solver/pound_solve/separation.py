@@ -103,6 +103,9 @@ def rows(
     results: Results, periods: Sequence[float] = (), damping: Sequence[float] = ()
 ) -> list[tuple[Any, ...]]:
     """Rows of `TABLE`; see `text`."""
+    if math.isnan(results.last_time):
+        why = f": {results.message}" if results.message else ""
+        raise SeparationError(f"{results.path} holds no history{why}")
     needed = {"contact_laws", "contact_summary", "node_envelope", "elements"}
     if not needed <= set(results.tables) or not len(results.table("contact_laws")):
         raise SeparationError(f"{results.path}: the rules need a HISTORY of a deck with contacts")

@@ -263,12 +263,18 @@ _INPUT = (
                 "short",
                 "2 sqrt(m / kD); NaN for a rigid one or a wall",
             ),
-            Column("alpha_lumped", "alpha\nlumped", "-", "short", "influence coefficient of lumped masses"),
+            Column(
+                "alpha_lumped",
+                "alpha\nlumped",
+                "-",
+                "short",
+                "influence coefficient of lumped masses: the change of velocity over twice the approach "
+                "velocity, of an elastic collision",
+            ),
             Column("alpha_paper", "alpha\npaper", "-", "short", "of distributed masses, Cole et al. 2011"),
             Column("alpha_exact", "alpha\nexact", "-", "short", "of distributed masses, exact"),
         ),
-        note="As found behind the contact's nodes, or by DIAPHRAGMS of its card. An elastic collision "
-        "changes a diaphragm's velocity by 2 alpha times the approach velocity.",
+        note="As found behind the contact's nodes, or by DIAPHRAGMS of its card.",
     ),
     Table(
         "collision_theory",
@@ -288,15 +294,13 @@ _INPUT = (
                 "lumped\nerror",
                 "%",
                 "percent",
-                "error of the changes of velocity with lumped masses",
+                "error of the changes of velocity with lumped masses: (1 + e) / (1 + e_eff exact) - 1",
             ),
             Column(
                 "note", doc="whether the paper's equations hold, and whether lumped mass is good enough"
             ),
         ),
-        note="Uniform elastic bars that meet end to end. The lumped error is "
-        "(1 + e) / (1 + e_eff exact) - 1 with the restitution e of the contact where DIAPHRAGMS "
-        "stands on its card, else with e = 1.",
+        note="The theory is that of uniform elastic bars that meet end to end.",
     ),
 )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,10 @@ from pound_solve.cli import PICTURES, main
 
 pytest.importorskip("matplotlib")
 
+from output import sample
 from pound_solve import plot
-from pound_solve.plot import course, structure
-from pound_solve.results import Results
+from pound_solve.plot import course, structure, style
+from pound_solve.results import Results, Writer
 
 ROOT = Path(__file__).parents[2]
 
@@ -39,9 +41,9 @@ def test_every_picture_is_drawn_and_repeats(results: Results, tmp_path: Path) ->
     names = plot.possible(results)
     assert {"frame", "histories", "energy", "contacts", "collisions"} <= set(names)
     for ending in ("svg", "png", "pdf"):
-        first = plot.draw(results, names, tmp_path / "a", ending)
-        again = plot.draw(results, names, tmp_path / "b", ending)
-        assert len(first) == len(names)
+        first, left_out = plot.draw(results, names, tmp_path / "a", ending)
+        again, _ = plot.draw(results, names, tmp_path / "b", ending)
+        assert len(first) == len(names) and not left_out
         for a, b in zip(first, again):
             assert a.read_bytes() == b.read_bytes()
             assert a.stat().st_size > 5000
@@ -129,3 +131,127 @@ def test_what_cannot_be_drawn_is_said(results: Results, tmp_path: Path, capsys: 
     assert main(["plot", str(tmp_path / "none.h5")]) == 3
     assert main(["plot", file, "energy", "-o", str(tmp_path / "pictures"), "--as", "png"]) == 0
     assert (tmp_path / "pictures" / "two_oscillators_energy.png").exists()
+
+
+ALONE = """
+UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 {place} FIX=YR
+ 3 {beyond} FIX=YR
+ELEMENTS
+ 1 COLUMN 1 2
+ 2 WALL   2
+ 3 COLUMN 2 3
+PROPS
+ COLUMN SPRING KX=4000
+ WALL   CONTACT GAP=0.01 ANGLE={angle} K=1E6
+WEIGHTS
+ 2,3 981
+EQUAKE
+ SINE AMPLITUDE=2 PERIOD=1 DURATION=2
+{drift}
+ANALYSIS
+ HISTORY 1 {method}
+"""
+
+
+def alone(folder: Path, method: str = "", upright: bool = False, angle: int = 0, drift: str = "") -> Path:
+    """Results of two masses in a row, or above each other, the first of which meets a wall."""
+    place, beyond = ("0 3", "0 6") if upright else ("3 0", "6 0")
+    deck = folder / "alone.inp"
+    words = ALONE.format(method=method, place=place, beyond=beyond, angle=angle, drift=drift)
+    deck.write_text(words, encoding="utf-8")
+    pound_solve.run(deck, out=folder).close()
+    return folder / "alone.h5"
+
+
+def test_of_a_run_that_stopped_at_its_start_all_is_drawn_and_exported_that_is_there(
+    tmp_path: Path, capsys: Any
+) -> None:
+    file = str(alone(tmp_path, "METHOD=CENTRAL DT=1"))
+    capsys.readouterr()
+    assert main(["plot", file]) == 0
+    out, err = capsys.readouterr()
+    assert out.splitlines() == [str(tmp_path / "alone_frame.svg")]
+    told = "pound-solve: left out, nothing to draw: deformed, energy, contacts"
+    assert err.startswith(told) and "(no history)" in err and len(err.splitlines()) == 1
+    assert main(["plot", file, "energy"]) == 2  # nothing at all
+    assert "energy (no history)" in capsys.readouterr().err
+    assert main(["export", file]) == 0
+    text = (tmp_path / "alone" / "history_contact_gap.csv").read_text("utf-8")
+    assert text == "time [s],2 [m]\n"
+
+
+def test_envelopes_show_what_there_is(tmp_path: Path, capsys: Any) -> None:
+    with Results.open(alone(tmp_path)) as results, pytest.raises(plot.Nothing, match="no columns"):
+        structure.envelopes(results)
+    assert main(["plot", str(results.path)]) == 0
+    assert "envelopes (no drifts, no columns of nodes)" in capsys.readouterr().err
+    assert not (tmp_path / "alone_envelopes.svg").exists()
+    drift = "DRIFT\n top 1 2"
+    for upright, cards, titles in (
+        (True, "", ["height"]),
+        (False, drift, ["drifts"]),
+        (True, drift, ["drifts", "height"]),
+    ):
+        with Results.open(alone(tmp_path, upright=upright, drift=cards)) as results:
+            axes = structure.envelopes(results).axes
+            assert len(axes) == len(titles) and all(w in a.get_title() for w, a in zip(titles, axes))
+            table = results.table("node_envelope")
+    # the column's line is that of the table: extremes along X of nodes 2 and 3
+    own = table[(table["direction"] == "X") & (table["quantity"] == "displacement")]
+    low, high = lines(axes[1])[:2]
+    assert own["node"].tolist() == [2, 3]
+    assert np.array_equal(low, np.column_stack([own["min"], [3.0, 6.0]]))
+    assert np.array_equal(high, np.column_stack([own["max"], [3.0, 6.0]]))
+
+
+@pytest.mark.parametrize(
+    ("angle", "way"), [(0, (1, 0)), (180, (-1, 0)), (60, (0.5, 0.75**0.5)), (-30, (0.75**0.5, -0.5))]
+)
+def test_a_wall_stands_on_its_side(tmp_path: Path, angle: int, way: tuple[float, float]) -> None:
+    with Results.open(alone(tmp_path, angle=angle)) as results:
+        figure = structure.frame(results)
+    link, wall, *hatches = [x for x in figure.axes[0].get_lines() if x.get_color() == style.RED]
+    start, front = np.column_stack(link.get_data())
+    ends = np.column_stack(wall.get_data())
+    assert start.tolist() == [3.0, 0.0]
+    ahead = (front - start) / np.linalg.norm(front - start)
+    assert ahead == pytest.approx(way, abs=1e-12)
+    assert ends.mean(axis=0) == pytest.approx(front) and (ends[1] - ends[0]) @ ahead == pytest.approx(0.0)
+    assert len(hatches) > 3
+    for hatch in hatches:  # behind the wall
+        behind = (np.column_stack(hatch.get_data()) - front) @ ahead
+        assert behind[0] == pytest.approx(0.0, abs=1e-12) and behind[1] > 0.0
+    (x0, x1), (y0, y1) = figure.axes[0].get_xlim(), figure.axes[0].get_ylim()
+    assert all(x0 < x < x1 and y0 < y < y1 for x, y in ends)
+
+
+@pytest.mark.parametrize(
+    "seconds", [(0.03, 0.05, 0.2), (0.025, 0.1, 0.25), (0.9, 1.1, 1.3), (0.02, 0.3, 40.0)]
+)
+def test_numbers_at_the_axes_of_a_study_do_not_touch(tmp_path: Path, seconds: tuple[float, ...]) -> None:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    with Writer(tmp_path / "x.h5", title="x", units=sample.UNITS, program_version="0") as writer:
+        found = zip(seconds, (400, 800, 1600), (4e-2, 9e-3, 2.2e-3))
+        runs = [("NEWMARK", "", t, n, 0, e, np.nan, np.nan, 2.0, 1, 0.0) for t, n, e in found]
+        writer.table("study", runs)
+        writer.table("study_advice", [(0.01, "NEWMARK", "", 0.04, 9e-3, 9e-3)])
+        writer.finish("done")
+    with Results.open(tmp_path / "x.h5") as results:
+        figure = plot.PICTURES["study"][0](results)
+    FigureCanvasAgg(figure).draw()
+    for axes in figure.axes:
+        for axis, way in ((axes.xaxis, 0), (axes.yaxis, 1)):
+            low, high = sorted(axis.get_view_interval())
+            shown = [
+                label.get_window_extent().get_points()[:, way]
+                for minor in (False, True)
+                for place, label in zip(axis.get_ticklocs(minor=minor), axis.get_ticklabels(minor=minor))
+                if label.get_visible() and label.get_text() and low <= place <= high
+            ]
+            shown.sort(key=lambda ends: ends[0])
+            assert len(shown) >= 2
+            assert all(a[1] < b[0] for a, b in pairwise(shown))

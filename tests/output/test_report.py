@@ -196,13 +196,17 @@ def test_very_wide_tables_are_split(only: Callable[..., str]) -> None:
 
 
 def test_a_stopped_run_says_so_first(tmp_path: Path) -> None:
-    path = sample.write(tmp_path / "s.h5", status="stopped", message="No convergence at node 302 in X.")
+    """When it stopped, and which sample was the last, which is another time."""
+    why = "A506 at t = 2.996 s: interrupted"
+    path = sample.write(tmp_path / "s.h5", status="stopped", message=why)
     with Results.open(path) as results:
         text = render(results)
     frame = text[: text.index("1  INPUT")]
-    assert "THE ANALYSIS DID NOT COME TO ITS END: TIME 2.990 s" in frame
-    assert "No convergence at node 302 in X." in frame
-    assert "holds up to 2.990 s only" in frame
+    head, _, told, _, scope = (line.strip("* ") for line in frame.splitlines() if line.startswith("**  "))
+    assert (head, told) == ("THE ANALYSIS DID NOT COME TO ITS END", why)
+    assert (
+        scope == "The last sample of the time history is that at 2.990 s: what is taken from it ends there."
+    )
 
 
 def test_a_killed_run_says_so_first(tmp_path: Path) -> None:

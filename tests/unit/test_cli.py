@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -13,7 +14,9 @@ import pytest
 from pound_solve import run
 from pound_solve.app import DeckError
 from pound_solve.cli import _Progress, main
+from pound_solve.reference import vocabulary
 from pound_solve.results import Results
+from pound_solve.tables import SECTIONS
 
 DECK = """TITLE  A mass between two walls
 UNITS  kN m s
@@ -101,6 +104,17 @@ def test_what_cannot_be_done_is_said_in_a_line_or_two_with_its_status(deck, caps
     assert told in err and "Traceback" not in err
 
 
+@pytest.mark.parametrize("verb", [[], ["check"], ["study"]])
+def test_a_results_file_in_place_of_a_deck_is_told_with_the_verbs_that_read_it(deck, capsys, verb):
+    main([str(deck), "--quiet"])
+    before = deck.with_suffix(".h5").read_bytes()
+    with pytest.raises(SystemExit) as end:
+        main([*verb, str(deck.with_suffix(".h5"))])
+    told = "is a results file, not a deck: report, export, plot and separation read it"
+    assert end.value.code == 2 and told in capsys.readouterr().err
+    assert deck.with_suffix(".h5").read_bytes() == before
+
+
 def test_check_tells_all_mistakes_and_runs_nothing(tmp_path, capsys):
     path = tmp_path / "bad.inp"
     path.write_text(DECK.replace("KX=k", "KX=kk").replace("E=0.65", "E=1.65"))
@@ -127,6 +141,19 @@ def test_an_analysis_that_cannot_go_on_says_when_where_and_why(deck, capsys):
     results = Results.open(deck.with_suffix(".h5"))
     assert results.status == "stopped" and "modes" in results.tables
     assert "stability limit" in deck.with_suffix(".rpt").read_text()
+
+
+@pytest.mark.parametrize("method", ["CENTRAL DT=0.5", "LAPLACE DT=1"])
+def test_a_history_that_a_method_refuses_leaves_no_tables(deck, method):
+    linear = "\n".join(line for line in DECK.splitlines() if "WALL" not in line)
+    deck.write_text(linear.replace("HISTORY 3", f"HISTORY 3 METHOD={method}"))
+    assert main([str(deck)]) == 1
+    with Results.open(deck.with_suffix(".h5")) as results:
+        present = {heading: set(names) & set(results.tables) for heading, names in SECTIONS}
+    assert present["Free vibration"] and present["Scene and problem size"]
+    for heading in ("Envelopes of the time history", "Members and springs", "Contacts and collisions"):
+        assert not present[heading]
+    assert not present["Energy and checks"]
 
 
 def test_a_mechanism_under_load_is_named(deck, capsys):
@@ -186,6 +213,13 @@ def test_export_writes_tables_and_histories(deck, capsys):
     assert main(["export", str(deck.with_suffix(".h5"))]) == 0
     names = {Path(line).name for line in capsys.readouterr().out.split()}
     assert {"collisions.csv", "history_drift.csv"} & names and "collisions.csv" in names
+
+
+def test_the_help_of_list_names_every_family(capsys):
+    with pytest.raises(SystemExit):
+        main(["list", "--help"])
+    told = set(re.findall(r"\w+", capsys.readouterr().out))
+    assert set(vocabulary().families()) <= told
 
 
 def test_the_version_needs_no_numerics():

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from decks import model_of, solved, structure_of
 from pound_deck.model import Node, Span
+from pound_solve import echo
 from pound_solve.dofs import number
 
 SPAN = Span("test", 1, 1, 2)
@@ -124,3 +125,34 @@ WEIGHTS
  2 9.81
 """)
     assert s.ground == pytest.approx(np.array([[1, 0, -4], [0, 1, 3], [-4, 3, 25]]), abs=1e-14)
+
+
+def test_the_report_s_freedoms_add_up_to_the_unknowns():
+    deck = """
+GRAVITY 10
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=R SLAVED=X MASTER=4
+ 3 4 0 FIX=XYR
+ 4 4 3
+ELEMENTS
+ 1 COLUMN 1 2
+ 2 COLUMN 3 4
+ 3 BEAM   2 4
+PROPS
+ COLUMN FRAME E=2E8 A=0.01 I=1E-4
+ BEAM   FRAME E=2E8 A=0.01 I=1E-4 RULE=BILINEAR LP=0.2,0.2 MI=100 MJ=100
+"""
+    counts = {item: int(value) for item, value in echo.size(structure_of(deck, moved=[(1, 0)]))}
+    assert counts == {
+        "nodes": 4,
+        "elements": 3,
+        "freedoms of nodes": 12,
+        "less fixed": 6,  # node 1 Y and R, node 2 R, node 3 X, Y and R
+        "less prescribed at moved supports": 1,
+        "less slaved": 1,
+        "plus internal of elements (hinges)": 2,
+        "unknowns before reduction": 12 - 6 - 1 - 1 + 2,
+        "hysteretic components": 2,
+        "contacts": 0,
+    }

@@ -173,3 +173,18 @@ def test_a_file_without_contacts(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert main(["separation", str(tmp_path / "walls.h5")]) == 3
     assert "contacts" in capsys.readouterr().err
     assert main(["separation", str(tmp_path / "none.h5")]) == 3
+
+
+@pytest.mark.parametrize(
+    ("history", "told"),
+    [("HISTORY 0.6 METHOD=LAPLACE DT=1", "holds no history: A502 at t = 0"), ("", "holds no history\n")],
+)
+def test_a_file_without_history(
+    history: str, told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    deck = tmp_path / "walls.inp"
+    words = WALLS.replace("HISTORY 0.6 METHOD=EXACT FROM=REST", history)
+    deck.write_text(words.format(ends="2 4", angle="0"), encoding="utf-8")
+    run(deck, out=tmp_path).close()
+    assert main(["separation", str(tmp_path / "walls.h5")]) == 3
+    assert told in capsys.readouterr().err

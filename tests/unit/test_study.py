@@ -1,6 +1,7 @@
 """STUDY: errors, orders and extrapolation by hand; advice that holds for motions it has not seen."""
 
 import math
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -231,6 +232,28 @@ def test_where_exact_cannot_go_the_tolerances_of_auto_are_met(tmp_path):
 def test_what_cannot_be_studied_is_said_in_a_line(two, capsys, words, told):
     assert main(["study", two.deck, *words]) == 2
     assert told in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("verb", ["study", "loop"])
+def test_a_picture_of_no_known_format_is_refused(verb, tmp_path, capsys):
+    option = {"study": "--picture", "loop": "--png"}[verb]
+    with pytest.raises(SystemExit) as end:
+        main([verb, "LINEAR", option, str(tmp_path / "x.foo")])
+    assert end.value.code == 2 and "ends in .svg, .png, .pdf" in capsys.readouterr().err
+
+
+def test_a_picture_that_cannot_be_drawn_is_told_before_anything_runs(two, capsys, monkeypatch):
+    def never(*_):
+        raise AssertionError("the study ran")
+
+    monkeypatch.setattr(study, "run", never)
+    pytest.importorskip("matplotlib")
+    (two.out / "file").touch()
+    assert main(["study", two.deck, "--picture", str(two.out / "file/folder/x.png")]) == 3
+    assert "file/folder: Not a directory" in capsys.readouterr().err
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    assert main(["study", two.deck, "--picture", str(two.out / "x.png")]) == 2
+    assert "needs matplotlib" in capsys.readouterr().err
 
 
 def test_a_deck_without_history_has_nothing_to_study(two, capsys):

@@ -410,6 +410,11 @@ class Recorder:
         """Tell the progress of a run whose samples may not count (see `integrate.base.Sink`)."""
         self._progress(t, doing)
 
+    @property
+    def started(self) -> bool:
+        """Whether there was a sample: a method may refuse the scene at once."""
+        return self.reached >= 0.0
+
     def _residuals(self, energy: Array) -> Array:
         """Input less what it became, against the start [F L], for rows of energies."""
         change = energy - self.first_energy

@@ -10,9 +10,11 @@ from typing import Any
 from pound_solve.plot import course, structure, style
 from pound_solve.plot.loop import loop
 from pound_solve.plot.study import study
+from pound_solve.plot.style import Nothing, ready
 from pound_solve.results import Results
+from pound_solve.tables import TABLES
 
-__all__ = ("PICTURES", "draw", "draw_into", "loop", "possible")
+__all__ = ("PICTURES", "Nothing", "draw", "draw_into", "loop", "possible", "ready")
 
 #: Every picture: what draws it, and the tables and histories that it needs.
 PICTURES: Mapping[str, tuple[Callable[[Results], Any], tuple[str, ...]]] = MappingProxyType(
@@ -20,7 +22,7 @@ PICTURES: Mapping[str, tuple[Callable[[Results], Any], tuple[str, ...]]] = Mappi
         "frame": (structure.frame, ("nodes", "elements")),
         "modes": (structure.modes, ("mode_shapes",)),
         "deformed": (structure.deformed, ("node/u",)),
-        "envelopes": (structure.envelopes, ("drift_envelope", "node_envelope")),
+        "envelopes": (structure.envelopes, ("node_envelope",)),
         "histories": (course.histories, ("drift",)),
         "energy": (course.energy, ("energy",)),
         "loops": (course.loops, ("spring/force",)),
@@ -32,12 +34,14 @@ PICTURES: Mapping[str, tuple[Callable[[Results], Any], tuple[str, ...]]] = Mappi
 
 
 def possible(results: Results) -> list[str]:
-    """Pictures that the file holds the numbers for."""
+    """Pictures that the file has the tables and histories for, be they empty."""
     held = {*results.tables, *results.histories}
     return [name for name, (_, needs) in PICTURES.items() if held >= set(needs)]
 
 
-def draw(results: Results, names: Sequence[str], folder: Path, ending: str = "svg") -> list[Path]:
+def draw(
+    results: Results, names: Sequence[str], folder: Path, ending: str = "svg"
+) -> tuple[list[Path], dict[str, list[str]]]:
     """Draw pictures into files ``<results>_<picture>.<ending>``.
 
     Parameters
@@ -52,21 +56,39 @@ def draw(results: Results, names: Sequence[str], folder: Path, ending: str = "sv
 
     Returns
     -------
-    list of Path
+    drawn : list of Path
+    left_out : dict of str to list of str
+        Pictures that have nothing to draw, by what the file has none of.
 
     Raises
     ------
     ImportError
         matplotlib is not installed.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    out = []
+    ready(folder)
+    drawn: list[Path] = []
+    left_out: dict[str, list[str]] = {}
     for name in names:
-        out.append(folder / f"{results.path.stem}_{name}.{ending}")
-        draw_into(results, name, out[-1])
-    return out
+        path = folder / f"{results.path.stem}_{name}.{ending}"
+        try:
+            draw_into(results, name, path)
+        except Nothing as why:
+            left_out.setdefault(str(why), []).append(name)
+        else:
+            drawn.append(path)
+    return drawn, left_out
 
 
 def draw_into(results: Results, name: str, path: Path) -> None:
-    """Draw one picture into a file, whose ending names the format; see `draw`."""
-    style.save(PICTURES[name][0](results), path)
+    """Draw one picture into a file, whose ending names the format; see `draw`.
+
+    Raises
+    ------
+    Nothing
+        There is nothing to draw.
+    """
+    picture, needs = PICTURES[name]
+    for need in needs:
+        if not results.holds(need):
+            raise Nothing("history" if need in results.histories else TABLES[need].title.lower())
+    style.save(picture(results), path)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_solve.elements.base import axes as own_axes
 from pound_solve.plot import style
 from pound_solve.results import Results
 
@@ -15,6 +16,8 @@ Array = NDArray[np.float64]
 MOST_NUMBERS = 60  #: nodes up to which their numbers are written
 MOST_MODES = 8
 SHARE = 0.08  #: largest drawn displacement as a share of the structure's size
+WALL = 0.035  #: half the length of a wall, and about its distance, as a share of that size
+HATCHES = 6
 
 
 class Structure:
@@ -69,15 +72,18 @@ def frame(results: Results) -> Any:
     axes = figure.add_subplot()
     s.frame(axes)
     s.draw(axes, color=style.BLUE, linewidth=1.4)
-    for e in s.elements:
-        if e["kind"] != "CONTACT":
-            continue
-        i, j = s.place[int(e["i"])], s.place.get(int(e["j"]))
-        end = j if j is not None else i
-        axes.plot(*zip(i, end), color=style.RED, linewidth=2.0, marker="|", markersize=10)
+    angles = dict(results.table("contact_laws")[["contact", "angle"]].tolist())
+    for e in s.elements[s.elements["kind"] == "CONTACT"]:
+        name, i = str(e["name"] or e["element"]), s.place[int(e["i"])]
+        if e["j"]:
+            end = s.place[int(e["j"])]
+            axes.plot(*zip(i, end), color=style.RED, linewidth=2.0, marker="|", markersize=10)
+            above, room = (i + end) / 2, 7
+        else:
+            above, room = _wall(axes, i, angles[name], WALL * s.size), 3
         axes.annotate(
-            str(e["name"] or e["element"]), (i + end) / 2, fontsize=7, color=style.RED, ha="center",
-            xytext=(0, 7), textcoords="offset points",
+            name, above, fontsize=7, color=style.RED, ha="center",
+            xytext=(0, room), textcoords="offset points",
         )  # fmt: skip
     heaviest = max(s.mass.values(), default=0.0)
     for node, (x, y) in s.place.items():
@@ -90,6 +96,21 @@ def frame(results: Results) -> Any:
             axes.annotate(str(node), (x, y), fontsize=6, xytext=(3, 3), textcoords="offset points")
     axes.set_title("triangles: supports; dots: masses; red: contacts", fontsize=7, color="0.4")
     return figure
+
+
+def _wall(axes: Any, node: Array, angle: float, half: float) -> Array:
+    """Draw the wall that a node meets in a direction [deg], `half` as long on each side, hatched behind;
+    return its highest point.
+    """
+    across, along = np.array(own_axes(angle))
+    ends = node + half * across + half * np.array([along, -along])
+    axes.plot(*zip(node, node + half * across), color=style.RED, linewidth=2.0)
+    axes.plot(*ends.T, color=style.RED, linewidth=1.4)
+    for share in np.linspace(0.0, 1.0, HATCHES):
+        front = ends[0] + share * (ends[1] - ends[0])
+        back = front + 0.4 * half * (across + along)
+        axes.plot(*zip(front, back), color=style.RED, linewidth=0.7)
+    return max(ends, key=lambda p: p[1])
 
 
 def modes(results: Results) -> Any:
@@ -134,30 +155,46 @@ def deformed(results: Results) -> Any:
 
 
 def envelopes(results: Results) -> Any:
-    """Extremes of the drifts, in the order of the deck, and of horizontal displacements over the height."""
-    figure = style.figure(9.5, 4.6)
-    drifts = results.table("drift_envelope")
-    left, right = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2)
-    rows = np.arange(len(drifts))
-    style.grid(left, f"drift [{results.units.length}]")
-    left.barh(rows, drifts["max"], color=style.BLUE, height=0.6)
-    left.barh(rows, drifts["min"], color=style.COLOURS[1], height=0.6)
-    left.axvline(0.0, color="0.3", linewidth=0.8)
-    left.set_yticks(rows, [str(n) for n in drifts["name"]], fontsize=7)
-    left.set_title("largest drifts either way", fontsize=9)
-    s, table = Structure(results), results.table("node_envelope")
-    own = table[(table["direction"] == "X") & (table["quantity"] == "displacement")]
-    style.grid(right, f"displacement X [{s.units.length}]", f"height [{s.units.length}]")
-    for x in sorted({float(s.place[int(r["node"])][0]) for r in own}):
-        line = sorted(
-            (float(s.place[int(r["node"])][1]), float(r["min"]), float(r["max"]))
-            for r in own
-            if s.place[int(r["node"])][0] == x
-        )
-        if len(line) > 1:
-            height, low, high = np.array(line).T
-            right.plot(low, height, color=style.COLOURS[1], linewidth=1, marker=".")
-            right.plot(high, height, color=style.BLUE, linewidth=1, marker=".")
-    right.axvline(0.0, color="0.3", linewidth=0.8)
-    right.set_title("extremes of the nodes over the height, a line a column", fontsize=9)
+    """Extremes of the drifts, in the order of the deck, and of horizontal displacements over the height:
+    what there is of the two.
+    """
+    drifts = results.holds("drift_envelope")
+    columns = _columns(results)
+    count = drifts + bool(columns)
+    if not count:
+        raise style.Nothing("drifts, no columns of nodes")
+    figure = style.figure(4.75 * count, 4.6)
+    if drifts:
+        _drifts(figure.add_subplot(1, count, 1), results)
+    if columns:
+        axes = figure.add_subplot(1, count, count)
+        unit = results.units.length
+        style.grid(axes, f"displacement X [{unit}]", f"height [{unit}]")
+        for height, low, high in columns:
+            axes.plot(low, height, color=style.COLOURS[1], linewidth=1, marker=".")
+            axes.plot(high, height, color=style.BLUE, linewidth=1, marker=".")
+        axes.axvline(0.0, color="0.3", linewidth=0.8)
+        axes.set_title("extremes of the nodes over the height, a line a column", fontsize=9)
     return figure
+
+
+def _drifts(axes: Any, results: Results) -> None:
+    drifts = results.table("drift_envelope")
+    rows = np.arange(len(drifts))
+    style.grid(axes, f"drift [{results.units.length}]")
+    axes.barh(rows, drifts["max"], color=style.BLUE, height=0.6)
+    axes.barh(rows, drifts["min"], color=style.COLOURS[1], height=0.6)
+    axes.axvline(0.0, color="0.3", linewidth=0.8)
+    axes.set_yticks(rows, [str(n) for n in drifts["name"]], fontsize=7)
+    axes.set_title("largest drifts either way", fontsize=9)
+
+
+def _columns(results: Results) -> list[Array]:
+    """Heights, smallest and largest displacements X of the nodes above each other, shape (3, n) each."""
+    place, table = Structure(results).place, results.table("node_envelope")
+    own = table[(table["direction"] == "X") & (table["quantity"] == "displacement")]
+    lines: dict[float, list[tuple[float, float, float]]] = {}
+    for row in own:
+        x, y = place[int(row["node"])].tolist()
+        lines.setdefault(x, []).append((y, float(row["min"]), float(row["max"])))
+    return [np.array(sorted(line)).T for line in lines.values() if len(line) > 1]

@@ -10,6 +10,24 @@ BLUE, RED, GREEN = "#0b4f8a", "#b3301e", "#3d7a3d"
 COLOURS = (BLUE, "#b3541e", GREEN, "#7a3d7a", "#8a7a0b", "#0b8a7a", "0.35", "#5a5ad0")
 
 
+class Nothing(Exception):
+    """There is nothing to draw; says what the file has none of."""
+
+
+def ready(folder: Path) -> None:
+    """Make the folder of pictures where it is missing, and see that there will be pictures.
+
+    Raises
+    ------
+    ImportError
+        matplotlib is not installed.
+    OSError
+        The folder cannot be made.
+    """
+    figure()
+    folder.mkdir(parents=True, exist_ok=True)
+
+
 def figure(width: float = 7.0, height: float = 4.5, title: str = "") -> Any:
     """An empty figure of a size in inches.
 
