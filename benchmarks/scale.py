@@ -129,6 +129,7 @@ SCENES = {
     "row 6 x 5, Takeda": (row(6, 5, rule="TAKEDA ALFA=0.4 BETA=0.3 R=0.02"), {}),
     "row of three": (EXAMPLES / "07_row_of_three" / "row_of_three.inp", {}),
     "concrete frame": (EXAMPLES / "03_concrete_frame" / "concrete_frame.inp", {}),
+    "timber frame": (EXAMPLES / "04_timber_frame" / "timber_frame.inp", {}),
     "unequal frames": (EXAMPLES / "06_unequal_frames" / "unequal_frames.inp", {}),
     "steel 10 x 3": (EXAMPLES / "frames" / "steel_10x3.inp", {"t": 5, "pga": 6}),
 }
