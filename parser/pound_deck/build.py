@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from pound_deck.bind import Binder
@@ -29,6 +30,7 @@ _GEOMETRY: Final = Field(
     positional=True,
 )
 _LENGTHS: Final = {"M": 9.81, "MM": 9810.0, "CM": 981.0, "FT": 32.174, "IN": 386.09}
+_ALIKE: Final = 0.01  #: to which share a value of gravity is told from others
 _UNITS: Final = ("kN", "m", "s")  #: of words that UNITS leaves out
 _TIMES: Final = ("S", "SEC")
 _FORCES: Final = ("N", "KN", "MN", "KIP", "KIPS", "LB", "LBF", "KGF", "TF")
@@ -63,6 +65,8 @@ def build(
     for card in bound["PROPS"]:
         _once(props, card.label, card, "P303", f"property set {card.label}", card.span, report)
     known = _default_gravity(units)
+    if known and gravity is not None:
+        report += _another_gravity(gravity, known, units, outline.single)
     if known is None and "GRAVITY" not in outline.single and bound["WEIGHTS"]:
         message = f"no value of gravity is known for {units.length} and {units.time}"
         report.append(Diagnostic("P319", message, bound["WEIGHTS"][0].span, "add GRAVITY with its value"))
@@ -214,6 +218,20 @@ def _dimension(word: str) -> str:
 
 def _default_gravity(units: Units) -> float | None:
     return _LENGTHS.get(units.length.upper()) if units.time.upper() in _TIMES else None
+
+
+def _another_gravity(
+    gravity: float, known: float, units: Units, single: Mapping[str, Row]
+) -> Iterator[Diagnostic]:
+    """GRAVITY as it is with another unit of length; `known` is that with the deck's own."""
+    other = next((u for u, g in _LENGTHS.items() if math.isclose(gravity, g, rel_tol=_ALIKE)), "")
+    if other and _LENGTHS[other] != known and (units.given or "UNITS" not in single):
+        message = (
+            f"GRAVITY is {gravity:g}, that of {other.lower()}, but the unit of length is {units.length}"
+        )
+        hint = f"in {units.length} it is {known:g}; or name the deck's own units in UNITS"
+        items = single["GRAVITY"].items or ()
+        yield Diagnostic("P342", message, items[1].span, hint, "warning")
 
 
 def _title(row: Row | None) -> str:

@@ -412,6 +412,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "damping ratio above one (warning)",
         "XI under DAMPING is a share of critical damping, not percent: 5 % is 0.05.",
     ),
+    "P342": (
+        "gravity of another unit of length (warning)",
+        "GRAVITY is as it would be with another unit of length than that of UNITS, such as 9.81 with mm. "
+        "All masses are weights over it. Correct one of the two.",
+    ),
     "R401": (
         "record not found",
         "The record stands neither in the deck's folder nor in the record folders. Check its name, "

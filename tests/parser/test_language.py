@@ -196,6 +196,25 @@ def test_single_cards(read):
     assert read(HEAD).geometry == "SMALL"
 
 
+@pytest.mark.parametrize(
+    "units, gravity, told",
+    [
+        ("N mm s", 9.81, "in mm it is 9810"),
+        ("N m sec", 9800, "in m it is 9.81"),
+        ("kip in s", 32.2, "in in it is 386.09"),
+        ("N cm s", 9.7, ""),
+        ("N mm s", 9805, ""),
+        ("N mm s", 1, ""),
+        ("N mm ms", 9.81, ""),
+        ("N km s", 9.81, ""),
+        ("mm N s", 9810, ""),  # the units have a message of their own
+    ],
+)
+def test_gravity_of_another_unit_of_length(catalog, units, gravity, told):
+    found = read_text(f"UNITS {units}\nGRAVITY {gravity}\n" + HEAD, catalog)[1]
+    assert [d.hint.partition(";")[0] for d in found if d.code == "P342"] == [told] * bool(told)
+
+
 def test_sections_may_be_repeated_and_carry_a_number(read):
     assert len(read("ELEMENTS 0\n 9 COL 1 3\n" + HEAD).elements) == 3
 
