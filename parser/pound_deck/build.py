@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from pound_deck.bind import Binder
 from pound_deck.cards import Item, Row
-from pound_deck.diagnostics import Diagnostic, Mistake
+from pound_deck.diagnostics import Diagnostic, Mistake, hints
 from pound_deck.expressions import Expression, Value
 from pound_deck.model import Card, Element, Model, Node, Span, Units
 from pound_deck.outline import FAMILIES, NAMES, Outline
@@ -31,7 +31,7 @@ _GEOMETRY: Final = Field(
 )
 _LENGTHS: Final = {"M": 9.81, "MM": 9810.0, "CM": 981.0, "FT": 32.174, "IN": 386.09}
 _ALIKE: Final = 0.01  #: to which share a value of gravity is told from others
-_UNITS: Final = ("kN", "m", "s")  #: of words that UNITS leaves out
+_QUANTITIES: Final = ("force", "length", "time")  #: whose units UNITS names
 _TIMES: Final = ("S", "SEC")
 _FORCES: Final = ("N", "KN", "MN", "KIP", "KIPS", "LB", "LBF", "KGF", "TF")
 
@@ -204,11 +204,13 @@ def _units(row: Row | None, report: list[Diagnostic]) -> Units:
     kinds = [_dimension(word.upper()) for word in words]
     right = all(kind in ("", want) for kind, want in zip(kinds, "FLT"))
     named = any(i.name or len(i.parts) > 1 for i in row.items)
-    if named or not 1 <= len(words) <= 3 or len(words) != len(steps) or not right:
+    if named or len(words) != 3 or len(words) != len(steps) or not right:
         message = "UNITS takes the units of force, length and time, in this order"
-        report.append(Diagnostic("P238", message, row.span, "for example UNITS kN m s"))
+        missing = _QUANTITIES[len(words) :] if right and len(words) == len(steps) else ()
+        hint = hints(f"missing: {', '.join(missing)}" if missing else "", "for example UNITS kN m s")
+        report.append(Diagnostic("P238", message, row.span, hint))
         return Units()
-    force, length, time = (*words, *_UNITS[len(words) :])
+    force, length, time = words
     return Units(force, length, time, given=True)
 
 

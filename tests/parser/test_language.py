@@ -197,6 +197,20 @@ def test_single_cards(read):
 
 
 @pytest.mark.parametrize(
+    "units, told",
+    [
+        ("kN m", "missing: time; "),
+        ("kN", "missing: length, time; "),
+        ("m s", ""),
+        ("kN m s s", ""),
+    ],
+)
+def test_units_are_three(catalog, units, told):
+    (d,) = read_text(f"UNITS {units}\n" + HEAD, catalog)[1]
+    assert (d.code, d.hint) == ("P238", f"{told}for example UNITS kN m s")
+
+
+@pytest.mark.parametrize(
     "units, gravity, told",
     [
         ("N mm s", 9.81, "in mm it is 9810"),
