@@ -15,6 +15,7 @@ Found = Iterator[Diagnostic]
 _TABLE: Final = {Kind.NODE: 0, Kind.NODES: 0, Kind.ELEMENTS: 1, Kind.PROP: 2, Kind.PROPS: 2}
 #: elements along the line between their nodes
 _LONG: Final = ("FRAME", "BEAM_COLUMN", "TENDON")
+_MOST_NAMED: Final = 10  #: nodes in one message
 _MOST_HINTS: Final = 100  #: more messages are not printed, and each hint takes its time
 
 
@@ -227,11 +228,16 @@ def _drift_heights(model: Model) -> Found:
             yield Diagnostic("P318", message, card.span, "add HEIGHT=value", "warning")
 
 
+def _node_like(model: Model, card: Card) -> bool:
+    """Whether a weight looks like the second of two nodes that should have a comma between them."""
+    wx, wy = card["WX"], card["WY"]
+    return wy is not None and wx != wy and wx in model.nodes and not {"WX", "WY"} - card.spans.keys()
+
+
 def _node_like_weights(model: Model) -> Found:
     for card in model.weights:
-        wx, wy = card["WX"], card["WY"]
-        if wy is not None and wx != wy and wx in model.nodes and not {"WX", "WY"} - card.spans.keys():
-            message = f"WX is {wx:g}, which is the number of a node, and WY differs from it"
+        if _node_like(model, card):
+            message = f"WX is {card['WX']:g}, which is the number of a node, and WY differs from it"
             hint = "a list of nodes has commas and no blanks: 1,2"
             yield Diagnostic("P320", message, card.place("WX"), hint, "warning")
 
@@ -257,6 +263,27 @@ def _weights_twice(model: Model) -> Found:
             first.setdefault(n, i)
 
 
+def _weights_of_supports(model: Model) -> Found:
+    """They do nothing, but on supports that move by themselves, or where they press as loads."""
+    if any(card.values.get("GRAVITY") == "YES" for card in model.analyses):
+        return
+    moved = {node for card in model.equake for node in card.values.get("SUPPORTS") or ()}
+    for card in model.weights:
+        held = [
+            number
+            for number in dict.fromkeys(card["NODES"])
+            if number in model.nodes and number not in moved
+            if {"X", "Y", *("R" * bool(card["WR"]))} <= set(model.nodes[number].fixed)
+        ]
+        if held and not _node_like(model, card):
+            more = f" and {len(held) - _MOST_NAMED} more" if len(held) > _MOST_NAMED else ""
+            which = ", ".join(map(str, held[:_MOST_NAMED])) + more
+            who = f"nodes {which} are" if len(held) > 1 else f"node {which} is"
+            message = f"{who} fixed: a weight there moves nothing"
+            hint = "take it out of the list, or correct FIX under NODES"
+            yield Diagnostic("P343", message, card.place("NODES"), hint, "warning")
+
+
 _NODES: Final = frozenset({"NODES"})
 _MEMBERS: Final = frozenset({"ELEMENTS"})
 _PROPS: Final = frozenset({"PROPS"})
@@ -280,4 +307,5 @@ CHECKS: Final[tuple[tuple[Callable[[Model], Found], frozenset[str]], ...]] = (
     (_drift_heights, frozenset()),
     (_node_like_weights, frozenset()),
     (_weights_twice, frozenset()),
+    (_weights_of_supports, _NODES | frozenset({"ANALYSIS", "EQUAKE"})),
 )

@@ -417,6 +417,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "GRAVITY is as it would be with another unit of length than that of UNITS, such as 9.81 with mm. "
         "All masses are weights over it. Correct one of the two.",
     ),
+    "P343": (
+        "weight of a fixed node (warning)",
+        "The node is fixed, so its mass takes no part in any motion. A support that EQUAKE moves by itself "
+        "(SUPPORTS) may have weight.",
+    ),
     "R401": (
         "record not found",
         "The record stands neither in the deck's folder nor in the record folders. Check its name, "
