@@ -220,10 +220,13 @@ def _drift_names(model: Model) -> Found:
         first.setdefault(card.label, card.span)
 
 
-def _drift_heights(model: Model) -> Found:
+def _drift_nodes(model: Model) -> Found:
     for card in model.drifts:
         i, j = model.nodes.get(card["I"]), model.nodes.get(card["J"])
-        if i and j and i.y == j.y and card["HEIGHT"] is None:
+        if card["I"] == card["J"]:
+            message = f'drift "{card.label}" is that of node {card["I"]} against itself'
+            yield Diagnostic("P344", message, card.place("J"), "name the lower and the upper node")
+        elif i and j and i.y == j.y and card["HEIGHT"] is None:
             message = f"nodes {i.id} and {j.id} are at the same height, so this drift has no ratio"
             yield Diagnostic("P318", message, card.span, "add HEIGHT=value", "warning")
 
@@ -304,7 +307,7 @@ CHECKS: Final[tuple[tuple[Callable[[Model], Found], frozenset[str]], ...]] = (
     ),
     (_percent, frozenset()),
     (_drift_names, frozenset()),
-    (_drift_heights, frozenset()),
+    (_drift_nodes, frozenset()),
     (_node_like_weights, frozenset()),
     (_weights_twice, frozenset()),
     (_weights_of_supports, _NODES | frozenset({"ANALYSIS", "EQUAKE"})),

@@ -422,6 +422,10 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "The node is fixed, so its mass takes no part in any motion. A support that EQUAKE moves by itself "
         "(SUPPORTS) may have weight.",
     ),
+    "P344": (
+        "drift of one node",
+        "Both nodes of the drift are the same. Name the lower and the upper one.",
+    ),
     "R401": (
         "record not found",
         "The record stands neither in the deck's folder nor in the record folders. Check its name, "
