@@ -129,7 +129,7 @@ def _something(model: Model) -> Found:
             yield Diagnostic(
                 "P315",
                 f"the deck has no {section.lower()}",
-                None,
+                _deck(model),
                 f"write {section} and lines like: {example}",
             )
 
@@ -137,7 +137,12 @@ def _something(model: Model) -> Found:
 def _analysis(model: Model) -> Found:
     if not model.analyses:
         hint = "write ANALYSIS and below it STATIC, MODAL 4 or HISTORY T=10"
-        yield Diagnostic("P316", "the deck asks for no analysis", None, hint)
+        yield Diagnostic("P316", "the deck asks for no analysis", _deck(model), hint)
+
+
+def _deck(model: Model) -> Span:
+    """The start of the deck's file, for what stands nowhere in it."""
+    return Span(next(iter(model.files)), 1, 1, 2)
 
 
 def _analysis_twice(model: Model) -> Found:
