@@ -288,6 +288,15 @@ def test_a_mistake_does_not_bring_others(codes):
     assert codes('INCLUDE "none.inp"\n' + HEAD + "WEIGHTS\n n 5*n\n") == ["P105"]
 
 
+def test_an_item_out_of_place_does_not_bring_others(codes):
+    hit = "ELEMENTS\n 3 HIT 1 3\nPROPS\n HIT CONTACT "
+    assert codes(HEAD + hit + "GAP=1 mm K=5 LAW=LINEAR\n") == ["P215"]
+    assert codes(HEAD + hit + "K 5 LAW=LINEAR\n") == ["P214"]
+    assert codes(HEAD + hit + "LAW KELVIN_VOIGT K=5 E=0.5\n") == ["P214"]
+    assert codes(HEAD + hit + "GAP=1 2 LAW=LINEAR KK=5\n") == ["P215", "P211"]
+    assert codes(HEAD + hit + "LAW=LINEAR\n") == ["P213"]
+
+
 def test_bad_generated_cards_do_not_break_others(codes):
     assert codes(HEAD.replace("PROPS", " 11 TO 13 COL 1 TO 2 3\nPROPS")) == ["P220"]
 
