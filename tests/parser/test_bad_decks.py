@@ -54,6 +54,12 @@ def test_all_mistakes_in_one_pass(catalog):
     assert codes == ["P316", "P211", "P203", "P222", "P216", "P210"]
 
 
+@pytest.mark.parametrize("deck", ["no_value", "no_value_at_the_end"])
+def test_a_value_that_is_missing_is_named(catalog, deck):
+    _, (d,), _ = read_deck(str(DECKS[0].parent / f"P209_{deck}.inp"), catalog)
+    assert (d.message, d.span.end - d.span.column) == ("the value of KX is missing", len("KX="))
+
+
 def test_manual_page_is_fresh():
     page = Path(__file__).parents[2] / "manual" / "messages.md"
     assert page.read_text("utf-8") == messages_page(), "write it anew with messages_page()"
