@@ -403,6 +403,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "contact pressed at rest (warning)",
         "GAP is below zero: the bodies overlap at rest and press each other. A distance is positive.",
     ),
+    "P337": (
+        "structure not tied to the ground (warning)",
+        "EQUAKE shakes the base along a direction in which no fixed node, spring, dashpot or contact holds "
+        "the structure, and neither INITIAL nor FORCES set it in motion. Fix its base in that direction.",
+    ),
     "P340": (
         "P-Delta without axial forces (warning)",
         "GEOMETRY asks for P-Delta, but no load presses the columns, so it does nothing. Weights are "
