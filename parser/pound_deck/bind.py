@@ -70,7 +70,8 @@ class Binder:
             One card, or as many as the row's range generates; None where the row has mistakes.
         """
         before = len(self.report)
-        given, whole = self._match(spec, items)
+        given, matched = self._match(spec, items)
+        whole = matched
         numbers = self._count(spec, given) if generate else None
         values: dict[str, Any] = {}
         laws: dict[str, tuple[Spec, ...]] = {}
@@ -82,7 +83,7 @@ class Binder:
             item = given.get(f.name)
             try:
                 if item is None:
-                    values[f.name] = self._default(f, spec, label, span)
+                    values[f.name] = self._default(f, spec, label, span, matched)
                 else:
                     values[f.name] = self._value(f, item, spec, numbers)
             except Mistake as error:
@@ -120,21 +121,10 @@ class Binder:
         for k, item in enumerate(items):
             if item.name:
                 named, name = True, item.name
-            elif named:
-                self._error(
-                    "P215",
-                    "an item by position stands after a named one",
-                    item.span,
-                    _after_named(spec, items[k - 1], item),
-                )
-                break
-            elif k >= len(places):
-                takes = f"{spec.name} reads {', '.join(places) or 'nothing'} by position"
-                hint = "write further items as NAME=value; lists have commas and no blanks: 1,3,5"
-                if spec.field(item.word):
-                    hint = f"write {item.word}=value"
-                self._error("P214", f"one item too many: {takes}", item.span, hint)
-                break
+            elif named or k >= len(places):
+                if len(self.report) == before:  # the first that is out of place tells enough
+                    self._out_of_place(spec, named, items[k - 1], item)
+                continue
             else:
                 name = places[k]
             if name in given:
@@ -145,7 +135,21 @@ class Binder:
                 given[name] = item
         return given, len(self.report) == before
 
-    def _default(self, f: Field, spec: Spec, label: str, span: Span) -> Any:
+    def _out_of_place(self, spec: Spec, named: bool, before: Item, item: Item) -> None:
+        if named:
+            message = "an item by position stands after a named one"
+            self._error("P215", message, item.span, _after_named(spec, before, item))
+            return
+        places = ", ".join(f.name for f in spec.fields if f.positional)
+        hint = "write further items as NAME=value; lists have commas and no blanks: 1,3,5"
+        if spec.field(item.word):
+            hint = f"write {item.word}=value"
+        message = f"one item too many: {spec.name} reads {places or 'nothing'} by position"
+        self._error("P214", message, item.span, hint)
+
+    def _default(self, f: Field, spec: Spec, label: str, span: Span, whole: bool) -> Any:
+        if not whole and (f.default is REQUIRED or f.kind is Kind.FAMILY):
+            raise Mistake  # what is out of place may be meant for it
         if f.default is REQUIRED:
             raise mistake("P213", f"{label or spec.name} needs {self.read.meaning(f)}", span, _how(f))
         return f.default

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from pound_deck.bind import Binder
 from pound_deck.cards import Item, Row
-from pound_deck.diagnostics import Diagnostic, Mistake
+from pound_deck.diagnostics import Diagnostic, Mistake, hints
 from pound_deck.expressions import Expression, Value
 from pound_deck.model import Card, Element, Model, Node, Span, Units
 from pound_deck.outline import FAMILIES, NAMES, Outline
@@ -29,7 +30,8 @@ _GEOMETRY: Final = Field(
     positional=True,
 )
 _LENGTHS: Final = {"M": 9.81, "MM": 9810.0, "CM": 981.0, "FT": 32.174, "IN": 386.09}
-_UNITS: Final = ("kN", "m", "s")  #: of words that UNITS leaves out
+_ALIKE: Final = 0.01  #: to which share a value of gravity is told from others
+_QUANTITIES: Final = ("force", "length", "time")  #: whose units UNITS names
 _TIMES: Final = ("S", "SEC")
 _FORCES: Final = ("N", "KN", "MN", "KIP", "KIPS", "LB", "LBF", "KGF", "TF")
 
@@ -63,6 +65,8 @@ def build(
     for card in bound["PROPS"]:
         _once(props, card.label, card, "P303", f"property set {card.label}", card.span, report)
     known = _default_gravity(units)
+    if known and gravity is not None:
+        report += _another_gravity(gravity, known, units, outline.single)
     if known is None and "GRAVITY" not in outline.single and bound["WEIGHTS"]:
         message = f"no value of gravity is known for {units.length} and {units.time}"
         report.append(Diagnostic("P319", message, bound["WEIGHTS"][0].span, "add GRAVITY with its value"))
@@ -200,11 +204,13 @@ def _units(row: Row | None, report: list[Diagnostic]) -> Units:
     kinds = [_dimension(word.upper()) for word in words]
     right = all(kind in ("", want) for kind, want in zip(kinds, "FLT"))
     named = any(i.name or len(i.parts) > 1 for i in row.items)
-    if named or not 1 <= len(words) <= 3 or len(words) != len(steps) or not right:
+    if named or len(words) != 3 or len(words) != len(steps) or not right:
         message = "UNITS takes the units of force, length and time, in this order"
-        report.append(Diagnostic("P238", message, row.span, "for example UNITS kN m s"))
+        missing = _QUANTITIES[len(words) :] if right and len(words) == len(steps) else ()
+        hint = hints(f"missing: {', '.join(missing)}" if missing else "", "for example UNITS kN m s")
+        report.append(Diagnostic("P238", message, row.span, hint))
         return Units()
-    force, length, time = (*words, *_UNITS[len(words) :])
+    force, length, time = words
     return Units(force, length, time, given=True)
 
 
@@ -214,6 +220,20 @@ def _dimension(word: str) -> str:
 
 def _default_gravity(units: Units) -> float | None:
     return _LENGTHS.get(units.length.upper()) if units.time.upper() in _TIMES else None
+
+
+def _another_gravity(
+    gravity: float, known: float, units: Units, single: Mapping[str, Row]
+) -> Iterator[Diagnostic]:
+    """GRAVITY as it is with another unit of length; `known` is that with the deck's own."""
+    other = next((u for u, g in _LENGTHS.items() if math.isclose(gravity, g, rel_tol=_ALIKE)), "")
+    if other and _LENGTHS[other] != known and (units.given or "UNITS" not in single):
+        message = (
+            f"GRAVITY is {gravity:g}, that of {other.lower()}, but the unit of length is {units.length}"
+        )
+        hint = f"in {units.length} it is {known:g}; or name the deck's own units in UNITS"
+        items = single["GRAVITY"].items or ()
+        yield Diagnostic("P342", message, items[1].span, hint, "warning")
 
 
 def _title(row: Row | None) -> str:

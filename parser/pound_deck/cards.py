@@ -34,6 +34,8 @@ _BRACKET: Final = re.compile(r""""[^"\n]*"|'[^'\n]*'|([()])""")
 _LONGEST_NAME: Final = 300  #: of a file, with its path
 _PATH_START: Final = re.compile(r"\.{1,2}[/\\]|~/|\\\\|[A-Za-z]:[/\\]")
 _FILE: Final = re.compile(r"""[^()*"']*[A-Za-z_][^()*"']*\.[A-Za-z]\w*""")  #: a letter, and an extension
+#: at the end, or before the = of the next item
+_NO_VALUE: Final = re.compile(r"([A-Za-z_][\w.]*)(\s*=)(\s+[A-Za-z_][\w.]*)?$")
 _LOOKALIKES: Final = {
     "−": "-",
     "–": "-",
@@ -329,6 +331,11 @@ def _explain(error: UnexpectedInput, line: Line) -> Mistake:
     last = before[-1:]
     place = _place(line, at, len(token.rstrip()))
     hint = "write 1-2 or (1 - 2) for a difference, 1 -2 for two items"
+    empty = _NO_VALUE.search(before)
+    if empty and token.type == ("EQUAL" if empty[3] else "$END"):
+        name = empty[1][:60].upper()
+        there = _place(line, empty.start(), len(empty[1] + empty[2]))
+        return mistake("P209", f"the value of {name} is missing", there, f"write {name}=value")
     if (token.type == "_WS" and last == ",") or (token.type == "COMMA" and text[at - 1 : at].isspace()):
         return mistake(
             "P206",

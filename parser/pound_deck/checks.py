@@ -15,6 +15,7 @@ Found = Iterator[Diagnostic]
 _TABLE: Final = {Kind.NODE: 0, Kind.NODES: 0, Kind.ELEMENTS: 1, Kind.PROP: 2, Kind.PROPS: 2}
 #: elements along the line between their nodes
 _LONG: Final = ("FRAME", "BEAM_COLUMN", "TENDON")
+_MOST_NAMED: Final = 10  #: nodes in one message
 _MOST_HINTS: Final = 100  #: more messages are not printed, and each hint takes its time
 
 
@@ -128,7 +129,7 @@ def _something(model: Model) -> Found:
             yield Diagnostic(
                 "P315",
                 f"the deck has no {section.lower()}",
-                None,
+                _deck(model),
                 f"write {section} and lines like: {example}",
             )
 
@@ -136,7 +137,12 @@ def _something(model: Model) -> Found:
 def _analysis(model: Model) -> Found:
     if not model.analyses:
         hint = "write ANALYSIS and below it STATIC, MODAL 4 or HISTORY T=10"
-        yield Diagnostic("P316", "the deck asks for no analysis", None, hint)
+        yield Diagnostic("P316", "the deck asks for no analysis", _deck(model), hint)
+
+
+def _deck(model: Model) -> Span:
+    """The start of the deck's file, for what stands nowhere in it."""
+    return Span(next(iter(model.files)), 1, 1, 2)
 
 
 def _analysis_twice(model: Model) -> Found:
@@ -219,19 +225,27 @@ def _drift_names(model: Model) -> Found:
         first.setdefault(card.label, card.span)
 
 
-def _drift_heights(model: Model) -> Found:
+def _drift_nodes(model: Model) -> Found:
     for card in model.drifts:
         i, j = model.nodes.get(card["I"]), model.nodes.get(card["J"])
-        if i and j and i.y == j.y and card["HEIGHT"] is None:
+        if card["I"] == card["J"]:
+            message = f'drift "{card.label}" is that of node {card["I"]} against itself'
+            yield Diagnostic("P344", message, card.place("J"), "name the lower and the upper node")
+        elif i and j and i.y == j.y and card["HEIGHT"] is None:
             message = f"nodes {i.id} and {j.id} are at the same height, so this drift has no ratio"
             yield Diagnostic("P318", message, card.span, "add HEIGHT=value", "warning")
 
 
+def _node_like(model: Model, card: Card) -> bool:
+    """Whether a weight looks like the second of two nodes that should have a comma between them."""
+    wx, wy = card["WX"], card["WY"]
+    return wy is not None and wx != wy and wx in model.nodes and not {"WX", "WY"} - card.spans.keys()
+
+
 def _node_like_weights(model: Model) -> Found:
     for card in model.weights:
-        wx, wy = card["WX"], card["WY"]
-        if wy is not None and wx != wy and wx in model.nodes and not {"WX", "WY"} - card.spans.keys():
-            message = f"WX is {wx:g}, which is the number of a node, and WY differs from it"
+        if _node_like(model, card):
+            message = f"WX is {card['WX']:g}, which is the number of a node, and WY differs from it"
             hint = "a list of nodes has commas and no blanks: 1,2"
             yield Diagnostic("P320", message, card.place("WX"), hint, "warning")
 
@@ -257,6 +271,27 @@ def _weights_twice(model: Model) -> Found:
             first.setdefault(n, i)
 
 
+def _weights_of_supports(model: Model) -> Found:
+    """They do nothing, but on supports that move by themselves, or where they press as loads."""
+    if any(card.values.get("GRAVITY") == "YES" for card in model.analyses):
+        return
+    moved = {node for card in model.equake for node in card.values.get("SUPPORTS") or ()}
+    for card in model.weights:
+        held = [
+            number
+            for number in dict.fromkeys(card["NODES"])
+            if number in model.nodes and number not in moved
+            if {"X", "Y", *("R" * bool(card["WR"]))} <= set(model.nodes[number].fixed)
+        ]
+        if held and not _node_like(model, card):
+            more = f" and {len(held) - _MOST_NAMED} more" if len(held) > _MOST_NAMED else ""
+            which = ", ".join(map(str, held[:_MOST_NAMED])) + more
+            who = f"nodes {which} are" if len(held) > 1 else f"node {which} is"
+            message = f"{who} fixed: a weight there moves nothing"
+            hint = "take it out of the list, or correct FIX under NODES"
+            yield Diagnostic("P343", message, card.place("NODES"), hint, "warning")
+
+
 _NODES: Final = frozenset({"NODES"})
 _MEMBERS: Final = frozenset({"ELEMENTS"})
 _PROPS: Final = frozenset({"PROPS"})
@@ -277,7 +312,8 @@ CHECKS: Final[tuple[tuple[Callable[[Model], Found], frozenset[str]], ...]] = (
     ),
     (_percent, frozenset()),
     (_drift_names, frozenset()),
-    (_drift_heights, frozenset()),
+    (_drift_nodes, frozenset()),
     (_node_like_weights, frozenset()),
     (_weights_twice, frozenset()),
+    (_weights_of_supports, _NODES | frozenset({"ANALYSIS", "EQUAKE"})),
 )

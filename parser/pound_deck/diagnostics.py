@@ -403,6 +403,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "contact pressed at rest (warning)",
         "GAP is below zero: the bodies overlap at rest and press each other. A distance is positive.",
     ),
+    "P337": (
+        "structure not tied to the ground (warning)",
+        "EQUAKE shakes the base along a direction in which no fixed node, spring, dashpot or contact holds "
+        "the structure, and neither INITIAL nor FORCES set it in motion. Fix its base in that direction.",
+    ),
     "P340": (
         "P-Delta without axial forces (warning)",
         "GEOMETRY asks for P-Delta, but no load presses the columns, so it does nothing. Weights are "
@@ -411,6 +416,20 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P341": (
         "damping ratio above one (warning)",
         "XI under DAMPING is a share of critical damping, not percent: 5 % is 0.05.",
+    ),
+    "P342": (
+        "gravity of another unit of length (warning)",
+        "GRAVITY is as it would be with another unit of length than that of UNITS, such as 9.81 with mm. "
+        "All masses are weights over it. Correct one of the two.",
+    ),
+    "P343": (
+        "weight of a fixed node (warning)",
+        "The node is fixed, so its mass takes no part in any motion. A support that EQUAKE moves by itself "
+        "(SUPPORTS) may have weight.",
+    ),
+    "P344": (
+        "drift of one node",
+        "Both nodes of the drift are the same. Name the lower and the upper one.",
     ),
     "R401": (
         "record not found",

@@ -120,7 +120,9 @@ def prepare(request: Request) -> Prepared:
     except AssemblyError as err:
         found += err.diagnostics
     if structure is not None:
-        found += _inclined(structure) + _pressed(structure) + pushover.mistakes(structure)
+        found += (
+            _inclined(structure) + _pressed(structure) + _adrift(structure) + pushover.mistakes(structure)
+        )
     saved = _saved(model, request, found)
     if has_errors(found) or structure is None:
         raise DeckError(found, files)
@@ -212,6 +214,34 @@ def _pressed(structure: Structure) -> list[Diagnostic]:
         for label in used
         if props[label]["GAP"] < 0.0
     ]
+
+
+def _adrift(structure: Structure) -> list[Diagnostic]:
+    """Motions of the whole base that nothing ties the structure to: it stays behind, as one body.
+
+    What flies by itself is meant to.  Contacts with the ground and dashpots tie it too.
+    """
+    model, freedoms = structure.model, structure.freedoms
+    if model.initial or model.forces or all(c.spec.name != "HISTORY" for c in model.analyses):
+        return []
+    k = structure.displaced(np.zeros(structure.n_free)).initial_stiffness
+    dashpots = [b for p in structure.parts.values() for b in p.damping]
+    ways = {c["DIRECTION"]: c for c in reversed(model.equake) if c["SUPPORTS"] is None}
+    out = []
+    for way in sorted(ways.keys() - {"R"}):
+        d = "XY".index(way)
+        ride = np.array([float(own == d) for _, own in freedoms.free] + [0.0] * len(freedoms.moved))
+        ends = [[freedoms.value((f,), (1.0,), ride) for f in b.freedoms] for b in dashpots]
+        tied = (
+            (abs(k @ ride) > 1e-9 * (abs(k) @ ride)).any()
+            or (structure.law_rows @ ride).any()
+            or any((b.matrix @ u).any() for b, u in zip(dashpots, ends))
+        )
+        if ride @ structure.ground[d] > 0.0 and not tied:
+            message = f"nothing ties the structure to the ground along {way}: it stays behind as one body"
+            hint = f"fix {way} of its base under NODES, or join it to the ground by an element"
+            out.append(Diagnostic("P337", message, ways[way].span, hint, "warning"))
+    return out
 
 
 def context(model: Model, request: Request) -> Context:

@@ -538,18 +538,19 @@ def _stability(args: argparse.Namespace) -> int:
 
     families = (args.family,) if args.family else stability.FAMILIES
     law = (args.law or "").upper()
-    live = sys.stderr.isatty()
-
-    def tell(row: stability.Row) -> None:
-        if live:
-            print(f"\r{row.case.scene[:40]:40} {row.case.law:20} {row.method:20}", end="", file=sys.stderr)
 
     def chosen(case: extremes.Case) -> bool:
         return law in ("", case.law) and not (args.quick and case.heavy)
 
-    if not any(map(chosen, extremes.cases(families))):
+    runs = sum(map(chosen, extremes.cases(families))) * len(stability.methods())
+    if not runs:
         near = f"--family {args.family} has" if args.family else "there are"
         return _complain(f"{near} no scenes with the law {args.law}: see pound-solve list", 2)
-    rows = list(stability.matrix(families, chosen, tell))
+    progress, rows = _Progress(quiet=False), []
+    for row in stability.matrix(families, chosen):
+        rows.append(row)
+        doing = f"{len(rows)} of {runs}: {row.case.scene} {row.case.law}"
+        progress(len(rows), runs, doing[:WIDTH])
+    progress.end()
     print(stability.page(rows))
     return int(any(row.end == stability.FAULT for row in rows))

@@ -59,9 +59,16 @@ ALONE: Final = "energy balances; nothing else to compare with"
 PARTLY: Final = "compared as far as the answer is known"
 FAMILIES: Final = ("linear", "contact", "hysteresis")
 RIGHT, TOLD, STOPPED, FAULT = "right", "told", "stopped", "fault"  #: how a case may end
+MEANS: Final = {
+    RIGHT: "as the reference",
+    TOLD: "off, and a check of the report says so",
+    STOPPED: "refused or stopped in words",
+    FAULT: "all else, such as a wrong answer that no check tells",
+}
 #: a stop names its number and time or stage; a refused deck its place
 CLEAR: Final = re.compile(r"A5\d\d (at t = \S+ \S+: |static analysis: )\w.{20,}|A50[15] \w.{20,}")
 REFUSED: Final = re.compile(r"\.inp:\d+:\d+: error [A-Z]\d{3}: ")
+REFUSED_AT: Final = re.compile(r"^.*?\.inp:\d+:\d+: error ")  #: in a file that is gone
 
 
 class Found(NamedTuple):
@@ -370,7 +377,6 @@ def beyond(offs: Offs) -> str:
 def matrix(
     families: tuple[str, ...] = FAMILIES,
     chosen: Callable[[Case], bool] = lambda case: True,
-    progress: Callable[[Row], None] = lambda row: None,
     limit: float = LIMIT,
 ) -> Iterator[Row]:
     """Solve all cases by all methods.
@@ -381,8 +387,6 @@ def matrix(
         Of ``linear``, ``contact`` and ``hysteresis``.
     chosen : callable
         Which cases.
-    progress : callable
-        Told every row as it is there.
     limit : float
         Seconds that a run may take, in one of as many processes as there are cores; 0: in this process,
         without a limit.
@@ -403,9 +407,7 @@ def matrix(
     try:
         with ThreadPoolExecutor(count) as pool:
             for rows in pool.map(solved, filter(chosen, cases(families))):
-                for row in rows:
-                    progress(row)
-                    yield row
+                yield from rows
     finally:
         for _ in range(count):
             runners.get().close()
@@ -439,19 +441,31 @@ def table(rows: Sequence[Row]) -> str:
 
 
 def stops(rows: Sequence[Row]) -> str:
-    """The stops by kind, with their count and an example; then what is known in part, and all faults."""
-    kinds: dict[str, list[str]] = defaultdict(list)
+    """The stops by kind, with their count, methods and an example; then what is known in part, and all
+    faults.
+    """
+    kinds: dict[str, list[tuple[str, Row]]] = defaultdict(list)
     for row in rows:
         if row.end == STOPPED:
-            text = re.sub(r"^.*?case.inp", "case.inp", row.says.split("\n")[0])
-            kinds[re.sub(r"[-+\d.e]*\d[-+\d.e]*", "0", text)].append(text)
-    found = sorted(kinds.values(), key=len, reverse=True)
-    out = ["| stops | the first of them |", "|---|---|", *(f"| {len(x)} | {x[0]} |" for x in found)]
-    for r in (r for r in rows if r.end == FAULT or (r.end == RIGHT and r.says.startswith(PARTLY))):
-        out.append(f"- {r.case.scene}, {r.case.variant}, {r.case.law} by {r.method}: {r.says}")
+            text = REFUSED_AT.sub("", row.says.split("\n")[0])
+            kinds[re.sub(r"[-+\d.e]*\d[-+\d.e]*", "0", text)].append((text, row))
+    out = ["| stops | by | the first of them | in the scene |", "|---|---|---|---|"]
+    for kind in sorted(kinds.values(), key=len, reverse=True):
+        (text, first), by = kind[0], ", ".join(dict.fromkeys(row.method for _, row in kind))
+        out.append(f"| {len(kind)} | {by} | {text} | {_scene(first)} |")
+    out += [
+        f"- {_scene(r)} by {r.method}: {r.says}"
+        for r in rows
+        if r.end == FAULT or (r.end == RIGHT and r.says.startswith(PARTLY))
+    ]
     return "\n".join(out)
+
+
+def _scene(row: Row) -> str:
+    return ", ".join(x for x in (row.case.scene, row.case.variant, row.case.law) if x)
 
 
 def page(rows: Sequence[Row]) -> str:
     """Both, for the terminal and the manual."""
-    return f"Cells: {' / '.join(ENDS)}.\n\n{table(rows)}\n\n{stops(rows)}"
+    cells = "; ".join(f"{end}: {MEANS[end]}" for end in ENDS)
+    return f"{table(rows)}\n\nThe cells count {' / '.join(ENDS)}. {cells}.\n\n{stops(rows)}"

@@ -90,10 +90,16 @@ def make_catalog() -> Catalog:
                     Field("FILE", Kind.TEXT, doc="file of the record"),
                     Field("FORMAT", Kind.FAMILY, default="PEER", family="record"),
                     Field("UNIT", Kind.WORD, default="G", words=("G", "CM/S2"), doc="unit of the samples"),
+                    Field("SUPPORTS", Kind.NODES, default=None, doc="nodes that move"),
                 ),
             ),
             Spec("record", "PEER", "PEER"),
-            Spec("analysis", "STATIC", "static"),
+            Spec(
+                "analysis",
+                "STATIC",
+                "static",
+                (Field("GRAVITY", Kind.WORD, default="NO", words=("YES", "NO"), doc="weights press"),),
+            ),
             Spec(
                 "analysis",
                 "MODAL",

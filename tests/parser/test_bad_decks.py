@@ -51,7 +51,13 @@ def test_every_message_of_a_bad_deck_tells_the_cure(catalog):
 def test_all_mistakes_in_one_pass(catalog):
     text = "NODES\n 1 0 0 FX=X\n 2 0 (3\n 3 0 oops\nELEMENTS\n 1 COL 1\n 2.5 COL 1 2\nPROPS\n COL SPRNG\n"
     codes = [d.code for d in read_text(text, catalog)[1]]
-    assert codes == ["P211", "P203", "P222", "P216", "P210", "P316"]
+    assert codes == ["P316", "P211", "P203", "P222", "P216", "P210"]
+
+
+@pytest.mark.parametrize("deck", ["no_value", "no_value_at_the_end"])
+def test_a_value_that_is_missing_is_named(catalog, deck):
+    _, (d,), _ = read_deck(str(DECKS[0].parent / f"P209_{deck}.inp"), catalog)
+    assert (d.message, d.span.end - d.span.column) == ("the value of KX is missing", len("KX="))
 
 
 def test_manual_page_is_fresh():

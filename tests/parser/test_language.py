@@ -118,8 +118,9 @@ def test_lists_of_nodes(read):
 
 def test_weights_that_overlap_in_part_are_meant(codes):
     """Elements that share an end put half their weight on each of theirs."""
-    assert codes(HEAD + "WEIGHTS\n 1 TO 2 5\n 2 TO 3 5\n") == []
-    assert codes(HEAD + "WEIGHTS\n 1 TO 2 5\n 3 5\n 1 TO 3 5\n 1 5\n") == ["P329", "P329"]
+    free = HEAD.replace("FIX=XYR", "FIX=X")
+    assert codes(free + "WEIGHTS\n 1 TO 2 5\n 2 TO 3 5\n") == []
+    assert codes(free + "WEIGHTS\n 1 TO 2 5\n 3 5\n 1 TO 3 5\n 1 5\n") == ["P329", "P329"]
 
 
 def test_a_line_may_start_with_a_param(read):
@@ -196,6 +197,64 @@ def test_single_cards(read):
     assert read(HEAD).geometry == "SMALL"
 
 
+@pytest.mark.parametrize(
+    "units, told",
+    [
+        ("kN m", "missing: time; "),
+        ("kN", "missing: length, time; "),
+        ("m s", ""),
+        ("kN m s s", ""),
+    ],
+)
+def test_units_are_three(catalog, units, told):
+    (d,) = read_text(f"UNITS {units}\n" + HEAD, catalog)[1]
+    assert (d.code, d.hint) == ("P238", f"{told}for example UNITS kN m s")
+
+
+@pytest.mark.parametrize(
+    "units, gravity, told",
+    [
+        ("N mm s", 9.81, "in mm it is 9810"),
+        ("N m sec", 9800, "in m it is 9.81"),
+        ("kip in s", 32.2, "in in it is 386.09"),
+        ("N cm s", 9.7, ""),
+        ("N mm s", 9805, ""),
+        ("N mm s", 1, ""),
+        ("N mm ms", 9.81, ""),
+        ("N km s", 9.81, ""),
+        ("mm N s", 9810, ""),  # the units have a message of their own
+    ],
+)
+def test_gravity_of_another_unit_of_length(catalog, units, gravity, told):
+    found = read_text(f"UNITS {units}\nGRAVITY {gravity}\n" + HEAD, catalog)[1]
+    assert [d.hint.partition(";")[0] for d in found if d.code == "P342"] == [told] * bool(told)
+
+
+@pytest.mark.parametrize(
+    "fix, weight, more, told",
+    [
+        ("XYR", "1 10", "", "node 1 is fixed"),
+        ("XYR", "1,2,3 10", "", "nodes 1, 3 are fixed"),
+        ("XY", "2,1 10", "", "node 1 is fixed"),
+        ("XY", "1 10 10 5", "", ""),  # which turns
+        ("XYR", "1 10 10 5", "", "node 1 is fixed"),
+        ("Y", "1 10", "", ""),
+        ("XYR", "1 10", "EQUAKE\n RECORD FILE=a SUPPORTS=1\n", ""),
+        ("XYR", "1 10", "EQUAKE\n RECORD FILE=a\n", "node 1 is fixed"),
+    ],
+)
+def test_weight_of_a_fixed_node(catalog, fix, weight, more, told):
+    deck = HEAD.replace("1 0 0 FIX=XYR", f"1 0 0 FIX={fix}").replace("3 1 3", "3 1 3 FIX=XYR")
+    found = read_text(f"{deck}WEIGHTS\n {weight}\n{more}", catalog)[1]
+    assert [d.message.partition(":")[0] for d in found if d.code == "P343"] == [told] * bool(told)
+
+
+def test_weight_of_a_fixed_node_that_presses(codes):
+    deck = HEAD + "WEIGHTS\n 1 10\n"
+    assert codes(deck) == ["P343"]
+    assert codes(deck.replace("STATIC", "STATIC GRAVITY=YES")) == []
+
+
 def test_sections_may_be_repeated_and_carry_a_number(read):
     assert len(read("ELEMENTS 0\n 9 COL 1 3\n" + HEAD).elements) == 3
 
@@ -227,6 +286,15 @@ def test_a_mistake_does_not_bring_others(codes):
     assert codes("PARAM n = zz\n" + HEAD + "WEIGHTS\n n n*5\n") == ["P222"]
     assert codes(HEAD.replace("KX=1", "KX=1 RULE=BILINER R=0.2")) == ["P210"]
     assert codes('INCLUDE "none.inp"\n' + HEAD + "WEIGHTS\n n 5*n\n") == ["P105"]
+
+
+def test_an_item_out_of_place_does_not_bring_others(codes):
+    hit = "ELEMENTS\n 3 HIT 1 3\nPROPS\n HIT CONTACT "
+    assert codes(HEAD + hit + "GAP=1 mm K=5 LAW=LINEAR\n") == ["P215"]
+    assert codes(HEAD + hit + "K 5 LAW=LINEAR\n") == ["P214"]
+    assert codes(HEAD + hit + "LAW KELVIN_VOIGT K=5 E=0.5\n") == ["P214"]
+    assert codes(HEAD + hit + "GAP=1 2 LAW=LINEAR KK=5\n") == ["P215", "P211"]
+    assert codes(HEAD + hit + "LAW=LINEAR\n") == ["P213"]
 
 
 def test_bad_generated_cards_do_not_break_others(codes):
@@ -274,7 +342,7 @@ PROPS
  COL SPRING KX=1
 WEIGHTS
  101 TO 99+n 5
- 1,101 TO 99+n 7
+ 100,101 TO 99+n 7
 OUTPUT
  NODES=201 TO 200+n
 ANALYSIS
@@ -284,12 +352,14 @@ ANALYSIS
 
 @pytest.mark.parametrize("n", [3, 1, 0])
 def test_ranges_shrink_to_nothing(read, codes, n):
-    text = CHAIN if n else CHAIN.replace(" 101 TO 99+n 5\n 1,101 TO 99+n 7\n", " 201 TO 200+n 5\n 1 7\n")
+    text = (
+        CHAIN if n else CHAIN.replace(" 101 TO 99+n 5\n 100,101 TO 99+n 7\n", " 201 TO 200+n 5\n 100 7\n")
+    )
     model = read(text, n=str(n))
     assert [k for k in model.nodes if k > 200] == list(range(201, 201 + n))
     assert [k for k in model.elements if k > 2] == [*range(11, 11 + n), *range(21, 21 + n)]
     inner = tuple(range(101, 100 + n)) if n else ()
-    assert [c["NODES"] for c in model.weights] == [inner, (1, *inner)]
+    assert [c["NODES"] for c in model.weights] == [inner, (100, *inner)]
     assert model.output["NODES"] == tuple(range(201, 201 + n))
     assert codes(text, n=str(n)) == ["P329"] * bool(inner)  # the second line of weights holds the first
 

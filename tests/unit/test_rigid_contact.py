@@ -15,6 +15,7 @@ from pound_solve import polynomial
 from pound_solve.analyses import static
 from pound_solve.analyses.path import Unstable
 from pound_solve.assemble import AssemblyError
+from pound_solve.catalog import catalog
 from pound_solve.integrate.flow import held_space, make_flow, state_space
 from pound_solve.integrate.rigid import SLOW, Rigid
 from verification.cases import Ran, run_text
@@ -454,6 +455,18 @@ def test_other_methods_and_statics_refuse_in_words() -> None:
     assert run_text(WALL, {"gap": 0.5}).status == "done"  # AUTO takes EXACT
     with pytest.raises(Unstable, match=r"rigid contact 2 \(STEREOMECHANICS\) closes"):
         static.solve(structure_of(WALL.replace("INITIAL\n 2 UX=x0 VX=v0", "LOADS\n 2 100 0")))
+
+
+def test_no_method_is_advised_where_none_takes_it() -> None:
+    """Rigid contacts beside what is not linear between events."""
+    curved = WALL.replace("KX=w^2", "KX=w^2 FX=9 RULE=BOUC_WEN N=2")
+    for method in catalog().family("method"):
+        dt = 0.001 if catalog().family("method")[method].field("DT") else None
+        r = run_text(curved, {"gap": 0.5}, method, dt)
+        assert r.status == "stopped" and r.message.startswith(
+            "A505 at t = 0 s: no method takes a rigid contact, which STEREOMECHANICS of element 2 is, "
+            "where the law BOUC_WEN of element 1 is curved: give the contact a LAW with a stiffness, or"
+        ), r.message
 
 
 def test_weightless_nodes_and_overlaps_are_refused() -> None:

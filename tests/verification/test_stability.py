@@ -42,10 +42,29 @@ def test_the_matrix_has_no_fault(family):
 def test_study_prints_the_matrix(monkeypatch, capsys):
     few = [c for c in extremes.linear() if c.scene == "rigid-body modes"]
     monkeypatch.setattr(extremes, "linear", lambda: iter(few))
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     assert main(["study", "--stability", "--family", "linear", "--quick"]) == 0
-    said = capsys.readouterr().out
+    said, progress = capsys.readouterr()
     runs = len(few) * len(stability.methods())
     assert f"| rigid-body modes | {len(few)} |" in said and f"{runs} runs: {runs} right" in said
+    assert f"\r {runs} of {runs}: rigid-body modes" in progress and progress.endswith("  \r")
+
+
+def test_the_page_names_methods_and_scenes_of_stops_and_no_file():
+    case = next(extremes.linear())
+    refused = "/tmp/x/case.inp:11:56: error P330: element 3 (POUND): needs mass\n  the line\n  hint: y"
+    ends = [
+        ("CENTRAL", stability.STOPPED, "A502 at t = 0 s: the step 1 is above the limit 0.3"),
+        ("HHT", stability.STOPPED, "A502 at t = 0 s: the step 2 is above the limit 0.7"),
+        ("EXACT", stability.STOPPED, refused),
+        ("EXACT", stability.FAULT, "KeyError: 1"),
+    ]
+    said = stability.page([stability.Row(case, m, end, math.nan, says, 0.0) for m, end, says in ends])
+    scene = f"{case.scene}, {case.variant}"
+    assert f"| 2 | CENTRAL, HHT | A502 at t = 0 s: the step 1 is above the limit 0.3 | {scene} |" in said
+    assert f"| 1 | EXACT | P330: element 3 (POUND): needs mass | {scene} |" in said
+    assert f"- {scene} by EXACT: KeyError: 1" in said and "case.inp" not in said
+    assert all(f"{end}: " in said for end in stability.ENDS)
 
 
 @pytest.mark.parametrize(

@@ -307,8 +307,8 @@ def integrate(
     scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Keeper
 ) -> Outcome:
     """Choose a method, note why, and run it."""
-    if reason := not_linear(scene):
-        refuse_rigid(scene, start, f"NEWMARK, which AUTO takes because {reason},")
+    if not_linear(scene):
+        refuse_rigid(scene, start, "AUTO")
     elif any(s.law.rigid for s in scene.structure.laws):
         scene.decisions.append(Decision("method", "EXACT", "rigid contacts: no other method knows them"))
         return exact.integrate(scene, start, watch, {}, sink)

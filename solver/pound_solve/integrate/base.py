@@ -303,15 +303,23 @@ def blurred(laws: Sequence[LawSpring], peaks: Peaks, still: float = STILL) -> li
 
 
 def refuse_rigid(scene: Scene, start: Start, method: str) -> None:
-    """Raise Stop where a scene has rigid contacts and the method knows none."""
-    for s in scene.structure.laws:
-        if s.law.rigid:
-            raise Stop(
-                "A505",
-                float(start.times[0]),
-                f"{method} knows no rigid contact, and {s.rule} of element {s.element} is one: "
-                "EXACT takes it, or a LAW with a stiffness",
-            )
+    """Raise Stop where a scene has rigid contacts and the method knows none, or none where the scene is not
+    linear between events: that no method does.
+    """
+    rigid = next((s for s in scene.structure.laws if s.law.rigid), None)
+    if rigid is None:
+        return
+    contact = f"{rigid.rule} of element {rigid.element}"
+    told = (
+        f"{method} knows no rigid contact, and {contact} is one: EXACT takes it, or a LAW with a stiffness"
+    )
+    if why := not_linear(scene):
+        other = "another GEOMETRY" if scene.structure.chords else "laws that are linear in pieces"
+        told = (
+            f"no method takes a rigid contact, which {contact} is, where {why}: "
+            f"give the contact a LAW with a stiffness, or choose {other}"
+        )
+    raise Stop("A505", float(start.times[0]), told)
 
 
 class Ledger:

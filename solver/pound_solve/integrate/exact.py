@@ -52,6 +52,7 @@ from pound_solve.integrate.base import (
     law_values,
     light,
     not_linear,
+    refuse_rigid,
 )
 from pound_solve.integrate.base import goals as goals_of
 from pound_solve.integrate.blocks import Partition
@@ -674,6 +675,7 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
         fastest mode, or takes more than REGIMES, of the options; no deck sets them.
     """
     if why := not_linear(scene):
+        refuse_rigid(scene, start, "EXACT")
         why = f"EXACT needs linear pieces, and {why}: AUTO takes steps"
         raise Stop("A505", float(start.times[0]), why)
     scene, start, watch, sink = condensed(scene, start, watch, sink, "EXACT")
