@@ -279,6 +279,34 @@ def test_light_mass_beside_heavy_ones(ratio: float) -> None:
     assert np.abs(u - shape * np.cos(np.sqrt(w) * 40.0)).max() < 1e-11
 
 
+@pytest.mark.parametrize("pairs", [0, 1, 2])
+@pytest.mark.parametrize("loose", [1, 2, 3])
+def test_masses_that_nothing_holds_beside_bodies_that_move_as_one(loose: int, pairs: int) -> None:
+    """Storeys that yield: some masses without any stiffness, some joined in pairs, others held.
+
+    All their motions without stiffness are rigid-body modes, however the shapes are mixed.
+    """
+    n = loose + 2 * pairs + 3
+    k = np.zeros((n, n))
+    for first in range(loose, loose + 2 * pairs, 2):
+        k[first : first + 2, first : first + 2] = 4e5 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    k[-3:, -3:] = chain([4e5, 2e6, 2.5e5])
+    shuffle = np.random.default_rng(7).permutation(n)
+    k, m = k[np.ix_(shuffle, shuffle)], 203.873 * np.eye(n)
+    c = 0.5 * m + 1e-3 * k
+    flow = make_flow(m, c, k, np.eye(n))
+    assert isinstance(flow, ModalFlow)
+    assert np.sum(np.abs(flow.lam) < 1e-12 * flow.fastest) == loose + pairs
+    assert np.abs(flow.onward(flow.u_q) - flow.v_q).max() < 1e-12 * flow.fastest * np.abs(flow.u_q).max()
+    assert np.abs(flow.u_q).max() < 1.0
+    v = np.linspace(1.0, 2.0, n)
+    q = flow.enter(np.zeros(n), v)
+    found = motion(flow, q, np.zeros((1, len(flow.lam))), 0.5)
+    whole = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(m, k), -np.linalg.solve(m, c)]])
+    expected = (expm(0.5 * whole) @ np.r_[np.zeros(n), v]).reshape(2, n)
+    assert apart(found, (expected[0], expected[1])) < 1e-11
+
+
 @pytest.mark.parametrize("decay", [1e-2, 1e-4, 1e-6, 1e-8])
 def test_hardly_damped_rigid_body(decay: float) -> None:
     """A free mass, u'' + decay u' = 1: modes cancel to eps / decay, so the series takes over."""

@@ -373,6 +373,44 @@ def test_soil_below_the_footings() -> None:
     assert len(r.tables["collisions"]) > 0
 
 
+def test_a_row_whose_storeys_yield_without_hardening() -> None:
+    """Several storeys yield at once: floors that no stiffness holds beside buildings that move as one."""
+    deck = """UNITS kN m s
+GRAVITY 9.81
+NODES
+ 100 0 0 FIX=XYR
+ 200 10 0 FIX=XYR
+ 300 20 0 FIX=XYR
+ 1 TO 4 0 1 TO 4 FIX=YR
+ 5 TO 8 10 1 TO 4 FIX=YR
+ 9 TO 12 20 1 TO 4 FIX=YR
+ELEMENTS
+ 1 STIFF 100 1
+ 2 TO 4 STIFF 1 TO 3 2 TO 4
+ 5 SOFT 200 5
+ 6 TO 8 SOFT 5 TO 7 6 TO 8
+ 9 STIFF 300 9
+ 10 TO 12 STIFF 9 TO 11 10 TO 12
+ 21 TO 28 MEET 1 TO 8 5 TO 12
+PROPS
+ STIFF SPRING KX=4E5 FX=2000 RULE=ELASTO_PLASTIC
+ SOFT SPRING KX=2.5E5 FX=1500 RULE=ELASTO_PLASTIC
+ MEET CONTACT GAP=0.01 ANGLE=0 LAW=KELVIN_VOIGT K=2E6 C=0
+WEIGHTS
+ 1 TO 12 2000
+DAMPING
+ RAYLEIGH ALPHA=0.5 BETA=0.001
+EQUAKE
+ SYNTHETIC PGA=4 SEED=5 DURATION=10
+OUTPUT
+ EVERY=0.02
+ANALYSIS
+ HISTORY 10
+"""
+    r, _ = agree(deck)
+    assert len(r.tables["collisions"]) > 30
+
+
 def test_cables_that_go_slack() -> None:
     deck = """UNITS kN m s
 GRAVITY 10

@@ -60,11 +60,11 @@ MARGIN = 0.6  #: of the tolerance that the next step aims at
 FREE = 1.0  #: what EXACT may cost before steps are thought of: loading their kernels costs as much
 LOADING = 0.1  #: what it costs to load the kernels of steps beside those of TAYLOR
 TRIAL = 0.3  #: share of that after which it is seen whether it comes to more than that, or than TAYLOR
-HANDFUL = 8  #: combinations of stiffnesses of all unknowns together that a run is taken to meet
+HANDFUL = 12  #: combinations of stiffnesses of all unknowns together that a run is taken to meet
 #: combinations of stiffnesses that it may meet by then (where they do not return, more will come), and laws
 #: from which on it is taken to meet more (combinations seldom return), both for the tolerance USUAL: the
 #: steps that a smaller one asks for are more as its root
-FEW, MANY, USUAL = 24, 12, 1e-3
+FEW, MANY, USUAL = 40, 12, 1e-3
 AHEAD = 4.0  #: times the cost of the next run by steps that EXACT may spend where shorter ones are to come
 TASTE = 0.1  #: share of that after which it is seen whether it will do
 RADIAN = 5  #: steps of NEWMARK that it takes to follow the fastest mode through a radian

@@ -96,7 +96,10 @@ def turn(u0: Array, u1: Array, v0: Array, v1: Array) -> tuple[Array, Array]:
     """
     rise = u1 - u0
     b, c = 3.0 * rise - 2.0 * v0 - v1, v0 + v1 - 2.0 * rise  # slope: v0 + 2 b s + 3 c s^2
-    s = v0 / (np.copysign(np.sqrt(b * b - 3.0 * c * v0), v0) - b)
+    root = np.copysign(np.sqrt(b * b - 3.0 * c * v0), v0)
+    # of the two forms of the zero the one without cancellation
+    plain = b * v0 <= 0.0
+    s = np.where(plain, v0, -b - root) / np.where(plain, root - b, 3.0 * c)
     return s, u0 + s * (v0 + s * (b + s * c))
 
 

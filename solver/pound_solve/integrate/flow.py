@@ -228,6 +228,18 @@ def _undamped(m: Array, k: Array) -> tuple[Array, Array]:
     return values, phi_u
 
 
+def _rigid(omega2: Array, terms: Array) -> NDArray[np.bool_]:
+    """Which squared frequencies are rounding, from what makes them up (see `_terms`).
+
+    Shapes of several rigid-body modes are known but for a mixture: one that no stiffness touches has next
+    to nothing that makes up its own value, and the rounding of what joins it to the others.
+    """
+    share, size = RIGID * len(omega2), np.abs(omega2)
+    still = size <= share * terms
+    others = np.sqrt(terms * terms[still].max(initial=0.0))
+    return np.asarray(still | (size < share * np.maximum(others, share * size.max(initial=0.0))))
+
+
 def _terms(shapes: Array, k: Array) -> Array:
     """Sum of the magnitudes that make up each shape's quadratic form: its rounding is this times 1e-16."""
     return np.asarray(np.einsum("ri,rs,si->i", np.abs(shapes), np.abs(k), np.abs(shapes), optimize=True))
@@ -237,8 +249,8 @@ def _second_order(m: Array, c: Array, k: Array) -> StateSpace:
     n = len(m)
     omega2, phi_u = _undamped(m, k)
     top = np.abs(omega2).max(initial=0.0)
-    omega2 = np.where(np.abs(omega2) < RIGID * n * _terms(phi_u, k), 0.0, omega2)
-    still = omega2 == 0.0
+    still = _rigid(omega2, _terms(phi_u, k))
+    omega2 = np.where(still, 0.0, omega2)
     # among rigid-body modes those without damping are told from the others
     phi_u[:, still] = phi_u[:, still] @ np.linalg.eigh(phi_u[:, still].T @ c @ phi_u[:, still])[1]
     # the scale of a rigid mode's displacement is free; that of a falling one

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.base import Peak
+from pound_solve.integrate.base import STILL, Peak
 from pound_solve.integrate.exits import summit
 
 Array = NDArray[np.float64]
@@ -62,14 +62,19 @@ def may_peak(
 def waves(t: Array, value: Array, slope: Array) -> tuple[NDArray[np.bool_], Array]:
     """Return in which cells functions may turn twice, their slopes having one sign at both ends: where the
     cubics through both ends do; and where that turns from one to the other, as a time.
+
+    Not where values are as far from what the slopes make of them as rounding is: in a cell that is next to
+    nothing this would be a wave.
     """
-    width = np.diff(t)
+    width, rise = np.diff(t), np.diff(value)
     s0, s1 = slope[..., :-1], slope[..., 1:]
     with np.errstate(divide="ignore", invalid="ignore"):
-        mean = np.diff(value) / width
+        mean = rise / width
         a, b = s0 + s1 - 2.0 * mean, 3.0 * mean - 2.0 * s0 - s1
         at = -b / (3.0 * a)  # where the cubic's slope, s0 + 2 b x + 3 a x^2, is least or largest
         twice = (s0 * s1 > 0.0) & (at > 0.0) & (at < 1.0) & ((s0 + b * at) * s0 < 0.0)
+        still = STILL * np.abs(value).max(axis=(1, 2), keepdims=True)
+        twice &= np.abs(rise - 0.5 * (s0 + s1) * width) > still
     return twice, t[..., :-1] + at * width
 
 
@@ -130,8 +135,8 @@ def first_rise(
                     continue
                 high = top
             elif k == j == 0 and g[n, 0, 0] == 0.0:
-                if slope[n, 0, 0] > 0.0:
-                    return low, n, k, j  # it leaves at once
+                if slope[n, 0, 0] > STILL * np.abs(slope[n]).max():
+                    return low, n, k, j  # it leaves at once, not by the rounding of its slope
                 low = _dip(lambda x, own=own: own(x)[0], low, high)  # type: ignore[misc]
             if crossed[n, k, j] and low == t[k, j] and g[n, k, j] == 0.0:
                 return low, n, k, j  # it rises from the start, however slowly
