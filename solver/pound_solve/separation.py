@@ -111,6 +111,7 @@ def rows(
         raise SeparationError(f"{results.path}: the rules need a HISTORY of a deck with contacts")
     ends = {e["name"] or str(e["element"]): (e["i"], e["j"]) for e in results.table("elements")}
     summary = {row["contact"]: row for row in results.table("contact_summary")}
+    early = "" if results.status == "done" else f"; the run ended early, at {results.last_time:g}"
     met = any(row["closures"] > 0 for row in summary.values())  # that changed all displacements
     out = []
     for law in results.table("contact_laws"):
@@ -119,7 +120,7 @@ def rows(
         modes = [_mode(results, node, way) for node in nodes]
         t1, t2 = periods or [m[0] for m in modes]
         xi1, xi2 = damping or [m[1] for m in modes]
-        note = MET if met else FREE
+        note = (MET if met else FREE) + early
         if u2 == 0.0 or u1 == 0.0:
             ddc = u1 + u2  # one side stands still: nothing to correlate
         elif math.isnan(t1 + t2 + xi1 + xi2):

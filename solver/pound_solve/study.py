@@ -177,8 +177,9 @@ class Study:
         """The advice in one sentence."""
         lacking = any(a.trial is None for a in self.advice)
         out = "Least time for errors up to " + "; ".join(map(str, self.advice))
-        if lacking and self.reference.unseen:
-            return out + "; no contact closed: give a stronger motion to learn which step collisions need."
+        if self.reference.unseen:
+            closed = "no contact closed, so no step is named"
+            return f"{out}; {closed}: give a stronger motion to learn which step collisions need."
         return out + (" (give smaller --steps, or a larger --longest)." if lacking else ".")
 
     @property
@@ -505,6 +506,7 @@ def write(study: Study, ready: app.Prepared, path: Path) -> Results:
         f"{study.reference.error[k]:.1e} ({k})" for k in KINDS if math.isfinite(study.reference.error[k])
     ]
     note += f"; its own errors are about {', '.join(told)}." if told else "."
+    note += " Times are of the history alone, in a process that has loaded what it needs."
     if study.noise > NOISY:
         note += f" {noisy(study)}"
     path.parent.mkdir(parents=True, exist_ok=True)

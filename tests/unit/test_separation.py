@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from hypothesis import given
@@ -13,6 +14,7 @@ from scipy.linalg import solve_continuous_lyapunov
 
 from pound_solve import run
 from pound_solve.cli import main
+from pound_solve.results import Results
 from pound_solve.separation import SeparationError, correlation, double_difference, rows, text
 
 WALLS = """
@@ -173,6 +175,18 @@ def test_a_file_without_contacts(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert main(["separation", str(tmp_path / "walls.h5")]) == 3
     assert "contacts" in capsys.readouterr().err
     assert main(["separation", str(tmp_path / "none.h5")]) == 3
+
+
+def test_a_run_that_ended_early_says_so(tmp_path: Path) -> None:
+    deck = tmp_path / "walls.inp"
+    deck.write_text(WALLS.format(ends="2 4", angle="0"), encoding="utf-8")
+    run(deck, out=tmp_path).close()
+    with Results.open(tmp_path / "walls.h5") as results:
+        assert "early" not in rows(results)[0][-1]
+    with h5py.File(tmp_path / "walls.h5", "a") as file:
+        file.attrs["status"] = "stopped"
+    with Results.open(tmp_path / "walls.h5") as results:
+        assert rows(results)[0][-1].endswith(f"the run ended early, at {results.time[-1]:g}")
 
 
 @pytest.mark.parametrize(

@@ -70,6 +70,8 @@ TASTE = 0.1  #: share of that after which it is seen whether it will do
 RADIAN = 5  #: steps of NEWMARK that it takes to follow the fastest mode through a radian
 STEP, EACH = 3e-7, 2.5e-8  #: cost of a step and of each of its unknowns, of a law twice, as `exact.WINDOW`
 EVENT = 10  #: steps that a located event costs as much as
+#: why no steps are taken
+LINEAR = "all laws are piecewise linear: no step is needed, and steps, with their loading, cost more"
 PLAIN = 100  #: times as much where nothing compiles the kernels
 
 
@@ -196,8 +198,7 @@ class Rival:
         except Stop:
             replay.hand_on()
             raise
-        why = "all laws are piecewise linear, and it costs less than steps: no time step is needed"
-        decisions.insert(known, Decision("method", "EXACT", why))
+        decisions.insert(known, Decision("method", "EXACT", LINEAR))
         replay.hand_on()
         return outcome
 
@@ -244,8 +245,7 @@ def to_tolerance(
     done: tuple[Outcome, Replay] | None = None  # the last run that came to its end
     while True:
         if series <= max(LOADING, each * (length / aim + EVENT * events)):
-            why = "all laws are piecewise linear, and it costs less than steps: no time step is needed"
-            scene.decisions.append(Decision("method", "TAYLOR", why))
+            scene.decisions.append(Decision("method", "TAYLOR", LINEAR))
             return taylor.integrate(scene, start, watch, {}, sink)
         budget = each * (min(length / aim, AHEAD * length / h) + EVENT * events)
         if (exactly := rival.run(budget, {"TRIAL": TASTE * budget})) is not None:
