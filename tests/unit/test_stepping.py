@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 import pound_solve
 from pound_solve import jit
 from pound_solve.hysteresis import bilinear, imk_bilinear
-from pound_solve.integrate import auto, exact, exits, kernel, ldl, states, stepping
+from pound_solve.integrate import auto, condensing, exits, kernel, ldl, states, stepping
 from pound_solve.integrate.base import Outcome, Peaks, Start, Stop
 
 # two one-bay frames of which the left one yields at its hinges, slabs that meet with a dashpot
@@ -324,7 +324,7 @@ def test_auto_hands_on_the_envelopes_of_its_last_run_alone(tmp_path, monkeypatch
 
 def test_full_matrices_have_an_end(tmp_path, monkeypatch):
     """EXACT and LAPLACE refuse more unknowns than they can hold, in words; AUTO takes another method."""
-    monkeypatch.setattr(exact, "MOST_UNKNOWNS", 2)
+    monkeypatch.setattr(condensing, "MOST_UNKNOWNS", 2)
     for method in ("EXACT", "LAPLACE DT=0.001"):
         found = run(tmp_path, method, "")
         assert found.status == "stopped" and "A505" in found.message

@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve import jit
-from pound_solve.integrate import blocks, exact, newmark, taylor
+from pound_solve.integrate import blocks, condensing, exact, newmark, taylor
 from pound_solve.integrate.base import (
     INTERRUPTED,
     Extreme,
@@ -169,7 +169,7 @@ class Rival:
         self.ease = max(USUAL / tol, 1.0) ** 0.5
         # least cost of the whole run, so far as known
         self.whole = FREE if len(scene.structure.laws) > self.ease * MANY else 0.0
-        if not_linear(scene) or scene.size > exact.MOST_UNKNOWNS:
+        if not_linear(scene) or scene.size > condensing.MOST_UNKNOWNS:
             self.whole = np.inf
 
     def first(self, other: float) -> Outcome | None:

@@ -24,7 +24,6 @@ Their sum against kinetic and strain energy is therefore a check of the whole in
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -56,16 +55,16 @@ from pound_solve.integrate.base import (
 )
 from pound_solve.integrate.base import goals as goals_of
 from pound_solve.integrate.blocks import Partition
+from pound_solve.integrate.condensing import condensed
 from pound_solve.integrate.flow import MOST_CONDITION, Mechanism, SeriesFlow
 from pound_solve.integrate.functionals import exits, followed
 from pound_solve.integrate.rigid import NOISE, Weightless
 from pound_solve.integrate.window import Arcs, Window
 from pound_solve.laws import Branch
-from pound_solve.scene import Condensed, Decision, Scene, condense
+from pound_solve.scene import Decision, Scene
 
 Array = NDArray[np.float64]
 
-MOST_UNKNOWNS = 4000  #: of one run: a full matrix of as many takes 128 MB
 MOST_POINTS = 4096  #: points of the fine grid in one window
 MOST_STEPS = 64  #: of the fine grid in one cell
 SLACK = 0.05  #: share of an exit's scale that it may bend within a cell
@@ -88,19 +87,6 @@ class CostlyError(Exception):
     def __init__(self, spent: float, t: float) -> None:
         super().__init__(f"more than {spent:g}, at {t:g}")
         self.spent, self.t = spent, t
-
-
-def turn(u0: Array, u1: Array, v0: Array, v1: Array) -> tuple[Array, Array]:
-    """Place from 0 to 1, and value, of the extreme of cubics with values and slopes at 0 and 1, which
-    have slopes of different sign there; shape (n,) each.
-    """
-    rise = u1 - u0
-    b, c = 3.0 * rise - 2.0 * v0 - v1, v0 + v1 - 2.0 * rise  # slope: v0 + 2 b s + 3 c s^2
-    root = np.copysign(np.sqrt(b * b - 3.0 * c * v0), v0)
-    # of the two forms of the zero the one without cancellation
-    plain = b * v0 <= 0.0
-    s = np.where(plain, v0, -b - root) / np.where(plain, root - b, 3.0 * c)
-    return s, u0 + s * (v0 + s * (b + s * c))
 
 
 class Exact:
@@ -404,7 +390,8 @@ class Exact:
         known[1] = np.minimum(known[1], x.min(axis=1))
         row, at = np.nonzero(rate[:, :-1] * rate[:, 1:] < 0.0)
         length = np.diff(tau, append=end)[at]
-        s, value = turn(x[row, at], x[row, at + 1], rate[row, at] * length, rate[row, at + 1] * length)
+        begin, finish = rate[row, at] * length, rate[row, at + 1] * length
+        s, value = search.turn(x[row, at], x[row, at + 1], begin, finish)
         margin = BEYOND * (known[0] - known[1])
         best = np.array([known[0] + margin, margin - known[1]])
         for sign, most in zip((1.0, -1.0), best):
@@ -602,68 +589,6 @@ class Exact:
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""
         return Stop(code, self.t, why, self.outcome())
-
-
-class Whole:
-    """Hands samples on with all unknowns, condensed ones too."""
-
-    def __init__(self, sink: Sink, small: Condensed) -> None:
-        self.sink, self.small, self.at_start = sink, small, small.put_in(np.zeros(1))
-
-    def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take some samples (see `integrate.base.Sink`)."""
-        ex = self.small.scene.excitation
-        u, v, a = (self.small.all(x, ex.values(t, order).T, order) for order, x in enumerate((u, v, a)))
-        if not self.small.scene.total:  # the total form counts the work on all freedoms
-            works = works.copy()
-            works[0] += self.small.put_in(t) - self.at_start
-        self.sink.sample(t, u, v, a, laws, works)
-
-    @property
-    def shown(self) -> NDArray[np.bool_]:
-        """Which unknowns `between` looks at (see `integrate.base.Sink`)."""
-        return np.asarray(self.small.expand[self.sink.shown].any(axis=0))
-
-    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
-        """Take the motion between samples (see `integrate.base.Sink`)."""
-        ex = self.small.scene.excitation
-        u, v, a = (self.small.all(x, ex.values(t, order).T, order) for order, x in enumerate((u, v, a)))
-        self.sink.between(t, u, v, a, apart)
-
-    def turned(self, t: Array, u: Array) -> None:
-        """Take displacements that turn (see `integrate.base.Sink`)."""
-        self.sink.turned(t, self.small.all(u, self.small.scene.excitation.values(t).T))
-
-    def trial(self, t: float, doing: str = "") -> None:
-        """Pass it on."""
-        self.sink.trial(t, doing)
-
-
-def condensed(
-    scene: Scene, start: Start, watch: Watch, sink: Sink, method: str
-) -> tuple[Scene, Start, Watch, Sink]:
-    """What a method is given that works on full matrices: no massless freedoms that follow the others.
-
-    Raises
-    ------
-    Stop
-        There are more unknowns than `MOST_UNKNOWNS`.
-    """
-    if scene.size > MOST_UNKNOWNS:
-        why = f"{method} works on full matrices, and {scene.size} unknowns are too many for them"
-        raise Stop("A505", float(start.times[0]), f"{why} ({MOST_UNKNOWNS} at most): NEWMARK takes them")
-    small = condense(scene)
-    return (
-        small.scene,
-        replace(start, u=start.u[small.keep], v=start.v[small.keep]),
-        Watch(
-            watch.names,
-            watch.rows @ small.expand,
-            watch.input_rows + watch.rows @ small.follow,
-            watch.constants + watch.rows @ small.constant,
-        ),
-        sink if len(small.keep) == scene.size else Whole(sink, small),
-    )
 
 
 def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:

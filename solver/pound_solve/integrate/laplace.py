@@ -57,7 +57,7 @@ from pound_solve.integrate.base import (
     not_linear,
     refuse_rigid,
 )
-from pound_solve.integrate.exact import condensed
+from pound_solve.integrate.condensing import condensed
 from pound_solve.integrate.flow import Mechanism, StateSpace, state_space
 from pound_solve.integrate.functionals import exits, followed
 from pound_solve.modes import massless

@@ -42,7 +42,7 @@ from pound_solve.integrate.base import (
     not_linear,
     refuse_rigid,
 )
-from pound_solve.integrate.exact import condensed
+from pound_solve.integrate.condensing import condensed
 from pound_solve.integrate.stepping import Stepper
 from pound_solve.matrices import diagonal, weighted
 from pound_solve.modes import massless
