@@ -415,7 +415,7 @@ class Exact:
         tau, u, v, a = window.between(EACH * h, end)
         self.seen.append((self.t + tau, u, v, a, float(np.diff(tau, append=end).max(initial=0.0))))
         self._turn(window, tau, u, v, end)
-        if sum(x[1].size for x in self.seen) > MOST_SEEN:
+        if sum(x[1].size for x in (*self.seen, *self.turned)) > MOST_SEEN:
             self._show_seen()
 
     def _hand_out(self, t: Array, u: Array, v: Array, a: Array, row: NDArray[np.intp]) -> None:

@@ -124,23 +124,23 @@ class Window:
         u, v, a = self.path(interval, np.array([tau]))
         return u[:, 0], v[:, 0], a[:, 0]
 
-    def path(self, interval: int, times: Array) -> tuple[Array, Array, Array]:
-        """`motion` at several times within an interval, shape (n, n_times) each."""
+    def path(self, interval: int, times: Array, shown: bool = False) -> tuple[Array, Array, Array]:
+        """`motion` at several times of an interval, shape (n, n_times) each; `shown` as in `_motions`."""
 
         def states(block: Block) -> NDArray[Any]:
             if len(times) == 1:  # the ends of intervals are known, other times recur
                 return self.state(block, interval, float(times[0]))[:, None, None]
             return block.regime.flow.path(block.qs[:, interval], block.gs[interval], times)[:, None]
 
-        return self._motions(np.array([interval]), times[None], states)
+        return self._motions(np.array([interval]), times[None], states, shown)
 
     def at(self, times: Array) -> tuple[Array, Array, Array]:
-        """`motion` at several local times, shape (n, n_times) each."""
+        """`between` at several local times, shape (n, n_times) each."""
         interval = np.clip(np.searchsorted(self.edges, times, "right") - 1, 0, self.intervals - 1)
         out = np.zeros((3, self.partition.scene.size, len(times)))
         for i in np.unique(interval).tolist():
             here = interval == i
-            out[:, :, here] = self.path(i, times[here] - self.edges[i])
+            out[:, :, here] = self.path(i, times[here] - self.edges[i], shown=True)
         u, v, a = out
         return u, v, a
 
