@@ -302,7 +302,7 @@ def _check(args: argparse.Namespace) -> int:
     m = ready.model
     print(
         f"{args.deck}: no mistakes; {len(m.nodes)} nodes, {len(m.elements)} elements, "
-        f"{ready.structure.n_free} unknowns"
+        f"{(n := ready.structure.n_free)} unknown{'s' * (n != 1)}"
     )
     return app.DONE
 
