@@ -310,16 +310,14 @@ def refuse_rigid(scene: Scene, start: Start, method: str) -> None:
     if rigid is None:
         return
     contact = f"{rigid.rule} of element {rigid.element}"
-    told = (
-        f"{method} knows no rigid contact, and {contact} is one: EXACT takes it, or a LAW with a stiffness"
-    )
     if why := not_linear(scene):
         other = "another GEOMETRY" if scene.structure.chords else "laws that are linear in pieces"
-        told = (
-            f"no method takes a rigid contact, which {contact} is, where {why}: "
-            f"give the contact a LAW with a stiffness, or choose {other}"
-        )
-    raise Stop("A505", float(start.times[0]), told)
+        told = f"no method takes a rigid contact, which {contact} is, where {why}"
+        cure = f"give the contact a LAW with a stiffness, or choose {other}"
+    else:
+        told = f"{method} knows no rigid contact, and {contact} is one"
+        cure = "EXACT takes it, or a LAW with a stiffness"
+    raise Stop("A505", float(start.times[0]), f"{told}: {cure}")
 
 
 class Ledger:

@@ -23,7 +23,6 @@ from numpy.typing import NDArray
 from pound_solve.integrate.arrays import (
     A1,
     AT,
-    BUSY,
     CHATTER,
     CONTACT,
     CV,
@@ -48,7 +47,6 @@ from pound_solve.integrate.arrays import (
     MOST_V,
     N_EXITS,
     P1,
-    PAUSE,
     PEAK,
     RUNAWAY,
     SHOWN,
@@ -74,7 +72,7 @@ from pound_solve.integrate.arrays import (
 )
 from pound_solve.integrate.base import STILL
 from pound_solve.integrate.isolate import POLYNOMIAL, first_rise, highest, size
-from pound_solve.integrate.kernel import power, sample, settle, write
+from pound_solve.integrate.kernel import next_look, power, sample, settle, write
 from pound_solve.integrate.ldl import solve
 from pound_solve.integrate.states import along, leave, load, motions, times
 from pound_solve.jit import Tables, flat, loose
@@ -532,7 +530,7 @@ def march(
     goals: Array, outputs: NDArray[np.bool_], pieces: Index, count: Index, clock: Array,
 ) -> int:  # fmt: skip
     """Integrate to the last goal, or until Python must look at something (see `kernel.advance`)."""
-    pause = count[STEPS] + min(PAUSE, 1 + BUSY // (1 + x.q.shape[1]))
+    pause = next_look(x, count)
     while count[GOAL] < len(goals):
         goal = count[GOAL]
         begin = breaks[pieces[goal]]

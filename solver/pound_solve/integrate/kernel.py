@@ -970,6 +970,11 @@ def stride(
     return False
 
 
+def next_look(x: Motion, count: Index) -> int:
+    """Step at which Python may look again whether the user wants to stop."""
+    return count[STEPS] + min(PAUSE, 1 + BUSY // (1 + x.q.shape[1]))
+
+
 def advance(
     m: Matrices, w: Laws, x: Motion, z: Samples, f: Tables, scheme: Scheme, coefs: Array, breaks: Array,
     goals: Array, steps: Index, lengths: Array, outputs: NDArray[np.bool_], shows: Index, pieces: Index,
@@ -992,7 +997,7 @@ def advance(
     clock : ndarray, shape (4,)
         Time, length that the factor at hand is for, energy at the start, longest piece for now.
     """
-    room, pause = len(z.log) // 2, count[STEPS] + min(PAUSE, 1 + BUSY // (1 + x.q.shape[1]))
+    room, pause = len(z.log) // 2, next_look(x, count)
     while count[GOAL] < len(goals):
         goal = count[GOAL]
         h = lengths[goal]
