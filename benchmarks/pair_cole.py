@@ -139,7 +139,7 @@ def write_two_columns(path, dt, samples):
 
 def record_file():
     """The known record as an installed file."""
-    from pound_solve.records.known import find
+    from pound_solve.loading.records.known import find
 
     return find(RECORD, ())
 

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from paths import Walk, pieces, turning_points
-from pound_solve.laws import Law, State, follow
+from pound_solve.laws.automaton import Law, State, follow
 
 SEEDS = (0, 1, 2)
 

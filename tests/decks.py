@@ -6,20 +6,18 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pound_deck.diagnostics import has_errors, render
 from pound_deck.model import Model
 from pound_deck.reader import read_text
-from pound_solve import scene
 from pound_solve.analyses import history, static
-from pound_solve.assemble import Structure, assemble
 from pound_solve.catalog import catalog
-from pound_solve.dofs import Freedom
-from pound_solve.motions.base import Context
-from pound_solve.motions.wave import fronts
-
-Array = NDArray[np.float64]
+from pound_solve.loading.motions.base import Context
+from pound_solve.loading.motions.wave import fronts
+from pound_solve.numerics.types import Array
+from pound_solve.structure import reduction
+from pound_solve.structure.assembly import Structure, assemble
+from pound_solve.structure.dofs import Freedom
 
 
 def model_of(text: str, params: Mapping[str, object] | None = None) -> Model:
@@ -42,7 +40,7 @@ def structure_of(
     return assemble(model_of(text, params), moved, self_weight)
 
 
-def scene_of(text: str, params: Mapping[str, object] | None = None) -> scene.Scene:
+def scene_of(text: str, params: Mapping[str, object] | None = None) -> reduction.Scene:
     """The scene of a deck with EQUAKE and HISTORY cards, started
     from its static state and INITIAL cards.
     """
@@ -53,10 +51,10 @@ def scene_of(text: str, params: Mapping[str, object] | None = None) -> scene.Sce
     motions = [m for c in model.equake for m in fronts(c.spec.impl(c.values, context), x)]
     forces = [c.spec.impl(c.values, context) for c in model.forces]
     fixed = [(n.id, d) for n in model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed]
-    structure = assemble(model, scene.moved_supports(motions, fixed))
+    structure = assemble(model, reduction.moved_supports(motions, fixed))
     u0, v0 = history.initial(structure)
-    return scene.condense(
-        scene.build(structure, motions, end, static.solve(structure).u + u0, v0, forces)
+    return reduction.condense(
+        reduction.build(structure, motions, end, static.solve(structure).u + u0, v0, forces)
     ).scene
 
 

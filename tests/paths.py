@@ -1,6 +1,6 @@
 """Quasi-static paths through a force law, walked exit by exit; work is found by quadrature of the force.
 
-Written anew beside `pound_solve.laws.follow`, so that tests of the one see faults of the other.
+Written anew beside `pound_solve.laws.automaton.follow`, so that tests of the one see faults of the other.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.integrate import quad
 
-from pound_solve.laws import Law, State
+from pound_solve.laws.automaton import Law, State
 
 STALLS = 4  #: most branch changes without motion; no law needs more
 

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from pound_solve.results import Results
+    from pound_solve.results.file import Results
 
 
 def run(
@@ -49,7 +49,7 @@ def run(
 
     Raises
     ------
-    pound_solve.app.DeckError
+    pound_solve.driver.run.DeckError
         The deck has mistakes; the text names file, line and column of each.
     OSError
         A file cannot be read or written.
@@ -57,7 +57,7 @@ def run(
     # imported here: ``pound-solve --version`` must not wait for numpy
     from pathlib import Path
 
-    from pound_solve.app import Request, execute
+    from pound_solve.driver.run import Request, execute
 
     texts = {name: str(value) for name, value in (params or {}).items()}
     folders = tuple(Path(r) for r in records)

@@ -1,5 +1,5 @@
 """Run the command line with ``python -m pound_solve``."""
 
-from pound_solve.cli import main
+from pound_solve.cli.main import main
 
 raise SystemExit(main())

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
-from pkgutil import iter_modules
+from pkgutil import walk_packages
 from types import MappingProxyType
 from typing import Final
 
@@ -17,13 +17,13 @@ from pound_deck.schema import Catalog, Spec
 #: Package of every family.
 FAMILIES: Final[Mapping[str, str]] = MappingProxyType(
     {
-        "element": "elements",
-        "hysteresis": "hysteresis",
-        "contact": "contact",
-        "damping": "damping",
-        "record": "records",
-        "motion": "motions",
-        "force": "forces",
+        "element": "structure.elements",
+        "hysteresis": "laws.hysteresis",
+        "contact": "laws.contact",
+        "damping": "structure.damping",
+        "record": "loading.records",
+        "motion": "loading.motions",
+        "force": "loading.forces",
         "analysis": "analyses",
         "method": "integrate",
     }
@@ -46,8 +46,8 @@ class Families(Catalog):
 def members(family: str) -> Catalog:
     """Import a family: its Specs, in the order of file names."""
     package = import_module(f"pound_solve.{FAMILIES[family]}")
-    names = sorted(m.name for m in iter_modules(package.__path__))
-    modules = (import_module(f"{package.__name__}.{name}") for name in names)
+    names = [m.name for m in walk_packages(package.__path__, f"{package.__name__}.") if not m.ispkg]
+    modules = (import_module(name) for name in sorted(names, key=lambda name: name.rpartition(".")[2]))
     return Catalog(module.SPEC for module in modules if hasattr(module, "SPEC"))
 
 

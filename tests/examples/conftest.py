@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from pound_solve import jit
-from pound_solve.app import Prepared, Request, execute
-from pound_solve.results import Results
+from pound_solve.driver.run import Prepared, Request, execute
+from pound_solve.numerics import jit
+from pound_solve.results.file import Results
 
 Run = Callable[..., tuple[int, Results, Prepared]]
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pound_solve.app import Request, prepare
+from pound_solve.driver.run import Request, prepare
 
 WORDS = {"deck", "table", "key", "columns", "set", "times", "rtol", "only"}
 MARK = re.compile(r"<!-- expected:(.*?)-->", re.DOTALL)

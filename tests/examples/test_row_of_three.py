@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pound_solve import jit
+from pound_solve.numerics import jit
 
 DECK = Path(__file__).parents[2] / "examples" / "07_row_of_three" / "row_of_three.inp"
 

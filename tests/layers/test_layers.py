@@ -1,4 +1,4 @@
-"""The rules of the house, read off the imports and definitions (manual/developer-guide.md lists them)."""
+"""The rules of the architecture, read off the imports and definitions (manual/developer-guide.md lists them)."""
 
 import ast
 import sys
@@ -9,40 +9,48 @@ import pytest
 ROOT = Path(__file__).parents[2]
 DECK, SOLVER = ROOT / "parser/pound_deck", ROOT / "solver/pound_solve"
 
-# from the bottom to the top: a module may import its own layer and those below
-LAYERS = (
-    ("laws", "jit", "matrices", "dofs", "chords", "modes", "polynomial", "pounding", "records", "sketch"),
-    ("motions", "forces"),
-    ("hysteresis", "contact", "damping"),
-    ("elements",),
-    ("assemble",),
-    ("diaphragms", "scene"),
-    ("integrate",),
-    ("analyses",),
-    ("catalog", "tables"),
-    ("results", "echo", "reference"),
-    ("report", "export", "loop", "plot", "explain"),
-    ("separation",),
-    ("course",),
-    ("app",),
-    ("study", "extremes", "stability"),
-    ("__init__",),
-    ("cli",),
-    ("__main__",),
+#: rooms from the bottom to the top: a module may import its own room and those below
+ROOMS = (
+    "numerics",
+    "theory",
+    "loading",
+    "laws",
+    "structure",
+    "integrate",
+    "analyses",
+    "catalog",
+    "results",
+    "report",
+    "driver",
+    "__init__",
+    "assess",
+    "cli",
+    "__main__",
 )
-LEVEL = {name: i for i, names in enumerate(LAYERS) for name in names}
-#: who may import a library, as paths below the two roots
+#: folders within a room, likewise; what a room holds beside them may import all of them
+WITHIN = {
+    "loading": ("records", "motions", "forces"),
+    "laws": ("automaton", "functions", "contact", "hysteresis"),
+    "integrate": ("protocol", "events", "condensed", "kernels", "stepping", "series", "closed_form", "auto"),
+}
+#: who may import a library, as paths below the two packages
 ONLY_IN = {
     "lark": {"cards.py"},
-    "h5py": {"results.py"},
-    "tabulate": {"report.py"},
-    "matplotlib": {"style.py"},
-    "numba": {"jit.py"},
+    "h5py": {"results/file.py"},
+    "tabulate": {"report/text.py"},
+    "matplotlib": {"report/plot/style.py"},
+    "numba": {"numerics/jit.py"},
 }
+#: rooms and modules that read no file and print nothing
+NUMERICS = ("numerics", "theory", "laws", "structure", "integrate", "analyses", "loading/motions", "loading/forces")
 
 
 def modules():
     return [*DECK.rglob("*.py"), *SOLVER.rglob("*.py")]
+
+
+def place(path):
+    return path.relative_to(DECK if path.is_relative_to(DECK) else SOLVER).as_posix()
 
 
 def imported(path):
@@ -56,10 +64,16 @@ def imported(path):
     return out
 
 
-def part(dotted):
+def calls(path):
+    """Names of the functions that a module calls by a plain name."""
+    nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+    return {n.func.id for n in nodes if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)}
+
+
+def room(dotted):
     """The first folder or module below ``pound_solve``."""
     words = dotted.split(".")
-    return words[1] if len(words) > 1 and words[1] in LEVEL else "__init__"
+    return words[1] if len(words) > 1 and words[1] in ROOMS else "__init__"
 
 
 def test_the_parser_knows_nothing_of_the_solver_nor_of_numbers():
@@ -70,7 +84,7 @@ def test_the_parser_knows_nothing_of_the_solver_nor_of_numbers():
 
 @pytest.mark.parametrize("library", ONLY_IN)
 def test_each_library_has_one_door(library):
-    users = {p.name for p in modules() if any(n.split(".")[0] == library for n in imported(p))}
+    users = {place(p) for p in modules() if any(n.split(".")[0] == library for n in imported(p))}
     assert users <= ONLY_IN[library]
 
 
@@ -78,48 +92,42 @@ def test_the_solver_takes_the_model_from_the_parser_and_only_the_top_reads_decks
     for path in SOLVER.rglob("*.py"):
         taken = {n.split(".")[1] for n in imported(path) if n.startswith("pound_deck.")}
         allowed = {"model", "schema", "diagnostics"}
-        if path.name in ("app.py", "cli.py", "loop.py"):
+        if place(path).startswith(("driver/", "cli/", "assess/")):
             allowed |= {"reader"}
-        if path.name == "reference.py":
+        if place(path) == "report/deck_reference.py":
             allowed |= {"sections"}
         assert taken <= allowed, path
+
+
+def test_every_room_is_known_and_few_modules_lie_outside_of_rooms():
+    flat = {p.stem for p in SOLVER.glob("*.py")}
+    assert flat == {"__init__", "__main__", "catalog"}
+    assert {p.name for p in SOLVER.iterdir() if (p / "__init__.py").is_file()} == set(ROOMS) - flat
 
 
 def test_imports_go_down():
     for path in SOLVER.rglob("*.py"):
         own = path.relative_to(SOLVER).parts[0].removesuffix(".py")
         for name in imported(path):
-            if (
-                name.startswith("pound_solve")
-                and part(name) != own
-                and not name.startswith("pound_solve.__version__")
-            ):
-                assert LEVEL[part(name)] <= LEVEL[own], f"{path.name} imports {name}"
+            if name.startswith("pound_solve") and not name.startswith("pound_solve.__version__"):
+                assert ROOMS.index(room(name)) <= ROOMS.index(own), f"{place(path)} imports {name}"
+
+
+@pytest.mark.parametrize("name", WITHIN)
+def test_imports_go_down_within_a_room(name):
+    order = WITHIN[name]
+    for path in (SOLVER / name).rglob("*.py"):
+        own = path.relative_to(SOLVER / name).parts[0].removesuffix(".py")
+        for dotted in imported(path) if own in order else ():
+            words = dotted.split(".")
+            if words[:2] == ["pound_solve", name] and len(words) > 2 and words[2] in order:
+                assert order.index(words[2]) <= order.index(own), f"{place(path)} imports {dotted}"
 
 
 def test_numerics_open_no_file_and_print_nothing():
-    folders = ("elements", "hysteresis", "contact", "damping", "forces", "integrate", "analyses")
-    files = [p for f in folders for p in (SOLVER / f).rglob("*.py")]
-    files += [
-        SOLVER / n
-        for n in (
-            "laws.py",
-            "matrices.py",
-            "dofs.py",
-            "modes.py",
-            "assemble.py",
-            "scene.py",
-            "loop.py",
-            "sketch.py",
-        )
-    ]
-    for path in files:
-        called = {
-            n.func.id
-            for n in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-            if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)
-        }
-        assert not called & {"open", "print", "input", "eval", "exec"}, path
+    for path in SOLVER.rglob("*.py"):
+        if place(path).startswith(NUMERICS) and path.name != "jit.py":
+            assert not calls(path) & {"open", "print", "input"}, path
 
 
 def test_no_module_keeps_mutable_state():
@@ -147,9 +155,4 @@ def test_no_module_keeps_mutable_state():
 
 def test_no_function_evaluates_text():
     for path in modules():
-        called = {
-            n.func.id
-            for n in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-            if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)
-        }
-        assert not called & {"eval", "exec"}, path
+        assert not calls(path) & {"eval", "exec"}, path

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from pound_deck.model import Units
-from pound_solve.results import Writer
-from pound_solve.tables import ENERGIES
+from pound_solve.results.file import Writer
+from pound_solve.results.schema import ENERGIES
 
 NAN = float("nan")
 NODES = (1, 2, 3, 4, 100, 101, 102, 300, 301, 302)

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from output import sample
-from pound_solve.export import export_csv
-from pound_solve.results import Results
-from pound_solve.tables import TABLES
+from pound_solve.report.export import export_csv
+from pound_solve.results.file import Results
+from pound_solve.results.schema import TABLES
 
 
 @pytest.fixture(scope="module")

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 import pound_solve
-from pound_solve.cli import PICTURES, main
+from pound_solve.cli.main import PICTURES, main
 
 pytest.importorskip("matplotlib")
 
 from output import sample
-from pound_solve import plot
-from pound_solve.plot import course, structure, style
-from pound_solve.results import Results, Writer
+from pound_solve.report import plot
+from pound_solve.report.plot import course, structure, style
+from pound_solve.results.file import Results, Writer
 
 ROOT = Path(__file__).parents[2]
 

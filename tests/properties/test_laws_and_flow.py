@@ -5,17 +5,15 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from paths import Walk
-from pound_solve import polynomial
-from pound_solve.contact import kelvin_voigt
-from pound_solve.hysteresis import bilinear, slackness
-from pound_solve.integrate.flow import make_flow
-from pound_solve.integrate.work import Meter
-from pound_solve.laws import Law, follow, remember
-
-Array = NDArray[np.float64]
+from pound_solve.integrate.closed_form.propagator import make_flow
+from pound_solve.integrate.closed_form.work_integrals import Meter
+from pound_solve.laws.automaton import Law, follow, remember
+from pound_solve.laws.contact import kelvin_voigt
+from pound_solve.laws.hysteresis import bilinear, slackness
+from pound_solve.numerics import polynomial
+from pound_solve.numerics.types import Array
 
 forces = st.floats(0.5, 50.0)
 paths = st.lists(st.floats(-10.0, 10.0), min_size=1, max_size=12)

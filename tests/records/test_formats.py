@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pound_solve.records import formats
-from pound_solve.records.base import RawRecord, RecordError, head
-from pound_solve.records.text import is_data, parse, split_head
+from pound_solve.loading.records import formats
+from pound_solve.loading.records.base import RawRecord, RecordError, head
+from pound_solve.loading.records.text import is_data, parse, split_head
 
 PEER_NEW = """PEER NGA STRONG MOTION DATABASE RECORD
 Nowhere-01, 1/2/1903, Invented Station, 090

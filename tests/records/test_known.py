@@ -10,11 +10,11 @@ from typing import Any
 
 import pytest
 
-from pound_solve.motions import record
-from pound_solve.motions.base import Context
-from pound_solve.records import known as module
-from pound_solve.records.base import RecordError
-from pound_solve.records.known import KNOWN, Known, find, known, load
+from pound_solve.loading.motions import record
+from pound_solve.loading.motions.base import Context
+from pound_solve.loading.records import known as module
+from pound_solve.loading.records.base import RecordError
+from pound_solve.loading.records.known import KNOWN, Known, find, known, load
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "records"
 G = 9.80665

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pound_solve.forces import record as force_record
-from pound_solve.forces import sine as force_sine
-from pound_solve.forces import table as force_table
-from pound_solve.motions import record, sine, synthetic, table
-from pound_solve.motions.base import METRE, Context, Motion
-from pound_solve.motions.wave import fronts
-from pound_solve.records.base import RecordError
+from pound_solve.loading.forces import record as force_record
+from pound_solve.loading.forces import sine as force_sine
+from pound_solve.loading.forces import table as force_table
+from pound_solve.loading.motions import record, sine, synthetic, table
+from pound_solve.loading.motions.base import METRE, Context, Motion
+from pound_solve.loading.motions.wave import fronts
+from pound_solve.loading.records.base import RecordError
 
 
 def context(tmp_path: Path = Path(), length: str = "m", duration: float = 0.0) -> Context:

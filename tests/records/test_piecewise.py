@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from pound_solve.motions.base import Context, Motion, common_breaks, finish
-from pound_solve.motions.piecewise import Piecewise, merged
+from pound_solve.loading.motions.base import Context, Motion, common_breaks, finish
+from pound_solve.loading.motions.piecewise import Piecewise, merged
 
 
 @st.composite

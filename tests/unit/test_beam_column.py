@@ -8,15 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from decks import solved, structure_of
 from pound_solve.analyses import static
-from pound_solve.assemble import AssemblyError
-from pound_solve.elements.beam_column import springs
+from pound_solve.numerics.types import Array
+from pound_solve.structure.assembly import AssemblyError
+from pound_solve.structure.elements.beam_column import springs
 from verification.cases import run_text
-
-Array = NDArray[np.float64]
 
 SECTION = "E=2e8 A=0.0106 I=8.1e-5"  # about HE 220 B: Py = 2490 kN, Mp = 226 kN m of S235
 EI, HEIGHT = 2e8 * 8.1e-5, 3.0

@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 
 from pound_solve import run
-from pound_solve.app import DeckError
-from pound_solve.cli import _Progress, main
-from pound_solve.reference import vocabulary
-from pound_solve.results import Results
-from pound_solve.tables import SECTIONS
+from pound_solve.cli.main import _Progress, main
+from pound_solve.driver.run import DeckError
+from pound_solve.report.deck_reference import vocabulary
+from pound_solve.results.file import Results
+from pound_solve.results.schema import SECTIONS
 
 DECK = """TITLE  A mass between two walls
 UNITS  kN m s
@@ -224,7 +224,7 @@ def test_the_help_of_list_names_every_family(capsys):
 
 def test_the_version_needs_no_numerics():
     code = (
-        "import sys; from pound_solve.cli import main\n"
+        "import sys; from pound_solve.cli.main import main\n"
         "try: main(['--version'])\n"
         "except SystemExit: pass\n"
         "assert not {'numpy','scipy','h5py','lark'} & set(sys.modules)"
@@ -234,7 +234,7 @@ def test_the_version_needs_no_numerics():
 
 def test_a_linear_run_imports_only_what_it_needs(deck):
     code = (
-        "import sys; from pound_solve.cli import main\n"
+        "import sys; from pound_solve.cli.main import main\n"
         f"assert main([{str(deck)!r}, '--quiet']) == 0\n"
         "print(sorted({'matplotlib', 'numba', 'scipy', 'pandas', 'structdyn'} & "
         "{m.split('.')[0] for m in sys.modules}))"

@@ -7,8 +7,8 @@ import pytest
 
 from decks import model_of, structure_of
 from pound_deck.reader import read_deck
-from pound_solve.assemble import AssemblyError, assemble
 from pound_solve.catalog import catalog
+from pound_solve.structure.assembly import AssemblyError, assemble
 
 ROW = """UNITS kN m s
 NODES

@@ -9,9 +9,9 @@ from scipy.integrate import solve_ivp
 
 import pound_solve
 from decks import structure_of
-from pound_solve.assemble import AssemblyError
-from pound_solve.contact import friction
-from pound_solve.laws import remember
+from pound_solve.laws.automaton import remember
+from pound_solve.laws.contact import friction
+from pound_solve.structure.assembly import AssemblyError
 
 BALL = """UNITS N m s
 GRAVITY 1

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from pound_solve.catalog import catalog
-from pound_solve.contact import restitution
-from pound_solve.contact.kelvin_voigt import Built
-from pound_solve.laws import Law, State
+from pound_solve.laws.automaton import Law, State
+from pound_solve.laws.contact import restitution
+from pound_solve.laws.contact.kelvin_voigt import Built
 from verification.cases import run_text
 
 #: laws whose force gives back E at any speed (BILINEAR_IMPACT does at one speed, rigid ones have no force:

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from pound_solve.catalog import catalog
-from pound_solve.contact import restitution
-from pound_solve.contact.kelvin_voigt import OPEN, PRESSED, RELEASED, RULE, Built
-from pound_solve.laws import Law, State, remember
+from pound_solve.laws.automaton import Law, State, remember
+from pound_solve.laws.contact import restitution
+from pound_solve.laws.contact.kelvin_voigt import OPEN, PRESSED, RELEASED, RULE, Built
 
 # research/pounding-facts.md, tables 2.2 and 2.3
 ASKED = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.65, 0.7, 0.8, 0.9, 0.95)

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 import pound_solve
 from paths import Walk
 from pound_solve.catalog import catalog
-from pound_solve.contact import bilinear_impact, table
-from pound_solve.laws import follow
+from pound_solve.laws.automaton import follow
+from pound_solve.laws.contact import bilinear_impact, table
 
 BILINEAR = {
     "GAP": 0.02, "K1": None, "K2": None, "DY": None, "KH": 3000.0, "N": 1.5, "E": 0.6, "DM": 0.04, "A": 0.1,

@@ -11,8 +11,8 @@ from decks import structure_of
 from pound_deck.schema import Spec
 from pound_solve.analyses import damage
 from pound_solve.catalog import catalog
-from pound_solve.hysteresis import bilinear, bilinear_elastic, elasto_plastic, origin_centred
-from pound_solve.laws import Law, State, follow
+from pound_solve.laws.automaton import Law, State, follow
+from pound_solve.laws.hysteresis import bilinear, bilinear_elastic, elasto_plastic, origin_centred
 from verification.cases import Ran, run_text
 
 K, FY = 100.0, 5.0

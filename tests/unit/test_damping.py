@@ -14,13 +14,13 @@ from scipy.optimize import brentq
 
 from decks import structure_of
 from pound_solve.analyses import modal
-from pound_solve.assemble import AssemblyError
-from pound_solve.damping import caughey
-from pound_solve.damping.secant import SecantLaw
-from pound_solve.elements.base import LawSpring
-from pound_solve.hysteresis import bilinear, slackness
-from pound_solve.laws import TURNS_DOWN, TURNS_UP, Law, Rule, follow, piece, remember
-from pound_solve.modes import condense, massless
+from pound_solve.laws.automaton import TURNS_DOWN, TURNS_UP, Law, Rule, follow, piece, remember
+from pound_solve.laws.hysteresis import bilinear, slackness
+from pound_solve.numerics.modes import condense, massless
+from pound_solve.structure.assembly import AssemblyError
+from pound_solve.structure.damping import caughey
+from pound_solve.structure.damping.secant import SecantLaw
+from pound_solve.structure.elements.base import LawSpring
 from verification.cases import run_text
 
 FRAME = """

@@ -10,9 +10,9 @@ import pytest
 
 from decks import structure_of
 from pound_solve import run
-from pound_solve.diaphragms import meetings
-from pound_solve.pounding import Diaphragm
-from pound_solve.report import render
+from pound_solve.report.text import render
+from pound_solve.structure.diaphragms import meetings
+from pound_solve.theory.two_bars import Diaphragm
 
 ROOT = Path(__file__).parents[2]
 

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from decks import model_of, solved, structure_of
 from pound_deck.model import Node, Span
-from pound_solve import echo
-from pound_solve.dofs import number
+from pound_solve.results import echo
+from pound_solve.structure.dofs import number
 
 SPAN = Span("test", 1, 1, 2)
 

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from decks import model_of, solved, structure_of
-from pound_solve.assemble import AssemblyError, assemble
-from pound_solve.elements.base import axes, direction
+from pound_solve.structure.assembly import AssemblyError, assemble
+from pound_solve.structure.elements.base import axes, direction
 
 
 @pytest.mark.parametrize("turns", [-2, -1, 0, 1, 5])

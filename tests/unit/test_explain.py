@@ -7,9 +7,9 @@ import sys
 
 import pytest
 
-from pound_solve import explain
 from pound_solve.catalog import FAMILIES, specs
-from pound_solve.results import Results
+from pound_solve.driver import resources
+from pound_solve.results.file import Results
 
 FRAME = """UNITS  kN m s
 NODES
@@ -59,7 +59,7 @@ def deck(folder, kind):
 def run(path, *words, compiling="1"):
     """Run a deck in a process of its own: the modules that it imports, and what it prints."""
     code = (
-        "import json, sys; from pound_solve.cli import main\n"
+        "import json, sys; from pound_solve.cli.main import main\n"
         f"status = main({[str(path), '--quiet', *words]!r})\n"
         "print(json.dumps([status, sorted(sys.modules)]))"
     )
@@ -72,7 +72,7 @@ def run(path, *words, compiling="1"):
 
 
 def libraries(modules):
-    return {name.partition(".")[0] for name in modules} & set(explain.LIBRARIES)
+    return {name.partition(".")[0] for name in modules} & set(resources.LIBRARIES)
 
 
 def engines(modules):
@@ -93,7 +93,9 @@ def test_each_kind_of_deck_imports_what_it_needs_and_no_more(tmp_path, kind):
     # the whole family of methods comes with HISTORY, and nothing of it without
     assert engines(modules) == (ENGINES if moving else set())
     assert ("history" in held) == moving
-    assert not {m for m in modules if m.startswith(("pound_solve.contact.", "pound_solve.study"))}
+    assert not {
+        m for m in modules if m.startswith(("pound_solve.laws.contact.", "pound_solve.assess.study"))
+    }
     # and the table says so
     assert told["numba"] == (0, "not imported")
     assert told["kernels compiled"] == (0, "none")
@@ -130,15 +132,15 @@ def test_a_run_that_is_not_asked_explains_nothing(tmp_path):
 def test_the_version_and_the_help_need_no_numbers():
     for word in ("--version", "--help"):
         code = (
-            "import sys; from pound_solve.cli import main\n"
+            "import sys; from pound_solve.cli.main import main\n"
             f"try: main([{word!r}])\n"
             "except SystemExit: pass\n"
             "print(sorted(m for m in sys.modules if m.startswith('pound_')))\n"
-            f"assert not set({explain.LIBRARIES!r}) & {{m.partition('.')[0] for m in sys.modules}}"
+            f"assert not set({resources.LIBRARIES!r}) & {{m.partition('.')[0] for m in sys.modules}}"
         )
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
-        assert done.stdout.splitlines()[-1] == "['pound_solve', 'pound_solve.cli']"
+        assert done.stdout.splitlines()[-1] == "['pound_solve', 'pound_solve.cli.main']"
 
 
 def test_every_spec_stands_in_the_package_of_its_family():
@@ -151,6 +153,6 @@ def test_sparse_matrices_count_with_their_indices():
     import numpy as np
 
     a = sparse.csr_array(np.eye(5))
-    numbers, held = explain.size(a, np.zeros((2, 3)))
+    numbers, held = resources.size(a, np.zeros((2, 3)))
     assert numbers == 5 + 6
     assert held == 8 * 11 + a.indices.nbytes + a.indptr.nbytes

@@ -7,8 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from pound_solve import polynomial
-from pound_solve.integrate.flow import (
+from pound_solve.integrate.closed_form.propagator import (
     Mechanism,
     ModalFlow,
     SeriesFlow,
@@ -16,8 +15,9 @@ from pound_solve.integrate.flow import (
     make_flow,
     state_space,
 )
+from pound_solve.numerics import polynomial
+from pound_solve.numerics.types import Array
 
-Array = NDArray[np.float64]
 Block = tuple[Array, Array, Array]
 
 

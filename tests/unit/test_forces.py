@@ -7,13 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from decks import scene_of
 from pound_solve import run
+from pound_solve.numerics.types import Array
 from verification.cases import Ran, run_text
-
-Array = NDArray[np.float64]
 
 M, K, F = 10.0, 400.0, 50.0
 W = math.sqrt(K / M)

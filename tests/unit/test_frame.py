@@ -456,7 +456,7 @@ def test_total_mass_is_m_l(mass):
 
 def test_reactions_of_the_program_are_those_of_the_test_helper(tmp_path):
     """The report's table of reactions, end to end."""
-    from pound_solve.app import Request, execute
+    from pound_solve.driver.run import Request, execute
 
     deck = (
         member(4.0, 25.0, "WGT=1 PIN=J", "FIX=XY", member_loads=" 7 WY=-3 PX=2 AT=0.25")

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 from decks import solved, structure_of
 from pound_solve.analyses import static
-from pound_solve.assemble import AssemblyError
 from pound_solve.catalog import catalog
-from pound_solve.elements.base import LawSpring
+from pound_solve.structure.assembly import AssemblyError
+from pound_solve.structure.elements.base import LawSpring
 from verification.cases import run_text
 
 E, A, IZ, G, AS = 2.0e8, 0.011, 1.5e-4, 8.0e7, 0.004

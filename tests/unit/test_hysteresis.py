@@ -16,7 +16,7 @@ import pytest
 from paths import Walk, turning_points
 from pound_deck.schema import Kind
 from pound_solve.catalog import catalog
-from pound_solve.laws import Law
+from pound_solve.laws.automaton import Law
 
 RULES = catalog().family("hysteresis")
 PAGE = (Path(__file__).parents[2] / "manual" / "hysteresis.md").read_text("utf-8")

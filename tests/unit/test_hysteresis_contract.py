@@ -18,10 +18,9 @@ import contract
 from contract import CLAUSES
 from paths import Walk, turning_points
 from pound_deck.schema import REQUIRED, Field, Spec
-from pound_solve import jit
 from pound_solve.catalog import catalog
-from pound_solve.hysteresis import bilinear
-from pound_solve.laws import (
+from pound_solve.laws import functions
+from pound_solve.laws.automaton import (
     TURNS_DOWN,
     TURNS_UP,
     Law,
@@ -33,6 +32,8 @@ from pound_solve.laws import (
     piece,
     remember,
 )
+from pound_solve.laws.hysteresis import bilinear
+from pound_solve.numerics import jit
 
 K = 800.0  #: initial stiffness
 PLUS, MINUS = 12.0, -8.0  #: yield forces: at +15 and -10 mm
@@ -249,7 +250,7 @@ def test_a_long_history(law: Law, sample: dict[str, Any]) -> None:
 @pytest.mark.parametrize("name", sorted(set(SAMPLES) & set(RULES)))
 def test_compiled_functions_give_the_same_numbers(name: str) -> None:
     laws = [p.values[0] for p in UNEQUAL if p.id.startswith(f"{name} ")]
-    branch, leave, recoverable, curve = (f[0] for f in jit.tables([laws[0].rule]))
+    branch, leave, recoverable, curve = (f[0] for f in functions.tables([laws[0].rule]))
     for law in laws:
         rule, p = law.rule, law.p
         walk = Walk(law).move(*turning_points(3, REACH))

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 
 from paths import Walk
 from pound_solve.catalog import catalog
-from pound_solve.hysteresis import imk, imk_pinching
-from pound_solve.laws import Law, Numbers
+from pound_solve.laws.automaton import Law, Numbers
+from pound_solve.laws.hysteresis import imk, imk_pinching
 
 RULES = catalog().family("hysteresis")
 BILINEAR, PEAK, PINCHING = "IMK_BILINEAR", "IMK_PEAK_ORIENTED", "IMK_PINCHING"

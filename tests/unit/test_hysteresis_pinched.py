@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from paths import Walk
 from pound_solve.catalog import catalog
-from pound_solve.laws import Law
+from pound_solve.laws.automaton import Law
 
 RULES = catalog().family("hysteresis")
 

@@ -17,8 +17,8 @@ from scipy.optimize import brentq
 
 from paths import Walk
 from pound_solve.catalog import catalog
-from pound_solve.hysteresis import bouc_wen, ramberg_osgood
-from pound_solve.laws import Law, follow
+from pound_solve.laws.automaton import Law, follow
+from pound_solve.laws.hysteresis import bouc_wen, ramberg_osgood
 
 RULES = catalog().family("hysteresis")
 

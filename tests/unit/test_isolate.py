@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
-from pound_solve.integrate import isolate
-from pound_solve.integrate.isolate import CELLS, POLYNOMIAL
-
-Array = NDArray[np.float64]
+from pound_solve.integrate.events import polynomial_roots
+from pound_solve.integrate.events.polynomial_roots import CELLS, POLYNOMIAL
+from pound_solve.numerics.types import Array
 
 TERMS = 32
 EPS = 2.3e-16
@@ -23,7 +21,7 @@ EPS = 2.3e-16
 def rows(coefficients: Array | list[float]) -> tuple[Array, int]:
     """A polynomial as the kernels take it."""
     c = np.asarray(coefficients, float)
-    p = np.zeros(isolate.room(len(c) - 1))
+    p = np.zeros(polynomial_roots.room(len(c) - 1))
     p[POLYNOMIAL, : len(c)] = c
     return p, len(c) - 1
 
@@ -83,14 +81,14 @@ polynomials = st.one_of(anything, st.builds(series, waves, st.floats(-1.5, 0.5))
 def halved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[float]]:
     """The widths of the cells that a search halves."""
     seen: list[float] = []
-    own = isolate.halve
+    own = polynomial_roots.halve
 
     def halve(p: Array, terms: int, row: int) -> None:
         seen.append(float(p[row, -1]))
         assert len(seen) < 5000, "no end"
         own(p, terms, row)
 
-    monkeypatch.setattr(isolate, "halve", halve)
+    monkeypatch.setattr(polynomial_roots, "halve", halve)
     yield seen
 
 
@@ -101,8 +99,8 @@ def halved(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[float]]:
 def test_cells_hold_the_polynomial(c: Array, end: float) -> None:
     """In Bernstein's form on [0, end], and on both halves; within the hull of the coefficients."""
     p, terms = rows(c)
-    isolate.enclose(p, terms, end)
-    isolate.halve(p, terms, CELLS)
+    polynomial_roots.enclose(p, terms, end)
+    polynomial_roots.halve(p, terms, CELLS)
     sigma = np.linspace(0.0, 1.0, 40)
     slack = 50 * noise(c)
     for row, place in ((CELLS, 0.5 * end), (CELLS + 1, 0.0)):
@@ -110,9 +108,12 @@ def test_cells_hold_the_polynomial(c: Array, end: float) -> None:
         assert (x, w) == (place, 0.5 * end)
         values = on(c, x + w * sigma)
         assert np.abs(bernstein(b, sigma) - values).max() <= slack
-        assert values.max() <= isolate.highest_of(p, terms, row) + slack and values.min() >= b.min() - slack
+        assert (
+            values.max() <= polynomial_roots.highest_of(p, terms, row) + slack
+            and values.min() >= b.min() - slack
+        )
         assert np.abs(b[[0, -1]] - on(c, np.array([x, x + w]))).max() <= slack
-    assert isolate.size(p, POLYNOMIAL, terms) == pytest.approx(np.abs(c[1:]).sum(), rel=1e-14)
+    assert polynomial_roots.size(p, POLYNOMIAL, terms) == pytest.approx(np.abs(c[1:]).sum(), rel=1e-14)
 
 
 @given(c=polynomials, s=st.floats(0, 1))
@@ -121,8 +122,8 @@ def test_values_and_slopes(c: Array, s: float) -> None:
     first = np.polynomial.polynomial.polyder(c) if terms else np.zeros(1)
     second = np.polynomial.polynomial.polyder(first) if terms > 1 else np.zeros(1)
     slack = noise(c) * (1 + terms) ** 2
-    assert isolate.value(p, terms, s) == pytest.approx(float(on(c, s)), abs=slack)
-    assert isolate.slopes(p, terms, s) == pytest.approx(
+    assert polynomial_roots.value(p, terms, s) == pytest.approx(float(on(c, s)), abs=slack)
+    assert polynomial_roots.slopes(p, terms, s) == pytest.approx(
         (float(on(first, s)), float(on(second, s))), abs=slack
     )
 
@@ -131,11 +132,11 @@ def test_values_and_slopes(c: Array, s: float) -> None:
 def test_bends_are_no_fewer_than_extremes(c: Array) -> None:
     """Changes of sign that dense samples show; and so it turns that often at most."""
     p, terms = rows(c)
-    isolate.enclose(p, terms, 1.0)
+    polynomial_roots.enclose(p, terms, 1.0)
     steps = np.diff(on(c, np.linspace(0.0, 1.0, 400)))
     seen = steps[np.abs(steps) > 10 * noise(c)]
     turns = int((np.diff(np.sign(seen)) != 0).sum())
-    first, count = isolate.bends(p, terms, CELLS, isolate.NOISE * float(np.abs(c).sum()))
+    first, count = polynomial_roots.bends(p, terms, CELLS, polynomial_roots.NOISE * float(np.abs(c).sum()))
     assert count >= turns
     if count == 0 and len(seen):
         assert np.sign(first) == np.sign(seen[0])
@@ -150,7 +151,7 @@ def test_the_zero_of_a_rise(root: float, more: list[float]) -> None:
     top = min([x.real for x in np.roots(inner[::-1]) if abs(x.imag) < 1e-9 and x.real > root] + [9.0])
     w = min(1.0, root + 0.9 * (top - root))
     p, terms = rows(c)
-    found = isolate.zero(p, terms, 0.0, w)
+    found = polynomial_roots.zero(p, terms, 0.0, w)
     assert found == pytest.approx(root, abs=noise(c) / abs(float(on(inner, root))) + 4 * EPS)
 
 
@@ -158,7 +159,7 @@ def test_the_zero_of_a_rise(root: float, more: list[float]) -> None:
 def test_the_zero_of_a_rise_that_starts_flat(degree: int) -> None:
     """s^n - 2^-n: Newton's steps from the flat part would leave the bracket."""
     p, terms = rows([-(0.01**degree), *[0.0] * (degree - 1), 1.0])
-    assert isolate.zero(p, terms, 0.0, 1.0) == pytest.approx(0.01, rel=1e-14)
+    assert polynomial_roots.zero(p, terms, 0.0, 1.0) == pytest.approx(0.01, rel=1e-14)
 
 
 @given(at=st.floats(1e-6, 0.999), bend=st.floats(0.1, 50), tilt=st.floats(-0.05, 0.05))
@@ -167,7 +168,7 @@ def test_the_summit_of_a_hill(at: float, bend: float, tilt: float) -> None:
     s = np.polynomial.polynomial.Polynomial([-at, 1.0])
     c = (3.0 - bend * s**2 * (1.0 + tilt * s)).coef
     p, terms = rows(c)
-    assert isolate.summit(p, terms, 0.0, 1.0) == pytest.approx(at, rel=1e-8, abs=1e-14)
+    assert polynomial_roots.summit(p, terms, 0.0, 1.0) == pytest.approx(at, rel=1e-8, abs=1e-14)
 
 
 # ---------------------------------------------------------------- the first rise
@@ -176,7 +177,7 @@ def test_the_summit_of_a_hill(at: float, bend: float, tilt: float) -> None:
 def judge(c: Array, end: float, tol: float) -> None:
     """Nothing above `tol` comes before what is found, and there it rises through zero."""
     p, terms = rows(c)
-    found = isolate.first_rise(p, terms, end, tol)
+    found = polynomial_roots.first_rise(p, terms, end, tol)
     slack = noise(c)
     dense = np.linspace(0.0, end, 4001)
     if found < 0.0:
@@ -227,7 +228,7 @@ def test_the_first_rise_among_known_roots(roots: list[float], sign: float) -> No
     if c[0] > 0.0:
         return
     p, terms = rows(c)
-    found = isolate.first_rise(p, terms, 1.0, 1e-12 * np.abs(c).sum())
+    found = polynomial_roots.first_rise(p, terms, 1.0, 1e-12 * np.abs(c).sum())
     if not rises:
         assert found == -1.0
         return
@@ -241,7 +242,7 @@ def test_two_crossings_however_near_are_not_passed(at: float, narrow: float, ben
     """-bend (s - a)(s - b), above zero between: as high as bend (b - a)^2 / 4, well above 1e-12."""
     c = with_roots(at, at + narrow, lead=-bend)
     p, terms = rows(c)
-    found = isolate.first_rise(p, terms, 1.0, 1e-12)
+    found = polynomial_roots.first_rise(p, terms, 1.0, 1e-12)
     # at the first crossing, or where it is still within the tolerance
     within = 1e-12 / (0.5 * bend * narrow)
     assert at - EPS - noise(c) / (bend * narrow) <= found + 4 * EPS
@@ -255,11 +256,11 @@ def test_a_touch_that_rises_by_less_than_the_tolerance_is_none(at: float, bend: 
     s = np.polynomial.polynomial.Polynomial([-at, 1.0])
     c = (lift * tol - bend * s**2).coef
     p, terms = rows(c)
-    assert isolate.first_rise(p, terms, 1.0, tol) == -1.0
+    assert polynomial_roots.first_rise(p, terms, 1.0, tol) == -1.0
     # beyond it is one, from where it is zero or within the tolerance of it
     c[0] += (2.0 - lift) * tol
     p, terms = rows(c)
-    found = isolate.first_rise(p, terms, 1.0, tol)
+    found = polynomial_roots.first_rise(p, terms, 1.0, tol)
     if 1e-3 < at < 0.999:
         assert abs(found - (at - np.sqrt(2 * tol / bend))) < 1e-3 and -tol < on(c, found) <= tol + noise(c)
 
@@ -276,10 +277,10 @@ def test_roots_of_higher_order_end(
     p, terms = rows(judge_end)
     if judge_end[0] <= 0.0:
         judge(judge_end, 1.0, max(tol, noise(judge_end)))
-    isolate.first_rise(p, terms, 1.0, tol)
-    isolate.highest(p, terms, 1.0, -np.inf)
+    polynomial_roots.first_rise(p, terms, 1.0, tol)
+    polynomial_roots.highest(p, terms, 1.0, -np.inf)
     p[POLYNOMIAL] *= -1
-    isolate.highest(p, terms, 1.0, -np.inf)
+    polynomial_roots.highest(p, terms, 1.0, -np.inf)
     assert len(halved) < 500
 
 
@@ -296,7 +297,7 @@ def test_a_rise_at_the_start() -> None:
         ([0.0, 1e-13], -1.0, 0.0),
     ):
         p, terms = rows(c)
-        assert isolate.first_rise(p, terms, 1.0, 1e-12) == pytest.approx(expected, abs=near), c
+        assert polynomial_roots.first_rise(p, terms, 1.0, 1e-12) == pytest.approx(expected, abs=near), c
 
 
 # ---------------------------------------------------------------- extremes
@@ -308,7 +309,7 @@ def test_a_rise_at_the_start() -> None:
 @example(c=with_roots(*[0.5] * 8, lead=-1.0), end=1.0)
 def test_the_highest_value(c: Array, end: float) -> None:
     p, terms = rows(c)
-    high, place = isolate.highest(p, terms, end, -np.inf)
+    high, place = polynomial_roots.highest(p, terms, end, -np.inf)
     slack = noise(c)
     dense = np.linspace(0.0, end, 3001)
     slopes = np.roots(np.polynomial.polynomial.polyder(c)[::-1]) if terms < 9 else np.zeros(0)
@@ -316,16 +317,16 @@ def test_the_highest_value(c: Array, end: float) -> None:
     assert high >= on(c, np.append(dense, flat)).max() - slack
     assert 0.0 <= place <= end and high == pytest.approx(float(on(c, place)), abs=slack)
     # what is known already counts
-    assert isolate.highest(p, terms, end, high + slack) == (high + slack, -1.0)
+    assert polynomial_roots.highest(p, terms, end, high + slack) == (high + slack, -1.0)
     if slack < 1e-3:
-        lower = isolate.highest(p, terms, end, high - 2e-3)
+        lower = polynomial_roots.highest(p, terms, end, high - 2e-3)
         assert lower[0] == pytest.approx(high, abs=slack) and lower[1] >= 0.0
 
 
 def test_an_interval_of_no_length_is_its_start() -> None:
     p, terms = rows([1.0, 2.0])
-    assert isolate.highest(p, terms, 0.0, 0.5) == (1.0, 0.0)
-    assert isolate.first_rise(p, terms, 0.0, 1e-12) == -1.0
+    assert polynomial_roots.highest(p, terms, 0.0, 0.5) == (1.0, 0.0)
+    assert polynomial_roots.first_rise(p, terms, 0.0, 1e-12) == -1.0
 
 
 @settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -339,6 +340,6 @@ def test_waves_are_searched_in_few_cells(
     c *= tiny
     c[0] += shift
     p, terms = rows(c)
-    isolate.first_rise(p, terms, 1.0, 1e-12)
-    isolate.highest(p, terms, 1.0, -np.inf)
+    polynomial_roots.first_rise(p, terms, 1.0, 1e-12)
+    polynomial_roots.highest(p, terms, 1.0, -np.inf)
     assert len(halved) < 40

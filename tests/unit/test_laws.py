@@ -1,4 +1,4 @@
-"""Laws as automata: `pound_solve.laws` on a toy rule, and the contract of the contact laws of the catalog.
+"""Laws as automata: `pound_solve.laws.automaton` on a toy rule, and the contract of the contact laws of the catalog.
 
 A new contact law is tested as soon as its file declares a SPEC: its fields tell what parameters to try.
 The contract of hysteresis rules is in test_hysteresis_contract.py.
@@ -15,9 +15,9 @@ import pytest
 
 from paths import Walk, turning_points
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve.assess.law_test import specimen
 from pound_solve.catalog import specs
-from pound_solve.contact import bilinear_impact, table
-from pound_solve.laws import (
+from pound_solve.laws.automaton import (
     EXITS,
     MEMORY,
     NEVER,
@@ -35,7 +35,7 @@ from pound_solve.laws import (
     remember,
     settle,
 )
-from pound_solve.loop import specimen
+from pound_solve.laws.contact import bilinear_impact, table
 
 REACH = 0.1  #: paths run between plus and minus this
 GAPS = (0.01, 0.0, -0.005)  #: of the contacts

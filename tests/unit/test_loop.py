@@ -13,11 +13,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pound_solve import sketch
+from pound_solve.assess.law_test import (
+    AXES,
+    LoopError,
+    Point,
+    has_loop,
+    law_of,
+    protocol,
+    specimen,
+    table,
+    trace,
+)
 from pound_solve.catalog import specs
-from pound_solve.cli import main
-from pound_solve.laws import Law, changes, follow
-from pound_solve.loop import AXES, LoopError, Point, has_loop, law_of, protocol, specimen, table, trace
+from pound_solve.cli.main import main
+from pound_solve.laws.automaton import Law, changes, follow
+from pound_solve.report import text_plot
 
 LAWS = [s for s in specs() if s.family in AXES and has_loop(s)]
 
@@ -240,7 +250,7 @@ def test_without_matplotlib_it_says_how_to_get_it(tmp_path: Path, monkeypatch: A
 
 
 def test_letters_put_the_curve_where_it_is() -> None:
-    text = sketch.letters([(-1.0, -2.0), (1.0, 2.0)], width=21, height=9)
+    text = text_plot.letters([(-1.0, -2.0), (1.0, 2.0)], width=21, height=9)
     lines = text.splitlines()
     assert lines[0].startswith(" 2 ") and lines[0].endswith("*") and len(lines[0]) == 3 + 21
     assert lines[4].split()[0] == "0" and lines[4].count("*") >= 1
@@ -249,21 +259,21 @@ def test_letters_put_the_curve_where_it_is() -> None:
 
 
 def test_a_curve_of_no_height_is_drawn_too() -> None:
-    assert "*" * 30 in sketch.letters([(0.0, 0.0), (1.0, 0.0)], width=30, height=5)
-    assert sketch.svg([(0.0, 0.0), (1.0, 0.0)], "flat", "x", "y").count("<path") > 5
+    assert "*" * 30 in text_plot.letters([(0.0, 0.0), (1.0, 0.0)], width=30, height=5)
+    assert text_plot.svg([(0.0, 0.0), (1.0, 0.0)], "flat", "x", "y").count("<path") > 5
 
 
 def test_svg_keeps_every_corner_and_no_more() -> None:
     """Points along a straight line are left out, turning points on the same line are not."""
     line = [(0.0, 0.0), (1.0, 1.0), (2.0, 2.0), (3.0, 3.0), (1.0, 1.0), (4.0, 0.0)]
-    path = sketch.svg(line, "t", "x", "y").split('class="c" d="')[1].split('"')[0]
+    path = text_plot.svg(line, "t", "x", "y").split('class="c" d="')[1].split('"')[0]
     assert path.count("L") == 3
-    assert "a &lt; b" in sketch.svg(line, "a < b", "x", "y")
+    assert "a &lt; b" in text_plot.svg(line, "a < b", "x", "y")
 
 
 def test_ticks_are_round() -> None:
     for low, high in ((-6.3, 6.3), (0.0, 0.013), (-1e6, 2.0), (3.1, 3.2)):
-        ticks = [float(x) for x in sketch._ticks(low, high)]
+        ticks = [float(x) for x in text_plot._ticks(low, high)]
         steps = np.diff(ticks)
         assert 3 <= len(ticks) <= 9 and low <= ticks[0] and ticks[-1] <= high
         assert steps == pytest.approx(steps[0])

@@ -14,10 +14,10 @@ import pytest
 import contract
 from decks import model_of, solved
 from pound_solve import run
-from pound_solve.app import Request, prepare
-from pound_solve.assemble import AssemblyError, assemble
 from pound_solve.catalog import members, specs
-from pound_solve.contact import restitution
+from pound_solve.driver.run import Request, prepare
+from pound_solve.laws.contact import restitution
+from pound_solve.structure.assembly import AssemblyError, assemble
 
 ROOT = Path(__file__).parents[2]
 MANUAL = ROOT / "manual"
@@ -273,7 +273,7 @@ def extended(tmp_path, monkeypatch):
 
 
 def test_the_example_rule_keeps_the_contract(extended):
-    module = importlib.import_module("pound_solve.hysteresis.stiffening")
+    module = importlib.import_module("pound_solve.laws.hysteresis.stiffening")
     for s in (1.0, 4.0):
         law = module.build({"S": s}, 100.0, 2.0, -1.0)
         assert contract.keep(law, 0.1) == {"soft", "stiff +", "stiff -"}

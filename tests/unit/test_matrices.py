@@ -12,10 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from decks import model_of, solved
-from pound_solve import matrices, modes, run
+from pound_solve import run
 from pound_solve.analyses import modal, static
-from pound_solve.analyses.path import Unstable
-from pound_solve.assemble import assemble
+from pound_solve.analyses.path_following import Unstable
+from pound_solve.numerics import matrices, modes
+from pound_solve.structure.assembly import assemble
 
 FRAME = Path(__file__).parents[2] / "examples" / "frames" / "steel_10x3.inp"
 

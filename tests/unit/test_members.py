@@ -8,16 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from decks import solved, structure_of
 from pound_solve.analyses import static
-from pound_solve.assemble import AssemblyError, Structure
-from pound_solve.elements.foundation import radiation, stiffness
-from pound_solve.elements.multispring import lobatto
+from pound_solve.numerics.types import Array
+from pound_solve.structure.assembly import AssemblyError, Structure
+from pound_solve.structure.elements.foundation import radiation, stiffness
+from pound_solve.structure.elements.multispring import lobatto
 from verification.cases import run_text
-
-Array = NDArray[np.float64]
 
 
 def at_node(structure: Structure, node: int, matrix: Array) -> Array:

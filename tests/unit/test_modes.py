@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from decks import structure_of
-from pound_solve import modes
 from pound_solve.analyses import modal
+from pound_solve.numerics import modes
 
 PHI = (1 + math.sqrt(5)) / 2
 

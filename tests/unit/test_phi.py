@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pound_solve.integrate import phi
+from pound_solve.numerics import phi
 
 MOST = 11  #: highest degree that a record of degree 10 asks of `duhamel` (its integral)
 Pair = tuple[Decimal, Decimal]

@@ -5,8 +5,8 @@ from xml.etree import ElementTree
 
 import pytest
 
+from pound_solve.assess.law_test import AXES
 from pound_solve.catalog import specs
-from pound_solve.loop import AXES
 from refresh_manual import pictures
 
 FOLDER = Path(__file__).parents[2] / "manual" / "pictures"

@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from decks import model_of
 from pound_solve import run
 from pound_solve.analyses import pushover, static
-from pound_solve.analyses.path import Unstable
-from pound_solve.assemble import assemble
+from pound_solve.analyses.path_following import Unstable
 from pound_solve.catalog import catalog
-from pound_solve.laws import Law, Rule, above, follow, piece, remember
+from pound_solve.laws.automaton import Law, Rule, above, follow, piece, remember
+from pound_solve.structure.assembly import assemble
 
 
 def pushed(text: str, card: str, swap=lambda s: s) -> pushover.Pushed:

@@ -11,8 +11,8 @@ from pound_deck.expressions import FUNCTIONS
 from pound_deck.reader import read_text
 from pound_deck.schema import REQUIRED, Field, Kind, Spec
 from pound_solve.catalog import catalog
-from pound_solve.cli import main
-from pound_solve.reference import WIDTH, deck_page, listing, takes, usage, vocabulary
+from pound_solve.cli.main import main
+from pound_solve.report.deck_reference import WIDTH, deck_page, listing, takes, usage, vocabulary
 
 PAGE = Path(__file__).parents[2] / "manual" / "deck-reference.md"
 SPECS = [spec for family in vocabulary().families() for spec in vocabulary().family(family).values()]
@@ -38,7 +38,7 @@ def chapter(page: str, spec: Spec) -> str:
 
 
 def test_the_page_is_fresh():
-    """To renew it: ``python -m pound_solve.reference > manual/deck-reference.md``."""
+    """To renew it: ``python -m pound_solve.report.deck_reference > manual/deck-reference.md``."""
     assert PAGE.read_text("utf-8") == deck_page()
 
 

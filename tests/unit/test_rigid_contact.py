@@ -8,19 +8,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from decks import scene_of, structure_of
-from pound_solve import polynomial
 from pound_solve.analyses import static
-from pound_solve.analyses.path import Unstable
-from pound_solve.assemble import AssemblyError
+from pound_solve.analyses.path_following import Unstable
 from pound_solve.catalog import catalog
-from pound_solve.integrate.flow import held_space, make_flow, state_space
-from pound_solve.integrate.rigid import SLOW, Rigid
+from pound_solve.integrate.closed_form.propagator import held_space, make_flow, state_space
+from pound_solve.integrate.closed_form.rigid_contact import SLOW, Rigid
+from pound_solve.numerics import polynomial
+from pound_solve.numerics.types import Array
+from pound_solve.structure.assembly import AssemblyError
 from verification.cases import Ran, run_text
-
-Array = NDArray[np.float64]
 
 
 def row(

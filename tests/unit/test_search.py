@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
-from pound_solve.integrate import search
-from pound_solve.integrate.base import Extreme
-
-Array = NDArray[np.float64]
+from pound_solve.integrate.events import grid
+from pound_solve.integrate.protocol import Extreme
+from pound_solve.numerics.types import Array
 
 waves = st.lists(
     st.tuples(st.floats(0.1, 2.0), st.floats(0.5, 20.0), st.floats(0.0, 6.3)), min_size=1, max_size=4
@@ -34,15 +32,15 @@ class Waves:
         return (self.a * self.w * np.cos(self.w * x + self.p)).sum(axis=0).reshape(np.shape(t))
 
 
-def grid(step: float, arcs: int, cells: int) -> Array:
+def mesh(step: float, arcs: int, cells: int) -> Array:
     return step * (cells * np.arange(arcs)[:, None] + np.arange(cells + 1))
 
 
 @given(waves, st.floats(-4.0, 0.0), st.floats(0.01, 0.3))
 def test_no_rise_is_passed_over(terms: list[tuple[float, float, float]], c: float, step: float) -> None:
-    f, t = Waves(terms, c), grid(step, 3, 4)
+    f, t = Waves(terms, c), mesh(step, 3, 4)
     bend = np.full((1, 3), f.bend)
-    marked = search.may_rise(
+    marked = grid.may_rise(
         f.value(t)[None],
         f.slope(t)[None],
         bend,
@@ -55,12 +53,12 @@ def test_no_rise_is_passed_over(terms: list[tuple[float, float, float]], c: floa
 
 @given(waves, st.floats(0.01, 0.3))
 def test_no_peak_is_passed_over(terms: list[tuple[float, float, float]], step: float) -> None:
-    f, t = Waves(terms, 0.0), grid(step, 3, 4)
+    f, t = Waves(terms, 0.0), mesh(step, 3, 4)
     peak, seen = Extreme(), Extreme()
-    marked = search.may_peak(
-        f.value(t)[None], f.slope(t)[None], np.full((1, 3), f.bend), np.diff(t), [peak]
-    )[0]
-    search.count([seen], t.ravel(), f.value(t).reshape(1, -1))
+    marked = grid.may_peak(f.value(t)[None], f.slope(t)[None], np.full((1, 3), f.bend), np.diff(t), [peak])[
+        0
+    ]
+    grid.count([seen], t.ravel(), f.value(t).reshape(1, -1))
     within = t[:, :-1, None] + np.diff(t)[:, :, None] * np.linspace(0.0, 1.0, 41)
     x = f.value(within[marked])
     high = max(seen.high, x.max(initial=-np.inf))
@@ -71,15 +69,15 @@ def test_no_peak_is_passed_over(terms: list[tuple[float, float, float]], step: f
 
 def test_cells_that_cannot_matter_are_left_out() -> None:
     """A wave far below zero, and one that stays within its peaks."""
-    f, t = Waves([(1.0, 1.0, 0.0)], -2.0), grid(0.1, 2, 30)
+    f, t = Waves([(1.0, 1.0, 0.0)], -2.0), mesh(0.1, 2, 30)
     value, slope, bend = f.value(t)[None], f.slope(t)[None], np.full((1, 2), f.bend)
-    assert not search.may_rise(value, slope, bend, np.diff(t)).any()
+    assert not grid.may_rise(value, slope, bend, np.diff(t)).any()
     fresh, known = Extreme(), Extreme()
     known.take(0.0, 0.0)
     known.take(-4.0, 0.0)
-    assert not search.may_peak(value, slope, bend, np.diff(t), [known]).any()
+    assert not grid.may_peak(value, slope, bend, np.diff(t), [known]).any()
     # otherwise only where it turns: at pi/2 and 3 pi/2, and on the way down from its start nothing
-    marked = search.may_peak(value, slope, bend, np.diff(t), [fresh]).ravel()
+    marked = grid.may_peak(value, slope, bend, np.diff(t), [fresh]).ravel()
     assert 2 <= marked.sum() <= 6
     assert marked[15] and marked[47]
 
@@ -87,7 +85,7 @@ def test_cells_that_cannot_matter_are_left_out() -> None:
 @given(waves, st.floats(-3.0, -0.1), st.integers(1, 3))
 def test_first_rise(terms: list[tuple[float, float, float]], c: float, arcs: int) -> None:
     f = Waves(terms, c)
-    t = grid(0.01, arcs, 32)
+    t = mesh(0.01, arcs, 32)
     if f.value(t)[0, 0] > -1e-9:
         return
 
@@ -96,7 +94,7 @@ def test_first_rise(terms: list[tuple[float, float, float]], c: float, arcs: int
         return float(f.value(np.array([x]))[0]), float(f.slope(np.array([x]))[0])
 
     g, slope = f.value(t)[None], f.slope(t)[None]
-    found = search.first_rise(t, g, slope, np.zeros((1, 1, 1)), exact)
+    found = grid.first_rise(t, g, slope, np.zeros((1, 1, 1)), exact)
     fine = np.linspace(0.0, t[-1, -1], 20001)
     above = np.flatnonzero(f.value(fine) > 1e-9)
     if found is None:
@@ -133,11 +131,11 @@ def test_two_turns_within_one_cell_are_seen(first: float, second: float, share: 
 
     value, slope = g(t)[None], rate(t)[None]
     peak = Extreme()
-    search.widen([peak], 0.0, t, value, slope, exact)
+    grid.widen([peak], 0.0, t, value, slope, exact)
     assert abs(peak.high - max(g(np.array([0.0, 1.0, first, second])))) < 1e-12
     assert abs(peak.low - min(g(np.array([0.0, 1.0, first, second])))) < 1e-12
     if value.max() > 1e-9:
         return  # it ends above zero: a crossing that samples show
-    found = search.first_rise(t, value.copy(), slope, np.full((1, 1, 1), 1e-12), exact)
+    found = grid.first_rise(t, value.copy(), slope, np.full((1, 1, 1), 1e-12), exact)
     assert found is not None
     assert abs(g(found[0])) < 1e-9 and rate(found[0]) > 0.0

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from pound_deck.diagnostics import MESSAGES, caret, has_errors
-from pound_solve.app import DeckError, Request, prepare
+from pound_solve.driver.run import DeckError, Request, prepare
 
 BAD = Path(__file__).parents[1] / "parser" / "bad"
 EXPECT = re.compile(r"! expect ([PR]\d+) (\d+):(\d+) solver\n")

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from decks import solved, structure_of
 from pound_solve.analyses import static
 from pound_solve.analyses.equilibrium import Ground
-from pound_solve.analyses.path import Unstable
-from pound_solve.contact.kelvin_voigt import PRESSED
-from pound_solve.laws import TURNS_DOWN, TURNS_UP, Law, Rule, piece, remember
+from pound_solve.analyses.path_following import Unstable
+from pound_solve.laws.automaton import TURNS_DOWN, TURNS_UP, Law, Rule, piece, remember
+from pound_solve.laws.contact.kelvin_voigt import PRESSED
 
 
 def parallel(load: float, rules: str = "RULE=ELASTO_PLASTIC") -> str:

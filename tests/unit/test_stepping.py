@@ -9,10 +9,14 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 import pound_solve
-from pound_solve import jit
-from pound_solve.hysteresis import bilinear, imk_bilinear
-from pound_solve.integrate import auto, condensing, exits, kernel, ldl, states, stepping
-from pound_solve.integrate.base import Outcome, Peaks, Start, Stop
+from pound_solve.integrate import auto, condensed
+from pound_solve.integrate.events import within_step
+from pound_solve.integrate.kernels import laws
+from pound_solve.integrate.protocol import Outcome, Peaks, Start, Stop
+from pound_solve.integrate.stepping import kernel, stepper
+from pound_solve.laws import functions
+from pound_solve.laws.hysteresis import bilinear, imk_bilinear
+from pound_solve.numerics import jit, ldl
 
 # two one-bay frames of which the left one yields at its hinges, slabs that meet with a dashpot
 POUNDING = """UNITS kN m s
@@ -324,7 +328,7 @@ def test_auto_hands_on_the_envelopes_of_its_last_run_alone(tmp_path, monkeypatch
 
 def test_full_matrices_have_an_end(tmp_path, monkeypatch):
     """EXACT and LAPLACE refuse more unknowns than they can hold, in words; AUTO takes another method."""
-    monkeypatch.setattr(condensing, "MOST_UNKNOWNS", 2)
+    monkeypatch.setattr(condensed, "MOST_UNKNOWNS", 2)
     for method in ("EXACT", "LAPLACE DT=0.001"):
         found = run(tmp_path, method, "")
         assert found.status == "stopped" and "A505" in found.message
@@ -340,18 +344,18 @@ def test_decks_with_any_number_of_rules_share_one_compiled_version(tmp_path):
         run(tmp_path, "NEWMARK DT=0.01", hinge)
     assert len(jit.compiled(kernel.advance).signatures) == 1
     rules = [imk_bilinear.RULE, bilinear.RULE]
-    assert [len(f) for f in jit.tables(rules)] == [jit.ROOM] * 4
-    assert jit.tables(rules).leave[:2] == tuple(jit.tables([r]).leave[0] for r in rules)
+    assert [len(f) for f in functions.tables(rules)] == [functions.ROOM] * 4
+    assert functions.tables(rules).leave[:2] == tuple(functions.tables([r]).leave[0] for r in rules)
 
 
 @pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
 def test_a_kernel_is_cold_until_it_is_compiled(tmp_path, monkeypatch):
     monkeypatch.setattr(jit.numba().config, "CACHE_DIR", str(tmp_path))
-    assert jit.cold(exits.root) and jit.cold(exits.summit)
-    summit = jit.compiled.__wrapped__(exits.summit)
-    assert jit.cold(exits.summit)
-    assert summit(0.0, 0.0, 1.0, -1.0, 1.0) == exits.summit(0.0, 0.0, 1.0, -1.0, 1.0) == (0.5, 0.25)
-    assert jit.cold(exits.root) and not jit.cold(exits.summit)
+    assert jit.cold(within_step.root) and jit.cold(within_step.summit)
+    summit = jit.compiled.__wrapped__(within_step.summit)
+    assert jit.cold(within_step.summit)
+    assert summit(0.0, 0.0, 1.0, -1.0, 1.0) == within_step.summit(0.0, 0.0, 1.0, -1.0, 1.0) == (0.5, 0.25)
+    assert jit.cold(within_step.root) and not jit.cold(within_step.summit)
 
 
 BAR = """UNITS kN m s
@@ -396,7 +400,7 @@ def test_a_contact_that_opens_and_closes_again_late_in_a_coarse_step(tmp_path):
 
 def test_changes_at_one_instant_stop_with_time_place_and_what_helps(tmp_path, monkeypatch, interpret):
     """With an interpolation from where the contact has just opened it would close there again and again."""
-    start = lambda w, x, i, e: exits.excess(w, i, e, w.f[i, kernel.LD], w.f[i, kernel.LV])[0]  # noqa: E731
+    start = lambda w, x, i, e: within_step.excess(w, i, e, w.f[i, kernel.LD], w.f[i, kernel.LV])[0]  # noqa: E731
     monkeypatch.setattr(kernel, "behind", start)
     interpret()
     told = bar(tmp_path, 0.05).message
@@ -405,7 +409,7 @@ def test_changes_at_one_instant_stop_with_time_place_and_what_helps(tmp_path, mo
 
 
 def test_too_many_changes_within_a_step_stop_before_their_log_is_full(tmp_path, monkeypatch):
-    monkeypatch.setattr(stepping, "LOG", 4 - 16 * 5)  # four rows for five laws
+    monkeypatch.setattr(stepper, "LOG", 4 - 16 * 5)  # four rows for five laws
     told = run(tmp_path, "NEWMARK DT=0.1").message
     assert "more than 2 times within one step, the last in element" in told
 
@@ -562,10 +566,10 @@ def test_products_along_diagonals_and_row_by_row_are_those_of_the_matrix():
         + np.diag(rng.normal(size=n - 1), -1)
     )
     a[0, -1], a[7, 3], a[5, 5] = 3.0, -2.0, 0.0
-    laid = stepping.product(a)
+    laid = stepper.product(a)
     assert laid.offsets.tolist() == [0, -1, 2] and laid.row.tolist() == [0, 7]
     q = np.vstack([rng.normal(size=n), np.full(n, np.nan)])
-    states.times(laid, q, 0, 1)
+    laws.times(laid, q, 0, 1)
     assert np.allclose(q[1], a @ q[0], rtol=1e-14, atol=1e-14)
 
 

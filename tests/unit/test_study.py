@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pound_solve import app, study
-from pound_solve.cli import main
-from pound_solve.results import Results
-from pound_solve.study import Plan, Reference, StudyError, Trial
+from pound_solve.assess import study
+from pound_solve.assess.study import Plan, Reference, StudyError, Trial
+from pound_solve.cli.main import main
+from pound_solve.driver import run
+from pound_solve.results.file import Results
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TWO = (
@@ -31,7 +32,7 @@ def write(folder, motion=SHAKE):
     """Write the two oscillators under a motion; return what to ask for."""
     path = folder / "two.inp"
     path.write_text(TWO.replace(SHAKE, motion))
-    return app.Request(str(path), out=folder)
+    return run.Request(str(path), out=folder)
 
 
 @pytest.fixture

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pound_solve import jit
 from pound_solve.catalog import catalog
-from pound_solve.integrate import expansion, taylor
+from pound_solve.integrate.series import expansion, taylor
+from pound_solve.numerics import jit
 from unit.test_laplace import SOIL
 from verification.cases import ROOT, Ran, run_deck, run_text
 

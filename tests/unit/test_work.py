@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-from pound_solve import polynomial
-from pound_solve.integrate.flow import ModalFlow, SeriesFlow, make_flow
-from pound_solve.integrate.work import Meter, Work
+from pound_solve.integrate.closed_form.propagator import ModalFlow, SeriesFlow, make_flow
+from pound_solve.integrate.closed_form.work_integrals import Meter, Work
+from pound_solve.numerics import polynomial
+from pound_solve.numerics.types import Array
 from unit.test_flow import KINDS, block, loads, massless
 
-Array = NDArray[np.float64]
 X, W = np.polynomial.legendre.leggauss(24)
 DASHPOT = 0.7  #: of the contact between the first and the last mass
 

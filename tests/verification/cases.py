@@ -20,8 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_solve import run
-
-Array = NDArray[np.float64]
+from pound_solve.numerics.types import Array
 
 ROOT = Path(__file__).resolve().parents[2]
 DECKS = ROOT / "examples" / "verification"

@@ -14,7 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from pound_solve import jit, run
+from pound_solve import run
+from pound_solve.numerics import jit
 from verification.cases import ROOT
 
 FRAMES = ROOT / "examples" / "frames"

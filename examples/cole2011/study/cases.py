@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pound_solve.pounding import Diaphragm, Pair
+from pound_solve.theory.two_bars import Diaphragm, Pair
 
 HERE = Path(__file__).resolve().parent.parent
 LUMPED, EQUIVALENT, DISTRIBUTED = (HERE / f"{n}.inp" for n in ("lumped", "equivalent", "distributed"))

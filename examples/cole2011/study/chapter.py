@@ -167,7 +167,7 @@ def write(page: Path, folder: Path, study: Study) -> None:
     parts = [
         "# The study of Cole et al. (2011), run anew",
         "Written by `python examples/cole2011/study`; every number comes from its runs or from the closed "
-        "forms of `pound_solve.pounding`. What had to be assumed stands with the decks, in "
+        "forms of `pound_solve.theory.two_bars`. What had to be assumed stands with the decks, in "
         "`examples/cole2011/README.md`.",
     ]
     if study.left_out:

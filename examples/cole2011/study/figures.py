@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from runs import PLACES, Run
 
-from pound_solve.plot import style
-from pound_solve.pounding import Diaphragm, Pair
+from pound_solve.report.plot import style
+from pound_solve.theory.two_bars import Diaphragm, Pair
 
 COLOURS = {"El Centro": "#0b4f8a", "Mexico City": "#b3541e", "Loma Prieta": "#3d7a3d"}
 MARKS = {"left": "<", "right": ">"}

@@ -12,9 +12,9 @@ from pathlib import Path
 from cases import DISTRIBUTED, Record, Test, Variant
 
 import pound_solve
-from pound_solve.app import DeckError
-from pound_solve.records import known
-from pound_solve.records.base import RecordError
+from pound_solve.driver.run import DeckError
+from pound_solve.loading.records import known
+from pound_solve.loading.records.base import RecordError
 
 PLACES = tuple(f"B{b} storey {s} {end}" for b in (1, 2) for s in (1, 2) for end in ("left", "right"))
 
@@ -99,7 +99,7 @@ def solve(job: Job) -> Run:
             return gather(job, results)
 
 
-def gather(job: Job, results: pound_solve.results.Results) -> Run:
+def gather(job: Job, results: pound_solve.results.file.Results) -> Run:
     """Keep what the study needs of a results file."""
     drifts = {row["name"]: row for row in results.table("drift_envelope")}
     rows = {place: drifts.get(place, drifts.get(place.rsplit(" ", 1)[0])) for place in PLACES}

@@ -23,7 +23,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from pound_solve.laws import Law, State, changes
+from pound_solve.laws.automaton import Law, State, changes
 
 Sides = tuple[float, float]  #: positive and negative side
 

@@ -7,14 +7,12 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pound_solve.assemble import Structure, assemble
-from pound_solve.dofs import Freedom
-from pound_solve.laws import State
-from pound_solve.matrices import by_rows, least_squares, used_rows
-
-Array = NDArray[np.float64]
+from pound_solve.laws.automaton import State
+from pound_solve.numerics.matrices import by_rows, least_squares, used_rows
+from pound_solve.numerics.types import Array
+from pound_solve.structure.assembly import Structure, assemble
+from pound_solve.structure.dofs import Freedom
 
 ROUNDING = 1e-9  #: share of the largest term below which a sum of forces is zero
 

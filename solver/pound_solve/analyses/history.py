@@ -11,19 +11,18 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pound_deck.model import Model
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.assemble import Structure
-from pound_solve.elements.base import Output
-from pound_solve.integrate.base import ENERGIES, LawValues, Start, Watch, energies
-from pound_solve.laws import State, follow, settle
-from pound_solve.matrices import layers, least_squares, used_columns, used_rows, weighted
-from pound_solve.modes import massless
-from pound_solve.scene import Scene
+from pound_solve.integrate.protocol import ENERGIES, LawValues, Start, Watch, energies
+from pound_solve.laws.automaton import State, follow, settle
+from pound_solve.numerics.matrices import layers, least_squares, used_columns, used_rows, weighted
+from pound_solve.numerics.modes import massless
+from pound_solve.numerics.types import Array, Flags, Index
+from pound_solve.structure.assembly import Structure
+from pound_solve.structure.elements.base import Output
+from pound_solve.structure.reduction import Scene
 
-Array = NDArray[np.float64]
 Append = Callable[[Mapping[str, Array]], None]
 
 BLOCK, HELD = 256, 2**20  #: samples kept before they are written, and numbers of one kind in them, at most
@@ -143,7 +142,7 @@ class Envelope:
         self.high, self.low = np.full(n, -np.inf), np.full(n, np.inf)
         self.t_high, self.t_low = np.zeros(n), np.zeros(n)
 
-    def take(self, values: Array, t: Array, which: NDArray[np.intp] | None = None) -> None:
+    def take(self, values: Array, t: Array, which: Index | None = None) -> None:
         """Count in values of all quantities, or of those with some numbers, shape (n, n_times)."""
         which = np.arange(len(values)) if which is None else which
         for new, best in (
@@ -402,7 +401,7 @@ class Recorder:
         self.survey.turned(t, u)
 
     @property
-    def shown(self) -> NDArray[np.bool_]:
+    def shown(self) -> Flags:
         """Which unknowns `between` looks at (see `integrate.base.Sink`)."""
         return self.survey.shown
 

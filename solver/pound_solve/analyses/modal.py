@@ -18,8 +18,8 @@ from __future__ import annotations
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.assemble import Structure
-from pound_solve.modes import moving_mass
+from pound_solve.numerics.modes import moving_mass
+from pound_solve.structure.assembly import Structure
 
 SPEC = Spec(
     "analysis",

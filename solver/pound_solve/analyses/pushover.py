@@ -30,18 +30,16 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve import modes
 from pound_solve.analyses.equilibrium import Ground
-from pound_solve.analyses.path import Change, Exit, Mark, Path, Unstable
+from pound_solve.analyses.path_following import Change, Exit, Mark, Path, Unstable
 from pound_solve.analyses.static import StaticState
-from pound_solve.assemble import Structure
-
-Array = NDArray[np.float64]
+from pound_solve.numerics import modes
+from pound_solve.numerics.types import Array
+from pound_solve.structure.assembly import Structure
 
 SOUGHT = 12  #: slowest modes of a large structure among which the pattern is chosen
 

@@ -11,15 +11,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pound_solve.assemble import Structure
-from pound_solve.dofs import label
-from pound_solve.integrate.base import Extreme, Outcome, Peaks, Start
-from pound_solve.laws import MEMORY, State
-from pound_solve.scene import Scene
-
-Array = NDArray[np.float64]
+from pound_solve.integrate.protocol import Extreme, Outcome, Peaks, Start
+from pound_solve.laws.automaton import MEMORY, State
+from pound_solve.numerics.types import Array
+from pound_solve.structure.assembly import Structure
+from pound_solve.structure.dofs import label
+from pound_solve.structure.reduction import Scene
 
 
 class RestartError(Exception):

@@ -16,16 +16,14 @@ import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.analyses.path import Exit, Mark, Path, Unstable
-from pound_solve.assemble import Structure
-from pound_solve.laws import State
-from pound_solve.matrices import Factor, Matrix, scaled, used_rows
-from pound_solve.modes import scaling
-
-Array = NDArray[np.float64]
+from pound_solve.analyses.path_following import Exit, Mark, Path, Unstable
+from pound_solve.laws.automaton import State
+from pound_solve.numerics.matrices import Factor, Matrix, scaled, used_rows
+from pound_solve.numerics.modes import scaling
+from pound_solve.numerics.types import Array
+from pound_solve.structure.assembly import Structure
 
 MOST_ROUNDS = 100  #: of axial forces
 

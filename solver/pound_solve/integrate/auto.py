@@ -28,12 +28,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve import jit
-from pound_solve.integrate import blocks, condensing, exact, newmark, taylor
-from pound_solve.integrate.base import (
+from pound_solve.integrate import condensed
+from pound_solve.integrate.closed_form import exact, subsystems
+from pound_solve.integrate.protocol import (
     INTERRUPTED,
     Extreme,
     Keeper,
@@ -48,10 +47,12 @@ from pound_solve.integrate.base import (
     not_linear,
     refuse_rigid,
 )
-from pound_solve.modes import massless
-from pound_solve.scene import Decision, Scene
-
-Array = NDArray[np.float64]
+from pound_solve.integrate.series import taylor
+from pound_solve.integrate.stepping import newmark
+from pound_solve.numerics import jit
+from pound_solve.numerics.modes import massless
+from pound_solve.numerics.types import Array, Flags
+from pound_solve.structure.reduction import Decision, Scene
 
 MOST_STEPS = 50_000_000  #: of one run
 MOST = 20.0  #: cost up to which a run is tried after one that came to a stop
@@ -122,7 +123,7 @@ class Replay:
         self.survey.turned(t, u)
 
     @property
-    def shown(self) -> NDArray[np.bool_]:
+    def shown(self) -> Flags:
         """Which unknowns `between` looks at (see `integrate.base.Sink`)."""
         return self.sink.shown
 
@@ -169,7 +170,7 @@ class Rival:
         self.ease = max(USUAL / tol, 1.0) ** 0.5
         # least cost of the whole run, so far as known
         self.whole = FREE if len(scene.structure.laws) > self.ease * MANY else 0.0
-        if not_linear(scene) or scene.size > condensing.MOST_UNKNOWNS:
+        if not_linear(scene) or scene.size > condensed.MOST_UNKNOWNS:
             self.whole = np.inf
 
     def first(self, other: float) -> Outcome | None:
@@ -177,7 +178,7 @@ class Rival:
         regimes; None where it does not.  Another method costs `other`.
         """
         count = min(1 + len(self.scene.structure.laws), HANDFUL)
-        if count * blocks.cost_of_regime(self.scene.size) > FREE + other:
+        if count * subsystems.cost_of_regime(self.scene.size) > FREE + other:
             return None
         limits = {"REGIMES": self.ease * FEW, "PER_RADIAN": cost_of_radian(self.scene)}
         return self.run(FREE, {**limits, "TRIAL": TRIAL * FREE})

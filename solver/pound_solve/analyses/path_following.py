@@ -1,0 +1,496 @@
+r"""Equilibrium paths, event to event: what STATIC and PUSHOVER follow.
+
+.. math:: K u + \sum_i b_i f_i(d_i) = p_0 + \lambda p, \qquad d_i = b_i^T u + (1-\lambda)\,o_i
+
+grows with the load factor :math:`\lambda`, or with one displacement :math:`c^T u` while :math:`\lambda`
+follows, which gets past a largest load.  :math:`o_i` are deformations that are led in with the load.
+
+With linear branches the path is a chain of straight pieces.  Along each one of them
+
+.. math:: \Bigl(K + \sum_i k_i b_i b_i^T\Bigr)\dot u
+          = \dot\lambda\Bigl(p + \sum_i k_i b_i o_i\Bigr), \qquad
+          \dot\lambda = \pm 1 \quad\text{or}\quad c^T\dot u = \pm 1
+
+and the point is moved to the first exit of a law, exactly.  Of several exits at one point the first law
+goes first, and the rates are found anew, which ends if the stiffness is positive definite (Murty 1974: the
+least-index pivots of a linear complementarity problem).  What a law lets go at once (it breaks) is handed
+over to the others while the control stands still.  With a curved law the pieces are bent: Newton's method
+finds their points, and the exits are bracketed.
+
+References
+----------
+Batoz JL, Dhatt G (1979), Incremental displacement algorithms for nonlinear problems, Int. J. Numer. Methods
+Engng 14: 1262-1267 (a displacement as the control).
+Murty KG (1974), Note on a Bard-type scheme for solving the complementarity problem, Opsearch 11: 123-130.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections import Counter
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from pound_solve.laws.automaton import State
+from pound_solve.numerics.matrices import Matrix, bordered, by_rows, dense, gathered, scaled, used_rows
+from pound_solve.numerics.modes import Held, scaling
+from pound_solve.numerics.types import Array
+from pound_solve.structure.assembly import Structure
+from pound_solve.structure.dofs import label
+
+NOISE = 1e-12  #: share of its terms below which a rate is rounding
+JUMP = 1e-12  #: share of its terms above which a force has changed at once
+NEAR = 1e-13  #: share of its terms below which an exit is reached
+PIECES = 20  #: Newton steps to the first mark, at least, where laws are curved
+MOST_CHANGES = 10_000
+MOST_RETURNS = 5  #: of all laws to the same branches in one place
+
+
+class Unstable(Exception):
+    """No equilibrium further on: a mechanism, named by its worst freedom; `code` numbers the message."""
+
+    def __init__(self, why: str, code: str = "A501") -> None:
+        super().__init__(why)
+        self.code = code
+
+
+class Mark(NamedTuple):
+    """Stop where ``row . u + share * factor`` rises to `value`."""
+
+    row: Array
+    share: float
+    value: float
+
+
+class Exit(NamedTuple):
+    """A law that has come to an exit of its branch."""
+
+    law: int
+    way: int
+
+
+class Change(NamedTuple):
+    """A law that left its branch."""
+
+    law: int
+    before: str
+    after: str
+
+
+class Path:
+    """A point on an equilibrium path, and how to go on.
+
+    Parameters
+    ----------
+    structure : Structure
+    u : ndarray, shape (n_free,)
+        Displacements of the start [L] or [rad].
+    states : sequence of State
+        The laws' states there.
+    applied : ndarray, shape (n_free,)
+        Loads that act there [F].
+    load : ndarray, shape (n_free,)
+        Loads per load factor; may be replaced on the way.
+    control : ndarray, shape (n_free,), or None
+        Row of the displacement that is controlled; None for the load factor.
+    sign : float
+        1.0 or -1.0: whether that grows or falls.
+    lead : ndarray, shape (n_laws,), or None
+        Deformations that vanish as the load factor goes from 0 to 1.
+
+    Attributes
+    ----------
+    factor : float
+    changes : int
+        Branch changes on the way.
+    """
+
+    def __init__(
+        self,
+        structure: Structure,
+        u: Array,
+        states: Sequence[State],
+        applied: Array,
+        load: Array,
+        control: Array | None = None,
+        sign: float = 1.0,
+        lead: Array | None = None,
+    ) -> None:
+        n = structure.n_free
+        self.structure, self.laws = structure, structure.laws
+        self.k, self.rows = structure.stiffness[:n, :n], structure.law_rows[:, :n]
+        self.u, self.states, self.applied, self.load = u.copy(), list(states), applied.copy(), load
+        self.control, self.sign = control, sign
+        # b b^T of every law, entry by entry: a row touches few unknowns
+        pairs = [
+            (law, i, j, x * y)
+            for law, row in enumerate(by_rows(self.rows))
+            for (i, x), (j, y) in itertools.product(list(zip(*row)), repeat=2)
+        ]
+        *self._outer, self._product = np.array(pairs).reshape(-1, 4).T
+        self.lead = np.zeros(len(self.laws)) if lead is None else lead
+        self.factor, self.changes = 0.0, 0
+        self._here: Counter[tuple[int, ...]] = Counter()  # branches of all laws since the last move
+        self.chords = structure.chords.on(slice(n))
+        self.curved = len(self.chords) > 0 or any(s.law.curved for s in self.laws)
+        self.branches = [s.law.branch(x) for s, x in zip(self.laws, self.states)]
+        self._lost = np.zeros(n)  # what laws have let go, not yet handed over
+        self._most = float(np.abs(applied).max(initial=0.0))
+        self._longest = self._stride = np.inf
+
+    def deformations(self, u: Array, factor: float) -> Array:
+        """Deformation of every law, shape (n_laws,)."""
+        return self.rows @ u + (1.0 - factor) * self.lead
+
+    def _terms(self, u: Array) -> Array:
+        """Absolute terms that the deformations are made of; a share of them is rounding."""
+        return np.asarray(np.abs(self.rows) @ np.abs(u) + np.abs(self.lead))
+
+    def forces(self, d: Array) -> tuple[Array, Array]:
+        """Force and tangent stiffness of every law at deformations `d`."""
+        pairs = [s.law.force(x, at)[:2] for s, x, at in zip(self.laws, self.states, d.tolist())]
+        both = np.array(pairs).reshape(len(self.laws), 2)
+        return both[:, 0], both[:, 1]
+
+    def tangent(self) -> Matrix:
+        """Tangent stiffness, shape (n_free, n_free)."""
+        return self._stiffness(self.u, self.forces(self.deformations(self.u, self.factor))[1])
+
+    def unbalanced(self) -> float:
+        """Largest force out of balance, as a share of the largest that acts, or did on the way."""
+        rest, size = self._rest(self.u, self.factor)
+        return _share(rest, np.append(size, self._most))
+
+    def step(self, marks: Sequence[Mark]) -> Exit | int | None:
+        """Go on to the first exit of a law, to the first mark (its index), or, after a law has let go of a
+        force, to where the others have taken it (None).
+
+        Raises
+        ------
+        Unstable
+            There is no way on.
+        """
+        try:
+            if self._lost.any():
+                return self._hand_over()
+            while (found := self._bent(marks) if self.curved else self._straight(marks)) is None:
+                pass
+            return found
+        except Unstable as err:
+            if self.factor == 0.0:
+                raise
+            raise Unstable(f"{err}; at load factor {self.factor:.6g}", err.code) from None
+
+    def leave(self, exit_: Exit) -> Change:
+        """Put a law onto its next branch.
+
+        Raises
+        ------
+        Unstable
+            Laws change without end.
+        """
+        i, law = exit_.law, self.laws[exit_.law].law
+        d, before = float(self.deformations(self.u, self.factor)[i]), self.branches[i].name
+        held = law.force(self.states[i], d)[0]
+        self.states[i] = law.leave(self.states[i], exit_.way, d)
+        self.branches[i] = law.branch(self.states[i])
+        if self.branches[i].held:
+            raise Unstable(
+                f"the rigid contact {self.laws[i].element} ({self.laws[i].rule}) closes, and statics knows "
+                "no force for it: HISTORY FROM=REST lets it meet, or a LAW with a stiffness serves",
+                "A507",
+            )
+        let_go = held - law.force(self.states[i], d)[0]
+        if abs(let_go) > JUMP * (abs(held) + abs(law.p[0]) * float(self._terms(self.u)[i])):
+            self._lost = self._lost + let_go * self.rows[i]
+        self.changes += 1
+        if self.changes > MOST_CHANGES:
+            raise Unstable(f"more than {MOST_CHANGES} changes of state of springs and contacts", "A507")
+        same = tuple(state[0] for state in self.states)
+        self._here[same] += 1
+        if self._here[same] > MOST_RETURNS:
+            raise Unstable(
+                f"there is no way on without a jump: element {self.laws[i].element} loses its strength "
+                "faster than what it is joined to gives way, and changes state again and again in the "
+                f"same place; at load factor {self.factor:.6g}",
+                "A507",
+            )
+        return Change(i, before, self.branches[i].name)
+
+    def _straight(self, marks: Sequence[Mark]) -> Exit | int:
+        """Go along a straight piece to its end."""
+        du, rise, best, found = self._ahead(marks)
+        if found is None:
+            raise Unstable("nothing lies ahead: the end of this analysis moves away", "A507")
+        if best > 0.0:
+            self._move(self.u + best * du, self.factor + best * rise)
+        return found
+
+    def _hand_over(self) -> Exit | None:
+        """Let the others take what laws have let go, while the control stands still."""
+        if self.curved:
+            self._lost = np.zeros(len(self.u))
+            there = self._point(0.0, 0.0 * self.u, 0.0, ())
+            if there is None:
+                raise Unstable("nothing takes the force that was let go", "A507")
+            self._move(*there[0])
+            return None
+        du, rise, best, found = self._ahead(())
+        share = min(best, 1.0)
+        self._move(self.u + share * du, self.factor + share * rise)
+        self._lost = (1.0 - share) * self._lost
+        return found if isinstance(found, Exit) and best < 1.0 else None
+
+    def _ahead(self, marks: Sequence[Mark]) -> tuple[Array, float, float, Exit | int | None]:
+        """Rates of displacements and load factor, distance to what comes first, and what that is."""
+        d = self.deformations(self.u, self.factor)
+        du, rise, rate, noise = self.rates(self.u, self.factor)
+        best = np.inf
+        found: Exit | int | None = None
+        for j, (row, share, value) in enumerate(marks):
+            slope = float(row @ du) + share * rise
+            if slope > 0.0:
+                at = max((value - float(row @ self.u) - share * self.factor) / slope, 0.0)
+                if at < best:
+                    best, found = at, j
+        if np.isfinite(best) and not np.isfinite(self._longest):
+            self._longest = self._stride = best / PIECES
+        for i, (branch, di, vi, least, size) in enumerate(
+            zip(self.branches, d.tolist(), rate.tolist(), noise.tolist(), self._terms(self.u).tolist())
+        ):
+            for way, (a, b, c) in enumerate(branch.exits):
+                if a == 0.0:  # where the motion turns
+                    if b * vi <= abs(b) * least:
+                        continue
+                    at = 0.0
+                elif a * vi <= abs(a) * least:
+                    continue
+                else:
+                    now = a * di + c
+                    at = 0.0 if now > -NEAR * (abs(a) * size + abs(c)) else -now / (a * vi)
+                if at < best:
+                    best, found = at, Exit(i, way)
+        return du, rise, best, found
+
+    def rates(self, u: Array, factor: float) -> tuple[Array, float, Array, Array]:
+        """Rates of displacements, load factor and deformations, and what of the last is rounding."""
+        stiffness = self.forces(self.deformations(u, factor))[1]
+        du, rise = self._linear(u, stiffness, self._lost, 0.0 if self._lost.any() else self.sign)
+        rate = self.rows @ du - self.lead * rise
+        return du, rise, rate, NOISE * (np.abs(self.rows) @ np.abs(du) + np.abs(self.lead * rise))
+
+    def _move(self, u: Array, factor: float) -> None:
+        self.applied = self.applied + (factor - self.factor) * self.load
+        self.u, self.factor = u, factor
+        self._here.clear()
+        self._most = max(self._most, float(np.abs(self.applied).max(initial=0.0)))
+
+    def _bent(self, marks: Sequence[Mark]) -> Exit | int | None:
+        """Go one increment along a bent piece, or to its end; None where nothing happened on the way."""
+        du, rise, best, found = self._ahead(marks)
+        if best == 0.0:
+            return found
+        span = min(best, self._stride)
+        if not np.isfinite(span):
+            raise Unstable("nothing lies ahead: the end of this analysis moves away", "A507")
+        while (found_there := self._point(span, du, rise, marks)) is None:
+            span = self._stride = 0.5 * span
+            if span < 1e-9 * self._longest:
+                # with the load as control there is none; a displacement could go on somehow
+                code = "A501" if self.control is None else "A507"
+                raise Unstable("no equilibrium was found further on: the strength is used up", code)
+        self._stride = min(2.0 * self._stride, self._longest)
+        end, values = found_there
+        start = self._values(self.u, self.factor, marks)
+        if not (crossed := _crossed(start, values)):
+            self._move(*end)
+            return None
+        low, high, turn = 0.0, span, 0
+        while high - low > 1e-12 * span:
+            # false position and bisection in turns: the first is fast, the second sure
+            shares = [start[j] / (start[j] - values[j]) for j in crossed]
+            share = min(max(min(shares), 0.01), 0.99) if turn % 2 == 0 else 0.5
+            turn += 1
+            middle = low + share * (high - low)
+            there = self._point(middle, du, rise, marks)
+            if there is None:
+                break
+            if inside := _crossed(start, there[1]):
+                high, (end, values), crossed = middle, there, inside
+            else:
+                low, start = middle, there[1]
+        self._move(*end)
+        first = crossed[0]
+        if first < len(marks):
+            return first
+        exits = [Exit(i, way) for i, b in enumerate(self.branches) for way in range(len(b.exits))]
+        return exits[first - len(marks)]
+
+    def _values(self, u: Array, factor: float, marks: Sequence[Mark]) -> list[float]:
+        """What rises to zero at the marks, then at the exits of all laws; rounding counts as zero."""
+        d = self.deformations(u, factor)
+        _, _, rate, noise = self.rates(u, factor)
+        out = [float(row @ u) + share * factor - value for row, share, value in marks]
+        for branch, di, vi, least, size in zip(
+            self.branches, d.tolist(), rate.tolist(), noise.tolist(), self._terms(u).tolist()
+        ):
+            for a, b, c in branch.exits:
+                turns = a == 0.0
+                now, small = (
+                    (b * vi, abs(b) * least) if turns else (a * di + c, NEAR * (abs(a) * size + abs(c)))
+                )
+                out.append(0.0 if abs(now) <= small else now)
+        return out
+
+    def _point(
+        self, span: float, du: Array, rise: float, marks: Sequence[Mark]
+    ) -> tuple[tuple[Array, float], list[float]] | None:
+        """Displacements and load factor at a distance along the path, by Newton's method,
+        with what `_values` says there; None if there is no stable equilibrium.
+        """
+        u, factor = self.u + span * du, self.factor + span * rise
+        last = np.inf
+        for _ in range(15):
+            rest, size = self._rest(u, factor)
+            error = _share(rest, size)
+            if not np.isfinite(error):
+                return None
+            try:
+                if error <= 1e-15 or 0.25 * last <= error <= 1e-11:
+                    return (u, factor), self._values(u, factor, marks)
+                stiffness = self.forces(self.deformations(u, factor))[1]
+                more, up = self._linear(u, stiffness, -rest, 0.0)
+            except Unstable:
+                return None
+            last, u, factor = error, u + more, factor + up
+        return None
+
+    def _rest(self, u: Array, factor: float) -> tuple[Array, Array]:
+        """Forces out of balance, and the sum of the absolute terms of each equation."""
+        force = self.forces(self.deformations(u, factor))[0]
+        applied = self.applied + (factor - self.factor) * self.load
+        size = np.abs(self.k) @ np.abs(u) + np.abs(self.rows.T) @ np.abs(force) + np.abs(applied)
+        turned = self.chords.forces(u)
+        return self.k @ u + turned + self.rows.T @ force - applied, size + np.abs(turned)
+
+    def _stiffness(self, u: Array, stiffness: Array) -> Matrix:
+        law, i, j = (x.astype(int) for x in self._outer)
+        k = self.k + gathered(self.k.shape, i, j, stiffness[law] * self._product)
+        return k + self.chords.stiffness(u) if self.chords else k
+
+    def _linear(self, u: Array, stiffness: Array, force: Array, go: float) -> tuple[Array, float]:
+        """Change of displacements and load factor by a further `force`, while the control goes by `go`."""
+        k = self._stiffness(u, stiffness)
+        push = self.load + self.rows.T @ (stiffness * self.lead)
+        if self.control is None:
+            return solve(self.structure, k, force + go * push, push), go
+        return controlled(k, push, self.control, force, go)
+
+
+def _share(rest: Array, size: Array) -> float:
+    return float(np.abs(rest).max(initial=0.0) / max(float(size.max(initial=0.0)), 1e-300))
+
+
+def _crossed(before: Sequence[float], after: Sequence[float]) -> list[int]:
+    """Which values rose above zero."""
+    return [j for j, (a, b) in enumerate(zip(before, after)) if a <= 0.0 < b]
+
+
+def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
+    """Solve K u = load; freedoms without stiffness stay at zero if nothing loads them.
+
+    What is small beside the `usual` load counts as nothing.
+
+    Raises
+    ------
+    Unstable
+        K is not positive definite on what the load moves.
+    """
+    held = used_rows(k)
+    loose = ~held & (load != 0.0)
+    if loose.any():
+        first = int(np.flatnonzero(loose)[0])
+        own = dense(structure.law_rows[:, [first]]).ravel()
+        touched = any(s.is_contact and x != 0.0 for s, x in zip(structure.laws, own))
+        hint = ": only an open contact could; HISTORY FROM=REST lets it come down" if touched else ""
+        raise Unstable(f"{name_of(structure, first)} is loaded, but nothing holds it{hint}")
+    at, u = np.flatnonzero(held), np.zeros(len(load))
+    if not len(at):
+        return u
+    root = _root(k[np.ix_(at, at)])
+    whole, push = Held(scaled(k[np.ix_(at, at)], root)), root * load[at]
+    if whole.negative is not None:
+        worst = at[_largest(whole.negative)]
+        raise Unstable(
+            "the stiffness is negative: the structure has collapsed, "
+            f"worst at {name_of(structure, int(worst))}"
+        )
+    along = whole.slack.T @ push
+    size = max(float(np.linalg.norm(push)), float(np.abs(root * usual[at]).max()))
+    if np.any(np.abs(along) > 1e-10 * size):
+        worst = at[_largest(whole.slack @ along)]
+        raise Unstable(
+            f"the loaded structure is a mechanism, worst at {name_of(structure, int(worst))} "
+            "(or parts of it are so much stiffer than others that it cannot be told from one: END1, END2 "
+            "or SLAVED make parts rigid)"
+        )
+    # an unloaded mechanism (a free diaphragm) stays where it is
+    u[at] = root * whole.solve(push)
+    return u
+
+
+def _largest(motion: Array) -> int:
+    """First of the unknowns that move most, to a hair."""
+    size = np.abs(motion)
+    return int(np.argmax(size > (1.0 - 1e-9) * size.max()))
+
+
+def controlled(k: Matrix, push: Array, control: Array, force: Array, go: float) -> tuple[Array, float]:
+    """Solve ``K u - push y = force`` with ``control . u = go`` for u and the load factor y;
+    K may be singular or indefinite.
+
+    Raises
+    ------
+    Unstable
+        The control does not fix the motion.
+    """
+    at = np.flatnonzero(used_rows(k) | (push != 0.0) | (control != 0.0))
+    root = _root(k[np.ix_(at, at)])
+    whole = scaled(k[np.ix_(at, at)], root)
+    p, c, f = root * push[at], root * control[at], root * force[at]
+    p_size, c_size = float(np.linalg.norm(p)), float(np.linalg.norm(c))
+    if p_size == 0.0:
+        raise Unstable("the pattern loads nothing that can move", "A505")
+    # a mechanism that neither the load nor the control moves (a free diaphragm) stays where it is
+    m, slack = len(at), Held(whole).slack
+    idle = slack[
+        :,
+        (np.abs((slack * (whole @ slack)).sum(axis=0)) < 1e-13 * m)
+        & (np.abs(p @ slack) < 1e-10 * p_size)
+        & (np.abs(c @ slack) < 1e-10 * c_size),
+    ]
+    x = bordered(
+        whole,
+        np.column_stack([-p / p_size, idle]),
+        np.column_stack([c / c_size, idle]),
+        np.concatenate([f, [go / c_size], np.zeros(idle.shape[1])]),
+    )
+    x = x[: m + 1]
+    if not np.all(np.isfinite(x)) or np.abs(x).max() > 1e13 * max(abs(go) / c_size, np.abs(f).max()):
+        raise Unstable("the forces no longer move the control displacement: other parts give way")
+    u = np.zeros(k.shape[0])
+    u[at] = root * x[:m]
+    return u, float(x[m]) / p_size
+
+
+def _root(k: Matrix) -> Array:
+    """`scaling`, but what has next to no stiffness is left as it is."""
+    root = scaling(k)
+    return np.minimum(root, 1e12 * root.min(initial=np.inf))
+
+
+def name_of(structure: Structure, index: int) -> str:
+    """Unknown in words."""
+    return label(structure.freedoms.free[index])

@@ -1,0 +1,1 @@
+"""Assessment of methods, laws and decks."""

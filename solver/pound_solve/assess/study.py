@@ -1,0 +1,538 @@
+"""STUDY: what accuracy each method buys for what time, on the user's own deck.
+
+The history is run by several methods over a ladder of steps (or tolerances).  Errors are those of extremes,
+against a reference: EXACT with a search grid of a quarter of the usual, where EXACT can solve the deck in
+the time allowed; else the finest steps, extrapolated after Richardson (1911), Phil. Trans. R. Soc. A 210.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+import tempfile
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from pound_solve import __version__
+from pound_solve.catalog import catalog
+from pound_solve.driver import run as driver
+from pound_solve.driver.sequence import ROWS
+from pound_solve.numerics.types import Array
+from pound_solve.results.file import Results, Writer
+
+Tell = Callable[[str], None]
+
+TARGETS: Final = (1e-2, 1e-3, 1e-6)  #: errors that the advice is for
+KINDS: Final = ("drift", "member", "contact")  #: of extremes, in the order of the table
+MARGIN: Final = 5.0  #: errors of another record may be that much larger than those of this one
+ORDER: Final = 2  #: of every stepping method
+HALVINGS: Final = 16  #: of the first step, at most
+NOISY: Final = 0.25  #: share that times may differ by and be alike; repeats that differ by more are noise
+SHORT: Final = 0.01  #: a spread is not looked at below this time [s]
+TOO_LONG: Final = "takes longer than --longest"
+RESIDUAL: Final = "largest energy residual over the largest energy"  #: row of the table `checks`
+
+
+class StudyError(Exception):
+    """The deck or the options leave nothing to study."""
+
+
+class TooLong(Exception):
+    """A run takes longer than the plan allows."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is run.
+
+    Attributes
+    ----------
+    methods : tuple of str
+        The stepping method that comes first makes the reference where EXACT is not among them or fails.
+    steps : tuple of float
+        Time steps, descending [T]; empty: from the step of the record on by halves until errors are below
+        the last of `TARGETS`, or a run would take too long.
+    tols : tuple of float
+        Tolerances of AUTO.
+    repeat : int
+        Timed runs of each.
+    longest : float
+        Seconds that one run may take.
+    """
+
+    methods: tuple[str, ...] = (
+        "EXACT", "TAYLOR", "NEWMARK", "HHT", "GENERALISED_ALPHA", "CENTRAL", "AUTO",
+    )  # fmt: skip
+    steps: tuple[float, ...] = ()
+    tols: tuple[float, ...] = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+    repeat: int = 3
+    longest: float = 5.0
+
+
+#: Extremes by kind and unit.
+Peaks = Mapping[tuple[str, str], Array]
+#: Errors by kind; NaN for a kind that the deck does not have.
+Errors = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One method with one setting.
+
+    Attributes
+    ----------
+    method, setting : str
+    seconds : tuple of float
+        Of the repeats.
+    steps, events, collisions : int
+    residual : float
+    peaks : mapping
+    stopped : str
+        Why it did not come to its end; empty if it did.
+    errors : dict
+        By kind.
+    """
+
+    method: str
+    setting: str
+    seconds: tuple[float, ...] = (math.nan,)
+    steps: int = 0
+    events: int = 0
+    collisions: int = 0
+    residual: float = math.nan
+    peaks: Peaks = field(default_factory=dict)
+    stopped: str = ""
+    errors: Errors = field(default_factory=dict)
+
+    @property
+    def time(self) -> float:
+        """Median time [s]."""
+        return statistics.median(self.seconds)
+
+    @property
+    def spread(self) -> float:
+        """Longest less shortest repeat over the median."""
+        return (max(self.seconds) - min(self.seconds)) / self.time
+
+    @property
+    def error(self) -> float:
+        """Largest error of all kinds; NaN where there is none."""
+        return max((e for e in self.errors.values() if math.isfinite(e)), default=math.nan)
+
+
+@dataclass(frozen=True)
+class Reference:
+    """Extremes that errors are measured against; `error` is their own, by kind."""
+
+    peaks: Peaks
+    error: Errors
+    how: str
+
+    @property
+    def unseen(self) -> bool:
+        """Whether there are contacts, none of which closed: what steps do to collisions was not seen."""
+        forces = [values for (kind, _), values in self.peaks.items() if kind == "contact"]
+        return bool(forces) and not any(values.any() for values in forces)
+
+    @property
+    def doubt(self) -> float:
+        """Largest of its errors."""
+        return max((e for e in self.error.values() if math.isfinite(e)), default=0.0)
+
+
+@dataclass(frozen=True)
+class Advice:
+    """Trial of least time for a target, and the error that is allowed for; None where no trial will do."""
+
+    target: float
+    trial: Trial | None = None
+    sure: float = math.nan
+
+    def __str__(self) -> str:
+        """Advice for one target in words."""
+        target = (
+            f"{100 * self.target:g} %" if self.target >= 1e-4 else f"{self.target:.0e}".replace("e-0", "e-")
+        )
+        if self.trial is None:
+            return f"{target}: none of these runs"
+        name = f"{self.trial.method} {self.trial.setting}".strip()
+        return f"{target}: {name} ({self.trial.time:.3g} s)"
+
+
+@dataclass(frozen=True)
+class Study:
+    """Trials with their errors, the reference, and the advice."""
+
+    trials: tuple[Trial, ...]
+    reference: Reference
+    advice: tuple[Advice, ...]
+
+    @property
+    def sentence(self) -> str:
+        """The advice in one sentence."""
+        lacking = any(a.trial is None for a in self.advice)
+        out = "Least time for errors up to " + "; ".join(map(str, self.advice))
+        if self.reference.unseen:
+            closed = "no contact closed, so no step is named"
+            return f"{out}; {closed}: give a stronger motion to learn which step collisions need."
+        return out + (" (give smaller --steps, or a larger --longest)." if lacking else ".")
+
+    @property
+    def noise(self) -> float:
+        """Largest spread of the repeats that are long enough to tell; 0 where none is."""
+        return max((t.spread for t in self.trials if t.time > SHORT), default=0.0)
+
+
+def run(
+    request: driver.Request, plan: Plan, tell: Tell = lambda text: None
+) -> tuple[Study, driver.Prepared]:
+    """Run the study of a deck.
+
+    Parameters
+    ----------
+    request : Request
+        Its method, dt and tol are not used.
+    plan : Plan
+    tell : callable
+        Told what is run.
+
+    Raises
+    ------
+    StudyError
+        There is no HISTORY, an unknown method, or no run that could be a reference.
+    app.DeckError, OSError
+        See `app.prepare`.
+    """
+    ready = driver.prepare(request)
+    cards = [c for c in ready.model.analyses if c.spec.name == "HISTORY"]
+    if not cards:
+        raise StudyError("the deck has no HISTORY: there is nothing to study")
+    known = catalog().family("method")
+    for name in plan.methods:
+        if name not in known:
+            raise StudyError(f"--methods {name}: known methods are {', '.join(known)}")
+    model = replace(ready.model, analyses=tuple(cards))
+    with tempfile.TemporaryDirectory(prefix="pound-study-") as folder:
+        bench = _Bench(request, replace(ready, model=model), plan, Path(folder) / "run.h5", tell)
+        trials, reference = bench.all()
+    return Study(tuple(trials), reference, advise(trials, reference)), ready
+
+
+class _Bench:
+    """Runs the trials of one study."""
+
+    def __init__(
+        self, request: driver.Request, ready: driver.Prepared, plan: Plan, path: Path, tell: Tell
+    ) -> None:
+        self.request, self.ready, self.plan, self.path, self.tell = request, ready, plan, path, tell
+        self.methods = catalog().family("method")
+        self.warm: set[str] = set()
+
+    def all(self) -> tuple[list[Trial], Reference]:
+        """Every trial with its errors, and the reference."""
+        plan, out = self.plan, dict[str, list[Trial]]()
+        reference = None
+        if "EXACT" in plan.methods:
+            # a finer search grid can take longer; it is the first run, which is not timed
+            fine = self.trial("EXACT", 2.0 * plan.longest, timed=False, REFINE=2)
+            out["EXACT"] = [replace(fine, setting="") if fine.stopped else self.trial("EXACT")]
+            if not out["EXACT"][0].stopped:
+                own = errors(out["EXACT"][0].peaks, fine.peaks)
+                reference = Reference(fine.peaks, own, "EXACT with REFINE=2")
+        asks = {m: {f.name for f in self.methods[m].fields} for m in plan.methods}
+        stepping = [m for m in plan.methods if "DT" in asks[m]]
+        if reference is None:
+            reference = self._stepped(stepping, out)
+        for method in plan.methods:
+            if method not in out:
+                if method in stepping:
+                    out[method] = self._ladder(method, reference)
+                else:
+                    out[method] = (
+                        self._tolerances(method) if "TOL" in asks[method] else [self.trial(method)]
+                    )
+        known = reference
+        return [
+            replace(t, errors=errors(t.peaks, known.peaks)) for m in plan.methods for t in out[m]
+        ], known
+
+    def _stepped(self, methods: Sequence[str], out: dict[str, list[Trial]]) -> Reference:
+        """The limit of the first of some methods that follows the motion with such steps; the ladders that
+        were run go into `out`.
+        """
+        why = StudyError("without EXACT a study needs a method with steps: name one in --methods")
+        for method in methods:
+            out[method] = ladder = self._ladder(method, None)
+            try:
+                reference = extrapolated(method, ladder)
+            except StudyError as err:
+                why = err
+                continue
+            # the two finest made the reference: their own errors would flatter
+            out[method] = [t for t in ladder if t.stopped] + [t for t in ladder if not t.stopped][:-2]
+            return reference
+        raise why
+
+    def _ladder(self, method: str, reference: Reference | None) -> list[Trial]:
+        """Trials with shorter and shorter steps; without a reference until they change no more."""
+        out: list[Trial] = []
+        for dt in self.plan.steps or [self.first / 2**k for k in range(HALVINGS)]:
+            trial = self.trial(method, DT=dt)
+            if self.plan.steps:
+                out.append(trial)
+                continue
+            if out and trial.steps and trial.steps == out[-1].steps:
+                continue  # the record and the output times ask for more steps than DT
+            if out and out[-1].stopped and trial.stopped:
+                out.pop()  # the finest of those that stop tells enough
+            out.append(trial)
+            done = [t for t in out if not t.stopped]
+            against = reference.peaks if reference else done[-2].peaks if len(done) > 1 else None
+            if against is not None and done:
+                now = max(errors(done[-1].peaks, against).values(), default=0.0)
+                if not now > TARGETS[-1] / (4.0 * MARGIN) or (reference and now <= 4.0 * reference.doubt):
+                    break
+            if trial.stopped == TOO_LONG and done:
+                out.pop()
+            if trial.stopped == TOO_LONG or 2.0 * trial.time > self.plan.longest:
+                break
+        return out
+
+    def _tolerances(self, method: str) -> list[Trial]:
+        """Trials of AUTO."""
+        out: list[Trial] = []
+        for tol in self.plan.tols:
+            out.append(self.trial(method, TOL=tol))
+            taken = out[-1].method.removeprefix(f"{method}: ")
+            if taken != out[-1].method:  # it takes a method without steps, and will for less
+                return [] if len(out) == 1 and taken in self.plan.methods else out
+            if not out[-1].stopped and 4.0 * out[-1].time > self.plan.longest:
+                break
+        return out
+
+    @property
+    def first(self) -> float:
+        """Longest step of a ladder [T]: that of the record, or of the output where it is shorter."""
+        model = self.ready.model
+        told = [m.info.get("dt") for m in self.ready.motions] + [
+            f.info.get("dt") for f in self.ready.forces
+        ]
+        found = [dt for dt in (*told, model.output["EVERY"]) if dt]
+        return float(min(found, default=model.analyses[0]["T"] / ROWS))
+
+    def trial(
+        self, method: str, longest: float | None = None, *, timed: bool = True, **given: float
+    ) -> Trial:
+        """Run one method with one setting, as often as asked; the first run of a method is not timed,
+        because it imports and compiles.
+        """
+        cards = tuple(driver.with_method(c, self.methods[method], given) for c in self.ready.model.analyses)
+        ready = replace(self.ready, model=replace(self.ready.model, analyses=cards))
+        setting = " ".join(f"{k}={v:.12g}" for k, v in given.items())
+        cold = timed and method not in self.warm
+        out, seconds = Trial(method, setting), list[float]()
+        for n in range(self.plan.repeat + cold if timed else 1):
+            self.tell(f"{method} {setting}, run {n + 1}")
+            # only what is compiled may take longer the first time
+            limit = math.inf if cold and n == 0 and method != "EXACT" else longest or self.plan.longest
+            try:
+                took, out = self._once(ready, method, setting, limit)
+            except TooLong:
+                return replace(out, stopped=TOO_LONG)
+            if out.stopped:
+                return out
+            seconds.append(took)
+        self.warm.add(method)
+        return replace(out, seconds=tuple(seconds[cold:]))
+
+    def _once(
+        self, ready: driver.Prepared, method: str, setting: str, longest: float
+    ) -> tuple[float, Trial]:
+        began = time.perf_counter()
+
+        def watch(*_: object) -> None:
+            if time.perf_counter() - began > longest:
+                raise TooLong
+
+        status, results = driver.solve(ready, self.path, watch, began, self.request)
+        with results:
+            if status != driver.DONE:
+                if results.message.startswith("A506"):
+                    raise KeyboardInterrupt
+                return 0.0, Trial(method, setting, stopped=results.message)
+            figures, took = dict(results.table("run").tolist()), dict(results.table("run_figures").tolist())
+            name = figures["method"].split(",")[0]
+            checks = {check: (value, verdict) for check, value, verdict in results.table("checks")}
+            residual, verdict = checks[RESIDUAL]
+            if method == "EXACT" and verdict != "good":  # it must not become the reference
+                return 0.0, Trial(method, setting, stopped=f"{RESIDUAL}: {residual}; {verdict}")
+            out = Trial(
+                f"AUTO: {name}" if method == "AUTO" and "steps" not in figures else method,
+                setting,
+                steps=int(figures.get("steps", 0)),
+                events=int(figures["events"]),
+                collisions=len(results.table("collisions")),
+                residual=float(residual),
+                peaks=peaks(results),
+            )
+            return float(took["solve seconds"]), out
+
+
+def peaks(results: Results) -> Peaks:
+    """Largest and smallest values of a history's drifts, member forces and contact forces.
+
+    Drifts, forces of springs and peaks of contacts are those that the method found on its way.  Forces of
+    members, and displacements of nodes in place of drifts where there are none, are taken at the output
+    times, which are the same for all methods.
+    """
+    out: dict[tuple[str, str], list[float]] = {}
+
+    def take(kind: str, unit: str, *values: float) -> None:
+        out.setdefault((kind, unit), []).extend(values)
+
+    for row in results.table("drift_envelope"):
+        take("drift", "", row["max"], row["min"])
+    if not out and "node/u" in results.histories:
+        unknowns = results.history("node/u")[:, :, :2].reshape(len(results.time), -1)
+        take("drift", "", *unknowns.max(axis=0), *unknowns.min(axis=0))
+    if "member/force" in results.histories:
+        forces = results.history("member/force")
+        for unit, high, low in zip(
+            results.history_units("member/force"), forces.max(axis=0), forces.min(axis=0)
+        ):
+            take("member", unit, high, low)
+    for row in results.table("spring_envelope"):
+        take("member", row["unit"], row["force_max"], row["force_min"])
+    for row in results.table("contact_summary"):
+        take("contact", "", row["peak_force"])
+    return {kind: np.array(values, float) for kind, values in out.items()}
+
+
+def errors(found: Peaks, reference: Peaks) -> Errors:
+    """Largest difference of an extreme over the largest extreme of its kind and unit, by kind.
+
+    NaN for a kind that nothing belongs to, or all of whose extremes are zero.
+    """
+    out = dict.fromkeys(KINDS, math.nan)
+    for (kind, unit), true in reference.items():
+        if (kind, unit) not in found:
+            continue
+        scale, off = float(np.abs(true).max()), float(np.abs(found[kind, unit] - true).max())
+        if scale or off:
+            own = off / scale if scale else math.inf
+            out[kind] = own if math.isnan(out[kind]) else max(out[kind], own)
+    return out
+
+
+def extrapolated(method: str, ladder: Sequence[Trial]) -> Reference:
+    """Limit of a ladder for steps of zero, from its two finest trials by the order of the method.
+
+    Its own error is estimated by what the same extrapolation gives one rung before.
+
+    Raises
+    ------
+    StudyError
+        Less than three trials came to their end.
+    """
+    done = [t for t in ladder if not t.stopped]
+    if len(done) < 3:
+        why = next((t.stopped for t in ladder if t.stopped), "give more --steps")
+        raise StudyError(f"a reference needs three runs of {method} that come to their end: {why}")
+
+    def limit(coarse: Trial, fine: Trial) -> Peaks:
+        share = 1.0 / ((fine.steps / coarse.steps) ** ORDER - 1.0)
+        return {k: x + share * (x - coarse.peaks[k]) for k, x in fine.peaks.items()}
+
+    best, before = limit(*done[-2:]), limit(*done[-3:-1])
+    return Reference(best, errors(before, best), f"{method} extrapolated from {done[-2].setting} and "
+                     f"{done[-1].setting}")  # fmt: skip
+
+
+def order(coarse: Trial, fine: Trial) -> float:
+    """Observed order of the largest error between two trials; NaN where there is none."""
+    ratio = fine.steps / coarse.steps if coarse.steps and fine.steps else 1.0
+    if not (coarse.error > 0.0 and fine.error > 0.0 and ratio != 1.0):
+        return math.nan
+    return math.log(coarse.error / fine.error) / math.log(ratio)
+
+
+def advise(trials: Sequence[Trial], reference: Reference) -> tuple[Advice, ...]:
+    """The trial of least time for each target; of several that take as long, the one of least error.
+
+    The error that is allowed for is `MARGIN` times the largest of the trial's own and of what its two
+    neighbours in the ladder make of it by the order of the method, so that no zero crossing of an error is
+    taken for accuracy, and of all finer ones; the reference's own error comes on top.  Where no contact
+    closed, no step is named.
+    """
+    out = []
+    for target in TARGETS:
+        fit = [(t, sure) for t, sure in zip(trials, allowed(trials, reference)) if sure <= target]
+        longest = (1.0 + NOISY) * min((t.time for t, _ in fit), default=0.0)
+        alike = [(sure, t.time, n) for n, (t, sure) in enumerate(fit) if t.time <= longest]
+        out.append(Advice(target, *fit[min(alike)[2]]) if fit else Advice(target))
+    return tuple(out)
+
+
+def allowed(trials: Sequence[Trial], reference: Reference) -> list[float]:
+    """Error that the advice allows for, of each trial, see `advise`; infinite for one that stopped."""
+    out = []
+    for n, t in enumerate(trials):
+        ladder = [x for x in trials[n:] if x.method == t.method and not x.stopped]
+        near = [x for x in trials[max(n - 1, 0) : n] if x.method == t.method and not x.stopped]
+        if t.stopped or (t.steps and reference.unseen):
+            out.append(math.inf)
+            continue
+        found = [x.error * (x.steps / t.steps) ** ORDER for x in near + ladder[:2] if t.steps]
+        # finer steps that do worse are a warning
+        found += [x.error for x in ladder]
+        out.append(MARGIN * max(found) + reference.doubt)
+    return out
+
+
+def write(study: Study, ready: driver.Prepared, path: Path) -> Results:
+    """Write a study as a results file of the tables ``study`` and ``study_advice``, and open it."""
+    rows, before = [], None
+    for t in study.trials:
+        p = order(before, t) if before is not None and before.method == t.method else math.nan
+        found = [t.errors.get(kind, math.nan) for kind in KINDS]
+        rows.append(
+            (t.method, t.setting, t.time, t.steps, t.events, *found, p, t.collisions, t.residual)
+        )  # fmt: skip
+        before = None if t.stopped else t
+    model = ready.model
+    note = f"The reference is {study.reference.how}"
+    told = [
+        f"{study.reference.error[k]:.1e} ({k})" for k in KINDS if math.isfinite(study.reference.error[k])
+    ]
+    note += f"; its own errors are about {', '.join(told)}." if told else "."
+    note += " Times are of the history alone, in a process that has loaded what it needs."
+    if study.noise > NOISY:
+        note += f" {noisy(study)}"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with Writer(path, title=model.title, units=model.units, program_version=__version__) as writer:
+        for name, text in model.files.items():
+            writer.text(Path(name).name, text)
+        writer.table("study", rows, note)
+        writer.table("study_stops", [(t.method, t.setting, t.stopped) for t in study.trials if t.stopped])
+        advice = [
+            (a.target, a.trial.method, a.trial.setting, a.trial.time, a.trial.error, a.sure)
+            if a.trial
+            else (a.target, "", "", *[math.nan] * 3)
+            for a in study.advice
+        ]
+        writer.table("study_advice", advice, study.sentence)
+        writer.finish("done")
+    return Results.open(path)
+
+
+def noisy(study: Study) -> str:
+    """Warning that the times are not to be trusted."""
+    return (
+        f"Repeats of one run differ by up to {100 * study.noise:.0f} %: the machine does other work, "
+        "go by the steps rather than by the times."
+    )

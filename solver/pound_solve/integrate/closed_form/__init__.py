@@ -1,0 +1,1 @@
+"""Methods whose motion between events is known in closed form."""

@@ -1,0 +1,366 @@
+"""The scene in blocks: parts that move on their own between events (see `window` for their motion).
+
+Each part has its modes for each combination of stiffnesses.  Small ones are put together: a hundred numbers
+more in a product cost less than a product more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.integrate.closed_form import work_integrals
+from pound_solve.integrate.closed_form.propagator import Flow, Mechanism, ModalFlow, make_flow, on_stacked
+from pound_solve.integrate.closed_form.rigid_contact import Rigid
+from pound_solve.laws.automaton import Branch
+from pound_solve.numerics.types import Array, Flags, Index
+from pound_solve.structure.reduction import Scene
+
+Key = tuple[Any, ...]
+
+#: cost of a regime, as `exact.WINDOW`; its products, over the unknowns' square; its modes, over the cube
+REGIME, PRODUCTS, MODES = 8e-4, 1.5e-6, 8e-9
+SMALL = 128  #: modes that blocks put together may have
+
+
+def cost_of_regime(n: int) -> float:
+    """Cost of a new combination of stiffnesses of `n` unknowns."""
+    return REGIME + PRODUCTS * n**2 + MODES * n**3
+
+
+@dataclass(frozen=True)
+class Reactions:
+    """Forces of the rigid contacts that a block holds closed: ``on_q q + on_p p + on_rate p'``.
+
+    Attributes
+    ----------
+    laws : ndarray of int, shape (n_held,)
+    place : ndarray of int, shape (n_held,)
+        Their rows among those of the run.
+    gaps : ndarray, shape (n_held,)
+    inputs : ndarray, shape (n_held, n_inputs)
+        The deformations that the unknowns are held to are ``gaps - inputs s``.
+    on_q : ndarray, shape (n_held, n_q)
+    on_p, on_rate : ndarray, shape (n_held, n + 3 n_held)
+        On the forces, extended as in `flow.held_space`.
+    """
+
+    laws: Index
+    place: Index
+    gaps: Array
+    inputs: Array
+    on_q: NDArray[Any]
+    on_p: Array
+    on_rate: Array
+
+    def extended(self, ps: Array, coefs: Array) -> Array:
+        """Force polynomials (n_intervals, degree + 1, n + 3 n_held) with what is held in their last
+        columns, from inputs' coefficients.
+        """
+        m, orders = len(self.laws), np.arange(1, coefs.shape[1])[:, None]
+        ps = ps.copy()
+        x, first, second = (ps[..., k * m - 3 * m : (k * m - 2 * m) or None] for k in range(3))
+        x[:] = -coefs @ self.inputs.T
+        x[:, 0] += self.gaps
+        first[:, :-1] = x[:, 1:] * orders
+        second[:, :-1] = first[:, 1:] * orders
+        return ps
+
+
+class Part(NamedTuple):
+    """What a regime was put together from: its place among q, its unknowns and what measures its work."""
+
+    q: slice
+    unknowns: Index
+    meter: work_integrals.Meter
+
+
+@dataclass(frozen=True)
+class Regime:
+    """A block's exact motion for one set of stiffnesses; kept for when they return.
+
+    Attributes
+    ----------
+    index : ndarray of int
+        The block's unknowns.
+    laws : ndarray of int
+        Laws that act within it.
+    watched : ndarray of int, place : list of int
+        Which rows of the run touch it; the place of every row among them, or -1.
+    rows : ndarray, shape (n_watched, n)
+    on_u : ndarray, shape (n_watched, n_q)
+        What the rows' values take from q.
+    size : ndarray, shape (n_watched, n_q)
+        Its magnitude.
+    on_q : ndarray, shape (3 n_watched, n_q or 2 n_q)
+        What their values, rates and second rates take from `flow.stacked` q.
+    motion : ndarray, shape (3 n, n_q or 2 n_q)
+        What displacements, velocities and accelerations take from it.
+    shown : ndarray of int
+        Those of the block's unknowns that the envelopes look at.
+    motion_shown : ndarray, shape (3 n_shown, n_q or 2 n_q)
+        `motion` of those.
+    parts : tuple of Part
+    reactions : Reactions or None
+    """
+
+    index: Index
+    laws: Index
+    flow: Flow
+    watched: Index
+    place: list[int]
+    rows: Array
+    on_u: NDArray[Any]
+    size: Array
+    on_q: Array
+    motion: Array
+    shown: Index
+    motion_shown: Array
+    parts: tuple[Part, ...]
+    reactions: Reactions | None
+
+
+@dataclass
+class Block:
+    """A regime at work: its state `q` and its motion over the present window.
+
+    Attributes
+    ----------
+    keys : tuple of Key
+        Of the regime's parts.
+    constant : ndarray, shape (n,)
+        Constant forces: loads and constants of the laws.
+    qs : ndarray, shape (n_q, n_intervals + 1)
+    gs : ndarray, shape (n_intervals, degree + 1, n_q)
+        States at the starts of the window's intervals and forcing within them.
+    ps : ndarray, shape (n_intervals, degree + 1, n) or None
+        Force polynomials, where massless freedoms or moved supports need them.
+    """
+
+    keys: tuple[Key, ...]
+    regime: Regime
+    constant: Array
+    q: NDArray[Any]
+    qs: NDArray[Any] = field(default_factory=lambda: np.zeros((0, 0)))
+    gs: NDArray[Any] = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    ps: Array | None = None
+
+
+class Partition:
+    """Keeps the scene divided into blocks as contacts close and springs yield.
+
+    Parameters
+    ----------
+    scene : Scene
+    rows : ndarray, shape (n_rows, n)
+        Functionals that the run watches; the first are the laws' deformations.
+        The forces of the rigid contacts come after them.
+    row_inputs : ndarray, shape (n_rows, n_inputs)
+    row_constants : ndarray, shape (n_rows,)
+    shown : ndarray of bool, shape (n,)
+        Unknowns that the envelopes look at.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        rows: Array,
+        row_inputs: Array,
+        row_constants: Array,
+        shown: Flags,
+    ) -> None:
+        self.scene, self.rigid, more = scene, Rigid(scene), len(rows)
+        self.shown = shown
+        count = len(self.rigid.laws)
+        self.force_row = {law: more + i for i, law in enumerate(self.rigid.laws)}
+        self.rows = np.pad(rows, ((0, count), (0, 0)))
+        self.row_inputs = np.pad(row_inputs, ((0, count), (0, 0)))
+        self.row_constants = np.pad(row_constants, (0, count))
+        self.known = bool(np.any(row_inputs))
+        self.blocks: list[Block] = []
+        self.regimes: dict[Key, Regime] = {}
+        self._together: dict[tuple[Key, ...], Regime] = {}
+        self._base = self._parts_with_contacts_open()
+
+    @property
+    def parts(self) -> int:
+        """Number of parts with all contacts open."""
+        return len(np.unique(self._base))
+
+    @property
+    def fastest(self) -> float:
+        """Largest |eigenvalue| of the present blocks [1/T]."""
+        return max((b.regime.flow.fastest for b in self.blocks), default=0.0)
+
+    def _parts_with_contacts_open(self) -> Index:
+        """Label the unknowns by what hangs together, shape (n,)."""
+        scene, n = self.scene, self.scene.size
+        linked = (scene.stiffness != 0) | (scene.damping != 0) | (scene.mass != 0)
+        for s, row in zip(scene.structure.laws, scene.law_rows):
+            if not s.is_contact:
+                at = np.flatnonzero(row)
+                linked[np.ix_(at, at)] = True
+        labels = np.arange(n)
+        while True:
+            # every unknown takes the lowest label among its neighbours until nothing changes
+            lowest = np.minimum(np.where(linked, labels[None, :], n).min(axis=1, initial=n), labels)
+            if (lowest == labels).all():
+                return labels
+            labels = lowest
+
+    def form(self, branches: Sequence[Branch], u: Array, v: Array, spend: Callable[[float], None]) -> None:
+        """Form the blocks that the branches ask for at displacement `u`, velocity `v`;
+        keep those that go on, and tell `spend` what a new one costs before it is made.
+
+        Raises
+        ------
+        Mechanism
+            Massless freedoms that nothing holds; its shape is over all unknowns.
+        """
+        scene = self.scene
+        labels = self._base.copy()
+        for i, (s, b) in enumerate(zip(scene.structure.laws, branches)):
+            if s.is_contact and (b.stiffness or b.damping or b.held):
+                parts = np.unique(labels[scene.law_rows[i] != 0])
+                if len(parts):
+                    labels[np.isin(labels, parts)] = parts[0]
+        acting = [i for i, b in enumerate(branches) if b.stiffness or b.damping or b.force0 or b.held]
+        found: list[tuple[Key, Array]] = []  # what there is, with its constant forces
+        for label in np.unique(labels):
+            index = np.flatnonzero(labels == label)
+            laws = np.array([i for i in acting if np.any(scene.law_rows[i, index])], np.intp)
+            key = (
+                int(label),
+                len(index),
+                *((int(i), branches[i].stiffness, branches[i].damping, branches[i].held) for i in laws),
+            )
+            if key not in self.regimes:
+                spend(cost_of_regime(len(index)))
+                self.regimes[key] = self._regime(index, laws, branches)
+            own = [branches[i].force0 for i in laws]
+            found.append((key, scene.constant[index] - scene.law_rows[np.ix_(laws, index)].T @ own))
+        on_way = {
+            key: block.q[part.q]
+            for block in self.blocks
+            for key, part in zip(block.keys, block.regime.parts)
+        }
+        self.blocks = []
+        for group in self._groups(found):
+            keys, constants = zip(*group)
+            own = [self.regimes[key] for key in keys]
+            states = [
+                on_way[key] if key in on_way else r.flow.enter(u[r.index], v[r.index])
+                for key, r in zip(keys, own)
+            ]
+            whole = Block(keys, self._joined(keys), np.concatenate(constants), np.concatenate(states))
+            self.blocks.append(whole)
+
+    def _groups(self, found: list[tuple[Key, Array]]) -> list[list[tuple[Key, Array]]]:
+        """What is put together."""
+        groups: list[list[tuple[Key, Array]]] = []
+        room = 0  # in the last one of those that may grow
+        for own in found:
+            flow = self.regimes[own[0]].flow
+            if not isinstance(flow, ModalFlow) or flow.u_p is not None:
+                groups.append([own])
+            elif len(flow.lam) <= room:
+                groups[0].append(own)
+                room -= len(flow.lam)
+            else:
+                groups.insert(0, [own])
+                room = SMALL - len(flow.lam)
+        return groups
+
+    def _joined(self, keys: tuple[Key, ...]) -> Regime:
+        """The regimes of some keys as one."""
+        if len(keys) == 1:
+            return self.regimes[keys[0]]
+        if keys not in self._together:
+            own = [self.regimes[key] for key in keys]
+            flow = ModalFlow.joined([r.flow for r in own if isinstance(r.flow, ModalFlow)])
+            ends = np.cumsum([0, *(r.on_u.shape[1] for r in own)]).tolist()
+            parts = [
+                part._replace(q=slice(i, j)) for r, i, j in zip(own, ends, ends[1:]) for part in r.parts
+            ]
+            index, laws = (np.concatenate([getattr(r, x) for r in own]) for x in ("index", "laws"))
+            self._together[keys] = self._described(index, laws, flow, tuple(parts), None)
+        return self._together[keys]
+
+    def _regime(self, index: Index, laws: Index, branches: Sequence[Branch]) -> Regime:
+        scene = self.scene
+        grid = np.ix_(index, index)
+        b = scene.law_rows[np.ix_(laws, index)]
+        k = scene.stiffness[grid] + (b.T * [branches[i].stiffness for i in laws]) @ b
+        c = scene.damping[grid] + (b.T * [branches[i].damping for i in laws]) @ b
+        held = np.array([i for i in laws if branches[i].held], np.intp)
+        held_rows = scene.law_rows[np.ix_(held, index)] if len(held) else None
+        try:
+            flow = make_flow(scene.mass[grid], c, k, scene.inputs[index], held_rows)
+        except Mechanism as err:
+            whole = np.zeros(scene.size)
+            whole[index] = err.shape
+            raise Mechanism(whole) from None
+        dashpots = [
+            (int(i), branches[i].damping, scene.law_rows[i, index]) for i in laws if branches[i].damping
+        ]
+        meter = work_integrals.Meter(flow, scene.damping[grid], scene.inputs[index], dashpots)
+        parts = (Part(slice(None), index, meter),)
+        reactions = self._reactions(held, index, flow, c, k) if len(held) else None
+        return self._described(index, laws, flow, parts, reactions)
+
+    def _described(
+        self,
+        index: Index,
+        laws: Index,
+        flow: Flow,
+        parts: tuple[Part, ...],
+        reactions: Reactions | None,
+    ) -> Regime:
+        """A regime with what rows and unknowns take from its state."""
+        watched = np.flatnonzero(np.any(self.rows[:, index] != 0, axis=1))
+        place = [-1] * len(self.rows)
+        for i, row in enumerate(watched.tolist()):
+            place[row] = i
+        rows = self.rows[np.ix_(watched, index)]
+        motion = on_stacked(np.vstack([flow.u_q, flow.v_q, flow.onward(flow.v_q)]))
+        on_u = rows @ flow.u_q
+        shown = np.flatnonzero(self.shown[index])
+        return Regime(
+            index,
+            laws,
+            flow,
+            watched,
+            place,
+            rows,
+            on_u,
+            np.abs(on_u),
+            np.concatenate([rows @ x for x in np.split(motion, 3)]),
+            motion,
+            shown,
+            np.concatenate([x[shown] for x in np.split(motion, 3)]),
+            parts,
+            reactions,
+        )
+
+    def _reactions(self, held: Index, index: Index, flow: Flow, c: Array, k: Array) -> Reactions:
+        """From ``G f = B M^-1 (p - C v - K u) - x''``, see `rigid` and `flow.held_space`."""
+        assert flow.u_p is not None and flow.v_p is not None  # of all that is held
+        at = np.array([self.rigid.laws.index(i) for i in held], np.intp)
+        inverse = np.linalg.pinv(self.rigid.compliance[np.ix_(at, at)], rcond=1e-12)
+        x = inverse @ self.rigid.yielding[np.ix_(index, at)].T
+        on_p = -x @ (k @ flow.u_p + c @ flow.v_p)
+        on_p[:, : len(index)] += x
+        on_p[:, on_p.shape[1] - len(held) :] -= inverse
+        return Reactions(
+            held,
+            np.array([self.force_row[i] for i in held], np.intp),
+            self.rigid.gap[at],
+            self.rigid.inputs[at],
+            -x @ (k @ flow.u_q + c @ flow.v_q),
+            on_p,
+            -x @ c @ flow.u_p,
+        )

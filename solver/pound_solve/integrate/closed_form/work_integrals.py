@@ -1,0 +1,264 @@
+r"""Work done on and by a block over a segment, in closed form.
+
+Split each mode into a free and a forced part, :math:`q_i = c_i e^{\lambda_i t} + p_i(t)` with a polynomial
+:math:`p_i`.  Then with :math:`S = V^T C V` (V the modes' velocities)
+
+.. math:: \int_0^\tau v^T C v\,dt
+
+has free-free terms :math:`c_i c_j S_{ij}(e^{(\lambda_i+\lambda_j)\tau}-1)/(\lambda_i+\lambda_j)`,
+free-forced terms through the moments :math:`\int t^k e^{\lambda t}`, and forced-forced terms that are
+plain polynomials.  No balance of energy is used, so the sum of all energies remains a check.
+
+Modes that hardly change over the interval are polynomials as a whole.
+For forces above the first degree, and where the modes are nearly or fully defective,
+Gauss quadrature on a grid that resolves the fastest mode takes its place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.integrate.closed_form.propagator import ModalFlow, SeriesFlow, gauss, powers
+from pound_solve.laws.automaton import Branch
+from pound_solve.numerics import phi, polynomial
+from pound_solve.numerics.types import Array, Complex
+from pound_solve.structure.reduction import Scene
+
+SLOW = 0.1  #: modes with |eigenvalue| times interval below this are expanded in powers of time
+TERMS = 11  #: of that expansion, beyond the force's own
+MOST_NUMBERS = 2**20  #: velocities that the quadrature holds at once
+MOST_SQUARED = 3e3  #: condition of the modes up to which their products are used
+
+
+class Work(NamedTuple):
+    """Dissipation in the structure's dashpots, input, and for each law with a dashpot (law, loss) [F L]."""
+
+    damping: float
+    input: float
+    laws: list[tuple[int, float]]
+
+
+class Works(NamedTuple):
+    """`Work` of several intervals, arrays of shape (n,)."""
+
+    damping: Array
+    input: Array
+    laws: list[tuple[int, Array]]
+
+
+class Meter:
+    """Measures the work in one block and regime.
+
+    Parameters
+    ----------
+    flow : ModalFlow or SeriesFlow
+    damping : ndarray, shape (n, n)
+        Of the structure, laws apart.
+    inputs : ndarray, shape (n, n_inputs)
+    laws : list of (law, c, row)
+        Laws that have dashpots at the time: pressed contacts, springs whose damping follows them.
+    """
+
+    def __init__(
+        self,
+        flow: ModalFlow | SeriesFlow,
+        damping: Array,
+        inputs: Array,
+        laws: list[tuple[int, float, Array]],
+    ) -> None:
+        self.flow, self.inputs, self.laws, self.damping_matrix = flow, inputs, laws, damping
+        self.damped = bool(np.any(damping))
+        # the quadratic forms lose the square of the modes' condition
+        self.closed_form = (
+            isinstance(flow, ModalFlow) and flow.u_p is None and flow.condition < MOST_SQUARED
+        )
+        if not isinstance(flow, ModalFlow) or not self.closed_form:
+            return
+        self.lam = flow.lam
+        self.form = self._form(flow.v_q, damping) if self.damped else np.zeros((0, 0))
+        self.law_forms = [c * self._form(row[None, :] @ flow.v_q, np.eye(1)) for _, c, row in laws]
+
+    def _form(self, v: Complex, c: Array) -> Array:
+        """Return the quadratic form of the real and imaginary parts of free amplitudes whose change over
+        a segment is their dissipation, shape (2 n_q, 2 n_q): each term already divided by its exponent.
+        """
+        cv = c @ v
+        plain, mixed = v.T @ cv, v.conj().T @ cv
+        s1, s2 = self.lam[:, None] + self.lam[None, :], self.lam.conj()[:, None] + self.lam[None, :]
+        # an undamped pair has no dissipation to divide: 0/0 is 0
+        floor = 1e-15 * max(float(np.abs(self.lam).max(initial=0.0)), 1e-300)
+        r1 = np.where(np.abs(s1) > floor, plain / np.where(np.abs(s1) > floor, s1, 1.0), 0.0)
+        r2 = np.where(np.abs(s2) > floor, mixed / np.where(np.abs(s2) > floor, s2, 1.0), 0.0)
+        # v = Re(V q): v^T C v = (q^T S1 q + q^H S2 q) / 2, real part
+        return 0.5 * np.block([[(r1 + r2).real, -(r1 + r2).imag], [(r2 - r1).imag, (r2 - r1).real]])
+
+    def _split(self, qs: Complex, gs: Complex, tau: Array) -> tuple[Complex, Complex, Complex, Complex]:
+        """Free amplitudes at 0 and tau (n_q, n), forced polynomials and moments (powers, n_q, n)."""
+        degree = gs.shape[1] - 1
+        g = gs.transpose(1, 2, 0)
+        # split into free and forced, a slow mode would be the small difference of large numbers: its
+        # power series serves instead (of a rigid-body mode it ends by itself)
+        slow = np.abs(self.lam) * tau.max() < SLOW
+        more = 0 if not slow.any() else 1 if not self.lam[slow].any() else TERMS
+        count = degree + 1 + more
+        # many intervals are of the same length
+        lengths, place = np.unique(tau, return_inverse=True)
+        z: Complex = np.where(slow, 0j, self.lam)[:, None] * lengths.astype(complex)
+        grown = np.exp(z)[:, place]
+        moments = (phi.moments(z, count - 1) * powers(lengths, count)[1:, None])[:, :, place]
+        lam = np.where(slow, 1.0, self.lam)[:, None]
+        p = np.zeros((count + 1, *qs.shape), complex)
+        for k in range(degree, -1, -1):
+            p[k] = ((k + 1) * p[k + 1] - g[k]) / lam
+        p[:, slow] = 0.0
+        c0 = np.where(slow[:, None], 0.0, qs - p[0])
+        if slow.any():
+            own, force = np.empty((count, slow.sum(), qs.shape[1]), complex), g[:, slow]
+            own[0] = qs[slow]
+            for k in range(count - 1):
+                own[k + 1] = (self.lam[slow, None] * own[k] + (force[k] if k <= degree else 0.0)) / (k + 1)
+            p[:count, slow] = own
+        return c0, c0 * grown, p[:count], moments
+
+    def measures(
+        self,
+        qs: NDArray[Any],
+        gs: NDArray[Any],
+        tau: Array,
+        coefs: Array,
+        constant: Array,
+        ps: Array | None = None,
+    ) -> Works:
+        """Return the work over several intervals.
+
+        Parameters
+        ----------
+        qs : ndarray, shape (n_q, n)
+            Modal states at their starts.
+        gs : ndarray, shape (n, degree + 1, n_q)
+            Their forcing.
+        tau : ndarray, shape (n,)
+            Their lengths [T].
+        coefs : ndarray, shape (n, degree + 1, n_inputs)
+            Inputs; their forces and `constant` loads (n_unknowns,) do the input work.
+        ps : ndarray, shape (n, degree + 1, n_unknowns), or None
+            Force polynomials on the unknowns, where massless freedoms need them.
+        """
+        if not self.closed_form or gs.shape[1] > 2:
+            return self._quadratures(qs, gs, tau, coefs, constant, ps)
+        c0, c1, forced, moments = self._split(qs, gs, tau)
+        ends = np.concatenate([c0, c1], axis=1)
+        ends = np.concatenate([ends.real, ends.imag])
+        # of the velocities: the forced polynomials, and the integrals of t^k times the free part, and all;
+        # shape (powers, n, n_intervals) each
+        steady, free = ((self.flow.v_q @ x).real for x in (forced, c0 * moments))
+        both = np.add.outer(np.arange(len(forced)), np.arange(1, len(forced) + 1))[:, :, None]
+        whole = free + np.einsum("kln,lin->kin", tau**both / both, steady)
+        loss, losses = np.zeros(len(gs)), []
+        if self.damped:
+            loss = self._change(self.form, ends)
+            loss += ((self.damping_matrix @ steady) * (free + whole)).sum(axis=(0, 1))
+        for (law, c, row), form in zip(self.laws, self.law_forms):
+            own = self._change(form, ends) + c * ((row @ steady) * (row @ (free + whole))).sum(axis=0)
+            losses.append((law, own))
+        total = np.asarray(constant @ whole[0])
+        for k in range(coefs.shape[1]):
+            total += ((self.inputs @ coefs[:, k].T) * whole[k]).sum(axis=0)
+        return Works(loss, total, losses)
+
+    def _change(self, form: Array, ends: Array) -> Array:
+        """Change of a form of `_form` between the amplitudes at the starts and those at the ends."""
+        start, end = np.split((ends * (form @ ends)).sum(axis=0), 2)
+        return np.asarray(end - start)
+
+    def _quadratures(
+        self,
+        qs: NDArray[Any],
+        gs: NDArray[Any],
+        tau: Array,
+        coefs: Array,
+        constant: Array,
+        ps: Array | None,
+    ) -> Works:
+        """Return `measures` by Gauss's rule."""
+        loss, done, *losses = np.zeros((2 + len(self.laws), len(tau)))
+        for length in np.unique(tau).tolist():
+            w, points = gauss(length, self.flow.fastest)
+            same = np.flatnonzero(tau == length)
+            at_once = max(1, MOST_NUMBERS // (len(points) * max(len(qs), len(constant))))
+            for i in range(0, len(same), at_once):
+                chosen = same[i : i + at_once]
+                times = np.broadcast_to(points, (len(chosen), len(points)))
+                q = self.flow.paths(qs[:, chosen], gs[chosen], points)
+                v = np.tensordot(self.flow.v_q, q, 1).real
+                if self.flow.u_p is not None and self.flow.v_p is not None and ps is not None:
+                    v += np.tensordot(self.flow.v_p, polynomial.on(ps[chosen], times), 1)
+                    v += np.tensordot(self.flow.u_p, polynomial.on(ps[chosen], times, 1), 1)
+                force = np.tensordot(self.inputs, polynomial.on(coefs[chosen], times), 1)
+                force += constant[:, None, None]
+                done[chosen] = np.einsum("int,int,t->n", v, force, w)
+                if self.damped:
+                    drag = np.tensordot(self.damping_matrix, v, 1)
+                    loss[chosen] = np.einsum("int,int,t->n", v, drag, w)
+                for own, (_, c, row) in zip(losses, self.laws):
+                    own[chosen] = c * (np.tensordot(row, v, 1) ** 2 @ w)
+        return Works(loss, done, [(law, own) for (law, _, _), own in zip(self.laws, losses)])
+
+
+def total_work(
+    scene: Scene,
+    tau: float,
+    fastest: float,
+    coefs: Array,
+    path: Callable[[Array], tuple[Array, Array, Array]],
+    branches: Sequence[Branch],
+) -> Work:
+    """Return the work over a segment in the total form.
+
+    The input is the power of the supports, their reactions times their velocities,
+    and of held loads and FORCES; dashpots of laws may reach to supports.
+
+    Parameters
+    ----------
+    scene : Scene
+    tau : float
+        Length of the segment [T].
+    fastest : float
+        Fastest eigenvalue [1/T], for the quadrature.
+    coefs : ndarray, shape (degree + 1, n_inputs)
+        Inputs over the segment.
+    path : callable
+        Displacement, velocity and acceleration of the unknowns at local times, shape (n, n_times) each.
+    branches : sequence of Branch
+        Of all laws.
+    """
+    structure, n = scene.structure, scene.structure.n_free
+    w, x = gauss(tau, fastest)
+    inputs = [np.array([polynomial.value(coefs, float(y), order) for y in x]).T for order in range(3)]
+    u, v, a = path(x)
+    k, c, f0 = (
+        np.array([getattr(b, name) for b in branches])[:, None]
+        for name in ("stiffness", "damping", "force0")
+    )
+    rate = scene.law_rows @ v + scene.law_inputs @ inputs[1]
+    law = k * (scene.law_rows @ u + scene.law_inputs @ inputs[0]) + c * rate + f0
+    u, v, a = (scene.expanded(y, s, order) for order, (y, s) in enumerate(zip((u, v, a), inputs)))
+    force = (
+        structure.stiffness @ u + structure.damping @ v + structure.mass @ a + structure.law_rows.T @ law
+    )
+    held = [i for i, b in enumerate(branches) if b.held]
+    if held:  # what the unknowns leave out of balance is what rigid contacts take
+        rows = structure.law_rows[held]
+        rest = scene.applied(inputs[0]) - force[:n]
+        force += rows.T @ np.linalg.lstsq(rows[:, :n].T, rest, rcond=1e-12)[0]
+    power = (force[n:] * v[n:]).sum(axis=0) + (scene.applied(inputs[0]) * v[:n]).sum(axis=0)
+    losses = (c * rate**2) @ w
+    return Work(
+        float(w @ (v * (structure.damping @ v)).sum(axis=0)),
+        float(w @ power),
+        [(i, float(losses[i])) for i in np.flatnonzero(c).tolist()],
+    )

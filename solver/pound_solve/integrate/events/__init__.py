@@ -1,0 +1,1 @@
+"""Event location: three locators of the first rise of an event function."""

@@ -1,0 +1,1 @@
+"""State and kernels that the stepping and the series methods share."""

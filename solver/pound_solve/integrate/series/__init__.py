@@ -1,0 +1,1 @@
+"""Power series between events."""

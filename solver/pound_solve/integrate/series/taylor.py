@@ -1,0 +1,181 @@
+r"""TAYLOR: event-driven integration by power series, explicit, without a time step to choose.
+
+Between events the scene is linear, so the motion has a power series that converges however far; its
+coefficients follow one from another by products with the sparse K and C (see `expansion`).  A step goes as
+far as `expansion.TERMS` terms are right to rounding, some five radians of the fastest mode that takes part.
+Within it every exit of a law and every quantity whose peak is kept is a polynomial, whose first rise and
+extremes are found with proof (see `isolate`).  Works are integrated by Gauss's rule, each on its own, so
+that the balance of energies remains a check.
+
+There is no decomposition into modes, and a step costs what its products cost: where EXACT has to decompose
+many unknowns, or many combinations of stiffnesses, TAYLOR is faster, and as exact.  Where the fastest mode
+is far above the motion (a stiff node with little mass, a strong dashpot), it takes many steps.
+
+References
+----------
+Barrio R (2005), Performance of the Taylor series method for ODEs/DAEs, Appl. Math. Comput. 163: 525-545;
+Jorba A, Zou M (2005), A software package for the numerical integration of ODEs by means of high-order
+Taylor methods, Experimental Mathematics 14: 99-117.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from pound_deck.schema import Spec
+from pound_solve.integrate.condensed import condensed
+from pound_solve.integrate.events import polynomial_roots
+from pound_solve.integrate.kernels import state
+from pound_solve.integrate.protocol import (
+    CHATTER,
+    RUNAWAY,
+    STEPPED,
+    Outcome,
+    Peaks,
+    Sink,
+    Start,
+    Stop,
+    Watch,
+    blurred,
+    goals,
+    not_linear,
+    refuse_rigid,
+)
+from pound_solve.integrate.series import expansion
+from pound_solve.integrate.stepping.stepper import Stepper
+from pound_solve.numerics.matrices import diagonal, weighted
+from pound_solve.numerics.modes import massless
+from pound_solve.structure.reduction import Scene
+
+MOST_STEPS = 5_000_000  #: that a run may come to
+RADIANS = 5.0  #: of the fastest mode in a step
+STEP, EACH = 9e-6, 5.5e-8  #: cost of a step and of each of its unknowns, as `exact.WINDOW`
+
+
+class Taylor(Stepper):
+    """One run; see the module's head."""
+
+    exact = True
+
+    def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Sink) -> None:
+        length = float(start.times[-1] - start.times[0])
+        nothing_to_solve = state.Scheme(0.0, 0.0)
+        super().__init__(
+            scene, start, watch, sink, {"DT": length}, nothing_to_solve, "TAYLOR, power series"
+        )
+        terms = expansion.TERMS + 1
+        rules = expansion.TERMS // expansion.CHECK + 1
+        gauss = np.zeros((rules, 2, 2 * rules))
+        for i in range(rules):
+            count = 2 * (i + 1)
+            places, weights = np.polynomial.legendre.leggauss(count)
+            gauss[i, :, :count] = 0.5 * weights, 0.5 * (1.0 + places)
+        self.series = expansion.Series(
+            u=np.zeros((terms + 2, scene.size)),
+            d=np.zeros((len(self.laws), terms)),
+            s=np.zeros((terms, scene.inputs.shape[1])),
+            p=np.zeros(polynomial_roots.room(expansion.TERMS)),
+            inverse=1.0 / self.matrices.m.diagonals[0],
+            gauss=gauss,
+            step=np.array([length, 0.0, np.inf, 0.0]),
+        )
+
+    def _run(self) -> Outcome:
+        self._begin(expansion.march)
+        ex = self.scene.excitation
+        ends, is_output = goals(self.scene, self.times)
+        pieces = ex.pieces_after(np.append(self.times[0], ends[:-1]))
+        self._loop(
+            expansion.march, self.matrices, self.w, self.x, self.z, self.tables, self.series,
+            np.ascontiguousarray(ex.coefs), ex.breaks, ends, is_output, pieces, self.count, self.clock,
+        )  # fmt: skip
+        return self.outcome()
+
+    def _fetch(self) -> None:
+        super()._fetch()
+        done, steps = float(self.clock[0] - self.times[0]), int(self.count[state.STEPS])
+        if steps > state.PAUSE // 2 and steps * self.dt > MOST_STEPS * done:
+            count = f"some {steps * self.dt / done:.1g}" if done else "far too many"
+            step = self.series.step[expansion.LENGTH]
+            why = f"the fastest mode asks for {count} steps (now {step:.3g} long)"
+            raise self.stop("A502", f"{why}: EXACT or NEWMARK need not follow it")
+
+    def _trouble(self, why: int) -> Stop:
+        if why == expansion.SHORT:
+            return self.stop("A502", "the fastest mode asks for steps too short to tell the times apart")
+        if why == state.RUNAWAY:
+            return self.stop("A504", RUNAWAY.format(self.clock[2]))
+        if why == state.CHATTER:
+            worst = int(self.count[state.WORST])
+            s, at = self.laws[worst], self.w.i[worst, state.AT]
+            told = (int(self.count[expansion.SAME]), s.element, s.rule, s.law.rule.branches[at])
+            return self.stop("A503", CHATTER.format(*told, STEPPED))
+        return super()._trouble(why)
+
+    def _figures(self) -> dict[str, Any]:
+        shortest = float(self.series.step[expansion.SHORTEST])
+        return {
+            "method": self.name,
+            "series": int(self.count[state.STEPS]),
+            **({"shortest series": f"{shortest:.4g}"} if np.isfinite(shortest) else {}),
+            "events": int(self.count[state.EVENTS]),
+        }
+
+    def _checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
+        return blurred(self.laws, peaks)
+
+
+def rate(scene: Scene) -> float:
+    """Radians that its steps have to follow at most [1/T]: of the fastest mode with all springs elastic and
+    all contacts open (they are closed for moments only), or of the fastest decay.
+
+    By the row sums of ``M^-1/2 A M^-1/2``, which bound its eigenvalues (Gershgorin).
+    """
+    stiffest = [0.0 if s.is_contact else s.facts.get("k", s.k0) for s in scene.structure.laws]
+    root = 1.0 / np.sqrt(diagonal(scene.mass))
+    omega2, decay = (
+        float((root * (abs(a) @ root)).max(initial=0.0))
+        for a in (scene.stiffness + weighted(scene.law_rows, stiffest), scene.damping)
+    )
+    return max(omega2**0.5, decay)
+
+
+def cost_of_radian(scene: Scene) -> float:
+    """What it costs to follow a scene for a radian of `rate`, as those of `exact`."""
+    return (STEP + EACH * scene.size) / RADIANS
+
+
+def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
+    """Integrate a scene by power series; see the module's head.
+
+    Raises
+    ------
+    Stop
+        A scene that is not piecewise linear, massless freedoms that cannot be condensed, too many changes
+        at one instant, too many steps, numbers beyond all bounds, or an interrupt.
+    """
+    refuse_rigid(scene, start, "TAYLOR")
+    begin = float(start.times[0])
+    if why := not_linear(scene):
+        raise Stop("A505", begin, f"TAYLOR needs linear pieces, and {why}: AUTO takes steps")
+    if massless(scene.mass).any():
+        scene, start, watch, sink = condensed(scene, start, watch, sink, "TAYLOR")
+    light = massless(scene.mass)
+    if light.any():
+        name = scene.name(int(np.argmax(light)))
+        weight = "give it weight, or " if name.startswith("node") else ""
+        raise Stop("A505", begin, f"TAYLOR needs mass at {name}: {weight}use EXACT or NEWMARK")
+    return Taylor(scene, start, watch, sink).run()
+
+
+SPEC = Spec(
+    "method",
+    "TAYLOR",
+    "event-driven, power series between events",
+    (),
+    reference="Jorba & Zou 2005; Barrio 2005",
+    impl=integrate,
+)

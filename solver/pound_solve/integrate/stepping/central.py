@@ -1,0 +1,88 @@
+r"""CENTRAL: explicit central differences, events located within the step.
+
+Newmark's :math:`\beta = 0`, :math:`\gamma = \tfrac12` is the central difference method
+with a start of its own.  It is stable for :math:`h < 2/\omega_{max}`; the limit is computed
+with every contact pressed and every spring elastic, and a longer step is refused.
+
+References
+----------
+Chopra AK (2012), Dynamics of Structures, 4th edn, section 5.3; Hughes TJR (1987),
+The Finite Element Method, section 9.1 (the equivalence).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.integrate.kernels.state import Scheme
+from pound_solve.integrate.protocol import Outcome, Sink, Start, Stop, Watch, refuse_rigid
+from pound_solve.integrate.stepping.stepper import Stepper
+from pound_solve.numerics import modes
+from pound_solve.numerics.matrices import weighted
+from pound_solve.numerics.types import Array
+from pound_solve.structure.reduction import Scene
+
+
+def limit(scene: Scene, u: Array) -> float:
+    """Largest stable step [T]: 2 over the highest frequency with all contacts pressed
+    and all springs elastic, members as they are at displacements `u`.  The stiffness of a curved contact
+    is not known before it is pressed: it is left out.
+    """
+    stiffest = [
+        0.0 if s.is_contact and s.law.curved else s.facts.get("k", s.k0) for s in scene.structure.laws
+    ]
+    k = scene.stiffness + scene.chords.stiffness(u) + weighted(scene.law_rows, stiffest)
+    omega = modes.fastest(k, scene.mass)
+    return 2.0 / omega if omega > 0.0 else float("inf")
+
+
+def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
+    """Integrate a scene step by step, explicitly.
+
+    Raises
+    ------
+    Stop
+        Step above the stability limit, massless freedoms that cannot be condensed,
+        or numbers beyond all bounds.
+    """
+    refuse_rigid(scene, start, "CENTRAL")
+    light = modes.massless(scene.mass)
+    if light.any():
+        raise Stop(
+            "A505",
+            0.0,
+            f"CENTRAL needs mass at {scene.name(int(np.argmax(light)))}: "
+            "give it weight, or use EXACT or NEWMARK",
+        )
+    longest = limit(scene, start.u)
+    if options["DT"] > longest:
+        raise Stop(
+            "A502",
+            0.0,
+            f"the step {options['DT']:g} is above the stability limit {longest:.4g}; "
+            "EXACT needs no step, NEWMARK has no such limit",
+        )
+    stepper = Stepper(scene, start, watch, sink, options, Scheme(0.0, 0.5), "CENTRAL, central differences")
+    outcome = stepper.run()
+    outcome.checks.append(
+        (
+            "stability limit of the step, contacts pressed",
+            f"{longest:.4e}",
+            f"step {options['DT']:.4e}: stable",
+        )
+    )
+    return outcome
+
+
+SPEC = Spec(
+    "method",
+    "CENTRAL",
+    "explicit central differences",
+    (Field("DT", Kind.REAL, "T", above=0, doc="time step, below the stability limit"),),
+    reference="Chopra 2012, section 5.3",
+    impl=integrate,
+)

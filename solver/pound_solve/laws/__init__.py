@@ -1,0 +1,1 @@
+"""Force laws: hysteresis rules and contact laws on one automaton."""

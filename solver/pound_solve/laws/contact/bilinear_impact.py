@@ -1,0 +1,207 @@
+r"""Bilinear impact (Muthukumar 2003): a spring and a slider that lose their energy by hysteresis.
+
+Pressed for the first time the force follows :math:`K_1` up to the overlap :math:`\delta_y`, then
+:math:`K_2`; it comes back along :math:`K_1`, and from the line :math:`f = K_2\delta` on along that to zero:
+
+.. math:: f = K_2\delta + (K_1 - K_2)(\delta - \delta_p), \qquad 0 \le \delta - \delta_p \le \delta_y
+
+Pressed again before they have parted, the bodies go up along :math:`K_1` to the upper line.  The
+constants stand for Hertz' force :math:`k_h\delta^n` at one largest overlap :math:`\delta_m`, with
+:math:`K = k_h\delta_m^{n-1}`, :math:`\delta_y = a\delta_m`:
+
+.. math:: a K_1 + (1-a) K_2 = K
+
+An impact that reaches :math:`\delta_m` brings the energy :math:`W = \delta_m^2 (a K_1 + (1-a) K)/2` and
+loses :math:`D = \delta_m^2 a (K_1 - K)`.  EXACT: :math:`D = (1-e^2) W`, so that with :math:`s = (1-e^2)/2`
+
+.. math:: K_1 = K\,\frac{a + s(1-a)}{a(1-s)}, \qquad K_2 = \frac{K - a K_1}{1-a}
+
+which needs :math:`e^2 > a/(2-a)`.  PUBLISHED: :math:`D = k_h\delta_m^{n+1}(1-e^2)/(n+1)`, the loss
+on the energy of a Hertz contact, which gives back more than :math:`e`.
+
+Any other speed has a restitution of its own: 1 where :math:`\delta_y` is not passed, and
+least, :math:`(K_2/K_1)^{1/4}`, where the overlap is :math:`\delta_y(1 + \sqrt{K_1/K_2})`.
+
+References
+----------
+Muthukumar S (2003), A contact element approach with hysteresis damping for the analysis and design of
+pounding in bridges, PhD thesis, Georgia Institute of Technology; Nielson BG (2005), Analytical fragility
+curves for highway bridges in moderate seismic zones, PhD thesis, ibid. (the constants, a = 0.1).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import (
+    TURNS_DOWN,
+    TURNS_UP,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    piece,
+    remember,
+)
+from pound_solve.laws.contact.kelvin_voigt import Built
+
+OPEN, STIFF, SOFT, BACK = 0, 1, 2, 3
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Open, or pressed where the gap is negative (an overlap from the start)."""
+    return (STIFF if p[3] < 0.0 else OPEN), remember()
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Deformation is the closure; the memory holds where the slider stands."""
+    k1, k2, dy, gap = p[:4]
+    if at == OPEN:
+        return piece(0.0, 0.0, above(gap))
+    if at == SOFT:
+        return piece(k2, (k1 - k2) * dy - k2 * gap, TURNS_DOWN)
+    if at == BACK:
+        return piece(k2, -k2 * gap, TURNS_UP, below(gap))
+    return piece(k1, -k1 * gap - (k1 - k2) * m[0], above(gap + m[0] + dy), below(gap + m[0]))
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Touch, slide, turn, or part."""
+    dy, overlap = p[2], d - p[3]
+    if at == OPEN:
+        return STIFF, remember()
+    if at == SOFT:
+        return STIFF, remember(max(overlap - dy, 0.0))
+    if at == BACK:
+        return (STIFF, remember(max(overlap, 0.0))) if way == 0 else (OPEN, remember())
+    if way == 0:
+        return SOFT, m
+    return (BACK, m) if m[0] > 0.0 else (OPEN, remember())
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Area below the way back."""
+    k2, dy, gap = p[1:4]
+    if at == OPEN:
+        return 0.0
+    overlap = d - gap
+    corner = overlap if at == BACK else overlap - dy if at == SOFT else m[0]
+    return 0.5 * (k2 * corner * corner + (k2 * corner + f) * (overlap - corner))
+
+
+RULE = Rule(("open", "pressed", "pressed, soft", "pressed, back"), start, branch, leave, recoverable)
+
+
+def restitution(k1: float, k2: float, dy: float, overlap: float) -> float:
+    """Restitution [-] of an impact that reaches `overlap` [L]."""
+    beyond = overlap - dy
+    if beyond <= 0.0:
+        return 1.0
+    brought = 0.5 * k1 * dy**2 + (k1 * dy + 0.5 * k2 * beyond) * beyond
+    return math.sqrt(1.0 - (k1 - k2) * dy * beyond / brought)
+
+
+def speed(k1: float, k2: float, dy: float, overlap: float, mass: float) -> float:
+    """Approach [L/T] of a reduced mass that reaches `overlap` [L], beyond dy."""
+    beyond = overlap - dy
+    brought = 0.5 * k1 * dy**2 + (k1 * dy + 0.5 * k2 * beyond) * beyond
+    return math.sqrt(2.0 * brought / mass) if mass else math.inf
+
+
+def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
+    """Law from a card's values.
+
+    Parameters
+    ----------
+    values : mapping
+        GAP and K1, K2, DY, or KH, N, E, DM, A, RELATION.
+    reduced_mass : float
+        Of the colliding masses [F T^2/L], for the note alone; may be zero.
+
+    Raises
+    ------
+    ValueError
+        Neither or both of the sets are given, or constants that no loop has.
+    """
+    plain = [name for name in ("K1", "K2", "DY") if values[name] is not None]
+    by_e = [name for name in ("KH", "E", "DM") if values[name] is not None]
+    if (len(plain), len(by_e)) not in ((3, 0), (0, 3)):
+        raise ValueError(
+            "give either K1, K2 and DY, or KH, E and DM"
+            + (f", not {', '.join(plain + by_e)}" if plain or by_e else "")
+        )
+    if plain:
+        k1, k2, dy = (values[name] for name in plain)
+        if k2 > k1:
+            raise ValueError(f"K2 {k2:g} is above K1 {k1:g}: the second stiffness is the lower one")
+        asked = given = math.nan
+        worst = dy * (1.0 + math.sqrt(k1 / k2))
+        slow, at = (speed(k1, k2, dy, x, reduced_mass) for x in (dy, worst))
+        note = f"e depends on the speed: 1 up to {slow:.4g}, least, {(k2 / k1) ** 0.25:.4g}, at {at:.4g}"
+    else:
+        k1, k2, dy = constants(values)
+        asked, given = values["E"], restitution(k1, k2, dy, values["DM"])
+        at = speed(k1, k2, dy, values["DM"], reduced_mass)
+        relation = values["RELATION"].lower()
+        note = f"{relation} relation of E; e depends on the speed: as given at {at:.4g}, which reaches DM"
+    return Built(Law(RULE, (k1, k2, dy, values["GAP"])), k1, 0.0, 0.0, asked, given, note)
+
+
+def constants(values: Mapping[str, Any]) -> tuple[float, float, float]:
+    """K1, K2 [F/L] and the overlap [L] where one follows the other.
+
+    Raises
+    ------
+    ValueError
+        E is out of reach.
+    """
+    e, dm, a, n = (values[name] for name in ("E", "DM", "A", "N"))
+    k = values["KH"] * dm ** (n - 1.0)
+    if values["RELATION"] == "PUBLISHED":
+        loss = k * (1.0 - e * e) / (n + 1.0)  # over DM^2
+        least = math.sqrt(max(1.0 - (n + 1.0) * (1.0 - a), 0.0))
+        k1, k2 = k + loss / a, k - loss / (1.0 - a)
+    else:
+        s = 0.5 * (1.0 - e * e)
+        least = math.sqrt(a / (2.0 - a))
+        k1 = k * (a + s * (1.0 - a)) / (a * (1.0 - s))
+        k2 = (k - a * k1) / (1.0 - a)
+    if k2 <= 0.0:
+        raise ValueError(
+            f"E {e:g} is out of reach: K2 would not be positive; with A {a:g} E must be above {least:.4g}, "
+            "a smaller A reaches lower"
+        )
+    return k1, k2, a * dm
+
+
+SPEC = Spec(
+    "contact",
+    "BILINEAR_IMPACT",
+    "two stiffnesses with a loop that loses energy",
+    (
+        Field("K1", Kind.REAL, "F/L", default=None, above=0, doc="first stiffness (with K2 and DY)"),
+        Field("K2", Kind.REAL, "F/L", default=None, above=0, doc="second stiffness (with K1 and DY)"),
+        Field("DY", Kind.REAL, "L", default=None, above=0, doc="overlap where K2 begins (with K1 and K2)"),
+        Field("KH", Kind.REAL, "F/L^N", default=None, above=0, doc="Hertz stiffness (with E and DM)"),
+        Field("N", Kind.REAL, "-", default=1.5, lo=1, doc="Hertz exponent"),
+        Field(
+            "E", Kind.REAL, "-", default=None, above=0, hi=1, doc="restitution of an impact that reaches DM"
+        ),
+        Field("DM", Kind.REAL, "L", default=None, above=0, doc="largest overlap that is expected"),
+        Field("A", Kind.REAL, "-", default=0.1, above=0, below=1, doc="DY as a share of DM"),
+        Field(
+            "RELATION",
+            Kind.WORD,
+            default="EXACT",
+            words=("EXACT", "PUBLISHED"),
+            doc="how E becomes K1 and K2: exact at DM, or by the loss on a Hertz contact's energy",
+        ),
+    ),
+    reference="Muthukumar 2003; Nielson 2005",
+    sample="KH=1 N=1 E=0.6 DM=2",
+    impl=build,
+)

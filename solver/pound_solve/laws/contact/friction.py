@@ -1,0 +1,86 @@
+r"""Coulomb friction across a contact: stick on a tangential spring, slip at a share of the normal force.
+
+.. math:: f = k_t (x - x_s) \ \text{while}\ |f| \le \mu_s N, \qquad f = \pm\mu_d N \ \text{while it slips}
+
+:math:`x` is the tangential displacement of I against J, :math:`N` the present force of the contact.  The
+spring stands for what lies between the nodes and the surface, so the slider itself moves at the rate
+:math:`\dot x - \dot f / k_t`; where that turns, it sticks again:
+
+.. math:: \pm\dot x < \mu_d \dot N / k_t
+
+At touch the spring begins without force; bodies that slide faster than the limit grows,
+:math:`k_t |\dot x| > \mu_s \dot N`, slip at once.  At release all is forgotten.
+
+The law leans on another one: before it is asked for anything, `PUSH` and `PUSH_RATE` of its memory are
+given :math:`N` and :math:`\dot N`.  Its work while it slips is no function of x alone: the integrator adds
+it up.
+
+References
+----------
+Coulomb's law with a tangential spring as a regularisation: Cundall PA, Strack ODL (1979), A discrete
+numerical model for granular assemblies, Geotechnique 29(1): 47-65; two coefficients as in any text on
+dry friction.
+"""
+
+from __future__ import annotations
+
+from pound_solve.laws.automaton import PUSH, PUSH_RATE, Law, Numbers, Rule, piece, remember
+from pound_solve.laws.hysteresis.mirror import side
+
+OPEN, PLUS, MINUS, STICKING = 0, 1, 2, 3
+RELEASED = 2  #: way to leave when the contact opens
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Open: whether the contact is closed will be told."""
+    return OPEN, remember()
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """The memory: where the spring has no force, and the contact's force and its rate."""
+    kt, mu, mud = p[:3]
+    if at == OPEN:
+        return piece(0.0, 0.0)
+    if at == STICKING:
+        pull, limit = kt * m[0], mu * m[PUSH]
+        return piece(kt, -pull, (kt, 0.0, -pull - limit), (-kt, 0.0, pull - limit))
+    return piece(0.0, side(at) * mud * m[PUSH], (0.0, -side(at), mud * m[PUSH_RATE] / kt))
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Touch, slip, stick, or let go."""
+    kt, mu, mud = p[:3]
+    if at != OPEN and way == RELEASED:
+        return OPEN, remember()
+    if at == STICKING:
+        return (PLUS if way == 0 else MINUS), m
+    after, anchor = STICKING, d
+    if at != OPEN:
+        anchor = d - side(at) * mud * m[PUSH] / kt
+    elif m[PUSH] == 0.0 and kt * abs(v) > mu * m[PUSH_RATE]:
+        after = PLUS if v > 0.0 else MINUS
+    return after, remember(anchor, o=m[PUSH], q=m[PUSH_RATE])
+
+
+def curve(
+    p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
+) -> tuple[float, float, float, float]:
+    """Force, its derivatives, and work since `d0` under the present force of the contact."""
+    k, _, f0 = branch(p, at, m)[:3]
+    return k * d + f0, k, 0.0, (0.5 * k * (d + d0) + f0) * (d - d0)
+
+
+RULE = Rule(("open", "slipping +", "slipping -", "sticking"), start, branch, leave, curve=curve)
+
+
+def build(kt: float, mu: float, mud: float) -> Law:
+    """Law from the tangential stiffness [F/L], the static and the dynamic coefficient [-].
+
+    Raises
+    ------
+    ValueError
+        The dynamic coefficient is above the static one.
+    """
+    if mud > mu:
+        raise ValueError(f"MUD {mud:g} is above MU {mu:g}: what slips holds no better than what sticks")
+    return Law(RULE, (kt, mu, mud))

@@ -1,0 +1,120 @@
+r"""Hunt-Crossley contact: damping that grows with the force of the spring.
+
+.. math:: f = k\delta^n \Bigl(1 + d\,\frac{\dot\delta}{v_0}\Bigr)
+
+with the approach speed :math:`v_0` at the instant of touch, which is located (Hunt KH, Crossley FRE 1975,
+Coefficient of restitution interpreted as damping in vibroimpact, J. Appl. Mech. 42(2): 440-445).  The force
+begins and ends at zero.  RELATION=PUBLISHED is theirs, :math:`d = 3(1 - e)/2`, good for small losses.
+
+A contact that is touched slowly and then driven together, or closed from the start, would have a damping
+beyond all bounds.  There :math:`v_0` is replaced by the speed from which a free impact reaches the present
+overlap,
+
+.. math:: v(\delta) = \sqrt{\frac{k\delta^{n+1}}{(n+1)\,m\,\varphi(d)}}, \qquad
+          \varphi(d) = \frac{d - \ln(1 + d)}{d^2},
+
+if that is larger: no free impact ever gets there, so that none is changed, and no smallest speed has to be
+chosen.  The damping then is :math:`d\sqrt{(n+1)\varphi k m}\;\delta^{(n-1)/2}\dot\delta`, as of
+POWER_LAW_DAMPED.  Where the bodies are pulled apart faster than :math:`v_0/d` the force is zero: it never
+pulls.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Spec
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.contact import constants, restitution
+from pound_solve.laws.contact.kelvin_voigt import OPEN, PRESSED, Built, start
+from pound_solve.laws.contact.power import (
+    drag,
+    drag_slope,
+    power_fields,
+    spring_energy,
+    spring_force,
+    stiffness_unit,
+)
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Deformation is the closure, overlap = closure - gap."""
+    return piece(0.0, 0.0, above(p[2]) if at == OPEN else below(p[2]))
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Touch, and remember the speed, or part."""
+    return (PRESSED, remember(max(v, 0.0))) if at == OPEN else (OPEN, remember())
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy of the contact spring."""
+    return spring_energy(p[0], p[1], d - p[2]) if at == PRESSED else 0.0
+
+
+def curve(
+    p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
+) -> tuple[float, float, float, float]:
+    """Force; `p` holds k, n, gap, d, the coefficient for slow touches, and the mass."""
+    if at == OPEN:
+        return 0.0, 0.0, 0.0, 0.0
+    k, n, gap, constant, slow, mass = p[:6]
+    x = d - gap
+    work = spring_energy(k, n, x) - spring_energy(k, n, d0 - gap)
+    spring = spring_force(k, n, x)
+    c = drag(slow, n, x)
+    slope = drag_slope(k, n, mass, x, v, c)
+    if m[0] > 0.0 and constant * spring <= c * m[0]:
+        c = constant * spring / m[0]
+        slope = n * c * v / x if x > 0.0 else 0.0
+    force = spring + c * v
+    if force <= 0.0:
+        return 0.0, 0.0, 0.0, work
+    return force, n * spring / x + slope, c, work
+
+
+RULE = Rule(("open", "pressed"), start, branch, leave, recoverable, curve)
+
+
+def law(k: float, n: float, gap: float, d: float, mass: float) -> Law:
+    """Law with the damping constant `d`; the mass is that of the colliding pair [F T^2/L]."""
+    slow = d * math.sqrt((n + 1.0) * restitution.share(d) * k * mass)
+    return Law(RULE, (k, n, gap, d, slow, mass))
+
+
+def build_with(
+    values: Mapping[str, Any], reduced_mass: float, n: float, published: constants.Relation
+) -> Built:
+    """Law from a card's values (GAP, K, one of D, E; RELATION), its exponent and the published relation.
+
+    Raises
+    ------
+    ValueError
+        Both or none of D, E; or no mass.
+    """
+    constants.chosen(values, ("D", "E"), reduced_mass)
+    found = constants.constant(
+        values, "D", restitution.throughout, restitution.throughout_constant, published
+    )
+    made = law(values["K"], n, values["GAP"], found.value, reduced_mass)
+    return Built(made, values["K"], math.nan, *found, unit=stiffness_unit(n))
+
+
+def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
+    """Law from a card's values; see `build_with`."""
+    return build_with(values, reduced_mass, values["N"], lambda e: 1.5 * (1.0 - e))
+
+
+DOC = "damping constant d"
+
+SPEC = Spec(
+    "contact",
+    "HUNT_CROSSLEY",
+    "power of the overlap, damping in proportion to it",
+    (*power_fields(1.5), *constants.fields("D", DOC, "Hunt & Crossley 1975")),
+    reference="Hunt & Crossley 1975",
+    sample="E=0.5",
+    impl=build,
+)

@@ -1,0 +1,108 @@
+r"""Non-linear viscoelastic contact: a Hertz spring, and a dashpot in approach only.
+
+.. math:: f = k\delta^{3/2} + 2\xi\sqrt{k\sqrt\delta\,m}\;\dot\delta \ (\dot\delta > 0), \qquad
+          f = k\delta^{3/2} \ (\dot\delta < 0)
+
+(Jankowski R 2005, Non-linear viscoelastic modelling of earthquake-induced structural pounding, Earthquake
+Engng Struct. Dyn. 34(6): 595-611.)  Here for any exponent n, with :math:`2\xi\sqrt{k m}\,\delta^{(n-1)/2}`.
+
+RELATION=PUBLISHED is :math:`\xi = \tfrac{9\sqrt5}{2} \frac{1 - e^2}{e\,(e(9\pi - 16) + 16)}` (Jankowski R
+2006, Analytical expression between the impact damping ratio and the coefficient of restitution in the
+non-linear viscoelastic model of structural pounding, Earthquake Engng Struct. Dyn. 35(4): 517-524), for
+n = 1.5.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Spec
+from pound_solve.laws.automaton import TURNS_DOWN, TURNS_UP, Law, Numbers, Rule, above, below, piece
+from pound_solve.laws.contact import constants, restitution
+from pound_solve.laws.contact.kelvin_voigt import Built, start
+from pound_solve.laws.contact.mahmoud_jankowski import APPROACH, BRANCHES, OPEN, leave
+from pound_solve.laws.contact.power import (
+    drag,
+    drag_slope,
+    power_fields,
+    spring_energy,
+    spring_force,
+    stiffness_unit,
+)
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Deformation is the closure, overlap = closure - gap."""
+    if at == OPEN:
+        return piece(0.0, 0.0, above(p[2]))
+    if at == APPROACH:
+        return piece(0.0, 0.0, TURNS_DOWN, below(p[2]))
+    return piece(0.0, 0.0, below(p[2]), TURNS_UP)
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy of the contact spring."""
+    return 0.0 if at == OPEN else spring_energy(p[0], p[1], d - p[2])
+
+
+def curve(
+    p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
+) -> tuple[float, float, float, float]:
+    """Force; `p` holds k, n, gap, the coefficient of the dashpot, and the mass."""
+    if at == OPEN:
+        return 0.0, 0.0, 0.0, 0.0
+    k, n, gap, c, mass = p[:5]
+    x = d - gap
+    spring = spring_force(k, n, x)
+    work = spring_energy(k, n, x) - spring_energy(k, n, d0 - gap)
+    stiffness = n * spring / x if x > 0.0 else 0.0
+    if at != APPROACH:
+        return spring, stiffness, 0.0, work
+    c = drag(c, n, x)
+    return spring + c * v, stiffness + drag_slope(k, n, mass, x, v, c), c, work
+
+
+RULE = Rule(BRANCHES, start, branch, leave, recoverable, curve)
+
+
+def published(e: float) -> float:
+    """Damping ratio for restitution `e` as published."""
+    return 4.5 * math.sqrt(5.0) * (1.0 - e * e) / (e * (e * (9.0 * math.pi - 16.0) + 16.0))
+
+
+def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
+    """Law from a card's values (GAP, K, N, one of XI, E; RELATION).
+
+    Raises
+    ------
+    ValueError
+        Both or none of XI, E; or no mass; or the published relation with another exponent than its own.
+    """
+    k, n = values["K"], values["N"]
+    constants.chosen(values, ("XI", "E"), reduced_mass)
+    if values["RELATION"] == "PUBLISHED" and n != 1.5:
+        raise ValueError("the published relation of E to XI is for N=1.5: RELATION=EXACT holds for any N")
+    scale = math.sqrt(2.0 / (n + 1.0))  # to the ratio of the linear law with the same path
+    found = constants.constant(
+        values,
+        "XI",
+        lambda xi: restitution.one_sided(scale * xi),
+        lambda e: restitution.one_sided_ratio(e) / scale,
+        published,
+    )
+    c = 2.0 * found.value * math.sqrt(k * reduced_mass)
+    law = Law(RULE, (k, n, values["GAP"], c, reduced_mass))
+    return Built(law, k, math.nan, *found, unit=stiffness_unit(n))
+
+
+SPEC = Spec(
+    "contact",
+    "JANKOWSKI",
+    "power of the overlap, and a dashpot in approach only",
+    (*power_fields(1.5, linear=False), *constants.fields("XI", "impact damping ratio", "Jankowski 2006")),
+    reference="Jankowski 2005, 2006",
+    sample="E=0.5",
+    impl=build,
+)

@@ -1,0 +1,120 @@
+r"""Kelvin-Voigt contact: spring and dashpot, :math:`f = k\delta + c\dot\delta` while pressed.
+
+With TENSION=NO (default) the contact lets go where the force falls to zero, with some overlap left
+(Shakya, Wijeyewickrema and Ohmachi 2008, 14th World Conf. Earthquake Engng, Beijing);
+with TENSION=YES it holds until the overlap is gone and pulls before it does (Anagnostopoulos 1988,
+Earthquake Engng Struct. Dyn. 16: 443-456).
+
+The dashpot is given as C, as damping ratio XI, or as restitution E.
+The relation of E to XI is the exact one of the form chosen, or by RELATION=PUBLISHED the published one,
+:math:`\xi = -\ln e / \sqrt{\pi^2 + \ln^2 e}`, which is exact only with tension.
+
+Energy: the dashpot's loss is the integral of :math:`c\dot\delta^2`; an overlap :math:`\delta_r` left at
+release loses :math:`\tfrac12 k\delta_r^2` as the contact element relaxes alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.contact import restitution
+from pound_solve.laws.contact.constants import dashpot, linear_fields
+
+OPEN, PRESSED, RELEASED = 0, 1, 2
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Open, or pressed where the gap is negative (an overlap from the start)."""
+    return (PRESSED if p[2] < 0.0 else OPEN), remember()
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Deformation is the closure, overlap = closure - gap."""
+    k, c, gap, tension = p[:4]
+    if at == OPEN:
+        return piece(0.0, 0.0, above(gap))
+    if at == RELEASED:
+        # overlap left, force zero: pressed again if k*overlap + c*rate turns positive
+        return piece(0.0, 0.0, (k, c, -k * gap), below(gap))
+    return piece(k, -k * gap, below(gap) if tension != 0.0 else (-k, -c, k * gap), c=c)
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Touch, let go, or part."""
+    if at == OPEN or (at == RELEASED and way == 0):
+        return PRESSED, m
+    return (OPEN if at == RELEASED or p[3] != 0.0 or p[1] == 0.0 else RELEASED), m
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy of the contact spring."""
+    return 0.5 * p[0] * (d - p[2]) ** 2 if at == PRESSED else 0.0
+
+
+RULE = Rule(("open", "pressed", "released"), start, branch, leave, recoverable)
+
+
+class Built(NamedTuple):
+    """A contact law with what the report says of it; `unit` is that of its stiffness `k`."""
+
+    law: Law
+    k: float
+    c: float
+    xi: float
+    e_asked: float
+    e_given: float
+    note: str
+    unit: str = "F/L"
+
+
+def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
+    """Law from a card's values.
+
+    Parameters
+    ----------
+    values : mapping
+        GAP, K and one of C, XI, E; RELATION, TENSION.
+    reduced_mass : float
+        m1 m2 / (m1 + m2) of the colliding masses along the contact [F T^2/L]; may be zero (massless node).
+
+    Raises
+    ------
+    ValueError
+        None or several of C, XI, E; or XI or E where there is no mass.
+    """
+    tension = values["TENSION"] == "YES"
+    given_back, exact = (
+        (restitution.sticky, restitution.sticky_ratio)
+        if tension
+        else (restitution.no_tension, restitution.no_tension_ratio)
+    )
+    found = dashpot(values, reduced_mass, given_back, exact, restitution.sticky_ratio)
+    p = (values["K"], found.c, values["GAP"], float(tension))
+    return Built(Law(RULE, p), values["K"], *found)
+
+
+TENSION = Field(
+    "TENSION",
+    Kind.WORD,
+    default="NO",
+    words=("NO", "YES"),
+    codes={"NO": 0, "YES": 1},
+    doc="hold until the overlap is gone",
+)
+
+SPEC = Spec(
+    "contact",
+    "KELVIN_VOIGT",
+    "spring and dashpot while pressed",
+    (
+        *linear_fields("Anagnostopoulos 2004"),
+        TENSION,
+    ),
+    code=1,
+    reference="Anagnostopoulos 1988, 2004; no tension: Shakya, Wijeyewickrema & Ohmachi 2008",
+    sample="E=0.5",
+    impl=build,
+)

@@ -1,0 +1,73 @@
+r"""Modified viscoelastic contact: the dashpot of Kelvin-Voigt, in approach only.
+
+.. math:: f = k\delta + c\dot\delta \ (\dot\delta > 0), \qquad f = k\delta \ (\dot\delta < 0)
+
+The force is continuous where the motion turns, falls to zero with the overlap, and never pulls
+(Mahmoud S, Jankowski R 2011, Modified linear viscoelastic model of earthquake-induced structural pounding,
+Iranian J. Sci. Technol. Trans. Civ. Engng 35(C1): 51-62).  Bodies that come together again before they have
+parted meet the dashpot again.
+
+RELATION=PUBLISHED is theirs, :math:`\xi = (1 - e^2) / (e\,(e(\pi - 2) + 2))`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Spec
+from pound_solve.laws.automaton import TURNS_DOWN, TURNS_UP, Law, Numbers, Rule, above, below, piece
+from pound_solve.laws.contact import restitution
+from pound_solve.laws.contact.constants import dashpot, linear_fields
+from pound_solve.laws.contact.kelvin_voigt import Built, start
+
+OPEN, APPROACH, PARTING = 0, 1, 2
+BRANCHES = ("open", "pressed", "pressed, parting")
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Deformation is the closure, overlap = closure - gap."""
+    k, c, gap = p[:3]
+    if at == OPEN:
+        return piece(0.0, 0.0, above(gap))
+    if at == APPROACH:
+        return piece(k, -k * gap, TURNS_DOWN, below(gap), c=c)
+    return piece(k, -k * gap, below(gap), TURNS_UP)
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Touch, turn, or part."""
+    if at == OPEN or (at == PARTING and way == 1):
+        return APPROACH, m
+    return (PARTING if at == APPROACH and way == 0 else OPEN), m
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy of the contact spring."""
+    return 0.0 if at == OPEN else 0.5 * p[0] * (d - p[2]) ** 2
+
+
+RULE = Rule(BRANCHES, start, branch, leave, recoverable)
+
+
+def published(e: float) -> float:
+    """Damping ratio for restitution `e` as published."""
+    return (1.0 - e * e) / (e * (e * (math.pi - 2.0) + 2.0))
+
+
+def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
+    """Law from a card's values (GAP, K, one of C, XI, E; RELATION); see `kelvin_voigt.build`."""
+    found = dashpot(values, reduced_mass, restitution.one_sided, restitution.one_sided_ratio, published)
+    return Built(Law(RULE, (values["K"], found.c, values["GAP"])), values["K"], *found)
+
+
+SPEC = Spec(
+    "contact",
+    "MAHMOUD_JANKOWSKI",
+    "spring, and a dashpot in approach only",
+    linear_fields("Mahmoud & Jankowski 2011"),
+    reference="Mahmoud & Jankowski 2011",
+    sample="E=0.5",
+    impl=build,
+)

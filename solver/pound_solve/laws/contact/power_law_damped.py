@@ -1,0 +1,98 @@
+r"""Power law with the damping whose restitution does not depend on the speed.
+
+.. math:: f = k\delta^n + \alpha\sqrt{m k}\;\delta^{(n-1)/2}\dot\delta
+
+(Tsuji Y, Tanaka T, Ishida T 1992, Powder Technol. 71: 239-250, for n = 1.5; for any n and with the relation
+of RELATION=PUBLISHED, :math:`\alpha = -\sqrt{2(n+1)}\ln e/\sqrt{\pi^2 + \ln^2 e}`: arXiv:2603.27764.)  That
+relation is exact with TENSION=YES, where the contact holds until the overlap is gone.  With TENSION=NO
+(default) there is no force where the sum is below zero, and the exact relation is that of the linear
+contact.
+
+The overlap at which the force vanishes moves with the rate along a curve, so that no exit marks it: the
+contact is pressed until the overlap is gone, with no force on the last part of the way.  The energy that
+the spring still held there counts as lost.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Spec
+from pound_solve.laws.automaton import Law, Numbers, Rule
+from pound_solve.laws.contact import constants, restitution
+from pound_solve.laws.contact.hunt_crossley import branch, leave, recoverable
+from pound_solve.laws.contact.kelvin_voigt import OPEN, TENSION, Built, start
+from pound_solve.laws.contact.power import (
+    drag,
+    drag_slope,
+    power_fields,
+    spring_energy,
+    spring_force,
+    stiffness_unit,
+)
+
+
+def curve(
+    p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
+) -> tuple[float, float, float, float]:
+    """Force; `p` holds k, n, gap, the coefficient of the dashpot, the mass, and whether it may pull."""
+    if at == OPEN:
+        return 0.0, 0.0, 0.0, 0.0
+    k, n, gap, c, mass, tension = p[:6]
+    x = d - gap
+    spring = spring_force(k, n, x)
+    work = spring_energy(k, n, x) - spring_energy(k, n, d0 - gap)
+    c = drag(c, n, x)
+    force = spring + c * v
+    if x <= 0.0 or (force < 0.0 and tension == 0.0):
+        return 0.0, 0.0, 0.0, work
+    # the pull of a sticky release falls to zero with an infinite slope, which an iteration must not follow
+    return force, max(n * spring / x + drag_slope(k, n, mass, x, v, c), 0.0), c, work
+
+
+RULE = Rule(("open", "pressed"), start, branch, leave, recoverable, curve)
+
+
+def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
+    """Law from a card's values (GAP, K, N, one of ALPHA, E; RELATION, TENSION).
+
+    Raises
+    ------
+    ValueError
+        Both or none of ALPHA, E; or no mass.
+    """
+    k, n, tension = values["K"], values["N"], values["TENSION"] == "YES"
+    constants.chosen(values, ("ALPHA", "E"), reduced_mass)
+    scale = math.sqrt(2.0 * (n + 1.0))  # from the damping ratio of the linear law with the same path
+    given_back, exact = (
+        (restitution.sticky, restitution.sticky_ratio)
+        if tension
+        else (restitution.no_tension, restitution.no_tension_ratio)
+    )
+    found = constants.constant(
+        values,
+        "ALPHA",
+        lambda alpha: given_back(alpha / scale),
+        lambda e: exact(e) * scale,
+        lambda e: restitution.sticky_ratio(e) * scale,
+    )
+    c = found.value * math.sqrt(k * reduced_mass)
+    law = Law(RULE, (k, n, values["GAP"], c, reduced_mass, float(tension)))
+    return Built(law, k, math.nan, *found, unit=stiffness_unit(n))
+
+
+SPEC = Spec(
+    "contact",
+    "POWER_LAW_DAMPED",
+    "power of the overlap, restitution independent of the speed",
+    (
+        *power_fields(1.5, linear=False),
+        *constants.fields("ALPHA", "damping constant", "the one with tension"),
+        TENSION,
+    ),
+    reference="Tsuji, Tanaka & Ishida 1992; arXiv:2603.27764",
+    sample="E=0.5",
+    impl=build,
+)

@@ -1,0 +1,87 @@
+r"""Stereomechanics: rigid bodies that meet change their velocities at once.
+
+Two masses that approach each other at :math:`v_1 - v_2 > 0` part with
+
+.. math:: v_1' = v_1 - (1+e)\frac{m_2}{m_1+m_2}(v_1-v_2), \qquad
+          v_2' = v_2 - (1+e)\frac{m_1}{m_1+m_2}(v_2-v_1)
+
+(Goldsmith W (1960), Impact, Arnold; Cole et al. (2011), Earthquake Engng Struct. Dyn. 40: 641-659,
+Eqs 1-2).
+With the contact's row b in a structure of mass M this is the impulse
+
+.. math:: J = (1+e)\,\frac{b^T v}{b^T M^{-1} b}, \qquad v' = v - M^{-1} b\,J
+
+An impact without rebound closes the contact: from then on it holds its deformation by the force that this
+takes, and it opens when the force would pull (:mod:`~pound_solve.integrate.closed_form.rigid_contact`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.contact.kelvin_voigt import Built
+
+OPEN, PRESSED = 0, 1
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Open."""
+    return OPEN, remember()
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Open up to the gap; pressed until the force falls below zero."""
+    return piece(0.0, 0.0, above(p[2]) if at == OPEN else below(0.0))
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Touch or part."""
+    return (PRESSED if at == OPEN else OPEN), m
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Nothing: it does not deform."""
+    return 0.0
+
+
+RULE = Rule(("open", "pressed"), start, branch, leave, recoverable, held=PRESSED)
+
+
+def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
+    """Law from a card's values (GAP, E).
+
+    Raises
+    ------
+    ValueError
+        An overlap, which rigid bodies cannot have; or a node without mass, which nothing would stop.
+    """
+    if values["GAP"] < 0.0:
+        raise ValueError("rigid bodies do not overlap: GAP must be 0 or more, or LAW one with a stiffness")
+    if reduced_mass == 0.0:
+        raise ValueError("a rigid contact needs masses that meet: give its nodes weight")
+    e = values["E"]
+    return Built(Law(RULE, (0.0, e, values["GAP"])), math.inf, 0.0, math.nan, e, e, "rigid")
+
+
+SPEC = Spec(
+    "contact",
+    "STEREOMECHANICS",
+    "rigid: velocities change at once",
+    (
+        Field(
+            "E",
+            Kind.REAL,
+            "-",
+            lo=0,
+            hi=1,
+            doc="coefficient of restitution",
+        ),
+    ),
+    reference="Goldsmith 1960; Cole et al. 2011, Eqs 1-2",
+    sample="E=0.65",
+    impl=build,
+)

@@ -1,0 +1,159 @@
+r"""A force given by points: a bumper or stop of any shape, and what crushes.
+
+The force runs straight from (0, 0) through the points and goes on beyond the last one with its last slope.
+Without KU it comes back the same way.  With it, what was pressed in stays so: from the largest overlap
+:math:`\delta_m` the force falls along the unloading stiffness,
+
+.. math:: f = K_u(\delta - \delta_r), \qquad \delta_r = \delta_m - F(\delta_m)/K_u
+
+and the bodies part at the residual depth :math:`\delta_r`, where they touch the next time: the gap has
+grown by it.  Pressed again the force follows the same line up to :math:`\delta_m`, then the table.
+:math:`K_u` is at least the steepest slope of the table, so that the residual depth never shrinks.
+
+References
+----------
+None but the points; code_aster's DIS_CHOC_ENDO (validation cases SDND102 model G, SDND105) is such a law.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from itertools import pairwise
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import TURNS_DOWN, Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.contact.kelvin_voigt import Built
+
+OPEN, MOST = 0, 8  #: pieces of the table are branches 1 to MOST
+UNLOADING = MOST + 1
+POINTS = 4  #: place of the points in the parameters, after the first slope, gap, KU, their number
+
+
+def point(p: Numbers, i: int) -> tuple[float, float]:
+    """Overlap and force of a point; the one before the first is zero."""
+    return (p[POINTS + 2 * i - 2], p[POINTS + 2 * i - 1]) if i > 0 else (0.0, 0.0)
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Open, or pressed where the gap is negative (an overlap from the start)."""
+    return (1 if p[1] < 0.0 else OPEN), remember()
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """The memory: residual depth, largest overlap, and the piece of the table that this is on."""
+    gap, ku, count = p[1], p[2], int(p[3])
+    if at == OPEN:
+        return piece(0.0, 0.0, above(gap + m[0]))
+    if at == UNLOADING:
+        return piece(ku, -ku * (gap + m[0]), above(gap + m[1]), below(gap + m[0]))
+    (d0, f0), (d1, f1) = point(p, at - 1), point(p, at)
+    k = (f1 - f0) / (d1 - d0)
+    further = above(gap + d1) if at < count else (0.0, 0.0, -1.0)
+    return piece(k, f0 - k * (gap + d0), further, below(gap + d0) if ku == 0.0 else TURNS_DOWN)
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Touch, go to the next piece of the table or back, unload, or part."""
+    gap, ku = p[1], p[2]
+    if at == OPEN:
+        return (1 if m[1] == 0.0 else UNLOADING), m
+    if at == UNLOADING:
+        return (int(m[2]) if way == 0 else OPEN), m
+    if way == 0:
+        return at + 1, m
+    if ku == 0.0:
+        return at - 1, m
+    d0, f0 = point(p, at - 1)
+    d1, f1 = point(p, at)
+    force = f0 + (f1 - f0) / (d1 - d0) * (d - gap - d0)
+    return UNLOADING, remember(max(d - gap - force / ku, m[0]), d - gap, float(at))
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Area below the table, or below the line of unloading."""
+    if at == OPEN:
+        return 0.0
+    if p[2] != 0.0:
+        return 0.5 * f * f / p[2]
+    area = 0.0
+    for i in range(1, at):
+        (d0, f0), (d1, f1) = point(p, i - 1), point(p, i)
+        area += 0.5 * (f0 + f1) * (d1 - d0)
+    d0, f0 = point(p, at - 1)
+    return area + 0.5 * (f0 + f) * (d - p[1] - d0)
+
+
+PIECES = tuple(f"pressed, piece {i}" for i in range(1, MOST + 1))
+RULE = Rule(("open", *PIECES, "pressed, unloading"), start, branch, leave, recoverable)
+
+
+def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
+    """Law from a card's values.
+
+    Parameters
+    ----------
+    values : mapping
+        GAP, DEPTHS, FORCES, KU.
+    reduced_mass : float
+        Of the colliding masses [F T^2/L], for the note alone; may be zero.
+
+    Raises
+    ------
+    ValueError
+        Points that make no table, or a KU below its steepest slope.
+    """
+    depths, forces, ku = values["DEPTHS"], values["FORCES"], values["KU"]
+    if len(depths) != len(forces):
+        raise ValueError(f"DEPTHS has {len(depths)} values and FORCES {len(forces)}: they go in pairs")
+    path = [(0.0, 0.0), *zip(depths, forces)]
+    slopes = []
+    for (d0, f0), (d1, f1) in pairwise(path):
+        if d1 <= d0:
+            raise ValueError(f"DEPTHS must ascend from above 0: {d1:g} follows {d0:g}")
+        slopes.append((f1 - f0) / (d1 - d0))
+    if slopes[-1] < 0.0:
+        raise ValueError(
+            f"the last piece falls, and beyond its end the force would pull: end FORCES level, with a "
+            f"further point of {forces[-1]:g}"
+        )
+    steepest = max(slopes)
+    if ku is None:
+        given, note = 1.0, "elastic: back along the table"
+    else:
+        if ku < steepest:
+            raise ValueError(f"KU {ku:g} is below the steepest slope of the table, {steepest:g}")
+        given = math.nan
+        brought = sum(0.5 * (f0 + f1) * (d1 - d0) for (d0, f0), (d1, f1) in pairwise(path))
+        back = 0.5 * forces[-1] ** 2 / ku
+        at = math.sqrt(2.0 * brought / reduced_mass) if reduced_mass else math.inf
+        note = (
+            f"e depends on the speed: {math.sqrt(back / brought):.4g} at {at:.4g}, which reaches the last "
+            "of DEPTHS for the first time"
+        )
+        steepest = ku
+    points = [x for pair in path[1:] for x in pair]
+    law = Law(RULE, (slopes[0], values["GAP"], ku or 0.0, len(depths), *points))
+    return Built(law, steepest, 0.0, 0.0, math.nan, given, note)
+
+
+SPEC = Spec(
+    "contact",
+    "TABLE",
+    "force by points, elastic or crushing",
+    (
+        Field("DEPTHS", Kind.REAL, "L", count=(1, MOST), above=0, doc="overlaps of the points, ascending"),
+        Field("FORCES", Kind.REAL, "F", count=(1, MOST), above=0, doc="forces there"),
+        Field(
+            "KU",
+            Kind.REAL,
+            "F/L",
+            default=None,
+            above=0,
+            doc="unloading stiffness of what crushes; left out: back along the table",
+        ),
+    ),
+    sample="DEPTHS=0.5,1.5,3 FORCES=1,1.4,3 KU=2.5",
+    impl=build,
+)

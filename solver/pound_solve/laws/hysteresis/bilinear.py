@@ -1,0 +1,79 @@
+r"""Bilinear with kinematic hardening.
+
+With stiffness :math:`k`, yield forces :math:`F_y^+ > 0 > F_y^-` and post-yield ratio :math:`r` the rule is
+a spring :math:`r k` beside an elastic, perfectly plastic spring :math:`(1-r) k` that yields at
+:math:`(1-r) F_y^\pm`:
+
+.. math:: f = r k d + (1-r) k (d - d_p), \qquad (1-r) F_y^- \le (1-r) k (d - d_p) \le (1-r) F_y^+
+
+Memory: the plastic deformation :math:`d_p`.
+
+References
+----------
+Iwan WD (1966), A distributed-element model for hysteresis and its steady-state dynamic response, J. Appl.
+Mech. 33(4): 893-900 (the parallel form); Ruaumoko's rule 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import TURNS_DOWN, TURNS_UP, Law, Numbers, Rule, piece, remember
+
+ELASTIC, YIELDING_PLUS, YIELDING_MINUS = 0, 1, 2
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: elastic."""
+    return ELASTIC, remember()
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Elastic until the slider slips; yielding until the motion turns."""
+    k, plus, minus, r = p[:4]
+    ke = (1.0 - r) * k
+    if at == ELASTIC:
+        pull = ke * m[0]
+        return piece(k, -pull, (ke, 0.0, -pull - (1.0 - r) * plus), (-ke, 0.0, pull + (1.0 - r) * minus))
+    if at == YIELDING_PLUS:
+        return piece(r * k, (1.0 - r) * plus, TURNS_DOWN)
+    return piece(r * k, (1.0 - r) * minus, TURNS_UP)
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Yield out of the elastic branch, or unload where the motion turns."""
+    k, plus, minus = p[:3]
+    if at == ELASTIC:
+        return (YIELDING_PLUS if way == 0 else YIELDING_MINUS), m
+    return ELASTIC, remember(d - (plus if at == YIELDING_PLUS else minus) / k)
+
+
+RULE = Rule(("elastic", "yielding +", "yielding -"), start, branch, leave)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two yield forces."""
+    return Law(RULE, (k, fy_plus, fy_minus, values["R"]))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "BILINEAR",
+    "bilinear, kinematic hardening",
+    (
+        Field(
+            "R",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            below=1.0,
+            doc="post-yield stiffness as a share of the initial",
+        ),
+    ),
+    code=2,
+    reference="Iwan 1966; Ruaumoko rule 2",
+    sample="R=0.1",
+    impl=build,
+)

@@ -1,0 +1,80 @@
+r"""Bilinear elastic: softer beyond a limit, and back along the same line; nothing is lost.
+
+.. math:: f = k d \quad (F^- \le k d \le F^+), \qquad f = F^\pm + r k (d - F^\pm / k) \quad \text{beyond}
+
+A rocking wall or a post-tensioned joint; beside a spring with BILINEAR it makes a flag.  No memory.
+
+References
+----------
+Elementary; in Ruaumoko under this name, but its number there is not certain, so none is accepted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+
+STIFF, SOFT_PLUS, SOFT_MINUS = 0, 1, 2
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: stiff."""
+    return STIFF, remember()
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Stiff between the limits, soft beyond."""
+    k, plus, minus, r = p[:4]
+    if at == STIFF:
+        return piece(k, 0.0, above(plus / k), below(minus / k))
+    if at == SOFT_PLUS:
+        return piece(r * k, (1.0 - r) * plus, below(plus / k))
+    return piece(r * k, (1.0 - r) * minus, above(minus / k))
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Soften, or come back."""
+    if at == STIFF:
+        return (SOFT_PLUS if way == 0 else SOFT_MINUS), m
+    return STIFF, m
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """All of the work: the area below the line."""
+    k, plus, minus = p[:3]
+    if at == STIFF:
+        return 0.5 * k * d * d
+    limit = plus if at == SOFT_PLUS else minus
+    return 0.5 * limit * limit / k + 0.5 * (limit + f) * (d - limit / k)
+
+
+RULE = Rule(("stiff", "soft +", "soft -"), start, branch, leave, recoverable)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two limits."""
+    return Law(RULE, (k, fy_plus, fy_minus, values["R"]))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "BILINEAR_ELASTIC",
+    "bilinear, elastic",
+    (
+        Field(
+            "R",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            lo=0.0,
+            below=1.0,
+            doc="stiffness beyond the limit as a share of the initial",
+        ),
+    ),
+    reference="elementary",
+    sample="R=0.1",
+    impl=build,
+)

@@ -1,0 +1,266 @@
+r"""Bouc-Wen: smooth hysteresis from a differential equation.
+
+.. math:: f = r k d + (1 - r) k z, \qquad
+          \frac{dz}{dd} = 1 - \Bigl|\frac{z}{d_y}\Bigr|^n
+                          \bigl(1 - \beta + \beta\,\mathrm{sgn}(z\,\dot d)\bigr)
+
+with :math:`d_y = F_y/k` of the side of :math:`z`: it tends to the bilinear rule's lines, and to the
+bilinear rule itself as :math:`n \to \infty`.  (In the usual form A = 1,
+:math:`\beta_{BW} = \beta\,d_y^{-n}`, :math:`\gamma_{BW} = (1 - \beta)\,d_y^{-n}`.)
+With :math:`y = |z|/d_y`, :math:`u = |d|/d_y` counted from :math:`z = 0`, the equation is
+
+.. math:: \frac{dy}{du} = 1 - y^n \text{ outwards}, \qquad \frac{dy}{du} = 1 + (2\beta - 1)\,y^n
+          \text{ inwards (scaled by } (2\beta-1)^{1/n}\text{: } 1 + y^n)
+
+so that :math:`u` and the work :math:`w = \int y\,du` are incomplete beta functions of :math:`y^n`,
+
+.. math:: \int_0^y \frac{y^{an-1}\,dy}{1 \mp y^n} = \frac{y^{an}}{n}\,\phi(a, \pm y^n), \quad
+          \phi(a, q) = \sum_j \frac{q^j}{a + j}, \quad a = \tfrac1n \text{ for } u,\ \tfrac2n \text{ for } w
+
+which are summed as series and inverted by Newton's iteration: no step size, error below 1e-13.
+
+Memory: the position :math:`u d_y` (signed, along the present direction) and the deformation at the last
+turn, and :math:`\int z\,dd` from :math:`z = 0`.
+
+References
+----------
+Bouc R (1967), Forced vibration of mechanical systems with hysteresis, Proc. 4th Conf. Nonlinear
+Oscillation, Prague.  Wen YK (1976), Method for random vibration of hysteretic systems, J. Eng. Mech. Div.
+ASCE 102(EM2): 249-263.  Erlicher S, Point N (2004), Thermodynamic admissibility of Bouc-Wen type hysteresis
+models, C. R. Mecanique 332(1): 51-57 (closed loops dissipate for :math:`-\beta \le \gamma \le \beta`).
+Series: NIST Handbook of Mathematical Functions (2010), 8.17.7, 15.8.1 and 15.8.10.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import TURNS_DOWN, TURNS_UP, Law, Numbers, Rule, piece, remember
+from pound_solve.laws.hysteresis.mirror import need_both_sides
+
+LOADING, UNLOADING = 0, 1
+SATURATED = 40.0  #: -log(1 - y^n) from which on y is 1 to the last digit
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: z = 0."""
+    return LOADING, remember()
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Loading until the motion turns, and unloading until it turns."""
+    return piece(p[0], 0.0, TURNS_DOWN if at == LOADING else TURNS_UP)
+
+
+# ---------------------------------------------------------------------- y, u and w
+
+
+def phi(a: float, q: float) -> float:
+    """Sum of q^j / (a + j) for q up to 1/2; below zero with Pfaff's transformation."""
+    if q >= 0.0:
+        j, power, total = 0.0, 1.0, 1.0 / a
+        while power > 1e-17:
+            j, power = j + 1.0, power * q
+            total += power / (a + j)
+        return total
+    x = q / (q - 1.0)
+    j, term, total = 0.0, 1.0, 1.0
+    while term > 1e-17:
+        j += 1.0
+        term *= j / (a + j) * x
+        total += term
+    return total / (a * (1.0 - q))
+
+
+def rest(a: float, t: float) -> float:
+    """Sum of (1-a)(2-a)...(j-a) t^j / (j j!), t up to 1/2."""
+    j, term, total = 1.0, (1.0 - a) * t, (1.0 - a) * t
+    while abs(term) > 1e-17:
+        term *= (j + 1.0 - a) * t / (j + 1.0)
+        j += 1.0
+        total += term / j
+    return total
+
+
+def limit(a: float) -> float:
+    """Constant of q^a phi(a, q) = -log(1 - q) + limit(a) - rest(a, 1 - q), from both series at 1/2."""
+    return 0.5**a * phi(a, 0.5) - math.log(2.0) + rest(a, 0.5)
+
+
+def outwards(p: Numbers, u: float) -> tuple[float, float, float]:
+    """y, dy/du and w of dy/du = 1 - y^n at `u`."""
+    n, c1, c2 = p[4], p[6], p[7]
+    half = 0.5 ** (1.0 / n)
+    # of y^n = 1/2 and above: tau = -log(1 - y^n) = n u - c1 + rest
+    if n * u >= math.log(2.0) + c1 - rest(1.0 / n, 0.5):
+        tau = max(n * u - c1, math.log(2.0))
+        if tau < SATURATED:
+            for _ in range(50):
+                t = math.exp(-tau)
+                up = (n * u - c1 + rest(1.0 / n, t) - tau) * (1.0 - t) ** (1.0 - 1.0 / n)
+                tau += up
+                if abs(up) < 1e-8:
+                    break
+        t = math.exp(-tau)
+        return (1.0 - t) ** (1.0 / n), t, (tau + c2 - rest(2.0 / n, t)) / n
+    y = min(u, half)
+    for _ in range(50):
+        slope = 1.0 - y**n
+        off = u - y * phi(1.0 / n, y**n) / n
+        y += off * slope * (1.0 - 0.5 * off * n * y ** (n - 1.0))
+        if abs(off) < 1e-6 * u:  # of third order: the next step is rounding
+            break
+    return y, 1.0 - y**n, y * y * phi(2.0 / n, y**n) / n
+
+
+def inwards(p: Numbers, u: float) -> tuple[float, float, float]:
+    """y, dy/du and w of dy/du = 1 + (2 beta - 1) y^n at `u`; beyond y = 1 (no motion gets there) a straight
+    line.
+    """
+    n, g = p[4], p[8]
+    if g == 0.0:
+        return u, 1.0, 0.5 * u * u
+    far, w1 = inverse_inwards(p, 1.0)
+    if u >= far:
+        slope = 1.0 + g**n
+        return 1.0 + slope * (u - far), slope, w1 + (u - far) * (1.0 + 0.5 * slope * (u - far))
+    x = g * u
+    y = x
+    for _ in range(50):
+        slope = 1.0 + y**n
+        off = x - y * phi(1.0 / n, -(y**n)) / n
+        y += off * slope * (1.0 + 0.5 * off * n * y ** (n - 1.0))
+        if abs(off) < 1e-6 * x:
+            break
+    return y / g, 1.0 + y**n, y * y * phi(2.0 / n, -(y**n)) / (n * g * g)
+
+
+def inverse_outwards(p: Numbers, y: float) -> tuple[float, float]:
+    """Return u and w of `y`, outwards."""
+    n, c1, c2 = p[4], p[6], p[7]
+    q = y**n
+    if q <= 0.5:
+        return y * phi(1.0 / n, q) / n, y * y * phi(2.0 / n, q) / n
+    t = max(1.0 - q, math.exp(-SATURATED))
+    return (c1 - math.log(t) - rest(1.0 / n, t)) / n, (c2 - math.log(t) - rest(2.0 / n, t)) / n
+
+
+def inverse_inwards(p: Numbers, y: float) -> tuple[float, float]:
+    """Return u and w of `y`, inwards."""
+    n, g = p[4], p[8]
+    if g == 0.0:
+        return y, 0.5 * y * y
+    q = (g * y) ** n
+    return y * phi(1.0 / n, -q) / n, y * y * phi(2.0 / n, -q) / n
+
+
+# ---------------------------------------------------------------------- the rule
+
+
+def yields(p: Numbers, s: float) -> float:
+    """Yield deformation of a side."""
+    return (p[1] if s > 0.0 else -p[2]) / p[0]
+
+
+def along(p: Numbers, s: float, x: float) -> tuple[float, float, float]:
+    """s z, dz/dd and the integral of z dd from z = 0, at position `x` of a motion in direction `s`."""
+    if x >= 0.0:
+        dy = yields(p, s)
+        y, slope, w = outwards(p, x / dy)
+        return dy * y, slope, dy * dy * w
+    dy = yields(p, -s)
+    y, slope, w = inwards(p, -x / dy)
+    return -dy * y, slope, dy * dy * w
+
+
+def position(p: Numbers, s: float, z: float) -> tuple[float, float]:
+    """Position at the (mirrored) `z` of a motion in direction `s`, and the integral of z dd from z = 0."""
+    if z >= 0.0:
+        dy = yields(p, s)
+        u, w = inverse_outwards(p, z / dy)
+        return dy * u, dy * dy * w
+    dy = yields(p, -s)
+    u, w = inverse_inwards(p, -z / dy)
+    return -dy * u, dy * dy * w
+
+
+def curve(
+    p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
+) -> tuple[float, float, float, float]:
+    """Force from the position along the present direction."""
+    k, r = p[0], p[3]
+    s = 1.0 if at == LOADING else -1.0
+    z, slope, done = along(p, s, m[0] + s * (d - m[1]))
+    work = k * (0.5 * r * (d - d0) * (d + d0) + (1.0 - r) * (done - m[2]))
+    return k * (r * d + (1.0 - r) * s * z), k * (r + (1.0 - r) * slope), 0.0, work
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Turn."""
+    s = 1.0 if at == LOADING else -1.0
+    x, done = position(p, -s, -along(p, s, m[0] + s * (d - m[1]))[0])
+    return (UNLOADING if at == LOADING else LOADING), remember(x, d, done)
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy given back on the way to zero force, which is found by Newton's iteration."""
+    k, r = p[0], p[3]
+    if f == 0.0:
+        return 0.0
+    s = -1.0 if f > 0.0 else 1.0
+    x0, before = position(p, s, s * (f / k - r * d) / (1.0 - r))
+    x, done = x0, before
+    for _ in range(50):
+        z, slope, done = along(p, s, x)
+        step = -(r * (s * d + x - x0) + (1.0 - r) * z) / (r + (1.0 - r) * slope)
+        x += step
+        if abs(step) < 1e-10 * abs(d):  # from one side, since the force is concave: the rest is rounding
+            break
+    z, slope, done = along(p, s, x)
+    end = d + s * (x - x0)
+    return k * (0.5 * r * (d - end) * (d + end) + (1.0 - r) * (before - done))
+
+
+RULE = Rule(("loading", "unloading"), start, branch, leave, recoverable, curve)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two yield forces."""
+    need_both_sides(fy_plus, fy_minus)
+    n, beta = values["N"], values["BETA"]
+    p = (k, fy_plus, fy_minus, values["R"], n, beta, limit(1.0 / n), limit(2.0 / n))
+    return Law(RULE, (*p, (2.0 * beta - 1.0) ** (1.0 / n)))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "BOUC_WEN",
+    "smooth, from a differential equation",
+    (
+        Field(
+            "R",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            lo=0.0,
+            below=1.0,
+            doc="post-yield stiffness as a share of the initial",
+        ),
+        Field("N", Kind.REAL, "-", lo=1.0, hi=100.0, doc="exponent; the larger, the sharper the knee"),
+        Field(
+            "BETA",
+            Kind.REAL,
+            "-",
+            default=0.5,
+            lo=0.5,
+            hi=1.0,
+            doc="share of beta in beta + gamma; 0.5: it unloads along a straight line",
+        ),
+    ),
+    reference="Bouc 1967; Wen 1976",
+    sample="R=0.05 N=2",
+    impl=build,
+)

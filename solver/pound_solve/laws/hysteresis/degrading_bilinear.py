@@ -1,0 +1,98 @@
+r"""Degrading bilinear: kinematic hardening whose elastic stiffness falls with the largest ductility.
+
+The yield lines are those of `backbone`, extended to the other side:
+
+.. math:: f \le F_y^+ \varphi + r k (d - d_y^+), \qquad f \ge F_y^- \varphi + r k (d - d_y^-)
+
+Between them the spring moves with :math:`k_u` of `backbone`, for the largest ductility of either side,
+along the line through the last turn.  With ALFA=0 and no loss of strength it is BILINEAR.
+
+Memory: the largest ductilities; the point where the motion turned last.
+
+References
+----------
+Nielsen NN, Imbeault FA (1970), Validity of various hysteretic systems, Proc. 3rd Japan Earthquake Engng
+Symp.: 707-714, after Otani S (1981), J. Faculty of Engng, Univ. of Tokyo 36(2): 407-441; Ruaumoko's
+rule 10.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Spec
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.hysteresis.backbone import (
+    ALFA,
+    ELASTIC,
+    LOSS,
+    R,
+    enter,
+    meets,
+    next_piece,
+    parameters,
+    turn,
+    unloading,
+    yield_branch,
+    yield_force,
+)
+from pound_solve.laws.hysteresis.mirror import side
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: elastic."""
+    return ELASTIC, remember(1.0, 1.0)
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Elastic until a yield line is met, or along it until the motion turns."""
+    if at != ELASTIC:
+        return yield_branch(p, at, m)
+    plus, minus, d, f = m[:4]
+    k = unloading(p, max(plus, minus))
+    up, down = meets(p, m, 1.0, k, d, f), meets(p, m, -1.0, k, d, f)
+    return piece(k, f - k * d, above(up * p[1] / p[0]), below(down * p[2] / p[0]))
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Yield out of the elastic branch, or unload where the motion turns."""
+    if at == ELASTIC:
+        s = 1.0 if way == 0 else -1.0
+        return enter(p, m, s, meets(p, m, s, unloading(p, max(m[0], m[1])), m[2], m[3]))
+    if way == 1:
+        return next_piece(p, at, m)
+    return ELASTIC, turn(p, at, m, d)
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy that comes back along the unloading line."""
+    s = side(at)
+    x = 1.0 if at == ELASTIC else s * d * p[0] / yield_force(p, s)
+    return 0.5 * f * f / unloading(p, max(x, m[0], m[1]))
+
+
+RULE = Rule(
+    ("elastic", "yielding +", "yielding -", "yielding weaker +", "yielding weaker -"),
+    start,
+    branch,
+    leave,
+    recoverable,
+)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two yield forces."""
+    return Law(RULE, parameters(values, k, fy_plus, fy_minus))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "DEGRADING_BILINEAR",
+    "bilinear, elastic stiffness falls with ductility",
+    (R, ALFA, *LOSS),
+    code=10,
+    reference="Nielsen & Imbeault 1970; Otani 1981; Ruaumoko rule 10",
+    sample="R=0.1 ALFA=0.4",
+    impl=build,
+)

@@ -1,0 +1,25 @@
+"""Elastic, perfectly plastic: the bilinear rule without hardening (see `bilinear`)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Spec
+from pound_solve.laws.automaton import Law
+from pound_solve.laws.hysteresis.bilinear import RULE
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a stiffness and the two yield forces."""
+    return Law(RULE, (k, fy_plus, fy_minus))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "ELASTO_PLASTIC",
+    "elastic, perfectly plastic",
+    code=1,
+    reference="Prandtl; Ruaumoko rule 1",
+    impl=build,
+)

@@ -1,0 +1,131 @@
+r"""Flag-shaped, self-centring: post-tensioned rocking joints with energy dissipators.
+
+On the positive side, with :math:`d_y = F_y / k`, the force stays between two parallel lines,
+
+.. math:: f_{up} = F_y + r k (d - d_y), \qquad
+          f_{low} = (1 - \beta) F_y + r k \bigl(d - (1 - \beta) d_y\bigr)
+
+It loads along the upper one, unloads with :math:`k`, which takes :math:`\beta F_y`, runs back along the
+lower one and meets the elastic line :math:`f = k d` at :math:`(1 - \beta) d_y`.  The negative side is the
+mirror image with its own yield force.  With :math:`\beta \le 1` nothing is left at zero force.
+A loop out to :math:`d` on one side dissipates :math:`\beta (1 - r) F_y (d - d_y)`.
+
+Memory: the foot :math:`d - f/k` of the elastic line between the two, mirrored to the positive side.
+
+References
+----------
+Christopoulos C, Filiatrault A, Folz B (2002), Seismic response of self-centring hysteretic SDOF systems,
+Earthquake Engng Struct. Dyn. 31(5): 1131-1150 (:math:`\alpha` there is our R).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.hysteresis.mirror import (
+    inward,
+    need_both_sides,
+    outward,
+    side,
+    turns_inward,
+    turns_outward,
+)
+
+ELASTIC, YIELDING_PLUS, YIELDING_MINUS, INSIDE_PLUS, INSIDE_MINUS, BACK_PLUS, BACK_MINUS = range(7)
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: elastic."""
+    return ELASTIC, remember()
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Elastic through the origin, along one of the two lines, or between them."""
+    k, plus, minus, r, beta = p[:5]
+    if at == ELASTIC:
+        return piece(k, 0.0, above(plus / k), below(minus / k))
+    s = side(at)
+    fy = s * (plus if s > 0.0 else minus)
+    low = (1.0 - beta) * fy
+    if at <= YIELDING_MINUS:
+        return piece(r * k, s * (1.0 - r) * fy, turns_inward(s))
+    if at <= INSIDE_MINUS:
+        shift = m[0] / (1.0 - r)
+        return piece(k, -s * k * m[0], outward(s, shift + fy / k), inward(s, shift + low / k))
+    return piece(r * k, s * (1.0 - r) * low, turns_outward(s), inward(s, low / k))
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Yield, unload from a line where the motion turns, reach a line, or be elastic again."""
+    k, plus, minus, r, beta = p[:5]
+    if at == ELASTIC:
+        return (YIELDING_PLUS if way == 0 else YIELDING_MINUS), remember()
+    s = side(at)
+    fy = s * (plus if s > 0.0 else minus)
+    if at <= YIELDING_MINUS:
+        return at + 2, remember((1.0 - r) * (s * d - fy / k))
+    if at <= INSIDE_MINUS:
+        return (at - 2 if way == 0 else at + 2), m
+    if way == 1:
+        return ELASTIC, remember()
+    return at - 2, remember((1.0 - r) * (s * d - (1.0 - beta) * fy / k))
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy given back along the elastic line, the lower line and the elastic line to the origin."""
+    k, plus, minus, r, beta = p[:5]
+    s = 1.0 if d >= 0.0 else -1.0
+    foot = s * d - s * f / k
+    if at == ELASTIC or foot <= 0.0:
+        return 0.5 * f * f / k
+    end = (1.0 - beta) * s * (plus if s > 0.0 else minus)
+    low = end + r * k * foot / (1.0 - r)
+    run = foot / (1.0 - r)
+    return 0.5 * (f * f - low * low + end * end) / k + 0.5 * (low + end) * run
+
+
+RULE = Rule(
+    ("elastic", "yielding +", "yielding -", "inside +", "inside -", "yielding back +", "yielding back -"),
+    start,
+    branch,
+    leave,
+    recoverable,
+)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two yield forces."""
+    need_both_sides(fy_plus, fy_minus)
+    return Law(RULE, (k, fy_plus, fy_minus, values["R"], values["BETA"]))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "FLAG_SHAPED",
+    "flag-shaped, self-centring",
+    (
+        Field(
+            "R",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            lo=0.0,
+            below=1.0,
+            doc="post-yield stiffness as a share of the initial",
+        ),
+        Field(
+            "BETA",
+            Kind.REAL,
+            "-",
+            above=0.0,
+            hi=1.0,
+            doc="height of the flag as a share of the yield force; without any, BILINEAR_ELASTIC",
+        ),
+    ),
+    reference="Christopoulos, Filiatrault & Folz 2002",
+    sample="R=0.05 BETA=0.7",
+    impl=build,
+)

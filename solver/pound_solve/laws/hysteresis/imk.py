@@ -1,0 +1,229 @@
+r"""What the three rules of Ibarra, Medina & Krawinkler share: backbone and cyclic deterioration.
+
+The *backbone* of the positive side (the negative one is its mirror image with its own values) is
+
+.. math:: B(d) = \max\bigl(\lambda F_{y0},\ \min(F_y + \alpha_s k\,(d - F_y/k),\ F_{ref} + k_c d)\bigr)
+
+hardening up to the *cap* at :math:`F_y/k + \theta_p`, falling towards zero at :math:`\theta_{pc}` beyond it
+(:math:`k_c` stays what it is at first), and the residual strength :math:`\lambda F_{y0}`.
+
+An *excursion* goes from one zero of the force to the next.  The energy :math:`E_i` that the i-th one has
+dissipated deteriorates the component by
+
+.. math:: \beta_i = \Bigl(\frac{E_i}{E_t - \sum_{j \le i} E_j}\Bigr)^c, \qquad E_t = \Lambda F_{y0}
+
+with an own :math:`\Lambda` for each mode, and the mean :math:`F_{y0}` of both sides:
+
+* basic strength: :math:`F_y` and :math:`\alpha_s` of the side that is entered next, times
+  :math:`1 - \beta_s` (:math:`F_y` not below the residual strength);
+* post-capping strength: :math:`F_{ref}` of that side times :math:`1 - \beta_c`;
+* accelerated reloading: the deformation that reloading aims at, times :math:`1 + \beta_a`;
+* unloading stiffness: :math:`k_u` times :math:`1 - \beta_k`, where a motion turns on a loading path, with
+  :math:`E_i` less what will be recovered.
+
+An energy that leaves no :math:`\beta < 1` is exhausted: the component fails at the end of the excursion.
+It fails at once at the ultimate deformation :math:`\theta_u`, and where no strength is left.
+
+References
+----------
+Ibarra LF, Medina RA, Krawinkler H (2005), Hysteretic models that incorporate strength and stiffness
+deterioration, Earthquake Engng Struct. Dyn. 34(12): 1489-1511.
+Lignos DG, Krawinkler H (2011), Deterioration modeling of steel components in support of collapse prediction
+of steel moment frames under earthquake loading, J. Struct. Eng. 137(11): 1291-1302 (Lambda, the ultimate
+rotation; theta_p and theta_pc).
+Ours: an excursion deteriorates :math:`k_u` once, however often it turns, and by no more than half; only
+:math:`\Lambda = 0` switches a mode off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind
+from pound_solve.laws.automaton import Numbers
+from pound_solve.laws.hysteresis.mirror import need_both_sides
+
+FAILED = 0
+BRANCHES = ("failed",)  #: the rules' own come in pairs after it: positive side, negative side
+
+# Memory: five numbers of each side, mirrored (the first two are F_y and F_ref), then the unloading
+# stiffness now and at the start of the excursion, where it started, the energy of the finished excursions,
+# and of the present one up to the present branch, and where that was entered
+KU, KU_BEFORE, FOOT, DONE, SPENT, ENTERED = 10, 11, 12, 13, 14, 15
+
+
+def own(m: Numbers, s: float) -> Numbers:
+    """Numbers of a side in the memory."""
+    return m[0:5] if s > 0.0 else m[5:10]
+
+
+def renew(m: Numbers, s: float, mine: Numbers) -> Numbers:
+    """Memory with other numbers of a side."""
+    return mine + m[5:16] if s > 0.0 else m[0:5] + mine + m[10:16]
+
+
+def virgin(p: Numbers, s: float) -> tuple[float, float, float, float]:
+    """Yield force, capping force and F_ref of a side at first, and the slope of the falling branch."""
+    k, r = p[0], p[3]
+    if s > 0.0:
+        fy, plastic, fall = p[1], p[4], p[6]
+    else:
+        fy, plastic, fall = -p[2], p[5], p[7]
+    cap = fy + r * k * plastic
+    return fy, cap, cap + cap / fall * (fy / k + plastic), -cap / fall
+
+
+def ultimate(p: Numbers, s: float) -> float:
+    """Ultimate deformation of a side."""
+    return p[9] if s > 0.0 else p[10]
+
+
+def residual(p: Numbers, s: float) -> float:
+    """Residual strength of a side."""
+    return p[8] * virgin(p, s)[0]
+
+
+def hardening(p: Numbers, s: float, m: Numbers) -> tuple[float, float]:
+    """Slope and force at zero deformation of the hardening line."""
+    fy = own(m, s)[0]
+    slope = p[3] * p[0] * fy / virgin(p, s)[0]
+    return slope, fy - slope * fy / p[0]
+
+
+def falling(p: Numbers, s: float, m: Numbers) -> tuple[float, float]:
+    """Slope and force at zero deformation of the falling line."""
+    return virgin(p, s)[3], own(m, s)[1]
+
+
+def share(energy: float, before: float, capacity: float, c: float) -> float:
+    """Deterioration beta of an excursion; 1 if the energy is exhausted, 0 if the mode is off."""
+    left = capacity - before - energy
+    if capacity == 0.0 or energy <= 0.0:
+        return 0.0
+    return 1.0 if left <= energy else (energy / left) ** c
+
+
+def advance(line: Numbers, m: Numbers, d: float) -> Numbers:
+    """Memory with the work done on a branch up to `d` counted in."""
+    k, f0, d0 = line[0], line[2], m[ENTERED]
+    return (*m[0:14], m[SPENT] + (0.5 * k * (d + d0) + f0) * (d - d0), d)
+
+
+def softened(p: Numbers, m: Numbers, f: float) -> float:
+    """Unloading stiffness of a motion that turns at the force `f`."""
+    before = m[KU_BEFORE]
+    energy = m[SPENT] - 0.5 * f * f / before
+    return before * (1.0 - min(share(energy, m[DONE], p[13], p[15]), 0.5))
+
+
+def end_excursion(p: Numbers, m: Numbers, s: float, d: float) -> tuple[Numbers, float, bool]:
+    """Close an excursion at `d` and deteriorate side `s`, which is entered.
+
+    Returns
+    -------
+    memory, beta of the reloading, whether the component fails
+    """
+    energy, before, c = max(m[SPENT], 0.0), m[DONE], p[15]
+    strength, cap = share(energy, before, p[11], c), share(energy, before, p[12], c)
+    stiffness, reloading = share(energy, before, p[13], c), share(energy, before, p[14], c)
+    mine = own(m, s)
+    fy = max(mine[0] * (1.0 - strength), residual(p, s))
+    m = renew(m, s, (fy, mine[1] * (1.0 - cap), *mine[2:5]))
+    m = (*m[0:11], m[KU], d, before + energy, 0.0, d)
+    return m, reloading, max(max(strength, cap), max(stiffness, reloading)) >= 1.0
+
+
+def recoverable_energy(p: Numbers, m: Numbers, line: Numbers, loading: bool, d: float, f: float) -> float:
+    """Energy of the line that it would unload along."""
+    ku = softened(p, advance(line, m, d), f) if loading else m[KU]
+    return 0.5 * f * f / ku
+
+
+def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Numbers:
+    """Numbers that the three rules share, from a card's values.
+
+    Raises
+    ------
+    ValueError
+        A yield force is zero, or the ultimate deformation is not beyond yield.
+    """
+    need_both_sides(fy_plus, fy_minus)
+    both = [values[name] for name in ("DP", "DPC", "DU")]
+    dp, dpc, du = ((x[0], x[-1]) if x else (0.0, 0.0) for x in both)
+    if values["DU"] and not (du[0] > fy_plus / k and du[1] > -fy_minus / k):
+        raise ValueError("the ultimate deformation DU is beyond the yield deformation")
+    mean = 0.5 * (fy_plus - fy_minus)
+    modes = values["LAMBDA"]
+    modes = modes * 4 if len(modes) == 1 else modes + (0.0,) * (4 - len(modes))
+    capacities = tuple(x * mean for x in modes)
+    return (k, fy_plus, fy_minus, values["R"], *dp, *dpc, values["RESIDUAL"], *du, *capacities, values["C"])
+
+
+def fields(modes: str, most: int) -> tuple[Field, ...]:
+    """Fields of a card: `modes` of deterioration, at `most` so many."""
+    return (
+        Field(
+            "R",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            lo=0.0,
+            below=1.0,
+            doc="hardening stiffness as a share of the initial",
+        ),
+        Field(
+            "DP",
+            Kind.REAL,
+            "L",
+            above=0.0,
+            count=(1, 2),
+            doc="plastic deformation from yield to the cap (theta_p), positive side and negative side; "
+            "one value: the same both ways",
+        ),
+        Field(
+            "DPC",
+            Kind.REAL,
+            "L",
+            above=0.0,
+            count=(1, 2),
+            doc="deformation from the cap to zero strength (theta_pc), likewise",
+        ),
+        Field(
+            "RESIDUAL",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            lo=0.0,
+            below=1.0,
+            doc="residual strength as a share of the yield force",
+        ),
+        Field(
+            "DU",
+            Kind.REAL,
+            "L",
+            default=None,
+            above=0.0,
+            count=(1, 2),
+            doc="ultimate deformation, at which all strength is lost, likewise; left out: none",
+        ),
+        Field(
+            "LAMBDA",
+            Kind.REAL,
+            "L",
+            default=(0.0,),
+            lo=0.0,
+            count=(1, most),
+            doc=f"energy capacity as a multiple of the yield force, for {modes}; "
+            "one value: for all; 0: no such deterioration",
+        ),
+        Field(
+            "C",
+            Kind.REAL,
+            "-",
+            default=1.0,
+            lo=1.0,
+            hi=2.0,
+            doc="exponent of the deterioration, 1 (steady) to 2",
+        ),
+    )

@@ -1,0 +1,191 @@
+r"""Ibarra-Medina-Krawinkler, bilinear: kinematic hardening inside a backbone that deteriorates.
+
+Backbone :math:`B`, excursions and deterioration are those of `imk`.  Each side's force is bounded by
+
+.. math:: U(d) = \max\bigl(\lambda F_{y0},\ \min(F_y + \alpha_s k\,(d - F_y/k),\ F_{lim},\
+          F_{ref} + k_c d)\bigr)
+
+at all deformations of both signs; inside the bounds the spring is elastic with :math:`k_u`.  The *strength
+limit* :math:`F_{lim}` is the smallest force from which the falling or residual branch was left (at first
+the capping force): without it a spring that has lost strength would find it again at smaller deformations.
+
+Memory beyond that of `imk`, of each side: the strength limit, and where the elastic line meets the bound
+(deformation, and the piece there).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Spec
+from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, piece
+from pound_solve.laws.hysteresis.imk import (
+    BRANCHES,
+    FAILED,
+    FOOT,
+    KU,
+    KU_BEFORE,
+    advance,
+    end_excursion,
+    falling,
+    fields,
+    hardening,
+    own,
+    parameters,
+    recoverable_energy,
+    renew,
+    residual,
+    softened,
+    ultimate,
+    virgin,
+)
+from pound_solve.laws.hysteresis.mirror import inward, outward, pair, side, turns_inward
+
+ELASTIC, LEAST, HARDENING, LIMITED, FALLING, RESIDUAL = 1, 3, 5, 7, 9, 11
+FAR = 1e300
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: elastic."""
+    sides = []
+    for s in (1.0, -1.0):
+        fy, cap, ref, _ = virgin(p, s)
+        sides += [fy, ref, cap, fy / p[0], float(HARDENING)]
+    return ELASTIC, (*sides, p[0], p[0], 0.0, 0.0, 0.0, 0.0)
+
+
+def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
+    """Slope and (mirrored) force at zero deformation of a piece of the bound."""
+    if kind == HARDENING:
+        return hardening(p, s, m)
+    if kind == LIMITED:
+        return 0.0, own(m, s)[2]
+    if kind == FALLING:
+        return falling(p, s, m)
+    return 0.0, residual(p, s)
+
+
+def following(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
+    """Piece of the bound after `kind`, and (mirrored) deformation where it begins."""
+    least, limit = residual(p, s), own(m, s)[2]
+    (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
+    end = (least - f2) / k2
+    falls = max((f2 - f1) / (k1 - k2), (limit - f2) / k2)
+    if kind == LEAST:
+        rises = (least - f1) / k1 if k1 > 0.0 else -FAR
+        return (HARDENING, rises) if rises < end else (RESIDUAL, end)
+    if kind == HARDENING:
+        if k1 > 0.0:
+            stops = (limit - f1) / k1
+        else:
+            stops = FAR if f1 <= limit else -FAR
+        return (LIMITED, stops) if stops < falls else (FALLING, falls)
+    if kind == LIMITED and limit > least:
+        return FALLING, falls
+    return RESIDUAL, (FAR if kind == RESIDUAL else end)
+
+
+def yields(p: Numbers, s: float, m: Numbers) -> tuple[int, float]:
+    """Piece of the bound that the elastic line from its foot meets, and where (mirrored)."""
+    ku, foot, least, limit = m[KU], s * m[FOOT], residual(p, s), own(m, s)[2]
+    (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
+    low = foot + least / ku
+    if k2 * low + f2 <= least:
+        return RESIDUAL, low
+    if limit <= least:
+        return LIMITED, low
+    if k1 * low + f1 < least:
+        return LEAST, low
+    hard = (f1 + ku * foot) / (ku - k1) if ku > k1 else FAR
+    stops = foot + limit / ku
+    falls = (f2 + ku * foot) / (ku - k2)
+    meets = min(hard, min(stops, falls))
+    return (HARDENING if meets == hard else LIMITED if meets == stops else FALLING), meets
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Elastic between the bounds, or along a piece of a bound."""
+    if at == FAILED:
+        return piece(0.0, 0.0)
+    s = side(at)
+    last = ultimate(p, s) if ultimate(p, s) > 0.0 else FAR
+    if at < LEAST:
+        ku, foot = m[KU], m[FOOT]
+        return piece(ku, -ku * foot, outward(s, min(own(m, s)[3], last)), inward(s, s * foot))
+    kind = at if s > 0.0 else at - 1
+    k, f0 = line(p, s, m, kind)
+    to = min(following(p, s, m, kind)[1], last)
+    return piece(k, s * f0, turns_inward(s), outward(s, to) if to < FAR else NEVER)
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Yield, pass to the next piece of the bound, fail, turn, or end an excursion."""
+    s = side(at)
+    kind = at if s > 0.0 else at - 1
+    now = branch(p, at, m)
+    m = advance(now, m, d)
+    mine = own(m, s)
+    if kind == ELASTIC and way == 1:
+        m, _, fails = end_excursion(p, m, -s, d)
+        meets, where = yields(p, -s, m)
+        m = renew(m, -s, (*own(m, -s)[0:3], where, float(meets)))
+        return (FAILED if fails else pair(ELASTIC, -s)), m
+    if kind == ELASTIC:
+        then, where = int(mine[4]), mine[3]
+    elif way == 1:
+        then, where = following(p, s, m, kind)
+    else:
+        f = s * (now[0] * d + now[2])
+        ku = softened(p, m, f)
+        limit = min(mine[2], f) if kind >= FALLING else mine[2]
+        m = renew(m, s, (*mine[0:2], limit, s * d, float(kind)))
+        return pair(ELASTIC, s), (*m[0:10], ku, m[KU_BEFORE], d - s * f / ku, *m[13:16])
+    lost = then == RESIDUAL and residual(p, s) == 0.0
+    if lost or 0.0 < ultimate(p, s) < where:
+        return FAILED, m
+    return pair(then, s), m
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy of the line that it would unload along."""
+    if at == FAILED:
+        return 0.0
+    return recoverable_energy(p, m, branch(p, at, m), at >= LEAST, d, f)
+
+
+RULE = Rule(
+    BRANCHES
+    + tuple(
+        f"{name} {sign}"
+        for name in (
+            "elastic",
+            "yielding at the residual strength",
+            "yielding",
+            "yielding at the strength limit",
+            "yielding beyond the cap",
+            "yielding at the residual strength",
+        )
+        for sign in "+-"
+    ),
+    start,
+    branch,
+    leave,
+    recoverable,
+)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two yield forces."""
+    return Law(RULE, parameters(values, k, fy_plus, fy_minus))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "IMK_BILINEAR",
+    "bilinear with capping and cyclic deterioration",
+    fields("basic strength, post-capping strength, unloading stiffness", 3),
+    reference="Ibarra, Medina & Krawinkler 2005; Lignos & Krawinkler 2011",
+    sample="R=0.05 DP=3 DPC=8 RESIDUAL=0.2 LAMBDA=80",
+    impl=build,
+)

@@ -1,0 +1,315 @@
+r"""Ibarra-Medina-Krawinkler, pinching: reloading is slack before it aims at the largest deformation.
+
+Backbone :math:`B`, excursions and deterioration are those of `imk`.  A side is loaded along its backbone up
+to a point that becomes its *peak*, the largest deformation so far (at first the yield point), with the
+force of the backbone of the day; every turning point is its *local peak*.  It unloads with :math:`k_u`
+from the local peak to zero force, the *foot* of the other side's excursion, which goes
+
+* to the *break point*, if the foot lies before it,
+
+  .. math:: d_b = (1 - \kappa_d) (d_{peak} - B(d_{peak})/k_u), \qquad
+            f_b = \kappa_f B(d_{peak}) \frac{d_b - d_{foot}}{d_{peak} - d_{foot}}
+
+* then to the local peak, where the way there is stiffer than that to the peak, though not stiffer than
+  :math:`k_u`, and the local peak lies below the peak and within the backbone,
+* then to the peak, where the backbone goes on.
+
+Reloading is never stiffer than :math:`k`: where a soft :math:`k_u` has brought the foot too near to the
+peak, or beyond it, the peak moves on to where a line of that stiffness meets the backbone.
+
+A motion that turns before goes back along :math:`k_u` and, if it turns again, from there to the break point
+or to the peak.
+
+Memory beyond that of `imk`: deformation of the peak, deformation and force of the local peak of each side.
+
+References
+----------
+Beside those of `imk`: Clough RW, Johnston SB (1966), Effect of stiffness degradation on earthquake
+ductility requirements, Proc. Japan Earthquake Engng Symp., Tokyo; Mahin SA, Bertero VV (1975), An
+evaluation of some methods for predicting seismic behavior of reinforced concrete buildings, EERC 75-5,
+Univ. of California, Berkeley (the local peak).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, piece
+from pound_solve.laws.hysteresis.imk import (
+    BRANCHES,
+    FAILED,
+    FOOT,
+    KU,
+    KU_BEFORE,
+    advance,
+    end_excursion,
+    falling,
+    fields,
+    hardening,
+    own,
+    parameters,
+    recoverable_energy,
+    renew,
+    residual,
+    softened,
+    ultimate,
+    virgin,
+)
+from pound_solve.laws.hysteresis.mirror import inward, outward, pair, side, turns_inward
+
+ELASTIC, HARDENING, FALLING, RESIDUAL, UNLOADING = 1, 3, 5, 7, 9
+#: reloading, by the points between which it goes
+FOOT_BREAK, FOOT_LOCAL, FOOT_PEAK, BREAK_LOCAL, BREAK_PEAK, LOCAL_BREAK, LOCAL_PEAK = range(11, 25, 2)
+FAR = 1e300
+
+Point = tuple[float, float]  #: deformation and force, mirrored
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: elastic; the yield points are the peaks."""
+    sides = []
+    for s in (1.0, -1.0):
+        fy, _, ref, _ = virgin(p, s)
+        sides += [fy, ref, fy / p[0], fy / p[0], fy]
+    return ELASTIC, (*sides, p[0], p[0], 0.0, 0.0, 0.0, 0.0)
+
+
+def backbone(p: Numbers, s: float, m: Numbers, d: float) -> float:
+    """Force of the backbone of the day."""
+    (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
+    return max(residual(p, s), min(k1 * d + f1, k2 * d + f2))
+
+
+def peak(p: Numbers, s: float, m: Numbers) -> Point:
+    """Largest deformation of a side, with the force of the backbone."""
+    d = own(m, s)[2]
+    return d, backbone(p, s, m, d)
+
+
+def local(s: float, m: Numbers) -> Point:
+    """Last turning point of a side."""
+    mine = own(m, s)
+    return mine[3], mine[4]
+
+
+def break_point(p: Numbers, s: float, m: Numbers) -> tuple[bool, Point]:
+    """Whether this excursion is pinched, and the break point."""
+    kf, kd = p[16], p[17]
+    d, f = peak(p, s, m)
+    foot = s * m[FOOT]
+    where = (1.0 - kd) * (d - f / m[KU_BEFORE])
+    if kf == 1.0 or foot >= where:
+        return False, (0.0, 0.0)
+    return True, (where, kf * f * (where - foot) / (d - foot))
+
+
+def ends(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[Point, Point]:
+    """Points between which a reloading branch goes."""
+    first, last = (s * m[FOOT], 0.0), peak(p, s, m)
+    if kind >= LOCAL_BREAK:
+        first = local(s, m)
+    elif kind >= BREAK_LOCAL:
+        first = break_point(p, s, m)[1]
+    if kind in (FOOT_BREAK, LOCAL_BREAK):
+        last = break_point(p, s, m)[1]
+    elif kind in (FOOT_LOCAL, BREAK_LOCAL):
+        last = local(s, m)
+    return first, last
+
+
+def by_local(p: Numbers, s: float, m: Numbers, d: float, f: float) -> bool:
+    """Whether the way from a point to the peak goes by the local peak."""
+    (d1, f1), (d2, f2) = local(s, m), peak(p, s, m)
+    inside = d < d1 < d2 and f < f1 < f2 and f1 <= backbone(p, s, m, d1)
+    return inside and (f2 - f) * (d1 - d) < (f1 - f) * (d2 - d) and f1 - f <= m[KU] * (d1 - d)
+
+
+def cap(p: Numbers, s: float, m: Numbers) -> float:
+    """Deformation where the hardening line meets the falling one."""
+    (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
+    return (f2 - f1) / (k1 - k2)
+
+
+def bottom(p: Numbers, s: float, m: Numbers) -> float:
+    """Deformation where the falling line comes to the residual strength."""
+    k2, f2 = falling(p, s, m)
+    return (residual(p, s) - f2) / k2
+
+
+def on_backbone(p: Numbers, s: float, m: Numbers, d: float) -> int:
+    """Piece of the backbone at a deformation."""
+    if d >= bottom(p, s, m):
+        return RESIDUAL
+    return FALLING if d >= cap(p, s, m) else HARDENING
+
+
+def following(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
+    """Branch after a loading branch (of one side, by the first of its pair), and where it begins."""
+    if kind == ELASTIC:
+        return HARDENING, peak(p, s, m)[0]
+    if kind == HARDENING:
+        return FALLING, cap(p, s, m)
+    if kind == FALLING:
+        return RESIDUAL, bottom(p, s, m)
+    if kind == RESIDUAL:
+        return RESIDUAL, FAR
+    if kind == UNLOADING:
+        d, f = local(s, m)
+        pinched, (d1, f1) = break_point(p, s, m)
+        if d >= peak(p, s, m)[0]:
+            return on_backbone(p, s, m, d), d
+        return (LOCAL_BREAK if pinched and d < d1 and f < f1 else LOCAL_PEAK), d
+    d, f = ends(p, s, m, kind)[1]
+    if kind in (FOOT_BREAK, LOCAL_BREAK):
+        return (BREAK_LOCAL if by_local(p, s, m, d, f) else BREAK_PEAK), d
+    if kind in (FOOT_LOCAL, BREAK_LOCAL):
+        return LOCAL_PEAK, d
+    return on_backbone(p, s, m, d), d
+
+
+def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
+    """Slope and (mirrored) force at zero deformation of a branch."""
+    if kind == ELASTIC:
+        return p[0], 0.0
+    if kind == HARDENING:
+        return hardening(p, s, m)
+    if kind == FALLING:
+        return falling(p, s, m)
+    if kind == RESIDUAL:
+        return 0.0, residual(p, s)
+    if kind == UNLOADING:
+        d, f = local(s, m)
+        return m[KU], f - m[KU] * d
+    (d1, f1), (d2, f2) = ends(p, s, m, kind)
+    k = (f2 - f1) / (d2 - d1) if d2 > d1 else 0.0
+    return k, f2 - k * d2
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Along the backbone, back from it, or along a reloading path."""
+    if at == FAILED:
+        return piece(0.0, 0.0)
+    s = side(at)
+    kind = at if s > 0.0 else at - 1
+    k, f0 = line(p, s, m, kind)
+    to = following(p, s, m, kind)[1]
+    if ultimate(p, s) > 0.0:
+        to = min(to, ultimate(p, s))
+    back = inward(s, -f0 / k) if kind in (ELASTIC, UNLOADING) else turns_inward(s)
+    return piece(k, s * f0, back, outward(s, to) if to < FAR else NEVER)
+
+
+def enter(p: Numbers, m: Numbers, s: float, d: float) -> tuple[int, Numbers]:
+    """End an excursion at `d` and enter side `s`."""
+    m, faster, fails = end_excursion(p, m, s, d)
+    mine = own(m, s)
+    m = renew(m, s, (*mine[0:2], mine[2] * (1.0 + faster), *mine[3:5]))
+    to, f = peak(p, s, m)
+    k, foot = p[0], s * d
+    if f > k * (to - foot):
+        (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
+        to = min((f1 + k * foot) / (k - k1), (f2 + k * foot) / (k - k2))
+        m = renew(m, s, (*mine[0:2], max(to, foot + residual(p, s) / k), *mine[3:5]))
+    if fails or peak(p, s, m)[1] <= 0.0:
+        return FAILED, m
+    if break_point(p, s, m)[0]:
+        return pair(FOOT_BREAK, s), m
+    return pair(FOOT_LOCAL if by_local(p, s, m, s * d, 0.0) else FOOT_PEAK, s), m
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Go on to the next piece of a path, fail, turn, or end an excursion."""
+    s = side(at)
+    kind = at if s > 0.0 else at - 1
+    now = branch(p, at, m)
+    m = advance(now, m, d)
+    if way == 1:
+        then, where = following(p, s, m, kind)
+        lost = then == RESIDUAL and residual(p, s) == 0.0
+        if lost or 0.0 < ultimate(p, s) < where:
+            return FAILED, m
+        return pair(then, s), m
+    if kind == ELASTIC:
+        return pair(ELASTIC, -s), m
+    if kind == UNLOADING:
+        return enter(p, m, -s, d)
+    f = s * (now[0] * d + now[2])
+    ku = softened(p, m, f)
+    mine = own(m, s)
+    m = renew(m, s, (*mine[0:2], max(mine[2], s * d), s * d, f))
+    return pair(UNLOADING, s), (*m[0:10], ku, *m[11:16])
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy of the line that it would unload along."""
+    if at == FAILED:
+        return 0.0
+    kind = at if at % 2 == 1 else at - 1
+    return recoverable_energy(p, m, branch(p, at, m), kind != ELASTIC and kind != UNLOADING, d, f)
+
+
+RULE = Rule(
+    BRANCHES
+    + tuple(
+        f"{name} {sign}"
+        for name in (
+            "elastic",
+            "yielding",
+            "yielding beyond the cap",
+            "yielding at the residual strength",
+            "unloading",
+            "reloading to the break point",
+            "reloading to the local peak",
+            "reloading to the peak",
+            "reloading to the local peak",
+            "reloading to the peak",
+            "reloading to the break point",
+            "reloading to the peak",
+        )
+        for sign in "+-"
+    ),
+    start,
+    branch,
+    leave,
+    recoverable,
+)
+
+MODES = "basic strength, post-capping strength, unloading stiffness, accelerated reloading"
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two yield forces."""
+    pinch = values["KAPPAF"], values["KAPPAD"]
+    return Law(RULE, (*parameters(values, k, fy_plus, fy_minus), *pinch))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "IMK_PINCHING",
+    "pinching with capping and cyclic deterioration",
+    (
+        *fields(MODES, 4),
+        Field(
+            "KAPPAF",
+            Kind.REAL,
+            "-",
+            above=0.0,
+            hi=1.0,
+            doc="force that slack reloading aims at, as a share of the peak's",
+        ),
+        Field(
+            "KAPPAD",
+            Kind.REAL,
+            "-",
+            lo=0.0,
+            hi=1.0,
+            doc="break point: where slack reloading ends, counted back from the plastic deformation "
+            "as a share of it",
+        ),
+    ),
+    reference="Ibarra, Medina & Krawinkler 2005; Lignos & Krawinkler 2011",
+    sample="R=0.05 DP=3 DPC=8 RESIDUAL=0.2 LAMBDA=80 KAPPAF=0.3 KAPPAD=0.3",
+    impl=build,
+)

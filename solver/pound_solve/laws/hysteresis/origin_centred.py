@@ -1,0 +1,103 @@
+r"""Origin-centred: below its peak each side is elastic along the line through the origin.
+
+.. math:: f = \frac{F_m}{d_m}\, d
+
+with the largest deformation :math:`d_m` of that side and its force :math:`F_m` on the `backbone`.  Energy
+is lost only while a peak grows.
+
+Memory: the largest ductilities.
+
+References
+----------
+Ruaumoko's rule 7; the origin-oriented rule of Japanese practice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Spec
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.hysteresis.backbone import (
+    ELASTIC,
+    LOSS,
+    R,
+    backbone,
+    enter,
+    next_piece,
+    parameters,
+    reached,
+    turn,
+    yield_branch,
+    yield_force,
+)
+from pound_solve.laws.hysteresis.mirror import inward, outward, pair, side
+
+SECANT = 5
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: elastic."""
+    return ELASTIC, remember(1.0, 1.0)
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Elastic, on the backbone, or on the line between the origin and a side's peak."""
+    if at == ELASTIC:
+        return piece(p[0], 0.0, above(p[1] / p[0]), below(p[2] / p[0]))
+    if at < SECANT:
+        return yield_branch(p, at, m)
+    s = side(at)
+    mu = reached(m, s)
+    peak = mu * yield_force(p, s) / p[0]
+    return piece(backbone(p, m, s, mu) / peak, 0.0, outward(s, peak), inward(s, 0.0))
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Yield; turn; arrive at the peak, or pass through the origin."""
+    if at == ELASTIC:
+        return enter(p, m, 1.0 if way == 0 else -1.0, 1.0)
+    s = side(at)
+    if at < SECANT:
+        return next_piece(p, at, m) if way == 1 else (pair(SECANT, s), turn(p, at, m, d))
+    return enter(p, m, s, reached(m, s)) if way == 0 else (pair(SECANT, -s), m)
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy that comes back on the way to the origin."""
+    return 0.5 * f * d
+
+
+RULE = Rule(
+    (
+        "elastic",
+        "yielding +",
+        "yielding -",
+        "yielding weaker +",
+        "yielding weaker -",
+        "secant +",
+        "secant -",
+    ),
+    start,
+    branch,
+    leave,
+    recoverable,
+)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two yield forces."""
+    return Law(RULE, parameters(values, k, fy_plus, fy_minus))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "ORIGIN_CENTRED",
+    "unloads to the origin",
+    (R, *LOSS),
+    code=7,
+    reference="Ruaumoko rule 7",
+    sample="R=0.1",
+    impl=build,
+)

@@ -1,0 +1,121 @@
+r"""What CLOUGH, Q_HYST and TAKEDA share: reloading towards the peak.
+
+From the backbone (`backbone`) the spring unloads with :math:`k_u`.  Where its force is gone, at
+:math:`d_z`, it reloads the other way along the straight line from :math:`(d_z, 0)` to the target on that
+side's backbone, at the ductility
+
+.. math:: x_t = \mu - \beta (\mu - 1)
+
+where :math:`\mu` is the largest ductility of that side (1 before it has yielded: its yield point); from
+the target on it follows the backbone.  A turn on the way unloads with :math:`k_u` again; if it turns back
+before the force is gone, it returns along the same line and goes on towards the target.
+
+A reloading line is never steeper than :math:`k_u` (ours; for large :math:`\beta` the target may lie steeply
+above, or behind): it then has the slope :math:`k_u` up to the backbone.
+
+Memory: the largest ductilities; the point where the motion turned last, or where the force was gone.
+"""
+
+from __future__ import annotations
+
+from pound_solve.laws.automaton import Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.hysteresis.backbone import (
+    ELASTIC,
+    backbone,
+    enter,
+    meets,
+    next_piece,
+    reached,
+    turn,
+    unloading,
+    yield_branch,
+    yield_force,
+)
+from pound_solve.laws.hysteresis.mirror import inward, outward, pair, side, turns_inward
+
+UNLOADING, RELOADING = 5, 7
+
+# numbers of a law, after those of the backbone: beta; whether peaks count on both sides
+BETA, MIRRORED = 9, 10
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: elastic."""
+    return ELASTIC, remember(1.0, 1.0)
+
+
+def aim(p: Numbers, m: Numbers, s: float) -> tuple[float, float]:
+    """Slope of the reloading line of side `s`, and the ductility where it meets the backbone."""
+    mu, fy = reached(m, s), yield_force(p, s)
+    target = mu - p[BETA] * (mu - 1.0)
+    steepest = unloading(p, mu)
+    way, rise = target * fy / p[0] - s * m[2], backbone(p, m, s, target) - s * m[3]
+    if 0.0 < rise < steepest * way:
+        return rise / way, target
+    return steepest, meets(p, m, s, steepest, m[2], m[3])
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Elastic, on the backbone, unloading, or reloading."""
+    if at == ELASTIC:
+        return piece(p[0], 0.0, above(p[1] / p[0]), below(p[2] / p[0]))
+    if at < UNLOADING:
+        return yield_branch(p, at, m)
+    s, d, f = side(at), m[2], m[3]
+    if at < RELOADING:
+        k = unloading(p, reached(m, s))
+        return piece(k, f - k * d, outward(s, s * d), inward(s, s * (d - f / k)))
+    k, end = aim(p, m, s)
+    return piece(k, f - k * d, turns_inward(s), outward(s, end * yield_force(p, s) / p[0]))
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Yield; turn; come back to the last turn, or lose the force; arrive at the backbone."""
+    if at == ELASTIC:
+        return enter(p, m, 1.0 if way == 0 else -1.0, 1.0)
+    s = side(at)
+    if at < UNLOADING:
+        if way == 1:
+            return next_piece(p, at, m)
+        plus, minus, d, f = turn(p, at, m, d)[:4]
+        if p[MIRRORED] != 0.0:
+            plus = minus = max(plus, minus)
+        return pair(UNLOADING, s), remember(plus, minus, d, f)
+    plus, minus, d0, f0 = m[:4]
+    if at < RELOADING:
+        if way == 1:
+            return pair(RELOADING, -s), remember(plus, minus, d0 - f0 / unloading(p, reached(m, s)))
+        # a turn on the backbone too: the line from there ends where it begins
+        return pair(RELOADING, s), m
+    k, end = aim(p, m, s)
+    if way == 1:
+        return enter(p, m, s, end)
+    return pair(UNLOADING, s), remember(plus, minus, d, f0 + k * (d - d0))
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy that comes back along the unloading line."""
+    if at == ELASTIC:
+        return 0.5 * f * f / p[0]
+    s = side(at)
+    x = s * d * p[0] / yield_force(p, s) if at < UNLOADING else 0.0
+    return 0.5 * f * f / unloading(p, max(x, reached(m, s)))
+
+
+RULE = Rule(
+    (
+        "elastic",
+        "yielding +",
+        "yielding -",
+        "yielding weaker +",
+        "yielding weaker -",
+        "unloading +",
+        "unloading -",
+        "reloading +",
+        "reloading -",
+    ),
+    start,
+    branch,
+    leave,
+    recoverable,
+)

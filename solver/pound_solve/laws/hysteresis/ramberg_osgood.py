@@ -1,0 +1,213 @@
+r"""Ramberg-Osgood: a smooth power curve with Masing's loops.
+
+With :math:`u = f/F_y`, :math:`x = d/d_y`, :math:`d_y = F_y/k`, :math:`\sigma(u) = u + \alpha u |u|^{n-1}`:
+
+.. math:: x = \sigma(u) \quad\text{(skeleton)}, \qquad
+          \frac{x - x_0}{2} = \sigma\Bigl(\frac{u - u_0}{2}\Bigr) \quad\text{(branch from a reversal at 0)}
+
+A branch ends where it meets the curve that it came from: at the reversal before the last one its loop is
+closed and the branch from the one before that goes on; a branch that began on the skeleton comes back to it
+at the mirrored point.  Whatever the amplitudes, no force passes the skeleton's or overshoots a closed loop.
+
+Work along a curve scaled by :math:`c` (1 or 2) from its origin, :math:`w = (u - u_0)/c`:
+
+.. math:: \int f\,dd = c\,F_0 d_y\,\sigma(w)
+          + c^2 F_y d_y \Bigl(\frac{w^2}{2} + \frac{\alpha n}{n+1} |w|^{n+1}\Bigr)
+
+Memory: the number of open reversals, whether some were forgotten, and deformation and force of up to seven,
+the latest first.  An eighth makes the second and the third oldest be forgotten.  A branch that would have
+met the curves from there goes on to the next outer ones: the loop between the oldest reversal, which was on
+the skeleton, and its mirror image.
+
+References
+----------
+Ramberg W, Osgood WR (1943), Description of stress-strain curves by three parameters, NACA TN 902.
+Masing G (1926), Eigenspannungen und Verfestigung beim Messing, Proc. 2nd Int. Congr. Appl. Mech., Zurich.
+Jennings PC (1964), Periodic response of a general yielding structure, J. Eng. Mech. Div. ASCE 90(EM2):
+131-166 (the form with alpha and n).  Ruaumoko's rule 3 is the case alpha = 1; what becomes of a loop that
+does not come back to the skeleton is ours (the rule of closing loops, as for its rules 40 and 41).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, piece, remember
+from pound_solve.laws.hysteresis.mirror import need_both_sides, outward, turns_inward
+
+LOADING, UNLOADING = 0, 1
+DEPTH = 7.0  #: reversals remembered
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: on the skeleton."""
+    return LOADING, remember()
+
+
+def strain(p: Numbers, w: float) -> float:
+    """Deformation of the curve, sigma(w)."""
+    return w + p[4] * w * abs(w) ** (p[3] - 1.0)
+
+
+def energy(p: Numbers, w: float) -> float:
+    """Integral of w d(sigma)."""
+    n = p[3]
+    return 0.5 * w * w + p[4] * n / (n + 1.0) * abs(w) ** (n + 1.0)
+
+
+def force(p: Numbers, x: float) -> float:
+    """Force of the curve: w with sigma(w) = x, by Newton's iteration.
+
+    It starts above the root of a convex function, so that it comes down to it monotonically.
+    """
+    n, alpha = p[3], p[4]
+    size = abs(x)
+    if size == 0.0:
+        return 0.0
+    w = min(size, (size / alpha) ** (1.0 / n))
+    for _ in range(100):
+        down = (w + alpha * w**n - size) / (1.0 + alpha * n * w ** (n - 1.0))
+        w -= down
+        if abs(down) < 1e-9 * w:  # it converges quadratically: the next step is rounding
+            break
+    return w if x > 0.0 else -w
+
+
+def origin(m: Numbers) -> tuple[float, float, float]:
+    """Scale of the present curve, deformation and force of its origin."""
+    return (1.0, 0.0, 0.0) if m[0] == 0.0 else (2.0, m[2], m[3])
+
+
+def beside_forgotten(m: Numbers) -> bool:
+    """Whether the present branch came from a curve that was forgotten."""
+    return m[1] != 0.0 and (m[0] == 2.0 or m[0] == 3.0)
+
+
+def bound(m: Numbers) -> tuple[float, float]:
+    """Origin of the next outer curve beyond a forgotten one: the oldest reversal or its mirror image."""
+    return (-m[4], -m[5]) if m[0] == 2.0 else (m[6], m[7])
+
+
+def end(p: Numbers, m: Numbers) -> tuple[float, float]:
+    """Deformation and force where a branch meets the curve that it came from.
+
+    Beside a forgotten curve it is where it meets the next outer one: the branch is the steeper of the two,
+    so that bisection finds it, between its own origin and the mirror image of the other's.
+    """
+    if m[0] == 1.0:
+        return -m[2], -m[3]
+    if not beside_forgotten(m):
+        return m[4], m[5]
+    d0, f0 = bound(m)
+    fy = p[1]
+    scale = 0.5 * p[0] / fy
+    inner, outer = m[2], -d0
+    s = 1.0 if outer > inner else -1.0
+    while True:
+        d = 0.5 * (inner + outer)
+        f = m[3] + 2.0 * fy * force(p, (d - m[2]) * scale)
+        if d in (inner, outer):
+            return d, f
+        if s * (f - f0 - 2.0 * fy * force(p, (d - d0) * scale)) < 0.0:
+            inner = d
+        else:
+            outer = d
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Turns, or closes its loop."""
+    s = 1.0 if at == LOADING else -1.0
+    return piece(p[0], 0.0, turns_inward(s), outward(s, s * end(p, m)[0]) if m[0] > 0.0 else NEVER)
+
+
+def curve(
+    p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
+) -> tuple[float, float, float, float]:
+    """Force on the skeleton or on the branch from the latest reversal."""
+    k, fy, n, alpha = p[0], p[1], p[3], p[4]
+    dy = fy / k
+    c, d1, f1 = origin(m)
+    w, w0 = force(p, (d - d1) / (c * dy)), force(p, (d0 - d1) / (c * dy))
+    work = f1 * (d - d0) + c * c * fy * dy * (energy(p, w) - energy(p, w0))
+    return f1 + c * fy * w, k / (1.0 + alpha * n * abs(w) ** (n - 1.0)), 0.0, work
+
+
+def turn(m: Numbers, d: float, f: float) -> Numbers:
+    """Remember a reversal."""
+    if m[0] == DEPTH:
+        return (DEPTH - 1.0, 1.0, d, f, *m[2:10], *m[14:16], 0.0, 0.0)
+    return (m[0] + 1.0, m[1], d, f, *m[2:14])
+
+
+def close(m: Numbers) -> Numbers:
+    """Forget the reversals of the closed loop; from the skeleton on, all."""
+    if beside_forgotten(m):
+        d0, f0 = bound(m)
+        if m[0] == 2.0:
+            return remember(2.0, 0.0, d0, f0, m[4], m[5])
+        return remember(1.0, 0.0, d0, f0)
+    if m[0] <= 2.0:
+        return remember()
+    return (m[0] - 2.0, m[1], *m[6:16], 0.0, 0.0, 0.0, 0.0)
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Turn, or go on along the curve that the branch came from."""
+    if way == 1:
+        return at, close(m)
+    back = UNLOADING if at == LOADING else LOADING
+    s = 1.0 if at == LOADING else -1.0
+    if m[0] == 0.0 and s * d <= 0.0:
+        return back, m  # a virgin that starts the other way
+    return back, turn(m, d, curve(p, at, m, d, d, 0.0)[0])
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy given back along the branches that take the force off."""
+    k, fy = p[0], p[1]
+    if f > 0.0 if at == LOADING else f < 0.0:
+        m = turn(m, d, f)
+    back, now = 0.0, f
+    while now * f > 0.0:
+        f1, to = m[3], end(p, m)[1]  # there a loop closes and the curve changes
+        if to * f < 0.0:
+            to = 0.0
+        a, b = 0.5 * (now - f1) / fy, 0.5 * (to - f1) / fy
+        back -= 2.0 * f1 * (strain(p, b) - strain(p, a)) + 4.0 * fy * (energy(p, b) - energy(p, a))
+        m, now = close(m), to
+    return back * fy / k
+
+
+RULE = Rule(("loading", "unloading"), start, branch, leave, recoverable, curve)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two yield forces."""
+    need_both_sides(fy_plus, fy_minus)
+    if fy_plus != -fy_minus:
+        raise ValueError("Masing's loops need the same yield force both ways")
+    return Law(RULE, (k, fy_plus, fy_minus, values["N"], values["ALPHA"]))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "RAMBERG_OSGOOD",
+    "smooth power curve with Masing's loops",
+    (
+        Field("N", Kind.REAL, "-", above=1.0, doc="exponent; the larger, the sharper the knee"),
+        Field(
+            "ALPHA",
+            Kind.REAL,
+            "-",
+            default=1.0,
+            above=0.0,
+            doc="plastic deformation at the yield force as a share of the elastic",
+        ),
+    ),
+    code=3,
+    reference="Ramberg & Osgood 1943; Masing 1926; Jennings 1964; Ruaumoko rule 3",
+    sample="N=7",
+    impl=build,
+)

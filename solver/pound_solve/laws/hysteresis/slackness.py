@@ -1,0 +1,171 @@
+r"""Bilinear with slackness: no force inside a gap, bilinear outside it.
+
+The spring takes hold at :math:`d = g^+` (and at :math:`g^- \le 0`).  On the positive side
+
+.. math:: f = k (d - g^+ - p^+), \qquad f \le F_y^+ + H p^+, \qquad H = \frac{k r}{1 - r}
+
+where :math:`p^+` is the plastic deformation of that side, and likewise on the negative side.
+With GROW=YES (braces: the slack grows by the plastic deformation) each side keeps its own :math:`p`;
+with GROW=NO the whole slack zone moves with one common :math:`p` and hardening is kinematic:
+after a large :math:`p` the other side's yield force :math:`F_y^- + H p` lies above zero,
+and the spring yields back before it lets go.
+
+References
+----------
+Ruaumoko's rule 5 (the shape; written for slender cross braces).  The choice of H, which makes the yield
+line run at slope :math:`r k` through the first yield point, and the two forms of growth are ours.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import (
+    TURNS_DOWN,
+    TURNS_UP,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    piece,
+    remember,
+)
+
+SLACK, ELASTIC_PLUS, ELASTIC_MINUS, YIELDING_PLUS, YIELDING_MINUS, BACK_PLUS, BACK_MINUS = range(7)
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: in the slack, or on a side that has none (or less than none, a prestress)."""
+    if p[3] <= 0.0:
+        return ELASTIC_PLUS, remember()
+    return (ELASTIC_MINUS if p[4] >= 0.0 else SLACK), remember()
+
+
+def line(p: Numbers, at: int) -> tuple[float, float, float]:
+    """Gap, yield force and side (+1, -1) of a yield line; yielding back stays on the side that holds."""
+    plus, minus, gap_plus, gap_minus = p[1:5]
+    if at == YIELDING_PLUS:
+        return gap_plus, plus, 1.0
+    if at == YIELDING_MINUS:
+        return gap_minus, minus, -1.0
+    return (gap_plus, minus, 1.0) if at == BACK_PLUS else (gap_minus, plus, -1.0)
+
+
+def yields_back(p: Numbers, at: int, m: Numbers) -> float:
+    """Force at which an elastic spring yields back, if it gets so far before it lets go."""
+    k, plus, minus, _, _, r, grow = p[:7]
+    if grow != 0.0:
+        return 0.0
+    hard = k * r / (1.0 - r) * m[0]
+    return minus + hard if at == ELASTIC_PLUS else plus + hard
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Nothing, elastic on one side, or along a yield line."""
+    k, plus, minus, gap_plus, gap_minus, r = p[:6]
+    hard = k * r / (1.0 - r)
+    on_plus, on_minus = gap_plus + m[0], gap_minus + m[1]
+    if at == SLACK:
+        return piece(0.0, 0.0, above(on_plus), below(on_minus))
+    if at == ELASTIC_PLUS:
+        lets_go = (-k, 0.0, k * on_plus + max(yields_back(p, at, m), 0.0))
+        return piece(k, -k * on_plus, (k, 0.0, -k * on_plus - plus - hard * m[0]), lets_go)
+    if at == ELASTIC_MINUS:
+        lets_go = (k, 0.0, -k * on_minus - min(yields_back(p, at, m), 0.0))
+        return piece(k, -k * on_minus, (-k, 0.0, k * on_minus + minus + hard * m[1]), lets_go)
+    gap, fy, side = line(p, at)
+    slope = r * k
+    f0 = (1.0 - r) * fy - slope * gap
+    if at == YIELDING_PLUS:
+        return piece(slope, f0, TURNS_DOWN)
+    if at == YIELDING_MINUS:
+        return piece(slope, f0, TURNS_UP)
+    turn = TURNS_UP if side > 0.0 else TURNS_DOWN
+    return piece(slope, f0, turn, (-side * slope, 0.0, -side * f0))
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Take hold, yield, let go, or unload where the motion turns."""
+    k, grow = p[0], p[6]
+    if at == SLACK:
+        return (ELASTIC_PLUS if way == 0 else ELASTIC_MINUS), m
+    if at == ELASTIC_PLUS:
+        if way == 0:
+            return YIELDING_PLUS, m
+        return (BACK_PLUS if yields_back(p, at, m) > 0.0 else SLACK), m
+    if at == ELASTIC_MINUS:
+        if way == 0:
+            return YIELDING_MINUS, m
+        return (BACK_MINUS if yields_back(p, at, m) < 0.0 else SLACK), m
+    gap, fy, side = line(p, at)
+    slope = p[5] * k
+    now = d - gap - ((1.0 - p[5]) * fy + slope * (d - gap)) / k
+    if grow == 0.0:
+        m = remember(now, now)
+    elif side > 0.0:
+        m = remember(now, m[1])
+    else:
+        m = remember(m[0], now)
+    if way == 1:
+        return SLACK, m
+    return (ELASTIC_PLUS if side > 0.0 else ELASTIC_MINUS), m
+
+
+RULE = Rule(
+    ("slack", "elastic +", "elastic -", "yielding +", "yielding -", "yielding back +", "yielding back -"),
+    start,
+    branch,
+    leave,
+)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two yield forces."""
+    gap = values["SLACK"]
+    gap_minus = gap[1] if len(gap) == 2 else -gap[0]
+    if gap[0] < 0 or gap_minus > 0:
+        raise ValueError("SLACK is written positive, then negative (signed)")
+    grow = float(values["GROW"] == "YES")
+    return Law(RULE, (k, fy_plus, fy_minus, gap[0], gap_minus, values["R"], grow))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "BILINEAR_SLACK",
+    "bilinear with slackness",
+    (
+        Field(
+            "R",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            lo=0.0,
+            below=1.0,
+            doc="post-yield stiffness as a share of the initial",
+        ),
+        Field(
+            "SLACK",
+            Kind.REAL,
+            "L",
+            default=(0.0,),
+            count=(1, 2),
+            doc="deformation at which it takes hold, positive and (signed) negative; "
+            "one value: the same both ways",
+        ),
+        Field(
+            "GROW",
+            Kind.WORD,
+            default="YES",
+            words=("YES", "NO"),
+            codes={"YES": 0, "NO": 1},
+            doc="slack grows with yield",
+        ),
+    ),
+    code=5,
+    reference="Ruaumoko rule 5",
+    sample="R=0.1 SLACK=0.5",
+    impl=build,
+)

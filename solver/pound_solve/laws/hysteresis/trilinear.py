@@ -1,0 +1,131 @@
+r"""Trilinear with kinematic hardening: two yield points each way.
+
+A spring :math:`r_2 k` beside two elastic, perfectly plastic ones: one of stiffness :math:`(1 - r) k` that
+yields at the deformation :math:`d_1 = F_y / k`, one of :math:`(r - r_2) k` that yields at
+
+.. math:: d_2 = d_1 \left(1 + \frac{f_2 - 1}{r}\right), \qquad
+          f = r_2 k d + (1 - r) k (d - p_1) + (r - r_2) k (d - p_2)
+
+so that the slopes are k, r k beyond :math:`F_y`, and :math:`r_2 k` beyond :math:`f_2 F_y`.  Because the
+first range lies within the second, the first spring always slips before the second; turns release both.
+Cycles obey Masing's rule.
+
+Memory: the slips :math:`p_1, p_2`.
+
+References
+----------
+Iwan WD (1966), A distributed-element model for hysteresis and its steady-state dynamic response, J. Appl.
+Mech. 33(4): 893-900.  In Ruaumoko under this name, but its number there is not certain, so none is
+accepted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import (
+    TURNS_DOWN,
+    TURNS_UP,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    piece,
+    remember,
+)
+
+ELASTIC, FIRST_PLUS, FIRST_MINUS, SECOND_PLUS, SECOND_MINUS = range(5)
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: elastic."""
+    return ELASTIC, remember()
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Elastic, the first spring slips, or both."""
+    k, r, r2, d1_plus, d1_minus, d2_plus, d2_minus = p[:7]
+    first, second = (1.0 - r) * k, (r - r2) * k
+    if at == ELASTIC:
+        return piece(k, -first * m[0] - second * m[1], above(m[0] + d1_plus), below(m[0] + d1_minus))
+    if at == FIRST_PLUS:
+        return piece(r * k, first * d1_plus - second * m[1], TURNS_DOWN, above(m[1] + d2_plus))
+    if at == FIRST_MINUS:
+        return piece(r * k, first * d1_minus - second * m[1], TURNS_UP, below(m[1] + d2_minus))
+    if at == SECOND_PLUS:
+        return piece(r2 * k, first * d1_plus + second * d2_plus, TURNS_DOWN)
+    return piece(r2 * k, first * d1_minus + second * d2_minus, TURNS_UP)
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Slip, slip more, or unload where the motion turns."""
+    d1_plus, d1_minus, d2_plus, d2_minus = p[3:7]
+    if at == ELASTIC:
+        return (FIRST_PLUS if way == 0 else FIRST_MINUS), m
+    if at == FIRST_PLUS:
+        return (ELASTIC, remember(d - d1_plus, m[1])) if way == 0 else (SECOND_PLUS, m)
+    if at == FIRST_MINUS:
+        return (ELASTIC, remember(d - d1_minus, m[1])) if way == 0 else (SECOND_MINUS, m)
+    if at == SECOND_PLUS:
+        return ELASTIC, remember(d - d1_plus, d - d2_plus)
+    return ELASTIC, remember(d - d1_minus, d - d2_minus)
+
+
+RULE = Rule(
+    ("elastic", "yielding +", "yielding -", "yielding + again", "yielding - again"), start, branch, leave
+)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two first yield forces.
+
+    Raises
+    ------
+    ValueError
+        The slopes do not fall: 1 > R > 0 and R > R2 are needed.
+    """
+    r, r2, f2 = values["R"], values["R2"], values["F2"]
+    if not 0.0 < r < 1.0 or r2 >= r:
+        raise ValueError("slopes must fall: R between 0 and 1, and R2 below R")
+    plus, minus = (1.0 + (f - 1.0) / r for f in (f2[0], f2[-1]))
+    d1_plus, d1_minus = fy_plus / k, fy_minus / k
+    return Law(RULE, (k, r, r2, d1_plus, d1_minus, d1_plus * plus, d1_minus * minus))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "TRILINEAR",
+    "trilinear, kinematic hardening",
+    (
+        Field(
+            "R",
+            Kind.REAL,
+            "-",
+            above=0.0,
+            below=1.0,
+            doc="stiffness after the first yield as a share of the initial",
+        ),
+        Field(
+            "R2",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            below=1.0,
+            doc="stiffness after the second yield as a share of the initial",
+        ),
+        Field(
+            "F2",
+            Kind.REAL,
+            "-",
+            above=1.0,
+            count=(1, 2),
+            doc="second yield force as a multiple of the first; two values: positive and negative side",
+        ),
+    ),
+    reference="Iwan 1966",
+    sample="R=0.4 R2=0.05 F2=1.6",
+    impl=build,
+)

@@ -1,0 +1,334 @@
+r"""Wayne Stewart: nailed timber, pinched and softening, with slackness and a falling branch.
+
+The *backbone* of the positive side starts at the slackness :math:`g`:
+
+.. math:: k\,(d - g) \text{ up to } F_y, \quad r k \text{ up to } F_u, \quad p_{tri}\,k \text{ beyond}
+
+(:math:`p_{tri} < 0`: it falls).  Once a side has yielded, both sides are pinched:
+
+* from the backbone it unloads with :math:`p_{unl}\,k`, to the *pinched line* of the other side;
+* the pinched lines are :math:`f = \pm F_i + r_p k d`: the nail slides in the hole that it has crushed;
+* the pinched line ends on the *reloading line* of slope
+
+  .. math:: k_p = k \left(\frac{F_y/k}{\beta\,(d_{un} - g)}\right)^{\alpha}
+
+  through the backbone's point at :math:`g + \beta\,(d_{un} - g)`, with :math:`d_{un}` the largest
+  deformation of that side so far; there the backbone goes on.  A side that has not yielded reloads with
+  :math:`k` to its yield point;
+* a motion that turns anywhere else unloads and reloads with :math:`p_{unl}\,k` between the paths of the
+  two sides.
+
+Where the falling branch comes to zero force, or to the pinched line of the other side, the connection has
+failed: it carries nothing any more.
+
+Memory: the largest deformations :math:`d_{un} - g` of both sides (mirrored), the foot :math:`d - f/k_u` of
+the present unloading line, and for its upper and its lower end the branch there and the deformation.
+
+References
+----------
+Stewart WG (1987), The seismic design of plywood sheathed shear walls, PhD thesis, University of Canterbury;
+Ruaumoko's rule 9.  The power law of the reloading line as stated by Folz B and Filiatrault A (2001), Cyclic
+analysis of wood shear walls, J. Struct. Eng. 127(4): 433-441, who have :math:`r_p` as a number of its own
+(their r4).  Ours: deformations in the power law count from the slackness; the reloading line is never
+flatter than the one from the intercept :math:`F_i` to its target; failure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.hysteresis.mirror import inward, need_both_sides, outward, pair, side, turns_inward
+
+SLACK, FAILED, UNLOADING = 0, 1, 2
+#: the first of each pair of branches: positive side, negative side
+ELASTIC, YIELDING, BEYOND, PINCHED, RELOADING = 3, 5, 7, 9, 11
+
+Line = tuple[float, float]  #: slope and force at zero deformation
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: in the slack."""
+    return SLACK, remember()
+
+
+def backbone(p: Numbers, s: float) -> tuple[float, float, float, Line, Line]:
+    """Slackness, deformations at yield and at the ultimate force, line to it and line beyond (mirrored)."""
+    k, r, tri = p[0], p[3], p[7]
+    if s > 0.0:
+        fy, fu, gap = p[1], p[4], p[8]
+    else:
+        fy, fu, gap = -p[2], -p[5], -p[9]
+    dy = gap + fy / k
+    # without hardening the ultimate force is the yield force
+    du = dy + (fu - fy) / (r * k) if r > 0.0 else dy
+    return gap, dy, du, (r * k, fy - r * k * dy), (tri * k, fu - tri * k * du)
+
+
+def pinched(p: Numbers) -> Line:
+    """Line that a side is reloaded along first."""
+    return p[12] * p[0], p[6]
+
+
+def unloading(p: Numbers) -> float:
+    """Stiffness of the lines between the paths of both sides."""
+    return p[13] * p[0]
+
+
+def reloading(p: Numbers, s: float, m: Numbers) -> tuple[float, float, float]:
+    """Target deformation and the line towards it: slope and force at zero deformation."""
+    k, beta, alpha = p[0], p[10], p[11]
+    gap, dy, du, (k1, f1), (k2, f2) = backbone(p, s)
+    most = m[0] if s > 0.0 else m[1]
+    if most == 0.0:
+        return dy, k, -k * gap
+    reach = beta * most
+    target = gap + reach
+    f = max(k1 * target + f1 if target < du else k2 * target + f2, 0.0)
+    slope = max(k * ((dy - gap) / reach) ** alpha, (f - pinched(p)[1]) / target)
+    return target, slope, f - slope * target
+
+
+def pinch_end(p: Numbers, s: float, m: Numbers) -> tuple[bool, float]:
+    """Whether the pinched line of a side ends on its reloading line (else on the falling backbone), and
+    where.
+    """
+    slope, f0 = pinched(p)
+    target, k, f = reloading(p, s, m)
+    if k * target + f > slope * target + f0:
+        return True, (f0 - f) / (k - slope)
+    k2, f2 = backbone(p, s)[4]
+    return False, (f2 - f0) / (slope - k2)
+
+
+def upper_end(p: Numbers, s: float, m: Numbers, foot: float) -> tuple[float, float]:
+    """Branch and mirrored deformation where an unloading line from its foot meets the path of a side."""
+    ku = unloading(p)
+    slope, f0 = pinched(p)
+    onto_line, end = pinch_end(p, s, m)
+    meets = (f0 + ku * foot) / (ku - slope)
+    if meets <= end:
+        return float(pair(PINCHED, s)), meets
+    if onto_line:
+        _, k, f = reloading(p, s, m)
+        # parallel only if the two coincide
+        return float(pair(RELOADING, s)), (f + ku * foot) / (ku - k) if ku > k * (1.0 + 1e-9) else meets
+    k2, f2 = backbone(p, s)[4]
+    return float(pair(BEYOND, s)), (f2 + ku * foot) / (ku - k2)
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Nothing; along the backbone; between the paths of both sides; along a side's pinched path."""
+    k = p[0]
+    if at == SLACK:
+        return piece(0.0, 0.0, above(p[8]), below(p[9]))
+    if at == FAILED:
+        return piece(0.0, 0.0)
+    if at == UNLOADING:
+        ku = unloading(p)
+        return piece(ku, -ku * m[2], above(m[4]), below(m[6]))
+    s = side(at)
+    gap, dy, du, (k1, f1), (k2, f2) = backbone(p, s)
+    if at < YIELDING:
+        return piece(k, -s * k * gap, outward(s, dy), inward(s, gap))
+    if at < BEYOND:
+        return piece(k1, s * f1, turns_inward(s), outward(s, du))
+    slope, f0 = pinched(p)
+    if at < PINCHED:
+        # it fails at zero force or on the other side's pinched line, slope d - f0
+        no_force = (-s * k2, 0.0, -f2)
+        meets = (s * (slope - k2), 0.0, -f0 - f2)
+        return piece(k2, s * f2, turns_inward(s), no_force, meets)
+    if at < RELOADING:
+        return piece(slope, s * f0, turns_inward(s), outward(s, pinch_end(p, s, m)[1]))
+    target, kp, f = reloading(p, s, m)
+    return piece(kp, s * f, turns_inward(s), outward(s, target))
+
+
+def unload(p: Numbers, at: int, m: Numbers, s: float, d: float, f: float) -> tuple[int, Numbers]:
+    """Turn back from a path of side `s` (branch `at`) at deformation `d` and force `f`."""
+    foot = d - f / unloading(p)
+    other, end = upper_end(p, -s, m, -s * foot)
+    if s > 0.0:
+        return UNLOADING, remember(m[0], m[1], foot, float(at), d, other, -end)
+    return UNLOADING, remember(m[0], m[1], foot, other, end, float(at), d)
+
+
+def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Take hold, yield, let go, pass the ultimate force, fail, turn, or reach the next line of a path."""
+    if at == SLACK:
+        return (ELASTIC if way == 0 else ELASTIC + 1), m
+    if at == UNLOADING:
+        return (int(m[3]) if way == 0 else int(m[5])), m
+    s = side(at)
+    if at < YIELDING:
+        return (pair(YIELDING, s) if way == 0 else SLACK), m
+    if at < PINCHED:
+        if way == 0:
+            most = s * d - backbone(p, s)[0]
+            if s > 0.0:
+                m = remember(max(most, m[0]), m[1])
+            else:
+                m = remember(m[0], max(most, m[1]))
+        elif at < BEYOND:
+            return pair(BEYOND, s), m
+        else:
+            return FAILED, m
+    elif way == 1:
+        if at < RELOADING:
+            return pair(RELOADING if pinch_end(p, s, m)[0] else BEYOND, s), m
+        return pair(YIELDING if reloading(p, s, m)[0] < backbone(p, s)[2] else BEYOND, s), m
+    line = branch(p, at, m)
+    return unload(p, at, m, s, d, line[0] * d + line[2])
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy of the lines that take the force off: an unloading line, and what of the other side's pinched
+    line has a force of the same sign.
+    """
+    if at < UNLOADING or f == 0.0:
+        return 0.0
+    if ELASTIC <= at < YIELDING:
+        return 0.5 * f * f / p[0]
+    s = -1.0 if f > 0.0 else 1.0
+    ku = unloading(p)
+    slope, f0 = pinched(p)
+    if at == pair(PINCHED, s):
+        left = f
+    else:
+        left = s * min((f0 + slope * s * (d - f / ku)) / (1.0 - slope / ku), 0.0)
+    return 0.5 * (f * f - left * left) / ku + (0.5 * left * left / slope if left != 0.0 else 0.0)
+
+
+RULE = Rule(
+    (
+        "slack",
+        "failed",
+        "unloading",
+        "elastic +",
+        "elastic -",
+        "yielding +",
+        "yielding -",
+        "yielding + beyond the ultimate force",
+        "yielding - beyond the ultimate force",
+        "pinched +",
+        "pinched -",
+        "reloading +",
+        "reloading -",
+    ),
+    start,
+    branch,
+    leave,
+    recoverable,
+)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two yield forces."""
+    need_both_sides(fy_plus, fy_minus)
+    fu, slack, r, fi = values["FU"], values["SLACK"], values["R"], values["FI"]
+    fu_minus = fu[1] if len(fu) == 2 else -fu[0]
+    gap_minus = slack[1] if len(slack) == 2 else -slack[0]
+    if slack[0] < 0 or gap_minus > 0:
+        raise ValueError("SLACK is written positive, then negative (signed)")
+    if fu[0] < fy_plus or fu_minus > fy_minus:
+        raise ValueError("FU is not less than the yield force; positive, then negative (signed)")
+    if r == 0.0 and (fu[0], fu_minus) != (fy_plus, fy_minus):
+        raise ValueError("without hardening (R=0) the ultimate force FU is the yield force")
+    pinch = r if values["RPINCH"] is None else values["RPINCH"]
+    p = (
+        *(k, fy_plus, fy_minus, r, fu[0], fu_minus, fi, values["PTRI"], slack[0], gap_minus),
+        *(values["BETA"], values["ALPHA"], pinch, values["PUNL"]),
+    )
+    law = Law(RULE, p)
+    slope, f0 = pinched(law.p)
+    for s in (1.0, -1.0):
+        _, dy, du, (k1, f1), _ = backbone(law.p, s)
+        if any(slope * d + f0 >= k1 * d + f1 for d in (dy, du)):
+            raise ValueError(
+                "FI and RPINCH: the pinched line passes below the yield and the ultimate force"
+            )
+    return law
+
+
+SPEC = Spec(
+    "hysteresis",
+    "WAYNE_STEWART",
+    "pinched, softening and degrading: nailed timber",
+    (
+        Field(
+            "R",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            lo=0.0,
+            below=1.0,
+            doc="stiffness from the yield to the ultimate force as a share of the initial",
+        ),
+        Field(
+            "FU",
+            Kind.REAL,
+            "F",
+            count=(1, 2),
+            doc="ultimate force, positive and (signed) negative; one value: the same both ways",
+        ),
+        Field("FI", Kind.REAL, "F", lo=0.0, doc="force at which the pinched lines cross zero deformation"),
+        Field(
+            "PTRI",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            hi=0.0,
+            doc="stiffness beyond the ultimate force as a share of the initial",
+        ),
+        Field(
+            "PUNL",
+            Kind.REAL,
+            "-",
+            default=1.0,
+            lo=1.0,
+            doc="unloading stiffness as a multiple of the initial",
+        ),
+        Field(
+            "SLACK",
+            Kind.REAL,
+            "L",
+            default=(0.0,),
+            count=(1, 2),
+            doc="deformation at which it takes hold at first, positive and (signed) negative; "
+            "one value: the same both ways",
+        ),
+        Field(
+            "BETA",
+            Kind.REAL,
+            "-",
+            default=1.0,
+            lo=1.0,
+            doc="softening: reloading aims at this multiple of the largest deformation",
+        ),
+        Field(
+            "ALPHA",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            lo=0.0,
+            hi=1.0,
+            doc="power of the reloading stiffness; 0: it stays the initial one",
+        ),
+        Field(
+            "RPINCH",
+            Kind.REAL,
+            "-",
+            default=None,
+            lo=0.0,
+            below=1.0,
+            doc="stiffness of the pinched lines as a share of the initial; left out: R",
+        ),
+    ),
+    code=9,
+    reference="Stewart 1987; Folz & Filiatrault 2001; Ruaumoko rule 9",
+    sample="R=0.2 FU=1.6 FI=0.2 PTRI=-0.05 PUNL=1.4 BETA=1.1 ALPHA=0.4",
+    impl=build,
+)

@@ -1,0 +1,34 @@
+"""RECORD: a force history from a file, straight lines between its samples.
+
+The numbers stand as they are in the file, whatever unit it names: they are factors on FX, FY and MZ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.loading.forces.base import COMMON, Force, finish
+from pound_solve.loading.motions import record
+from pound_solve.loading.motions.base import Context
+
+
+def build(card_values: Mapping[str, Any], context: Context) -> Force:
+    """Force of a RECORD card; raises as `motions.record.samples` does."""
+    found = record.samples(card_values, context)
+    info = {"kind": SPEC.name, "name": str(card_values["FILE"]), "dt": record.step(found.raw)}
+    return finish(card_values, found.lines, info | {"sha256": found.sha256})
+
+
+SPEC: Final = Spec(
+    "force",
+    "RECORD",
+    "force history from a file",
+    (
+        *COMMON,
+        Field("FILE", Kind.TEXT, doc="file of the history, or the name of a known record"),
+        *record.FIELDS,
+    ),
+    impl=build,
+)

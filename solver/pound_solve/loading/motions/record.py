@@ -1,0 +1,196 @@
+"""RECORD: a recorded ground acceleration, straight lines between its samples.
+
+START and DURATION cut the record in its own time; TSCALE then stretches what is left.  Outside of the
+record, and after the cut, the acceleration is zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.loading.motions.base import COMMON, Context, Motion, Piecewise, finish
+from pound_solve.loading.motions.piecewise import Array
+from pound_solve.loading.records import formats
+from pound_solve.loading.records.base import RawRecord, RecordError
+from pound_solve.loading.records.known import find, known, load
+
+_UNITS: Final = ("G", "M/S2", "CM/S2", "GAL", "MM/S2", "DECK")
+_PER_METRE: Final = {"M/S2": 1.0, "CM/S2": 100.0, "GAL": 100.0, "MM/S2": 1000.0}
+
+
+class Samples(NamedTuple):
+    """What a card takes out of a record's file.
+
+    Attributes
+    ----------
+    t, values : ndarray, shape (n,)
+        Times from the start of the history, START, DURATION and TSCALE applied, and values as in the file.
+    raw : RawRecord
+    path : Path
+    sha256 : str
+    """
+
+    t: Array
+    values: Array
+    raw: RawRecord
+    path: Path
+    sha256: str
+
+    @property
+    def lines(self) -> Piecewise:
+        """Straight lines between the samples, from t = 0 on."""
+        lines = Piecewise.from_samples(self.t, self.values)
+        return lines if lines.start <= 0 else lines.slice(0.0, lines.end)
+
+
+def samples(card_values: Mapping[str, Any], context: Context) -> Samples:
+    """Read the record that a card names.
+
+    Parameters
+    ----------
+    card_values : mapping
+        Bound values of the card's `FIELDS` and of its format.
+    context : Context
+
+    Raises
+    ------
+    RecordError
+        Whatever keeps the record from being used; codes in :mod:`pound_solve.loading.records.base`.
+    """
+    path = find(str(card_values["FILE"]), context.search_path)
+    text, digest = load(path)
+    try:
+        raw: RawRecord = formats()[card_values.get("FORMAT", "AUTO")].impl.read(text, card_values)
+        start, duration = float(card_values.get("START", 0.0)), card_values.get("DURATION")
+        t, values = _window(raw.t, raw.values, start, duration)
+    except RecordError as error:
+        raise error.within(path.name) from None
+    return Samples(t * float(card_values.get("TSCALE", 1.0)), values, raw, path, digest)
+
+
+def build(card_values: Mapping[str, Any], context: Context) -> Motion:
+    """Motion of a RECORD card; raises as `samples` does."""
+    name = str(card_values["FILE"])
+    found = samples(card_values, context)
+    raw, path = found.raw, found.path
+    unit, warnings = _unit(raw, card_values.get("UNIT"))
+    if card_values.get("DIRECTION") == "R" and unit != "DECK":
+        message = f"a turn is no share of gravity and no length, but the record is taken to be in {unit}"
+        raise RecordError("R405", message, "write UNIT=DECK: radians per time squared", "DIRECTION")
+    scale = float(card_values.get("SCALE", 1.0))
+    factor = _factor(unit, context) * scale
+    if unit == "G" and abs(abs(scale) / context.gravity - 1.0) < 0.01:
+        warnings.append(f"SCALE={scale:g} is gravity, by which samples in G are multiplied anyway")
+    shipped = known(name)
+    if shipped and found.sha256 != shipped.sha256:
+        warnings.append(
+            f"{path.name} differs from the file that {name} stood for when this program was released"
+        )
+    return finish(
+        card_values,
+        found.lines * factor,
+        context,
+        {
+            "kind": SPEC.name,
+            "name": name,
+            "file": str(path),
+            "format": raw.format or card_values.get("FORMAT", "AUTO"),
+            "component": raw.component,
+            "title": raw.title,
+            "npts": len(raw.values),
+            "dt": step(raw),
+            "unit": unit,
+            "start": float(card_values.get("START", 0.0)),
+            "tscale": float(card_values.get("TSCALE", 1.0)),
+            "sha256": found.sha256,
+            "warnings": warnings,
+        },
+    )
+
+
+def _unit(raw: RawRecord, wanted: str | None) -> tuple[str, list[str]]:
+    """Unit of the samples, and what is odd about it."""
+    if wanted is None:
+        return raw.unit or "G", []
+    if raw.unit and _PER_METRE.get(raw.unit) != _PER_METRE.get(wanted):
+        return wanted, [f"the file says that it is in {raw.unit}; UNIT={wanted} of the deck is used"]
+    return wanted, []
+
+
+def _factor(unit: str, context: Context) -> float:
+    """Factor from samples to [L/T^2]."""
+    if unit == "DECK":
+        return 1.0
+    return context.gravity if unit == "G" else context.metre / _PER_METRE[unit]
+
+
+def _window(t: Array, a: Array, start: float, duration: float | None) -> tuple[Array, Array]:
+    """Samples from `start` on for `duration`, times counted from `start`; the cuts become samples."""
+    stop = float(t[-1]) if duration is None else min(float(t[-1]), start + duration)
+    if start >= t[-1] or stop <= t[0]:
+        raise RecordError(
+            "R405",
+            f"START and DURATION leave nothing of the record, which runs from {t[0]:g} to {t[-1]:g} s",
+        )
+    # a sample a rounding error away from a cut is the cut
+    near = 1e-12 * float(np.abs(t[[0, -1]]).max())
+    first = max(start, float(t[0]))
+    inner = (t > first + near) & (t < stop - near)
+    cut = np.concatenate(([first], t[inner], [stop]))
+    return cut - start, np.concatenate(([np.interp(first, t, a)], a[inner], [np.interp(stop, t, a)]))
+
+
+def step(raw: RawRecord) -> float | None:
+    """Step of the samples [s], None for uneven ones; times printed with few digits count as even."""
+    if raw.dt is not None:
+        return raw.dt
+    steps = np.diff(raw.t)
+    mean = float(steps.mean())
+    # nine digits: 0.02 shall not come out as 0.019999999999999997
+    return float(f"{mean:.9g}") if np.abs(steps - mean).max() <= 0.01 * mean else None
+
+
+#: what of a file acts, and when
+FIELDS: Final = (
+    Field("FORMAT", Kind.FAMILY, default="AUTO", family="record", doc="how the file is written"),
+    Field(
+        "START",
+        Kind.REAL,
+        "T",
+        default=0.0,
+        doc="time of the record that acts at t = 0; below zero: a delay",
+    ),
+    Field(
+        "DURATION",
+        Kind.REAL,
+        "T",
+        default=None,
+        above=0,
+        doc="length of the part that acts; left out: to the end",
+    ),
+    Field("TSCALE", Kind.REAL, "-", default=1.0, above=0, doc="factor on the times of the part that acts"),
+)
+
+SPEC: Final = Spec(
+    "motion",
+    "RECORD",
+    "recorded accelerogram",
+    (
+        Field("FILE", Kind.TEXT, doc="file of the record, or the name of a known record", positional=True),
+        Field(
+            "UNIT",
+            Kind.WORD,
+            default=None,
+            words=_UNITS,
+            doc="unit of the samples; left out: what the file says, else G; DECK: the deck's own",
+        ),
+        *FIELDS,
+        *COMMON,
+    ),
+    impl=build,
+)

@@ -1,0 +1,157 @@
+"""SYNTHETIC: white noise through the two filters of Clough and Penzien, under an envelope.
+
+The ground below is taken as white noise.  A soil layer of frequency wg and damping zg passes it on
+(Kanai 1957; Tajimi 1960), and a second filter wf, zf takes out what is slower than the ground can move
+(Clough & Penzien 1975).  With S0 the density of the noise, that of the ground acceleration is
+
+    S(w) = S0 |Hg(w)|^2 |Hf(w)|^2
+    Hg(w) = (wg^2 + 2 i zg wg w) / (wg^2 - w^2 + 2 i zg wg w)
+    Hf(w) = w^2 / (wf^2 - w^2 + 2 i zf wf w)
+
+The envelope of Jennings, Housner & Tsai (1968) rises as (t / RISE)^2, stays at one for STRONG and falls as
+exp(-DECAY s) after that.  What comes out is scaled to PGA.  S0 therefore cancels, and is not a field.
+
+The filters are applied to the Fourier transform of the noise, so that the motion is stationary from its
+first sample on and only the envelope makes it grow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+import numpy as np
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.loading.motions.base import COMMON, Context, Motion, Piecewise, RecordError, finish
+from pound_solve.loading.motions.piecewise import Array
+
+MOST_SAMPLES: Final = 10_000_000
+
+
+def build(card_values: Mapping[str, Any], context: Context) -> Motion:
+    """Motion of a SYNTHETIC card; the same SEED gives the same motion.
+
+    Parameters
+    ----------
+    card_values : mapping
+        Bound values of the card's fields.
+    context : Context
+
+    Raises
+    ------
+    RecordError
+        R405 where DURATION is shorter than two steps.
+    """
+    dt, duration = float(card_values["DT"]), float(card_values["DURATION"])
+    n = round(duration / dt) + 1
+    if n < 3:
+        raise RecordError("R405", f"DURATION={duration:g} is shorter than two steps DT={dt:g}")
+    if duration / dt > MOST_SAMPLES:
+        raise RecordError(
+            "R405", f"DT={dt:g} asks for more than {MOST_SAMPLES} samples", "give a longer DT"
+        )
+    wg, zg = float(card_values["WG"]), float(card_values["ZG"])
+    wf = 0.1 * wg if card_values.get("WF") is None else float(card_values["WF"])
+    zf = zg if card_values.get("ZF") is None else float(card_values["ZF"])
+    seed = int(card_values["SEED"])
+
+    t = dt * np.arange(n, dtype=np.float64)
+    noise = np.random.default_rng(seed).standard_normal(n)
+    w = np.asarray(2 * np.pi * np.fft.rfftfreq(n, dt), dtype=np.float64)
+    a = np.fft.irfft(np.fft.rfft(noise) * transfer(w, wg, zg, wf, zf), n)
+    a *= envelope(t, float(card_values["RISE"]), float(card_values["STRONG"]), float(card_values["DECAY"]))
+    a *= float(card_values["PGA"]) / np.abs(a).max()
+    return finish(
+        card_values,
+        Piecewise.from_samples(t, a * float(card_values.get("SCALE", 1.0))),
+        context,
+        {
+            "kind": SPEC.name,
+            "name": f"{SPEC.name} SEED={seed}",
+            "unit": "DECK",
+            "npts": n,
+            "dt": dt,
+            "start": 0.0,
+        }
+        | {"seed": seed, "wg": wg, "zg": zg, "wf": wf, "zf": zf},
+    )
+
+
+def transfer(w: Array, wg: float, zg: float, wf: float, zf: float) -> Any:
+    """Product of the filters Hg and Hf, complex, shape of `w`.
+
+    Parameters
+    ----------
+    w : ndarray, [rad/T]
+        Circular frequencies.
+    wg, zg : float, [rad/T], [-]
+        Frequency and damping of the soil filter.
+    wf, zf : float, [rad/T], [-]
+        Frequency and damping of the filter against slow motion.
+    """
+    soil = (wg**2 + 2j * zg * wg * w) / (wg**2 - w**2 + 2j * zg * wg * w)
+    slow = w**2 / (wf**2 - w**2 + 2j * zf * wf * w)
+    return soil * slow
+
+
+def envelope(t: Array, rise: float, strong: float, decay: float) -> Array:
+    """Envelope at times `t` [T], between 0 and 1.
+
+    Parameters
+    ----------
+    t : ndarray, [T]
+    rise, strong : float, [T]
+        Lengths of the rise and of the strong part.
+    decay : float, [1/T]
+        Exponent of the fall.
+    """
+    up = np.minimum(t / rise, 1.0) ** 2 if rise > 0 else np.ones_like(t)
+    down: Array = np.exp(-decay * np.maximum(t - rise - strong, 0.0))
+    return up * down
+
+
+SPEC: Final = Spec(
+    "motion",
+    "SYNTHETIC",
+    "filtered white noise of Clough and Penzien",
+    (
+        Field("PGA", Kind.REAL, "L/T^2", above=0, doc="peak ground acceleration"),
+        Field(
+            "SEED", Kind.INT, default=1, lo=0, doc="seed of the noise; the same seed gives the same motion"
+        ),
+        Field("DT", Kind.REAL, "T", default=0.01, above=0, doc="step of the samples"),
+        Field("DURATION", Kind.REAL, "T", default=20.0, above=0, doc="length of the motion"),
+        Field(
+            "WG",
+            Kind.REAL,
+            "1/T",
+            default=15.6,
+            above=0,
+            doc="circular frequency of the soil filter in radians",
+        ),
+        Field("ZG", Kind.REAL, "-", default=0.6, above=0, doc="damping ratio of the soil filter"),
+        Field(
+            "WF",
+            Kind.REAL,
+            "1/T",
+            default=None,
+            above=0,
+            doc="frequency of the second filter; left out: a tenth of WG",
+        ),
+        Field(
+            "ZF",
+            Kind.REAL,
+            "-",
+            default=None,
+            above=0,
+            doc="damping ratio of the second filter; left out: ZG",
+        ),
+        Field("RISE", Kind.REAL, "T", default=2.0, lo=0, doc="length of the rise of the envelope"),
+        Field("STRONG", Kind.REAL, "T", default=8.0, lo=0, doc="length of its constant part"),
+        Field("DECAY", Kind.REAL, "1/T", default=0.3, lo=0, doc="exponent of its fall"),
+        *COMMON,
+    ),
+    reference="Kanai 1957; Tajimi 1960; Clough & Penzien 1975; envelope: Jennings, Housner & Tsai 1968",
+    impl=build,
+)

@@ -1,0 +1,153 @@
+"""What every record format shares: the samples as read, the format's two functions, and the errors.
+
+Codes of :class:`RecordError`:
+
+====== ===================================================================================
+R401   the record is not to be found
+R402   the file cannot be read: format not recognised, no finite number, times in disorder
+R403   the file holds another number of values than it declares
+R405   an item of the card is missing, or does not fit the file
+====== ===================================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+import numpy as np
+
+from pound_solve.numerics.types import Array
+
+HEAD: Final = 4096  #: characters that a sniffer sees at most
+
+
+class RecordError(Exception):
+    """A record that cannot be used; the application shows it at the card that names the record.
+
+    Parameters
+    ----------
+    code : str
+        Number in the table at the head of this module.
+    message : str
+        What is wrong, with line and counts where they are known.
+    hint : str
+        What to do about it, or empty.
+    item : str
+        Item of the card that is at fault.
+    """
+
+    def __init__(self, code: str, message: str, hint: str = "", item: str = "FILE") -> None:
+        super().__init__(code, message, hint)
+        self.code = code
+        self.message = message
+        self.hint = hint
+        self.item = item
+
+    def __str__(self) -> str:
+        return f"{self.code}: {self.message}" + (f" ({self.hint})" if self.hint else "")
+
+    def within(self, name: str) -> RecordError:
+        """The same error, with the name of the file in front of its message."""
+        return RecordError(self.code, f"{name}: {self.message}", self.hint, self.item)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RawRecord:
+    """The samples of one component as they stand in the file.
+
+    Attributes
+    ----------
+    values : ndarray, shape (n,), [`unit`]
+        Ground acceleration.
+    dt : float or None, [s]
+        Step of an evenly sampled record; its first sample is at time 0.
+    times : ndarray, shape (n,), or None, [s]
+        Times of the samples where the file gives them.
+    unit : str or None
+        ``G``, ``M/S2``, ``CM/S2`` or ``MM/S2``; None where the file does not say.
+    declared : int or None
+        Number of values that the file's header promises.
+    component : str
+        Name of the component, or empty.
+    title : tuple of str
+        Text at the head of the file.
+    format : str
+        Name of the format where it was recognised by content, else empty.
+    """
+
+    values: Array
+    dt: float | None = None
+    times: Array | None = None
+    unit: str | None = None
+    declared: int | None = None
+    component: str = ""
+    title: tuple[str, ...] = ()
+    format: str = ""
+
+    @property
+    def t(self) -> Array:
+        """Times of the samples, shape (n,), [s]."""
+        if self.times is not None:
+            return self.times
+        assert self.dt is not None
+        return self.dt * np.arange(len(self.values), dtype=np.float64)
+
+    def checked(self) -> RawRecord:
+        """Itself, once count and times are found in order; every reader ends with this.
+
+        Raises
+        ------
+        RecordError
+            R402 fewer than two samples or times that do not increase, R403 wrong count.
+        """
+        n = len(self.values)
+        if self.declared is not None and n != self.declared:
+            raise RecordError(
+                "R403",
+                f"the header declares {self.declared} values, the file holds {n}",
+                "the file may be cut short or have been edited; get it again, or correct its header",
+            )
+        if n < 2:
+            raise RecordError("R402", f"the file holds {n} samples; a record needs two at least")
+        if self.times is not None and (stuck := np.flatnonzero(np.diff(self.times) <= 0)).size:
+            k = int(stuck[0])
+            before, after = self.times[k : k + 2]
+            raise RecordError(
+                "R402",
+                f"sample {k + 2} is at time {after:g}, not after sample {k + 1} at {before:g}",
+                "if the first column is no time, give DT= and COLUMN=",
+            )
+        return self
+
+    def named(self, format: str) -> RawRecord:
+        """The same samples, marked as recognised as that format."""
+        return replace(self, format=format)
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """The two functions of a record format: `impl` of its Spec.
+
+    Attributes
+    ----------
+    sniff : function (head) -> bool
+        Whether a file that begins so (whole lines, at most `HEAD` characters) is of this format.
+    read : function (text, options) -> RawRecord
+        Samples out of the file's text; `options` are the values of the deck's card by field name.
+    greedy : bool
+        The format takes nearly any numbers, so it is asked after all the others.
+    """
+
+    sniff: Callable[[str], bool]
+    read: Callable[[str, Mapping[str, Any]], RawRecord]
+    greedy: bool = False
+
+
+def head(text: str) -> str:
+    """First whole lines of a text, at most `HEAD` characters."""
+    if len(text) <= HEAD:
+        return text
+    # a line cut in two could turn a table into a ragged one
+    return text[: text.rfind("\n", 0, HEAD) + 1] or text[:HEAD]

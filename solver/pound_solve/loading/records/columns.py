@@ -1,0 +1,123 @@
+"""Tables of numbers: a column of samples, or time and acceleration, or many columns.
+
+Without DT the first column is the time [s]; with DT no column is.  Blanks, tabs, commas or semicolons part
+the numbers.  Lines at the head that are not all numbers are titles, and what follows a ``#`` is a comment.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.loading.records.base import Format, RawRecord, RecordError
+from pound_solve.loading.records.text import is_data, parse, split_head
+
+FIELDS: Final = (
+    Field(
+        "DT",
+        Kind.REAL,
+        "T",
+        default=None,
+        above=0,
+        doc="step of evenly spaced samples; left out: column 1 is the time",
+    ),
+    Field(
+        "COLUMN",
+        Kind.INT,
+        default=None,
+        lo=0,
+        doc="column of the acceleration, counted from 1; 0: all numbers in turn; left out: the only one",
+    ),
+)
+
+
+def sniff(head: str) -> bool:
+    """After the titles nothing but numbers, the same count in every line (the last may be short)."""
+    _, data, _ = split_head(head.splitlines())
+    rows = [line for line in data if line.strip()]
+    if not rows or not all(map(is_data, rows)):
+        return False
+    counts = _counts(rows)
+    return all(n == counts[0] for n in counts[:-1]) and counts[-1] <= counts[0]
+
+
+def _counts(rows: list[str]) -> list[int]:
+    """How many numbers each row holds; zeros where they cannot be read."""
+    try:
+        return parse(rows)[1]
+    except RecordError:
+        return [0] * len(rows)  # spoilt numbers: still this format, and reading it tells the line
+
+
+def read(text: str, options: Mapping[str, Any]) -> RawRecord:
+    """Samples of one column.
+
+    Parameters
+    ----------
+    text : str
+    options : mapping
+        ``DT`` [s] and ``COLUMN``, each a number or None.
+
+    Raises
+    ------
+    RecordError
+        R402, R405 where DT and COLUMN do not fit the table.
+    """
+    dt, column = options.get("DT"), options.get("COLUMN")
+    title, data, first = split_head(text.splitlines())
+    values, counts = parse(data, first)
+    head = tuple(title)
+    if column == 0:
+        if dt is None:
+            raise RecordError("R405", "COLUMN=0 reads samples without times, so it needs DT=")
+        return RawRecord(values, dt=float(dt), title=head).checked()
+
+    width = counts[0]
+    if ragged := next((k for k, n in enumerate(counts) if n not in (0, width)), None):
+        raise RecordError(
+            "R402",
+            f"line {first + ragged} holds {counts[ragged]} numbers, line {first} holds {width}",
+            "put # before lines that are no data; samples that fill the lines one after another: COLUMN=0",
+        )
+    table = values.reshape(-1, width)
+    k = _column(width, dt, column)
+    if dt is not None:
+        return RawRecord(table[:, k].copy(), dt=float(dt), title=head, component=_label(column)).checked()
+    return RawRecord(
+        table[:, k].copy(), times=table[:, 0].copy(), title=head, component=_label(column)
+    ).checked()
+
+
+def _label(column: int | None) -> str:
+    return "" if column is None else f"column {column}"
+
+
+def _column(width: int, dt: float | None, column: int | None) -> int:
+    """0-based column of the acceleration in a table of `width` columns."""
+    timed = dt is None
+    if timed and width == 1:
+        raise RecordError("R405", "the file has one column and no times", "give the step with DT=")
+    least = 2 if timed else 1
+    if column is None:
+        if width != least:
+            raise RecordError(
+                "R405", f"the file has {width} columns", f"say with COLUMN={least}..{width} which one acts"
+            )
+        return width - 1
+    if column > width:
+        raise RecordError("R405", f"COLUMN={column}, but the file has {width} columns")
+    if column < least:
+        raise RecordError(
+            "R405", "COLUMN=1 is the time", "take another column, or give DT= if column 1 is no time"
+        )
+    return column - 1
+
+
+SPEC: Final = Spec(
+    "record",
+    "COLUMNS",
+    "columns of numbers, CSV too",
+    FIELDS,
+    impl=Format(sniff, read, greedy=True),
+)

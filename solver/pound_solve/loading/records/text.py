@@ -1,0 +1,106 @@
+"""Numbers out of the text of a record, fast where the file is clean and patient where it is not.
+
+Old Fortran programs write exponents with a D, leave no blank before a minus sign in fixed columns, and
+print asterisks where a number does not fit.  The first two are read right, the third is an error.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import chain
+from typing import Final
+
+import numpy as np
+
+from pound_solve.loading.records.base import Array, RecordError
+
+_SEPARATORS: Final = str.maketrans(",;\t", "   ")
+_D_EXPONENT: Final = str.maketrans("Dd", "EE")
+_EXPONENT: Final = r"(?:[EeDd][+-]?\d+)?"
+_NUMBER: Final = re.compile(rf"[+-]?(?:\d+\.?\d*|\.\d+){_EXPONENT}")
+# only numbers with a point can be glued, lest a date such as 1940-05-18 pass for three of them
+_POINTED: Final = rf"(?:\d+\.\d*|\.\d+){_EXPONENT}"
+_GLUED: Final = re.compile(rf"[+-]?{_POINTED}(?:[+-]{_POINTED})+")
+# no numbers, but they stand where numbers should: such a line is data gone wrong, not a title
+_SPOILT: Final = r"[+-]?(?:nan|inf|infinity)|\*+"
+_NUMERIC: Final = re.compile(rf"{_NUMBER.pattern}|{_GLUED.pattern}|{_SPOILT}", re.IGNORECASE)
+
+
+def is_data(line: str) -> bool:
+    """Whether a line holds numbers and nothing else."""
+    words = line.translate(_SEPARATORS).split()
+    return bool(words) and all(_NUMERIC.fullmatch(word) for word in words)
+
+
+def split_head(lines: Sequence[str], comment: str = "#") -> tuple[list[str], list[str], int]:
+    """Part a file into its title lines and its data.
+
+    Parameters
+    ----------
+    lines : sequence of str
+    comment : str
+        What follows this character in a line is dropped; line numbers stay as they are.
+
+    Returns
+    -------
+    title : list of str
+        Lines before the first one of numbers, comments included, blank ones left out.
+    data : list of str
+        The first line of numbers and all that follow.
+    first : int
+        1-based line number of ``data[0]``.
+    """
+    bare = [line.partition(comment)[0] for line in lines]
+    start = next((k for k, line in enumerate(bare) if is_data(line)), len(bare))
+    title = [line.strip("# \t") for line in lines[:start]]
+    return [line for line in title if line], bare[start:], start + 1
+
+
+def parse(lines: Sequence[str], first: int = 1) -> tuple[Array, list[int]]:
+    """All numbers of some lines.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        Numbers with blanks, tabs, commas or semicolons between.
+    first : int
+        Line number of ``lines[0]``, for messages.
+
+    Returns
+    -------
+    values : ndarray, shape (n,)
+    counts : list of int
+        How many of them stand in each line.
+
+    Raises
+    ------
+    RecordError
+        R402 with the number of a line that holds anything but finite numbers, or for no numbers.
+    """
+    rows = [line.translate(_SEPARATORS).split() for line in lines]
+    try:
+        values = np.array(list(chain.from_iterable(rows)), dtype=np.float64)
+        # Python takes 1_000 for a number, a record never means it
+        clean = bool(np.isfinite(values).all()) and not any("_" in line for line in lines)
+    except ValueError:
+        clean = False
+    if not clean:
+        rows = [_patient(row, number) for number, row in enumerate(rows, first)]
+        values = np.array(list(chain.from_iterable(rows)), dtype=np.float64)
+    if not values.size:
+        raise RecordError("R402", "the file holds no numbers")
+    return values, [len(row) for row in rows]
+
+
+def _patient(row: list[str], number: int) -> list[str]:
+    """Words of one line as numbers that ``float`` takes, glued ones parted, or R402."""
+    out = []
+    for word in row:
+        parts = _NUMBER.findall(word) if _GLUED.fullmatch(word) else [word]
+        for part in parts:
+            plain = part.translate(_D_EXPONENT)
+            if not _NUMBER.fullmatch(part) or not np.isfinite(float(plain)):
+                raise RecordError("R402", f"line {number}: '{part}' is not a finite number")
+            out.append(plain)
+    return out

@@ -1,0 +1,150 @@
+"""The one door to numba: scalar kernels are compiled where the extra `fast` is installed,
+else they run as they are.
+
+A kernel is plain Python.  Nothing is compiled, nor numba imported, before somebody asks for it here.
+The compiled code is kept between runs in the user's cache folder, in a folder of its own for every version
+of the kernels' source: numba itself does not see that a function changed which another one calls.
+"""
+
+from __future__ import annotations
+
+import dis
+import hashlib
+import os
+import tempfile
+import types
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+Function = Callable[..., Any]
+
+
+SHORT = 700  #: bytes of Python's code up to which a function is put into its callers
+#: rooms that hold what is compiled, or what it depends on
+KERNELS = ("numerics", "laws", "structure", "integrate")
+LOOSE = {"contract", "reassoc"}  #: what compiled code may do to the rounding of kernels marked so
+
+
+def folder() -> Path:
+    """Where compiled kernels are kept: the user's cache, or a temporary folder if that is read-only."""
+    program = Path(__file__).parents[1]
+    sources = sorted(p for room in KERNELS for p in (program / room).rglob("*.py"))
+    key = hashlib.sha256(b"".join(p.read_bytes() for p in sources)).hexdigest()[:16]
+    home = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    place = Path(home) / "pound-solve" / key
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=place):
+            return place
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="pound-solve-"))
+
+
+def available() -> bool:
+    """Whether there is numba, which is not imported yet.
+
+    POUND_COMPILE=0 in the environment switches it off.
+    """
+    return os.environ.get("POUND_COMPILE") != "0" and find_spec("numba") is not None
+
+
+@cache
+def numba() -> Any:
+    """numba, told where to keep what it compiles; None where it is not `available`."""
+    if not available():
+        return None
+    try:
+        import numba as found
+    except ImportError:
+        return None
+    setattr(found.config, "CACHE_DIR", str(folder()))  # noqa: B010
+    return found
+
+
+def flat(function: Function) -> Function:
+    """Mark a kernel to be compiled in one piece with all that it calls: it calls them in every step."""
+    function.flat = True  # type: ignore[attr-defined]
+    return function
+
+
+def loose(function: Function) -> Function:
+    """Mark a kernel whose sums may be taken in another order, several terms at once."""
+    function.loose = True  # type: ignore[attr-defined]
+    return function
+
+
+@contextmanager
+def compiling() -> Iterator[None]:
+    """Settings of numba while a kernel is called that may have to be compiled."""
+    found = numba()
+    if found is None:
+        yield
+        return
+    config = found.config
+    before = config.OPT
+    # rows of a sparse matrix are loops of one or two turns: unrolled, as higher levels do, they run slower
+    config.OPT = type(before)(1)
+    try:
+        with warnings.catch_warnings():  # that functions as values are new
+            warnings.simplefilter("ignore", found.core.errors.NumbaExperimentalFeatureWarning)
+            yield
+    finally:
+        config.OPT = before
+
+
+def cold(function: Function) -> bool:
+    """Whether a kernel, which is compiled in one version only, has still to be compiled."""
+    found = numba()
+    return found is not None and not any(Path(found.config.CACHE_DIR).rglob(f"*.{function.__name__}-*.nbc"))
+
+
+@cache
+def compiled(
+    function: Function, signature: Any = None, inner: bool = False, inline: bool = False
+) -> Function:
+    """Compile a kernel and, first, the functions of this program that it calls.
+
+    Parameters
+    ----------
+    function : callable
+        A kernel: numbers, tuples, arrays and other kernels only.
+    signature : numba signature or None
+        Compile for these types at once, so that the function can be handed on as a value.
+    inner : bool
+        Only other kernels call it.
+    inline : bool
+        Put its code into that of its callers: a call that hands on many arrays counts every one of them.
+
+    Returns
+    -------
+    callable
+        The function itself where there is no numba.
+    """
+    found = numba()
+    if found is None:
+        return function
+    scope, flat = dict(function.__globals__), hasattr(function, "flat")
+    for used in {i.argval for i in dis.get_instructions(function) if i.opname == "LOAD_GLOBAL"}:
+        value = scope.get(used)
+        if isinstance(value, types.FunctionType) and value.__module__.startswith("pound_solve"):
+            scope[used] = compiled(value, inner=True, inline=flat or len(value.__code__.co_code) < SHORT)
+        elif type(value) is int:  # of a kind of its own each, for which numba would compile a callee anew
+            scope[used] = np.int64(value)
+    twin = types.FunctionType(function.__code__, scope, function.__name__, function.__defaults__)
+    twin.__qualname__, twin.__module__ = function.__qualname__, function.__module__
+    # arrays belong to the caller of a kernel: they need not be counted, which would cost more than the work
+    how = {"cache": True, "error_model": "numpy", "_nrt": False, "forceinline": inline}
+    if inner:  # no Python calls it, so that it needs no door to it; kept by a name of its own
+        twin.__qualname__ += "_inline" if inline else "_inner"
+        how |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    if hasattr(function, "loose"):
+        how["fastmath"] = LOOSE
+    with compiling():
+        return found.njit(*([] if signature is None else [signature]), **how)(twin)

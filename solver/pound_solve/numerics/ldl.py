@@ -1,0 +1,195 @@
+r"""Sparse :math:`A = L D L^T` on a fixed pattern, with updates of rank one.
+
+The unknowns are ordered once for little fill; the pattern of L follows from that of A, and every
+factorisation after it is a walk over known positions.  A spring that changes its stiffness by
+:math:`\delta` along the row b changes A by :math:`\delta\, b b^T`, and its factor only along the path
+from b's first unknown to the root of the elimination tree.
+
+References
+----------
+Davis TA (2006), Direct Methods for Sparse Linear Systems, SIAM, chapters 4 (factor) and 4.6 (update).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.numerics.types import Array, Index
+
+Place = NDArray[np.uint32]  #: positions of entries: without a sign, so that none is counted from the end
+
+
+SPARE = 0.05  #: entries that the factor may gain, an unknown, for the sake of diagonals
+
+
+class Pattern(NamedTuple):
+    """Where A and L have entries.
+
+    Attributes
+    ----------
+    ap, ai : ndarray
+        Columns of the lower triangle of A, the diagonal first: pointers (n + 1,) and rows.
+    lp, li : ndarray
+        Columns of L below the diagonal, rows ascending.
+    rp, rk, rq : ndarray
+        Rows of L: pointers, columns, and positions in the arrays of L.
+    """
+
+    ap: Index
+    ai: Place
+    lp: Index
+    li: Place
+    rp: Index
+    rk: Place
+    rq: Index
+
+
+def order(n: int, i: Index, j: Index) -> Index:
+    """Order of elimination with little fill, shape (n,).
+
+    Along a line (reverse Cuthill-McKee), from both its ends in turn so that two eliminations need not wait
+    for each other, where that fills hardly more than minimum degree: entries then lie on few diagonals.
+
+    Parameters
+    ----------
+    n : int
+    i, j : ndarray, shape (n_pairs,)
+        Which of the unknowns are coupled; each pair may come once or often.
+    """
+    if n < 3:
+        return np.arange(n)
+    from scipy.sparse import csc_array
+    from scipy.sparse.csgraph import reverse_cuthill_mckee
+    from scipy.sparse.linalg import splu
+
+    every = np.arange(n)
+    rows, columns = np.concatenate([i, j, every]), np.concatenate([j, i, every])
+    a = csc_array((np.ones(len(rows)), (rows, columns)), (n, n))
+    a.data[:] = 1.0
+    a.setdiag(n + 1.0)  # the values do not matter: no pivot is ever exchanged
+    how = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+    found = splu(a, permc_spec="MMD_AT_PLUS_A", **how)
+    line = reverse_cuthill_mckee(a, symmetric_mode=True).astype(np.int64)
+    line = np.stack([line, line[::-1]], axis=1).ravel()[:n]
+    if splu(a[line][:, line], permc_spec="NATURAL", **how).L.nnz <= found.L.nnz + SPARE * n:
+        return line
+    return np.argsort(found.perm_c).astype(np.int64)
+
+
+def analyse(n: int, i: Index, j: Index) -> Pattern:
+    """Pattern of a matrix in its order of elimination, and of its factor; see `order`."""
+    under: list[set[int]] = [set() for _ in range(n)]
+    for a, b in zip(np.maximum(i, j).tolist(), np.minimum(i, j).tolist()):
+        if a != b:
+            under[b].add(a)
+    below: list[list[int]] = [[] for _ in range(n)]
+    children: list[list[int]] = [[] for _ in range(n)]
+    for column in range(n):
+        rows = set(under[column])
+        for child in children[column]:
+            rows.update(below[child][1:])
+        below[column] = sorted(rows)
+        if below[column]:
+            children[below[column][0]].append(column)
+    lp = np.concatenate([[0], np.cumsum([len(b) for b in below])]).astype(np.int64)
+    li = np.array([row for b in below for row in b], np.uint32)
+    columns: list[list[tuple[int, int]]] = [[] for _ in range(n)]
+    for column in range(n):
+        for q in range(lp[column], lp[column + 1]):
+            columns[li[q]].append((column, q))
+    rp = np.concatenate([[0], np.cumsum([len(c) for c in columns])]).astype(np.int64)
+    rk = np.array([k for c in columns for k, _ in c], np.uint32)
+    rq = np.array([q for c in columns for _, q in c], np.int64)
+    lower = [[column, *sorted(rows)] for column, rows in enumerate(under)]
+    ap = np.concatenate([[0], np.cumsum([len(x) for x in lower])]).astype(np.int64)
+    return Pattern(ap, np.array([row for x in lower for row in x], np.uint32), lp, li, rp, rk, rq)
+
+
+def factor(s: Pattern, ax: Array, l: Array, at: int, q: Array, d: int, w: int) -> int:  # noqa: E741
+    """Factorise A with the values `ax` into row `at` of `l` and row `d` of `q`;
+    row `w` of `q` is zero before and after.
+
+    Returns
+    -------
+    int
+        -1, or the first unknown whose pivot vanishes.
+    """
+    for j in range(q.shape[1]):
+        for y in range(s.ap[j], s.ap[j + 1]):
+            q[w, s.ai[y]] = ax[y]
+        pivot = q[w, j]
+        size = abs(pivot)
+        for r in range(s.rp[j], s.rp[j + 1]):
+            k, y = s.rk[r], s.rq[r]
+            t = l[at, y] * q[d, k]
+            pivot -= l[at, y] * t
+            for x in range(y + 1, s.lp[k + 1]):
+                q[w, s.li[x]] -= l[at, x] * t
+        q[w, j] = 0.0
+        if not abs(pivot) > 1e-14 * size:
+            for y in range(s.lp[j], s.lp[j + 1]):
+                q[w, s.li[y]] = 0.0
+            return j
+        q[d, j] = pivot
+        for y in range(s.lp[j], s.lp[j + 1]):
+            l[at, y] = q[w, s.li[y]] / pivot
+            q[w, s.li[y]] = 0.0
+    return -1
+
+
+def update(
+    s: Pattern,
+    l: Array,  # noqa: E741
+    at: int,
+    q: Array,
+    d: int,
+    w: int,
+    first: int,
+    change: float,
+) -> bool:
+    """Add ``change * w w^T`` to the factored matrix; row `w` of `q`, which begins at unknown `first`,
+    is zeroed.
+
+    Returns
+    -------
+    bool
+        False where a pivot (nearly) vanishes: the factor must be made anew.
+    """
+    j, n = first, q.shape[1]
+    good = True
+    while j < n:
+        p = q[w, j]
+        q[w, j] = 0.0
+        if p != 0.0:
+            pivot = q[d, j] + change * p * p
+            if not abs(pivot) > 1e-8 * abs(q[d, j]):
+                good = False
+                pivot = q[d, j]
+            g = p * change / pivot
+            change *= q[d, j] / pivot
+            q[d, j] = pivot
+            for y in range(s.lp[j], s.lp[j + 1]):
+                i = s.li[y]
+                q[w, i] -= p * l[at, y]
+                l[at, y] += g * q[w, i]
+        j = s.li[s.lp[j]] if s.lp[j + 1] > s.lp[j] else n
+    return good
+
+
+def solve(s: Pattern, l: Array, at: int, q: Array, d: int, x: int) -> None:  # noqa: E741
+    """Solve in place for row `x` of `q`."""
+    n = q.shape[1]
+    for j in range(n):
+        t = q[x, j]
+        for y in range(s.lp[j], s.lp[j + 1]):
+            q[x, s.li[y]] -= l[at, y] * t
+    for j in range(n):
+        q[x, j] /= q[d, j]
+    for j in range(n - 1, -1, -1):
+        t = q[x, j]
+        for y in range(s.lp[j], s.lp[j + 1]):
+            t -= l[at, y] * q[x, s.li[y]]
+        q[x, j] = t

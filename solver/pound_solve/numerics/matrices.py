@@ -1,0 +1,213 @@
+"""Matrices of a structure: plain arrays while they are small, sparse rows (CSR) beyond.
+
+A sparse matrix pays from some hundred freedoms on; below, it costs more than it saves, and a deck with few
+freedoms need not even import it.  What works on both (``@``, ``+``, ``.T``, slices, ``numpy.ix_``) is
+written as for arrays; the rest is here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from pound_solve.numerics.types import Array, Flags, Index
+
+#: an ndarray, or a scipy.sparse.csr_array
+Matrix = Any
+
+MOST_DENSE = 300  #: rows and columns of a plain array
+
+
+def gathered(shape: tuple[int, int], rows: Any, columns: Any, values: Any) -> Matrix:
+    """Matrix of that shape whose entries are sums of `values` at (`rows`, `columns`)."""
+    i, j, x = np.asarray(rows, np.int64), np.asarray(columns, np.int64), np.asarray(values, float)
+    if max(shape) <= MOST_DENSE:
+        out = np.zeros(shape)
+        np.add.at(out, (i, j), x)
+        return out
+    from scipy.sparse import coo_array  # not for small decks: slow to import
+
+    return coo_array((x, (i, j)), shape).tocsr()
+
+
+def selection(size: int, columns: Index) -> Matrix:
+    """Columns of the unit matrix, shape (size, len(columns))."""
+    return gathered((size, len(columns)), columns, np.arange(len(columns)), np.ones(len(columns)))
+
+
+def dense(a: Matrix) -> Array:
+    """The matrix as a plain array."""
+    return np.asarray(a if isinstance(a, np.ndarray) else a.toarray())
+
+
+def entries(a: Matrix) -> tuple[Index, Index, Array]:
+    """Rows, columns and values of what is not zero, row by row."""
+    if isinstance(a, np.ndarray):
+        i, j = np.nonzero(a)
+        return i.astype(np.int64), j.astype(np.int64), np.asarray(a[i, j], float)
+    a = a.tocsr(copy=True)
+    a.sum_duplicates()
+    a.eliminate_zeros()
+    i = np.repeat(np.arange(a.shape[0], dtype=np.int64), np.diff(a.indptr))
+    return i, a.indices.astype(np.int64), np.asarray(a.data, float)
+
+
+def by_rows(a: Matrix) -> list[tuple[Index, Array]]:
+    """Columns and values of what is not zero in every row."""
+    i, j, x = entries(a)
+    ends = np.searchsorted(i, np.arange(a.shape[0] + 1))
+    return [(j[p:q], x[p:q]) for p, q in zip(ends[:-1].tolist(), ends[1:].tolist())]
+
+
+def layers(a: Matrix) -> list[tuple[Index, Array]]:
+    """Columns and values of the first entry of every row, of the second, ...; zero where there is none."""
+    i, j, x = entries(a)
+    place = np.arange(len(i)) - np.searchsorted(i, i)
+    out = []
+    for k in range(place.max(initial=-1) + 1):
+        columns, values = np.zeros(a.shape[0], np.int64), np.zeros(a.shape[0])
+        columns[i[place == k]], values[i[place == k]] = j[place == k], x[place == k]
+        out.append((columns, values))
+    return out
+
+
+def at(a: Matrix, rows: Index, columns: Index) -> Array:
+    """Values at some places, shape (n,)."""
+    if isinstance(a, np.ndarray):
+        return a[rows, columns]
+    i, j, x = entries(a)
+    keys, wanted = i * a.shape[1] + j, rows * a.shape[1] + columns
+    place = np.minimum(np.searchsorted(keys, wanted), max(len(keys) - 1, 0))
+    return np.where(keys[place] == wanted, x[place], 0.0) if len(keys) else np.zeros(len(rows))
+
+
+def used_rows(a: Matrix) -> Flags:
+    """Which rows hold anything, shape (n_rows,)."""
+    if isinstance(a, np.ndarray):
+        return np.any(a != 0.0, axis=1)
+    out = np.zeros(a.shape[0], bool)
+    out[entries(a)[0]] = True
+    return out
+
+
+def used_columns(a: Matrix) -> Flags:
+    """Which columns hold anything, shape (n_columns,)."""
+    return used_rows(a.T)
+
+
+def diagonal(a: Matrix) -> Array:
+    """Entries on the diagonal."""
+    return np.array(a.diagonal(), float)
+
+
+def is_diagonal(a: Matrix) -> bool:
+    """Whether nothing stands beside the diagonal."""
+    i, j, _ = entries(a)
+    return bool((i == j).all())
+
+
+def scaled(a: Matrix, factors: Array) -> Matrix:
+    """Row i and column i times ``factors[i]``."""
+    if isinstance(a, np.ndarray):
+        return factors[:, None] * a * factors
+    from scipy.sparse import diags_array
+
+    d = diags_array(factors)
+    return (d @ a @ d).tocsr()
+
+
+def weighted(rows: Matrix, weights: Sequence[float] | Array) -> Matrix:
+    """``rows^T diag(weights) rows``."""
+    if isinstance(rows, np.ndarray):
+        return (rows.T * np.asarray(weights, float)) @ rows
+    from scipy.sparse import diags_array
+
+    return (rows.T @ diags_array(np.asarray(weights, float)) @ rows).tocsr()
+
+
+def least_squares(a: Matrix, b: Matrix, rcond: float | None = None) -> Array:
+    """Solution of ``a x = b`` for a symmetric `a`; of a singular one that of least size."""
+    if not isinstance(a, np.ndarray):
+        try:
+            return Factor(a).solve(dense(b))
+        except np.linalg.LinAlgError:
+            pass
+    return np.asarray(np.linalg.lstsq(dense(a), dense(b), rcond=rcond)[0], float)
+
+
+def bordered(a: Matrix, right: Array, below: Array, b: Array) -> Array:
+    """Solution of ``[[a, right], [below^T, 0]] x = b``; NaN where there is none.
+
+    Parameters
+    ----------
+    a : Matrix, shape (n, n)
+    right, below : ndarray, shape (n, n_more)
+    b : ndarray, shape (n + n_more,)
+    """
+    nothing = np.full(len(b), np.nan)
+    if isinstance(a, np.ndarray):
+        try:
+            return np.linalg.solve(np.block([[a, right], [below.T, np.zeros((right.shape[1],) * 2)]]), b)
+        except np.linalg.LinAlgError:
+            return nothing
+    from scipy.sparse import block_array, csc_array
+    from scipy.sparse.linalg import splu
+
+    try:
+        lu = splu(block_array([[a, csc_array(right)], [csc_array(below.T), None]], format="csc"))
+    except RuntimeError:
+        return nothing
+    return np.asarray(lu.solve(b))
+
+
+class Factor:
+    """Sparse symmetric :math:`A = L D L^T` in an order of little fill, without exchange of pivots.
+
+    Parameters
+    ----------
+    a : csr_array
+    least : float
+        Share of n times its diagonal that a pivot must have.
+
+    Attributes
+    ----------
+    pivots : ndarray, shape (n,)
+        D, by unknown.  As many are negative as eigenvalues of A are (Sylvester).
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        A pivot is zero, or next to nothing beside its diagonal.
+    """
+
+    def __init__(self, a: Matrix, least: float = 1e-15) -> None:
+        from scipy.sparse import csc_array
+        from scipy.sparse.linalg import splu
+
+        size = np.abs(diagonal(a))
+        try:
+            self._lu = splu(
+                csc_array(a),
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=0.0,
+                options={"SymmetricMode": True, "Equil": False},
+            )
+        except RuntimeError:
+            raise np.linalg.LinAlgError("singular matrix") from None
+        order = np.argsort(self._lu.perm_c)
+        self.pivots = np.empty(len(order))
+        self.pivots[order] = self._lu.U.diagonal()
+        exchanged = (self._lu.perm_r != self._lu.perm_c).any()
+        if exchanged or (np.abs(self.pivots) < least * max(len(order), 10) * size).any():
+            raise np.linalg.LinAlgError("singular matrix")
+
+    @property
+    def negative(self) -> int:
+        """Number of negative eigenvalues of A."""
+        return int((self.pivots < 0.0).sum())
+
+    def solve(self, b: Array) -> Array:
+        """Solution of A x = b, shape (n,) or (n, n_columns)."""
+        return np.asarray(self._lu.solve(np.ascontiguousarray(b, float)))

@@ -1,0 +1,339 @@
+r"""Free vibration: :math:`(K - \omega^2 M)\,\phi = 0` on the freedoms that have stiffness.
+
+Massless freedoms are condensed first, which is exact for free vibration.  Modes are scaled to
+:math:`\phi^T M \phi = 1` with the largest component positive.
+
+Of a sparse K only the slowest modes are found, by Lanczos' method on :math:`(K - \sigma M)^{-1} M`, which
+takes massless freedoms as they are (Ericsson and Ruhe 1980).  As many pivots of :math:`K - \mu M` are
+negative as there are modes below :math:`\mu` (Sylvester): that none was passed over is seen by counting.
+
+References
+----------
+Ericsson T, Ruhe A (1980), The spectral transformation Lanczos method for the numerical solution of large
+sparse generalized symmetric eigenvalue problems, Math. Comp. 35: 1251-1268.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pound_solve.numerics import matrices
+from pound_solve.numerics.matrices import Factor, Matrix, dense, diagonal, scaled, used_rows
+from pound_solve.numerics.types import Array, Flags
+
+MISSED = 8  #: how often modes that were passed over are looked for
+TINY = 1e-15  #: of a diagonal of ones: keeps pivots from being zero
+MORE = 4  #: modes beyond those asked for, to find a gap after them
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Natural modes.
+
+    Attributes
+    ----------
+    omega : ndarray, shape (n_modes,)
+        Circular frequencies [rad/T], ascending.
+    shapes : ndarray, shape (n, n_modes)
+        Mass-normalised shapes.
+    """
+
+    omega: Array
+    shapes: Array
+
+
+def massless(m: Matrix) -> Flags:
+    """Which freedoms have no mass at all, shape (n,)."""
+    return ~used_rows(m)
+
+
+def scaling(k: Matrix) -> Array:
+    """Factors that make a diagonal of ones of K, shape (n,)."""
+    own = np.abs(diagonal(k))
+    return 1.0 / np.sqrt(np.where(own > 0.0, own, 1.0))
+
+
+def softest(a: Matrix) -> tuple[float, Array]:
+    """Smallest eigenvalue of a positive semidefinite matrix with a diagonal of ones, and its vector;
+    of a sparse matrix 0 or 1: whether it is singular.
+    """
+    if isinstance(a, np.ndarray):
+        values, vectors = np.linalg.eigh(a)
+        return float(values[0]), vectors[:, 0]
+    slack = Held(a).slack
+    return (0.0, slack[:, 0]) if slack.shape[1] else (1.0, np.zeros(a.shape[0]))
+
+
+def _generic(n: int) -> Array:
+    """A vector that is orthogonal to no mode but by chance, always the same, shape (n,)."""
+    return np.random.default_rng(0).standard_normal(n)
+
+
+class Held:
+    """A symmetric stiffness, scaled to a diagonal of ones, that may be a mechanism or worse.
+
+    A sparse one that is a mechanism is held where its pivots vanish, which makes it regular; the motions V
+    that K does not resist are then :math:`(K + E E^T)^{-1} E`, for :math:`K V = 0`, and under loads that
+    are orthogonal to them the holds carry nothing.
+
+    Attributes
+    ----------
+    slack : ndarray, shape (n, n_slack)
+        Motions that it does not resist, orthonormal.
+    negative : ndarray, shape (n,), or None
+        A motion with negative stiffness, if there is one.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        A sparse K is beyond that.
+    """
+
+    def __init__(self, k: Matrix) -> None:
+        self.k, self.negative = k, None
+        self.slack = np.zeros((k.shape[0], 0))
+        self._factor: Factor | None = None
+        if isinstance(k, np.ndarray):
+            lacking = deficiency(k)
+            if lacking:
+                self._values, self._vectors = np.linalg.eigh(k)
+                self.slack = self._vectors[:, :lacking]
+                self.negative = self._vectors[:, 0] if self._values[0] < -1e-10 else None
+            return
+        n = k.shape[0]
+        try:
+            self._factor = Factor(k)
+            pivots, least = self._factor.pivots, 0.0
+        except np.linalg.LinAlgError:
+            tiny = TINY * matrices.selection(n, np.arange(n))
+            pivots, least = Factor(k + tiny, 0.0).pivots, 10 * TINY * max(n, 10)
+        weak = np.flatnonzero((pivots < least) & (pivots > -1e-10))
+        if len(weak):  # to let go of what is held there is a motion that K does not resist
+            self._factor = Factor(k + matrices.gathered(k.shape, weak, weak, np.ones(len(weak))))
+            self.slack = np.linalg.qr(self._factor.solve(dense(matrices.selection(n, weak))))[0]
+        assert self._factor is not None
+        if self._factor.negative:
+            x = _generic(k.shape[0])
+            for _ in range(20):  # what is near to zero, as a structure is that has just collapsed
+                x = self._factor.solve(x / np.linalg.norm(x))
+            self.negative = x
+
+    def solve(self, push: Array) -> Array:
+        """Displacements under a load, none of them slack, shape (n,)."""
+        if isinstance(self.k, np.ndarray):
+            if not self.slack.shape[1]:
+                return np.asarray(np.linalg.solve(self.k, push))
+            weak = np.arange(len(push)) < self.slack.shape[1]
+            along = np.where(weak, 0.0, self._vectors.T @ push)
+            return np.asarray(self._vectors @ (along / np.where(weak, 1.0, self._values)))
+        assert self._factor is not None
+        if not self.slack.shape[1]:
+            return self._factor.solve(push)
+        resisted = push - self.slack @ (self.slack.T @ push)
+        u = self._factor.solve(resisted)
+        return np.asarray(u - self.slack @ (self.slack.T @ u))
+
+
+def deficiency(k: Array) -> int:
+    """How many independent motions K, scaled to a diagonal of ones,
+    does not resist (mechanisms, rigid bodies).
+
+    Pivots, not eigenvalues, tell a mechanism from a slender mesh: those of a cantilever
+    of n members fall as n^-3 (its eigenvalues as n^-4), those of a mechanism are rounding.
+    Without pivoting rounding may grow as n^3.
+    """
+    try:
+        if np.diag(np.linalg.cholesky(k)).min(initial=1.0) ** 2 > 1e-7:
+            return 0
+    except np.linalg.LinAlgError:
+        pass
+    from scipy.linalg.lapack import dpstrf  # pivoting: of no use to the common run, and slow to import
+
+    return len(k) - int(dpstrf(k, tol=1e-15 * max(len(k), 10))[2])
+
+
+def moving_mass(k: Matrix, m: Matrix, ground: Array) -> Array:
+    """Sum of the effective masses of all modes, for each row of `ground` = M r, shape (n_rows,).
+
+    What rides on freedoms that nothing holds is no part of any mode.
+    """
+    at = np.flatnonzero(used_rows(k) & ~massless(m))
+    root = 1.0 / np.sqrt(diagonal(m[np.ix_(at, at)]))
+    inertia = Held(scaled(m[np.ix_(at, at)], root))
+    return np.array([x @ inertia.solve(x) for x in ground[:, at] * root])
+
+
+def condense(k: Matrix, out: Flags) -> Array:
+    """Map from the kept freedoms to all, with those of `out` following statically, shape (n, n_kept).
+
+    Freedoms of `out` without any stiffness stay at zero.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        The stiffness of `out` is singular: part of it is a mechanism.
+    """
+    n = k.shape[0]
+    keep = np.flatnonzero(~out)
+    go = np.flatnonzero(out & used_rows(k))
+    t = np.zeros((n, len(keep)))
+    t[keep, np.arange(len(keep))] = 1.0
+    if len(go):
+        held, pull = k[np.ix_(go, go)], dense(k[np.ix_(go, keep)])
+        t[go] = -(np.linalg.solve(held, pull) if isinstance(held, np.ndarray) else Factor(held).solve(pull))
+    return t
+
+
+def solve(k: Matrix, m: Matrix, count: int | None = None) -> Modes:
+    """Return all modes of the freedoms that have mass and are tied to any stiffness.
+
+    Parameters
+    ----------
+    k, m : Matrix, shape (n, n)
+        Stiffness [F/L] and mass [F T^2/L].
+    count : int or None
+        Number of modes that are needed, the slowest; more may come. None: all.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        A massless part is a mechanism, or the mass matrix is not positive definite.
+    """
+    if not isinstance(k, np.ndarray) and count is not None and 5 * (count + MORE) < (~massless(m)).sum():
+        few = _slowest(k, m, count)
+        if few is not None:
+            return few
+    active = used_rows(k)
+    t = condense(k, massless(m) | ~active)
+    kk, mm = t.T @ (k @ t), t.T @ (m @ t)
+    if not len(kk):
+        return Modes(np.zeros(0), np.zeros((k.shape[0], 0)))
+    if np.any(mm - np.diag(np.diag(mm))):
+        # a mass on a slaved node is felt along fewer directions than its master has:
+        # the rest is massless too
+        root = 1.0 / np.sqrt(np.diag(mm))
+        share, basis = np.linalg.eigh(root[:, None] * mm * root)
+        if share[0] < 1e-13 * len(share):
+            turned = root[:, None] * basis
+            t = t @ turned @ condense(turned.T @ kk @ turned, share < 1e-13 * len(share))
+            kk, mm = t.T @ (k @ t), t.T @ (m @ t)
+    values, shapes = _eigen(kk, mm)
+    return Modes(np.sqrt(values), _signed(t @ shapes))
+
+
+def _signed(shapes: Array) -> Array:
+    """Shapes with signs free of rounding: the first component within a hair of the largest is positive."""
+    big = np.abs(shapes) > (1 - 1e-9) * np.abs(shapes).max(axis=0)
+    return np.asarray(shapes * np.sign(shapes[np.argmax(big, axis=0), np.arange(shapes.shape[1])]))
+
+
+def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
+    """The `count` slowest modes of sparse matrices; None where some cannot be told from others."""
+    from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
+
+    n, at = k.shape[0], np.flatnonzero(used_rows(k))
+    size = scaling(k[np.ix_(at, at)])
+    k, m = (scaled(a[np.ix_(at, at)], size) for a in (k, m))
+    shift = 0.0
+    try:
+        if Factor(k).negative:
+            raise np.linalg.LinAlgError("negative stiffness")
+    except np.linalg.LinAlgError:  # rigid bodies: a little stiffness where mass is makes them slow modes
+        shift = 1e-8 / float(diagonal(m).max())
+    factor = Factor(k + shift * m)
+    if factor.negative:
+        raise np.linalg.LinAlgError("negative stiffness")
+    want, values, shapes = count, np.zeros(0), np.zeros((len(at), 0))
+    for _ in range(MISSED):
+        # those that are known are taken out, so that another of the same frequency shows
+        def follow(push: Array, known: Array = shapes, own: Array = values) -> Array:
+            x = factor.solve(push.ravel())
+            return np.asarray(x - known @ ((known.T @ push.ravel()) / (own + shift)))
+
+        more = max(want + MORE - len(values), 1)
+        start = follow(m @ _generic(len(at)))
+        try:
+            found, x = eigsh(
+                k, more, m, -shift, "LM", start, OPinv=LinearOperator(k.shape, follow), tol=0, ncv=None
+            )
+        except ArpackError:
+            return None
+        x = factor.solve(m @ x)  # free of what has no mass
+        x /= np.sqrt((x * (m @ x)).sum(axis=0))
+        values, shapes = np.append(values, found), np.hstack([shapes, x])
+        order = np.argsort(values, kind="stable")
+        values, shapes = values[order], shapes[:, order]
+        # the widest gap after those that are asked for, and whether as many modes lie below it
+        gap = want - 1 + int(np.argmax(np.diff(values[want - 1 :] + shift) / (values[want:] + shift)))
+        below = Factor(k - 0.5 * (values[gap] + values[gap + 1]) * m, 0.0).negative
+        if below == gap + 1:
+            break
+        want = max(want, below)
+    else:
+        return None
+    values, shapes = np.maximum(values[:count], 0.0), shapes[:, :count]
+    values[values < 1e-6 * shift] = 0.0
+    full = np.zeros((n, count))
+    full[at] = size[:, None] * shapes
+    return Modes(np.sqrt(values), _signed(full))
+
+
+def fastest(k: Matrix, m: Matrix) -> float:
+    """Highest circular frequency [rad/T] of a structure all of whose freedoms have mass; 0 without any."""
+    if isinstance(k, np.ndarray):
+        return float(solve(k, m).omega.max(initial=0.0))
+    # above the highest frequency all pivots of w^2 M - K are positive
+    low = float((diagonal(k) / diagonal(m)).max(initial=0.0))
+    high = 2.0 * low
+    while low < high and not _above(k, m, high):
+        low, high = high, 2.0 * high
+    while high - low > 1e-9 * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if _above(k, m, middle) else (middle, high)
+    return float(np.sqrt(high))
+
+
+def _above(k: Matrix, m: Matrix, square: float) -> bool:
+    """Whether a squared frequency lies above all those of K and M."""
+    try:
+        return not Factor(square * m - k, 0.0).negative
+    except np.linalg.LinAlgError:
+        return False
+
+
+def generalised(k: Array, m: Array) -> tuple[Array, Array]:
+    """Squared frequencies, ascending, and mass-normalised shapes of K and a positive definite M.
+
+    All values carry the rounding of the largest.
+    """
+    if not np.any(m - np.diag(np.diag(m))):
+        root = 1.0 / np.sqrt(np.diag(m))
+        values, vectors = np.linalg.eigh(root[:, None] * k * root)
+        return values, root[:, None] * vectors
+    lower = np.linalg.inv(np.linalg.cholesky(m))
+    values, vectors = np.linalg.eigh(lower @ k @ lower.T)
+    return values, lower.T @ vectors
+
+
+def _eigen(k: Array, m: Array) -> tuple[Array, Array]:
+    """`generalised`, with rigid-body modes told from slow ones, and these sharpened."""
+    values, shapes = generalised(k, m)
+    size = scaling(k)
+    scaled = size[:, None] * k * size
+    rigid = np.arange(len(k)) < deficiency(scaled)  # rounding leaves them at +-1e-16 of the largest value
+    values = np.where(rigid, 0.0, np.maximum(values, 0.0))
+    low = values < 1e-5 * values[-1]
+    if low.any() and not rigid.any():
+        # values far below the largest have lost digits to it: sharpen them by one step of inverse iteration
+        push = m @ shapes[:, low]
+        x = size[:, None] * np.linalg.solve(scaled, size[:, None] * push)
+        scale = 1.0 / np.linalg.norm(x, axis=0)
+        x, push = x * scale, push * scale
+        work, energy = push.T @ x, x.T @ m @ x
+        lower = np.linalg.inv(np.linalg.cholesky(0.5 * (work + work.T)))
+        squares, y = np.linalg.eigh(lower @ energy @ lower.T)  # of 1 / omega^2
+        squares, y = squares[::-1], lower.T @ y[:, ::-1]
+        values[low], shapes[:, low] = 1.0 / squares, x @ (y / np.sqrt(squares))
+    return values, shapes

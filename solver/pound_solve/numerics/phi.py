@@ -1,0 +1,80 @@
+r"""Two families of integrals of the exponential against powers, for complex arguments.
+
+.. math:: K_k(z) = \int_0^1 e^{z(1-x)} x^k\,dx, \qquad J_k(z) = \int_0^1 e^{zx} x^k\,dx
+
+:math:`K_k = k!\,\varphi_{k+1}(z)` answers a mode under a force :math:`t^k` (Duhamel);
+:math:`J_k` integrates a mode against :math:`t^k`.  Both are summed as power series near zero and by their
+upward recurrences elsewhere: :math:`K_k = (k K_{k-1} - 1)/z`, :math:`J_k = (e^z - k J_{k-1})/z`.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from math import factorial
+
+import numpy as np
+
+from pound_solve.numerics.types import Array, Complex
+
+
+def _near(degree: int) -> tuple[float, int]:
+    """Return the radius within which the series is used, and its number of terms for 1e-17 there.
+
+    The recurrence multiplies rounding by k!/|z|^k; the series loses e^|z| for a negative argument.
+    """
+    return (0.3, 13) if degree <= 1 else (1.5, 25) if degree <= 3 else (4.0, 38)
+
+
+@cache
+def _series(degree: int, of_duhamel: bool) -> Array:
+    """Coefficients of the power series of all K_k or J_k, lowest power first, shape (n_terms, degree + 1).
+
+    ``K_k = k! sum z^n / (n + k + 1)!`` and ``J_k = sum z^n / (n! (n + k + 1))``; see `_near`.
+    """
+    count = _near(degree)[1]
+    out = np.empty((count, degree + 1))
+    for k in range(degree + 1):
+        for n in range(count):
+            out[n, k] = (
+                factorial(k) / factorial(n + k + 1) if of_duhamel else 1.0 / (factorial(n) * (n + k + 1))
+            )
+    return out
+
+
+def _sum_series(z: Complex, degree: int, of_duhamel: bool) -> Complex:
+    """Sum the series of all k at once for a row of arguments, shape (degree + 1, n)."""
+    coefs = _series(degree, of_duhamel)
+    powers: Complex = np.empty((len(coefs), len(z)), complex)
+    powers[0] = 1.0
+    powers[1:] = z
+    np.multiply.accumulate(powers, axis=0, out=powers)
+    return coefs.T @ powers
+
+
+def duhamel(z: Complex, degree: int, exp_z: Complex | None = None) -> Complex:
+    """Return ``K_0 .. K_degree``, shape ``(degree + 1, *z.shape)``; see the module's head."""
+    z = np.asarray(z, complex)
+    out = np.empty((degree + 1, *z.shape), complex)
+    small = np.abs(z) < _near(degree)[0]
+    safe = np.where(small, 1.0, z)
+    out[0] = np.expm1(z) / safe if exp_z is None else (exp_z - 1.0) / safe
+    for k in range(1, degree + 1):
+        out[k] = (k * out[k - 1] - 1.0) / safe
+    if small.any():
+        out[:, small] = _sum_series(z[small], degree, True)
+    return out
+
+
+def moments(z: Complex, degree: int) -> Complex:
+    """Return ``J_0 .. J_degree``, shape ``(degree + 1, *z.shape)``; see the module's head."""
+    z = np.asarray(z, complex)
+    out = np.empty((degree + 1, *z.shape), complex)
+    small = np.abs(z) < _near(degree)[0]
+    safe = np.where(small, 1.0, z)
+    exp_z = np.exp(z)
+    out[0] = (exp_z - 1.0) / safe
+    for k in range(1, degree + 1):
+        out[k] = (exp_z - k * out[k - 1]) / safe
+    if small.any():
+        out[:, small] = _sum_series(z[small], degree, False)
+    return out

@@ -1,0 +1,105 @@
+"""Polynomials with ascending coefficients along the first axis."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import comb, perm
+
+import numpy as np
+
+from pound_solve.numerics.types import Array
+
+
+@cache
+def _binomials(n: int) -> tuple[Array, Array]:
+    """Binomials C(k, i) at [i, k], and the powers k - i (0 where the binomial is 0)."""
+    table = np.array([[comb(k, i) for k in range(n)] for i in range(n)], float)
+    return table, np.maximum(np.arange(n)[None, :] - np.arange(n)[:, None], 0)
+
+
+@cache
+def _falling(n: int, order: int) -> Array:
+    """Factors k (k-1) ... (k-order+1) that `order` derivatives leave
+    before each coefficient from `order` on.
+    """
+    return np.array([perm(k, order) for k in range(order, n)], float)
+
+
+def shift(coefs: Array, t: float | Array) -> Array:
+    """Coefficients of the same polynomials about an origin `t` later.
+
+    Parameters
+    ----------
+    coefs : ndarray, shape (degree + 1, ...)
+    t : float, or ndarray that broadcasts with one coefficient
+
+    Returns
+    -------
+    ndarray, shape of `coefs`
+    """
+    if not np.any(t):
+        return coefs
+    if np.ndim(t) == 0:
+        table, power = _binomials(len(coefs))
+        return np.asarray((table * float(t) ** power) @ coefs.reshape(len(coefs), -1)).reshape(coefs.shape)
+    out = np.array(coefs)
+    for k in range(len(out) - 1):  # Horner's divisions, which need no room beside the coefficients
+        for i in range(len(out) - 2, k - 1, -1):
+            out[i] += t * out[i + 1]
+    return out
+
+
+def value(coefs: Array, t: float, order: int = 0) -> Array:
+    """Value at `t` of polynomials, or of their derivative of some order, shape ``coefs.shape[1:]``."""
+    n = len(coefs)
+    if order >= n:
+        return np.zeros(coefs.shape[1:])
+    factors = _falling(n, order).tolist()
+    out = factors[-1] * coefs[-1]
+    for factor, own in zip(factors[-2::-1], coefs[-2::-1]):
+        out = out * t + factor * own
+    return np.asarray(out)
+
+
+def on(coefs: Array, t: Array, order: int = 0) -> Array:
+    """`value` of several sets of polynomials, each at times of its own.
+
+    Parameters
+    ----------
+    coefs : ndarray, shape (n_sets, degree + 1, n)
+    t : ndarray, shape (n_sets, n_times)
+    order : int
+
+    Returns
+    -------
+    ndarray, shape (n, n_sets, n_times)
+    """
+    _, terms, n = coefs.shape
+    if order >= terms:
+        return np.zeros((n, *t.shape))
+    own = coefs[:, order:].transpose(1, 2, 0)[..., None]  # power, polynomial, set
+    factors = _falling(terms, order).tolist()
+    out = np.broadcast_to(factors[-1] * own[-1], (n, *t.shape))
+    for factor, x in zip(factors[-2::-1], own[-2::-1]):
+        out = out * t + factor * x
+    return out
+
+
+def values(coefs: Array, t: Array, order: int = 0) -> Array:
+    """`value` of one set of polynomials at each time.
+
+    Parameters
+    ----------
+    coefs : ndarray, shape (n_times, degree + 1, n)
+    t : ndarray, shape (n_times,)
+    order : int
+
+    Returns
+    -------
+    ndarray, shape (n_times, n)
+    """
+    n = coefs.shape[1]
+    if order >= n:
+        return np.zeros((len(t), coefs.shape[2]))
+    weights = _falling(n, order) * t[:, None] ** np.arange(n - order)
+    return np.einsum("tk,tkn->tn", weights, coefs[:, order:])

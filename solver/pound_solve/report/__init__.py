@@ -1,0 +1,1 @@
+"""What is made of a results file and of the catalog."""

@@ -1,0 +1,74 @@
+"""Results as CSV: one file for each table and each history."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from pound_solve.results.file import Results
+
+_BLOCK: Final = 4096  #: rows that are turned into Python numbers at a time
+
+
+def export_csv(results: Results, folder: str | Path) -> list[Path]:
+    """Write ``<table>.csv`` and ``history_<name>.csv`` files.
+
+    Heads hold the units in brackets.  Numbers have all their digits; a number that is missing is an empty
+    cell.  Texts are UTF-8.
+
+    Parameters
+    ----------
+    results : Results
+        The file to export.
+    folder : str or Path
+        Where the files go; made if it does not exist, files of the same names are replaced.
+
+    Returns
+    -------
+    list of Path
+        The files, in the order of the report.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    return [
+        *(_table(results, name, folder) for name in results.tables),
+        *(_history(results, name, folder) for name in results.histories if name != "time"),
+    ]
+
+
+def _table(results: Results, name: str, folder: Path) -> Path:
+    heads = [_head(column, unit) for column, unit in results.table_units(name).items()]
+    rows = ([_cell(v) for v in row] for row in results.table(name).tolist())
+    return _write(folder / f"{name}.csv", heads, rows)
+
+
+def _history(results: Results, name: str, folder: Path) -> Path:
+    time, labels = results.time, results.labels(name)
+    values = results.history(name).reshape(len(time), len(labels))
+    heads = [_head("time", results.history_units("time")[0])]
+    heads += map(_head, labels, results.history_units(name))
+    rows = (
+        [t, *row]
+        for start in range(0, len(time), _BLOCK)
+        for t, row in zip(time[start : start + _BLOCK].tolist(), values[start : start + _BLOCK].tolist())
+    )
+    return _write(folder / f"history_{name.replace('/', '_')}.csv", heads, rows)
+
+
+def _write(path: Path, heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(heads)
+        writer.writerows(rows)
+    return path
+
+
+def _head(name: str, unit: str) -> str:
+    return f"{name} [{unit}]" if unit not in ("", "-") else name
+
+
+def _cell(value: Any) -> Any:
+    return "" if isinstance(value, float) and math.isnan(value) else value

@@ -1,0 +1,48 @@
+"""Picture of a study: the largest error of every run against its time and its steps."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pound_solve.report.plot import style
+from pound_solve.results.file import Results
+
+MARKS = "os^Dvx"
+ROOM = 0.05  #: left beside the curves, as a share of a decade
+
+
+def study(results: Results) -> Any:
+    """Error against time to solve and against the number of steps, one curve a method."""
+    table = results.table("study")
+    table = table[np.isfinite(table["seconds"])]
+    # a run without error is drawn at the rounding of numbers
+    worst = np.fmax(np.fmax(np.fmax(table["drift"], table["member"]), table["contact"]), 1e-16)
+    over = {"seconds": "time to solve [s]"}
+    if table["steps"].any():
+        over["steps"] = "steps"
+    figure = style.figure(4.5 * len(over), 4.2, results.title)
+    for n, (column, name) in enumerate(over.items()):
+        axes = figure.add_subplot(1, len(over), n + 1)
+        style.grid(axes, name, "" if n else "largest error")
+        for k, method in enumerate(dict.fromkeys(table["method"].tolist())):
+            own = (table["method"] == method) & (table[column] > 0)
+            if own.any():
+                axes.loglog(
+                    table[column][own], worst[own], color=style.COLOURS[k % len(style.COLOURS)],
+                    marker=MARKS[k % len(MARKS)], markersize=4, linewidth=0.9, label=method,
+                )  # fmt: skip
+        for target in results.table("study_advice")["target"]:
+            axes.axhline(target, color="0.5", linewidth=0.6, linestyle="--")
+        _decades(axes)
+    figure.axes[0].legend(fontsize=7)
+    return figure
+
+
+def _decades(axes: Any) -> None:
+    """Logarithmic axes over whole decades, which alone are numbered: numbers between them would touch."""
+    for axis, limit in ((axes.xaxis, axes.set_xlim), (axes.yaxis, axes.set_ylim)):
+        low, high = np.log10(axis.get_data_interval())
+        limit(10.0 ** np.floor(low - ROOM), 10.0 ** np.ceil(high + ROOM))
+    axes.tick_params(which="minor", labelbottom=False, labelleft=False)

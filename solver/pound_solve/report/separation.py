@@ -1,0 +1,163 @@
+r"""How far apart two buildings should stand: rules on the peak displacements of a run, at every contact.
+
+:math:`u_1, u_2` are the largest absolute displacements of the contact's nodes along its direction.
+
+* ABS: :math:`u_1 + u_2`
+* SRSS: :math:`\sqrt{u_1^2 + u_2^2}`
+* DDC, the double difference combination (Jeng, Kasai and Maison 1992, Earthquake Spectra 8: 201-223):
+  :math:`\sqrt{u_1^2 + u_2^2 - 2\rho u_1 u_2}`, where :math:`\rho` is the correlation of two oscillators of
+  periods :math:`T_1, T_2` and damping ratios :math:`\xi_1, \xi_2` under white noise,
+
+.. math:: \rho = \frac{8\sqrt{\xi_1\xi_2}\,(\xi_1 + \chi\xi_2)\,\chi^{3/2}}
+          {(1-\chi^2)^2 + 4\xi_1\xi_2\chi(1+\chi^2) + 4(\xi_1^2+\xi_2^2)\chi^2},\qquad \chi = T_1/T_2
+
+(the coefficient of the complete quadratic combination, Der Kiureghian 1981, Earthquake Engng Struct.
+Dyn. 9: 419-435).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from pound_solve.report.text import block
+from pound_solve.results.file import Results
+from pound_solve.results.schema import Column, Table
+from pound_solve.structure.elements.base import axes
+
+TAKES_PART = 0.1  #: component of a mode, largest 1, from which it is taken for a building's own
+NAN: Final = math.nan
+FREE, MET = "free: nothing met", "pounding: something met"
+UNKNOWN = "; no DDC without periods and damping: MODAL SHAPES=YES, or --periods and --damping"
+
+TABLE: Final = Table(
+    "separation",
+    "Separation of the buildings",
+    (
+        Column("contact", doc="number or name of the contact element"),
+        Column("u1", "peak\nnode I", "L", "short", "largest absolute displacement along the contact"),
+        Column("u2", "peak\nnode J", "L", "short", "the same; 0 for a wall"),
+        Column("t1", "period\nI", "T", "short", "period of the building of node I"),
+        Column("t2", "period\nJ", "T", "short", "period of the building of node J"),
+        Column("xi1", "damping\nI", "%", "percent", "damping of that mode"),
+        Column("xi2", "damping\nJ", "%", "percent", "damping of that mode"),
+        Column("abs", "ABS", "L", "num", "sum of the peaks"),
+        Column("srss", "SRSS", "L", "num", "root of the sum of their squares"),
+        Column("ddc", "DDC", "L", "num", "double difference combination"),
+        Column("needed", "gap\nneeded", "L", "num", "largest closure of this run, if nothing met"),
+        Column("gap", "gap of\nthe deck", "L", "num", "gap of the contact"),
+        Column("note", "run", doc="whether the buildings moved freely, and what is not known"),
+    ),
+    note="Peaks are absolute displacements from the node envelopes of this run. The gap needed is its "
+    "largest closure, if nothing met in it; else run the deck with gaps that stay open. The period of a "
+    "building is that of the longest mode in which the node has a tenth of the largest component, or "
+    "--periods.",
+)
+
+
+class SeparationError(Exception):
+    """A results file that does not hold what the rules need."""
+
+
+def correlation(t1: float, t2: float, xi1: float, xi2: float) -> float:
+    """Correlation of two oscillators under white noise, from periods [T] and damping ratios [-]."""
+    chi = t1 / t2
+    top = 8.0 * math.sqrt(xi1 * xi2) * (xi1 + chi * xi2) * chi**1.5
+    cross = 4.0 * xi1 * xi2 * chi * (1.0 + chi**2) + 4.0 * (xi1**2 + xi2**2) * chi**2
+    below = (1.0 - chi**2) ** 2 + cross
+    return top / below if below > 0.0 else 1.0  # both undamped and of one period: they move alike
+
+
+def double_difference(u1: float, u2: float, rho: float) -> float:
+    """Relative peak displacement of two correlated peaks [L]."""
+    return math.sqrt(max(u1**2 + u2**2 - 2.0 * rho * u1 * u2, 0.0))
+
+
+def text(results: Results, periods: Sequence[float] = (), damping: Sequence[float] = ()) -> str:
+    """Table of the rules for all contacts of a results file, as the report prints tables.
+
+    Parameters
+    ----------
+    results : Results
+    periods : sequence of two floats
+        Periods of the buildings of nodes I and J in place of the modes' [T].
+    damping : sequence of two floats
+        Their damping in place of the modes' [%].
+
+    Raises
+    ------
+    SeparationError
+        There is no contact or no history in the file.
+    """
+    found = rows(results, periods, damping)
+    names = [c.name for c in TABLE.columns]
+    kinds = [(c.name, "O" if c.is_text else "f8") for c in TABLE.columns]
+    assert all(len(row) == len(names) for row in found)
+    return "\n".join(line.rstrip() for line in block(results, TABLE, np.array(found, dtype=kinds)))
+
+
+def rows(
+    results: Results, periods: Sequence[float] = (), damping: Sequence[float] = ()
+) -> list[tuple[Any, ...]]:
+    """Rows of `TABLE`; see `text`."""
+    if math.isnan(results.last_time):
+        why = f": {results.message}" if results.message else ""
+        raise SeparationError(f"{results.path} holds no history{why}")
+    needed = {"contact_laws", "contact_summary", "node_envelope", "elements"}
+    if not needed <= set(results.tables) or not len(results.table("contact_laws")):
+        raise SeparationError(f"{results.path}: the rules need a HISTORY of a deck with contacts")
+    ends = {e["name"] or str(e["element"]): (e["i"], e["j"]) for e in results.table("elements")}
+    summary = {row["contact"]: row for row in results.table("contact_summary")}
+    early = "" if results.status == "done" else f"; the run ended early, at {results.last_time:g}"
+    met = any(row["closures"] > 0 for row in summary.values())  # that changed all displacements
+    out = []
+    for law in results.table("contact_laws"):
+        way, nodes = axes(law["angle"])[0], ends[law["contact"]]
+        u1, u2 = (_peak(results, node, way) for node in nodes)
+        modes = [_mode(results, node, way) for node in nodes]
+        t1, t2 = periods or [m[0] for m in modes]
+        xi1, xi2 = damping or [m[1] for m in modes]
+        note = (MET if met else FREE) + early
+        if u2 == 0.0 or u1 == 0.0:
+            ddc = u1 + u2  # one side stands still: nothing to correlate
+        elif math.isnan(t1 + t2 + xi1 + xi2):
+            ddc, note = NAN, note + UNKNOWN
+        else:
+            ddc = double_difference(u1, u2, correlation(t1, t2, xi1 / 100.0, xi2 / 100.0))
+        gap = float(law["gap"])
+        closure = NAN if met else gap - float(summary[law["contact"]]["min_gap"])
+        sums = (u1 + u2, math.hypot(u1, u2), ddc)
+        out.append((law["contact"], u1, u2, t1, t2, xi1, xi2, *sums, closure, gap, note))
+    return out
+
+
+def _peak(results: Results, node: int, way: tuple[float, float]) -> float:
+    """Largest absolute displacement of a node along `way`; 0 of a wall, NaN where it is not stored."""
+    if node == 0:
+        return 0.0
+    envelope = results.table("node_envelope")
+    own = envelope[(envelope["node"] == node) & (envelope["quantity"] == "displacement")]
+    if 0.0 in way:
+        axis = own[own["direction"] == ("X" if way[0] else "Y")]
+        return float(max(abs(axis["max"][0]), abs(axis["min"][0]))) if len(axis) else NAN
+    if "node/u" not in results.histories or node not in results.attributes("node/u")["nodes"]:
+        return NAN
+    at = results.attributes("node/u")["nodes"].index(node)
+    return float(np.abs(results.history("node/u")[:, at, :2] @ way).max(initial=0.0))
+
+
+def _mode(results: Results, node: int, way: tuple[float, float]) -> tuple[float, float]:
+    """Period [T] and damping [%] of the longest mode that a node takes part in; NaN where there is none."""
+    if not {"modes", "mode_shapes"} <= set(results.tables):
+        return NAN, NAN
+    shapes, modes = results.table("mode_shapes"), results.table("modes")
+    own = shapes[shapes["node"] == node]
+    taking = own["mode"][np.abs(own["x"] * way[0] + own["y"] * way[1]) >= TAKES_PART]
+    chosen = modes[np.isin(modes["mode"], taking)]
+    if not len(chosen):
+        return NAN, NAN
+    longest = chosen[np.argmax(chosen["period"])]
+    return float(longest["period"]), float(longest["damping"])

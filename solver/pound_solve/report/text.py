@@ -1,0 +1,297 @@
+"""The plain-text report: a view of the tables in a results file.
+
+ASCII, at most 132 columns, every table under a fixed number; nothing but the last section depends on the
+machine, the day or the host, so two reports of one deck compare line by line.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import re
+import textwrap
+import unicodedata
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import Any, Final
+
+from numpy.typing import NDArray
+from tabulate import tabulate
+
+from pound_solve.results.file import Results
+from pound_solve.results.schema import SECTIONS, TABLES, Column, Table
+
+WIDTH: Final = 132  #: columns of the report
+_INDENT: Final = "  "
+_GAP: Final = 2  #: blanks that tabulate leaves between columns
+_NARROWEST: Final = 16  #: texts are not wrapped to less; a table that is still too wide is split instead
+_DIGITS: Final = {"num": 7, "short": 5}
+_DUST: Final = 1e-300  #: what is smaller prints as zero
+
+#: Signs that do not decompose into ASCII, and what stands for them; Greek letters go by their names.
+_PAIRS: Final = """
+    –|- —|- −|- ‘|' ’|' “|" ”|" ·|* ×|x ÷|/ ≤|<= ≥|>= ≠|/= ≈|~ ±|+- √|sqrt ∞|inf °|deg →|-> ←|<-
+    ß|ss ø|o Ø|O æ|ae Æ|AE ł|l Ł|L
+"""
+_SIGNS: Final = dict(pair.split("|") for pair in _PAIRS.split())
+
+
+def render(results: Results, *, limit: int | None = None, only: Collection[str] | None = None) -> str:
+    """Report of a results file.
+
+    Parameters
+    ----------
+    results : Results
+        The file.
+    limit : int, optional
+        Rows that are printed of each table that has a limit, in place of that limit (0: all rows).
+    only : collection of str, optional
+        Names of the tables that are printed, for an excerpt.
+
+    Returns
+    -------
+    str
+        The report; every line ends in ``\\n``.
+    """
+    lines = [*_banner(results), *_warning(results)]
+    present = set(results.tables) if only is None else set(results.tables) & set(only)
+    for number, (heading, names) in enumerate(SECTIONS, 1):
+        blocks = [
+            [f"{number}.{place}  {TABLES[name].title.upper()}", "", *body, "", ""]
+            for place, name in enumerate(names, 1)
+            if name in present and (body := _block(results, TABLES[name], limit))
+        ]
+        if blocks:
+            lines += [f"{number}  {heading.upper()}", "=" * WIDTH, ""]
+            if number == 1:
+                lines += [_INDENT + "A * marks what the deck leaves to its default.", ""]
+            lines += [line for block in blocks for line in block]
+    return "\n".join(line.rstrip() for line in lines).rstrip() + "\n"
+
+
+def _banner(results: Results) -> Iterator[str]:
+    units = results.units
+    yield "=" * WIDTH
+    yield f" POUND-SOLVE {_plain(results.program_version)}     EARTHQUAKE POUNDING OF PLANE FRAMES"
+    yield ""
+    for line in textwrap.wrap(_plain(results.title), WIDTH - 2):
+        yield " " + line
+    yield f" Units: force {_plain(units.force)}, length {_plain(units.length)}, time {_plain(units.time)}"
+    yield "=" * WIDTH
+    yield from ("", "")
+
+
+def _warning(results: Results) -> Iterator[str]:
+    """Framed warning above the report of an analysis that did not finish."""
+    if results.status == "done":
+        return
+    head = "THE ANALYSIS DID NOT COME TO ITS END"
+    if results.status == "stopped":
+        why = results.message or "No reason was recorded."
+    else:
+        why = "The program was killed, or it is still running; nothing is recorded of where and why."
+    if math.isnan(results.last_time):
+        scope = "There is no time history; only what stands below was computed."
+    else:
+        when = f"{_times([results.last_time])[0]} {results.units.time}"
+        scope = f"The last sample of the time history is that at {when}: what is taken from it ends there."
+    inner = WIDTH - 8
+    yield "*" * WIDTH
+    for text in (head, "", why, "", scope):
+        for line in textwrap.wrap(_plain(text), inner) or [""]:
+            yield f"**  {line.ljust(inner)}  **"
+    yield "*" * WIDTH
+    yield from ("", "")
+
+
+def _block(results: Results, table: Table, limit: int | None) -> list[str]:
+    """Lines of one table of the file with its notes; none when it has no rows."""
+    rows = results.table(table.name)
+    most = table.limit if limit is None or not table.limit else limit
+    more = ""
+    if most and len(rows) > most:
+        more = f"... and {len(rows) - most} more rows: table '{table.name}' of the results file"
+    return block(results, table, rows[:most] if most else rows, results.note(table.name), more)
+
+
+def block(results: Results, table: Table, rows: NDArray[Any], note: str = "", more: str = "") -> list[str]:
+    """Lines of a table with its notes, in the units of `results`; none where there is nothing to show.
+
+    Parameters
+    ----------
+    rows : ndarray, structured
+        Fields are the table's columns.
+    note, more : str
+        A further note, and a line on what is left out.
+    """
+    lines = _body(results, table, rows)
+    if more:
+        lines += ["", _INDENT + more]
+    notes = " ".join(_plain(text) for text in (table.note, note) if text)
+    if lines and notes:
+        lines += ["", *(_INDENT + line for line in textwrap.wrap(notes, WIDTH - len(_INDENT)))]
+    return lines
+
+
+def _body(results: Results, table: Table, rows: NDArray[Any]) -> list[str]:
+    """Lines of heads and rows; none where no column has anything to show."""
+    groups = _groups(table, rows)
+    cells, heads, columns = {}, {}, []
+    for c in table.columns:
+        if c.name not in (rows.dtype.names or ()):
+            continue  # a file of an older minor version
+        texts = [t for g in groups for t in _format(c, rows[c.name][g].tolist())]
+        if any(t not in ("", "-") for t in texts):
+            columns.append(c)
+            cells[c.name] = texts
+            unit = f"\n[{_plain(results.units.text(c.unit))}]" if c.unit else ""
+            heads[c.name] = c.title + unit
+    if not columns:
+        return []
+    _wrap(columns, heads, cells)
+    # Blank lines between groups, unless every group is a single row.
+    breaks = [len(g) for g in groups[:-1]] if len(groups) < len(rows) else []
+    lines: list[str] = []
+    for panel in _panels(columns, heads, cells):
+        lines += ["", *_print(panel, heads, cells, breaks)]
+    return lines[1:]
+
+
+def _groups(table: Table, rows: NDArray[Any]) -> list[list[int]]:
+    """Row numbers by value of the group column, in order of first appearance."""
+    if not table.group:
+        return [list(range(len(rows)))]
+    found: dict[Any, list[int]] = {}
+    for number, key in enumerate(rows[table.group].tolist()):
+        found.setdefault(key, []).append(number)
+    return list(found.values())
+
+
+def _wrap(columns: Sequence[Column], heads: dict[str, str], cells: dict[str, list[str]]) -> None:
+    """Wrap the widest texts, in place, until the table fits the page."""
+    widths = {c.name: _width(heads[c.name], cells[c.name]) for c in columns}
+    texts = [c.name for c in columns if c.is_text]
+    room = WIDTH - len(_INDENT) - _GAP * (len(columns) - 1)
+    room -= sum(width for name, width in widths.items() if name not in texts)
+    cap = max((widths[n] for n in texts), default=0)
+    while cap > _NARROWEST and sum(min(widths[n], cap) for n in texts) > room:
+        cap -= 1
+    for name in texts:
+        if widths[name] > cap:
+            cells[name] = [textwrap.fill(t, cap) for t in cells[name]]
+
+
+def _panels(
+    columns: Sequence[Column], heads: dict[str, str], cells: dict[str, list[str]]
+) -> Iterator[list[Column]]:
+    """Columns in as few panels as fit the page; each begins with the first column."""
+    key = columns[0]
+    start = used = len(_INDENT) + _width(heads[key.name], cells[key.name])
+    panel = [key]
+    for column in columns[1:]:
+        width = _GAP + _width(heads[column.name], cells[column.name])
+        if used + width > WIDTH:
+            yield panel
+            panel, used = [key], start
+        panel.append(column)
+        used += width
+    yield panel
+
+
+def _print(
+    panel: Sequence[Column], heads: dict[str, str], cells: dict[str, list[str]], breaks: Sequence[int]
+) -> list[str]:
+    """Lines of one panel, with a blank line after each of the first groups."""
+    tallest = max(heads[c.name].count("\n") for c in panel)
+    # Heads are rows like others, filled up on top so that all units stand on the last line: as tabulate's
+    # own headers they would get extra blanks.
+    tops = ["\n" * (tallest - heads[c.name].count("\n")) + heads[c.name] for c in panel]
+    lines = [*_lines(tops), ["-" * _width(heads[c.name], cells[c.name]) for c in panel]]
+    ends = set(itertools.accumulate(breaks))
+    for number, row in enumerate(zip(*(cells[c.name] for c in panel)), 1):
+        lines += _lines(row)
+        lines += [[""] * len(panel)] if number in ends else []
+    align = ["left" if c.is_text else "right" for c in panel]
+    # a column is one cell of many lines: tabulate looks at every cell several times
+    cell = ["\n".join(column) for column in zip(*lines)]
+    text = tabulate(
+        [cell], tablefmt="plain", disable_numparse=True, colalign=align, preserve_whitespace=True
+    )
+    return [_INDENT + line for line in text.split("\n")]
+
+
+def _lines(row: Sequence[str]) -> list[list[str]]:
+    """Row of cells, some of several lines, as rows of one line each."""
+    if not any("\n" in cell for cell in row):
+        return [list(row)]
+    return [list(line) for line in itertools.zip_longest(*(cell.split("\n") for cell in row), fillvalue="")]
+
+
+def _width(head: str, cells: Iterable[str]) -> int:
+    return max(map(len, "\n".join((head, *cells)).split("\n")))
+
+
+def _format(column: Column, values: list[Any]) -> list[str]:
+    """Cells of one column, numbers with as many decimals each; ``-`` for no value."""
+    if column.fmt == "text":
+        plain = {v: _plain(v)[: column.clip or None] for v in set(values)}
+        return [plain[v] for v in values]
+    if column.fmt == "int":
+        return [column.zero if column.zero and not v else str(v) for v in values]
+    real = [0.0 if abs(v) < _DUST else v for v in values if math.isfinite(v)]
+    if column.fmt == "time":
+        shown = _times(real)
+    elif column.fmt == "percent":
+        shown = _fixed(real, 2, 4)
+    else:
+        shown = _numbers(real, _DIGITS[column.fmt])
+    numbers = iter(shown)
+    return [next(numbers) if math.isfinite(v) else "-" if math.isnan(v) else str(v) for v in values]
+
+
+def _times(values: list[float]) -> list[str]:
+    return _fixed(values, 3, 6)
+
+
+def _fixed(values: list[float], least: int, most: int) -> list[str]:
+    """Values with as many decimals, between two limits, as any of them needs."""
+    needed = max((len(f"{v:.{most}f}".rstrip("0").partition(".")[2]) for v in values), default=0)
+    return [_unsigned_zero(f"{v:.{max(needed, least)}f}") for v in values]
+
+
+def _numbers(values: list[float], digits: int) -> list[str]:
+    """Values to a number of significant digits: fixed where that reads well, else with exponents."""
+    # of all values but zeros: significant digits without trailing zeros, exponent
+    parts = [f"{abs(v):.{digits - 1}E}".split("E") for v in values if v]
+    shapes = [(len(m.replace(".", "").rstrip("0")), int(e)) for m, e in parts] or [(1, 0)]
+    highest, spread = max(e for _, e in shapes), max(e for _, e in shapes) - min(e for _, e in shapes)
+    exact = max(1, *(n - 1 - e for n, e in shapes))  # decimals that show every value to its last digit
+    room = max(1, digits - 1 - highest)  # decimals that show the largest value to its last digit
+    if -3 <= highest < digits and (spread <= 3 or exact <= room or highest + exact < digits + 3):
+        decimals = min(exact, room) if spread <= 3 else exact
+        return [_unsigned_zero(f"{v:.{decimals}f}") for v in values]
+    mantissa = max(1, *(n - 1 for n, _ in shapes))
+    return [f"{v:.{mantissa}E}" if v else "0" for v in values]
+
+
+def _unsigned_zero(text: str) -> str:
+    """The same number, but no minus before a zero."""
+    return text[1:] if text[0] == "-" and not text.strip("-0.") else text
+
+
+def _plain(text: str) -> str:
+    """Text in ASCII on one line."""
+    if not text.isascii():
+        text = "".join(map(_spelled, unicodedata.normalize("NFKD", unicodedata.normalize("NFC", text))))
+    return re.sub(r"[\x00-\x1f\x7f]", "?", " ".join(text.split()))
+
+
+def _spelled(char: str) -> str:
+    """ASCII for one decomposed character; nothing for a combining accent."""
+    if char.isascii() or char in _SIGNS:
+        return _SIGNS.get(char, char)
+    if unicodedata.combining(char):
+        return ""
+    greek = re.match(r"GREEK (SMALL|CAPITAL) LETTER (?:FINAL )?(\w+)", unicodedata.name(char, ""))
+    if greek:
+        return greek[2].lower() if greek[1] == "SMALL" else greek[2].capitalize()
+    return "?"

@@ -1,0 +1,1 @@
+"""The assembled structure: degrees of freedom, elements, damping, geometry, reduction."""

@@ -1,0 +1,256 @@
+r"""Chords: what a member on its displaced line adds to its linear stiffness.
+
+The chord of a member runs from the one end of its flexible length to the other.  Linear theory makes the
+deformations of the beam :math:`e = (\text{elongation}, \theta_I, \theta_J)`, rotations against the chord,
+linear in the displacements, :math:`e = Bu`.  With the true length and turn of the chord they are
+
+.. math:: e = B u + D z, \qquad z = (\eta, \rho), \qquad
+          \eta = \ell - L - x, \qquad \rho = \alpha - \psi
+
+(the corotational member, Crisfield 1991): the length :math:`\ell` and turn :math:`\alpha` less what linear
+theory makes of them.  Rotations in the plane add, so hinges and joints stay linear; and z follows from
+four numbers alone, the displacements x along and y across that J has beyond I and the rotations of both
+nodes (which turn the rigid end blocks).  With the linear beam :math:`k` the member's energy is its linear
+part and the *potential*
+
+.. math:: V = (n + n_0)\,\eta + (t + t_0)\,\rho + \tfrac12 z^T k_z z, \qquad
+          \begin{pmatrix} n \\ t \end{pmatrix} = D^T k B u, \qquad k_z = D^T k D
+
+with the linear axial force n and the sum of the end moments -t, and what initial forces add.  V depends on
+the six *quantities* :math:`s = (n, t, x, y, r_I, r_J)`, linear in u; its gradient are the forces on them,
+its Hessian their stiffness.
+
+The other kind of chord is the string of P-Delta with the present axial force: :math:`(n + n_0)\,y/L`
+across the member and nothing else.  These forces have no potential: the way y^2/2L that the axial force
+goes is left out.
+
+References
+----------
+Crisfield MA (1991), Non-linear Finite Element Analysis of Solids and Structures, vol. 1, Wiley, chapter 7.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pound_solve.numerics import jit
+from pound_solve.numerics.matrices import Matrix, by_rows, gathered
+from pound_solve.numerics.types import Array, Index
+from pound_solve.structure.dofs import Freedom
+
+QUANTITIES = 6
+#: columns of the parameters; KNN, KNT, KTT are k_z, LEAN the share of I's rotation in the member's own
+KIND, LENGTH, END1, END2, LEAN, KNN, KNT, KTT, N0, T0 = range(10)
+STRING, TURNING = 0.0, 1.0  #: kinds
+
+
+@dataclass(frozen=True)
+class Chord:
+    """The chord of one member.
+
+    Attributes
+    ----------
+    rows : ndarray, shape (6, n)
+        The quantities over `freedoms`.
+    p : tuple of float
+        Parameters, columns as above.
+    forces : mapping of str to ndarray, shape (3,)
+        What :math:`\\eta`, :math:`\\rho` and the shear of the chord's lengthening add to the member's
+        outputs, by their quantity.
+    """
+
+    element: int
+    freedoms: tuple[Freedom, ...]
+    rows: Array
+    p: tuple[float, ...]
+    forces: Mapping[str, Array] = field(default_factory=dict)
+
+
+def line(p: Array, c: int, s: Array, at: int) -> tuple[float, float, float, float, float]:
+    """Length, cosine and sine of the turn, eta and rho of chord `c`, whose quantities stand in row `c` of
+    `s` from column `at` on.
+    """
+    length, end1, end2 = p[c, LENGTH], p[c, END1], p[c, END2]
+    x, y, ri, rj = s[c, at + 2], s[c, at + 3], s[c, at + 4], s[c, at + 5]
+    shrunk = 2.0 * (end1 * math.sin(0.5 * ri) ** 2 + end2 * math.sin(0.5 * rj) ** 2)  # blocks that turn
+    flat = length + x
+    dx, dy = flat + shrunk, y - end1 * math.sin(ri) - end2 * math.sin(rj)
+    now = math.sqrt(dx * dx + dy * dy)
+    if flat > 0.0:  # without the difference of two lengths
+        eta = (shrunk * (dx + flat) + dy * dy) / (now + flat)
+    else:
+        eta = now - flat
+    turn = math.atan2(dy, dx)
+    mean = p[c, LEAN] * ri + (1.0 - p[c, LEAN]) * rj
+    turn += 2.0 * math.pi * math.floor((mean - turn) / (2.0 * math.pi) + 0.5)  # as often as the ends
+    return now, dx / now, dy / now, eta, turn - (y - end1 * ri - end2 * rj) / length
+
+
+def push(p: Array, c: int, s: Array, at: int, out: Array, to: int) -> None:
+    """Forces on the quantities of chord `c`, into row `c` of `out` from column `to` on."""
+    if p[c, KIND] == STRING:
+        for j in range(6):
+            out[c, to + j] = 0.0
+        out[c, to + 3] = (s[c, at] + p[c, N0]) * s[c, at + 3] / p[c, LENGTH]
+        return
+    now, co, si, eta, rho = line(p, c, s, at)
+    length, end1, end2 = p[c, LENGTH], p[c, END1], p[c, END2]
+    n = s[c, at] + p[c, N0] + p[c, KNN] * eta + p[c, KNT] * rho
+    t = s[c, at + 1] + p[c, T0] + p[c, KNT] * eta + p[c, KTT] * rho
+    ci, cj = math.cos(s[c, at + 4]), math.cos(s[c, at + 5])
+    ti, tj = math.sin(s[c, at + 4]), math.sin(s[c, at + 5])
+    over = t / now
+    out[c, to] = eta
+    out[c, to + 1] = rho
+    out[c, to + 2] = n * (co - 1.0) - over * si
+    out[c, to + 3] = n * si + over * co - t / length
+    out[c, to + 4] = end1 * (n * (co * ti - si * ci) - over * (si * ti + co * ci) + t / length)
+    out[c, to + 5] = end2 * (n * (co * tj - si * cj) - over * (si * tj + co * cj) + t / length)
+
+
+def bend(p: Array, c: int, s: Array, at: int, h: Array, to: int) -> None:
+    """Stiffness of the quantities of chord `c`, 6 x 6, into row `to` of `h`.
+
+    Of a string without the part that is not symmetric, how its force changes with n.
+    """
+    for j in range(36):
+        h[to, j] = 0.0
+    if p[c, KIND] == STRING:
+        h[to, 21] = (s[c, at] + p[c, N0]) / p[c, LENGTH]
+        return
+    now, co, si, eta, rho = line(p, c, s, at)
+    length, end1, end2 = p[c, LENGTH], p[c, END1], p[c, END2]
+    knn, knt, ktt = p[c, KNN], p[c, KNT], p[c, KTT]
+    n = s[c, at] + p[c, N0] + knn * eta + knt * rho
+    t = s[c, at + 1] + p[c, T0] + knt * eta + ktt * rho
+    ci, cj = math.cos(s[c, at + 4]), math.cos(s[c, at + 5])
+    ti, tj = math.sin(s[c, at + 4]), math.sin(s[c, at + 5])
+    # along and across the chord: how its end moves with x, y and the rotations
+    along = (co, si, end1 * (co * ti - si * ci), end2 * (co * tj - si * cj))
+    across = (-si, co, -end1 * (si * ti + co * ci), -end2 * (si * tj + co * cj))
+    linear = (0.0, 1.0 / length, -end1 / length, -end2 / length)
+    first = (1.0, 0.0, 0.0, 0.0)
+    for i in range(4):
+        a, b = along[i] - first[i], across[i] / now - linear[i]
+        h[to, 2 + i] = h[to, 12 + 6 * i] = a
+        h[to, 8 + i] = h[to, 13 + 6 * i] = b
+        for j in range(4):
+            c2, d2 = along[j] - first[j], across[j] / now - linear[j]
+            h[to, 14 + 6 * i + j] = (
+                n * across[i] * across[j] / now
+                - t * (along[i] * across[j] + across[i] * along[j]) / (now * now)
+                + knn * a * c2
+                + knt * (a * d2 + b * c2)
+                + ktt * b * d2
+            )
+    h[to, 28] += end1 * (n * (co * ci + si * ti) + t / now * (co * ti - si * ci))
+    h[to, 35] += end2 * (n * (co * cj + si * tj) + t / now * (co * tj - si * cj))
+
+
+def survey(p: Array, s: Array, out: Array) -> None:
+    """Potential, eta, rho and the shear of the lengthening of all chords at several instants.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n_chords, 10)
+    s : ndarray, shape (n_times, n_chords, 6)
+    out : ndarray, shape (n_times, n_chords, 4)
+    """
+    for i in range(s.shape[0]):
+        for c in range(s.shape[1]):
+            n, t = s[i, c, 0] + p[c, N0], s[i, c, 1] + p[c, T0]
+            if p[c, KIND] == STRING:
+                out[i, c, 0] = 0.5 * n * s[i, c, 3] * s[i, c, 3] / p[c, LENGTH]
+                out[i, c, 1] = out[i, c, 2] = out[i, c, 3] = 0.0
+                continue
+            now, _, _, eta, rho = line(p, c, s[i], 0)
+            dn, dt = p[c, KNN] * eta + p[c, KNT] * rho, p[c, KNT] * eta + p[c, KTT] * rho
+            out[i, c, 0] = (n + 0.5 * dn) * eta + (t + 0.5 * dt) * rho
+            out[i, c, 1], out[i, c, 2] = eta, rho
+            out[i, c, 3] = (t + dt) * (1.0 / p[c, LENGTH] - 1.0 / now)
+
+
+class Chords:
+    """The chords of a structure.
+
+    Parameters
+    ----------
+    own : sequence of Chord
+    rows : Matrix, shape (6 n_chords, n)
+        Their quantities over the columns of the displacements, six rows for each.
+
+    Attributes
+    ----------
+    p : ndarray, shape (n_chords, 10)
+    """
+
+    def __init__(self, own: Sequence[Chord], rows: Matrix) -> None:
+        self.own, self.rows = tuple(own), rows
+        self.p = np.array([c.p for c in own]).reshape(len(own), 10)
+
+    def __len__(self) -> int:
+        return len(self.own)
+
+    def on(self, columns: list[int] | slice) -> Chords:
+        """The same over some of the columns, the others at rest."""
+        return Chords(self.own, self.rows[:, columns])
+
+    def quantities(self, u: Array) -> Array:
+        """The six quantities of every chord at displacements `u`, shape (n_chords, 6)."""
+        return np.asarray(self.rows @ u, float).reshape(-1, QUANTITIES)
+
+    def touched(self) -> list[tuple[Index, Array]]:
+        """Columns that each chord touches, ascending, and its six quantities over them, (6, n_touched)."""
+        rows, out = by_rows(self.rows), []
+        for c in range(len(self)):
+            six = rows[QUANTITIES * c : QUANTITIES * (c + 1)]
+            at = np.unique(np.concatenate([columns for columns, _ in six]))
+            own = np.zeros((QUANTITIES, len(at)))
+            for j, (columns, values) in enumerate(six):
+                own[j, np.searchsorted(at, columns)] = values
+            out.append((at, own))
+        return out
+
+    def forces(self, u: Array) -> Array:
+        """Forces beyond those of the linear stiffness, shape (n,)."""
+        out = np.zeros((len(self), QUANTITIES))
+        s = self.quantities(u)
+        for c in range(len(self)):
+            push(self.p, c, s, 0, out, 0)
+        return np.asarray(out.ravel() @ self.rows, float)
+
+    def stiffness(self, u: Array) -> Matrix:
+        """Their tangent, shape (n, n); see `bend`."""
+        s, h = self.quantities(u), np.zeros((len(self), QUANTITIES**2))
+        i, j, x = [np.zeros(0, int)], [np.zeros(0, int)], [np.zeros(0)]
+        for c, (at, own) in enumerate(self.touched()):
+            bend(self.p, c, s, 0, h, c)
+            i.append(np.repeat(at, len(at)))
+            j.append(np.tile(at, len(at)))
+            x.append((own.T @ h[c].reshape(QUANTITIES, QUANTITIES) @ own).ravel())
+        n = self.rows.shape[1]
+        return gathered((n, n), np.concatenate(i), np.concatenate(j), np.concatenate(x))
+
+    def survey(self, s: Array) -> Array:
+        """`survey` at the quantities `s`, shape (n_times, n_chords, 6) to (n_times, n_chords, 4)."""
+        out = np.zeros((*s.shape[:2], 4))
+        with jit.compiling():
+            jit.compiled(survey)(self.p, np.ascontiguousarray(s), out)
+        return out
+
+    def shares(self, outputs: Sequence[tuple[int, str]]) -> tuple[Index, Array]:
+        """Chord and share of its eta, rho and shear in each of some (element, quantity),
+        shapes (n,) and (n, 3).
+        """
+        place = {c.element: i for i, c in enumerate(self.own)}
+        at = np.array([place.get(element, 0) for element, _ in outputs], np.intp)
+        nothing = np.zeros(3)
+        share = [
+            self.own[place[element]].forces.get(quantity, nothing) if element in place else nothing
+            for element, quantity in outputs
+        ]
+        return at, np.array(share).reshape(len(outputs), 3)

@@ -1,0 +1,163 @@
+"""What a damping model is given and what it returns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from pound_deck.model import Card
+from pound_deck.schema import Field, Kind
+from pound_solve.numerics import matrices
+from pound_solve.numerics.modes import Modes
+from pound_solve.numerics.types import Array
+
+BUILDING = Field(
+    "NODES",
+    Kind.NODES,
+    default=None,
+    doc="all nodes of one building, whose own modes are meant; left out: the whole structure",
+)  #: of the models that are made of modes
+
+
+@dataclass(frozen=True)
+class Ground:
+    """What damping models build upon.
+
+    Attributes
+    ----------
+    mass : callable
+        ``mass(nodes or None)``: mass matrix of the masses at these nodes, shape (n_columns, n_columns).
+    stiffness : callable
+        ``stiffness(property labels or None, laws)``: initial stiffness of their elements, same shape;
+        `laws` False: without that of hysteretic laws.
+    modes : callable
+        ``modes(nodes or None, count)``: the `count` slowest modes, or more (None: all), of the initial
+        structure, or of the building that these nodes make up, over all unknowns.
+    """
+
+    mass: Callable[[Collection[int] | None], matrices.Matrix]
+    stiffness: Callable[[Collection[str] | None, bool], matrices.Matrix]
+    modes: Callable[[Collection[int] | None, int | None], Modes]
+
+    def from_modes(self, modes: Modes, rates: Array) -> matrices.Matrix:
+        r"""Return :math:`M \Phi\,\mathrm{diag}(2\xi_n\omega_n)\,\Phi^T M`, shape (n_free, n_free): full.
+
+        Parameters
+        ----------
+        modes : Modes
+            Mass-normalised.
+        rates : ndarray, shape (n_modes,)
+            :math:`2\xi_n\omega_n` [1/T].
+
+        References
+        ----------
+        Wilson EL, Penzien J (1972), Evaluation of orthogonal damping matrices,
+        Int. J. Numer. Methods Engng 4: 5-10.
+        """
+        mass = self.mass(None)
+        n = len(modes.shapes)
+        weighted = mass[:n, :n] @ modes.shapes
+        return np.asarray((weighted * rates) @ weighted.T)
+
+
+class Dashpots(NamedTuple):
+    """Dashpots beside the hysteretic laws of property sets (None: of all), `beta` [T] times the stiffness
+    that the law has at the time: tangent, or `secant`.
+    """
+
+    props: Collection[str] | None
+    beta: float
+    secant: bool
+
+
+@dataclass(frozen=True)
+class Group:
+    """Damping of one card and words for the report.
+
+    `relative` acts on the motion relative to the quasi-static one of moved supports (mass-proportional and
+    modal damping: they have no place between two nodes); `between` acts between nodes as it stands;
+    `dashpots` follow the laws.
+    """
+
+    relative: matrices.Matrix | None
+    between: matrices.Matrix | None
+    text: str
+    dashpots: Dashpots | None = None
+
+
+class DampingError(Exception):
+    """Contradictory damping; `item` names the field at fault."""
+
+    def __init__(self, message: str, item: str = "") -> None:
+        super().__init__(message)
+        self.item = item
+
+
+def frequencies(card: Card, omega: Callable[[], Array]) -> Array:
+    """Circular frequencies that OMEGA or MODES of a card name.
+
+    Parameters
+    ----------
+    card : Card
+    omega : callable
+        Gives those of the modes; asked only where MODES are given.
+
+    Raises
+    ------
+    DampingError
+        Both or neither are given, a mode does not exist, or is a rigid-body mode.
+    """
+    if (card["OMEGA"] is None) == (card["MODES"] is None):
+        raise DampingError(
+            "XI needs the circular frequencies (OMEGA=) or the modes (MODES=) that have it", "XI"
+        )
+    if card["OMEGA"] is not None:
+        return np.array(card["OMEGA"])
+    known = omega()
+    if max(card["MODES"]) > len(known):
+        raise DampingError(f"the structure has {len(known)} modes only", "MODES")
+    out = known[np.array(card["MODES"]) - 1]
+    if not out.all():
+        raise DampingError("a mode of zero frequency cannot carry a damping ratio", "MODES")
+    return np.asarray(out)
+
+
+def ratios(card: Card, count: int) -> Array:
+    """One ratio for each of `count` frequencies: as many as XI has, or its one value for all.
+
+    Raises
+    ------
+    DampingError
+        Their numbers differ.
+    """
+    given = card["XI"]
+    if len(given) not in (1, count):
+        raise DampingError(
+            f"XI has {len(given)} values for {count} frequencies: give one for each, or one for all",
+            "XI",
+        )
+    return np.broadcast_to(np.array(given), (count,))
+
+
+def apart(at: Array, item: str) -> None:
+    """Raise DampingError where two frequencies or modes are the same: no curve goes through both."""
+    close = np.diff(np.sort(at)) <= 1e-9 * np.abs(at).max()
+    if close.any():
+        raise DampingError(f"two of these are the same ({np.sort(at)[1:][close][0]:.6g})", item)
+
+
+def values(numbers: Array) -> str:
+    """Numbers in words for the report."""
+    return ", ".join(f"{x:.6g}" for x in numbers)
+
+
+def span(omega: Array, rates: Array) -> str:
+    """Range of the ratios that the modes get, for the report."""
+    moving = omega > 0.0
+    if not moving.any():
+        return "no mode"
+    xi = 0.5 * rates[moving] / omega[moving]
+    return f"{moving.sum()} modes have {xi.min():.4g} to {xi.max():.4g}"

@@ -1,0 +1,138 @@
+r"""MODAL: damping ratios of the modes, constant matrix.
+
+.. math:: C = M \Bigl(\sum_n 2\xi_n\omega_n\,\phi_n\phi_n^T\Bigr) M, \qquad \phi_n^T M \phi_n = 1
+
+with the modes of the initial structure, contacts open.  XI is either a list, mode by mode, whose last value
+holds for the rest (one value: uniform damping), or the ratio at some frequencies (OMEGA) or modes (MODES):
+then it runs in straight lines from one to the next, over frequency or over the number of the mode, and
+beyond the first and the last it stays constant or follows its line (:math:`\xi` at two points: tri-linear
+or linear damping).
+
+References
+----------
+Wilson EL, Penzien J (1972), Evaluation of orthogonal damping matrices,
+Int. J. Numer. Methods Engng 4: 5-10.
+Carr AJ, Ruaumoko, www.ruaumoko.co.nz/damping.html (the variations over frequency).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_deck.model import Card
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.structure.damping.base import (
+    BUILDING,
+    DampingError,
+    Ground,
+    Group,
+    Matrix,
+    apart,
+    frequencies,
+    ratios,
+    span,
+    values,
+)
+
+
+def through(x: Matrix, at: Matrix, xi: Matrix, straight: bool) -> Matrix:
+    """Piecewise linear function through (`at`, `xi`) at `x`, with ends that go on straight or constant."""
+    order = np.argsort(at)
+    at, xi = at[order], xi[order]
+    out = np.interp(x, at, xi)
+    if straight:
+        slope = np.diff(xi) / np.diff(at)
+        out = np.where(x < at[0], xi[0] + slope[0] * (x - at[0]), out)
+        out = np.where(x > at[-1], xi[-1] + slope[-1] * (x - at[-1]), out)
+    return np.asarray(out)
+
+
+def listed(card: Card, omega: Matrix) -> tuple[Matrix, str]:
+    """Ratio of every mode out of a list, and words."""
+    given = card["XI"]
+    for item in ("BEYOND", "OVER"):
+        if item in card.spans:
+            raise DampingError(f"{item} needs OMEGA or MODES: XI alone is a list, mode by mode", item)
+    xi = np.array([given[min(n, len(given) - 1)] for n in range(len(omega))])
+    rest = " (the last for all higher modes)" if len(given) < len(omega) else ""
+    return xi, f"XI {values(given)}{rest}"
+
+
+def interpolated(card: Card, omega: Matrix) -> tuple[Matrix, str]:
+    """Ratio of every mode on straight lines between those given, and words."""
+    at = frequencies(card, lambda: omega)
+    item = "OMEGA" if card["OMEGA"] is not None else "MODES"
+    x, name = omega, "omega"
+    if card["OVER"] == "MODE":
+        if card["MODES"] is None:
+            raise DampingError("OVER=MODE needs the ratios at MODES", "OVER")
+        x, at, name = np.arange(1.0, len(omega) + 1.0), np.array(card["MODES"], float), "mode"
+    given = ratios(card, len(at))
+    if len(at) < 2:
+        raise DampingError("a line needs two points; XI alone is the same for all modes", item)
+    apart(at, item)
+    straight = card["BEYOND"] == "LINEAR"
+    xi = through(x, at, given, straight)
+    if len(xi) and xi.min() < 0.0:
+        n = int(np.argmin(xi))
+        raise DampingError(
+            f"the line falls to a ratio of {xi[n]:.4g} at mode {n + 1} (omega {omega[n]:.6g}): "
+            "BEYOND=CONSTANT keeps the last value",
+            "BEYOND",
+        )
+    text = f"XI {values(given)} at {name} {values(at)}, {'linear' if straight else 'constant'} beyond"
+    return xi, f"{text}; {span(omega, 2.0 * xi * omega)}"
+
+
+def build(card: Card, ground: Ground) -> Group:
+    """Damping of the whole structure, or of one building of several."""
+    modes = ground.modes(card["NODES"], None)
+    points = card["OMEGA"] is not None or card["MODES"] is not None
+    xi, text = (interpolated if points else listed)(card, modes.omega)
+    return Group(ground.from_modes(modes, 2.0 * xi * modes.omega), None, text)
+
+
+SPEC = Spec(
+    "damping",
+    "MODAL",
+    "ratios of the modes, constant matrix",
+    (
+        Field(
+            "XI",
+            Kind.REAL,
+            "-",
+            count=(1, 1000),
+            lo=0,
+            doc="damping ratio of mode 1, 2, ...; the last holds for the rest; or at OMEGA or MODES",
+        ),
+        Field(
+            "OMEGA",
+            Kind.REAL,
+            "1/T",
+            default=None,
+            count=(2, 100),
+            above=0,
+            doc="circular frequencies that have XI; modes between them are interpolated",
+        ),
+        Field("MODES", Kind.INT, default=None, count=(2, 100), lo=1, doc="the same by modes"),
+        Field(
+            "BEYOND",
+            Kind.WORD,
+            default="CONSTANT",
+            words=("CONSTANT", "LINEAR"),
+            codes={"CONSTANT": 3, "LINEAR": 2},
+            doc="before the first and after the last point: the same ratio, or the same line",
+        ),
+        Field(
+            "OVER",
+            Kind.WORD,
+            default="FREQUENCY",
+            words=("FREQUENCY", "MODE"),
+            doc="what the ratio is linear in: the frequency, or the number of the mode",
+        ),
+        BUILDING,
+    ),
+    code=4,
+    reference="Wilson & Penzien 1972",
+    impl=build,
+)

@@ -1,0 +1,133 @@
+r"""RAYLEIGH: :math:`C = \alpha M + \beta K`, on a group of nodes and property sets.
+
+ALPHA and BETA are given, or follow from the ratios XI at two circular frequencies (OMEGA) or modes (MODES)
+by :math:`2\xi_i\omega_i = \alpha + \beta\omega_i^2`:
+
+.. math:: \alpha = 2\omega_1\omega_2\frac{\xi_1\omega_2 - \xi_2\omega_1}{\omega_2^2-\omega_1^2}, \qquad
+          \beta = 2\frac{\xi_2\omega_2 - \xi_1\omega_1}{\omega_2^2-\omega_1^2}
+
+The mass part acts on the masses of NODES, the stiffness part on the elements of PROPS; contacts are never
+damped by it.  K is that of the structure at rest (STIFFNESS=INITIAL), or every hysteretic law has a dashpot
+beside it with :math:`\beta` times its present stiffness, TANGENT (none while that is negative) or SECANT
+(that of the farthest turn so far, see `secant`); with ELASTIC the laws have no share, so that a hinge that
+yields is not held by its dashpot.
+
+References
+----------
+Clough RW, Penzien J (1993), Dynamics of Structures, 2nd edn, section 12-5.
+"""
+
+from __future__ import annotations
+
+from pound_deck.model import Card
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.structure.damping.base import (
+    DampingError,
+    Dashpots,
+    Ground,
+    Group,
+    frequencies,
+    ratios,
+    values,
+)
+
+
+def coefficients(xi: tuple[float, float], w: tuple[float, float]) -> tuple[float, float]:
+    """Return alpha [1/T] and beta [T] that give ratios `xi` at circular frequencies `w`.
+
+    Raises
+    ------
+    DampingError
+        One of them would be negative, or one frequency has two ratios.
+    """
+    (w1, w2), (x1, x2) = w, xi
+    if x1 == x2:
+        return 2 * x1 * w1 * w2 / (w1 + w2), 2 * x1 / (w1 + w2)
+    low, high = sorted((x1 * w1 / w2, x1 * w2 / w1))
+    if w1 == w2 or not low * (1 - 1e-12) <= x2 <= high * (1 + 1e-12):
+        raise DampingError(
+            f"alpha or beta would be negative: beside XI {x1:.6g} at omega {w1:.6g} that at {w2:.6g} "
+            f"lies between {low:.4g} and {high:.4g}",
+            "XI",
+        )
+    spread = (w2 - w1) * (w2 + w1)
+    alpha = 2 * w1 * w2 * (x1 * w2 - x2 * w1) / spread
+    return max(alpha, 0.0), max(2 * (x2 * w2 - x1 * w1) / spread, 0.0)
+
+
+def build(card: Card, ground: Ground) -> Group:
+    """Damping of one group."""
+    alpha, beta = card["ALPHA"], card["BETA"]
+    how = "ALPHA and BETA given"
+    if card["XI"] is not None:
+        if alpha is not None or beta is not None:
+            raise DampingError("give ALPHA and BETA, or XI with OMEGA or MODES, not both", "XI")
+        w1, w2 = frequencies(card, lambda: ground.modes(None, max(card["MODES"])).omega)
+        x1, x2 = ratios(card, 2)
+        alpha, beta = coefficients((x1, x2), (w1, w2))
+        how = f"XI {values(card['XI'])} at omega {w1:.6g} and {w2:.6g}"
+    elif card["OMEGA"] is not None or card["MODES"] is not None:
+        raise DampingError("OMEGA and MODES go with XI", "OMEGA" if card["OMEGA"] is not None else "MODES")
+    alpha, beta = alpha or 0.0, beta or 0.0
+    follows = card["STIFFNESS"] in ("TANGENT", "SECANT")
+    return Group(
+        alpha * ground.mass(card["NODES"]),
+        beta * ground.stiffness(card["PROPS"], card["STIFFNESS"] == "INITIAL"),
+        f"alpha {alpha:.9g}, beta {beta:.9g} of the {card['STIFFNESS'].lower()} stiffness ({how})",
+        Dashpots(card["PROPS"], beta, card["STIFFNESS"] == "SECANT") if follows else None,
+    )
+
+
+SPEC = Spec(
+    "damping",
+    "RAYLEIGH",
+    "mass and stiffness proportional",
+    (
+        Field("ALPHA", Kind.REAL, "1/T", default=None, lo=0, doc="factor of the mass"),
+        Field("BETA", Kind.REAL, "T", default=None, lo=0, doc="factor of the stiffness"),
+        Field(
+            "XI",
+            Kind.REAL,
+            "-",
+            default=None,
+            count=(1, 2),
+            lo=0,
+            doc="damping ratio at OMEGA or MODES; one value: the same at both",
+        ),
+        Field(
+            "OMEGA",
+            Kind.REAL,
+            "1/T",
+            default=None,
+            count=(2, 2),
+            above=0,
+            doc="circular frequencies that have XI",
+        ),
+        Field(
+            "MODES",
+            Kind.INT,
+            default=None,
+            count=(2, 2),
+            lo=1,
+            doc="modes of the whole structure that have XI",
+        ),
+        Field(
+            "STIFFNESS",
+            Kind.WORD,
+            default="INITIAL",
+            words=("INITIAL", "TANGENT", "SECANT", "ELASTIC"),
+            codes={"INITIAL": 0, "TANGENT": 1, "SECANT": 6},
+            doc="stiffness of hysteretic laws that BETA goes with: at rest, present, secant, or none",
+        ),
+        Field("NODES", Kind.NODES, default=None, doc="nodes of the mass part; left out: all"),
+        Field(
+            "PROPS",
+            Kind.PROPS,
+            default=None,
+            doc="property sets of the stiffness part; left out: all but contacts",
+        ),
+    ),
+    code=0,
+    reference="Clough & Penzien 1993, section 12-5",
+    impl=build,
+)

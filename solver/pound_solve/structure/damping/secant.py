@@ -1,0 +1,32 @@
+r"""A hysteretic law that knows its secant stiffness.
+
+.. math:: k_s = \frac{f_t}{d_t}
+
+with the point :math:`(d_t, f_t)` farthest from :math:`d = 0` at which the law has turned back; the initial
+stiffness before it has turned for the first time.  A turn is an exit where the rate changes its sign: a
+dashpot has no force there, so that it may follow :math:`k_s` without a jump.
+"""
+
+from __future__ import annotations
+
+from pound_solve.laws.automaton import Law, State
+
+
+class SecantLaw(Law):
+    """A law whose memory has two numbers more, which its rule does not look at: the deformation of the
+    farthest turn, and the secant stiffness.
+    """
+
+    def start(self) -> State:
+        """Return the virgin state at zero deformation."""
+        at, d0, work, m = super().start()
+        return at, d0, work, (*m, 0.0, self.p[0])
+
+    def leave(self, state: State, exit_index: int, d: float, v: float = 0.0) -> State:
+        """Return the state after that exit of the branch was reached at deformation `d` and rate `v`."""
+        *own, farthest, secant = state[3]
+        d_factor, _, constant = self.branch(state).exits[exit_index]
+        if d_factor == 0.0 == constant and abs(d) > farthest:
+            farthest, secant = abs(d), max(self.force(state, d)[0] / d, 0.0)
+        at, d0, work, m = super().leave((*state[:3], tuple(own)), exit_index, d, v)
+        return at, d0, work, (*m, farthest, secant)

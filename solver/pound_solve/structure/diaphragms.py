@@ -1,0 +1,170 @@
+"""The two diaphragms of a contact: given on its card, or found behind its nodes.
+
+From a contact's node the walk goes on straight away from the contact, along members that are stiff in that
+direction, to the far end: the masses of the nodes add up, the stiffnesses act in series.  A node with no
+such member behind it is a rigid diaphragm.  So is one whose chain is held at its far end: a wave does not
+come back from there as from a free end, and the theory of `pounding` says nothing of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pound_solve.structure.assembly import Structure, mass_along
+from pound_solve.structure.elements.base import LawSpring, axes
+from pound_solve.theory.two_bars import Diaphragm, Pair
+
+GOOD_ENOUGH = 0.05  #: error of the changes of velocity up to which lumped mass will do
+STRAIGHT = 1e-6  #: sine of the angle by which a member may miss the contact's direction
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """What meets in a contact.
+
+    Attributes
+    ----------
+    sides : tuple of Diaphragm
+        Behind I and J.
+    pair : Pair or None
+        The theory; None where a mass is zero, or rigid without the card saying so.
+    lumped_error : float
+        By how much lumped masses get the changes of velocity wrong [-].
+    note : str
+    """
+
+    sides: tuple[Diaphragm, Diaphragm]
+    pair: Pair | None
+    lumped_error: float
+    note: str
+
+    def plateau(self, impulse: float, duration: float) -> float:
+        """Mean force of a collision, its ringing averaged out [F].
+
+        The impulse is spread over the duration, but over no longer than the first force of the theory
+        would take for its impulse: the weak second phase of a staircase and the tail of a coarse mesh are
+        no plateau.
+        """
+        if self.pair is not None and not self.pushing(duration):
+            duration = min(duration, self.pair.impulse / self.pair.force)
+        return impulse / duration if duration > 0.0 else math.nan
+
+    def predicted(self, approach: float, duration: float) -> float:
+        """First force of the theory at that approach speed [F]; NaN where it does not hold."""
+        return math.nan if self.pair is None or self.pushing(duration) else self.pair.force * approach
+
+    def pushing(self, duration: float) -> bool:
+        """Whether a contact lasts too long for a collision of waves: more than twice the theory's time."""
+        return self.pair is not None and duration > 2.0 * self.pair.duration
+
+
+def sides(
+    structure: Structure, members: Mapping[int, Sequence[int]], spring: LawSpring
+) -> tuple[Diaphragm, Diaphragm]:
+    """Diaphragms on the sides of I and J of a contact; a wall and a fixed node have infinite mass.
+
+    `members` are the numbers of the elements at each node.
+    """
+    element = structure.model.elements[spring.element]
+    given = structure.model.props[element.prop]["DIAPHRAGMS"]
+    first, second = map(Diaphragm, spring.facts["masses"])
+    if given is not None:
+        return Diaphragm(first.mass, given[0]), Diaphragm(second.mass, (*given, math.inf)[1])
+    (nx, ny), _ = axes(spring.facts["angle"])
+    first = _behind(structure, members, element.i, (-nx, -ny)) or first
+    if element.j is not None:
+        second = _behind(structure, members, element.j, (nx, ny)) or second
+    return first, second
+
+
+def meetings(structure: Structure) -> dict[int, Meeting]:
+    """What meets in every contact, by the number of its law."""
+    members: dict[int, list[int]] = {}
+    for e in structure.model.elements.values():
+        if e.j is not None:
+            members.setdefault(e.i, []).append(e.id)
+            members.setdefault(e.j, []).append(e.id)
+    return {i: _meeting(structure, members, s) for i, s in enumerate(structure.laws) if s.is_contact}
+
+
+def _meeting(structure: Structure, members: Mapping[int, Sequence[int]], spring: LawSpring) -> Meeting:
+    """Both sides of a contact, and what the theory says of them."""
+    first, second = both = sides(structure, members, spring)
+    if 0.0 in (first.mass, second.mass):
+        return Meeting(both, None, math.nan, "no theory: a diaphragm has no mass")
+    prop = structure.model.props[structure.model.elements[spring.element].prop]
+    given = prop["DIAPHRAGMS"] is not None
+    rigid = [n for n, d in zip("IJ", both) if math.isinf(d.stiffness) and not math.isinf(d.mass)]
+    if rigid and not given:
+        # a mass at a column is no floor: what holds it matters, and the theory does not know it
+        who = " and ".join(rigid)
+        what = f"no theory: {who} rigid, no member behind; DIAPHRAGMS under PROPS gives a stiffness"
+        return Meeting(both, None, math.nan, what)
+    pair = Pair(first, second)
+    plasticity = prop["R"] if spring.rule == "EQUIVALENT" else 1.0
+    lumped = given and math.isfinite(spring.facts["e_given"])
+    e = spring.facts["e_given"] if lumped else 1.0
+    error = (1.0 + e) / (1.0 + plasticity * pair.e) - 1.0
+    notes = [] if pair.paper_holds else ["Z of the shorter period is the larger: Eqs 7, 8, 14-17 fail"]
+    notes.append(_verdict(lumped, error))
+    return Meeting(both, pair, error, "; ".join(notes))
+
+
+def _verdict(lumped: bool, error: float) -> str:
+    """Whether lumped mass is good enough."""
+    rule = f"(rule: up to {100 * GOOD_ENOUGH:g} %)"
+    if abs(error) <= GOOD_ENOUGH:
+        return f"lumped mass is good enough {rule}"
+    if lumped:
+        return f"this lumped contact is not good enough {rule}: take LAW=EQUIVALENT or distributed mass"
+    return f"lumped elastic mass would not be good enough {rule}"
+
+
+def _behind(
+    structure: Structure, members: Mapping[int, Sequence[int]], node: int, way: tuple[float, float]
+) -> Diaphragm | None:
+    """The chain of members that goes from a node along `way`; None for a rigid one."""
+    nodes = structure.model.nodes
+    mass = flexibility = 0.0
+    while True:
+        own = mass_along(structure.model, structure.nodal_mass, node, way)
+        if math.isinf(own):
+            return None
+        mass += own
+        stiffness = _straight_on(structure, members.get(node, ()), node, way)
+        if not stiffness:
+            return Diaphragm(mass, 1.0 / flexibility) if flexibility else None
+        here = nodes[node]
+        node = min(stiffness, key=lambda n: math.hypot(nodes[n].x - here.x, nodes[n].y - here.y))
+        moving = [d for d, n in zip("XY", way) if n != 0.0]
+        if any(nodes[node].slaved.get(d, node) == here.slaved.get(d, here.id) for d in moving):
+            return None  # both follow one master: nothing between them gives way
+        flexibility += 1.0 / stiffness[node]
+
+
+def _straight_on(
+    structure: Structure, members: Sequence[int], node: int, way: tuple[float, float]
+) -> dict[int, float]:
+    """Nodes straight on that members join to this one, and the stiffness between along `way`."""
+    nodes, found = structure.model.nodes, dict[int, float]()
+    here = nodes[node]
+    for member in members:
+        e = structure.model.elements[member]
+        other = nodes[e.j if e.i == node and e.j is not None else e.i]
+        dx, dy = other.x - here.x, other.y - here.y
+        off = abs(dx * way[1] - dy * way[0])
+        if dx * way[0] + dy * way[1] <= 0.0 or off > STRAIGHT * math.hypot(dx, dy):
+            continue
+        block = structure.parts[member].initial()
+        from_here, from_there = (
+            np.array([way[d] if owner == n and d < 2 else 0.0 for owner, d in block.freedoms])
+            for n in (node, other.id)
+        )
+        along = -float(from_here @ block.matrix @ from_there)
+        if along > 0.0:
+            found[other.id] = found.get(other.id, 0.0) + along
+    return found

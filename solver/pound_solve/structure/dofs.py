@@ -1,0 +1,127 @@
+"""Freedoms: which displacements are unknown, which follow a master, which are prescribed.
+
+Every node has ``ux``, ``uy`` and ``rz``; an element may have internal freedoms besides (the turns of its
+hinges).  A fixed one is zero, a slaved one follows its master
+with the rigid arm between them, one at a moved support is prescribed; the rest are the unknowns.
+Columns of every assembled matrix are the unknowns first, then the prescribed freedoms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pound_deck.model import Node
+from pound_solve.numerics.matrices import Matrix, gathered
+from pound_solve.numerics.types import Array
+
+DIRECTIONS = "XYR"
+NAMES = ("ux", "uy", "rz")
+INTERNAL = ("turn inside I", "turn inside J", "stretch inside I", "stretch inside J")
+
+#: node number and direction (0 x, 1 y, 2 rotation), or element number and 3, 4, ... for its internal ones
+Freedom = tuple[int, int]
+
+
+def label(freedom: Freedom) -> str:
+    """Freedom in words."""
+    owner, d = freedom
+    return f"node {owner} {NAMES[d]}" if d < 3 else f"element {owner} {INTERNAL[d - 3]}"
+
+
+@dataclass(frozen=True)
+class Freedoms:
+    """Numbering of the freedoms.
+
+    Attributes
+    ----------
+    free : tuple of Freedom
+        The unknowns, in the order of the nodes; internal ones of elements last.
+    moved : tuple of Freedom
+        Freedoms at moved supports, whose motion is prescribed.
+    terms : mapping of Freedom to tuple of (int, float)
+        Each freedom as a sum of columns; empty for a fixed one.
+    """
+
+    free: tuple[Freedom, ...]
+    moved: tuple[Freedom, ...]
+    terms: Mapping[Freedom, tuple[tuple[int, float], ...]]
+
+    @property
+    def size(self) -> int:
+        """Number of columns."""
+        return len(self.free) + len(self.moved)
+
+    def add(self, out: Array, freedoms: Collection[Freedom], values: Collection[float]) -> None:
+        """Add `values` times `freedoms` to a row over the columns, shape (size,)."""
+        for freedom, value in zip(freedoms, values):
+            for column, factor in self.terms[freedom]:
+                out[column] += value * factor
+
+    def row(self, freedoms: Collection[Freedom], values: Collection[float]) -> Array:
+        """Sum of `values` times `freedoms` as a row over the columns, shape (size,)."""
+        out = np.zeros(self.size)
+        self.add(out, freedoms, values)
+        return out
+
+    def rows(self, sums: Sequence[tuple[Collection[Freedom], Collection[float]]]) -> Matrix:
+        """Several such rows, shape (len(sums), size)."""
+        terms = [
+            (i, column, value * factor)
+            for i, (freedoms, values) in enumerate(sums)
+            for freedom, value in zip(freedoms, values)
+            for column, factor in self.terms[freedom]
+        ]
+        return gathered((len(sums), self.size), *np.array(terms).reshape(-1, 3).T)
+
+    def matrix(self, freedoms: Collection[Freedom]) -> Matrix:
+        """Rows of several freedoms, shape (len(freedoms), size)."""
+        return self.rows([((f,), (1.0,)) for f in freedoms])
+
+    def value(self, freedoms: Collection[Freedom], values: Collection[float], u: Array) -> float:
+        """Sum of `values` times `freedoms` at displacements `u` of all columns."""
+        return float(
+            sum(
+                value * factor * u[column]
+                for freedom, value in zip(freedoms, values)
+                for column, factor in self.terms[freedom]
+            )
+        )
+
+
+def number(
+    nodes: Mapping[int, Node], moved: Collection[Freedom] = (), internal: Collection[Freedom] = ()
+) -> Freedoms:
+    """Number the freedoms of `nodes` and the `internal` ones of elements;
+    those in `moved` (fixed ones) get prescribed columns.
+    """
+    moved, prescribed = tuple(sorted(moved)), frozenset(moved)
+    free = tuple(
+        (n.id, d)
+        for n in nodes.values()
+        for d in range(3)
+        if DIRECTIONS[d] not in n.fixed and DIRECTIONS[d] not in n.slaved and (n.id, d) not in prescribed
+    ) + tuple(internal)
+    column = {f: i for i, f in enumerate(free + moved)}
+    terms: dict[Freedom, tuple[tuple[int, float], ...]] = {f: ((column[f], 1.0),) for f in internal}
+    for n in nodes.values():
+        for d in range(3):
+            if DIRECTIONS[d] in n.slaved:
+                continue  # below, once all masters are known
+            terms[n.id, d] = ((column[n.id, d], 1.0),) if (n.id, d) in column else ()
+    for d in (
+        2,
+        0,
+        1,
+    ):  # rotations first: an arm turns with its master, which may itself follow another there
+        for n in nodes.values():
+            if DIRECTIONS[d] not in n.slaved:
+                continue
+            master = nodes[n.slaved[DIRECTIONS[d]]]
+            arm = (-(n.y - master.y), n.x - master.x, 0.0)[d]
+            own = terms[master.id, d]
+            turn = tuple((c, f * arm) for c, f in terms[master.id, 2]) if arm else ()
+            terms[n.id, d] = own + turn
+    return Freedoms(free, moved, terms)

@@ -1,0 +1,299 @@
+"""What an element hands to the assembler."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from pound_deck.model import Card, Element, Node
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import Branch, Law, State
+from pound_solve.numerics.types import Array
+from pound_solve.structure.corotational import Chord
+from pound_solve.structure.dofs import Freedom
+
+
+@dataclass(frozen=True)
+class Block:
+    """A small symmetric matrix on some freedoms."""
+
+    freedoms: tuple[Freedom, ...]
+    matrix: Array
+
+
+@dataclass(frozen=True)
+class LawSpring:
+    """A component whose force follows a piecewise-linear law.
+
+    The deformation is ``sum(row * u[freedoms])``; the force acts back on the freedoms along `row`.
+
+    Attributes
+    ----------
+    component : str
+        Its name within the element: ``X``, ``Y``, ``R``, ``hinge I``, ... or ``contact``.
+    rule : str
+        Name of the law's Spec.
+    k0 : float
+        Initial stiffness for modes and damping [F/L] or [F L]; 0 for a contact.
+    unit : str
+        Dimension of the force, ``F`` or ``F*L``.
+    beta : float
+        Dashpot as a multiple of the present stiffness, where that is positive [T] (damping models set it).
+    secant : float
+        Dashpot as a multiple of the secant stiffness [T]; not zero with a `SecantLaw` only.
+    yields : tuple of float or None
+        Deformations at first yield, positive and negative, for ductilities.
+    normal : str
+        Component of the same element whose force this one's law leans on (see `contact.friction`); or
+        empty.
+    facts : mapping
+        For a contact: what the report says of it (xi, e_asked, e_given, note, reduced_mass, k, c, gap).
+    """
+
+    element: int
+    component: str
+    rule: str
+    freedoms: tuple[Freedom, ...]
+    row: tuple[float, ...]
+    law: Law
+    k0: float = 0.0
+    yields: tuple[float, float] | None = None
+    facts: Mapping[str, Any] = field(default_factory=dict)
+    unit: str = "F"
+    beta: float = 0.0
+    secant: float = 0.0
+    normal: str = ""
+
+    @property
+    def is_contact(self) -> bool:
+        """Whether the component is a contact."""
+        return self.component == "contact"
+
+    def branch(self, state: State) -> Branch:
+        """Linear piece that the law is on, the dashpots of `beta` and `secant` included."""
+        own = self.law.branch(state)
+        if not self.beta and not self.secant:
+            return own
+        follows = self.secant * state[3][-1] if self.secant else 0.0
+        return own._replace(damping=own.damping + self.beta * max(own.stiffness, 0.0) + follows)
+
+    def force(self, state: State, d: float, v: float) -> float:
+        """Force at deformation `d` and rate `v`; damping counts in a contact's force, not in a spring's."""
+        return self.law.force(state, d, v if self.is_contact else 0.0)[0]
+
+
+@dataclass(frozen=True)
+class Output:
+    """A quantity of an element that is linear in displacement and velocity.
+
+    ``value = u_row . u + v_row . v + constant`` on `freedoms`; `unit` in dimensions.
+    """
+
+    element: int
+    quantity: str
+    unit: str
+    freedoms: tuple[Freedom, ...]
+    u_row: Array
+    v_row: Array | None = None
+    constant: float = 0.0
+
+
+@dataclass(frozen=True)
+class Geometric:
+    """Stiffness of a member from its own axial force.
+
+    Attributes
+    ----------
+    matrix : ndarray, shape (n, n)
+        For an axial force of one (tension), on `freedoms` [1/L, -, L].
+    axial : ndarray, shape (n,)
+        The axial force is ``axial . u + constant``, tension positive [F].
+    forces : mapping of str to ndarray, shape (n,)
+        What an axial force of one adds to the rows of the member's outputs, by their quantity.
+    """
+
+    element: int
+    freedoms: tuple[Freedom, ...]
+    matrix: Array
+    axial: Array
+    constant: float
+    forces: Mapping[str, Array] = field(default_factory=dict)
+
+
+@dataclass
+class Parts:
+    """Everything one element adds to the structure."""
+
+    stiffness: list[Block] = field(default_factory=list)
+    geometric: list[Geometric] = field(default_factory=list)
+    chords: list[Chord] = field(default_factory=list)
+    damping: list[Block] = field(default_factory=list)
+    mass: list[Block] = field(default_factory=list)
+    loads: list[tuple[tuple[Freedom, ...], Array]] = field(default_factory=list)
+    laws: list[LawSpring] = field(default_factory=list)
+    outputs: list[Output] = field(default_factory=list)
+
+    def internal(self) -> tuple[Freedom, ...]:
+        """Freedoms of the element's own, beside those of its nodes."""
+        blocks = [*self.stiffness, *self.damping, *self.mass]
+        touched = [b.freedoms for b in blocks] + [s.freedoms for s in self.laws]
+        used = [f for freedoms in touched for f in freedoms if f[1] > 2]
+        return tuple(sorted(set(used)))
+
+    def initial(self) -> Block:
+        """Initial stiffness on the nodes' freedoms alone, the element's own following statically.
+
+        Damping in proportion to it acts on the member as a whole; on a hinge, whose initial stiffness is
+        large, it would add to the yield moment.
+        """
+        blocks = self.stiffness + [Block(s.freedoms, s.k0 * np.outer(s.row, s.row)) for s in self.laws]
+        freedoms = tuple(dict.fromkeys(f for b in blocks for f in b.freedoms))
+        place = {f: i for i, f in enumerate(freedoms)}
+        k = np.zeros((len(freedoms), len(freedoms)))
+        for b in blocks:
+            at = [place[f] for f in b.freedoms]
+            k[np.ix_(at, at)] += b.matrix
+        own = [i for f, i in place.items() if f[1] > 2 and k[i].any()]
+        nodes = [i for f, i in place.items() if f[1] < 3]
+        if len(nodes) == len(freedoms):
+            return Block(freedoms, k)
+        follow = np.linalg.solve(k[np.ix_(own, own)], k[np.ix_(own, nodes)])
+        left = k[np.ix_(nodes, nodes)] - k[np.ix_(nodes, own)] @ follow
+        return Block(tuple(freedoms[i] for i in nodes), left)
+
+
+@dataclass(frozen=True)
+class Site:
+    """Where an element stands and what it may ask.
+
+    Attributes
+    ----------
+    gravity : float
+        [L/T^2]
+    consistent : bool
+        Consistent instead of lumped mass.
+    member_loads : tuple of Card
+        MEMBER_LOADS cards that name this element.
+    self_weight : bool
+        Whether member weight loads the structure.
+    geometry : str
+        What displacements do to members: ``SMALL`` (nothing), ``PDELTA``, ``PDELTA_MEMBER`` (a geometric
+        stiffness), ``PDELTA_VARYING`` or ``LARGE`` (a chord).
+    mass_along : callable
+        ``mass_along(node, (nx, ny))``: translational mass [F T^2/L] of a node
+        along a direction; contacts only.
+    stiffness_along : callable
+        ``stiffness_along(node, (nx, ny))``: elements that meet a node, and their axial stiffness along a
+        direction [F/L], where they have any; contacts only.
+    """
+
+    element: Element
+    prop: Card
+    i: Node
+    j: Node | None
+    gravity: float
+    consistent: bool
+    member_loads: tuple[Card, ...]
+    self_weight: bool
+    geometry: str
+    mass_along: Callable[[int, tuple[float, float]], float]
+    stiffness_along: Callable[[int, tuple[float, float]], dict[int, float]]
+
+
+class ElementError(Exception):
+    """An element that cannot be built; `item` names the field of the card at fault."""
+
+    def __init__(self, message: str, item: str = "") -> None:
+        super().__init__(message)
+        self.item = item
+
+
+#: Fields of the damage index of Park and Ang, for elements that yield
+DAMAGE = (
+    Field(
+        "DUCTU",
+        Kind.REAL,
+        "-",
+        default=None,
+        above=1,
+        count=(1, 2),
+        doc="ultimate ductility under monotonic loading, positive and negative side; one value: both; "
+        "asks for the damage index",
+    ),
+    Field("PA_BETA", Kind.REAL, "-", default=0.05, lo=0, doc="weight of the energy in the damage index"),
+)
+
+
+def signed(values: tuple[float, ...], item: str) -> tuple[float, float]:
+    """Strengths in both directions, positive and negative; one value stands for both.
+
+    Raises
+    ------
+    ElementError
+        A strength has the wrong sign.
+    """
+    plus, minus = (values[0], -values[0]) if len(values) == 1 else values
+    if plus < 0 or minus > 0:
+        raise ElementError(f"{item} is written positive, then negative (signed)", item)
+    return plus, minus
+
+
+def hysteretic(
+    element: int,
+    component: str,
+    unit: str,
+    row: Mapping[Freedom, float],
+    card: Card,
+    rule: Spec,
+    k: float,
+    strength: tuple[float, float],
+) -> LawSpring:
+    """A component that follows a hysteresis rule.
+
+    Parameters
+    ----------
+    row : mapping of Freedom to float
+        Its deformation.
+    card : Card
+        Holds the rule's items.
+    rule : Spec
+        Of the family hysteresis, not ELASTIC.
+    k : float
+        Initial stiffness [F/L] or [F L].
+    strength : tuple of float
+        Forces at which it yields, positive and negative.
+
+    Raises
+    ------
+    ElementError
+        The rule does not take these values.
+    """
+    plus, minus = strength
+    try:
+        law = rule.impl(card.values, k, plus, minus)
+    except ValueError as err:
+        raise ElementError(str(err), "RULE") from None
+    freedoms, factors = zip(*((f, float(x)) for f, x in row.items() if x != 0.0))
+    yields = (plus / k, minus / k)
+    return LawSpring(element, component, rule.name, freedoms, factors, law, k, yields, unit=unit)
+
+
+def axes(angle: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Unit vectors of local x and y at `angle` degrees, exact at right angles."""
+    quarter, rest = divmod(angle, 90.0)
+    if rest == 0.0:
+        c, s = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(quarter) % 4]
+    else:
+        c, s = float(np.cos(np.radians(angle))), float(np.sin(np.radians(angle)))
+    return (c, s), (-s, c)
+
+
+def direction(dx: float, dy: float) -> tuple[float, float]:
+    """Unit vector along (dx, dy); what coordinates miss a right angle by in rounding is none of it."""
+    length = math.hypot(dx, dy)
+    c, s = dx / length, dy / length
+    return (0.0 if abs(c) < 1e-14 else c), (0.0 if abs(s) < 1e-14 else s)

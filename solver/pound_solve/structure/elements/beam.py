@@ -1,0 +1,446 @@
+r"""The elastic beam between two nodes, which FRAME and BEAM_COLUMN share.
+
+Axial and bending stiffness, shear deformation by :math:`\phi = 12EI/(G A_s L^2)`, rigid end blocks,
+pinned and flexible joints (condensed inside the member), initial forces, self weight, uniform and point
+loads, lumped or consistent mass.
+
+Local axes: x from I to J, y to its left.  Interpolation over the flexible length with :math:`\xi = x/L`:
+
+.. math::
+    N_1 &= \frac{1 - 3\xi^2 + 2\xi^3 + \phi(1-\xi)}{1+\phi}, &
+    N_2 &= \frac{L(\xi - 2\xi^2 + \xi^3 + \tfrac{\phi}{2}(\xi - \xi^2))}{1+\phi}
+
+(mirrored at J), which solves the unloaded Timoshenko beam, so nodal results are exact for end loads and
+consistent loads alike.
+
+A member that yields has hinges at the ends of the flexible length.  The beam between them then hangs on
+freedoms of its own, which the hinges join to the nodes; hinges with a length take their flexibility off the
+beam, so that the elastic member is the same with and without them.
+
+References
+----------
+Przemieniecki JS (1968), Theory of Matrix Structural Analysis, McGraw-Hill, sections 5.6 and 11.3.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from pound_deck.model import Card
+from pound_deck.schema import Field, Kind
+from pound_solve.numerics.types import Array
+from pound_solve.structure.corotational import STRING, TURNING, Chord
+from pound_solve.structure.dofs import Freedom
+from pound_solve.structure.elements.base import (
+    Block,
+    ElementError,
+    Geometric,
+    Output,
+    Parts,
+    Site,
+    direction,
+)
+
+# Gauss points and weights on (0, 1): four points integrate the products of cubics exactly
+_GAUSS_X, _GAUSS_W = (a for a in np.polynomial.legendre.leggauss(4))
+_GAUSS_X, _GAUSS_W = 0.5 * (_GAUSS_X + 1.0), 0.5 * _GAUSS_W
+
+INSIDE = {2: 3, 5: 4, 0: 5, 3: 6}  #: number of the element's own freedom behind a hinge, by local freedom
+
+
+@dataclass(frozen=True)
+class Member:
+    """A beam and how its hinges open.
+
+    Attributes
+    ----------
+    parts : Parts
+    freedoms : tuple of Freedom
+        Those of the nodes, then the member's own.
+    opening : ndarray, shape (6, n_freedoms)
+        Deformation of the hinges by local freedom: stretch (rows 0, 3) and bend (rows 2, 5), positive in
+        tension and where the member sags (tension on the right of the way from I to J).
+    """
+
+    parts: Parts
+    freedoms: tuple[Freedom, ...]
+    opening: Array
+
+
+def pair(values: tuple[float, ...]) -> tuple[float, float]:
+    """Values at I and J; one value stands for both."""
+    return values[0], values[-1]
+
+
+def shapes(xi: float, length: float, phi: float) -> Array:
+    """Interpolation of axial and transverse displacement, shape (2, 6), at `xi` in [0, 1]."""
+    d = 1.0 + phi
+    n = np.zeros((2, 6))
+    n[0, 0], n[0, 3] = 1.0 - xi, xi
+    n[1, 1] = (1 - 3 * xi**2 + 2 * xi**3 + phi * (1 - xi)) / d
+    n[1, 2] = length * (xi - 2 * xi**2 + xi**3 + phi / 2 * (xi - xi**2)) / d
+    n[1, 4] = (3 * xi**2 - 2 * xi**3 + phi * xi) / d
+    n[1, 5] = length * (-(xi**2) + xi**3 - phi / 2 * (xi - xi**2)) / d
+    return n
+
+
+def slopes(xi: float, length: float, phi: float) -> Array:
+    """Derivative of the transverse displacement along the member, shape (6,)."""
+    a, b = (6 * xi * (xi - 1) - phi) / length, 1 - 4 * xi + 3 * xi**2
+    half = phi / 2 * (1 - 2 * xi)
+    out = np.array([0.0, a, b + half, 0.0, -a, 3 * xi**2 - 2 * xi - half])
+    return out / (1.0 + phi)
+
+
+def stiffness(ea: float, ei: float, length: float, phi: float) -> Array:
+    """Local stiffness of the flexible part, shape (6, 6), [F/L, F, F L]."""
+    k = np.zeros((6, 6))
+    k[0, 0] = k[3, 3] = ea / length
+    k[0, 3] = k[3, 0] = -ea / length
+    a, b = 12 * ei / length**3 / (1 + phi), 6 * ei / length**2 / (1 + phi)
+    c, d = (4 + phi) * ei / length / (1 + phi), (2 - phi) * ei / length / (1 + phi)
+    k[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])] = [[a, b, -a, b], [b, c, -b, d], [-a, -b, a, -b], [b, d, -b, c]]
+    return k
+
+
+def end_blocks(at_i: float, at_j: float) -> Array:
+    """Local displacements of the flexible ends from those of the nodes, shape (6, 6)."""
+    t = np.eye(6)
+    t[1, 2], t[4, 5] = at_i, -at_j
+    return t
+
+
+def soften(k: Array, pins: list[int], soft: Array) -> tuple[Array, Array, Array]:
+    """Put pins and flexibilities between the beam's ends and what holds them.
+
+    With loads f on the beam its ends x follow the held displacements u by
+    ``u - x = soft (k x - f)``, and a pinned end by ``0 = k x - f``.
+
+    Parameters
+    ----------
+    k : ndarray, shape (6, 6)
+        Local stiffness of the beam.
+    pins : list of int
+        Local freedoms that are not held.
+    soft : ndarray, shape (6, 6)
+        Flexibility of the joints [L/F, 1/F, 1/(F L)]; negative where the beam is stiffened.
+
+    Returns
+    -------
+    forces, shape, flexibility : ndarray, shape (6, 6)
+        End forces and x for unit u, and x for unit f.
+    """
+    if not pins and not soft.any():
+        return k.copy(), np.eye(6), np.zeros((6, 6))
+    held, b = np.ones(6), soft.copy()
+    if pins and k[np.ix_(pins, pins)].any():  # an axial bar has no bending stiffness to condense
+        held[pins] = 0.0
+        b[pins] = 0.0
+        b[pins, pins] = 1.0
+    whole = np.diag(held) + b @ k
+    shape, flexibility = (np.asarray(np.linalg.solve(whole, x), float) for x in (np.diag(held), b))
+    forces = k @ shape
+    # no rounding may pass for a stiffness: it would hide a mechanism
+    forces[pins] = 0.0
+    if len(pins) == 2:
+        forces[[1, 4]] = 0.0
+    return forces, shape, flexibility
+
+
+def spare(k: Array, length: float, ea: float, joints: Array, taken: Array, pins: list[int]) -> float:
+    """How many times the flexibility `taken` off the ends would leave a beam without any."""
+    own = np.zeros((3, 3))
+    own[0, 0] = length / ea
+    own[1:, 1:] = np.linalg.inv(k[np.ix_([2, 5], [2, 5])])
+    chord = np.array([0.0, 1.0, 0.0, 0.0, -1.0, 0.0]) / length
+    natural = np.array([[-1, 0, 0, 1, 0, 0], np.eye(6)[2] + chord, np.eye(6)[5] + chord])
+    free = [0] + [n for n, d in ((1, 2), (2, 5)) if d not in pins]
+    at = np.ix_(free, free)
+    own, less = (own + natural @ joints @ natural.T)[at], (natural @ taken @ natural.T)[at]
+    return float(1.0 / np.linalg.eigvals(np.linalg.solve(own, less)).real.max())
+
+
+def block_mass(m: float, length: float, sign: float) -> Array:
+    """Mass of a rigid end block on (axial, transverse, rotation) of its node, shape (3, 3)."""
+    s = sign * m * length**2 / 2
+    return np.array([[m * length, 0, 0], [0, m * length, s], [0, s, m * length**3 / 3]])
+
+
+def pinned(p: Card) -> list[int]:
+    """Local rotations that are pinned."""
+    return {"NONE": [], "I": [2], "J": [5], "BOTH": [2, 5]}[p["PIN"] if p["I"] > 0.0 else "BOTH"]
+
+
+def build(site: Site, hinged: tuple[int, ...] = (), taken: Array | None = None) -> Member:
+    """Build a beam's matrices, loads and end forces.
+
+    Parameters
+    ----------
+    site : Site
+        With a property card that has the fields `FIELDS`.
+    hinged : tuple of int
+        Local freedoms (0, 3 stretch, 2, 5 bend) that a hinge holds.
+    taken : ndarray, shape (6, 6)
+        Flexibility that the hinges have and the beam gives up [L/F, 1/F, 1/(F L)].
+
+    Raises
+    ------
+    ElementError
+        No length or, by the hinges, no flexibility is left; the item is ``LP``.
+    """
+    p = site.prop
+    if site.j is None:
+        raise ElementError(f"a {p.spec.name} member needs two nodes")
+    dx, dy = site.j.x - site.i.x, site.j.y - site.i.y
+    full = math.hypot(dx, dy)
+    length = full - p["END1"] - p["END2"]
+    if length <= 0.0:
+        raise ElementError(f"no flexible length is left: {full:g} less the end blocks", "END1")
+    c, s = direction(dx, dy)
+    rotation = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+    ei = p["E"] * p["I"]
+    phi = 0.0
+    if p["AS"] > 0.0 and ei > 0.0:
+        if p["G"] is None:
+            raise ElementError("AS (shear deformation) needs G", "AS")
+        phi = 12 * ei / (p["G"] * p["AS"] * length**2)
+    k, pins = stiffness(p["E"] * p["A"], ei, length, phi), pinned(p)
+    joints = np.diag([0.0, 0.0, pair(p["FJ"])[0], 0.0, 0.0, pair(p["FJ"])[1]])
+    soft = joints
+    if taken is not None:
+        times = spare(k, length, p["E"] * p["A"], joints, taken, pins)
+        if times <= 1.0:
+            most = ",".join(f"{times * lp:.4g}" for lp in p["LP"])
+            raise ElementError(
+                f"the hinge lengths leave no beam between them: of the flexible length {length:g} "
+                f"they can have less than LP={most}",
+                "LP",
+            )
+        soft = joints - taken
+    forces, shape, flexibility = soften(k, pins, soft)
+    if ei == 0.0:  # an axial bar stays straight: it hands its loads and mass on as a beam on two pins does
+        _, shape, _ = soften(stiffness(0.0, 1.0, length, 0.0), pins, joints)
+
+    # local displacements of the flexible ends: as the nodes move them, and of the beam behind the hinges
+    at_nodes = np.zeros((6, 6))
+    at_nodes[:3, :3] = at_nodes[3:, 3:] = rotation
+    own = tuple((site.element.id, INSIDE[d]) for d in hinged)
+    freedoms = tuple((n.id, d) for n in (site.i, site.j) for d in range(3)) + own
+    to_ends = end_blocks(p["END1"], p["END2"]) @ at_nodes
+    outer = np.hstack([to_ends, np.zeros((6, len(own)))])
+    inner = outer.copy()
+    for n, d in enumerate(hinged):
+        inner[d] = 0.0
+        inner[d, 6 + n] = 1.0
+    opening = np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0])[:, None] * (inner - outer)
+
+    parts = Parts(stiffness=[Block(freedoms, inner.T @ forces @ inner)])
+    m = p["WGT"] / site.gravity
+    if m > 0.0:
+        # closed hinges: a member's own freedoms have no mass
+        _, rigid, _ = soften(k, pins, joints) if taken is not None else (None, shape, None)
+        mass = _mass(site, m, length, phi, rigid @ to_ends, at_nodes)
+        parts.mass.append(Block(freedoms[:6], mass))
+    equivalent, nodal = _loads(site, length, phi, rotation[:2, :2])
+    whole = (shape @ inner).T @ equivalent
+    whole[:6] += nodal
+    if whole.any():
+        parts.loads.append((freedoms, whole))
+
+    # end forces of the beam: k (shape u + flexibility f) - f
+    force_rows = forces @ inner
+    constant = k @ (flexibility @ equivalent) - equivalent
+    constant[pins] = 0.0
+    for name, unit, row, sign in (
+        ("axial I", "F", 0, -1.0),  # tension is positive at both ends
+        ("axial J", "F", 3, 1.0),
+        ("shear I", "F", 1, 1.0),
+        ("moment I", "F*L", 2, 1.0),
+        ("shear J", "F", 4, 1.0),
+        ("moment J", "F*L", 5, 1.0),
+    ):
+        if row not in (0, 3) and ei == 0.0:
+            continue
+        u_row, c0 = sign * force_rows[row], sign * float(constant[row])
+        parts.outputs.append(Output(site.element.id, name, unit, freedoms, u_row, None, c0))
+    axial = 0.5 * (force_rows[3] - force_rows[0])
+    mean = 0.5 * float(constant[3] - constant[0])
+    if site.geometry in ("PDELTA_VARYING", "LARGE"):
+        quantities = np.zeros((6, len(freedoms)))
+        quantities[0], quantities[1] = axial, -force_rows[2] - force_rows[5]
+        quantities[2:4, :6] = at_nodes[3:5] - at_nodes[:2]
+        quantities[4, 2] = quantities[5, 5] = 1.0
+        if site.geometry == "LARGE":
+            initial = _initial(p, length)
+            held = initial - k @ (flexibility @ initial)
+            held[pins] = 0.0
+            chord = _turning(p, length, forces, held)
+        else:
+            chord = (STRING, full, 0.0, 0.0, 0.5, float(forces[3, 3]), 0.0, 0.0, mean, 0.0), {}
+        parts.chords.append(Chord(site.element.id, freedoms, quantities, *chord))
+    elif site.geometry != "SMALL":
+        rows: dict[str, Array] = {}
+        if site.geometry == "PDELTA":
+            across = np.zeros(len(freedoms))
+            across[:6] = (at_nodes[4] - at_nodes[1]) / full
+            matrix = full * np.outer(across, across)
+        else:
+            matrix, rows = _bowed(p, length, phi, shape, inner, at_nodes)
+        parts.geometric.append(Geometric(site.element.id, freedoms, matrix, axial, mean, rows))
+    return Member(parts, freedoms, opening)
+
+
+def _loads(site: Site, length: float, phi: float, turn: Array) -> tuple[Array, Array]:
+    """Consistent loads on the beam's ends, initial forces among them, and what stands on the end blocks,
+    shape (6,) each, local and global.
+    """
+    p = site.prop
+    uniform = np.zeros(2)
+    points: list[tuple[float, Array]] = []
+    if site.self_weight:
+        uniform[1] -= p["WGT"]
+    for card in site.member_loads:
+        uniform += (card["WX"], card["WY"])
+        if card["PX"] or card["PY"]:
+            points.append((card["AT"], np.array([card["PX"], card["PY"]])))
+    equivalent, nodal = np.zeros(6), np.zeros(6)
+    for xi, w in zip(_GAUSS_X, _GAUSS_W) if uniform.any() else ():
+        equivalent += w * length * shapes(xi, length, phi).T @ (turn @ uniform)
+    for at, force in points:
+        equivalent += shapes(at, length, phi).T @ (turn @ force)
+    equivalent -= _initial(p, length)
+    for end, block, sign in ((0, p["END1"], 1.0), (3, p["END2"], -1.0)):
+        arm = sign * block / 2 * turn[0]
+        nodal[end : end + 2] += uniform * block
+        nodal[end + 2] += (arm[0] * uniform[1] - arm[1] * uniform[0]) * block
+    return equivalent, nodal
+
+
+def _initial(p: Card, length: float) -> Array:
+    """Initial forces on the beam's ends, local, shape (6,)."""
+    at_i, at_j = -pair(p["M0"])[0], pair(p["M0"])[1]  # on the ends, anticlockwise
+    shear = (at_i + at_j) / length
+    return np.array([-p["N0"], shear, at_i, p["N0"], -shear, at_j])
+
+
+def _turning(
+    p: Card, length: float, forces: Array, held: Array
+) -> tuple[tuple[float, ...], dict[str, Array]]:
+    """Parameters of a chord that turns and lengthens (see `chords`), and what it adds to the end forces.
+
+    Parameters
+    ----------
+    forces : ndarray, shape (6, 6)
+        Local end forces of the beam for unit end displacements.
+    held : ndarray, shape (6,)
+        End forces of the undisplaced beam, those of member loads apart, which keep their direction.
+    """
+    ends = [3, 2, 5]
+    d = np.array([[1.0, 0.0], [0.0, -1.0], [0.0, -1.0]])
+    own = forces[np.ix_(ends, ends)] @ d  # axial force and end moments for unit eta and rho
+    k = d.T @ own
+    pins = pinned(p)
+    # a pinned end does not turn with the member
+    lean = {2: 0.0, 5: 1.0}[pins[0]] if len(pins) == 1 else 0.5
+    n0, t0 = d.T @ held[ends]
+    parameters = (TURNING, length, p["END1"], p["END2"], lean, k[0, 0], k[0, 1], k[1, 1], n0, t0)
+    axial, at_i, at_j = (np.append(row, 0.0) for row in own)
+    shear = (at_i + at_j) / length + (0.0, 0.0, 1.0)
+    adds = {"axial I": axial, "axial J": axial, "moment I": at_i, "moment J": at_j}
+    return tuple(map(float, parameters)), adds | {"shear I": shear, "shear J": -shear}
+
+
+def _bowed(
+    p: Card, length: float, phi: float, shape: Array, inner: Array, at_nodes: Array
+) -> tuple[Array, dict[str, Array]]:
+    """Geometric stiffness of the bent member and its rigid blocks for an axial force of one, shape (n, n),
+    and what that adds to the end forces beyond the turning of the chord.
+    """
+    flexible = np.zeros((6, 6))
+    for xi, w in zip(_GAUSS_X, _GAUSS_W):
+        slope = slopes(xi, length, phi)
+        flexible += w * length * np.outer(slope, slope)
+    at_ends = shape.T @ flexible @ shape @ inner
+    matrix = inner.T @ at_ends
+    matrix[:6, :6] += sum(
+        p[end] * np.outer(at_nodes[i], at_nodes[i]) for end, i in (("END1", 2), ("END2", 5))
+    )
+    turn = (inner[4] - inner[1]) / length
+    rows = {
+        "shear I": at_ends[1] + turn,
+        "moment I": at_ends[2],
+        "shear J": at_ends[4] - turn,
+        "moment J": at_ends[5],
+    }
+    return matrix, rows
+
+
+def _mass(site: Site, m: float, length: float, phi: float, from_nodes: Array, at_nodes: Array) -> Array:
+    """Mass of the member on its global nodal freedoms, shape (6, 6)."""
+    p = site.prop
+    if not site.consistent:
+        half = m * length / 2
+        ends = (half + m * p["END1"], half + m * p["END2"])
+        return np.diag([ends[0], ends[0], 0.0, ends[1], ends[1], 0.0])
+    flexible = np.zeros((6, 6))
+    for xi, w in zip(_GAUSS_X, _GAUSS_W):
+        n = shapes(xi, length, phi)
+        flexible += w * m * length * n.T @ n
+    blocks = np.zeros((6, 6))
+    blocks[:3, :3] = block_mass(m, p["END1"], 1.0)
+    blocks[3:, 3:] = block_mass(m, p["END2"], -1.0)
+    return from_nodes.T @ flexible @ from_nodes + at_nodes.T @ blocks @ at_nodes
+
+
+FIELDS = (
+    Field("E", Kind.REAL, "F/L^2", above=0, doc="modulus of elasticity"),
+    Field("A", Kind.REAL, "L^2", above=0, doc="cross-section area"),
+    Field("I", Kind.REAL, "L^4", default=0.0, lo=0, doc="second moment of area; 0: an axial bar"),
+    Field("G", Kind.REAL, "F/L^2", default=None, above=0, doc="shear modulus, with AS"),
+    Field("AS", Kind.REAL, "L^2", default=0.0, lo=0, doc="shear area; 0: no shear deformation"),
+    Field(
+        "WGT",
+        Kind.REAL,
+        "F/L",
+        default=0.0,
+        lo=0,
+        doc="self weight per length: mass, and a load in STATIC",
+    ),
+    Field("END1", Kind.REAL, "L", default=0.0, lo=0, doc="length of the rigid block at I"),
+    Field("END2", Kind.REAL, "L", default=0.0, lo=0, doc="length of the rigid block at J"),
+    Field(
+        "PIN",
+        Kind.WORD,
+        default="NONE",
+        words=("NONE", "I", "J", "BOTH"),
+        codes={"NONE": 0, "I": 1, "J": 2, "BOTH": 3},
+        doc="which ends turn freely",
+    ),
+    Field(
+        "FJ",
+        Kind.REAL,
+        "1/(F*L)",
+        default=(0.0,),
+        lo=0,
+        count=(1, 2),
+        doc="joint flexibility at I and J, rotation per moment; one value: both",
+    ),
+    Field(
+        "N0",
+        Kind.REAL,
+        "F",
+        default=0.0,
+        doc="initial axial force of the undeformed member, tension positive",
+    ),
+    Field(
+        "M0",
+        Kind.REAL,
+        "F*L",
+        default=(0.0,),
+        count=(1, 2),
+        doc="initial moments at I and J, sagging positive; one value: both",
+    ),
+)

@@ -1,0 +1,125 @@
+r"""FRAME: beam-column between two nodes, elastic or with hinges at its ends.
+
+The one-component member: an elastic beam (`beam`) in series with a rotational spring at either end of its
+flexible length, which follows a hysteresis rule.  The hinge has its own stiffness KH (moment over
+rotation), or a length LP over which the section of the beam yields (moment over curvature): then its
+stiffness is :math:`EI/L_p`, and the flexibility :math:`L_p/EI` that it has is taken off the beam, so that
+the elastic member is exactly that of EI.  A slender beam can give up :math:`L_p < L/4` at one end or
+:math:`L_p < L/6` at both.
+
+Moments and rotations of hinges are positive where the member sags: tension on the right of the way from
+I to J.  No hinge is made where none is asked for.
+
+References
+----------
+Giberson MF (1967), The response of nonlinear multi-story structures subjected to earthquake excitation,
+Earthquake Engineering Research Laboratory, California Institute of Technology, Pasadena.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.structure.elements import beam
+from pound_solve.structure.elements.base import DAMAGE, ElementError, Parts, Site, hysteretic, signed
+from pound_solve.structure.elements.beam import pair
+
+ENDS = ((2, "I", "MI"), (5, "J", "MJ"))  #: local freedom, name and strength of the hinges
+
+
+def build(site: Site) -> Parts:
+    """Build the beam and the hinges that have a strength."""
+    p = site.prop
+    (rule,) = p.laws["RULE"]
+    ends = [end for end in ENDS if p[end[2]] is not None]
+    _consistent(site, [item for _, _, item in ends])
+    if not ends:
+        return beam.build(site).parts
+    ei = p["E"] * p["I"]
+    if p["KH"] is not None:
+        stiffness, taken = dict(zip((2, 5), pair(p["KH"]))), None
+    else:
+        lengths = dict(zip((2, 5), pair(p["LP"])))
+        stiffness, taken = {d: ei / lengths[d] for d in lengths}, np.zeros((6, 6))
+        for d, _, _ in ends:
+            taken[d, d] = lengths[d] / ei
+    member = beam.build(site, tuple(d for d, _, _ in ends), taken)
+    for d, end, item in ends:
+        row = dict(zip(member.freedoms, member.opening[d]))
+        member.parts.laws.append(
+            hysteretic(
+                site.element.id, f"hinge {end}", "F*L", row, p, rule, stiffness[d], signed(p[item], item)
+            )
+        )
+    return member.parts
+
+
+def _consistent(site: Site, strengths: list[str]) -> None:
+    """Raise where what the card says of hinges does not fit together."""
+    p = site.prop
+    (rule,) = p.laws["RULE"]
+    given = [item for item in ("KH", "LP") if p[item] is not None]
+    if not strengths:
+        if rule.impl is not None:
+            raise ElementError(f"{rule.name} needs a yield moment: MI, MJ or both", "RULE")
+        idle = [*given, *(["DUCTU"] if p["DUCTU"] is not None else [])]
+        if idle:
+            raise ElementError(f"{idle[0]} has no effect without a yield moment MI or MJ", idle[0])
+        return
+    if rule.impl is None:
+        raise ElementError(
+            f"{strengths[0]} has no effect with RULE=ELASTIC: name a rule that yields", strengths[0]
+        )
+    if len(given) != 1:
+        raise ElementError(
+            "a hinge needs its stiffness KH or its length LP" + (", not both" if given else ""),
+            given[0] if given else strengths[0],
+        )
+    for d, end, item in ENDS:
+        if item in strengths and d in beam.pinned(p):
+            why = f"end {end} is pinned" if p["I"] > 0.0 else "I=0 is a bar without bending"
+            raise ElementError(f"{why}: it has no hinge that yields", item)
+
+
+SPEC = Spec(
+    "element",
+    "FRAME",
+    "beam-column, elastic or with hinges",
+    (
+        *beam.FIELDS,
+        Field(
+            "RULE", Kind.FAMILY, default="ELASTIC", family="hysteresis", doc="hysteresis rule of the hinges"
+        ),
+        Field(
+            "MI",
+            Kind.REAL,
+            "F*L",
+            default=None,
+            count=(1, 2),
+            doc="yield moment of the hinge at I, sagging and (signed) hogging; left out: no hinge there",
+        ),
+        Field("MJ", Kind.REAL, "F*L", default=None, count=(1, 2), doc="yield moment of the hinge at J"),
+        Field(
+            "KH",
+            Kind.REAL,
+            "F*L",
+            default=None,
+            above=0,
+            count=(1, 2),
+            doc="stiffness of the hinges at I and J, in series with the beam; one value: both",
+        ),
+        Field(
+            "LP",
+            Kind.REAL,
+            "L",
+            default=None,
+            above=0,
+            count=(1, 2),
+            doc="length of the hinges at I and J, out of the beam, in place of KH; one value: both",
+        ),
+        *DAMAGE,
+    ),
+    reference="Przemieniecki 1968; Giberson 1967",
+    impl=build,
+)

@@ -1,0 +1,188 @@
+r"""MULTISPRING: a row of springs across a section, which rocks, cracks or yields spring by spring.
+
+Springs along local x stand at distances :math:`y_i` from the axis; with the displacement u and the rotation
+:math:`\theta` of J less those of I (or of I against the ground)
+
+.. math:: d_i = u_x - y_i\,\theta, \qquad N = \sum f_i, \qquad M = -\sum y_i f_i .
+
+Over a width the springs stand at the Gauss-Lobatto points with their weights as shares of stiffness and
+strength: the corners about which a section rocks are among them, and the rotational stiffness is exactly
+:math:`K b^2/12` from three springs on.  Springs that take no tension open and close; with a strength
+they are crushed, and what is crushed stays a gap.
+
+References
+----------
+Abramowitz M, Stegun IA (1964), Handbook of Mathematical Functions, National Bureau of Standards, 25.4.32
+(Lobatto's rule);
+Lai S-S, Will GT, Otani S (1984), Model for inelastic biaxial bending of concrete members, J. Struct. Engng
+ASCE 110(11): 2563-2584.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import Law
+from pound_solve.laws.hysteresis.slackness import RULE
+from pound_solve.numerics.types import Array
+from pound_solve.structure.dofs import Freedom
+from pound_solve.structure.elements.base import (
+    Block,
+    ElementError,
+    LawSpring,
+    Output,
+    Parts,
+    Site,
+    axes,
+    hysteretic,
+    signed,
+)
+
+FAR = 1e3  #: widths by which nothing ever opens
+
+
+def lobatto(count: int) -> tuple[Array, Array]:
+    """Points on [-1, 1] with their weights, which add up to 1, of Lobatto's rule, shape (count,) each."""
+    last = np.polynomial.Legendre.basis(count - 1)
+    inner = np.sort(last.deriv().roots().real)
+    points = np.concatenate([[-1.0], 0.5 * (inner - inner[::-1]), [1.0]])
+    return points, 1.0 / (count * (count - 1) * last(points) ** 2)
+
+
+def no_tension(
+    element: int,
+    component: str,
+    row: Mapping[Freedom, float],
+    k: float,
+    strength: float | None,
+    width: float,
+) -> LawSpring:
+    """A spring that opens in tension; crushed at its `strength`, elastic where that is None."""
+    far = FAR * width
+    limit = k * far if strength is None else strength
+    law = Law(RULE, (k, limit, -limit, far, 0.0, 0.0, 1.0))
+    freedoms, factors = zip(*((f, float(x)) for f, x in row.items() if x != 0.0))
+    yields = None if strength is None else (math.nan, -strength / k)
+    return LawSpring(element, component, "BILINEAR_SLACK", freedoms, factors, law, k, yields)
+
+
+def _row(site: Site, y: float) -> dict[Freedom, float]:
+    """Deformation of the spring at `y`."""
+    ax, _ = axes(site.prop["ANGLE"])
+    ends = [(site.i.id, 1.0)] if site.j is None else [(site.j.id, 1.0), (site.i.id, -1.0)]
+    return {(node, d): sign * x for node, sign in ends for d, x in enumerate((*ax, -y))}
+
+
+def _places(site: Site) -> tuple[Array, Array, float]:
+    """Distances of the springs from the axis, their shares, and the width that they stand on."""
+    p = site.prop
+    if (p["WIDTH"] is None) == (p["Y"] is None):
+        raise ElementError("give the springs' places as WIDTH or as Y", "Y")
+    if p["WIDTH"] is not None:
+        points, shares = lobatto(p["COUNT"])
+        if p["SHARE"] is not None:
+            raise ElementError("SHARE goes with Y; over a WIDTH the shares are given", "SHARE")
+        return p["WIDTH"] / 2 * points, shares, p["WIDTH"]
+    y = np.array(p["Y"])
+    shares = np.ones(len(y)) if p["SHARE"] is None else np.array(p["SHARE"])
+    if len(shares) != len(y):
+        raise ElementError(f"SHARE has {len(shares)} values, Y has {len(y)}", "SHARE")
+    return y, shares / shares.sum(), float(np.abs(y).max()) or 1.0
+
+
+def build(site: Site) -> Parts:
+    """Build the springs."""
+    p = site.prop
+    (rule,) = p.laws["RULE"]
+    y, shares, width = _places(site)
+    k, force = p["KX"], p["FX"]
+    parts = Parts()
+    if rule.impl is not None and p["TENSION"] == "NO":
+        raise ElementError("TENSION=NO is a rule of its own: leave RULE out", "RULE")
+    if rule.impl is not None and force is None:
+        raise ElementError(f"{rule.name} needs the yield force FX", "RULE")
+    if rule.impl is None and p["TENSION"] == "YES":
+        if force is not None:
+            raise ElementError("FX has no effect with RULE=ELASTIC: name a rule that yields", "FX")
+        freedoms = tuple(_row(site, 0.0))
+        rows = np.array([list(_row(site, at).values()) for at in y])
+        each = (rows.T * (k * shares)).T
+        parts.stiffness.append(Block(freedoms, rows.T @ each))
+        parts.outputs += [
+            Output(site.element.id, "axial", "F", freedoms, each.sum(axis=0)),
+            Output(site.element.id, "moment", "F*L", freedoms, -y @ each),
+        ]
+        return parts
+    for n, (at, share) in enumerate(zip(y.tolist(), shares.tolist()), 1):
+        name, row = f"spring {n}", _row(site, at)
+        if rule.impl is None:
+            strength = None if force is None else -share * signed(force, "FX")[1]
+            parts.laws.append(no_tension(site.element.id, name, row, share * k, strength, width))
+        else:
+            plus, minus = signed(force, "FX")
+            parts.laws.append(
+                hysteretic(
+                    site.element.id, name, "F", row, p, rule, share * k, (share * plus, share * minus)
+                )
+            )
+    return parts
+
+
+SPEC = Spec(
+    "element",
+    "MULTISPRING",
+    "row of springs across a section",
+    (
+        Field("KX", Kind.REAL, "F/L", above=0, doc="stiffness of all springs along local x"),
+        Field(
+            "FX",
+            Kind.REAL,
+            "F",
+            default=None,
+            count=(1, 2),
+            doc="yield force of all springs, positive and (signed) negative",
+        ),
+        Field(
+            "ANGLE", Kind.REAL, "deg", default=90.0, doc="angle of the springs from global x, anticlockwise"
+        ),
+        Field("WIDTH", Kind.REAL, "L", default=None, above=0, doc="width that the springs are spread over"),
+        Field("COUNT", Kind.INT, "-", default=10, lo=2, hi=50, doc="number of springs over WIDTH"),
+        Field(
+            "Y",
+            Kind.REAL,
+            "L",
+            default=None,
+            count=(1, 50),
+            doc="places of the springs along local y, to the left of their direction, in place of WIDTH",
+        ),
+        Field(
+            "SHARE",
+            Kind.REAL,
+            "-",
+            default=None,
+            above=0,
+            count=(1, 50),
+            doc="shares of the springs at Y in KX and FX, of any sum; left out: equal",
+        ),
+        Field(
+            "TENSION",
+            Kind.WORD,
+            default="YES",
+            words=("YES", "NO"),
+            doc="NO: springs open in tension, and are crushed at the negative FX, if any",
+        ),
+        Field(
+            "RULE",
+            Kind.FAMILY,
+            default="ELASTIC",
+            family="hysteresis",
+            doc="hysteresis rule of the springs",
+        ),
+    ),
+    reference="Lai, Will & Otani 1984",
+    impl=build,
+)

@@ -1,0 +1,79 @@
+r"""TENDON: a bar or cable between two nodes that takes tension only.
+
+Its force follows the rule `BILINEAR_SLACK` on the elongation :math:`e` along the line between its nodes,
+
+.. math:: f = \frac{EA}{L}(e - s - p) \ge 0, \qquad s = \mathrm{SLACK} \quad\mathrm{or}\quad s = -N_0 L / EA
+
+with the plastic elongation :math:`p`, by which the slack grows (a prestress is lost).  In compression it
+hangs slack.  The prestress acts on the undeformed structure, which gives way and takes part of it.
+In modes and stiffness-proportional damping a tendon counts where it is prestressed.
+"""
+
+from __future__ import annotations
+
+import math
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import Law
+from pound_solve.laws.hysteresis.slackness import RULE
+from pound_solve.structure.elements.base import ElementError, LawSpring, Parts, Site, direction
+
+FAR = 1e3  #: strain that is never reached
+
+
+def build(site: Site) -> Parts:
+    """Build the tendon's one component."""
+    p = site.prop
+    if site.j is None:
+        raise ElementError("a TENDON needs two nodes")
+    dx, dy = site.j.x - site.i.x, site.j.y - site.i.y
+    length = math.hypot(dx, dy)
+    if p["N0"] and p["SLACK"]:
+        raise ElementError("a tendon is slack or prestressed, not both: SLACK or N0", "N0")
+    if p["PY"] is not None and p["N0"] >= p["PY"]:
+        raise ElementError(f"N0 is {p['N0']:g}, no less than the yield force PY={p['PY']:g}", "N0")
+    k, far = p["E"] * p["A"] / length, FAR * length
+    slack = p["SLACK"] - p["N0"] / k
+    strength = k * far if p["PY"] is None else p["PY"]
+    row = [
+        ((node, d), sign * x)
+        for node, sign in ((site.j.id, 1.0), (site.i.id, -1.0))
+        for d, x in enumerate(direction(dx, dy))
+        if x != 0.0
+    ]
+    spring = LawSpring(
+        site.element.id,
+        "axial",
+        "BILINEAR_SLACK",
+        tuple(f for f, _ in row),
+        tuple(x for _, x in row),
+        Law(RULE, (k, strength, -strength, slack, -far, p["R"], 1.0)),
+        k if p["N0"] else 0.0,
+        None if p["PY"] is None else (slack + strength / k, math.nan),
+    )
+    return Parts(laws=[spring])
+
+
+SPEC = Spec(
+    "element",
+    "TENDON",
+    "bar or cable that takes tension only",
+    (
+        Field("E", Kind.REAL, "F/L^2", above=0, doc="modulus of elasticity"),
+        Field("A", Kind.REAL, "L^2", above=0, doc="cross-section area"),
+        Field("PY", Kind.REAL, "F", default=None, above=0, doc="yield force; left out: elastic"),
+        Field(
+            "R",
+            Kind.REAL,
+            "-",
+            default=0.0,
+            lo=0.0,
+            below=1.0,
+            doc="post-yield stiffness as a share of the initial",
+        ),
+        Field("N0", Kind.REAL, "F", default=0.0, lo=0, doc="prestress of the undeformed structure"),
+        Field("SLACK", Kind.REAL, "L", default=0.0, lo=0, doc="elongation at which it takes hold"),
+    ),
+    reference="Ruaumoko's rule 5",
+    impl=build,
+)
