@@ -30,8 +30,8 @@ ROOMS = (
 #: folders within a room, likewise; what a room holds beside them may import all of them
 WITHIN = {
     "loading": ("records", "motions", "forces"),
-    "laws": ("automaton", "functions", "contact", "hysteresis"),
-    "integrate": ("protocol", "events", "condensed", "kernels", "stepping", "series", "closed_form", "auto"),
+    "laws": ("automaton", "functions", "mirror", "contact", "hysteresis"),
+    "integrate": ("protocol", "kernels", "events", "condensed", "stepping", "series", "closed_form", "auto"),
 }
 #: who may import a library, as paths below the two packages
 ONLY_IN = {

@@ -25,7 +25,7 @@ dry friction.
 from __future__ import annotations
 
 from pound_solve.laws.automaton import PUSH, PUSH_RATE, Law, Numbers, Rule, piece, remember
-from pound_solve.laws.hysteresis.mirror import side
+from pound_solve.laws.mirror import side
 
 OPEN, PLUS, MINUS, STICKING = 0, 1, 2, 3
 RELEASED = 2  #: way to leave when the contact opens

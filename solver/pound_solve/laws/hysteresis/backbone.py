@@ -33,7 +33,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind
 from pound_solve.laws.automaton import Numbers, piece, remember
-from pound_solve.laws.hysteresis.mirror import need_both_sides, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import need_both_sides, outward, pair, side, turns_inward
 
 # branches of the positive side; those of the negative side are one more
 ELASTIC, YIELDING, WEAKENING = 0, 1, 3

@@ -39,7 +39,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import TURNS_DOWN, TURNS_UP, Law, Numbers, Rule, piece, remember
-from pound_solve.laws.hysteresis.mirror import need_both_sides
+from pound_solve.laws.mirror import need_both_sides
 
 LOADING, UNLOADING = 0, 1
 SATURATED = 40.0  #: -log(1 - y^n) from which on y is 1 to the last digit

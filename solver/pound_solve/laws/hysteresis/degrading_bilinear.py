@@ -37,7 +37,7 @@ from pound_solve.laws.hysteresis.backbone import (
     yield_branch,
     yield_force,
 )
-from pound_solve.laws.hysteresis.mirror import side
+from pound_solve.laws.mirror import side
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:

@@ -25,7 +25,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
-from pound_solve.laws.hysteresis.mirror import (
+from pound_solve.laws.mirror import (
     inward,
     need_both_sides,
     outward,

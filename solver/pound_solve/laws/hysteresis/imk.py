@@ -42,7 +42,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind
 from pound_solve.laws.automaton import Numbers
-from pound_solve.laws.hysteresis.mirror import need_both_sides
+from pound_solve.laws.mirror import need_both_sides
 
 FAILED = 0
 BRANCHES = ("failed",)  #: the rules' own come in pairs after it: positive side, negative side

@@ -40,7 +40,7 @@ from pound_solve.laws.hysteresis.imk import (
     ultimate,
     virgin,
 )
-from pound_solve.laws.hysteresis.mirror import inward, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import inward, outward, pair, side, turns_inward
 
 ELASTIC, LEAST, HARDENING, LIMITED, FALLING, RESIDUAL = 1, 3, 5, 7, 9, 11
 FAR = 1e300

@@ -57,7 +57,7 @@ from pound_solve.laws.hysteresis.imk import (
     ultimate,
     virgin,
 )
-from pound_solve.laws.hysteresis.mirror import inward, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import inward, outward, pair, side, turns_inward
 
 ELASTIC, HARDENING, FALLING, RESIDUAL, UNLOADING = 1, 3, 5, 7, 9
 #: reloading, by the points between which it goes

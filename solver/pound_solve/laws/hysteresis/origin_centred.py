@@ -32,7 +32,7 @@ from pound_solve.laws.hysteresis.backbone import (
     yield_branch,
     yield_force,
 )
-from pound_solve.laws.hysteresis.mirror import inward, outward, pair, side
+from pound_solve.laws.mirror import inward, outward, pair, side
 
 SECANT = 5
 

@@ -31,7 +31,7 @@ from pound_solve.laws.hysteresis.backbone import (
     yield_branch,
     yield_force,
 )
-from pound_solve.laws.hysteresis.mirror import inward, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import inward, outward, pair, side, turns_inward
 
 UNLOADING, RELOADING = 5, 7
 

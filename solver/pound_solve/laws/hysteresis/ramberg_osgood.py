@@ -35,7 +35,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, piece, remember
-from pound_solve.laws.hysteresis.mirror import need_both_sides, outward, turns_inward
+from pound_solve.laws.mirror import need_both_sides, outward, turns_inward
 
 LOADING, UNLOADING = 0, 1
 DEPTH = 7.0  #: reversals remembered

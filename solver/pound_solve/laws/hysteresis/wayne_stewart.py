@@ -40,7 +40,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
-from pound_solve.laws.hysteresis.mirror import inward, need_both_sides, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import inward, need_both_sides, outward, pair, side, turns_inward
 
 SLACK, FAILED, UNLOADING = 0, 1, 2
 #: the first of each pair of branches: positive side, negative side

@@ -24,12 +24,13 @@ import numpy as np
 
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve.numerics.types import Array
 from pound_solve.structure.damping.base import (
     BUILDING,
+    Array,
     DampingError,
     Ground,
     Group,
-    Matrix,
     apart,
     frequencies,
     ratios,
@@ -40,7 +41,7 @@ from pound_solve.structure.damping.base import (
 BETWEEN = 64  #: places between two neighbouring points where the sign of the ratio is looked at
 
 
-def rates(omega: Matrix, at: Matrix, xi: Matrix) -> Matrix:
+def rates(omega: Array, at: Array, xi: Array) -> Array:
     r""":math:`2\xi\omega` of the series through ratios `xi` at `at`, for frequencies `omega`."""
     out = np.zeros_like(omega)
     for i, (w, x) in enumerate(zip(at, xi)):

@@ -21,12 +21,13 @@ import numpy as np
 
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve.numerics.types import Array
 from pound_solve.structure.damping.base import (
     BUILDING,
+    Array,
     DampingError,
     Ground,
     Group,
-    Matrix,
     apart,
     frequencies,
     ratios,
@@ -35,7 +36,7 @@ from pound_solve.structure.damping.base import (
 )
 
 
-def through(x: Matrix, at: Matrix, xi: Matrix, straight: bool) -> Matrix:
+def through(x: Array, at: Array, xi: Array, straight: bool) -> Array:
     """Piecewise linear function through (`at`, `xi`) at `x`, with ends that go on straight or constant."""
     order = np.argsort(at)
     at, xi = at[order], xi[order]
@@ -47,7 +48,7 @@ def through(x: Matrix, at: Matrix, xi: Matrix, straight: bool) -> Matrix:
     return np.asarray(out)
 
 
-def listed(card: Card, omega: Matrix) -> tuple[Matrix, str]:
+def listed(card: Card, omega: Array) -> tuple[Array, str]:
     """Ratio of every mode out of a list, and words."""
     given = card["XI"]
     for item in ("BEYOND", "OVER"):
@@ -58,7 +59,7 @@ def listed(card: Card, omega: Matrix) -> tuple[Matrix, str]:
     return xi, f"XI {values(given)}{rest}"
 
 
-def interpolated(card: Card, omega: Matrix) -> tuple[Matrix, str]:
+def interpolated(card: Card, omega: Array) -> tuple[Array, str]:
     """Ratio of every mode on straight lines between those given, and words."""
     at = frequencies(card, lambda: omega)
     item = "OMEGA" if card["OMEGA"] is not None else "MODES"
