@@ -11,8 +11,9 @@ from typing import Any, Final
 import numpy as np
 
 from pound_deck.schema import Field, Kind
-from pound_solve.loading.motions.piecewise import Array, Piecewise, merged
+from pound_solve.loading.motions.piecewise import Piecewise, merged
 from pound_solve.loading.records.base import RecordError
+from pound_solve.numerics.types import Array
 
 __all__ = ("COMMON", "METRE", "Context", "Motion", "Piecewise", "RecordError", "common_breaks", "finish")
 

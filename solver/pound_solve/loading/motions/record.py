@@ -13,8 +13,9 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve.numerics.types import Array
 from pound_solve.loading.motions.base import COMMON, Context, Motion, Piecewise, finish
-from pound_solve.loading.motions.piecewise import Array
+from pound_solve.loading.motions.piecewise import 
 from pound_solve.loading.records import formats
 from pound_solve.loading.records.base import RawRecord, RecordError
 from pound_solve.loading.records.known import find, known, load

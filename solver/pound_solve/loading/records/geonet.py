@@ -14,8 +14,9 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.loading.records.base import Array, Format, RawRecord, RecordError
+from pound_solve.loading.records.base import Format, RawRecord, RecordError
 from pound_solve.loading.records.text import parse
+from pound_solve.numerics.types import Array
 
 _OPENING: Final = re.compile(r"\b(?:un)?corrected accelerogram\b", re.IGNORECASE)
 _COMPONENT: Final = re.compile(r"^\s*Component\s+(\S+)", re.IGNORECASE)

@@ -13,7 +13,8 @@ from typing import Final
 
 import numpy as np
 
-from pound_solve.loading.records.base import Array, RecordError
+from pound_solve.loading.records.base import RecordError
+from pound_solve.numerics.types import Array
 
 _SEPARATORS: Final = str.maketrans(",;\t", "   ")
 _D_EXPONENT: Final = str.maketrans("Dd", "EE")

@@ -24,7 +24,6 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.numerics.types import Array
 from pound_solve.structure.damping.base import (
     BUILDING,
-    Array,
     DampingError,
     Ground,
     Group,
