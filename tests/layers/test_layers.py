@@ -31,7 +31,16 @@ ROOMS = (
 WITHIN = {
     "loading": ("records", "motions", "forces"),
     "laws": ("automaton", "functions", "mirror", "contact", "hysteresis"),
-    "integrate": ("protocol", "kernels", "events", "condensed", "stepping", "series", "closed_form", "auto"),
+    "integrate": (
+        "protocol",
+        "kernels",
+        "events",
+        "condensed",
+        "stepping",
+        "series",
+        "closed_form",
+        "auto",
+    ),
 }
 #: who may import a library, as paths below the two packages
 ONLY_IN = {
@@ -42,7 +51,16 @@ ONLY_IN = {
     "numba": {"numerics/jit.py"},
 }
 #: rooms and modules that read no file and print nothing
-NUMERICS = ("numerics", "theory", "laws", "structure", "integrate", "analyses", "loading/motions", "loading/forces")
+NUMERICS = (
+    "numerics",
+    "theory",
+    "laws",
+    "structure",
+    "integrate",
+    "analyses",
+    "loading/motions",
+    "loading/forces",
+)
 
 
 def modules():

@@ -13,12 +13,11 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.numerics.types import Array
 from pound_solve.loading.motions.base import COMMON, Context, Motion, Piecewise, finish
-from pound_solve.loading.motions.piecewise import 
 from pound_solve.loading.records import formats
 from pound_solve.loading.records.base import RawRecord, RecordError
 from pound_solve.loading.records.known import find, known, load
+from pound_solve.numerics.types import Array
 
 _UNITS: Final = ("G", "M/S2", "CM/S2", "GAL", "MM/S2", "DECK")
 _PER_METRE: Final = {"M/S2": 1.0, "CM/S2": 100.0, "GAL": 100.0, "MM/S2": 1000.0}

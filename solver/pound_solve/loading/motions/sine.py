@@ -15,9 +15,8 @@ from typing import Any, Final
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.numerics.types import Array
 from pound_solve.loading.motions.base import COMMON, Context, Motion, Piecewise, RecordError, finish
-from pound_solve.loading.motions.piecewise import 
+from pound_solve.numerics.types import Array
 
 _PER_PERIOD: Final = 32
 _DEGREE: Final = 10

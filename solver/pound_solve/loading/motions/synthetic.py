@@ -23,9 +23,8 @@ from typing import Any, Final
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.numerics.types import Array
 from pound_solve.loading.motions.base import COMMON, Context, Motion, Piecewise, RecordError, finish
-from pound_solve.loading.motions.piecewise import 
+from pound_solve.numerics.types import Array
 
 MOST_SAMPLES: Final = 10_000_000
 
