@@ -1,6 +1,6 @@
 """The two pounding buildings of Cole et al. (2011) in OpenSees: the peer's side of the benchmark.
 
-Horizontal freedom only; units kN, m, s, t.  Each diaphragm is a chain of n axial elements (n = 0: one
+Horizontal DOF only; units kN, m, s, t.  Each diaphragm is a chain of n axial elements (n = 0: one
 lumped mass), with an elastoplastic column at both ends, and meets its neighbour across a gap.  Runs in
 the environment that ``peer_env.py`` makes and needs nothing but OpenSeesPy and the standard library.
 

@@ -21,7 +21,9 @@ def node(floor: int, line: int) -> int:
     return 100 * floor + line + 1
 
 
-def member(number: int, i: int, j: int, inertia: float, area: float, strength: float, turned: int) -> None:
+def member(
+    number: int, i: int, j: int, inertia: float, area: float, strength: float, stationary: int
+) -> None:
     """Elastic member between two hinges."""
     ends = []
     for end, joint in ((1, i), (2, j)):
@@ -31,7 +33,7 @@ def member(number: int, i: int, j: int, inertia: float, area: float, strength: f
         # no equalDOF: it would chain with the floor's, which OpenSees takes without a word, and wrongly
         ops.element("zeroLength", inner, joint, inner, "-mat", 1, 1, inner, "-dir", 1, 2, 6)
         ends.append(inner)
-    ops.element("elasticBeamColumn", number, *ends, area, 2e8, inertia, turned)
+    ops.element("elasticBeamColumn", number, *ends, area, 2e8, inertia, stationary)
 
 
 def build() -> None:

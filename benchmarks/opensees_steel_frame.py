@@ -60,7 +60,7 @@ def build(storeys, bays, tall, geometry):
     ops.geomTransf("Linear", 2)
     hinges, members = {}, []
 
-    def member(number, i, j, section, length, turned):
+    def member(number, i, j, section, length, stationary):
         area, inertia, modulus = section
         material = 10 * number
         ops.uniaxialMaterial("Steel01", material, modulus * FY, RATIO * 6.0 * E * inertia / length, HINGE)
@@ -72,7 +72,9 @@ def build(storeys, bays, tall, geometry):
             ops.element("zeroLength", own, node, own, "-mat", material, "-dir", 6)
             hinges[f"{number} hinge {end}"] = own
             inner.append(own)
-        ops.element("elasticBeamColumn", number, *inner, area, E, inertia * (RATIO + 1.0) / RATIO, turned)
+        ops.element(
+            "elasticBeamColumn", number, *inner, area, E, inertia * (RATIO + 1.0) / RATIO, stationary
+        )
         members.append(number)
 
     for floor in range(1, storeys + 1):

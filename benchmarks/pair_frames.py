@@ -165,12 +165,12 @@ def frozen(said):
 
 
 def chain(args, folder):
-    """The paper's buildings, 20 elements a diaphragm: 84 freedoms."""
+    """The paper's buildings, 20 elements a diaphragm: 84 DOFs."""
     deck = Path(folder, "chain.inp")  # with as little output as the frames
     deck.write_text(CHAIN.read_text(encoding="utf-8") + "\nOUTPUT\n   EVERY=t\n", encoding="utf-8")
     record = Path(folder, "record.txt")
     write_two_columns(record, *read_at2(args.record or record_file()))
-    print(f"\nchain of 84 freedoms, dt {CHAIN_DT:g} s")
+    print(f"\nchain of 84 degrees of freedom, dt {CHAIN_DT:g} s")
     for method, forms in {"newmark": ("newmark",), "central": ("central", "central-lagged")}.items():
         theirs_us = []
         for form in forms:

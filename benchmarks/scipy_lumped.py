@@ -1,6 +1,6 @@
 """The paper's two buildings with lumped floors by scipy's ``solve_ivp``: the second peer of pair_lumped.py.
 
-Horizontal freedom only; units kN, m, s, t.  Between two changes (a column yields or unloads, a contact
+Horizontal DOF only; units kN, m, s, t.  Between two changes (a column yields or unloads, a contact
 touches or lets go) the equations are smooth; each change is a terminal event, after which the integration
 starts again.  Drift and force peaks are events too, which only note themselves.  Needs numpy and scipy.
 LSODA is left out: between its steps scipy interpolates with jumps, in which it then finds no root.
@@ -16,7 +16,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from two_buildings import BUILDINGS, GAP, STIFF, G, rayleigh, read_two_columns
 
-# freedoms: building 1 floors 1 and 2, building 2 floors 1 and 2; columns in the order of their storeys
+# DOFs: building 1 floors 1 and 2, building 2 floors 1 and 2; columns in the order of their storeys
 DRIFT = np.array([[1, 0, 0, 0], [-1, 1, 0, 0], [0, 0, 1, 0], [0, 0, -1, 1]], float)
 CLOSE = np.array([[1, 0, -1, 0], [0, 1, 0, -1]], float)
 NAMES = [f"B{j} storey {i}" for j in BUILDINGS for i in (1, 2)]
@@ -62,11 +62,11 @@ class Model:
         for i, row in enumerate(DRIFT):
             if self.flow[i]:  # unloads where its rate turns
 
-                def turned(y, i=i, row=row):
+                def stationary(y, i=i, row=row):
                     self.slip[i] = row @ y[:4] - self.flow[i] * FY[i] / K[i]
                     self.flow[i] = 0
 
-                yield (lambda t, y, row=row: row @ y[4:]), -self.flow[i], turned
+                yield (lambda t, y, row=row: row @ y[4:]), -self.flow[i], stationary
                 continue
             for sign in (1.0, -1.0):
 

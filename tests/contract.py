@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from paths import Walk, pieces, turning_points
-from pound_solve.laws.automaton import Law, State, follow
+from pound_solve.laws.automaton import Law, State, drive
 
 SEEDS = (0, 1, 2)
 
@@ -33,14 +33,14 @@ def trying_changes_nothing(law: Law, reach: float) -> None:
         for goal in turning_points(seed, reach):
             state, d = walk.state, walk.d
             before = hash(state), law.branch(state), law.force(state, d), law.stored(state, d)
-            once = follow(law, state, d, goal)
-            follow(law, state, d, d - 2.0 * (goal - d))
-            law.leave(state, 0, d)
+            once = drive(law, state, d, goal)
+            drive(law, state, d, d - 2.0 * (goal - d))
+            law.transition(state, 0, d)
             again = hash(state), law.branch(state), law.force(state, d), law.stored(state, d)
             assert before == again, "asking changed the law"
-            assert once == follow(law, state, d, goal), "asking changed the law"
+            assert once == drive(law, state, d, goal), "asking changed the law"
             walk.move(goal)
-            # and the walk, written anew, comes out where `follow` does
+            # and the walk, written anew, comes out where `drive` does
             assert once[0] == walk.state[0]
             assert close(law.force(once, goal)[0], walk.force, 1e-12 * law.p[0] * reach)
 
@@ -80,7 +80,7 @@ def tangent_is_the_slope_of_the_force(law: Law, reach: float) -> None:
             f, k, c = law.force(state, d)
             slope = (law.force(state, d + h)[0] - law.force(state, d - h)[0]) / (2.0 * h)
             assert close(slope, k, 1e-6 * law.p[0]), "the tangent is not the slope of the force"
-            after = law.force(follow(law, state, d, d + step), d + step)[0]
+            after = law.force(drive(law, state, d, d + step), d + step)[0]
             assert close((after - f) / step, k, 1e-5 * law.p[0]), (
                 "the tangent is not the slope of the force"
             )

@@ -1,4 +1,4 @@
-"""Decks in tests: from a text to a model, a structure, a static result or a scene."""
+"""Decks in tests: from a text to a model, a structure, a static result or a reduced system."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from pound_deck.model import Model
 from pound_deck.reader import read_text
 from pound_solve.analyses import history, static
 from pound_solve.catalog import catalog
-from pound_solve.loading.motions.base import Context
+from pound_solve.loading.motions.base import LoadingContext
 from pound_solve.loading.motions.wave import fronts
 from pound_solve.numerics.types import Array
 from pound_solve.structure import reduction
 from pound_solve.structure.assembly import Structure, assemble
-from pound_solve.structure.dofs import Freedom
+from pound_solve.structure.dofs import Dof
 
 
 def model_of(text: str, params: Mapping[str, object] | None = None) -> Model:
@@ -33,20 +33,20 @@ def model_of(text: str, params: Mapping[str, object] | None = None) -> Model:
 def structure_of(
     text: str,
     params: Mapping[str, object] | None = None,
-    moved: Collection[Freedom] = (),
+    moved: Collection[Dof] = (),
     self_weight: bool = True,
 ) -> Structure:
     """The assembled structure of a deck."""
     return assemble(model_of(text, params), moved, self_weight)
 
 
-def scene_of(text: str, params: Mapping[str, object] | None = None) -> reduction.Scene:
-    """The scene of a deck with EQUAKE and HISTORY cards, started
+def scene_of(text: str, params: Mapping[str, object] | None = None) -> reduction.ReducedSystem:
+    """The reduced system of a deck with EQUAKE and HISTORY cards, started
     from its static state and INITIAL cards.
     """
     model = model_of(text, params)
     end = max(c["T"] for c in model.analyses if c.spec.name == "HISTORY")
-    context = Context(model.gravity, 1.0, (), end)
+    context = LoadingContext(model.gravity, 1.0, (), end)
     x = {n.id: n.x for n in model.nodes.values()}
     motions = [m for c in model.equake for m in fronts(c.spec.impl(c.values, context), x)]
     forces = [c.spec.impl(c.values, context) for c in model.forces]
@@ -55,7 +55,7 @@ def scene_of(text: str, params: Mapping[str, object] | None = None) -> reduction
     u0, v0 = history.initial(structure)
     return reduction.condense(
         reduction.build(structure, motions, end, static.solve(structure).u + u0, v0, forces)
-    ).scene
+    ).system
 
 
 @dataclass(frozen=True)
@@ -97,9 +97,9 @@ def solve(model: Model, self_weight: bool = True) -> Solved:
     s = assemble(model, self_weight=self_weight)
     state = static.solve(s)
     s = s.stressed(state.axial)
-    u = {n: s.freedoms.matrix([(n, d) for d in range(3)]) @ state.u for n in model.nodes}
+    u = {n: s.dofs.matrix([(n, d) for d in range(3)]) @ state.u for n in model.nodes}
     force = {
-        (o.element, o.quantity): float(s.freedoms.row(o.freedoms, o.u_row) @ state.u) + o.constant
+        (o.element, o.quantity): float(s.dofs.row(o.dofs, o.u_row) @ state.u) + o.constant
         for o in s.outputs
     }
     for spring, law_state, row in zip(s.laws, state.states, s.law_rows):
@@ -112,12 +112,12 @@ def solve(model: Model, self_weight: bool = True) -> Solved:
     # reactions: let the supports go, and see what must hold them
     bare = replace(model, nodes={k: replace(n, fixed="") for k, n in model.nodes.items()}, damping=())
     whole = assemble(bare, self_weight=self_weight).stressed(state.axial)
-    own = dict(zip(s.freedoms.free, state.u))
-    full = np.array([own[n, d] if d > 2 else u[n][d] for n, d in whole.freedoms.free])
+    own = dict(zip(s.dofs.free, state.u))
+    full = np.array([own[n, d] if d > 2 else u[n][d] for n, d in whole.dofs.free])
     r = whole.stiffness @ full - whole.loads
     for spring, law_state, row in zip(whole.laws, state.states, whole.law_rows):
         r += row * spring.law.branch(law_state).force(float(row @ full), 0.0)
-    at = dict(zip(whole.freedoms.free, r))
+    at = dict(zip(whole.dofs.free, r))
     reaction = {
         n.id: np.array([at[n.id, d] if "XYR"[d] in n.fixed else 0.0 for d in range(3)])
         for n in model.nodes.values()

@@ -35,7 +35,7 @@ def pieces(law: Law, state: State, d0: float, d1: float) -> Iterator[tuple[State
             return
         still = still + 1 if where == at else 0
         assert still <= STALLS, f"{law.branch(state).name}: the law changes branch without moving"
-        state, at = law.leave(state, which, where), where
+        state, at = law.transition(state, which, where), where
 
 
 def quadrature(law: Law, state: State, a: float, b: float) -> float:

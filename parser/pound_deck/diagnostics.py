@@ -364,7 +364,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "(--set) for another one.",
     ),
     "P325": (
-        "initial motion of a freedom that cannot have it",
+        "initial motion of a degree of freedom that cannot have it",
         "INITIAL gives a displacement or velocity to a direction that is fixed or follows a master. "
         "Give it to a free direction, or to the master.",
     ),

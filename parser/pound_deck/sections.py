@@ -19,7 +19,7 @@ SECTIONS: Final = (
     Spec(
         "section",
         "NODES",
-        "nodes: coordinates, supports and slaved freedoms",
+        "nodes: coordinates, supports and slaved degrees of freedom",
         (
             _step("NODE", Kind.INT, doc="node number; a range generates nodes", lo=1),
             _step("X", Kind.REAL, "L", doc="horizontal coordinate; a range spaces evenly"),

@@ -18,7 +18,7 @@ G = 9.81
 
 
 class Frame:
-    """Stiffness and mass by hand, three freedoms a node, from flexibilities of cantilevers."""
+    """Stiffness and mass by hand, three DOFs a node, from flexibilities of cantilevers."""
 
     def __init__(self, at: dict[int, tuple[float, float]]) -> None:
         self.at, self.names = at, list(at)

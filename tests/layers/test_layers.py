@@ -1,4 +1,6 @@
-"""The rules of the architecture, read off the imports and definitions (manual/developer-guide.md lists them)."""
+"""The rules of the architecture, read off the imports and definitions (manual/developer-guide.md lists
+them).
+"""
 
 import ast
 import sys

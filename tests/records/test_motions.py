@@ -14,14 +14,14 @@ from pound_solve.loading.forces import record as force_record
 from pound_solve.loading.forces import sine as force_sine
 from pound_solve.loading.forces import table as force_table
 from pound_solve.loading.motions import record, sine, synthetic, table
-from pound_solve.loading.motions.base import METRE, Context, Motion
+from pound_solve.loading.motions.base import METRE, LoadingContext, Motion
 from pound_solve.loading.motions.wave import fronts
 from pound_solve.loading.records.base import RecordError
 
 
-def context(tmp_path: Path = Path(), length: str = "m", duration: float = 0.0) -> Context:
+def context(tmp_path: Path = Path(), length: str = "m", duration: float = 0.0) -> LoadingContext:
     metre = METRE[length]
-    return Context(9.80665 * metre, metre, (tmp_path,), duration)
+    return LoadingContext(9.80665 * metre, metre, (tmp_path,), duration)
 
 
 class TestRecord:
@@ -55,7 +55,7 @@ class TestRecord:
 
     def test_g_is_the_decks_gravity_exactly(self, tmp_path: Path) -> None:
         (tmp_path / "r.txt").write_text("0 1\n1 1\n")
-        motion = record.build({"FILE": "r.txt"}, Context(9.81, search_path=(tmp_path,)))
+        motion = record.build({"FILE": "r.txt"}, LoadingContext(9.81, search_path=(tmp_path,)))
         assert motion.acceleration.value(0.5) == 9.81
 
     def test_unit_of_the_file_and_a_deck_that_knows_better(self, tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from pound_solve.loading.motions.base import Context, Motion, common_breaks, finish
+from pound_solve.loading.motions.base import LoadingContext, Motion, common_breaks, finish
 from pound_solve.loading.motions.piecewise import Piecewise, merged
 
 
@@ -121,7 +121,7 @@ def test_common_breaks() -> None:
 
 
 def test_finish_warns_of_odd_strength() -> None:
-    context = Context(9.81)
+    context = LoadingContext(9.81)
     strong = Piecewise.from_samples([0.0, 1.0], [0.0, 300.0])
     assert "30.6 g" in finish({}, strong, context, {}).info["warnings"][0]
     assert finish({"SCALE": 0.0}, strong * 0.0, context, {}).info["warnings"] == ()

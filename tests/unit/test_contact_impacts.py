@@ -51,7 +51,7 @@ class Impact:
     def __init__(self, law: Law, gap: float, v0: float, masses: tuple[float, float] = (2.0, 2.0)) -> None:
         self.law, self.jumps = law, list[tuple[str, float]]()
         m1, m2 = masses
-        state = law.leave(law.start(), 0, gap, v0)
+        state = law.transition(law.start(), 0, gap, v0)
         y = np.array([gap, 0.0, v0, 0.0, 0.0])  # u1, u2, v1, v2, work of the damping
         self.pieces: list[tuple[State, Any]] = []
         time = 0.0
@@ -82,7 +82,7 @@ class Impact:
             self.pieces.append((state, run))
             d, v = y[0] - y[1], y[2] - y[3]
             before = law.force(state, d, v)[0]
-            state = law.leave(state, way, d, v)
+            state = law.transition(state, way, d, v)
             self.jumps.append((law.branch(state).name, law.force(state, d, v)[0] - before))
         self.state, self.time, self.y = state, time, y
         self.e = -(y[2] - y[3]) / v0
@@ -157,7 +157,7 @@ def test_open_there_is_no_force_and_in_a_trial_beyond_it_the_tangents_are_finite
     law = build(name, E=0.3, GAP=0.1).law
     for d, v in ((0.2, 1.0), (0.05, -1.0), (-3.0, 2.0)):
         assert law.force(law.start(), d, v) == (0.0, 0.0, 0.0)
-    touched = law.leave(law.start(), 0, 0.1, 1.0)
+    touched = law.transition(law.start(), 0, 0.1, 1.0)
     for x in (0.0, 1e-300, 1e-17, 1e-9, -1e-12, -0.5):
         assert all(map(math.isfinite, law.force(touched, 0.1 + x, 1.0)))
         assert abs(law.force(touched, 0.1 + x, 1.0)[1]) < 1e7
@@ -275,9 +275,9 @@ def test_damping_after_a_slow_touch_is_that_of_the_impact_that_gets_there(name: 
     share = 0.5 if name == "RUBBER_BUMPER" else restitution.share(law.p[3])
     deep = ((n + 1.0) * share) ** (1.0 / (n + 1.0))
     assert Impact(law, 0.0, 1.0).motion()[0].max() == pytest.approx(deep, rel=1e-6)
-    states = [law.leave(law.start(), 0, 0.0, v0) for v0 in (1.0, 1e-3, 1e-9, 0.0)]
+    states = [law.transition(law.start(), 0, 0.0, v0) for v0 in (1.0, 1e-3, 1e-9, 0.0)]
     if name == "RUBBER_BUMPER":
-        states = [law.leave(s, 0, deep, 0.0) for s in states]
+        states = [law.transition(s, 0, deep, 0.0) for s in states]
     rate = -0.01
     fast, *slow = (law.force(s, deep * (1 - 1e-12), rate) for s in states)
     for f in slow:

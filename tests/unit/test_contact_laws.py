@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from pound_solve.catalog import catalog
-from pound_solve.laws.automaton import Law, State, remember
+from pound_solve.laws.automaton import Law, State, internal_variables
 from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.kelvin_voigt import OPEN, PRESSED, RELEASED, RULE, Built
 
@@ -47,7 +47,7 @@ BASE: dict[str, Any] = {
 
 def state(at: int, d0: float = 0.0, work: float = 0.0) -> State:
     """State on a branch entered at `d0`, after that work."""
-    return at, d0, work, remember()
+    return at, d0, work, internal_variables()
 
 
 def kelvin_voigt(mass: float = 2.0, **values: Any) -> Built:
@@ -194,7 +194,7 @@ def test_energy_of_an_impact(e: float) -> None:
         h = end / count
         weights = [1.0, *([4.0, 2.0] * (count // 2))[:-1], 1.0]
         dashpot = sum(w * v(i * h) ** 2 for i, w in enumerate(weights)) * h / 3.0 * built.c
-        after = built.law.leave(state(PRESSED), 0, overlap)
+        after = built.law.transition(state(PRESSED), 0, overlap)
         assert after[0] == (OPEN if tension == "YES" else RELEASED)
         assert dashpot + built.law.dissipated(after, overlap) == pytest.approx(
             0.5 * (1.0 - e * e), rel=1e-9
@@ -209,14 +209,14 @@ def test_touch_release_and_second_touch() -> None:
     law = Law(RULE, (100.0, 4.0, 0.5))
     assert law.start() == state(OPEN)
     assert law.force(law.start(), 0.6, 1.0)[0] == 0.0
-    pressed = law.leave(law.start(), 0, 0.5)
+    pressed = law.transition(law.start(), 0, 0.5)
     assert pressed == state(PRESSED, 0.5)
     branch = law.branch(pressed)
     assert branch.name == "pressed"
     assert branch.force(0.6, -1.0) == pytest.approx(100.0 * 0.1 - 4.0)  # k overlap + c rate
     assert branch.exits[0].d_factor * 0.6 - branch.exits[0].v_factor * -1.0 < 0.0
     # let go at overlap 0.1 (rate -2.5: force zero), half its spring's energy 100 * 0.1^2 is given up
-    released = law.leave(pressed, 0, 0.6)
+    released = law.transition(pressed, 0, 0.6)
     assert released == state(RELEASED, 0.6, pytest.approx(0.5))
     assert law.dissipated(released, 0.6) == pytest.approx(0.5)
     assert law.force(released, 0.6, -2.5)[0] == 0.0
@@ -225,10 +225,10 @@ def test_touch_release_and_second_touch() -> None:
     assert back.d_factor * 0.6 + back.v_factor * -2.0 + back.constant > 0.0  # slower: pressed again
     assert parted.d_factor * 0.6 + parted.constant == pytest.approx(-0.1)
     # pressed again at overlap 0.05, that spring's energy comes back; parted, it does not
-    again = law.leave(released, 0, 0.55)
+    again = law.transition(released, 0, 0.55)
     assert again[0] == PRESSED
     assert law.dissipated(again, 0.55) == pytest.approx(0.5 - 0.125)
-    gone = law.leave(released, 1, 0.5)
+    gone = law.transition(released, 1, 0.5)
     assert gone[0] == OPEN
     assert law.dissipated(gone, 0.5) == pytest.approx(0.5)
 
@@ -243,9 +243,9 @@ def test_overlap_from_the_start() -> None:
 def test_linear_contact_is_elastic() -> None:
     built = catalog().family("contact")["LINEAR"].impl({"GAP": 0.01, "K": 70.0}, 2.0)
     assert (built.k, built.c, built.xi, built.e_given) == (70.0, 0.0, 0.0, 1.0)
-    pressed = built.law.leave(built.law.start(), 0, 0.01)
+    pressed = built.law.transition(built.law.start(), 0, 0.01)
     assert built.law.force(pressed, 0.03, 5.0) == (pytest.approx(1.4), 70.0, 0.0)
-    assert built.law.leave(pressed, 0, 0.01) == state(OPEN, 0.01)
+    assert built.law.transition(pressed, 0, 0.01) == state(OPEN, 0.01)
 
 
 # ---------------------------------------------------------------------- the card

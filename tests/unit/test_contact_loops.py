@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import pound_solve
 from paths import Walk
 from pound_solve.catalog import catalog
-from pound_solve.laws.automaton import follow
+from pound_solve.laws.automaton import drive
 from pound_solve.laws.contact import bilinear_impact, table
 
 BILINEAR = {
@@ -83,9 +83,7 @@ def test_asked_restitution_comes_back_at_the_overlap_expected(e, n, kh, dm):
     assert math.sqrt(back / brought) == pytest.approx(e, rel=1e-9)
     assert built.e_given == pytest.approx(e, rel=1e-9)
     # the force there is Hertz'
-    assert built.law.force(follow(built.law, built.law.start(), 0.0, dm), dm)[0] == pytest.approx(
-        kh * dm**n
-    )
+    assert built.law.force(drive(built.law, built.law.start(), 0.0, dm), dm)[0] == pytest.approx(kh * dm**n)
 
 
 @pytest.mark.parametrize("e", [0.05, 0.1, 0.3, 0.65, 0.9, 1.0])
@@ -133,7 +131,7 @@ def test_a_way_through_the_loop_walked_by_hand():
     law = bilinear(K1=100.0, K2=20.0, DY=0.1, KH=None, E=None, DM=None, GAP=0.0).law
     state, d, seen = law.start(), 0.0, []
     for goal in (0.05, 0.02, 0.3, 0.25, 0.28, 0.1, 0.15, 0.3, 0.35, 0.0, -1.0):
-        state = follow(law, state, d, goal)
+        state = drive(law, state, d, goal)
         d = goal
         seen.append((law.branch(state).name, law.force(state, d)[0]))
     assert [name for name, _ in seen] == [
@@ -186,7 +184,7 @@ def test_a_table_that_crushes_walked_by_hand():
     law, gap = crush().law, 0.01
     state, d, seen = law.start(), 0.0, []
     for overlap in (0.05, 0.02, 0.2, 0.1, 0.18, 0.4, 0.6, 0.0, 0.51, 0.55):
-        state = follow(law, state, d, gap + overlap)
+        state = drive(law, state, d, gap + overlap)
         d = gap + overlap
         seen.append((law.branch(state).name, law.force(state, d)[0]))
     # 5 at 0.05, residual 0.025; 8 at 0.2, residual 0.16, touched again there; 12; beyond the table 24
@@ -316,4 +314,4 @@ def test_points_that_make_no_table(values, words):
 def test_a_table_takes_as_many_points_as_its_parameters_hold():
     n = table.MOST
     law = crush(DEPTHS=tuple(range(1, n + 1)), FORCES=tuple(range(1, n + 1)), KU=2.0, GAP=0.0).law
-    assert law.force(follow(law, law.start(), 0.0, n + 1.5), n + 1.5)[0] == pytest.approx(n + 1.5)
+    assert law.force(drive(law, law.start(), 0.0, n + 1.5), n + 1.5)[0] == pytest.approx(n + 1.5)

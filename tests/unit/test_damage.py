@@ -11,7 +11,7 @@ from decks import structure_of
 from pound_deck.schema import Spec
 from pound_solve.analyses import damage
 from pound_solve.catalog import catalog
-from pound_solve.laws.automaton import Law, State, follow
+from pound_solve.laws.automaton import Law, State, drive
 from pound_solve.laws.hysteresis import bilinear, bilinear_elastic, elasto_plastic, origin_centred
 from verification.cases import Ran, run_text
 
@@ -24,7 +24,7 @@ def driven(law: Law, *turns: float) -> tuple[State, float]:
     """State and energy lost after a path through these deformations."""
     state, at = law.start(), 0.0
     for d in turns:
-        state, at = follow(law, state, at, d), d
+        state, at = drive(law, state, at, d), d
     return state, law.dissipated(state, at)
 
 
@@ -96,7 +96,7 @@ def test_every_rule_lets_go(spec: Spec) -> None:
     for turns in ((4.0, -2.5), (1.5, -3.0, 6.0, 4.5), (-0.7, 5.0, -5.5, 1.2, -2.0)):
         state, _ = driven(law, *turns)
         left = damage.residual(law, state, turns[-1])
-        assert abs(law.force(follow(law, state, turns[-1], left), left)[0]) < 1e-9
+        assert abs(law.force(drive(law, state, turns[-1], left), left)[0]) < 1e-9
 
 
 DECK = """

@@ -14,7 +14,15 @@ from scipy.optimize import brentq
 
 from decks import structure_of
 from pound_solve.analyses import modal
-from pound_solve.laws.automaton import TURNS_DOWN, TURNS_UP, Law, Rule, follow, piece, remember
+from pound_solve.laws.automaton import (
+    REVERSAL_DOWN,
+    REVERSAL_UP,
+    Law,
+    Rule,
+    drive,
+    internal_variables,
+    linear,
+)
 from pound_solve.laws.hysteresis import bilinear, slackness
 from pound_solve.numerics.modes import condense, massless
 from pound_solve.structure.assembly import AssemblyError
@@ -124,7 +132,7 @@ def test_groups_add_up_to_the_whole(mass):
 def test_a_lumped_group_takes_the_mass_at_its_nodes():
     """Half of each member's mass belongs to each of its nodes, whatever group the other node is of."""
     s = frame(" RAYLEIGH ALPHA=1 BETA=0 NODES=2 PROPS=C")
-    at = {f: i for i, f in enumerate(s.freedoms.free)}
+    at = {f: i for i, f in enumerate(s.dofs.free)}
     mass = (50 + 5 * 3 + 9 * np.hypot(5, 0.2) / 2) / 9.81
     assert s.damping[at[2, 0], at[2, 0]] == pytest.approx(mass, rel=1e-13)
     assert np.count_nonzero(s.damping) == 3  # node 2: ux, uy, rz
@@ -192,11 +200,11 @@ def test_moved_supports_are_not_held_by_mass_damping():
     moved = [(n, d) for n in (1, 4) for d in range(2)]
     s = structure_of(text, moved=moved)
     for d in range(2):
-        rigid = np.array([1.0 if f[1] == d else 0.0 for f in (*s.freedoms.free, *s.freedoms.moved)])
+        rigid = np.array([1.0 if f[1] == d else 0.0 for f in (*s.dofs.free, *s.dofs.moved)])
         assert np.abs(s.damping @ rigid).max() < 1e-9 * np.abs(s.damping).max()
     # one support alone drags the structure along its quasi-static shape without damping forces
-    follow = np.concatenate([s.influence()[:, 0], np.eye(4)[0]])
-    assert np.abs(s.damping @ follow).max() < 1e-9 * np.abs(s.damping).max()
+    drive = np.concatenate([s.influence()[:, 0], np.eye(4)[0]])
+    assert np.abs(s.damping @ drive).max() < 1e-9 * np.abs(s.damping).max()
     assert np.linalg.eigvalsh(s.damping)[0] > -1e-9 * np.abs(s.damping).max()
 
 
@@ -357,8 +365,8 @@ def test_two_terms_are_rayleigh_damping():
     assert a == pytest.approx(b, abs=1e-13 * np.abs(b).max())
 
 
-def test_two_terms_with_massless_freedoms_are_rayleigh_damping_after_condensation():
-    """On the freedoms without mass themselves, which the series cannot damp, nothing acts."""
+def test_two_terms_with_massless_dofs_are_rayleigh_damping_after_condensation():
+    """On the DOFs without mass themselves, which the series cannot damp, nothing acts."""
     a, b = (frame(f" {kind} XI=0.05 MODES=1,3") for kind in ("CAUGHEY", "RAYLEIGH"))
     n = a.n_free
     light = massless(a.mass[:n, :n])
@@ -555,7 +563,7 @@ def test_laws_have_no_share_with_elastic():
 
 def test_a_softening_branch_has_no_dashpot():
     (s, *_) = structure_of(storeys("TANGENT", r=-0.1)).laws
-    after = follow(s.law, s.law.start(), 0.0, 0.05)
+    after = drive(s.law, s.law.start(), 0.0, 0.05)
     assert s.law.branch(after).stiffness == -400.0 and s.branch(after).damping == 0.0
 
 
@@ -676,7 +684,7 @@ def test_secant_dashpot_along_a_hand_worked_path():
         (0.25, 0.02 * 6.0 / 0.15),
         (0.24, 0.02 * 7.0 / 0.25),
     ):
-        state, here = follow(s.law, state, here, d), d
+        state, here = drive(s.law, state, here, d), d
         assert s.branch(state).damping == pytest.approx(c, rel=1e-14)
     assert spring(s.law, secant=0.02, beta=0.01).branch(state).damping == pytest.approx(1.0 + 0.56)
     # the force that is told is the rule's: 7 at 0.25, less 100 times 0.01
@@ -689,7 +697,7 @@ def test_the_rule_itself_is_unchanged(own, path):
     law, plain = SecantLaw(*own), Law(*own)
     state, same, here = law.start(), plain.start(), 0.0
     for d in path:
-        state, same, here = follow(law, state, here, d), follow(plain, same, here, d), d
+        state, same, here = drive(law, state, here, d), drive(plain, same, here, d), d
         assert law.branch(state) == plain.branch(same) and state[3][:-2] == same[3]
         assert law.stored(state, d) == plain.stored(same, d) and law.work(state, d) == plain.work(same, d)
         assert 0.0 <= state[3][-1] <= 100.0 * (1 + 1e-12)
@@ -701,9 +709,9 @@ def bend(k, d):
 
 CURVED = Rule(
     ("loading", "unloading"),
-    lambda p: (0, remember()),
-    lambda p, at, m: piece(p[0], 0.0, TURNS_DOWN if at == 0 else TURNS_UP),
-    lambda p, at, m, way, d, v: (1 - at, remember(d, bend(p[0], d))),
+    lambda p: (0, internal_variables()),
+    lambda p, at, m: linear(p[0], 0.0, REVERSAL_DOWN if at == 0 else REVERSAL_UP),
+    lambda p, at, m, way, d, v: (1 - at, internal_variables(d, bend(p[0], d))),
     curve=lambda p, at, m, d0, d, v: (bend(p[0], d), p[0] / np.cosh(d) ** 2, 0.0, 0.0),
 )
 
@@ -712,7 +720,7 @@ def test_a_curved_law_has_a_secant_too():
     s = spring(SecantLaw(CURVED, (3.0,)), secant=0.5)
     state = s.law.start()
     assert s.branch(state).damping == 1.5
-    assert s.branch(s.law.leave(state, 0, 0.7)).damping == pytest.approx(
+    assert s.branch(s.law.transition(state, 0, 0.7)).damping == pytest.approx(
         0.5 * bend(3, 0.7) / 0.7, rel=1e-14
     )
 

@@ -11,7 +11,7 @@ import pytest
 from decks import structure_of
 from pound_solve import run
 from pound_solve.report.text import render
-from pound_solve.structure.diaphragms import meetings
+from pound_solve.structure.diaphragms import diaphragm_collisions
 from pound_solve.theory.two_bars import Diaphragm
 
 ROOT = Path(__file__).parents[2]
@@ -49,7 +49,7 @@ WEIGHTS
 
 def chain(turn: float = 0.0, ends: str = "4 9", more: str = "", deck: str = CHAIN) -> tuple[Diaphragm, ...]:
     structure = structure_of(deck.format(turn=turn, ends=ends, more=more))
-    (found,) = meetings(structure).values()
+    (found,) = diaphragm_collisions(structure).values()
     return found.sides
 
 
@@ -94,7 +94,7 @@ def test_the_card_comes_before_what_stands_in_the_model() -> None:
 def test_a_bar_on_a_mass_has_a_theory_only_where_the_card_says_so() -> None:
     for more, known in (("", False), ("DIAPHRAGMS=2", True)):
         structure = structure_of(CHAIN.format(turn=0, ends="4 9", more=more))
-        (found,) = meetings(structure).values()
+        (found,) = diaphragm_collisions(structure).values()
         assert (found.pair is not None) == known
         assert known or found.note.startswith("no theory: J rigid, no member behind")
 
@@ -142,7 +142,7 @@ def test_the_plateau_of_short_and_of_long_contacts() -> None:
     """m1/m2 = 1, T1/T2 = 0.5: the first force 2/3, the impulse 8/9 take 4/3; the contact lasts 2."""
     nothing = "NODES\n 1 0 0\n 2 1 0\n 3 1.1 0\n 4 2 0\nELEMENTS\n 1 A 1 2\n 2 B 3 4\n 3 HIT 2 3\nPROPS\n"
     bars = " A FRAME E=4 A=1\n B FRAME E=0.9 A=1\n HIT CONTACT GAP=0 K=1\nGRAVITY 1\nWEIGHTS\n 1 TO 4 0.5\n"
-    (found,) = meetings(structure_of(nothing + bars)).values()
+    (found,) = diaphragm_collisions(structure_of(nothing + bars)).values()
     assert found.pair is not None and found.pair.impulse / found.pair.force == pytest.approx(4 / 3)
     assert found.plateau(6.0, 1.0) == 6.0
     assert found.plateau(6.0, 1.9) == pytest.approx(4.5)

@@ -1,4 +1,4 @@
-"""Freedoms: numbering, slaving with rigid arms, prescribed supports."""
+"""DOFs: numbering, slaving with rigid arms, prescribed supports."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ WEIGHTS
     assert s.ground == pytest.approx(np.array([[1, 0, -4], [0, 1, 3], [-4, 3, 25]]), abs=1e-14)
 
 
-def test_the_report_s_freedoms_add_up_to_the_unknowns():
+def test_the_report_s_dofs_add_up_to_the_unknowns():
     deck = """
 GRAVITY 10
 NODES
@@ -147,7 +147,7 @@ PROPS
     assert counts == {
         "nodes": 4,
         "elements": 3,
-        "freedoms of nodes": 12,
+        "degrees of freedom of nodes": 12,
         "less fixed": 6,  # node 1 Y and R, node 2 R, node 3 X, Y and R
         "less prescribed at moved supports": 1,
         "less slaved": 1,

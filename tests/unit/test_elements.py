@@ -146,15 +146,15 @@ def contact(ends="1 2", angle="", fix1="", fix2="", fix3="FIX=XYR"):
 
 def test_the_normal_points_from_i_to_j():
     _, spring = contact()
-    assert dict(zip(spring.freedoms, spring.row)) == pytest.approx(
+    assert dict(zip(spring.dofs, spring.row)) == pytest.approx(
         {(1, 0): 0.6, (1, 1): 0.8, (2, 0): -0.6, (2, 1): -0.8}
     )
     _, spring = contact("2 1")
-    assert dict(zip(spring.freedoms, spring.row)) == pytest.approx(
+    assert dict(zip(spring.dofs, spring.row)) == pytest.approx(
         {(2, 0): -0.6, (2, 1): -0.8, (1, 0): 0.6, (1, 1): 0.8}
     )
     assert contact("1")[1].row == (1.0,)
-    assert contact("1", "ANGLE=90")[1].freedoms == ((1, 1),)
+    assert contact("1", "ANGLE=90")[1].dofs == ((1, 1),)
     assert contact(angle="ANGLE=180")[1].row == (-1.0, 1.0)
 
 

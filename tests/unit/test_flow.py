@@ -9,16 +9,16 @@ from scipy.linalg import expm
 
 from pound_solve.integrate.closed_form.propagator import (
     Mechanism,
-    ModalFlow,
-    SeriesFlow,
+    ModalPropagator,
+    SeriesPropagator,
     gauss,
-    make_flow,
+    make_propagator,
     state_space,
 )
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
 
-Block = tuple[Array, Array, Array]
+Subsystem = tuple[Array, Array, Array]
 
 
 def chain(stiffness: list[float]) -> Array:
@@ -28,7 +28,7 @@ def chain(stiffness: list[float]) -> Array:
     return np.asarray(rows.T @ np.diag(stiffness) @ rows)
 
 
-def block(kind: str, n: int = 4, seed: int = 0) -> Block:
+def subsystem(kind: str, n: int = 4, seed: int = 0) -> Subsystem:
     """Random mass, damping and stiffness of one kind."""
     rng = np.random.default_rng([seed, sum(map(ord, kind))])
     x, y = rng.normal(size=(2, n, n))
@@ -100,9 +100,11 @@ def reference(m: Array, c: Array, k: Array, p: Array, u: Array, v: Array, t: flo
     return y[:n], y[n : 2 * n]
 
 
-def motion(flow: ModalFlow | SeriesFlow, q: NDArray, g: NDArray, t: float) -> tuple[Array, Array]:  # type: ignore[type-arg]
-    at = flow.at(q, g, t)
-    return (flow.u_q @ at).real, (flow.v_q @ at).real
+def motion(
+    propagator: ModalPropagator | SeriesPropagator, q: NDArray, g: NDArray, t: float
+) -> tuple[Array, Array]:  # type: ignore[type-arg]
+    at = propagator.at(q, g, t)
+    return (propagator.u_q @ at).real, (propagator.v_q @ at).real
 
 
 def apart(x: tuple[Array, Array], y: tuple[Array, Array]) -> float:
@@ -124,34 +126,37 @@ def loads(n: int, degree: int, seed: int = 0) -> tuple[Array, Array, Array, Arra
 def test_both_flows_against_the_matrix_exponential(kind: str, degree: int) -> None:
     # measured: 3e-14 at worst
     for seed in range(3):
-        m, c, k = block(kind, seed=seed)
+        m, c, k = subsystem(kind, seed=seed)
         inputs, coefs, constant, p, u, v = loads(4, degree, seed)
-        for flow in (make_flow(m, c, k, inputs), SeriesFlow(state_space(m, c, k), inputs)):
-            q, g = flow.enter(u, v), flow.forcing(coefs, constant)
-            found, expected = motion(flow, q, g, 1.3), reference(m, c, k, p, u, v, 1.3)
+        for propagator in (
+            make_propagator(m, c, k, inputs),
+            SeriesPropagator(state_space(m, c, k), inputs),
+        ):
+            q, g = propagator.enter(u, v), propagator.forcing(coefs, constant)
+            found, expected = motion(propagator, q, g, 1.3), reference(m, c, k, p, u, v, 1.3)
             # without stiffness the slowest random decay leaves a condition of 1e5
             assert apart(found, expected) < (1e-11 if kind == "no stiffness" else 5e-13)
-            assert np.allclose(g, flow.push(p), rtol=1e-13, atol=1e-13)
+            assert np.allclose(g, propagator.push(p), rtol=1e-13, atol=1e-13)
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_enter_and_read_back(kind: str) -> None:
-    m, c, k = block(kind)
+    m, c, k = subsystem(kind)
     inputs, *_, u, v = loads(4, 0)
-    for flow in (make_flow(m, c, k, inputs), SeriesFlow(state_space(m, c, k), inputs)):
-        q = flow.enter(u, v)
-        assert apart(((flow.u_q @ q).real, (flow.v_q @ q).real), (u, v)) < 1e-12
+    for propagator in (make_propagator(m, c, k, inputs), SeriesPropagator(state_space(m, c, k), inputs)):
+        q = propagator.enter(u, v)
+        assert apart(((propagator.u_q @ q).real, (propagator.v_q @ q).real), (u, v)) < 1e-12
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_state_space_is_the_same_system(kind: str) -> None:
     for seed in range(5):
-        m, c, k = block(kind, seed=seed)
+        m, c, k = subsystem(kind, seed=seed)
         n, space = len(m), state_space(m, c, k)
         to, back = np.vstack([space.u_z, space.v_z]), np.hstack([space.z_u, space.z_v])
         assert np.abs(back @ to - np.eye(2 * n)).max() < 1e-13
         force, none = np.linalg.inv(m), np.zeros((n, n))
-        whole = np.block([[none, np.eye(n)], [-force @ k, -force @ c]])
+        whole = np.subsystem([[none, np.eye(n)], [-force @ k, -force @ c]])
         assert np.abs(to @ space.a @ back - whole).max() < 1e-13 * np.abs(whole).max()
         assert np.abs(to @ space.b - np.vstack([none, force])).max() < 1e-13
 
@@ -159,26 +164,33 @@ def test_state_space_is_the_same_system(kind: str) -> None:
 @pytest.mark.parametrize("degree", [0, 1, 4])
 @pytest.mark.parametrize("kind", KINDS)
 def test_samples_steps_and_rates_agree_with_single_times(kind: str, degree: int) -> None:
-    m, c, k = block(kind)
+    m, c, k = subsystem(kind)
     inputs, coefs, constant, _, u, v = loads(4, degree)
-    for flow in (make_flow(m, c, k, inputs), SeriesFlow(state_space(m, c, k), inputs)):
-        q, g = flow.enter(u, v), flow.forcing(coefs, constant)
+    for propagator in (make_propagator(m, c, k, inputs), SeriesPropagator(state_space(m, c, k), inputs)):
+        q, g = propagator.enter(u, v), propagator.forcing(coefs, constant)
         times = 0.125 * np.arange(9)
-        single = np.stack([flow.at(q, g, float(t)) for t in times], axis=1)
+        single = np.stack([propagator.at(q, g, float(t)) for t in times], axis=1)
         scale = np.abs(single).max()
-        assert np.abs(flow.samples(q[:, None], g[None], 0.125, 9)[:, 0] - single).max() < 1e-13 * scale
-        assert np.abs(flow.path(q, g, times) - single).max() < 1e-13 * scale
+        assert (
+            np.abs(propagator.samples(q[:, None], g[None], 0.125, 9)[:, 0] - single).max() < 1e-13 * scale
+        )
+        assert np.abs(propagator.path(q, g, times) - single).max() < 1e-13 * scale
         # successive intervals, the forcing of each about its own start
         gs = np.stack([polynomial.shift(g, float(t)) for t in times[:-1]])
-        marched = flow.march(q, gs, np.full(len(gs), 0.125))
+        marched = propagator.march(q, gs, np.full(len(gs), 0.125))
         assert np.abs(marched - single).max() < 1e-12 * scale
-        several = flow.samples(marched[:, :-1], gs, 0.0625, 2)
+        several = propagator.samples(marched[:, :-1], gs, 0.0625, 2)
         assert np.abs(several[:, :, 0] - single[:, :-1]).max() < 1e-12 * scale
         # the rate is the derivative: Richardson's difference of the motion itself
         h = 1e-3
-        d = [(flow.at(q, g, 0.5 + s * h) - flow.at(q, g, 0.5 - s * h)) / (2 * s * h) for s in (1, 2)]
-        slope = flow.onward(np.eye(len(q), dtype=q.dtype)) @ flow.at(q, g, 0.5) + polynomial.value(g, 0.5)
-        speed = np.abs(slope).max() * max(1.0, flow.fastest) ** 4
+        d = [
+            (propagator.at(q, g, 0.5 + s * h) - propagator.at(q, g, 0.5 - s * h)) / (2 * s * h)
+            for s in (1, 2)
+        ]
+        slope = propagator.onward(np.eye(len(q), dtype=q.dtype)) @ propagator.at(
+            q, g, 0.5
+        ) + polynomial.value(g, 0.5)
+        speed = np.abs(slope).max() * max(1.0, propagator.fastest) ** 4
         assert np.abs((4 * d[0] - d[1]) / 3 - slope).max() < 1e-10 * speed
 
 
@@ -187,18 +199,18 @@ def test_samples_steps_and_rates_agree_with_single_times(kind: str, degree: int)
 def test_bounds_of_the_derivatives(kind: str, degree: int) -> None:
     for seed in range(4):
         inputs, coefs, constant, _, u, v = loads(4, degree, seed)
-        m, c, k = block(kind, seed=seed)
-        flow = make_flow(m, c, k, inputs)
-        q, g = flow.enter(u, v), flow.forcing(coefs, constant)
-        onward = flow.onward(np.eye(len(q), dtype=q.dtype))
+        m, c, k = subsystem(kind, seed=seed)
+        propagator = make_propagator(m, c, k, inputs)
+        q, g = propagator.enter(u, v), propagator.forcing(coefs, constant)
+        onward = propagator.onward(np.eye(len(q), dtype=q.dtype))
         lengths = np.array([0.3, 1.1])
-        bends = flow.bends(np.stack([q, q], axis=1), np.stack([g, g]), lengths)
-        if isinstance(flow, SeriesFlow):
+        bends = propagator.bends(np.stack([q, q], axis=1), np.stack([g, g]), lengths)
+        if isinstance(propagator, SeriesPropagator):
             assert np.isinf(bends).all()
             continue
         for n, length in enumerate(lengths.tolist()):
             for t in np.linspace(0.0, length, 23).tolist():
-                rate = onward @ flow.at(q, g, t) + polynomial.value(g, t)
+                rate = onward @ propagator.at(q, g, t) + polynomial.value(g, t)
                 second = onward @ rate + polynomial.value(g, t, 1)
                 third = onward @ second + polynomial.value(g, t, 2)
                 for found, most in zip((second, third), bends[:, :, n]):
@@ -210,29 +222,29 @@ def test_bounds_of_the_derivatives(kind: str, degree: int) -> None:
 @pytest.mark.parametrize("degree", [0, 1, 4])
 @pytest.mark.parametrize("kind", KINDS)
 def test_integral_of_the_motion(kind: str, degree: int) -> None:
-    m, c, k = block(kind)
+    m, c, k = subsystem(kind)
     inputs, coefs, constant, _, u, v = loads(4, degree)
     x, w = np.polynomial.legendre.leggauss(20)
-    for flow in (make_flow(m, c, k, inputs), SeriesFlow(state_space(m, c, k), inputs)):
-        q, g = flow.enter(u, v), flow.forcing(coefs, constant)
-        cells = int(np.ceil(1.3 * flow.fastest)) + 1
+    for propagator in (make_propagator(m, c, k, inputs), SeriesPropagator(state_space(m, c, k), inputs)):
+        q, g = propagator.enter(u, v), propagator.forcing(coefs, constant)
+        cells = int(np.ceil(1.3 * propagator.fastest)) + 1
         width = 1.3 / cells
         points = (width * (np.arange(cells)[:, None] + 0.5 + 0.5 * x)).ravel()
-        expected = flow.path(q, g, points) @ np.tile(0.5 * width * w, cells)
-        assert np.abs(flow.integral(q, g, 1.3) - expected).max() < 1e-12 * np.abs(expected).max()
+        expected = propagator.path(q, g, points) @ np.tile(0.5 * width * w, cells)
+        assert np.abs(propagator.integral(q, g, 1.3) - expected).max() < 1e-12 * np.abs(expected).max()
 
 
 def test_series_where_the_modes_are_defective() -> None:
-    chosen = {kind: type(make_flow(*block(kind), np.eye(4))) for kind in KINDS}
-    assert chosen.pop("critically damped") is SeriesFlow
-    assert set(chosen.values()) == {ModalFlow}
+    chosen = {kind: type(make_propagator(*subsystem(kind), np.eye(4))) for kind in KINDS}
+    assert chosen.pop("critically damped") is SeriesPropagator
+    assert set(chosen.values()) == {ModalPropagator}
 
 
 def test_critically_damped_closed_form() -> None:
     # u = (u0 + (v0 + w u0) t) exp(-w t) with w = 3
-    flow = make_flow(np.eye(1), np.array([[6.0]]), np.array([[9.0]]), np.eye(1))
-    assert isinstance(flow, SeriesFlow)
-    u, v = motion(flow, flow.enter(np.array([0.4]), np.array([-2.0])), np.zeros((1, 2)), 0.7)
+    propagator = make_propagator(np.eye(1), np.array([[6.0]]), np.array([[9.0]]), np.eye(1))
+    assert isinstance(propagator, SeriesPropagator)
+    u, v = motion(propagator, propagator.enter(np.array([0.4]), np.array([-2.0])), np.zeros((1, 2)), 0.7)
     fall, b = np.exp(-2.1), -2.0 + 3.0 * 0.4
     assert u[0] == pytest.approx((0.4 + b * 0.7) * fall, rel=1e-13)
     assert v[0] == pytest.approx((b - 3.0 * (0.4 + b * 0.7)) * fall, rel=1e-13)
@@ -247,13 +259,13 @@ def test_nearly_critical_damping(off: float, side: int) -> None:
     c = np.array([2.0 * xi * 3.0, 0.2, 0.1])
     p = np.array([[0.3, -0.2, 0.1], [1.0, 0.5, -0.4]])
     u, v = np.array([0.4, 1.0, -0.3]), np.array([-2.0, 0.5, 0.1])
-    turned = (np.eye(3), turn @ np.diag(c) @ turn.T, turn @ np.diag(k) @ turn.T)
-    flow = make_flow(*turned, np.eye(3))
-    found = motion(flow, flow.enter(turn @ u, turn @ v), flow.push(p @ turn.T), 0.7)
+    stationary = (np.eye(3), turn @ np.diag(c) @ turn.T, turn @ np.diag(k) @ turn.T)
+    propagator = make_propagator(*stationary, np.eye(3))
+    found = motion(propagator, propagator.enter(turn @ u, turn @ v), propagator.push(p @ turn.T), 0.7)
     expected = reference(np.eye(3), np.diag(c), np.diag(k), p, u, v, 0.7)
     # the solution itself is smooth in the damping: the exponential has no trouble here
     assert apart(found, (turn @ expected[0], turn @ expected[1])) < 1e-10
-    if isinstance(flow, ModalFlow) and side < 0:
+    if isinstance(propagator, ModalPropagator) and side < 0:
         assert apart(found, (turn @ expected[0], turn @ expected[1])) < 1e-13
 
 
@@ -265,9 +277,12 @@ def test_light_mass_beside_heavy_ones(ratio: float) -> None:
     each other with the light mass still: omega^2 = 2, whatever the light mass.
     """
     m, k = np.diag([1.0, ratio, 1.0]), np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 2.0]])
-    flow = make_flow(m, np.zeros((3, 3)), k, np.eye(3))
+    propagator = make_propagator(m, np.zeros((3, 3)), k, np.eye(3))
     u, _ = motion(
-        flow, flow.enter(np.array([1.0, 0.0, -1.0]), np.zeros(3)), np.zeros((1, len(flow.lam))), 40.0
+        propagator,
+        propagator.enter(np.array([1.0, 0.0, -1.0]), np.zeros(3)),
+        np.zeros((1, len(propagator.lam))),
+        40.0,
     )
     expected = np.array([1.0, 0.0, -1.0]) * np.cos(np.sqrt(2.0) * 40.0)
     assert np.abs(u - expected).max() < 1e-12
@@ -275,7 +290,9 @@ def test_light_mass_beside_heavy_ones(ratio: float) -> None:
     # r w^2 - 2 (1 + r) w + 2 = 0 (written without cancellation), shape (1, 2 - w, 1)
     w = 2.0 / ((1.0 + ratio) + np.sqrt(1.0 + ratio * ratio))
     shape = np.array([1.0, 2.0 - w, 1.0])
-    u, _ = motion(flow, flow.enter(shape, np.zeros(3)), np.zeros((1, len(flow.lam))), 40.0)
+    u, _ = motion(
+        propagator, propagator.enter(shape, np.zeros(3)), np.zeros((1, len(propagator.lam))), 40.0
+    )
     assert np.abs(u - shape * np.cos(np.sqrt(w) * 40.0)).max() < 1e-11
 
 
@@ -294,15 +311,18 @@ def test_masses_that_nothing_holds_beside_bodies_that_move_as_one(loose: int, pa
     shuffle = np.random.default_rng(7).permutation(n)
     k, m = k[np.ix_(shuffle, shuffle)], 203.873 * np.eye(n)
     c = 0.5 * m + 1e-3 * k
-    flow = make_flow(m, c, k, np.eye(n))
-    assert isinstance(flow, ModalFlow)
-    assert np.sum(np.abs(flow.lam) < 1e-12 * flow.fastest) == loose + pairs
-    assert np.abs(flow.onward(flow.u_q) - flow.v_q).max() < 1e-12 * flow.fastest * np.abs(flow.u_q).max()
-    assert np.abs(flow.u_q).max() < 1.0
+    propagator = make_propagator(m, c, k, np.eye(n))
+    assert isinstance(propagator, ModalPropagator)
+    assert np.sum(np.abs(propagator.lam) < 1e-12 * propagator.fastest) == loose + pairs
+    assert (
+        np.abs(propagator.onward(propagator.u_q) - propagator.v_q).max()
+        < 1e-12 * propagator.fastest * np.abs(propagator.u_q).max()
+    )
+    assert np.abs(propagator.u_q).max() < 1.0
     v = np.linspace(1.0, 2.0, n)
-    q = flow.enter(np.zeros(n), v)
-    found = motion(flow, q, np.zeros((1, len(flow.lam))), 0.5)
-    whole = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(m, k), -np.linalg.solve(m, c)]])
+    q = propagator.enter(np.zeros(n), v)
+    found = motion(propagator, q, np.zeros((1, len(propagator.lam))), 0.5)
+    whole = np.subsystem([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(m, k), -np.linalg.solve(m, c)]])
     expected = (expm(0.5 * whole) @ np.r_[np.zeros(n), v]).reshape(2, n)
     assert apart(found, (expected[0], expected[1])) < 1e-11
 
@@ -310,23 +330,23 @@ def test_masses_that_nothing_holds_beside_bodies_that_move_as_one(loose: int, pa
 @pytest.mark.parametrize("decay", [1e-2, 1e-4, 1e-6, 1e-8])
 def test_hardly_damped_rigid_body(decay: float) -> None:
     """A free mass, u'' + decay u' = 1: modes cancel to eps / decay, so the series takes over."""
-    flow = make_flow(np.eye(1), np.array([[decay]]), np.zeros((1, 1)), np.eye(1))
+    propagator = make_propagator(np.eye(1), np.array([[decay]]), np.zeros((1, 1)), np.eye(1))
     t, zero = 1.5, np.zeros(1)
     # v = t - decay t^2 / 2 + ..., u = t^2 / 2 - decay t^3 / 6 + ...: series of (1 - exp(-decay t)) / decay
     v = sum((-decay) ** j * t ** (j + 1) / float(np.prod(np.arange(1, j + 2))) for j in range(12))
     u = sum((-decay) ** j * t ** (j + 2) / float(np.prod(np.arange(1, j + 3))) for j in range(12))
-    found = motion(flow, flow.enter(zero, zero), flow.push(np.ones((1, 1))), t)
+    found = motion(propagator, propagator.enter(zero, zero), propagator.push(np.ones((1, 1))), t)
     assert found[0][0] == pytest.approx(u, rel=1e-9)
     assert found[1][0] == pytest.approx(v, rel=1e-12)
 
 
-# ---------------------------------------------------------------------- massless freedoms
+# ---------------------------------------------------------------------- massless DOFs
 
 
 def massless(
     heavy: int, damped: int, static: int, units: float, seed: int
 ) -> tuple[Array, Array, Array, NDArray[np.intp]]:
-    """Random block with massless freedoms, with and without dashpots, in mixed order, and that order."""
+    """Random block with massless DOFs, with and without dashpots, in mixed order, and that order."""
     rng = np.random.default_rng([seed, heavy, damped, static])
     n = heavy + damped + static
     x, y = rng.normal(size=(n, n)), np.zeros((n, n))
@@ -350,7 +370,7 @@ def eliminated(
     heavy: int,
     damped: int,
 ) -> tuple[Array, Array]:
-    """The same motion with the massless freedoms eliminated by hand."""
+    """The same motion with the massless DOFs eliminated by hand."""
     where = np.argsort(order)
     h, d, s = where[:heavy], where[heavy : heavy + damped], where[heavy + damped :]
     x = np.r_[h, d]
@@ -386,23 +406,23 @@ def eliminated(
 
 @pytest.mark.parametrize("units", [1.0, 1e6, 1e-6])
 @pytest.mark.parametrize(("damped", "static"), [(1, 0), (0, 2), (2, 1), (2, 2)])
-def test_massless_freedoms(damped: int, static: int, units: float) -> None:
+def test_massless_dofs(damped: int, static: int, units: float) -> None:
     # measured: 2e-13 at worst; the reference's exponential of the stiff relaxations is no better
     for seed in range(4):
         m, c, k, order = massless(3, damped, static, units, seed)
         n = len(m)
         inputs, coefs, constant, p, u, v = loads(n, 2, seed)
         p = units * p
-        flow = make_flow(m, c, k, inputs)
-        assert isinstance(flow, ModalFlow)
-        assert flow.u_p is not None
-        q, g = flow.enter(u, v), flow.forcing(units * coefs, units * constant)
-        at = flow.at(q, g, 1.3)
+        propagator = make_propagator(m, c, k, inputs)
+        assert isinstance(propagator, ModalPropagator)
+        assert propagator.u_p is not None
+        q, g = propagator.enter(u, v), propagator.forcing(units * coefs, units * constant)
+        at = propagator.at(q, g, 1.3)
         found = (
-            (flow.u_q @ at).real + flow.u_p @ polynomial.value(p, 1.3),
-            (flow.v_q @ at).real
-            + flow.v_p @ polynomial.value(p, 1.3)
-            + flow.u_p @ polynomial.value(p, 1.3, 1),
+            (propagator.u_q @ at).real + propagator.u_p @ polynomial.value(p, 1.3),
+            (propagator.v_q @ at).real
+            + propagator.v_p @ polynomial.value(p, 1.3)
+            + propagator.u_p @ polynomial.value(p, 1.3, 1),
         )
         assert apart(found, eliminated(m, c, k, p, u, v, 1.3, order, 3, damped)) < 1e-11
 
@@ -410,22 +430,22 @@ def test_massless_freedoms(damped: int, static: int, units: float) -> None:
 def test_condition_does_not_depend_on_units() -> None:
     for seed in range(4):
         m, c, k, _ = massless(3, 2, 1, 1.0, seed)
-        of = [make_flow(s * m, s * c, s * k, np.eye(6)).condition for s in (1e-9, 1.0, 1e9)]
+        of = [make_propagator(s * m, s * c, s * k, np.eye(6)).condition for s in (1e-9, 1.0, 1e9)]
         assert of == pytest.approx([of[1]] * 3, rel=1e-6)
 
 
-def test_massless_freedoms_keep_continuity_of_position_only() -> None:
-    """Entering drops the velocity of massless freedoms and the position of those without dashpots."""
+def test_massless_dofs_keep_continuity_of_position_only() -> None:
+    """Entering drops the velocity of massless DOFs and the position of those without dashpots."""
     m, c, k, order = massless(3, 1, 1, 1.0, 0)
-    flow = make_flow(m, c, k, np.eye(5))
+    propagator = make_propagator(m, c, k, np.eye(5))
     _, _, _, p, u, v = loads(5, 0)
-    q = flow.enter(u, v)
+    q = propagator.enter(u, v)
     kept_u, kept_v = np.isin(order, [0, 1, 2, 3]), np.isin(order, [0, 1, 2])
-    found_u = (flow.u_q @ q).real + flow.u_p @ p[0]
-    found_v = (flow.v_q @ q).real + flow.v_p @ p[0]
+    found_u = (propagator.u_q @ q).real + propagator.u_p @ p[0]
+    found_v = (propagator.v_q @ q).real + propagator.v_p @ p[0]
     assert np.allclose(found_u[kept_u], u[kept_u], rtol=1e-11, atol=1e-12)
     assert np.allclose(found_v[kept_v], v[kept_v], rtol=1e-11, atol=1e-12)
-    # and what follows is in balance: no force is left on the massless freedoms
+    # and what follows is in balance: no force is left on the massless DOFs
     residual = k @ found_u + c @ found_v - p[0]
     assert np.abs(residual[~kept_v]).max() < 1e-11
 
@@ -435,11 +455,11 @@ def test_mechanism_names_its_shape() -> None:
     m = np.diag([1.0, 0.0, 0.0])
     k = np.array([[2.0, 0.0, 0.0], [0.0, 3.0, -3.0], [0.0, -3.0, 3.0]])
     with pytest.raises(Mechanism) as caught:
-        make_flow(m, np.zeros((3, 3)), k, np.eye(3))
+        make_propagator(m, np.zeros((3, 3)), k, np.eye(3))
     shape = caught.value.shape
     assert np.allclose(shape / shape[1], [0.0, 1.0, 1.0], atol=1e-12)
     # a dashpot is enough of a hold
-    assert make_flow(m, np.diag([0.0, 0.5, 0.0]), k, np.eye(3)).u_p is not None
+    assert make_propagator(m, np.diag([0.0, 0.5, 0.0]), k, np.eye(3)).u_p is not None
 
 
 def test_gauss_resolves_products_of_the_fastest_mode() -> None:

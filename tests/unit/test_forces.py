@@ -172,8 +172,8 @@ RAYLEIGH = "DAMPING\n RAYLEIGH ALPHA=0.4 BETA=0.002\n"
     [("", 5), ("DAMPING\n RAYLEIGH BETA=0.004 PROPS=COL\n RAYLEIGH BETA=0.01 PROPS=BEAM\n", 8)],
 )
 def test_forces_on_massless_nodes_are_met_without_error(damping: str, kept: int) -> None:
-    """Node 5 has no mass.  Harmonic response to a force on it: the scene as EXACT condenses it and the
-    structure as assembled agree.  Without dashpots it is condensed; against them it lags.
+    """Node 5 has no mass.  Harmonic response to a force on it: the reduced system as EXACT condenses it and
+    the structure as assembled agree.  Without dashpots it is condensed; against them it lags.
     """
     place = scene_of(FRAME.format(more=damping + "FORCES\n TABLE 5 0 -10 4 POINTS=0,0,1,1\n"))
     s, n = place.structure, place.structure.n_free
@@ -368,14 +368,14 @@ def test_snap_back_of_a_frame_is_its_modes() -> None:
     n, modes = s.n_free, s.free_vibration
     k = s.stiffness[:n, :n]
     start, rest = np.linalg.solve(k, s.loads[:n]), np.linalg.solve(k, s.held[:n])
-    # by the dynamic degrees of freedom: massless ones follow at once, also from the start
+    # by the dynamic DOFs: massless ones follow at once, also from the start
     finite = np.isfinite(modes.omega) & (modes.omega < 1e6)
     shapes, omega = modes.shapes[:, finite], modes.omega[finite]
     amplitude = shapes.T @ s.mass[:n, :n] @ (start - rest)
     u = rest[:, None] + shapes @ (amplitude[:, None] * np.cos(omega[:, None] * r.time))
     for node in (2, 3, 5):
         for d in range(3):
-            i = s.freedoms.free.index((node, d))
+            i = s.dofs.free.index((node, d))
             got = r.u[:, r.nodes.index(node), d]
             np.testing.assert_allclose(got, u[i], rtol=0, atol=1e-9 * np.abs(u[i]).max())
 
@@ -410,17 +410,17 @@ def test_a_turning_base_is_forces_of_inertia() -> None:
         for node, x, y, mx, my, j in ((2, 0, 3, 50, 40, 3), (3, 4, 3, 70, 60, 0))
     )
     forced = run_text(FRAME.format(more=RAYLEIGH + "FORCES\n" + push))
-    turned = run_text(
+    stationary = run_text(
         FRAME.format(more=RAYLEIGH + f"EQUAKE\n TABLE DIRECTION=R ABOUT={x0},{y0} POINTS={TURN}")
     )
-    same(turned.u, forced.u, 1e-12)
-    assert np.abs(turned.u).max() > 1e-4
+    same(stationary.u, forced.u, 1e-12)
+    assert np.abs(stationary.u).max() > 1e-4
     # accelerations are total: those of the relative motion and of the ground
     alpha = np.interp(forced.time, [0, 0.2, 0.5], [0, 3, -2])
     early = forced.time < 0.5
     for i, (x, y) in enumerate([(0, 0), (0, 3), (4, 3), (4, 0), (2, 3)]):
         for d, arm in enumerate((-(y - y0), x - x0, 1.0)):
-            difference = (turned.a - forced.a)[early, i, d]
+            difference = (stationary.a - forced.a)[early, i, d]
             np.testing.assert_allclose(difference, arm * alpha[early], rtol=0, atol=1e-9)
 
 

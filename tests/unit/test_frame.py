@@ -88,7 +88,7 @@ PROPS
 """
 
 
-def turned(angle, x, y):
+def stationary(angle, x, y):
     """Global components of a vector given along the member and to its left."""
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     return c * x - s * y, s * x + c * y
@@ -110,7 +110,7 @@ def balanced(s: Solved, force, moment):
 @settings(max_examples=25, deadline=None)
 @given(angle=angles, n=st.floats(0.5, 20.0), px=st.floats(-9, 9), py=st.floats(-9, 9), m=st.floats(-9, 9))
 def test_cantilever_with_tip_loads(shear, angle, n, px, py, m):
-    fx, fy = turned(angle, px, py)
+    fx, fy = stationary(angle, px, py)
     s = solved(member(n, angle, shear=shear, loads=f" 2 {fx!r} {fy!r} {m!r}"))
     u = local(angle, s.u[2])
     beam, size = Beam(n, shear), max(abs(px), abs(py), abs(m), 1e-300)
@@ -139,7 +139,7 @@ def test_cantilever_with_tip_loads(shear, angle, n, px, py, m):
 )
 def test_cantilever_with_member_loads(shear, angle, n, wx, wy, p, at):
     """Loads are given along the global axes; two cards on one member add up."""
-    w, q = turned(angle, wx, wy), turned(angle, 0.0, p)
+    w, q = stationary(angle, wx, wy), stationary(angle, 0.0, p)
     cards = f" 7 WX={w[0]!r} WY={w[1]!r}\n 7 PX={q[0]!r} PY={q[1]!r} AT={at!r}"
     s = solved(member(n, angle, shear=shear, member_loads=cards))
     u, beam = local(angle, s.u[2]), Beam(n, shear)
@@ -162,7 +162,7 @@ def test_cantilever_with_member_loads(shear, angle, n, wx, wy, p, at):
 @given(angle=angles, n=st.floats(0.5, 20.0), w=st.floats(-9, 9), p=st.floats(-9, 9), at=st.floats(0, 1))
 def test_clamped_member_with_pins(pin, shear, angle, n, w, p, at):
     """Both nodes clamped, the pins in the member: end forces and reactions by the force method."""
-    (wx, wy), (px, py) = turned(angle, 0.0, w), turned(angle, 0.0, p)
+    (wx, wy), (px, py) = stationary(angle, 0.0, w), stationary(angle, 0.0, p)
     s = solved(
         member(
             n,
@@ -292,10 +292,10 @@ def test_rotating_the_model_changes_no_scalar(angle, px, py):
 
     def deck(turn):
         def point(x, y):
-            return "{!r} {!r}".format(*turned(turn, x, y))
+            return "{!r} {!r}".format(*stationary(turn, x, y))
 
         def pair(names, x, y):
-            return "{}={!r} {}={!r}".format(*(k for z in zip(names, turned(turn, x, y)) for k in z))
+            return "{}={!r} {}={!r}".format(*(k for z in zip(names, stationary(turn, x, y)) for k in z))
 
         return f"""
 NODES
@@ -447,7 +447,7 @@ def test_total_mass_is_m_l(mass):
     )
     s = structure_of(deck)
     for d in range(2):
-        r = np.array([1.0 if f[1] == d else 0.0 for f in s.freedoms.free])
+        r = np.array([1.0 if f[1] == d else 0.0 for f in s.dofs.free])
         close(r @ s.mass @ r, 5.0)
         close(s.ground[d] @ r, 5.0)
     if mass == "LUMPED":  # the flexible half and the block stay with their node

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from decks import solved, structure_of
 from pound_solve import run
 from pound_solve.analyses import static
-from pound_solve.analyses.equilibrium import Ground
-from pound_solve.analyses.path_following import Unstable
+from pound_solve.analyses.equilibrium import SupportReactions
+from pound_solve.analyses.path_following import InstabilityError
 
 E, A, INERTIA, L = 2e8, 0.01, 1e-4, 5.0
 EI = E * INERTIA
@@ -195,7 +195,7 @@ def test_a_column_on_a_spring():
         # the foot feels H h + P u
         assert abs(s.force[1, "moment R"]) == pytest.approx(4 + weight * s.u[3][0], rel=1e-9)
     with pytest.raises(
-        Unstable, match=r"buckles: its buckling load factor is 0\.9[0-9]+, which is below 1"
+        InstabilityError, match=r"buckles: its buckling load factor is 0\.9[0-9]+, which is below 1"
     ):
         solved(leaning(weight=230.0))
 
@@ -210,7 +210,7 @@ def test_yielding_under_gravity_ends_in_collapse():
     """The foot yields at 20: H h + P u = 20 leaves nothing that holds P; the message says at which load."""
     deck = leaning(weight=100.0, spring="KR=900 MR=20 RULE=BILINEAR R=0.3").replace(" 3 1 -", " 3 3 -")
     # H h = 12, elastic u = 3*16/500: the foot would carry 21.6; hardening 270 < P h = 400
-    with pytest.raises(Unstable, match=r"negative.*at load factor 0\.\d+"):
+    with pytest.raises(InstabilityError, match=r"negative.*at load factor 0\.\d+"):
         solved(deck)
 
 
@@ -242,13 +242,13 @@ def test_the_axial_forces_are_those_of_the_state(form):
     assert s.axial(state.u) == pytest.approx(state.axial, abs=1e-9)
     k = s.stressed(s.axial(state.u)).stiffness
     assert k @ state.u == pytest.approx(s.loads, abs=1e-8)
-    rows = Ground(s, state.axial).balance(state.u, state.states)
+    rows = SupportReactions(s, state.axial).balance(state.u, state.states)
     assert [r[0] for r in rows] == [
         "loads", "reactions of the supports", "axial forces on displaced members", "sum",
     ]  # fmt: skip
     assert rows[0][1:3] == (60.0, -1600.0 - 72.0) and rows[1][1] == pytest.approx(-60.0, rel=1e-10)
     # N on the sway: the couple of 1672 on some 0.07 m
-    assert rows[2][3] == pytest.approx(-1672 * state.u[s.freedoms.free.index((3, 0))], rel=0.01)
+    assert rows[2][3] == pytest.approx(-1672 * state.u[s.dofs.free.index((3, 0))], rel=0.01)
     assert np.abs(rows[3][1:]).max() < 1e-9 * 1672
 
 

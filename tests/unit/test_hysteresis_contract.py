@@ -21,16 +21,16 @@ from pound_deck.schema import REQUIRED, Field, Spec
 from pound_solve.catalog import catalog
 from pound_solve.laws import functions
 from pound_solve.laws.automaton import (
-    TURNS_DOWN,
-    TURNS_UP,
+    REVERSAL_DOWN,
+    REVERSAL_UP,
     Law,
     Numbers,
     Rule,
     above,
-    follow,
+    drive,
+    internal_variables,
+    linear,
     on_spring,
-    piece,
-    remember,
 )
 from pound_solve.laws.hysteresis import bilinear
 from pound_solve.numerics import jit
@@ -234,7 +234,7 @@ def test_a_long_history(law: Law, sample: dict[str, Any]) -> None:
     bottom, top = bounds(law, sample, MINUS)(-REACH, REACH)
     for goal in (REACH * np.sin(np.arange(400) * 0.7) * rng.uniform(-0.2, 1.0, 400)).tolist():
         for x in (goal, *(goal + 1e-3 * rng.uniform(-1.0, 1.0, 4)).clip(-REACH, REACH).tolist()):
-            state = follow(law, state, d, x, limit=60)
+            state = drive(law, state, d, x, limit=60)
             d = x
             f = law.force(state, d)[0]
             assert bottom - 1e-10 <= f <= top + 1e-10
@@ -250,7 +250,7 @@ def test_a_long_history(law: Law, sample: dict[str, Any]) -> None:
 @pytest.mark.parametrize("name", sorted(set(SAMPLES) & set(RULES)))
 def test_compiled_functions_give_the_same_numbers(name: str) -> None:
     laws = [p.values[0] for p in UNEQUAL if p.id.startswith(f"{name} ")]
-    branch, leave, recoverable, curve = (f[0] for f in functions.tables([laws[0].rule]))
+    branch, transition, recoverable, curve = (f[0] for f in functions.tables([laws[0].rule]))
     for law in laws:
         rule, p = law.rule, law.p
         walk = Walk(law).move(*turning_points(3, REACH))
@@ -264,8 +264,8 @@ def test_compiled_functions_give_the_same_numbers(name: str) -> None:
                 assert curve(p, at, m, d0, d, 0.0) == pytest.approx(expected, rel=1e-12, abs=1e-13)
             if n + 1 < len(walk.visits) and walk.visits[n + 1][0] is not state:
                 for way in range(len(law.branch(state).exits)):
-                    there, memory = leave(p, at, m, way, d, 0.0)
-                    expected = rule.leave(p, at, m, way, d, 0.0)
+                    there, memory = transition(p, at, m, way, d, 0.0)
+                    expected = rule.transition(p, at, m, way, d, 0.0)
                     assert (there, memory) == (
                         expected[0],
                         pytest.approx(expected[1], rel=1e-12, abs=1e-13),
@@ -294,8 +294,8 @@ def idle(p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float) -> tupl
 
 def elsewhere(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Unloads along a line that does not pass through the point where the motion turned."""
-    there, memory = bilinear.leave(p, at, m, way, d, v)
-    return there, remember(0.5 * memory[0]) if at != bilinear.ELASTIC else memory
+    there, memory = bilinear.transition(p, at, m, way, d, v)
+    return there, internal_variables(0.5 * memory[0]) if at != bilinear.ELASTIC else memory
 
 
 def backward(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -352,20 +352,20 @@ def test_the_contract_tells_a_rule_that_gives_energy() -> None:
 
     def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
         k = (1.0 if at == 0 else 2.0) * p[0]
-        return piece(k, m[0] - k * m[1], TURNS_DOWN if at == 0 else TURNS_UP)
+        return linear(k, m[0] - k * m[1], REVERSAL_DOWN if at == 0 else REVERSAL_UP)
 
-    def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+    def transition(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
         f = m[0] + (1.0 if at == 0 else 2.0) * p[0] * (d - m[1])
-        return 1 - at, remember(f, d)
+        return 1 - at, internal_variables(f, d)
 
-    law = Law(Rule(("up", "down"), lambda p: (0, remember()), branch, leave), (K,))
+    law = Law(Rule(("up", "down"), lambda p: (0, internal_variables()), branch, transition), (K,))
     with pytest.raises(AssertionError, match="gives energy"):
         contract.closed_loops_dissipate(law, REACH)
 
 
 def test_a_rule_that_cycles_is_told() -> None:
     def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-        return piece(p[0], 0.0, above(0.5 * REACH))
+        return linear(p[0], 0.0, above(0.5 * REACH))
 
     law = Law(Rule(("one", "other"), bilinear.start, branch, lambda p, at, m, w, d, v: (1 - at, m)), (K,))
     with pytest.raises(AssertionError, match="without moving"):

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 from paths import Walk
 from pound_solve.catalog import catalog
-from pound_solve.laws.automaton import Law, follow
+from pound_solve.laws.automaton import Law, drive
 from pound_solve.laws.hysteresis import bouc_wen, ramberg_osgood
 
 RULES = catalog().family("hysteresis")
@@ -31,7 +31,7 @@ def rule(name: str, minus: float = -20.0, /, **values: Any) -> Law:
 def forces(law: Law, goals: list[float]) -> list[float]:
     state, d, out = law.start(), 0.0, []
     for goal in goals:
-        state, d = follow(law, state, d, goal), goal
+        state, d = drive(law, state, d, goal), goal
         out.append(law.force(state, d)[0])
     return out
 
@@ -54,7 +54,7 @@ def test_virgin_curve_in_closed_form(d: float) -> None:
     ):
         for s in (1.0, -1.0):
             law = rule("BOUC_WEN", N=n, R=0.1, BETA=0.8)
-            state = follow(law, law.start(), 0.0, s * d)
+            state = drive(law, law.start(), 0.0, s * d)
             force, tangent, _ = law.force(state, s * d)
             assert s * force == pytest.approx(d + 18.0 * y, rel=3e-15)
             assert tangent == pytest.approx(1.0 + 9.0 * slope, rel=3e-14)
@@ -135,7 +135,7 @@ def test_what_is_stored_comes_back(beta: float) -> None:
     for goals in ([3.0], [-4.0], [3.0, 1.0], [8.0, 5.0], [20.0, 8.0], [2.0, -30.0, -20.0]):
         walk = Walk(law).move(*goals)
         stored, before, sign = law.stored(walk.state, walk.d), walk.work, math.copysign(1.0, walk.force)
-        state = follow(law, walk.state, walk.d, walk.d - sign * 1e-9)  # turned
+        state = drive(law, walk.state, walk.d, walk.d - sign * 1e-9)  # turned
         gone = brentq(
             lambda d, state=state: law.force(state, d)[0], walk.d, walk.d - sign * 60.0, xtol=1e-13
         )
@@ -249,7 +249,7 @@ def test_any_history_stays_inside_the_outermost_loop(path: list[float]) -> None:
     law, largest, lost = rule("RAMBERG_OSGOOD", N=6.0), 0.0, 0.0
     state, d = law.start(), 0.0
     for goal in path:
-        state, d = follow(law, state, d, goal), goal
+        state, d = drive(law, state, d, goal), goal
         largest = max(largest, abs(goal))
         low, high = (forces(law, [s * largest, goal])[-1] for s in (1.0, -1.0))
         assert low - 1e-9 <= law.force(state, d)[0] <= high + 1e-9

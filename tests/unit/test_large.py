@@ -16,7 +16,7 @@ from scipy.special import ellipe, ellipk, ellipkinc
 from decks import structure_of
 from pound_solve import run
 from pound_solve.analyses import static
-from pound_solve.analyses.equilibrium import Ground
+from pound_solve.analyses.equilibrium import SupportReactions
 from pound_solve.results.file import Results
 
 KINDS = ("LARGE", "PDELTA_VARYING")
@@ -74,10 +74,10 @@ def test_a_member_that_moves_as_a_whole_has_no_forces(section, turn, shift):
     for d, node in ((5, 1), (6, 2)):  # closed hinges that stretch
         u[1, d] = along @ [u[node, 0], u[node, 1]]
     u[1, 3] = u[1, 4] = turn
-    full = np.array([u[f] for f in s.freedoms.free])
+    full = np.array([u[f] for f in s.dofs.free])
     assert np.abs(s.law_rows @ full).max(initial=0.0) < 1e-13
     size = 2e6 * max(np.abs(full).max(), 1.0)
-    assert np.abs(s.stiffness @ full + s.chords.forces(full)).max() < 1e-14 * size
+    assert np.abs(s.stiffness @ full + s.corotational.forces(full)).max() < 1e-14 * size
     assert np.abs(s.member_forces(full)).max() < 1e-14 * size
 
 
@@ -85,13 +85,13 @@ def test_a_member_that_moves_as_a_whole_has_no_forces(section, turn, shift):
 @given(section=st.sampled_from(SECTIONS), seed=st.integers(0, 2**32 - 1))
 def test_forces_are_the_gradient_of_the_potential_and_the_tangent_that_of_the_forces(section, seed):
     s = structure_of(member("LARGE", section, "N0=100 M0=20,30"))
-    c = s.chords
+    c = s.corotational
     u = 0.4 * np.random.default_rng(seed).normal(size=s.n_free)
     if np.abs(c.quantities(u)[0, 2:4]).max() > 2.0:  # near to no length at all differences mean nothing
         u *= 0.3
 
     def potential(x):
-        return float(c.survey(c.quantities(x)[None])[0, 0, 0])
+        return float(c.envelopes(c.quantities(x)[None])[0, 0, 0])
 
     steps = 1e-5 * np.eye(len(u))
     slope = np.array([potential(u + e) - potential(u - e) for e in steps]) / 2e-5
@@ -113,7 +113,7 @@ def test_the_string_pushes_across_by_its_present_force():
     expected = np.zeros(6)
     expected[3:5] = n * (across @ d) / length * across
     expected[:2] = -expected[3:5]
-    assert s.chords.forces(u) == pytest.approx(expected, rel=1e-12, abs=1e-12)
+    assert s.corotational.forces(u) == pytest.approx(expected, rel=1e-12, abs=1e-12)
 
 
 # ---------------------------------------------------------------------- statics
@@ -234,9 +234,9 @@ LOADS
  3 3 -15 4
 """)
     state = static.solve(s)
-    at = dict(zip(s.freedoms.free, state.u))
+    at = dict(zip(s.dofs.free, state.u))
     assert abs(at[3, 1]) > 1.0
-    r = Ground(s, state.axial).reactions(state.u, state.states)
+    r = SupportReactions(s, state.axial).reactions(state.u, state.states)
     x, y = 5 + at[3, 0], 4 + at[3, 1]
     assert (r[1, 0], r[1, 1]) == pytest.approx((-3.0, 15.0), rel=1e-9)
     assert r[1, 2] == pytest.approx(-(4 + x * -15 - y * 3), rel=1e-9)

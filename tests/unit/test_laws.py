@@ -1,4 +1,5 @@
-"""Laws as automata: `pound_solve.laws.automaton` on a toy rule, and the contract of the contact laws of the catalog.
+"""Laws as automata: `pound_solve.laws.automaton` on a toy rule, and the contract of the contact laws of the
+catalog.
 
 A new contact law is tested as soon as its file declares a SPEC: its fields tell what parameters to try.
 The contract of hysteresis rules is in test_hysteresis_contract.py.
@@ -18,22 +19,22 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.assess.law_test import specimen
 from pound_solve.catalog import specs
 from pound_solve.laws.automaton import (
-    EXITS,
+    EVENTS,
     MEMORY,
     NEVER,
     PARAMETERS,
-    TURNS_DOWN,
-    Exit,
+    REVERSAL_DOWN,
+    EventFunction,
     Law,
     NoProgressError,
     Numbers,
     Rule,
     above,
     below,
-    follow,
-    piece,
-    remember,
-    settle,
+    consistent,
+    drive,
+    internal_variables,
+    linear,
 )
 from pound_solve.laws.contact import bilinear_impact, table
 
@@ -49,21 +50,21 @@ STAIR, FLAT = 0, 1
 
 
 def stair_start(p: Numbers) -> tuple[int, Numbers]:
-    return STAIR, remember(0.0)
+    return STAIR, internal_variables(0.0)
 
 
 def stair_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Stiffness k above the foot m; flat from the height p[1] on, until the motion turns."""
     k, height = p[:2]
     if at == STAIR:
-        return piece(k, -k * m[0], above(m[0] + height / k), below(m[0] - height / k))
-    return piece(0.0, height, TURNS_DOWN)
+        return linear(k, -k * m[0], above(m[0] + height / k), below(m[0] - height / k))
+    return linear(0.0, height, REVERSAL_DOWN)
 
 
 def stair_leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     if at == STAIR:
-        return (FLAT, m) if way == 0 else (STAIR, remember(d))
-    return STAIR, remember(d - p[1] / p[0])
+        return (FLAT, m) if way == 0 else (STAIR, internal_variables(d))
+    return STAIR, internal_variables(d - p[1] / p[0])
 
 
 STEPS = Law(Rule(("stair", "flat"), stair_start, stair_branch, stair_leave), (100.0, 5.0))
@@ -72,73 +73,73 @@ STEPS = Law(Rule(("stair", "flat"), stair_start, stair_branch, stair_leave), (10
 def test_numbers_have_fixed_lengths() -> None:
     assert len(STEPS.p) == PARAMETERS
     assert STEPS.p[:3] == (100.0, 5.0, 0.0)
-    assert remember(*range(MEMORY)) == tuple(range(MEMORY))
-    assert len(remember()) == MEMORY
-    flat = piece(1.0, 2.0, c=3.0)
-    assert flat == (1.0, 3.0, 2.0, *NEVER * EXITS)
+    assert internal_variables(*range(MEMORY)) == tuple(range(MEMORY))
+    assert len(internal_variables()) == MEMORY
+    flat = linear(1.0, 2.0, c=3.0)
+    assert flat == (1.0, 3.0, 2.0, *NEVER * EVENTS)
 
 
 def test_branch_with_its_exits() -> None:
     state = STEPS.start()
-    assert state == (STAIR, 0.0, 0.0, remember())
+    assert state == (STAIR, 0.0, 0.0, internal_variables())
     branch = STEPS.branch(state)
     assert (branch.name, branch.stiffness, branch.damping, branch.force0) == ("stair", 100.0, 0.0, 0.0)
     # exits that are not there are not told
-    assert branch.exits == (Exit(1.0, 0.0, -0.05), Exit(-1.0, 0.0, -0.05))
-    assert STEPS.branch(STEPS.leave(state, 0, 0.05)).exits == (Exit(0.0, -1.0, 0.0),)
+    assert branch.exits == (EventFunction(1.0, 0.0, -0.05), EventFunction(-1.0, 0.0, -0.05))
+    assert STEPS.branch(STEPS.transition(state, 0, 0.05)).exits == (EventFunction(0.0, -1.0, 0.0),)
     assert STEPS.force(state, 0.02, 7.0) == (2.0, 100.0, 0.0)
 
 
 def test_work_goes_on_over_branches() -> None:
-    flat = STEPS.leave(STEPS.start(), 0, 0.05)
-    assert flat == (FLAT, 0.05, pytest.approx(0.125), remember())  # 1/2 * 5 * 0.05
+    flat = STEPS.transition(STEPS.start(), 0, 0.05)
+    assert flat == (FLAT, 0.05, pytest.approx(0.125), internal_variables())  # 1/2 * 5 * 0.05
     assert STEPS.work(flat, 0.08) == pytest.approx(0.125 + 5.0 * 0.03)
     assert STEPS.stored(flat, 0.08) == pytest.approx(0.125)
     assert STEPS.dissipated(flat, 0.08) == pytest.approx(0.15)
-    back = STEPS.leave(flat, 0, 0.08)
-    assert back == (STAIR, 0.08, pytest.approx(0.275), remember(pytest.approx(0.03)))
+    back = STEPS.transition(flat, 0, 0.08)
+    assert back == (STAIR, 0.08, pytest.approx(0.275), internal_variables(pytest.approx(0.03)))
     assert STEPS.work(back, 0.03) == pytest.approx(0.275 - 0.125)
     assert STEPS.dissipated(back, 0.03) == pytest.approx(0.15)
 
 
 def test_rounding_is_no_loss_and_a_loss_is_no_rounding() -> None:
     """Only what is below the rounding of the deformation is taken for nothing."""
-    state = (STAIR, 0.04, 0.5 * 100.0 * 0.04**2, remember())
+    state = (STAIR, 0.04, 0.5 * 100.0 * 0.04**2, internal_variables())
     assert STEPS.dissipated(state, 0.04) == 0.0
     off = 0.9e-14 * 100.0 * 0.04**2
-    assert STEPS.dissipated((STAIR, 0.04, state[2] + off, remember()), 0.04) == 0.0
+    assert STEPS.dissipated((STAIR, 0.04, state[2] + off, internal_variables()), 0.04) == 0.0
     off = 1.2e-14 * 100.0 * 0.04**2
-    assert STEPS.dissipated((STAIR, 0.04, state[2] + off, remember()), 0.04) > 0.0
+    assert STEPS.dissipated((STAIR, 0.04, state[2] + off, internal_variables()), 0.04) > 0.0
 
 
 def test_follow_takes_the_exits_on_its_way() -> None:
-    state = follow(STEPS, STEPS.start(), 0.0, 0.08)
+    state = drive(STEPS, STEPS.start(), 0.0, 0.08)
     assert state[0] == FLAT
-    assert follow(STEPS, state, 0.08, 0.09) == state
-    down = follow(STEPS, state, 0.08, 0.05)
+    assert drive(STEPS, state, 0.08, 0.09) == state
+    down = drive(STEPS, state, 0.08, 0.05)
     assert down[0] == STAIR
     assert STEPS.force(down, 0.05)[0] == pytest.approx(2.0)
     # not left where the path just ends
-    assert follow(STEPS, STEPS.start(), 0.0, 0.05) == STEPS.start()
+    assert drive(STEPS, STEPS.start(), 0.0, 0.05) == STEPS.start()
 
 
 def test_settle_leaves_what_is_passed_already() -> None:
-    assert settle(STEPS, STEPS.start(), 0.02, 0.0) == STEPS.start()
-    assert settle(STEPS, STEPS.start(), 0.08, 1.0)[0] == FLAT
-    turned = settle(STEPS, STEPS.start(), 0.08, -1.0)
-    assert (turned[0], turned[3][0]) == (STAIR, pytest.approx(0.03))
+    assert consistent(STEPS, STEPS.start(), 0.02, 0.0) == STEPS.start()
+    assert consistent(STEPS, STEPS.start(), 0.08, 1.0)[0] == FLAT
+    stationary = consistent(STEPS, STEPS.start(), 0.08, -1.0)
+    assert (stationary[0], stationary[3][0]) == (STAIR, pytest.approx(0.03))
 
 
 def test_a_law_that_never_settles_is_stopped() -> None:
     def restless(p: Numbers, at: int, m: Numbers) -> Numbers:
-        return piece(1.0, 0.0, above(-1.0))
+        return linear(1.0, 0.0, above(-1.0))
 
     def stay(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
         return at, m
 
     law = Law(Rule(("here",), stair_start, restless, stay), (1.0,))
     with pytest.raises(NoProgressError):
-        follow(law, law.start(), 0.0, 1.0)
+        drive(law, law.start(), 0.0, 1.0)
 
 
 # ---------------------------------------------------------------------- contacts
@@ -216,7 +217,7 @@ def test_contract_of_a_contact(law: Law, gap: float, k: float) -> None:
         entered = set()
         for goal in turning_points(seed, REACH):
             # a tried step changes nothing, and hashing and comparing are those of values
-            tried = follow(law, state, d, 2.0 * goal - d)
+            tried = drive(law, state, d, 2.0 * goal - d)
             assert hash(tried) == hash(tuple(tried))
             assert law.branch(state) == law.branch(tuple(state))
             sign = 1.0 if goal > d else -1.0
@@ -226,14 +227,14 @@ def test_contract_of_a_contact(law: Law, gap: float, k: float) -> None:
                 where = -exit_.constant / exit_.d_factor
                 if not min(d, goal) < where < max(d, goal):
                     continue
-                after = law.leave(state, n, where)
+                after = law.transition(state, n, where)
                 entered.add(law.branch(after).name)
                 for again in law.branch(after).exits:
                     # at rest, and moving on the way that led here
                     size = abs(again.d_factor) * REACH + abs(again.constant)
                     assert again.d_factor * where + again.constant <= 1e-12 * size
-            after = follow(law, state, d, goal)
-            assert after == follow(law, state, d, goal)
+            after = drive(law, state, d, goal)
+            assert after == drive(law, state, d, goal)
             state, d = after, goal
             branch, h = law.branch(state), 1e-7
             if all(
@@ -241,7 +242,7 @@ def test_contract_of_a_contact(law: Law, gap: float, k: float) -> None:
                 for e in branch.exits
                 if e.d_factor
             ):
-                ahead, behind = (law.force(follow(law, state, d, d + s * h), d + s * h)[0] for s in (1, -1))
+                ahead, behind = (law.force(drive(law, state, d, d + s * h), d + s * h)[0] for s in (1, -1))
                 force, stiffness, _ = law.force(state, d)
                 assert (ahead - behind) / (2 * h) == pytest.approx(stiffness, abs=1e-5 * k)
                 slope = (law.stored(state, d + h) - law.stored(state, d - h)) / (2 * h)
@@ -260,7 +261,7 @@ def test_contact_pushes_and_forgets(law: Law, gap: float, k: float) -> None:
         over = max(0.0, goal - gap)
         if not law.curved:
             return k * over, 0.5 * k * over**2
-        fresh = follow(law, law.start(), 0.0, goal)
+        fresh = drive(law, law.start(), 0.0, goal)
         return law.force(fresh, goal)[0], law.stored(fresh, goal)
 
     walk, begin = Walk(law), law.stored(law.start(), 0.0)

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from pound_solve.assess.law_test import (
     AXES,
-    LoopError,
+    LawTestError,
     Point,
     has_loop,
     law_of,
@@ -26,7 +26,7 @@ from pound_solve.assess.law_test import (
 )
 from pound_solve.catalog import specs
 from pound_solve.cli.main import main
-from pound_solve.laws.automaton import Law, changes, follow
+from pound_solve.laws.automaton import Law, drive, transitions
 from pound_solve.report import text_plot
 
 LAWS = [s for s in specs() if s.family in AXES and has_loop(s)]
@@ -104,7 +104,7 @@ def test_every_law_is_driven_to_its_end(spec: Any) -> None:
     if not spring.is_contact:
         state, d = spring.law.start(), 0.0
         for p, goal in zip(ends, path):
-            state, d = follow(spring.law, state, d, goal), goal
+            state, d = drive(spring.law, state, d, goal), goal
             assert p.f == pytest.approx(spring.law.force(state, d)[0], abs=1e-12)
             assert p.work == pytest.approx(spring.law.work(state, d), abs=1e-12)
     x, f = np.array(found.curve).T
@@ -124,11 +124,11 @@ def test_rates_lose_energy_in_the_dashpot(path: list[float], rate: float, c: flo
 
 
 def test_an_infinitely_slow_path_is_that_of_follow() -> None:
-    """`follow` and `changes` are one: the last state is the same, and each change has its place."""
+    """`drive` and `transitions` are one: the last state is the same, and each change has its place."""
     own = law("BILINEAR_SLACK", "SLACK=0.4", "R=0.1")
-    seen = list(changes(own, own.start(), 0.0, 3.0))
+    seen = list(transitions(own, own.start(), 0.0, 3.0))
     assert [d for d, _ in seen] == pytest.approx([0.4, 1.4])
-    assert seen[-1][1] == follow(own, own.start(), 0.0, 3.0)
+    assert seen[-1][1] == drive(own, own.start(), 0.0, 3.0)
 
 
 # ---------------------------------------------------------------- specimens
@@ -184,7 +184,7 @@ def test_mistakes_are_told_in_words(words: list[str], told: str, capsys: Any) ->
 
 
 def test_what_is_no_specimen_raises() -> None:
-    with pytest.raises(LoopError, match="straight line"):
+    with pytest.raises(LawTestError, match="straight line"):
         specimen(law_of("ELASTIC"))
 
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from decks import model_of, solved
 from pound_solve import run
 from pound_solve.analyses import modal, static
-from pound_solve.analyses.path_following import Unstable
+from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.numerics import matrices, modes
 from pound_solve.structure.assembly import assemble
 
@@ -116,7 +116,7 @@ def test_no_equal_mode_is_passed_over():
     assert found == pytest.approx(np.sort(everything)[:7], rel=1e-8, abs=1e-12)
 
 
-def test_massless_freedoms_between_masses():
+def test_massless_dofs_between_masses():
     """Every second mass taken away: springs of one half between the rest."""
     n = 1001
     k, _ = chain(n)
@@ -168,7 +168,7 @@ def test_a_mechanism_has_the_same_name(monkeypatch):
     deck = "NODES\n 1 TO 3 0 TO 2 0 FIX=YR\nELEMENTS\n 1 TO 2 A 1 TO 2 2 TO 3\nPROPS\n A SPRING KX=100\n"
 
     def said():
-        with pytest.raises(Unstable, match="mechanism, worst at node 2 ux") as err:
+        with pytest.raises(InstabilityError, match="mechanism, worst at node 2 ux") as err:
             static.solve(assemble(model_of(deck + "LOADS\n 3 1\nANALYSIS\n STATIC\n")))
         return str(err.value)
 

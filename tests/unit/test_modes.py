@@ -1,4 +1,4 @@
-"""Free vibration: closed forms, participation, orthonormality, rigid bodies, massless freedoms."""
+"""Free vibration: closed forms, participation, orthonormality, rigid bodies, massless DOFs."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def test_shapes_are_orthonormal_and_participation_is_complete(mass):
     assert v.shapes.T @ k @ v.shapes == pytest.approx(np.diag(v.omega**2), abs=1e-11 * v.omega[-1] ** 2)
     rows = modal.rows(s, 100)
     for d in range(2):
-        # independent of modes: g' M^-1 g over the freedoms with mass
+        # independent of modes: g' M^-1 g over the DOFs with mass
         heavy = np.any(m != 0, axis=1)
         g = s.ground[d, :n][heavy]
         wanted = float(g @ np.linalg.solve(m[np.ix_(heavy, heavy)], g))
@@ -132,7 +132,7 @@ WEIGHTS
     wanted = np.sort(1 / np.sqrt(np.linalg.eigvals(flexibility * masses)))
     assert s.free_vibration.omega == pytest.approx(wanted, rel=1e-12)
     # the rotations in the shapes are the static ones: no moment is left on them
-    turn = [i for i, f in enumerate(s.freedoms.free) if f[1] == 2]
+    turn = [i for i, f in enumerate(s.dofs.free) if f[1] == 2]
     assert np.abs(s.stiffness[turn] @ s.free_vibration.shapes).max() < 1e-11 * np.abs(s.stiffness).max()
 
 
@@ -217,7 +217,7 @@ WEIGHTS
 @settings(max_examples=60, deadline=None)
 @given(st.data())
 def test_random_systems(data):
-    """Any K = B'B and lumped or consistent M, massless freedoms among them:
+    """Any K = B'B and lumped or consistent M, massless DOFs among them:
     M- and K-orthogonal, none lost.
     """
     n = data.draw(st.integers(1, 7))

@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from decks import model_of
 from pound_solve import run
 from pound_solve.analyses import pushover, static
-from pound_solve.analyses.path_following import Unstable
+from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.catalog import catalog
-from pound_solve.laws.automaton import Law, Rule, above, follow, piece, remember
+from pound_solve.laws.automaton import Law, Rule, above, drive, internal_variables, linear
 from pound_solve.structure.assembly import assemble
 
 
@@ -312,7 +312,10 @@ def bell(p, at, m, d0, d, v):
 
 
 BELL = Rule(
-    ("curved",), lambda p: (0, remember()), lambda p, at, m: piece(p[0], 0.0), lambda *_: (0, remember()),
+    ("curved",),
+    lambda p: (0, internal_variables()),
+    lambda p, at, m: linear(p[0], 0.0),
+    lambda *_: (0, internal_variables()),
     curve=bell,
 )  # fmt: skip
 
@@ -338,8 +341,8 @@ def test_a_curve_that_softens():
 
 BRITTLE = Rule(
     ("whole", "broken"),
-    lambda p: (0, remember()),
-    lambda p, at, m: piece(p[0], 0.0, above(p[1])) if at == 0 else piece(0.0, 0.0),
+    lambda p: (0, internal_variables()),
+    lambda p, at, m: linear(p[0], 0.0, above(p[1])) if at == 0 else linear(0.0, 0.0),
     lambda p, at, m, way, d, v: (1, m),
 )
 
@@ -544,7 +547,7 @@ def test_one_spring_shows_its_backbone(rule, target):
     points = [(x.displacement, x.shear) for x in p.curve if x.displacement not in events]
     assert len(points) >= 20
     for d, shear in points:
-        state = follow(law, law.start(), 0.0, d)
+        state = drive(law, law.start(), 0.0, d)
         assert shear == pytest.approx(law.force(state, d)[0], rel=1e-9, abs=1e-9)
 
 
@@ -656,5 +659,5 @@ def test_tables_and_report(tmp_path):
 
 
 def test_a_target_that_is_reached_already():
-    with pytest.raises(Unstable, match="stands at its target"):
+    with pytest.raises(InstabilityError, match="stands at its target"):
         pushed(STOREYS.format(fa=5, ra=0, fb=3, rb=0), "3 0.0")

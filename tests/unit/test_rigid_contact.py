@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from decks import scene_of, structure_of
 from pound_solve.analyses import static
-from pound_solve.analyses.path_following import Unstable
+from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.catalog import catalog
-from pound_solve.integrate.closed_form.propagator import held_space, make_flow, state_space
+from pound_solve.integrate.closed_form.propagator import held_space, make_propagator, state_space
 from pound_solve.integrate.closed_form.rigid_contact import SLOW, Rigid
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
@@ -296,18 +296,18 @@ def test_what_is_held_stays_held_and_the_rest_balances(light: int) -> None:
     p, x = rng.normal(size=(3, n)), rng.normal(size=(3, 2))
     first, second = np.array([x[1], 2 * x[2], 0 * x[2]]), np.array([2 * x[2], 0 * x[2], 0 * x[2]])
     whole = np.hstack([p, x, first, second])
-    flow = make_flow(m, c, k, np.zeros((n, 1)), rows)
-    g, q0 = flow.push(whole), flow.enter(*rng.normal(size=(2, n)))
-    u_p, v_p = flow.u_p, flow.v_p
+    propagator = make_propagator(m, c, k, np.zeros((n, 1)), rows)
+    g, q0 = propagator.push(whole), propagator.enter(*rng.normal(size=(2, n)))
+    u_p, v_p = propagator.u_p, propagator.v_p
     assert u_p is not None and v_p is not None
     for t in (0.0, 0.3, 2.0):
-        q = flow.at(q0, g, t)
-        rate = flow.onward(np.eye(len(q), dtype=q.dtype)) @ q + polynomial.value(g, t)
+        q = propagator.at(q0, g, t)
+        rate = propagator.onward(np.eye(len(q), dtype=q.dtype)) @ q + polynomial.value(g, t)
         f, df = whole[0] + t * whole[1] + t * t * whole[2], whole[1] + 2 * t * whole[2]
         ddf = 2 * whole[2]
-        u = (flow.u_q @ q).real + u_p @ f
-        v = (flow.v_q @ q).real + v_p @ f + u_p @ df
-        a = (flow.v_q @ rate).real + v_p @ df + u_p @ ddf
+        u = (propagator.u_q @ q).real + u_p @ f
+        v = (propagator.v_q @ q).real + v_p @ f + u_p @ df
+        a = (propagator.v_q @ rate).real + v_p @ df + u_p @ ddf
         assert rows @ u == pytest.approx(x[0] + t * x[1] + t * t * x[2], abs=1e-12)
         assert rows @ v == pytest.approx(x[1] + 2 * t * x[2], abs=1e-12)
         rest = m @ a + c @ v + k @ u - f[:n]
@@ -387,8 +387,8 @@ ANALYSIS
     c = r.tables["collisions"]
     # upper: y = -0.1 + 0.1 cos wt + v/w sin wt, w = 10; the floor opens at y = 0.1
     size, phase = math.hypot(0.1, 0.5), math.atan2(0.5, 0.1)
-    leave = (phase - math.acos(0.2 / size)) / 10
-    assert c["t_end"][0] == pytest.approx(leave, rel=1e-12)
+    transition = (phase - math.acos(0.2 / size)) / 10
+    assert c["t_end"][0] == pytest.approx(transition, rel=1e-12)
     assert c["peak_force"][0] == pytest.approx(10.0, rel=1e-12)
     assert r.check() < 1e-12
 
@@ -451,7 +451,7 @@ def test_other_methods_and_statics_refuse_in_words() -> None:
         r = run_text(WALL, {"gap": 0.5}, method, 0.001)
         assert r.status == "stopped" and f"A505 at t = 0 s: {method} knows no rigid contact" in r.message
     assert run_text(WALL, {"gap": 0.5}).status == "done"  # AUTO takes EXACT
-    with pytest.raises(Unstable, match=r"rigid contact 2 \(STEREOMECHANICS\) closes"):
+    with pytest.raises(InstabilityError, match=r"rigid contact 2 \(STEREOMECHANICS\) closes"):
         static.solve(structure_of(WALL.replace("INITIAL\n 2 UX=x0 VX=v0", "LOADS\n 2 100 0")))
 
 
@@ -473,7 +473,7 @@ def test_weightless_nodes_and_overlaps_are_refused() -> None:
     with pytest.raises(AssemblyError, match="do not overlap"):
         structure_of(WALL, {"gap": -0.1})
     r = run_text(WALL.replace("WEIGHTS\n 2 1", "").replace("E=e", "E=e MASSES=1"))
-    assert r.status == "stopped" and "touches a freedom without mass" in r.message
+    assert r.status == "stopped" and "touches a degree of freedom without mass" in r.message
     r = run_text(WALL, {"gap": 0.5, "x0": 0.6})
     assert r.status == "stopped" and "overlaps by 0.1 at the start" in r.message
 

@@ -1,4 +1,4 @@
-"""The scene: what is left out, why, and that nothing is lost by it."""
+"""The reduced system: what is left out, why, and that nothing is lost by it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from decks import scene_of
-from pound_solve.structure.reduction import SceneError
+from pound_solve.structure.reduction import ReductionError
 
 TAIL = """
 EQUAKE
@@ -31,13 +31,13 @@ def response(m, c, k, f, omega):
 
 
 def same_response(place, omegas=(0.3, 2.0, 9.0, 40.0), rel=1e-9):
-    """Harmonic response of the scene, spread over all freedoms, is that of the structure as assembled.
+    """Harmonic response of the reduced system, spread over all DOFs, is that of the structure as assembled.
 
     Harmonic motion exp(i w t) of every input; in the total form displacement,
     velocity and acceleration of one motion are tied by i w.
     """
     s, n = place.structure, place.structure.n_free
-    moved = len(s.freedoms.moved)
+    moved = len(s.dofs.moved)
     whole = np.any((s.stiffness[:n] != 0) | (s.damping[:n] != 0) | (s.mass[:n] != 0), axis=1)
     for w in omegas:
         if place.total:
@@ -80,9 +80,9 @@ WEIGHTS
 def test_what_the_ground_does_not_reach_is_dropped():
     """Springs couple nothing: a ground motion along x leaves uy and rz at rest."""
     place = scene_of(SHEAR + tail())
-    assert place.freedoms == ((2, 0), (3, 0)) and place.size == 2
+    assert place.dofs == ((2, 0), (3, 0)) and place.size == 2
     found = decided(place)["dropped"]
-    assert found.subject == "4 of 6 freedoms"
+    assert found.subject == "4 of 6 degrees of freedom"
     assert found.why == "nothing sets them in motion: 2 uy, 2 rz, 3 uy, 3 rz"
     same_response(place)
 
@@ -97,7 +97,7 @@ def test_what_the_ground_does_not_reach_is_dropped():
     ],
 )
 def test_what_is_loaded_or_starts_in_motion_stays(more, kept):
-    assert scene_of(SHEAR + more).freedoms == kept
+    assert scene_of(SHEAR + more).dofs == kept
 
 
 def test_long_lists_are_cut_short():
@@ -130,8 +130,8 @@ WEIGHTS
     supports = tail("SUPPORTS=1")
     # only support 1 moves: node 3 has no weight on it and no spring of its own
     for c in ("CONTACT GAP=5 LAW=LINEAR K=9", "DASHPOT CX=3"):
-        assert (3, 0) in scene_of(far.format(c) + supports).freedoms
-    assert (3, 0) not in scene_of(far.format("SPRING KY=2") + supports).freedoms
+        assert (3, 0) in scene_of(far.format(c) + supports).dofs
+    assert (3, 0) not in scene_of(far.format("SPRING KY=2") + supports).dofs
 
 
 @pytest.mark.parametrize("law", ["LINEAR K=9", "HERTZ K=9", "TABLE DEPTHS=1 FORCES=9"])
@@ -150,8 +150,8 @@ PROPS
 WEIGHTS
  1,2 10
 """
-    assert (1, 1) not in scene_of(deck.format(0.1, law) + tail()).freedoms
-    assert (1, 1) in scene_of(deck.format(-0.1, law) + tail()).freedoms
+    assert (1, 1) not in scene_of(deck.format(0.1, law) + tail()).dofs
+    assert (1, 1) in scene_of(deck.format(-0.1, law) + tail()).dofs
 
 
 PORTAL = """
@@ -188,10 +188,10 @@ PORTAL = PORTAL.replace(" 2 TO 3 B 2,5 5,3", " 2 B 2 5\n 3 B 5 3")
         ("DAMPING\n RAYLEIGH BETA=0.004 PROPS=C\n RAYLEIGH BETA=0.01 PROPS=B", None, 4),
     ],
 )
-def test_massless_freedoms_are_condensed_without_error(damping, kept, condensed):
+def test_massless_dofs_are_condensed_without_error(damping, kept, condensed):
     place = scene_of(PORTAL.format(weight="") + damping + tail())
     if kept is not None:
-        assert place.freedoms == ((2, 0), (2, 1), (3, 0), (3, 1))
+        assert place.dofs == ((2, 0), (2, 1), (3, 0), (3, 1))
     assert decided(place)["condensed"].subject.startswith(f"{condensed} massless")
     same_response(place)
     # under the loads the expanded static state is the whole structure's
@@ -207,22 +207,22 @@ def test_natural_frequencies_of_the_scene_are_the_structures():
     assert np.sqrt(w2) == pytest.approx(place.structure.free_vibration.omega, rel=1e-9)
 
 
-def test_massless_freedoms_on_dashpots_are_kept_and_named():
+def test_massless_dofs_on_dashpots_are_kept_and_named():
     deck = PORTAL.format(weight="").replace(" 4 C 4 3", " 4 C 4 3\n 5 D 5") + tail()
     place = scene_of(deck)
-    assert {(5, 0), (5, 2)} <= set(place.freedoms)
-    assert (5, 1) not in place.freedoms and (2, 2) not in place.freedoms
+    assert {(5, 0), (5, 2)} <= set(place.dofs)
+    assert (5, 1) not in place.dofs and (2, 2) not in place.dofs
     assert decided(place)["kept"].why == "dashpots move them: 5 ux, 5 rz"
     same_response(place)
 
 
-def test_massless_freedoms_on_laws_are_kept():
+def test_massless_dofs_on_laws_are_kept():
     deck = (
         PORTAL.format(weight="")
         .replace(" 4 C 4 3", " 4 C 4 3\n 5 H 5 3")
         .replace(" D DASHPOT CR=30 CX=5", " H SPRING KX=5 KR=40 FX=1 MR=3 RULE=ELASTO_PLASTIC")
     )
-    kept = set(scene_of(deck + tail()).freedoms)
+    kept = set(scene_of(deck + tail()).dofs)
     assert {(5, 0), (5, 2), (3, 2)} <= kept and (5, 1) not in kept and (2, 2) not in kept
 
 
@@ -230,7 +230,7 @@ def test_massless_freedoms_on_laws_are_kept():
     "damping", ["", "DAMPING\n RAYLEIGH ALPHA=0.3 BETA=0.004", "DAMPING\n MODAL XI=0.05"]
 )
 def test_moved_supports(damping):
-    """Two supports on motions of their own, massless freedoms condensed onto them too."""
+    """Two supports on motions of their own, massless DOFs condensed onto them too."""
     more = f"""
 {damping}
 EQUAKE
@@ -240,7 +240,7 @@ ANALYSIS
  HISTORY 1
 """
     place = scene_of(PORTAL.format(weight="WGT=3") + more)
-    assert place.total and place.structure.freedoms.moved == ((1, 0), (4, 0))
+    assert place.total and place.structure.dofs.moved == ((1, 0), (4, 0))
     assert not place.acceleration_inputs.any()
     same_response(place)
     # both supports held apart for ever: the quasi-static shape
@@ -280,7 +280,7 @@ ANALYSIS
  HISTORY 1
 """
     place = scene_of(deck)
-    assert (3, 0) in place.freedoms
+    assert (3, 0) in place.dofs
     same_response(place)
 
 
@@ -358,7 +358,7 @@ PROPS
 WEIGHTS
  2 2 {}
 """
-    with pytest.raises(SceneError, match="node 1 rz has no inertia of its own"):
+    with pytest.raises(ReductionError, match="node 1 rz has no inertia of its own"):
         scene_of(deck.format("") + tail())
     place = scene_of(deck.format("2 0.01") + tail())
     assert place.size == 2

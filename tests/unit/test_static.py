@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from decks import solved, structure_of
 from pound_solve.analyses import static
-from pound_solve.analyses.equilibrium import Ground
-from pound_solve.analyses.path_following import Unstable
-from pound_solve.laws.automaton import TURNS_DOWN, TURNS_UP, Law, Rule, piece, remember
+from pound_solve.analyses.equilibrium import SupportReactions
+from pound_solve.analyses.path_following import InstabilityError
+from pound_solve.laws.automaton import REVERSAL_DOWN, REVERSAL_UP, Law, Rule, internal_variables, linear
 from pound_solve.laws.contact.kelvin_voigt import PRESSED
 
 
@@ -131,7 +131,7 @@ def test_elasto_plastic_portal():
 
 def test_the_collapse_of_a_portal_without_brace_is_named():
     deck = portal(91.0).replace(" BRACE SPRING KX=50", " BRACE SPRING KX=0")
-    with pytest.raises(Unstable, match=r"mechanism, worst at node \d ux"):
+    with pytest.raises(InstabilityError, match=r"mechanism, worst at node \d ux"):
         solved(deck)
     assert solved(deck.replace("5 91.0", "5 89.9")).state.events >= 2
 
@@ -268,7 +268,7 @@ def test_balanced_loads_on_a_loose_part_strain_it_only():
     ],
 )
 def test_a_loaded_mechanism_is_named(load, words):
-    with pytest.raises(Unstable, match=words):
+    with pytest.raises(InstabilityError, match=words):
         solved(LOOSE + load)
 
 
@@ -278,7 +278,7 @@ def test_a_turning_mechanism_is_named():
         "NODES\n 1 0 0 FIX=XY\n 2 4 0\nELEMENTS\n 1 B 1 2\n"
         "PROPS\n B FRAME E=2e8 A=0.01 I=1e-4\nLOADS\n 2 0 -1"
     )
-    with pytest.raises(Unstable, match="mechanism, worst at node 2 uy"):
+    with pytest.raises(InstabilityError, match="mechanism, worst at node 2 uy"):
         solved(deck)
 
 
@@ -297,7 +297,7 @@ PROPS
 LOADS
  3 0 -1
 """
-    with pytest.raises(Unstable, match="node 3 uy"):
+    with pytest.raises(InstabilityError, match="node 3 uy"):
         solved(deck)
 
 
@@ -316,13 +316,13 @@ LOADS
  301 0 0 1
 """
         assert solved(deck).u[301][2] == pytest.approx(30 / 2e4, rel=1e-5)
-        with pytest.raises(Unstable, match="mechanism"):
+        with pytest.raises(InstabilityError, match="mechanism"):
             solved(deck.replace("FIX=XYR", "FIX=XY"))
 
 
 def test_softening_beyond_collapse_is_told():
     deck = parallel(60.0, "RULE=BILINEAR R=-0.5").replace("KX=25", "KX=20")
-    with pytest.raises(Unstable, match="negative"):
+    with pytest.raises(InstabilityError, match="negative"):
         solved(deck)
 
 
@@ -422,9 +422,9 @@ def saturating(p, at, m, d0, d, v):
 
 SATURATING = Rule(
     ("loading", "unloading"),
-    lambda p: (0, remember()),
-    lambda p, at, m: piece(p[0], 0.0, TURNS_DOWN if at == 0 else TURNS_UP),
-    lambda p, at, m, way, d, v: (1 - at, remember(saturating(p, at, m, m[1], d, 0.0)[0], d)),
+    lambda p: (0, internal_variables()),
+    lambda p, at, m: linear(p[0], 0.0, REVERSAL_DOWN if at == 0 else REVERSAL_UP),
+    lambda p, at, m, way, d, v: (1 - at, internal_variables(saturating(p, at, m, m[1], d, 0.0)[0], d)),
     curve=saturating,
 )
 
@@ -458,7 +458,7 @@ LOADS
         size = abs(p)
         one, two = (-f / k * math.log(1 - size / f) for f, k in ((10, 100), (8, 50)))
         assert state.u == pytest.approx(np.sign(p) * np.array([one, one + two]), rel=1e-9)
-    with pytest.raises(Unstable, match=r"no equilibrium was found further on.*at load factor 0\.8"):
+    with pytest.raises(InstabilityError, match=r"no equilibrium was found further on.*at load factor 0\.8"):
         static.solve(curved(deck.format(10.0), A=(100, 10), B=(50, 8)))
 
 
@@ -513,7 +513,7 @@ LOADS
  3 8
 """)
     state = static.solve(s)
-    rows = {r[0]: r[1:] for r in Ground(s, state.axial).balance(state.u, state.states)}
+    rows = {r[0]: r[1:] for r in SupportReactions(s, state.axial).balance(state.u, state.states)}
     # 50 in a row, 50 beside it: 4 each
     assert rows["loads"] == pytest.approx((8, 0, -48))
     assert rows["reactions of the supports"] == pytest.approx((-4, 0, 0))
@@ -551,7 +551,7 @@ MEMBER_LOADS
  2 WX={loads[5]!r}
 """)
     state = static.solve(s)
-    rows = Ground(s, state.axial).balance(state.u, state.states)
+    rows = SupportReactions(s, state.axial).balance(state.u, state.states)
     assert [r[0] for r in rows] == ["loads", "reactions of the supports", "sum"]
     scale = np.abs(np.array([r[1:] for r in rows[:2]])).max()
     assert np.abs(rows[2][1:]).max() < 1e-9 * scale
@@ -566,7 +566,7 @@ def test_a_frame_that_makes_forces_is_found_out():
 
     s = structure_of(LOOSE + " 2 1")
     state = static.solve(s)
-    ground = Ground(s, state.axial)
+    ground = SupportReactions(s, state.axial)
     assert np.abs(ground.balance(state.u, state.states)[-1][1:]).max() < 1e-12
     ground.structure.stiffness[ground.n :] *= 1.001
     assert ground.balance(state.u, state.states)[-1][1] == pytest.approx(-0.001, rel=1e-6)

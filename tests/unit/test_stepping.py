@@ -162,7 +162,7 @@ def test_auto_keeps_its_tolerance_and_its_estimate_holds(tmp_path, monkeypatch, 
     exact = run(tmp_path, "AUTO")
     assert "EXACT" in exact.table("scene")["decision"].tolist()
     truth, closed = figures(exact), exact.table("contact_summary")["closures"][0]
-    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
     found = run(tmp_path, f"AUTO TOL={tol}")
     assert found.table("contact_summary")["closures"][0] == closed
     assert error_against(found, truth) <= estimate(found) <= tol
@@ -183,14 +183,14 @@ def error_against(results, truth):
 def test_auto_learns_nothing_from_two_runs_with_the_same_steps(tmp_path, monkeypatch):
     """Output times cut the steps of both: a difference of zero between them is no accuracy."""
     truth = figures(run(tmp_path, "EXACT"))
-    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
     found = run(tmp_path, "AUTO TOL=1e-3", every=0.004)
     assert error_against(found, truth) <= estimate(found) <= 1e-3
 
 
 def test_auto_gives_up_where_shorter_steps_bring_nothing(tmp_path, monkeypatch):
     """A peak that differs by a tenth from run to run, as a force that rings does."""
-    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
     rings = itertools.cycle((1.0, 1.1))
     monkeypatch.setattr(auto, "figures", lambda *given: (np.array([next(rings)]), np.ones(1)))
     found = run(tmp_path, "AUTO TOL=1e-2")
@@ -200,12 +200,12 @@ def test_auto_gives_up_where_shorter_steps_bring_nothing(tmp_path, monkeypatch):
 
 
 def test_auto_keeps_its_last_whole_run_when_it_is_interrupted(tmp_path, monkeypatch):
-    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
     runs = []
 
     class Interrupted(auto.Replay):
-        def __init__(self, sink):
-            super().__init__(sink)
+        def __init__(self, recorder):
+            super().__init__(recorder)
             runs.append(self)
 
         def sample(self, t, *motion):
@@ -228,7 +228,7 @@ def test_an_interrupt_between_two_runs_ends_with_a_report(tmp_path, monkeypatch)
     def interrupt(*given):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
     monkeypatch.setattr(auto, "figures", interrupt)
     found = run(tmp_path, "AUTO TOL=1e-3")
     assert found.status == "stopped" and found.message.startswith("A506 at t = 0 s: interrupted")
@@ -317,7 +317,7 @@ def seen(row, values, t):
 
 def test_auto_hands_on_the_envelopes_of_its_last_run_alone(tmp_path, monkeypatch):
     """They are those of NEWMARK with the step that it came to, and no coarser run is left in them."""
-    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
     found = run(tmp_path, "AUTO TOL=1e-3", "")
     step = next(r["value"] for r in found.table("run") if r["item"] == "time step")
     alone = run(tmp_path, f"NEWMARK DT={step}", "")
@@ -345,7 +345,9 @@ def test_decks_with_any_number_of_rules_share_one_compiled_version(tmp_path):
     assert len(jit.compiled(kernel.advance).signatures) == 1
     rules = [imk_bilinear.RULE, bilinear.RULE]
     assert [len(f) for f in functions.tables(rules)] == [functions.ROOM] * 4
-    assert functions.tables(rules).leave[:2] == tuple(functions.tables([r]).leave[0] for r in rules)
+    assert functions.tables(rules).transition[:2] == tuple(
+        functions.tables([r]).transition[0] for r in rules
+    )
 
 
 @pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")

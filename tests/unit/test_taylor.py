@@ -284,7 +284,7 @@ def test_laws_without_a_curve_are_all_of_the_catalog() -> None:
     }
 
 
-# ---------------------------------------------------------------- scenes
+# ---------------------------------------------------------------- reduced systems
 
 FRAMES = """UNITS kN m s
 {head}
@@ -368,7 +368,7 @@ def test_a_full_damping_matrix() -> None:
 
 
 def test_soil_below_the_footings() -> None:
-    """Monkey tails of cone models: freedoms with little mass beside buildings."""
+    """Monkey tails of cone models: DOFs with little mass beside buildings."""
     r, _ = agree(SOIL.format(foot="G=8e4 NU=0.33 WGT=19 B=2 L=2"))
     assert len(r.tables["collisions"]) > 0
 
@@ -624,8 +624,8 @@ def test_members_that_turn_are_refused() -> None:
         assert r.message.startswith("A505") and f"GEOMETRY {geometry}" in r.message, r.message
 
 
-def test_a_freedom_without_mass_that_stays_is_named() -> None:
-    """Beside a hinge that yields it cannot be condensed; a freedom of a member can be given no weight."""
+def test_a_dof_without_mass_that_stays_is_named() -> None:
+    """Beside a hinge that yields it cannot be condensed; a DOF of a member can be given no weight."""
     r = run_text(frames(hinge=HINGE, turn="0.5"), None, "TAYLOR")
     assert "A505 at t = 0 s: TAYLOR needs mass at element 1 turn inside I: use EXACT" in r.message
     r = run_text(TURNS, None, "TAYLOR")
@@ -669,7 +669,9 @@ def test_growth_without_bound_names_no_time_step() -> None:
 
 
 def test_changes_at_one_instant_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Were every change taken for one of the same instant, the first scene that has many would stop."""
+    """Were every change taken for one of the same instant, the first reduced system that has many would
+    stop.
+    """
     monkeypatch.setattr(expansion, "INSTANT", 10.0)
     with monkeypatch.context() as m:
         m.setenv("POUND_COMPILE", "0")

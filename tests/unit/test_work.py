@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pound_solve.integrate.closed_form.propagator import ModalFlow, SeriesFlow, make_flow
-from pound_solve.integrate.closed_form.work_integrals import Meter, Work
+from pound_solve.integrate.closed_form.propagator import ModalPropagator, SeriesPropagator, make_propagator
+from pound_solve.integrate.closed_form.work_integrals import Work, WorkIntegrals
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
-from unit.test_flow import KINDS, block, loads, massless
+from unit.test_flow import KINDS, loads, massless, subsystem
 
 X, W = np.polynomial.legendre.leggauss(24)
 DASHPOT = 0.7  #: of the contact between the first and the last mass
@@ -20,11 +20,17 @@ def contact_row(n: int) -> Array:
 
 
 def measure(
-    meter: Meter, q: Array, g: Array, tau: float, coefs: Array, constant: Array, p: Array | None = None
+    work_integrals: WorkIntegrals,
+    q: Array,
+    g: Array,
+    tau: float,
+    coefs: Array,
+    constant: Array,
+    p: Array | None = None,
 ) -> Work:
     """Work over one interval."""
     ps = None if p is None else p[None]
-    out = meter.measures(q[:, None], g[None], np.array([tau]), coefs[None], constant, ps)
+    out = work_integrals.measures(q[:, None], g[None], np.array([tau]), coefs[None], constant, ps)
     return Work(
         float(out.damping[0]), float(out.input[0]), [(law, float(loss[0])) for law, loss in out.laws]
     )
@@ -40,26 +46,29 @@ class Case:
         self.m, self.c, self.k, self.row, self.dashpot = m, c, k, contact_row(n), dashpot
         self.inputs, self.coefs, self.constant, self.p, self.u, self.v = loads(n, degree, seed)
         whole = c + dashpot * np.outer(self.row, self.row)
-        self.flow = make_flow(m, whole, k, self.inputs)
+        self.propagator = make_propagator(m, whole, k, self.inputs)
         contacts = [(5, dashpot, self.row)] if dashpot else []
-        self.meter = Meter(self.flow, c, self.inputs, contacts)
-        self.q, self.g = self.flow.enter(self.u, self.v), self.flow.forcing(self.coefs, self.constant)
+        self.work_integrals = WorkIntegrals(self.propagator, c, self.inputs, contacts)
+        self.q, self.g = (
+            self.propagator.enter(self.u, self.v),
+            self.propagator.forcing(self.coefs, self.constant),
+        )
 
     def measure(self, tau: float) -> Work:
-        return measure(self.meter, self.q, self.g, tau, self.coefs, self.constant, self.p)
+        return measure(self.work_integrals, self.q, self.g, tau, self.coefs, self.constant, self.p)
 
     def velocity(self, t: Array) -> Array:
-        v = (self.flow.v_q @ self.flow.path(self.q, self.g, t)).real
-        if self.flow.u_p is not None:
+        v = (self.propagator.v_q @ self.propagator.path(self.q, self.g, t)).real
+        if self.propagator.u_p is not None:
             p, slope = (
                 np.array([polynomial.value(self.p, float(x), order) for x in t]).T for order in (0, 1)
             )
-            v = v + self.flow.v_p @ p + self.flow.u_p @ slope
+            v = v + self.propagator.v_p @ p + self.propagator.u_p @ slope
         return np.asarray(v)
 
     def dense(self, tau: float) -> tuple[float, float, float]:
         """Structure's loss, input and contact's loss by quadrature, 24 points on every 1/fastest."""
-        cells = int(np.ceil(tau * self.flow.fastest)) + 1
+        cells = int(np.ceil(tau * self.propagator.fastest)) + 1
         width = tau / cells
         t = (width * (np.arange(cells)[:, None] + 0.5 + 0.5 * X)).ravel()
         w = np.tile(0.5 * width * W, cells)
@@ -69,8 +78,8 @@ class Case:
         return loss, float(((v * force).sum(axis=0)) @ w), float(self.dashpot * (self.row @ v) ** 2 @ w)
 
     def energy(self, t: float) -> float:
-        q = self.flow.at(self.q, self.g, t)
-        u, v = (self.flow.u_q @ q).real, (self.flow.v_q @ q).real
+        q = self.propagator.at(self.q, self.g, t)
+        u, v = (self.propagator.u_q @ q).real, (self.propagator.v_q @ q).real
         return float(0.5 * v @ self.m @ v + 0.5 * u @ self.k @ u)
 
 
@@ -80,7 +89,7 @@ class Case:
 def test_against_dense_quadrature(kind: str, degree: int, tau: float) -> None:
     # measured against long double exponentials: loss 4e-12, input 4e-14, contact 5e-12 at worst
     for seed in range(3):
-        case = Case(*block(kind, seed=seed), degree, seed)
+        case = Case(*subsystem(kind, seed=seed), degree, seed)
         loss, done, contact = case.dense(tau)
         found = case.measure(tau)
         assert found.damping == pytest.approx(loss, rel=5e-11, abs=0.0)
@@ -94,7 +103,7 @@ def test_against_dense_quadrature(kind: str, degree: int, tau: float) -> None:
 def test_balance_of_energy(kind: str, tau: float) -> None:
     """Input = change of energy + losses: the meter itself uses no balance, so this is a check."""
     for degree in (0, 1, 4):
-        case = Case(*block(kind), degree)
+        case = Case(*subsystem(kind), degree)
         found = case.measure(tau)
         change = case.energy(tau) - case.energy(0.0)
         gross = max(abs(found.input), found.damping, case.energy(tau), case.energy(0.0))
@@ -128,38 +137,38 @@ def test_plastic_storey_with_hardly_any_damping(decay: float) -> None:
     done = (v * np.polynomial.Polynomial([f, g])).integ()(tau)
     for fast in (1.0, 1e4):
         k, c = np.diag([0.0, fast**2]), np.diag([decay, 0.02 * fast])
-        flow = make_flow(np.eye(2), c, k, np.eye(2))
-        meter = Meter(flow, np.diag([decay, 0.0]), np.eye(2), [])
+        propagator = make_propagator(np.eye(2), c, k, np.eye(2))
+        work_integrals = WorkIntegrals(propagator, np.diag([decay, 0.0]), np.eye(2), [])
         coefs = np.array([[f, 0.0], [g, 0.0]])
-        q = flow.enter(np.zeros(2), np.array([v0, 1.0]))
-        found = measure(meter, q, flow.forcing(coefs, np.zeros(2)), tau, coefs, np.zeros(2))
+        q = propagator.enter(np.zeros(2), np.array([v0, 1.0]))
+        found = measure(work_integrals, q, propagator.forcing(coefs, np.zeros(2)), tau, coefs, np.zeros(2))
         assert found.damping == pytest.approx(loss, rel=1e-12, abs=0.0)
         assert found.input == pytest.approx(done, rel=1e-12)
-        if fast > 1.0 and isinstance(flow, SeriesFlow):
+        if fast > 1.0 and isinstance(propagator, SeriesPropagator):
             break
 
 
 @pytest.mark.parametrize("degree", [0, 1])
 @pytest.mark.parametrize("kind", ["damped", "rigid body", "rigid body, mass damping", "critically damped"])
 def test_many_intervals_at_once(kind: str, degree: int) -> None:
-    case = Case(*block(kind), degree)
+    case = Case(*subsystem(kind), degree)
     h, n = 0.25, 6
     gs = np.stack([polynomial.shift(case.g, i * h) for i in range(n)])
     coefs = np.stack([polynomial.shift(case.coefs, i * h) for i in range(n)])
-    qs = case.flow.march(case.q, gs, np.full(n, h))[:, :-1]
-    several = case.meter.measures(qs, gs, np.full(n, h), coefs, case.constant)
+    qs = case.propagator.march(case.q, gs, np.full(n, h))[:, :-1]
+    several = case.work_integrals.measures(qs, gs, np.full(n, h), coefs, case.constant)
     whole = case.measure(n * h)
     lengths = h * np.array([1.0, 0.4, 1.0, 1e-3, 1.0, 0.4])
-    cut = case.meter.measures(qs, gs, lengths, coefs, case.constant)
+    cut = case.work_integrals.measures(qs, gs, lengths, coefs, case.constant)
     assert several.damping.shape == several.input.shape == several.laws[0][1].shape == (n,)
     assert several.damping.sum() == pytest.approx(whole.damping, rel=1e-12)
     assert several.input.sum() == pytest.approx(whole.input, rel=1e-12)
     assert several.laws[0][1].sum() == pytest.approx(whole.laws[0][1], rel=1e-12)
     for i in range(n):
-        one = measure(case.meter, qs[:, i], gs[i], h, coefs[i], case.constant)
+        one = measure(case.work_integrals, qs[:, i], gs[i], h, coefs[i], case.constant)
         assert one.damping == pytest.approx(several.damping[i], rel=1e-13)
         assert one.input == pytest.approx(several.input[i], rel=1e-12, abs=1e-13 * abs(whole.input))
-        part = measure(case.meter, qs[:, i], gs[i], lengths[i], coefs[i], case.constant)
+        part = measure(case.work_integrals, qs[:, i], gs[i], lengths[i], coefs[i], case.constant)
         assert part.damping == pytest.approx(cut.damping[i], rel=1e-11, abs=1e-15 * whole.damping)
         assert part.input == pytest.approx(cut.input[i], rel=1e-11, abs=1e-15 * abs(whole.input))
 
@@ -174,11 +183,11 @@ def test_nearly_critical_damping(off: float) -> None:
         assert abs(found.input - change - found.damping) < 1e-9 * found.damping
 
 
-def test_massless_freedoms() -> None:
+def test_massless_dofs() -> None:
     for seed in range(3):
         m, c, k, _ = massless(3, 1, 1, 1.0, seed)
         case = Case(m, c, k, 2, seed, dashpot=0.0)
-        assert case.flow.u_p is not None
+        assert case.propagator.u_p is not None
         loss, done, _ = case.dense(0.9)
         found = case.measure(0.9)
         assert found.damping == pytest.approx(loss, rel=1e-11)
@@ -186,5 +195,5 @@ def test_massless_freedoms() -> None:
 
 
 def test_defective_and_modal_paths_both_ran() -> None:
-    assert isinstance(Case(*block("damped"), 1).flow, ModalFlow)
-    assert isinstance(Case(*block("critically damped"), 1, dashpot=0.0).flow, SeriesFlow)
+    assert isinstance(Case(*subsystem("damped"), 1).propagator, ModalPropagator)
+    assert isinstance(Case(*subsystem("critically damped"), 1, dashpot=0.0).propagator, SeriesPropagator)

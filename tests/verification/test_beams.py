@@ -58,7 +58,7 @@ PROPS
 def frequencies(support: str, n: int, mass: str) -> np.ndarray:
     """First two bending frequencies."""
     modes = structure_of(mesh(support, n, mass))
-    y = [i for i, f in enumerate(modes.freedoms.free) if f[1] == 1]
+    y = [i for i, f in enumerate(modes.dofs.free) if f[1] == 1]
     bending = np.abs(modes.free_vibration.shapes[y]).max(axis=0) > 1e-6
     return modes.free_vibration.omega[bending][:2]
 
@@ -101,7 +101,7 @@ def test_axial_frequencies_of_a_rod():
                 mesh("cantilever", n, mass).replace(f" {n + 1} {L!r} 0 ", f" {n + 1} {L!r} 0 FIX=YR")
             )
             shapes = s.free_vibration.shapes
-            x = [i for i, f in enumerate(s.freedoms.free) if f[1] == 0]
+            x = [i for i, f in enumerate(s.dofs.free) if f[1] == 0]
             axial = np.abs(shapes[x]).max(axis=0) > 1e-6
             errors.append(s.free_vibration.omega[axial][0] / exact - 1)
         # (pi/4n)^2/6 is the leading term of the exact dispersion 2n sin(pi/4n) of the lumped chain

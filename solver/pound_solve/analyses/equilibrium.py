@@ -12,12 +12,12 @@ from pound_solve.laws.automaton import State
 from pound_solve.numerics.matrices import by_rows, least_squares, used_rows
 from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import Structure, assemble
-from pound_solve.structure.dofs import Freedom
+from pound_solve.structure.dofs import Dof
 
 ROUNDING = 1e-9  #: share of the largest term below which a sum of forces is zero
 
 
-class Ground:
+class SupportReactions:
     """A structure with its supports let go, so that it shows what holds it.
 
     Parameters
@@ -39,7 +39,7 @@ class Ground:
         self.structure, self.n = bare.stressed(axial), bare.n_free
         self.laws = structure.laws  # with what damping has made of them
         self.geometric = self.structure.stiffness - bare.stiffness
-        columns = bare.freedoms.free + bare.freedoms.moved
+        columns = bare.dofs.free + bare.dofs.moved
         k = bare.initial_stiffness
         inside = np.array([d > 2 for _, d in columns], bool) & used_rows(k)
         self.rigid = np.array([_rigid(bare, f) for f in columns]).reshape(-1, 3).T
@@ -51,12 +51,12 @@ class Ground:
 
     def _at(self, u: Array, states: Sequence[State]) -> tuple[Array, Array]:
         """Displacements of all columns, and the laws' forces."""
-        full = np.append(u, np.zeros(self.structure.freedoms.size - self.n))
+        full = np.append(u, np.zeros(self.structure.dofs.size - self.n))
         d = (self.structure.law_rows @ full).tolist()
         force = [s.force(x, at, 0.0) for s, x, at in zip(self.laws, states, d)]
         return full, np.array(force)
 
-    def reactions(self, u: Array, states: Sequence[State]) -> dict[Freedom, float]:
+    def reactions(self, u: Array, states: Sequence[State]) -> dict[Dof, float]:
         """Forces of the supports on the structure [F], [F L].
 
         Parameters
@@ -66,8 +66,8 @@ class Ground:
             Of all laws.
         """
         s, (full, force) = self.structure, self._at(u, states)
-        whole = s.stiffness @ full + s.chords.forces(full) + s.law_rows.T @ force - s.loads
-        return {f: float(x) for f, x in zip(s.freedoms.moved, whole[self.n :])}
+        whole = s.stiffness @ full + s.corotational.forces(full) + s.law_rows.T @ force - s.loads
+        return {f: float(x) for f, x in zip(s.dofs.moved, whole[self.n :])}
 
     def shear(self, u: Array, states: Sequence[State], d: int, nodes: Sequence[int] | None) -> float:
         """Force on the ground along direction `d` [F]: at the supports `nodes`,
@@ -89,9 +89,9 @@ class Ground:
             rows.append(("ground below springs and walls with one node", -grounded))
         if couples.any():
             rows.append(("couples that springs and contacts without length do not carry", -couples))
-        if s.geometric or s.chords:
-            turned = self.geometric @ full + s.chords.forces(full)
-            rows.append(("axial forces on displaced members", -self.rigid @ turned))
+        if s.geometric or s.corotational:
+            stationary = self.geometric @ full + s.corotational.forces(full)
+            rows.append(("axial forces on displaced members", -self.rigid @ stationary))
         rows.append(("sum", sum(x for _, x in rows)))
         return [(name, *map(float, x)) for name, x in rows]
 
@@ -120,9 +120,9 @@ class Ground:
         for number, parts in s.parts.items():
             between = int(s.model.elements[number].j is not None)
             for b in parts.stiffness:
-                moved = [[s.freedoms.value([f], [1.0], line) for f in b.freedoms] for line in self.rigid]
+                moved = [[s.dofs.value([f], [1.0], line) for f in b.dofs] for line in self.rigid]
                 for way, force in enumerate(_above_rounding(np.array(moved), b.matrix)):
-                    s.freedoms.add(linear[between, way], b.freedoms, force)
+                    s.dofs.add(linear[between, way], b.dofs, force)
         nonlinear = np.zeros((2, len(s.laws), 3))
         for i, (x, (at, row)) in enumerate(zip(s.laws, by_rows(s.law_rows))):
             between = int(s.model.elements[x.element].j is not None)
@@ -136,9 +136,9 @@ def _above_rounding(a: Array, b: Array) -> Array:
     return np.where(np.abs(product) > ROUNDING * (np.abs(a) @ np.abs(b)), product, 0.0)
 
 
-def _rigid(structure: Structure, freedom: Freedom) -> tuple[float, float, float]:
-    """Motion of a node's freedom when the whole moves along x, along y, and turns about the origin."""
-    owner, d = freedom
+def _rigid(structure: Structure, dof: Dof) -> tuple[float, float, float]:
+    """Motion of a node's DOF when the whole moves along x, along y, and turns about the origin."""
+    owner, d = dof
     if d > 2:
         return 0.0, 0.0, 0.0
     node = structure.model.nodes[owner]

@@ -1,7 +1,7 @@
 """HISTORY: the motion under the ground motions, from the static state.
 
-Chooses nothing and integrates nothing itself: it prepares the scene's start, hands it to the method,
-and turns the samples that come back into histories, envelopes and tables.
+Chooses nothing and integrates nothing itself: it prepares the reduced system's start, hands it to the
+method, and turns the samples that come back into histories, envelopes and tables.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ import numpy as np
 
 from pound_deck.model import Model
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.integrate.protocol import ENERGIES, LawValues, Start, Watch, energies
-from pound_solve.laws.automaton import State, follow, settle
+from pound_solve.integrate.protocol import ENERGIES, LawValues, MonitoredOutputs, Start, energies
+from pound_solve.laws.automaton import State, consistent, drive
 from pound_solve.numerics.matrices import layers, least_squares, used_columns, used_rows, weighted
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.assembly import Structure
 from pound_solve.structure.elements.base import Output
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 Append = Callable[[Mapping[str, Array]], None]
 
@@ -63,7 +63,7 @@ SPEC = Spec(
 def initial(structure: Structure) -> tuple[Array, Array]:
     """Displacement and velocity of the unknowns from the INITIAL cards, shape (n_free,) each."""
     n = structure.n_free
-    column = {f: i for i, f in enumerate(structure.freedoms.free)}
+    column = {f: i for i, f in enumerate(structure.dofs.free)}
     u, v = np.zeros(n), np.zeros(n)
     for card in structure.model.initial:
         for node in card["NODES"]:
@@ -77,7 +77,7 @@ def initial(structure: Structure) -> tuple[Array, Array]:
 
 def begin(
     structure: Structure,
-    scene: Scene,
+    system: ReducedSystem,
     u: Array,
     v: Array,
     states: Sequence[State],
@@ -85,14 +85,14 @@ def begin(
     times: Array,
 ) -> Start:
     """State at t = 0: the static one, plus INITIAL, the laws led along from the one to the other."""
-    keep = scene.columns
+    keep = system.columns
     u0, v0 = u[keep], v[keep]
-    _lead_massless(scene, u0, u0 - u_static[keep])
+    _lead_massless(system, u0, u0 - u_static[keep])
     before = structure.law_rows[:, : structure.n_free] @ u_static
-    after = scene.law_rows @ u0 + scene.law_inputs @ scene.excitation.value(0.0)
-    rates = scene.law_rows @ v0 + scene.law_inputs @ scene.excitation.value(0.0, 1)
+    after = system.law_rows @ u0 + system.law_inputs @ system.excitation.value(0.0)
+    rates = system.law_rows @ v0 + system.law_inputs @ system.excitation.value(0.0, 1)
     led = tuple(
-        settle(s.law, follow(s.law, x, d0, d1) if d0 != d1 else x, d1, rate)
+        consistent(s.law, drive(s.law, x, d0, d1) if d0 != d1 else x, d1, rate)
         for s, x, d0, d1, rate in zip(
             structure.laws, states, before.tolist(), after.tolist(), rates.tolist()
         )
@@ -100,29 +100,29 @@ def begin(
     return Start(u0, v0, led, times)
 
 
-def _lead_massless(scene: Scene, u: Array, pushed: Array) -> None:
+def _lead_massless(system: ReducedSystem, u: Array, pushed: Array) -> None:
     """Let massless undamped unknowns that INITIAL leaves alone follow those that it pushes,
     on the stiffness at rest: nothing could hold them back.
     """
-    laws = scene.structure.laws
-    idle = massless(scene.mass) & (pushed == 0.0) & ~used_rows(scene.damping)
+    laws = system.structure.laws
+    idle = massless(system.mass) & (pushed == 0.0) & ~used_rows(system.damping)
     damped = [i for i, s in enumerate(laws) if s.beta != 0.0 or s.is_contact]
-    idle &= ~used_columns(scene.law_rows[damped])
+    idle &= ~used_columns(system.law_rows[damped])
     if idle.any() and pushed.any():
-        k = scene.stiffness + weighted(scene.law_rows, [s.k0 for s in laws])
+        k = system.stiffness + weighted(system.law_rows, [s.k0 for s in laws])
         own, others = np.flatnonzero(idle), np.flatnonzero(~idle)
         away = k[np.ix_(own, others)] @ pushed[others]
         u[own] -= least_squares(k[np.ix_(own, own)], away)
 
 
-def watch(structure: Structure, scene: Scene) -> Watch:
-    """Rows of the DRIFT cards over the scene's unknowns."""
+def monitored(structure: Structure, system: ReducedSystem) -> MonitoredOutputs:
+    """Rows of the DRIFT cards over the reduced system's unknowns."""
     cards = structure.model.drifts
     ways = ["XY".index(c["DIRECTION"]) for c in cards]
-    rows = structure.freedoms.rows(
+    rows = structure.dofs.rows(
         [(((c["J"], way), (c["I"], way)), (1.0, -1.0)) for c, way in zip(cards, ways)]
     )
-    return Watch([c["NAME"] for c in cards], *scene.over(rows))
+    return MonitoredOutputs([c["NAME"] for c in cards], *system.over(rows))
 
 
 def heights(model: Model) -> list[float]:
@@ -165,7 +165,7 @@ class Envelope:
         return list(zip(self.high.tolist(), self.t_high.tolist(), self.low.tolist(), self.t_low.tolist()))
 
 
-class Survey:
+class Envelopes:
     """Envelopes of the motion of some nodes and of the forces of some members.
 
     Attributes
@@ -180,33 +180,33 @@ class Survey:
         Number of instants between the samples that were counted in, longest time from one to the next [T].
     """
 
-    def __init__(self, scene: Scene, nodes: Sequence[int], outputs: Sequence[Output]) -> None:
-        freedoms, place = scene.structure.freedoms, scene.structure.model.nodes
-        self.scene, self.n_nodes = scene, len(nodes)
-        of_u, on_inputs, at_rest = scene.over(freedoms.matrix([(n, d) for n in nodes for d in range(3)]))
+    def __init__(self, system: ReducedSystem, nodes: Sequence[int], outputs: Sequence[Output]) -> None:
+        dofs, place = system.structure.dofs, system.structure.model.nodes
+        self.system, self.n_nodes = system, len(nodes)
+        of_u, on_inputs, at_rest = system.over(dofs.matrix([(n, d) for n in nodes for d in range(3)]))
         # motion of the nodes when they ride on the ground: x, y, and a turn about the origin
         x, y = (np.array([getattr(place[n], c) for n in nodes]) for c in "xy")
         ridden = np.zeros((len(nodes), 3, 3))
         ridden[:, 0, 0] = ridden[:, 1, 1] = ridden[:, 2, 2] = 1.0
         ridden[:, 0, 2], ridden[:, 1, 2] = -y, x
-        ground = ridden.reshape(-1, 3) @ scene.acceleration_inputs
+        ground = ridden.reshape(-1, 3) @ system.acceleration_inputs
         # what never moves needs no products
         moves = used_rows(of_u) | np.any(np.column_stack([on_inputs, at_rest, ground]), axis=1)
         self.still, self.moving = np.flatnonzero(~moves), np.flatnonzero(moves)
         at = self.moving
         self.layers = layers(of_u[at])  # next to always one: a node has unknowns of its own
         self.on_inputs, self.at_rest, self.ground = on_inputs[at], at_rest[at, None], ground[at]
-        self.of_u, self.out_s, constants = scene.over(
-            freedoms.rows([(o.freedoms, o.u_row.tolist()) for o in outputs])
+        self.of_u, self.out_s, constants = system.over(
+            dofs.rows([(o.dofs, o.u_row.tolist()) for o in outputs])
         )
-        self.of_v, self.out_rate, _ = scene.over(
-            freedoms.rows([(o.freedoms, () if o.v_row is None else o.v_row.tolist()) for o in outputs])
+        self.of_v, self.out_rate, _ = system.over(
+            dofs.rows([(o.dofs, () if o.v_row is None else o.v_row.tolist()) for o in outputs])
         )
         self.damped = bool(used_rows(self.of_v).any() or self.out_rate.any())
         self.constants = np.array([o.constant for o in outputs]) + constants
-        self.shares = scene.chords.shares([(o.element, o.quantity) for o in outputs])
+        self.shares = system.corotational.shares([(o.element, o.quantity) for o in outputs])
         self.shown = used_columns(of_u) | used_columns(self.of_u) | used_columns(self.of_v)
-        self.shown |= bool(scene.chords)  # they look at all
+        self.shown |= bool(system.corotational)  # they look at all
         self._clear()
 
     def _clear(self) -> None:
@@ -214,13 +214,13 @@ class Survey:
         self.output = Envelope(len(self.constants))
         self.seen, self.apart = 0, 0.0
 
-    def blank(self) -> Survey:
+    def blank(self) -> Envelopes:
         """Return one of the same quantities that has seen nothing."""
         other = copy.copy(self)
         other._clear()
         return other
 
-    def widen(self, other: Survey) -> None:
+    def widen(self, other: Envelopes) -> None:
         """Count in what another one of the same quantities has seen."""
         for q, envelope in self.node.items():
             envelope.widen(other.node[q])
@@ -228,13 +228,15 @@ class Survey:
         self.seen, self.apart = self.seen + other.seen, max(self.apart, other.apart)
 
     def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
-        """Count in instants between the samples (see `integrate.base.Sink`)."""
-        self._count(t, u, v, a, [self.scene.excitation.values(t, order).T for order in range(3)])
+        """Count in instants between the samples (see `integrate.base.HistoryRecorder`)."""
+        self._count(t, u, v, a, [self.system.excitation.values(t, order).T for order in range(3)])
         self.seen, self.apart = self.seen + len(t), max(self.apart, apart)
 
-    def turned(self, t: Array, u: Array) -> None:
-        """Count in displacements that turn between those instants (see `integrate.base.Sink`)."""
-        self.node["u"].take(self._on_nodes(u, self.scene.excitation.values(t).T, "u"), t, self.moving)
+    def stationary(self, t: Array, u: Array) -> None:
+        """Count in displacements that turn between those instants (see
+        `integrate.base.HistoryRecorder`).
+        """
+        self.node["u"].take(self._on_nodes(u, self.system.excitation.values(t).T, "u"), t, self.moving)
 
     def take(
         self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]
@@ -260,9 +262,9 @@ class Survey:
         out = self.of_u @ u + self.out_s @ s[0] + self.constants[:, None]
         if self.damped:
             out += self.of_v @ v + self.out_rate @ s[1]
-        if self.scene.chords:
+        if self.system.corotational:
             at, share = self.shares
-            seen = self.scene.chords.survey(self.scene.quantities(u.T, s[0].T))[:, at, 1:]
+            seen = self.system.corotational.envelopes(self.system.quantities(u.T, s[0].T))[:, at, 1:]
             out += (share * seen).sum(axis=2).T
         for q, values in node.items():
             self.node[q].take(values, t, self.moving)
@@ -281,13 +283,13 @@ class Survey:
         return out
 
 
-class Recorder:
+class HistoryRecorder:
     """Takes the method's samples, writes histories in blocks and keeps envelopes.
 
     Parameters
     ----------
-    scene : Scene
-    drifts : Watch
+    system : ReducedSystem
+    drifts : MonitoredOutputs
     append : callable
         Takes a block of histories, see `results.Writer.append`.
     progress : callable
@@ -298,20 +300,20 @@ class Recorder:
 
     def __init__(
         self,
-        scene: Scene,
-        drifts: Watch,
+        system: ReducedSystem,
+        drifts: MonitoredOutputs,
         append: Append,
         progress: Callable[[float, str], None],
         first_energy: Array | None = None,
     ) -> None:
-        structure = scene.structure
+        structure = system.structure
         model = structure.model
-        self.scene, self.drifts, self._append, self._progress = scene, drifts, append, progress
+        self.system, self.drifts, self._append, self._progress = system, drifts, append, progress
         chosen = model.output["NODES"]
         self.nodes = tuple(model.nodes) if chosen is None else tuple(dict.fromkeys(chosen))
         elements = model.output["MEMBERS"]
         self.outputs = [o for o in structure.outputs if elements is None or o.element in elements]
-        self.survey = Survey(scene, self.nodes, self.outputs)
+        self.envelopes = Envelopes(system, self.nodes, self.outputs)
         self.springs = [i for i, s in enumerate(structure.laws) if not s.is_contact]
         self.contacts = [i for i, s in enumerate(structure.laws) if s.is_contact]
         self.first_energy = np.zeros(len(ENERGIES)) if first_energy is None else first_energy
@@ -323,15 +325,13 @@ class Recorder:
         self.reached = -1.0
         self.last: tuple[Array, Array, Array] = (np.zeros(0), np.zeros(0), np.zeros(3))  # u, v, works
         self._blocks: list[tuple[Any, ...]] = []
-        widest = max(
-            structure.freedoms.size, 3 * len(self.nodes), len(self.outputs), len(structure.laws), 1
-        )
+        widest = max(structure.dofs.size, 3 * len(self.nodes), len(self.outputs), len(structure.laws), 1)
         self._most = min(BLOCK, max(HELD // widest, 1))
 
     def layout(self) -> dict[str, tuple[tuple[int, ...], dict[str, Any]]]:
         """What `results.Writer.start_history` needs."""
-        laws = self.scene.structure.laws
-        model = self.scene.structure.model
+        laws = self.system.structure.laws
+        model = self.system.structure.model
         three = {"nodes": self.nodes, "labels": ["X", "Y", "R"]}
 
         springs = [laws[i] for i in self.springs]
@@ -362,26 +362,26 @@ class Recorder:
             ),
             "drift": ((len(self.drifts.names),), {"labels": list(self.drifts.names), "unit": "L"}),
             "ground": (
-                (len(self.scene.motions),),
+                (len(self.system.motions),),
                 {
-                    "labels": [f"{i + 1} {m.direction}" for i, m in enumerate(self.scene.motions)],
-                    "unit": ["rad/T^2" if m.direction == "R" else "L/T^2" for m in self.scene.motions],
+                    "labels": [f"{i + 1} {m.direction}" for i, m in enumerate(self.system.motions)],
+                    "unit": ["rad/T^2" if m.direction == "R" else "L/T^2" for m in self.system.motions],
                 },
             ),
             "force": (
-                (len(self.scene.forces),),
-                {"labels": [f"{i + 1} {f.info['kind']}" for i, f in enumerate(self.scene.forces)]},
+                (len(self.system.forces),),
+                {"labels": [f"{i + 1} {f.info['kind']}" for i, f in enumerate(self.system.forces)]},
             ),
             "energy": ((7,), {"labels": [*ENERGIES, "residual"], "unit": "F*L"}),
         }
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take some samples (see `integrate.base.Sink`)."""
+        """Take some samples (see `integrate.base.HistoryRecorder`)."""
         self.keep(t, u, v, a, laws, works)
         self._progress(self.reached, "")
 
     def keep(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take some samples whose progress was told before (see `integrate.base.Keeper`)."""
+        """Take some samples whose progress was told before (see `integrate.base.EnvelopeRecorder`)."""
         new = t > self.reached  # but not the start of a part, where another ended
         if not new.any():
             return
@@ -393,25 +393,25 @@ class Recorder:
             self.flush()
 
     def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
-        """Widen the envelopes only (see `integrate.base.Sink`)."""
-        self.survey.between(t, u, v, a, apart)
+        """Widen the envelopes only (see `integrate.base.HistoryRecorder`)."""
+        self.envelopes.between(t, u, v, a, apart)
 
-    def turned(self, t: Array, u: Array) -> None:
-        """Widen the envelopes of displacements only (see `integrate.base.Sink`)."""
-        self.survey.turned(t, u)
+    def stationary(self, t: Array, u: Array) -> None:
+        """Widen the envelopes of displacements only (see `integrate.base.HistoryRecorder`)."""
+        self.envelopes.stationary(t, u)
 
     @property
     def shown(self) -> Flags:
-        """Which unknowns `between` looks at (see `integrate.base.Sink`)."""
-        return self.survey.shown
+        """Which unknowns `between` looks at (see `integrate.base.HistoryRecorder`)."""
+        return self.envelopes.shown
 
     def trial(self, t: float, doing: str = "") -> None:
-        """Tell the progress of a run whose samples may not count (see `integrate.base.Sink`)."""
+        """Tell the progress of a run whose samples may not count (see `integrate.base.HistoryRecorder`)."""
         self._progress(t, doing)
 
     @property
     def started(self) -> bool:
-        """Whether there was a sample: a method may refuse the scene at once."""
+        """Whether there was a sample: a method may refuse the reduced system at once."""
         return self.reached >= 0.0
 
     def _residuals(self, energy: Array) -> Array:
@@ -423,15 +423,15 @@ class Recorder:
         """Write the samples that are held."""
         if not self._blocks:
             return
-        scene, laws = self.scene, self.scene.structure.laws
+        system, laws = self.system, self.system.structure.laws
         t, u, v, a, force, stored, lost, works = (
             np.concatenate(parts, axis=-1) for parts in zip(*self._blocks)
         )
         self._blocks = []
-        inputs = [scene.excitation.values(t, order).T for order in range(3)]
+        inputs = [system.excitation.values(t, order).T for order in range(3)]
         s = inputs[0]
-        d = scene.law_rows @ u + scene.law_inputs @ s
-        energy = energies(scene, t, u.T, v.T, stored.T, lost.T, works.T)
+        d = system.law_rows @ u + system.law_inputs @ s
+        energy = energies(system, t, u.T, v.T, stored.T, lost.T, works.T)
         if self._fresh:
             self.first_energy, self._fresh = energy[0], False
         residual = self._residuals(energy)
@@ -439,7 +439,7 @@ class Recorder:
         self.energy_peak = max(self.energy_peak, float(np.abs(energy).max()))
         self.residual_peak = max(self.residual_peak, float(np.abs(residual).max()))
         self.losses, self.deformations = lost[:, -1].tolist(), d[:, -1].tolist()
-        node, out = self.survey.take(t, u, v, a, inputs)
+        node, out = self.envelopes.take(t, u, v, a, inputs)
         gaps = np.array([laws[i].facts["gap"] for i in self.contacts])
         self._append(
             {
@@ -454,9 +454,9 @@ class Recorder:
                     self.drifts.rows @ u + self.drifts.input_rows @ s + self.drifts.constants[:, None]
                 ).T,
                 "ground": np.array(
-                    [[float(m.acceleration.value(x)) for m in scene.motions] for x in t]
+                    [[float(m.acceleration.value(x)) for m in system.motions] for x in t]
                 ).reshape(len(t), -1),
-                "force": s[len(s) - len(scene.forces) :].T,
+                "force": s[len(s) - len(system.forces) :].T,
                 "energy": np.column_stack([energy, residual]),
             }
         )

@@ -79,8 +79,8 @@ def shape_rows(structure: Structure, count: int) -> list[tuple[float, ...]]:
     """Rows of the table ``mode_shapes``: every node, largest component 1."""
     shapes = structure.vibration(count).shapes
     nodes = list(structure.model.nodes)
-    every = structure.freedoms.matrix([(node, d) for node in nodes for d in range(3)])
-    pad = len(structure.freedoms.moved)
+    every = structure.dofs.matrix([(node, d) for node in nodes for d in range(3)])
+    pad = len(structure.dofs.moved)
     out: list[tuple[float, ...]] = []
     for i in range(count):
         full = np.concatenate([shapes[:, i], np.zeros(pad)])

@@ -48,8 +48,8 @@ MOST_CHANGES = 10_000
 MOST_RETURNS = 5  #: of all laws to the same branches in one place
 
 
-class Unstable(Exception):
-    """No equilibrium further on: a mechanism, named by its worst freedom; `code` numbers the message."""
+class InstabilityError(Exception):
+    """No equilibrium further on: a mechanism, named by its worst DOF; `code` numbers the message."""
 
     def __init__(self, why: str, code: str = "A501") -> None:
         super().__init__(why)
@@ -64,7 +64,7 @@ class Mark(NamedTuple):
     value: float
 
 
-class Exit(NamedTuple):
+class PathEvent(NamedTuple):
     """A law that has come to an exit of its branch."""
 
     law: int
@@ -133,8 +133,8 @@ class Path:
         self.lead = np.zeros(len(self.laws)) if lead is None else lead
         self.factor, self.changes = 0.0, 0
         self._here: Counter[tuple[int, ...]] = Counter()  # branches of all laws since the last move
-        self.chords = structure.chords.on(slice(n))
-        self.curved = len(self.chords) > 0 or any(s.law.curved for s in self.laws)
+        self.corotational = structure.corotational.on(slice(n))
+        self.curved = len(self.corotational) > 0 or any(s.law.curved for s in self.laws)
         self.branches = [s.law.branch(x) for s, x in zip(self.laws, self.states)]
         self._lost = np.zeros(n)  # what laws have let go, not yet handed over
         self._most = float(np.abs(applied).max(initial=0.0))
@@ -163,7 +163,7 @@ class Path:
         rest, size = self._rest(self.u, self.factor)
         return _share(rest, np.append(size, self._most))
 
-    def step(self, marks: Sequence[Mark]) -> Exit | int | None:
+    def step(self, marks: Sequence[Mark]) -> PathEvent | int | None:
         """Go on to the first exit of a law, to the first mark (its index), or, after a law has let go of a
         force, to where the others have taken it (None).
 
@@ -178,12 +178,12 @@ class Path:
             while (found := self._bent(marks) if self.curved else self._straight(marks)) is None:
                 pass
             return found
-        except Unstable as err:
+        except InstabilityError as err:
             if self.factor == 0.0:
                 raise
-            raise Unstable(f"{err}; at load factor {self.factor:.6g}", err.code) from None
+            raise InstabilityError(f"{err}; at load factor {self.factor:.6g}", err.code) from None
 
-    def leave(self, exit_: Exit) -> Change:
+    def transition(self, exit_: PathEvent) -> Change:
         """Put a law onto its next branch.
 
         Raises
@@ -194,10 +194,10 @@ class Path:
         i, law = exit_.law, self.laws[exit_.law].law
         d, before = float(self.deformations(self.u, self.factor)[i]), self.branches[i].name
         held = law.force(self.states[i], d)[0]
-        self.states[i] = law.leave(self.states[i], exit_.way, d)
+        self.states[i] = law.transition(self.states[i], exit_.way, d)
         self.branches[i] = law.branch(self.states[i])
         if self.branches[i].held:
-            raise Unstable(
+            raise InstabilityError(
                 f"the rigid contact {self.laws[i].element} ({self.laws[i].rule}) closes, and statics knows "
                 "no force for it: HISTORY FROM=REST lets it meet, or a LAW with a stiffness serves",
                 "A507",
@@ -207,11 +207,13 @@ class Path:
             self._lost = self._lost + let_go * self.rows[i]
         self.changes += 1
         if self.changes > MOST_CHANGES:
-            raise Unstable(f"more than {MOST_CHANGES} changes of state of springs and contacts", "A507")
+            raise InstabilityError(
+                f"more than {MOST_CHANGES} changes of state of springs and contacts", "A507"
+            )
         same = tuple(state[0] for state in self.states)
         self._here[same] += 1
         if self._here[same] > MOST_RETURNS:
-            raise Unstable(
+            raise InstabilityError(
                 f"there is no way on without a jump: element {self.laws[i].element} loses its strength "
                 "faster than what it is joined to gives way, and changes state again and again in the "
                 f"same place; at load factor {self.factor:.6g}",
@@ -219,36 +221,36 @@ class Path:
             )
         return Change(i, before, self.branches[i].name)
 
-    def _straight(self, marks: Sequence[Mark]) -> Exit | int:
+    def _straight(self, marks: Sequence[Mark]) -> PathEvent | int:
         """Go along a straight piece to its end."""
         du, rise, best, found = self._ahead(marks)
         if found is None:
-            raise Unstable("nothing lies ahead: the end of this analysis moves away", "A507")
+            raise InstabilityError("nothing lies ahead: the end of this analysis moves away", "A507")
         if best > 0.0:
             self._move(self.u + best * du, self.factor + best * rise)
         return found
 
-    def _hand_over(self) -> Exit | None:
+    def _hand_over(self) -> PathEvent | None:
         """Let the others take what laws have let go, while the control stands still."""
         if self.curved:
             self._lost = np.zeros(len(self.u))
             there = self._point(0.0, 0.0 * self.u, 0.0, ())
             if there is None:
-                raise Unstable("nothing takes the force that was let go", "A507")
+                raise InstabilityError("nothing takes the force that was let go", "A507")
             self._move(*there[0])
             return None
         du, rise, best, found = self._ahead(())
         share = min(best, 1.0)
         self._move(self.u + share * du, self.factor + share * rise)
         self._lost = (1.0 - share) * self._lost
-        return found if isinstance(found, Exit) and best < 1.0 else None
+        return found if isinstance(found, PathEvent) and best < 1.0 else None
 
-    def _ahead(self, marks: Sequence[Mark]) -> tuple[Array, float, float, Exit | int | None]:
+    def _ahead(self, marks: Sequence[Mark]) -> tuple[Array, float, float, PathEvent | int | None]:
         """Rates of displacements and load factor, distance to what comes first, and what that is."""
         d = self.deformations(self.u, self.factor)
         du, rise, rate, noise = self.rates(self.u, self.factor)
         best = np.inf
-        found: Exit | int | None = None
+        found: PathEvent | int | None = None
         for j, (row, share, value) in enumerate(marks):
             slope = float(row @ du) + share * rise
             if slope > 0.0:
@@ -271,7 +273,7 @@ class Path:
                     now = a * di + c
                     at = 0.0 if now > -NEAR * (abs(a) * size + abs(c)) else -now / (a * vi)
                 if at < best:
-                    best, found = at, Exit(i, way)
+                    best, found = at, PathEvent(i, way)
         return du, rise, best, found
 
     def rates(self, u: Array, factor: float) -> tuple[Array, float, Array, Array]:
@@ -287,20 +289,20 @@ class Path:
         self._here.clear()
         self._most = max(self._most, float(np.abs(self.applied).max(initial=0.0)))
 
-    def _bent(self, marks: Sequence[Mark]) -> Exit | int | None:
+    def _bent(self, marks: Sequence[Mark]) -> PathEvent | int | None:
         """Go one increment along a bent piece, or to its end; None where nothing happened on the way."""
         du, rise, best, found = self._ahead(marks)
         if best == 0.0:
             return found
         span = min(best, self._stride)
         if not np.isfinite(span):
-            raise Unstable("nothing lies ahead: the end of this analysis moves away", "A507")
+            raise InstabilityError("nothing lies ahead: the end of this analysis moves away", "A507")
         while (found_there := self._point(span, du, rise, marks)) is None:
             span = self._stride = 0.5 * span
             if span < 1e-9 * self._longest:
                 # with the load as control there is none; a displacement could go on somehow
                 code = "A501" if self.control is None else "A507"
-                raise Unstable("no equilibrium was found further on: the strength is used up", code)
+                raise InstabilityError("no equilibrium was found further on: the strength is used up", code)
         self._stride = min(2.0 * self._stride, self._longest)
         end, values = found_there
         start = self._values(self.u, self.factor, marks)
@@ -325,7 +327,7 @@ class Path:
         first = crossed[0]
         if first < len(marks):
             return first
-        exits = [Exit(i, way) for i, b in enumerate(self.branches) for way in range(len(b.exits))]
+        exits = [PathEvent(i, way) for i, b in enumerate(self.branches) for way in range(len(b.exits))]
         return exits[first - len(marks)]
 
     def _values(self, u: Array, factor: float, marks: Sequence[Mark]) -> list[float]:
@@ -362,7 +364,7 @@ class Path:
                     return (u, factor), self._values(u, factor, marks)
                 stiffness = self.forces(self.deformations(u, factor))[1]
                 more, up = self._linear(u, stiffness, -rest, 0.0)
-            except Unstable:
+            except InstabilityError:
                 return None
             last, u, factor = error, u + more, factor + up
         return None
@@ -372,13 +374,13 @@ class Path:
         force = self.forces(self.deformations(u, factor))[0]
         applied = self.applied + (factor - self.factor) * self.load
         size = np.abs(self.k) @ np.abs(u) + np.abs(self.rows.T) @ np.abs(force) + np.abs(applied)
-        turned = self.chords.forces(u)
-        return self.k @ u + turned + self.rows.T @ force - applied, size + np.abs(turned)
+        stationary = self.corotational.forces(u)
+        return self.k @ u + stationary + self.rows.T @ force - applied, size + np.abs(stationary)
 
     def _stiffness(self, u: Array, stiffness: Array) -> Matrix:
         law, i, j = (x.astype(int) for x in self._outer)
         k = self.k + gathered(self.k.shape, i, j, stiffness[law] * self._product)
-        return k + self.chords.stiffness(u) if self.chords else k
+        return k + self.corotational.stiffness(u) if self.corotational else k
 
     def _linear(self, u: Array, stiffness: Array, force: Array, go: float) -> tuple[Array, float]:
         """Change of displacements and load factor by a further `force`, while the control goes by `go`."""
@@ -399,7 +401,7 @@ def _crossed(before: Sequence[float], after: Sequence[float]) -> list[int]:
 
 
 def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
-    """Solve K u = load; freedoms without stiffness stay at zero if nothing loads them.
+    """Solve K u = load; DOFs without stiffness stay at zero if nothing loads them.
 
     What is small beside the `usual` load counts as nothing.
 
@@ -415,7 +417,7 @@ def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
         own = dense(structure.law_rows[:, [first]]).ravel()
         touched = any(s.is_contact and x != 0.0 for s, x in zip(structure.laws, own))
         hint = ": only an open contact could; HISTORY FROM=REST lets it come down" if touched else ""
-        raise Unstable(f"{name_of(structure, first)} is loaded, but nothing holds it{hint}")
+        raise InstabilityError(f"{name_of(structure, first)} is loaded, but nothing holds it{hint}")
     at, u = np.flatnonzero(held), np.zeros(len(load))
     if not len(at):
         return u
@@ -423,7 +425,7 @@ def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
     whole, push = Held(scaled(k[np.ix_(at, at)], root)), root * load[at]
     if whole.negative is not None:
         worst = at[_largest(whole.negative)]
-        raise Unstable(
+        raise InstabilityError(
             "the stiffness is negative: the structure has collapsed, "
             f"worst at {name_of(structure, int(worst))}"
         )
@@ -431,7 +433,7 @@ def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
     size = max(float(np.linalg.norm(push)), float(np.abs(root * usual[at]).max()))
     if np.any(np.abs(along) > 1e-10 * size):
         worst = at[_largest(whole.slack @ along)]
-        raise Unstable(
+        raise InstabilityError(
             f"the loaded structure is a mechanism, worst at {name_of(structure, int(worst))} "
             "(or parts of it are so much stiffer than others that it cannot be told from one: END1, END2 "
             "or SLAVED make parts rigid)"
@@ -462,7 +464,7 @@ def controlled(k: Matrix, push: Array, control: Array, force: Array, go: float) 
     p, c, f = root * push[at], root * control[at], root * force[at]
     p_size, c_size = float(np.linalg.norm(p)), float(np.linalg.norm(c))
     if p_size == 0.0:
-        raise Unstable("the pattern loads nothing that can move", "A505")
+        raise InstabilityError("the pattern loads nothing that can move", "A505")
     # a mechanism that neither the load nor the control moves (a free diaphragm) stays where it is
     m, slack = len(at), Held(whole).slack
     idle = slack[
@@ -479,7 +481,7 @@ def controlled(k: Matrix, push: Array, control: Array, force: Array, go: float) 
     )
     x = x[: m + 1]
     if not np.all(np.isfinite(x)) or np.abs(x).max() > 1e13 * max(abs(go) / c_size, np.abs(f).max()):
-        raise Unstable("the forces no longer move the control displacement: other parts give way")
+        raise InstabilityError("the forces no longer move the control displacement: other parts give way")
     u = np.zeros(k.shape[0])
     u[at] = root * x[:m]
     return u, float(x[m]) / p_size
@@ -493,4 +495,4 @@ def _root(k: Matrix) -> Array:
 
 def name_of(structure: Structure, index: int) -> str:
     """Unknown in words."""
-    return label(structure.freedoms.free[index])
+    return label(structure.dofs.free[index])

@@ -34,8 +34,8 @@ import numpy as np
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.analyses.equilibrium import Ground
-from pound_solve.analyses.path_following import Change, Exit, Mark, Path, Unstable
+from pound_solve.analyses.equilibrium import SupportReactions
+from pound_solve.analyses.path_following import Change, InstabilityError, Mark, Path, PathEvent
 from pound_solve.analyses.static import StaticState
 from pound_solve.numerics import modes
 from pound_solve.numerics.types import Array
@@ -79,7 +79,7 @@ class Pushed:
     first: Array = field(default_factory=lambda: np.zeros(0))
     last: Array = field(default_factory=lambda: np.zeros(0))
     end: str = ""
-    failed: Unstable | None = None
+    failed: InstabilityError | None = None
     unbalanced: float = 0.0
 
 
@@ -148,14 +148,14 @@ def push(structure: Structure, state: StaticState, card: Card) -> Pushed:
     target, factor, by_load = card["TARGET"], card["FACTOR"], card["CONTROL"] == "FORCE"
     start = float(control @ state.u)
     if target == start:
-        raise Unstable(f"the control node stands at its target {target:g} already", "A505")
+        raise InstabilityError(f"the control node stands at its target {target:g} already", "A505")
     pattern = Pattern(structure, card)
     path = Path(
         structure, state.u, state.states, structure.loads[:n], np.zeros(n), None if by_load else control
     )
     path.load = pattern.follow(path)
     if not path.load.any():
-        raise Unstable("no mode of the static state moves the nodes that are pushed", "A505")
+        raise InstabilityError("no mode of the static state moves the nodes that are pushed", "A505")
     if not by_load:
         path.sign = math.copysign(1.0, target - start)
     elif factor is not None:
@@ -163,7 +163,7 @@ def push(structure: Structure, state: StaticState, card: Card) -> Pushed:
     else:  # the load grows or falls, whichever goes to the target
         du = path.rates(path.u, 0.0)[0]
         path.sign = math.copysign(1.0, (target - start) * float(control @ du))
-    ground = Ground(structure, state.axial)
+    ground = SupportReactions(structure, state.axial)
     out = Pushed(first=path.load)
 
     def here() -> Point:
@@ -196,11 +196,11 @@ def push(structure: Structure, state: StaticState, card: Card) -> Pushed:
         try:
             hit = path.step([*(m for m, _ in ends), at_station])
             point = here()
-            if isinstance(hit, Exit):
-                change = path.leave(hit)
+            if isinstance(hit, PathEvent):
+                change = path.transition(hit)
                 point = replace(point, changes=path.changes)
                 out.ladder.append((point, change))
-        except Unstable as err:
+        except InstabilityError as err:
             # by force that is the result: no more can be carried; by displacement the way goes on somewhere
             out.end, out.failed = str(err), None if by_load and err.code == "A501" else err
             note(here())
@@ -228,7 +228,7 @@ def _once(ladder: list[tuple[Point, Change]]) -> list[tuple[Point, Change]]:
 
 def tables(structure: Structure, card: Card, pushed: Pushed) -> dict[str, list[tuple[Any, ...]]]:
     """Rows of the tables ``pushover``, ``push_pattern``, ``capacity_curve`` and ``push_events``."""
-    units, free = structure.model.units, structure.freedoms.free
+    units, free = structure.model.units, structure.dofs.free
     length, force = units.text("L"), units.text("F")
     curve = [replace(p, displacement=_clean(p.displacement, pushed.curve)) for p in pushed.curve]
     top, end = max(curve, key=lambda x: abs(x.shear)), curve[-1]
@@ -275,7 +275,7 @@ def _clean(displacement: float, curve: list[Point]) -> float:
 def _control(structure: Structure, card: Card) -> Array:
     """Row of the control displacement, shape (n_free,)."""
     at = (card["NODE"], "XY".index(card["DIRECTION"]))
-    return structure.freedoms.row([at], [1.0])[: structure.n_free]
+    return structure.dofs.row([at], [1.0])[: structure.n_free]
 
 
 class Pattern:
@@ -296,13 +296,13 @@ class Pattern:
 
     def __init__(self, structure: Structure, card: Card) -> None:
         n, d = structure.n_free, "XY".index(card["DIRECTION"])
-        model, freedoms = structure.model, structure.freedoms
+        model, dofs = structure.model, structure.dofs
         kind, nodes = card["PATTERN"], card["NODES"]
         self.by_mode, self._stiff = kind == "MODE", 1
-        self.along = np.array([float(at == d) for _, at in freedoms.free])  # the whole moves by one
+        self.along = np.array([float(at == d) for _, at in dofs.free])  # the whole moves by one
         pushed = np.zeros(n)
         for node in model.nodes if nodes is None else nodes:
-            pushed[[i for i, _ in freedoms.terms[node, d] if i < n]] = 1.0
+            pushed[[i for i, _ in dofs.terms[node, d] if i < n]] = 1.0
         self.structure_mass = structure.mass[:n, :n]
         self.pushed = pushed * self.along
         self.mass = float(self._share(np.ones(n)).sum())
@@ -310,12 +310,12 @@ class Pattern:
         if kind == "LOADS":
             self.forces = structure.loads[:n]
         elif kind == "FORCES":
-            self.forces = freedoms.row([(node, d) for node in nodes], card["FORCES"])[:n]
+            self.forces = dofs.row([(node, d) for node in nodes], card["FORCES"])[:n]
         elif kind == "UNIFORM":
             self.forces = self._of(np.ones(n))
         elif kind == "TRIANGULAR":
             base = min((node.y for node in model.nodes.values() if node.fixed), default=0.0)
-            height = [model.nodes[owner].y - base if at == d else 0.0 for owner, at in freedoms.free]
+            height = [model.nodes[owner].y - base if at == d else 0.0 for owner, at in dofs.free]
             self.forces = self._of(np.array(height))
 
     def _share(self, shape: Array) -> Array:

@@ -17,7 +17,7 @@ from pound_solve.laws.automaton import MEMORY, State
 from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import Structure
 from pound_solve.structure.dofs import label
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 
 class RestartError(Exception):
@@ -36,7 +36,7 @@ class Saved:
         Displacements and velocities of the structure's unknowns.
     states : tuple of State
     works : ndarray, shape (3,)
-        See `integrate.base.Sink`.
+        See `integrate.base.HistoryRecorder`.
     first : ndarray, shape (6,)
         Energies at the start of the whole history.
     """
@@ -62,7 +62,7 @@ class Saved:
             "memory": np.array([(*s[3], 0.0, 0.0)[: MEMORY + 2] for s in self.states]).reshape(
                 -1, MEMORY + 2
             ),
-            "freedoms": np.array(structure.freedoms.free, float).reshape(-1, 2),
+            "degrees of freedom": np.array(structure.dofs.free, float).reshape(-1, 2),
         }
 
 
@@ -74,9 +74,9 @@ def load(arrays: Mapping[str, Array], structure: Structure) -> Saved:
     RestartError
         It is not that of this structure.
     """
-    own = np.array(structure.freedoms.free, float).reshape(-1, 2)
-    if arrays["freedoms"].shape != own.shape or np.any(arrays["freedoms"] != own):
-        strange = set(map(tuple, own.tolist())) ^ set(map(tuple, arrays["freedoms"].tolist()))
+    own = np.array(structure.dofs.free, float).reshape(-1, 2)
+    if arrays["degrees of freedom"].shape != own.shape or np.any(arrays["degrees of freedom"] != own):
+        strange = set(map(tuple, own.tolist())) ^ set(map(tuple, arrays["degrees of freedom"].tolist()))
         names = ", ".join(sorted(label((int(a), int(b))) for a, b in strange)[:4]) or "their order"
         raise RestartError(f"the saved state is of a structure with other unknowns: {names}")
     if len(arrays["branch"]) != len(structure.laws):
@@ -95,9 +95,9 @@ def load(arrays: Mapping[str, Array], structure: Structure) -> Saved:
     )
 
 
-def resume(saved: Saved, scene: Scene, times: Array) -> Start:
-    """Start of a part: the saved state over the scene's unknowns."""
-    keep = scene.columns
+def resume(saved: Saved, system: ReducedSystem, times: Array) -> Start:
+    """Start of a part: the saved state over the reduced system's unknowns."""
+    keep = system.columns
     return Start(saved.u[keep], saved.v[keep], saved.states, times, saved.works)
 
 
@@ -128,7 +128,7 @@ def _both(a: Peaks, b: Peaks) -> Peaks:
         if c.peak > first.peak:
             first.peak, first.t_peak = c.peak, c.t_peak
     return Peaks(
-        [_wider(x, y) for x, y in zip(a.watch, b.watch)],
+        [_wider(x, y) for x, y in zip(a.monitored, b.monitored)],
         [_wider(x, y) for x, y in zip(a.deformation, b.deformation)],
         [_wider(x, y) for x, y in zip(a.force, b.force)],
         [x + y for x, y in zip(a.yields, b.yields)],

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.analyses.path_following import Exit, Mark, Path, Unstable
+from pound_solve.analyses.path_following import InstabilityError, Mark, Path, PathEvent
 from pound_solve.laws.automaton import State
 from pound_solve.numerics.matrices import Factor, Matrix, scaled, used_rows
 from pound_solve.numerics.modes import scaling
@@ -77,19 +77,23 @@ def solve(structure: Structure) -> StaticState:
     state = loaded(structure)
     if not structure.geometric:
         return state
-    pad = np.zeros(len(structure.freedoms.moved))
+    pad = np.zeros(len(structure.dofs.moved))
     axial = structure.axial(np.append(state.u, pad))
     k = tangent(structure, state)
     factor = buckling(k, tangent(structure.stressed(axial), state) - k)
     if factor <= 1.0:
-        raise Unstable(f"the structure buckles: its buckling load factor is {factor:.6g}, which is below 1")
+        raise InstabilityError(
+            f"the structure buckles: its buckling load factor is {factor:.6g}, which is below 1"
+        )
     for rounds in range(2, MOST_ROUNDS):
         state = loaded(structure.stressed(axial))
         found = structure.axial(np.append(state.u, pad))
         if np.abs(found - axial).max() <= 1e-12 * np.abs(found).max():
             return replace(state, axial=axial, buckling=factor, rounds=rounds)
         axial = found
-    raise Unstable(f"the axial forces did not settle within {MOST_ROUNDS} rounds of P-Delta", "A507")
+    raise InstabilityError(
+        f"the axial forces did not settle within {MOST_ROUNDS} rounds of P-Delta", "A507"
+    )
 
 
 def loaded(structure: Structure) -> StaticState:
@@ -104,8 +108,8 @@ def loaded(structure: Structure) -> StaticState:
     path = Path(structure, rest.u, rest.states, 0.0 * load, load, lead=lead)
     whole = Mark(0.0 * load, 1.0, 1.0)
     while (hit := path.step([whole])) != 0:
-        if isinstance(hit, Exit):
-            path.leave(hit)
+        if isinstance(hit, PathEvent):
+            path.transition(hit)
     return StaticState(path.u, tuple(path.states), path.changes)
 
 
@@ -124,7 +128,7 @@ def after(structure: Structure, state: StaticState) -> Structure:
 
 def buckling(k: Matrix, geometric: Matrix) -> float:
     """Smallest positive factor that makes ``K + factor * geometric`` singular;
-    infinite if none does, NaN if K is not positive definite on the freedoms that it holds.
+    infinite if none does, NaN if K is not positive definite on the DOFs that it holds.
     """
     at = np.flatnonzero(used_rows(k))
     if not len(at):

@@ -16,7 +16,7 @@ from pound_deck.diagnostics import has_errors, hints, render, suggest
 from pound_deck.reader import read_text
 from pound_deck.schema import Spec
 from pound_solve.catalog import catalog
-from pound_solve.laws.automaton import Law, NoProgressError, State, changes
+from pound_solve.laws.automaton import Law, NoProgressError, State, transitions
 from pound_solve.report.text_plot import svg
 from pound_solve.structure.assembly import AssemblyError, assemble
 from pound_solve.structure.elements.base import LawSpring
@@ -39,7 +39,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 AXES: Final = {"hysteresis": ("deformation", "force"), "contact": ("closure", "contact force")}
 
 
-class LoopError(Exception):
+class LawTestError(Exception):
     """A specimen that cannot be made, or cannot be driven."""
 
 
@@ -90,10 +90,10 @@ def law_of(name: str) -> Spec:
     if len(found) == 1:
         return found[0]
     if found:
-        raise LoopError(f"{word} is a rule and a contact law: write hysteresis {word} or contact {word}")
+        raise LawTestError(f"{word} is a rule and a contact law: write hysteresis {word} or contact {word}")
     there = "; ".join(f"{f}: {', '.join(known[f])}" for f in families)
     near = suggest(word, [name for f in families for name in known[f]])
-    raise LoopError(f"no law {word}: " + hints(near, f"there are {there}"))
+    raise LawTestError(f"no law {word}: " + hints(near, f"there are {there}"))
 
 
 def specimen(spec: Spec, items: Sequence[str] = ()) -> tuple[LawSpring, str]:
@@ -112,7 +112,7 @@ def specimen(spec: Spec, items: Sequence[str] = ()) -> tuple[LawSpring, str]:
         The items are none of this law, or contradict each other: what the deck's reader says of them.
     """
     if spec.impl is None:
-        raise LoopError(f"{spec.name} is a straight line through zero: there is no loop")
+        raise LawTestError(f"{spec.name} is a straight line through zero: there is no loop")
     kind, left_out = _CARDS[spec.family]
     given = [" ".join(item.split()) for item in items] or spec.sample.split()
     names = {item.split("=")[0].strip().upper() for item in given}
@@ -122,13 +122,13 @@ def specimen(spec: Spec, items: Sequence[str] = ()) -> tuple[LawSpring, str]:
     deck = f"{nodes}PROPS\n LOOP {kind}={spec.name} {card}\nANALYSIS\n STATIC\n"
     model, found, files = read_text(deck, catalog(), name="loop")
     if model is None or has_errors(found):
-        raise LoopError(render(found, files))
+        raise LawTestError(render(found, files))
     try:
         (spring,) = assemble(model).laws
     except AssemblyError as err:
-        raise LoopError("\n".join(d.message for d in err.diagnostics)) from None
+        raise LawTestError("\n".join(d.message for d in err.diagnostics)) from None
     if spring.law.rigid:
-        raise LoopError(
+        raise LawTestError(
             f"{spec.name} is rigid: its force does not follow from its closure, there is no loop"
         )
     return spring, card
@@ -138,7 +138,7 @@ def has_loop(spec: Spec) -> bool:
     """Whether a rule or contact law has a loop to draw: ELASTIC and rigid contacts have none."""
     try:
         specimen(spec)
-    except LoopError:
+    except LawTestError:
         return False
     return True
 
@@ -155,7 +155,7 @@ def protocol(spring: LawSpring) -> list[float]:
         return [spring.facts["gap"] + x for x in CLOSURES]
     plus, minus = spring.yields or (0.0, 0.0)
     if plus == 0.0 or minus == 0.0:
-        raise LoopError("without a yield deformation on both sides the path must be given: --path")
+        raise LawTestError("without a yield deformation on both sides the path must be given: --path")
     return [mu * d for mu in DUCTILITIES for d in (plus, minus)] + [0.0]
 
 
@@ -191,13 +191,13 @@ def trace(law: Law, path: Sequence[float], rate: float = 0.0) -> Trace:
                     curve += [(x, law.force(state, x, v)[0]) for x in between]
                 state, d = new, at
         except NoProgressError as err:
-            raise LoopError(f"near deformation {d:g} {err}") from None
+            raise LawTestError(f"near deformation {d:g} {err}") from None
     return Trace(tuple(corners), tuple(curve))
 
 
 def _pieces(law: Law, state: State, d: float, goal: float, rate: float) -> Iterator[tuple[float, State]]:
     """Ends of the branches on the way, the state after each, and the goal."""
-    for at, after in changes(law, state, d, goal, rate):
+    for at, after in transitions(law, state, d, goal, rate):
         yield at, after
         state = after
     yield goal, state

@@ -355,11 +355,11 @@ class _Bench:
     ) -> tuple[float, Trial]:
         began = time.perf_counter()
 
-        def watch(*_: object) -> None:
+        def monitored(*_: object) -> None:
             if time.perf_counter() - began > longest:
                 raise TooLong
 
-        status, results = driver.solve(ready, self.path, watch, began, self.request)
+        status, results = driver.solve(ready, self.path, monitored, began, self.request)
         with results:
             if status != driver.DONE:
                 if results.message.startswith("A506"):

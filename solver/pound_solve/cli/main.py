@@ -490,7 +490,7 @@ def _loop(args: argparse.Namespace) -> int:
         path = _turning_points(args) or law_test.protocol(spring)
         rate = float(spring.is_contact) if args.rate is None else args.rate
         found = law_test.trace(spring.law, path, rate)
-    except law_test.LoopError as err:
+    except law_test.LawTestError as err:
         return _complain(str(err), 2)
     texts = (f"{spec.name} {items}", *law_test.AXES[spec.family])
     print(f"{texts[0]}\n\n{law_test.table(found.corners)}\n\n{text_plot.letters(found.curve)}")
@@ -510,15 +510,15 @@ def _loop(args: argparse.Namespace) -> int:
 
 def _turning_points(args: argparse.Namespace) -> list[float]:
     """Numbers of --path or --file; empty where neither is given."""
-    from pound_solve.assess.law_test import LoopError
+    from pound_solve.assess.law_test import LawTestError
 
     if args.path and args.file:
-        raise LoopError("give --path or --file, not both")
+        raise LawTestError("give --path or --file, not both")
     text = args.file.read_text(encoding="utf-8") if args.file else args.path or ""
     words = [w for line in text.splitlines() for w in line.split("#")[0].replace(",", " ").split()]
-    out = _numbers(words, "--path and --file take deformations", LoopError)
+    out = _numbers(words, "--path and --file take deformations", LawTestError)
     if (args.path is not None or args.file) and not out:
-        raise LoopError("--path and --file take one deformation at least")
+        raise LawTestError("--path and --file take one deformation at least")
     return out
 
 

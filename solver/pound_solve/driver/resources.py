@@ -10,7 +10,7 @@ from typing import Any, Final
 from pound_solve.numerics.matrices import Matrix
 from pound_solve.results.file import Layout
 from pound_solve.structure.assembly import Structure
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 LIBRARIES: Final = ("lark", "numpy", "scipy", "numba", "llvmlite", "h5py", "tabulate", "matplotlib")
 Row = tuple[str, str, int, int]
@@ -19,7 +19,7 @@ Row = tuple[str, str, int, int]
 def kind(structure: Structure, analyses: set[str]) -> str:
     """What kind of problem a deck poses, by its analyses and the laws of its springs and contacts."""
     laws = structure.laws
-    curved = bool(structure.chords) or any(s.law.curved for s in laws)
+    curved = bool(structure.corotational) or any(s.law.curved for s in laws)
     shape = "general" if curved else "piecewise linear" if laws else "linear"
     for name, text in (("HISTORY", "history"), ("PUSHOVER", "pushover"), ("STATIC", "static")):
         if name in analyses:
@@ -27,13 +27,13 @@ def kind(structure: Structure, analyses: set[str]) -> str:
     return "modal" if "MODAL" in analyses else "no analysis"
 
 
-def arrays(structure: Structure, scene: Scene | None, layout: Layout) -> list[Row]:
+def arrays(structure: Structure, system: ReducedSystem | None, layout: Layout) -> list[Row]:
     """Arrays that outlive an analysis: part, what it holds, numbers and bytes.
 
     Parameters
     ----------
     structure : Structure
-    scene : Scene or None
+    system : ReducedSystem or None
         Of the history, if there is one.
     layout : mapping
         Its stored histories, see `results.Writer.start_history`.
@@ -45,11 +45,15 @@ def arrays(structure: Structure, scene: Scene | None, layout: Layout) -> list[Ro
         ("structure", "stiffness, mass, damping", *size(s.stiffness, s.mass, s.damping)),
         ("springs and hinges", f"deformations of {len(spring)}", *size(s.law_rows[spring])),
         ("contacts", f"closures of {len(contact)}", *size(s.law_rows[contact])),
-        ("members that move", f"chords of {len(s.chords)}", *size(s.chords.p, s.chords.rows)),
+        (
+            "members that move",
+            f"chords of {len(s.corotational)}",
+            *size(s.corotational.p, s.corotational.rows),
+        ),
     ]
-    if scene is None:
+    if system is None:
         return out
-    x = scene
+    x = system
     back = size(x.expand, x.expand_constant, x.expand_inputs)
     out += [
         (
@@ -58,7 +62,7 @@ def arrays(structure: Structure, scene: Scene | None, layout: Layout) -> list[Ro
             *size(x.mass, x.damping, x.stiffness),
         ),
         ("history", "forces and deformations by the inputs", *size(x.inputs, x.law_inputs, x.law_rows)),
-        ("history", f"way back to {structure.n_free} freedoms", *back),
+        ("history", f"way back to {structure.n_free} degrees of freedom", *back),
         ("ground motion", "polynomials in time", *size(x.excitation.breaks, x.excitation.coefs)),
     ]
     for name, (shape, _) in layout.items():

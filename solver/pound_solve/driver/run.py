@@ -23,7 +23,7 @@ from pound_solve.analyses import pushover
 from pound_solve.catalog import catalog
 from pound_solve.driver.sequence import Course, Progress
 from pound_solve.loading.forces.base import Force
-from pound_solve.loading.motions.base import METRE, Context, Motion
+from pound_solve.loading.motions.base import METRE, LoadingContext, Motion
 from pound_solve.loading.motions.wave import fronts
 from pound_solve.loading.records.base import RecordError
 from pound_solve.numerics.types import Array
@@ -148,7 +148,7 @@ def _saved(model: Model, request: Request, found: list[Diagnostic]) -> dict[str,
     return {}
 
 
-def _built(card: Card, surroundings: Context, found: list[Diagnostic]) -> Any:
+def _built(card: Card, surroundings: LoadingContext, found: list[Diagnostic]) -> Any:
     """What a card of EQUAKE or FORCES makes; None where it has a mistake."""
     try:
         return card.spec.impl(card.values, surroundings)
@@ -157,7 +157,7 @@ def _built(card: Card, surroundings: Context, found: list[Diagnostic]) -> Any:
         return None
 
 
-def _motions(model: Model, surroundings: Context, found: list[Diagnostic]) -> list[Motion]:
+def _motions(model: Model, surroundings: LoadingContext, found: list[Diagnostic]) -> list[Motion]:
     """Ground motions of all EQUAKE cards, a wave as one for each place."""
     out: list[Motion] = []
     place = {node.id: node.x for node in model.nodes.values()}
@@ -222,7 +222,7 @@ def _adrift(structure: Structure) -> list[Diagnostic]:
 
     What flies by itself is meant to.  Contacts with the ground and dashpots tie it too.
     """
-    model, freedoms = structure.model, structure.freedoms
+    model, dofs = structure.model, structure.dofs
     if model.initial or model.forces or all(c.spec.name != "HISTORY" for c in model.analyses):
         return []
     k = structure.displaced(np.zeros(structure.n_free)).initial_stiffness
@@ -231,8 +231,8 @@ def _adrift(structure: Structure) -> list[Diagnostic]:
     out = []
     for way in sorted(ways.keys() - {"R"}):
         d = "XY".index(way)
-        ride = np.array([float(own == d) for _, own in freedoms.free] + [0.0] * len(freedoms.moved))
-        ends = [[freedoms.value((f,), (1.0,), ride) for f in b.freedoms] for b in dashpots]
+        ride = np.array([float(own == d) for _, own in dofs.free] + [0.0] * len(dofs.moved))
+        ends = [[dofs.value((f,), (1.0,), ride) for f in b.dofs] for b in dashpots]
         tied = (
             (abs(k @ ride) > 1e-9 * (abs(k) @ ride)).any()
             or (structure.law_rows @ ride).any()
@@ -245,12 +245,14 @@ def _adrift(structure: Structure) -> list[Diagnostic]:
     return out
 
 
-def context(model: Model, request: Request) -> Context:
+def context(model: Model, request: Request) -> LoadingContext:
     """What motions need to know: units, search path, length of the analysis."""
     folders = [Path(request.deck).parent, *request.records]
     folders += [Path(p) for p in os.environ.get("POUND_RECORDS", "").split(os.pathsep) if p]
     duration = max((c["T"] for c in model.analyses if c.spec.name == "HISTORY"), default=0.0)
-    return Context(model.gravity, METRE.get(model.units.length.lower(), 1.0), tuple(folders), duration)
+    return LoadingContext(
+        model.gravity, METRE.get(model.units.length.lower(), 1.0), tuple(folders), duration
+    )
 
 
 def _weighed(model: Model) -> Model:

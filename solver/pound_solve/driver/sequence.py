@@ -14,8 +14,8 @@ import numpy as np
 from pound_deck.model import Card, Model
 from pound_solve import __version__
 from pound_solve.analyses import damage, history, modal, pushover, restart, static
-from pound_solve.analyses.equilibrium import ROUNDING, Ground
-from pound_solve.analyses.path_following import Unstable
+from pound_solve.analyses.equilibrium import ROUNDING, SupportReactions
+from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.integrate.protocol import ENERGIES, INTERRUPTED, Outcome, Peaks, Stop
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import Motion
@@ -24,7 +24,7 @@ from pound_solve.results import echo
 from pound_solve.results.file import Layout, Writer
 from pound_solve.structure import reduction
 from pound_solve.structure.assembly import Structure
-from pound_solve.structure.diaphragms import meetings
+from pound_solve.structure.diaphragms import diaphragm_collisions
 
 #: told the time reached, the time to reach, and what keeps the run waiting there, if anything
 Progress = Callable[[float, float, str], None]
@@ -99,8 +99,8 @@ class Course:
         self.began, self.every = began, 0.0
         self.solve_seconds = self.cpu_seconds = 0.0  # of histories
         self.saved, self.explain = saved, explain
-        self.meetings = meetings(structure)
-        self.held: tuple[reduction.Scene | None, Layout] = (None, {})  # of the history
+        self.diaphragm_collisions = diaphragm_collisions(structure)
+        self.held: tuple[reduction.ReducedSystem | None, Layout] = (None, {})  # of the history
         self.checks: list[tuple[str, str, str]] = []
 
     def all(self) -> str:
@@ -120,11 +120,11 @@ class Course:
                     if card.spec.name == name:
                         doing = name.lower()
                         analysis(card, state)
-        except Unstable as err:
+        except InstabilityError as err:
             return f"{err.code} {doing}: {err}"
         except np.linalg.LinAlgError as err:
             return f"A501 the structure is a mechanism ({err})"
-        except (reduction.SceneError, restart.RestartError) as err:
+        except (reduction.ReductionError, restart.RestartError) as err:
             return f"A505 {err}"
         except Stop as err:
             return f"{err.code} at t = {err.t:.9g} {self.model.units.time}: {err}"
@@ -148,9 +148,13 @@ class Course:
         w.table("member_loads", echo.member_loads(m))
         w.table("damping", echo.damping(s))
         w.table("contact_laws", echo.contact_laws(s))
-        theory = any(x.pair for x in self.meetings.values())
-        w.table("diaphragms", echo.diaphragms(s, self.meetings), ALPHA if theory else None)
-        w.table("collision_theory", echo.collision_theory(s, self.meetings), LUMPED if theory else None)
+        theory = any(x.pair for x in self.diaphragm_collisions.values())
+        w.table("diaphragms", echo.diaphragms(s, self.diaphragm_collisions), ALPHA if theory else None)
+        w.table(
+            "collision_theory",
+            echo.collision_theory(s, self.diaphragm_collisions),
+            LUMPED if theory else None,
+        )
         w.table("motions", echo.motions(self.motions))
         w.table("forces", echo.forces(self.forces))
         w.table("size", echo.size(s))
@@ -171,8 +175,8 @@ class Course:
 
     def _static_tables(self, s: Structure, state: static.StaticState) -> None:
         w = self.writer
-        full = np.concatenate([state.u, np.zeros(len(s.freedoms.moved))])
-        moved = s.freedoms.matrix([(node, d) for node in self.model.nodes for d in range(3)]) @ full
+        full = np.concatenate([state.u, np.zeros(len(s.dofs.moved))])
+        moved = s.dofs.matrix([(node, d) for node in self.model.nodes for d in range(3)]) @ full
         nodes = list(self.model.nodes)
         shown = zeroed(moved, "LLR" * len(nodes)).reshape(-1, 3)
         w.table("static_displacement", [(node, *three) for node, three in zip(nodes, shown.tolist())])
@@ -188,7 +192,7 @@ class Course:
         elements, what, values, unit = zip(*forces) if forces else ((), (), (), ())
         told = zip(elements, what, zeroed(np.array(values), unit).tolist(), unit)
         w.table("static_force", sorted(told, key=lambda r: r[0]), SIGNS)
-        ground = Ground(self.structure, state.axial)
+        ground = SupportReactions(self.structure, state.axial)
         at = ground.reactions(state.u, state.states)
         held = [node for node, x in self.model.nodes.items() if x.fixed]
         reactions = np.array([at.get((node, d), 0.0) for node in held for d in range(3)])
@@ -217,7 +221,8 @@ class Course:
         rows = modal.rows(s, card["MODES"])
         if not rows:
             self.writer.table(
-                "scene", [("free vibration", "no modes", "no freedom that has mass has stiffness too")]
+                "scene",
+                [("free vibration", "no modes", "no degree of freedom that has mass has stiffness too")],
             )
         self.writer.table("modes", rows, note)
         if card["SHAPES"] == "YES":
@@ -250,13 +255,13 @@ class Course:
                     f"the saved state is of t = {saved.t:g}, the history ends at {end:g}"
                 )
         place = reduction.build(s, self.motions, end, u, v0, self.forces)
-        drifts = history.watch(s, place)
+        drifts = history.monitored(s, place)
         if saved is not None:
             start = restart.resume(saved, place, times)
         else:
             start = history.begin(s, place, u, v0, state.states, state.u, times)
         tell, first = self.progress or (lambda t, end, doing: None), None if saved is None else saved.first
-        recorder = history.Recorder(
+        recorder = history.HistoryRecorder(
             place, drifts, self.writer.append, lambda t, doing: tell(t, end, doing), first
         )
         self.held = place, recorder.layout()
@@ -295,11 +300,13 @@ class Course:
         if stop is not None:
             raise stop
 
-    def _saved(self, place: reduction.Scene, recorder: history.Recorder, part: Outcome) -> restart.Saved:
+    def _saved(
+        self, place: reduction.ReducedSystem, recorder: history.HistoryRecorder, part: Outcome
+    ) -> restart.Saved:
         """State at the end of a part of a history."""
         t, (u, v, works) = recorder.reached, recorder.last
         n = self.structure.n_free
-        whole_u, whole_v = (place.all_freedoms(x, t, order)[:n] for order, x in enumerate((u, v)))
+        whole_u, whole_v = (place.all_dofs(x, t, order)[:n] for order, x in enumerate((u, v)))
         return restart.Saved(t, whole_u, whole_v, part.states, works, recorder.first_energy)
 
     def _times(self, end: float) -> Array:
@@ -320,7 +327,7 @@ class Course:
         times = every * np.arange(count + 1)
         return np.append(times, end) if end - times[-1] > 1e-9 * end else np.append(times[:-1], end)
 
-    def _scene_tables(self, place: reduction.Scene) -> None:
+    def _scene_tables(self, place: reduction.ReducedSystem) -> None:
         rows = [(d.subject, d.decision, d.why) for d in place.decisions]
         if place.total and any(e.j is None for e in self.model.elements.values()):
             rows.append(
@@ -340,13 +347,15 @@ class Course:
         )
         self.writer.table("scene", rows)
 
-    def _sample_tables(self, place: reduction.Scene, recorder: history.Recorder, turns: bool) -> None:
+    def _sample_tables(
+        self, place: reduction.ReducedSystem, recorder: history.HistoryRecorder, turns: bool
+    ) -> None:
         """Envelopes of nodes and members and the energies: what the samples tell, among which are the
         instants at which displacements turn or not.
         """
         w, units = self.writer, self.model.units
         rows: list[tuple[Any, ...]] = []
-        found = {q: e.rows() for q, e in recorder.survey.node.items()}
+        found = {q: e.rows() for q, e in recorder.envelopes.node.items()}
         for i, node in enumerate(recorder.nodes):
             for axis in range(3):
                 for q, word, dimension in (
@@ -358,7 +367,7 @@ class Course:
                     if extremes[0] != 0.0 or extremes[2] != 0.0:
                         unit = units.text(dimension if axis < 2 else dimension.replace("L", "rad"))
                         rows.append((node, "XYR"[axis], word, unit, *extremes))
-        seen, apart = recorder.survey.seen, recorder.survey.apart
+        seen, apart = recorder.envelopes.seen, recorder.envelopes.apart
         if seen:
             peaks = "peaks of displacements are among them, others" if turns else "peaks"
             how = (
@@ -376,7 +385,7 @@ class Course:
             "member_envelope",
             [
                 (o.element, o.quantity, units.text(o.unit), *extremes)
-                for o, extremes in zip(recorder.outputs, recorder.survey.output.rows())
+                for o, extremes in zip(recorder.outputs, recorder.envelopes.output.rows())
             ],
             how + SIGNS,
         )
@@ -389,14 +398,14 @@ class Course:
             "Changes since the start" + ("." if place.total else ", of the motion relative to the ground."),
         )
 
-    def _peak_tables(self, recorder: history.Recorder, peaks: Peaks, how: str) -> None:
+    def _peak_tables(self, recorder: history.HistoryRecorder, peaks: Peaks, how: str) -> None:
         """Drifts, contacts and collisions: what the method found on its way; `how` it found it."""
         m, s, w = self.model, self.structure, self.writer
         w.table(
             "drift_envelope",
             [
                 (name, e.high, e.t_high, e.low, e.t_low, h, max(abs(e.high), abs(e.low)) / h)
-                for name, e, h in zip(recorder.drifts.names, peaks.watch, history.heights(m))
+                for name, e, h in zip(recorder.drifts.names, peaks.monitored, history.heights(m))
             ],
             how,
         )
@@ -437,16 +446,18 @@ class Course:
                     c.peak,
                     c.t_peak,
                     c.impulse,
-                    self.meetings[c.law].plateau(c.impulse, c.t_end - c.t_start),
-                    predicted := self.meetings[c.law].predicted(c.approach, c.t_end - c.t_start),
+                    self.diaphragm_collisions[c.law].plateau(c.impulse, c.t_end - c.t_start),
+                    predicted := self.diaphragm_collisions[c.law].predicted(
+                        c.approach, c.t_end - c.t_start
+                    ),
                     100.0 * (predicted / c.peak - 1.0) if c.peak > 0.0 else float("nan"),
                 )
                 for c in ordered
             ],
-            PREDICTED if any(x.pair for x in self.meetings.values()) else None,
+            PREDICTED if any(x.pair for x in self.diaphragm_collisions.values()) else None,
         )
 
-    def _spring_tables(self, recorder: history.Recorder, outcome: Outcome, ended: bool) -> None:
+    def _spring_tables(self, recorder: history.HistoryRecorder, outcome: Outcome, ended: bool) -> None:
         """What springs and hinges went through; damage where the ultimate ductility is given."""
         m, s, units, peaks = self.model, self.structure, self.model.units, outcome.peaks
         rows, plastic, damaged = [], [], []
@@ -497,7 +508,9 @@ class Course:
             ],
         )
 
-    def _check_tables(self, place: reduction.Scene, recorder: history.Recorder, outcome: Outcome) -> None:
+    def _check_tables(
+        self, place: reduction.ReducedSystem, recorder: history.HistoryRecorder, outcome: Outcome
+    ) -> None:
         """Self-checks and the course of the run."""
         w = self.writer
         # not over the input at the end, which a free body may have given back

@@ -34,25 +34,25 @@ from pound_solve.integrate import condensed
 from pound_solve.integrate.closed_form import exact, subsystems
 from pound_solve.integrate.protocol import (
     INTERRUPTED,
+    EnvelopeRecorder,
     Extreme,
-    Keeper,
     LawValues,
+    MonitoredOutputs,
     Outcome,
     Peaks,
     Start,
     Stop,
-    Watch,
-    blurred,
     goals,
     not_linear,
     refuse_rigid,
+    rounding_check,
 )
 from pound_solve.integrate.series import taylor
 from pound_solve.integrate.stepping import newmark
 from pound_solve.numerics import jit
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags
-from pound_solve.structure.reduction import Decision, Scene
+from pound_solve.structure.reduction import Decision, ReducedSystem
 
 MOST_STEPS = 50_000_000  #: of one run
 MOST = 20.0  #: cost up to which a run is tried after one that came to a stop
@@ -76,9 +76,9 @@ LINEAR = "all laws are piecewise linear: no step is needed, and steps, with thei
 PLAIN = 100  #: times as much where nothing compiles the kernels
 
 
-def stepped(scene: Scene) -> Decision:
+def stepped(system: ReducedSystem) -> Decision:
     """Why steps were taken."""
-    reason = not_linear(scene) or "EXACT would cost more, for all its unknowns or changes of stiffness"
+    reason = not_linear(system) or "EXACT would cost more, for all its unknowns or changes of stiffness"
     return Decision("method", "NEWMARK", f"{reason}; steps are shortened until the peaks stand still")
 
 
@@ -101,96 +101,105 @@ class Replay:
     Of what is between the samples only the envelopes are kept.
     """
 
-    def __init__(self, sink: Keeper) -> None:
-        self.sink, self.told = sink, list[tuple[Any, ...]]()
-        self.survey = sink.survey.blank()
+    def __init__(self, recorder: EnvelopeRecorder) -> None:
+        self.recorder, self.told = recorder, list[tuple[Any, ...]]()
+        self.envelopes = recorder.envelopes.blank()
         self.high: Array | float = -np.inf
         self.low: Array | float = np.inf
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take some samples (see `integrate.base.Sink`)."""
+        """Take some samples (see `integrate.base.HistoryRecorder`)."""
         self.told.append((t, u, v, a, laws, works))
         self.high = np.maximum(self.high, u.max(axis=1))
         self.low = np.minimum(self.low, u.min(axis=1))
-        self.sink.trial(float(t[-1]))
+        self.recorder.trial(float(t[-1]))
 
     def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
-        """Take the motion between samples (see `integrate.base.Sink`)."""
-        self.survey.between(t, u, v, a, apart)
+        """Take the motion between samples (see `integrate.base.HistoryRecorder`)."""
+        self.envelopes.between(t, u, v, a, apart)
 
-    def turned(self, t: Array, u: Array) -> None:
-        """Take displacements that turn (see `integrate.base.Sink`)."""
-        self.survey.turned(t, u)
+    def stationary(self, t: Array, u: Array) -> None:
+        """Take displacements that turn (see `integrate.base.HistoryRecorder`)."""
+        self.envelopes.stationary(t, u)
 
     @property
     def shown(self) -> Flags:
-        """Which unknowns `between` looks at (see `integrate.base.Sink`)."""
-        return self.sink.shown
+        """Which unknowns `between` looks at (see `integrate.base.HistoryRecorder`)."""
+        return self.recorder.shown
 
     def trial(self, t: float, doing: str = "") -> None:
         """Pass on how far a trial has come."""
-        self.sink.trial(t, doing)
+        self.recorder.trial(t, doing)
 
     def hand_on(self) -> None:
         """Tell the sink all of it."""
-        self.sink.survey.widen(self.survey)
+        self.recorder.envelopes.widen(self.envelopes)
         for what in self.told:
-            self.sink.keep(*what)
+            self.recorder.keep(*what)
 
 
-def cost_of_step(scene: Scene) -> float:
+def cost_of_step(system: ReducedSystem) -> float:
     """Cost of a compiled step, as those of `exact`."""
-    return STEP + EACH * (scene.size + 2 * len(scene.structure.laws))
+    return STEP + EACH * (system.size + 2 * len(system.structure.laws))
 
 
-def has_series(scene: Scene) -> bool:
+def has_series(system: ReducedSystem) -> bool:
     """Whether TAYLOR may be taken."""
-    return not not_linear(scene) and not massless(scene.mass).any() and jit.available()
+    return not not_linear(system) and not massless(system.mass).any() and jit.available()
 
 
-def cost_of_radian(scene: Scene) -> float:
+def cost_of_radian(system: ReducedSystem) -> float:
     """Cost of a run that follows the fastest mode, for each of its radians."""
-    return taylor.cost_of_radian(scene) if has_series(scene) else RADIAN * cost_of_step(scene)
+    return taylor.cost_of_radian(system) if has_series(system) else RADIAN * cost_of_step(system)
 
 
-def cost_of_series(scene: Scene, start: Start) -> float:
+def cost_of_series(system: ReducedSystem, start: Start) -> float:
     """Cost of TAYLOR; infinite where it cannot be taken."""
-    if not has_series(scene):
+    if not has_series(system):
         return np.inf
-    count = taylor.RADIANS * len(goals(scene, start.times)[0])  # each is the end of a step
+    count = taylor.RADIANS * len(goals(system, start.times)[0])  # each is the end of a step
     length = float(start.times[-1] - start.times[0])
-    return taylor.cost_of_radian(scene) * (length * taylor.rate(scene) + count)
+    return taylor.cost_of_radian(system) * (length * taylor.rate(system) + count)
 
 
-class Rival:
+class ExactTrial:
     """EXACT, tried for no more than a cost."""
 
-    def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Keeper, tol: float) -> None:
-        self.scene, self.start, self.watch, self.sink = scene, start, watch, sink
+    def __init__(
+        self,
+        system: ReducedSystem,
+        start: Start,
+        monitored: MonitoredOutputs,
+        recorder: EnvelopeRecorder,
+        tol: float,
+    ) -> None:
+        self.system, self.start, self.monitored, self.recorder = system, start, monitored, recorder
         self.ease = max(USUAL / tol, 1.0) ** 0.5
         # least cost of the whole run, so far as known
-        self.whole = FREE if len(scene.structure.laws) > self.ease * MANY else 0.0
-        if not_linear(scene) or scene.size > condensed.MOST_UNKNOWNS:
+        self.whole = FREE if len(system.structure.laws) > self.ease * MANY else 0.0
+        if not_linear(system) or system.size > condensed.MOST_UNKNOWNS:
             self.whole = np.inf
 
     def first(self, other: float) -> Outcome | None:
         """Its run, if that costs little, or no more than to follow the fastest mode, and meets few linear
         regimes; None where it does not.  Another method costs `other`.
         """
-        count = min(1 + len(self.scene.structure.laws), HANDFUL)
-        if count * subsystems.cost_of_regime(self.scene.size) > FREE + other:
+        count = min(1 + len(self.system.structure.laws), HANDFUL)
+        if count * subsystems.cost_of_decomposition(self.system.size) > FREE + other:
             return None
-        limits = {"REGIMES": self.ease * FEW, "PER_RADIAN": cost_of_radian(self.scene)}
+        limits = {"REGIMES": self.ease * FEW, "PER_RADIAN": cost_of_radian(self.system)}
         return self.run(FREE, {**limits, "TRIAL": TRIAL * FREE})
 
     def run(self, cost: float, limits: Mapping[str, float]) -> Outcome | None:
         """Its run, if that costs no more and keeps the limits (see `exact.integrate`); else None."""
         if self.whole >= cost:
             return None
-        replay, decisions = Replay(self.sink), self.scene.decisions
+        replay, decisions = Replay(self.recorder), self.system.decisions
         known = len(decisions)
         try:
-            outcome = exact.integrate(self.scene, self.start, self.watch, {"COST": cost, **limits}, replay)
+            outcome = exact.integrate(
+                self.system, self.start, self.monitored, {"COST": cost, **limits}, replay
+            )
         except exact.CostlyError as err:
             del decisions[known:]
             begin, *_, end = self.start.times
@@ -204,17 +213,17 @@ class Rival:
         return outcome
 
 
-def figures(scene: Scene, peaks: Peaks, replay: Replay) -> tuple[Array, Array]:
+def figures(system: ReducedSystem, peaks: Peaks, replay: Replay) -> tuple[Array, Array]:
     """Peaks that are compared between runs, and what their differences are measured against."""
-    laws = scene.structure.laws
+    laws = system.structure.laws
     contact = [i for i, s in enumerate(laws) if s.is_contact]
     force = np.array([max((c.peak for c in peaks.collisions if c.law == i), default=0.0) for i in contact])
     springs = [e for e, s in zip(peaks.deformation, laws) if not s.is_contact]
-    swings: list[Extreme] = peaks.watch or springs
+    swings: list[Extreme] = peaks.monitored or springs
     values = [(e.high, e.low) for e in swings]
     size = np.repeat([max(abs(e.high), abs(e.low)) for e in swings], 2)
-    if not peaks.watch:
-        ways = np.array([d for _, d in scene.freedoms])
+    if not peaks.monitored:
+        ways = np.array([d for _, d in system.dofs])
         seen = np.column_stack([np.ravel(replay.high), np.ravel(replay.low)])
         most = [np.abs(seen[ways == d]).max(initial=0.0) for d in range(3)]
         values = [*values, *map(tuple, seen.tolist())]
@@ -224,21 +233,21 @@ def figures(scene: Scene, peaks: Peaks, replay: Replay) -> tuple[Array, Array]:
 
 
 def to_tolerance(
-    scene: Scene,
+    system: ReducedSystem,
     start: Start,
-    watch: Watch,
+    monitored: MonitoredOutputs,
     options: Mapping[str, Any],
-    sink: Keeper,
-    rival: Rival,
+    recorder: EnvelopeRecorder,
+    rival: ExactTrial,
     series: float,
 ) -> Outcome:
     """Repeat the run with shorter steps until the peaks stand still, or the rival costs less, or TAYLOR,
     which costs `series`.
     """
     tol, length = options["TOL"], float(start.times[-1] - start.times[0])
-    intervals = np.diff(goals(scene, start.times)[0], prepend=start.times[0])
+    intervals = np.diff(goals(system, start.times)[0], prepend=start.times[0])
     h = min(float(np.median(intervals)), length / 1000)
-    each = cost_of_step(scene) * (1 if jit.numba() else PLAIN)
+    each = cost_of_step(system) * (1 if jit.numba() else PLAIN)
     aim = h  # step that is likely to do
     before: tuple[int, Array] | None = None
     runs, error, events = 0, np.inf, 0
@@ -246,14 +255,16 @@ def to_tolerance(
     done: tuple[Outcome, Replay] | None = None  # the last run that came to its end
     while True:
         if series <= max(LOADING, each * (length / aim + EVENT * events)):
-            scene.decisions.append(Decision("method", "TAYLOR", LINEAR))
-            return taylor.integrate(scene, start, watch, {}, sink)
+            system.decisions.append(Decision("method", "TAYLOR", LINEAR))
+            return taylor.integrate(system, start, monitored, {}, recorder)
         budget = each * (min(length / aim, AHEAD * length / h) + EVENT * events)
         if (exactly := rival.run(budget, {"TRIAL": TASTE * budget})) is not None:
             return exactly
-        replay = Replay(sink)
+        replay = Replay(recorder)
         try:
-            outcome = newmark.integrate(scene, start, watch, {"DT": h, "BETA": 0.25, "GAMMA": 0.5}, replay)
+            outcome = newmark.integrate(
+                system, start, monitored, {"DT": h, "BETA": 0.25, "GAMMA": 0.5}, replay
+            )
         except Stop as stop:
             # too coarse to go on says nothing of the structure; growth may, if a finer step grows too
             coarse = stop.code == "A503" or (stop.code == "A504" and before is None)
@@ -262,15 +273,15 @@ def to_tolerance(
                 aim = h
                 events = max(events, stop.outcome.figures["events"] if stop.outcome else 0)
                 continue
-            scene.decisions.append(stepped(scene))
+            system.decisions.append(stepped(system))
             if stop.code == "A506" and done is not None:
                 outcome, replay = done
                 stop = Stop("A506", float(start.times[-1]), INTERRUPTED, outcome)
-                outcome.checks = judged(scene, outcome, error, tol, "interrupted")
+                outcome.checks = judged(system, outcome, error, tol, "interrupted")
             replay.hand_on()
             raise stop from None
         runs += 1
-        now, against = figures(scene, outcome.peaks, replay)
+        now, against = figures(system, outcome.peaks, replay)
         steps, events = outcome.figures["steps"], outcome.figures["events"]
         if before is not None and steps > before[0]:
             change = float(
@@ -285,37 +296,41 @@ def to_tolerance(
         aim = h * (float(np.sqrt(MARGIN * tol / error)) if np.isfinite(error) else 0.5)
         h = float(np.clip(aim, h / 4, h / 2))
         aim = min(aim, h)
-    scene.decisions.append(stepped(scene))
+    system.decisions.append(stepped(system))
     replay.hand_on()
     outcome.figures = {**outcome.figures, "runs": runs}
-    outcome.checks = judged(scene, outcome, error, tol, GIVEN_UP[stale == STALE])
+    outcome.checks = judged(system, outcome, error, tol, GIVEN_UP[stale == STALE])
     return outcome
 
 
 def judged(
-    scene: Scene, outcome: Outcome, error: float, tol: float, ended: str
+    system: ReducedSystem, outcome: Outcome, error: float, tol: float, ended: str
 ) -> list[tuple[str, str, str]]:
     """Checks that say more than those of a single run; `ended` is why no shorter steps follow."""
     steps = outcome.figures["steps"]
     verdict = "met" if error <= tol else f"look: not met with {steps} steps, {ended}"
     return [
         (f"estimated error of drifts and contact forces, TOL {tol:g}", f"{error:.1e}", verdict),
-        *blurred(scene.structure.laws, outcome.peaks),
+        *rounding_check(system.structure.laws, outcome.peaks),
     ]
 
 
 def integrate(
-    scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Keeper
+    system: ReducedSystem,
+    start: Start,
+    monitored: MonitoredOutputs,
+    options: Mapping[str, Any],
+    recorder: EnvelopeRecorder,
 ) -> Outcome:
     """Choose a method, note why, and run it."""
-    if not_linear(scene):
-        refuse_rigid(scene, start, "AUTO")
-    elif any(s.law.rigid for s in scene.structure.laws):
-        scene.decisions.append(Decision("method", "EXACT", "rigid contacts: no other method knows them"))
-        return exact.integrate(scene, start, watch, {}, sink)
-    rival = Rival(scene, start, watch, sink, options["TOL"])
-    series = cost_of_series(scene, start)
-    return rival.first(series) or to_tolerance(scene, start, watch, options, sink, rival, series)
+    if not_linear(system):
+        refuse_rigid(system, start, "AUTO")
+    elif any(s.law.rigid for s in system.structure.laws):
+        system.decisions.append(Decision("method", "EXACT", "rigid contacts: no other method knows them"))
+        return exact.integrate(system, start, monitored, {}, recorder)
+    rival = ExactTrial(system, start, monitored, recorder, options["TOL"])
+    series = cost_of_series(system, start)
+    return rival.first(series) or to_tolerance(system, start, monitored, options, recorder, rival, series)
 
 
 SPEC = Spec(

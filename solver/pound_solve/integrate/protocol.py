@@ -12,7 +12,7 @@ from pound_solve.laws.automaton import Branch, State
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.elements.base import LawSpring
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 ENERGIES = ("input", "kinetic", "strain", "damping", "hysteretic", "contact")
 
@@ -26,7 +26,7 @@ INTERRUPTED = "interrupted by the user; what was computed up to then is kept"
 
 
 @dataclass(frozen=True)
-class Watch:
+class MonitoredOutputs:
     """Quantities whose peaks an integrator finds, linear in u: drifts.
 
     Attributes
@@ -46,7 +46,7 @@ class Watch:
 @dataclass(frozen=True)
 class Start:
     """State at the start: displacement and velocity (n,), laws' states, output times (ascending,
-    the first is the start), works so far (3,) as in `Sink.sample`.
+    the first is the start), works so far (3,) as in `Recorder.sample`.
     """
 
     u: Array
@@ -93,7 +93,7 @@ class Peaks:
 
     Attributes
     ----------
-    watch : list of Extreme
+    monitored : list of Extreme
         Of the Watch.
     deformation, force : list of Extreme
         Of every law; for contacts the closure and the force (compression positive).
@@ -105,7 +105,7 @@ class Peaks:
         Energy lost in the dashpot of every law (contacts) [F L].
     """
 
-    watch: list[Extreme]
+    monitored: list[Extreme]
     deformation: list[Extreme]
     force: list[Extreme]
     yields: list[int]
@@ -139,22 +139,22 @@ class LawValues(NamedTuple):
     lost: Array
 
 
-def law_values(scene: Scene, t: Array, u: Array, v: Array, states: Sequence[State]) -> LawValues:
+def law_values(system: ReducedSystem, t: Array, u: Array, v: Array, states: Sequence[State]) -> LawValues:
     """Forces and energies of all laws from their states, at times (n_times,) and motions (n, n_times)
     between two changes of branch.
     """
-    laws = [s.law for s in scene.structure.laws]
+    laws = [s.law for s in system.structure.laws]
     if not laws:
         return LawValues(*np.zeros((3, 0, len(t))))
-    d = scene.law_rows @ u + scene.law_inputs @ scene.excitation.values(t).T
-    rate = scene.law_rows @ v + scene.law_inputs @ scene.excitation.values(t, 1).T
+    d = system.law_rows @ u + system.law_inputs @ system.excitation.values(t).T
+    rate = system.law_rows @ v + system.law_inputs @ system.excitation.values(t, 1).T
     # `Law.work` and `Law.dissipated` of all laws and times at once: a sample of some laws is a small thing
     k, c, f0 = np.array([x.rule.branch(x.p, s[0], s[3])[:3] for x, s in zip(laws, states)]).T[:, :, None]
     begin, before = np.array([s[1:3] for s in states]).T[:, :, None]
     still = k * d + f0
     done = before + (0.5 * k * (d + begin) + f0) * (d - begin)
-    force = still + c * rate * np.array([[s.is_contact] for s in scene.structure.laws])
-    for i, s in enumerate(scene.structure.laws):
+    force = still + c * rate * np.array([[s.is_contact] for s in system.structure.laws])
+    for i, s in enumerate(system.structure.laws):
         if s.law.curved:
             own = d[i].tolist()
             still[i] = [s.law.force(states[i], x)[0] for x in own]
@@ -171,14 +171,14 @@ def law_values(scene: Scene, t: Array, u: Array, v: Array, states: Sequence[Stat
     return LawValues(force, stored, np.where(np.abs(lost) > 1e-14 * size, lost, 0.0))
 
 
-class Survey(Protocol):
+class Envelopes(Protocol):
     """Envelopes of a run."""
 
     def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
-        """Count in the motion at some times, as `Sink.between`."""
+        """Count in the motion at some times, as `Recorder.between`."""
         ...
 
-    def turned(self, t: Array, u: Array) -> None:
+    def stationary(self, t: Array, u: Array) -> None:
         """Count in displacements that turn between those instants."""
         ...
 
@@ -191,7 +191,7 @@ class Survey(Protocol):
         ...
 
 
-class Sink(Protocol):
+class Recorder(Protocol):
     """Takes the samples of a history."""
 
     @property
@@ -215,7 +215,7 @@ class Sink(Protocol):
         """
         ...
 
-    def turned(self, t: Array, u: Array) -> None:
+    def stationary(self, t: Array, u: Array) -> None:
         """Take displacements at instants at which some of them turn, shapes as in `between`."""
         ...
 
@@ -224,7 +224,7 @@ class Sink(Protocol):
         ...
 
 
-class Keeper(Sink, Protocol):
+class EnvelopeRecorder(Recorder, Protocol):
     """A sink that keeps envelopes, and takes samples of a run that is over."""
 
     def keep(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
@@ -232,7 +232,7 @@ class Keeper(Sink, Protocol):
         ...
 
     @property
-    def survey(self) -> Survey:
+    def envelopes(self) -> Envelopes:
         """What it has seen between the samples, and may be at them."""
         ...
 
@@ -269,22 +269,24 @@ class Stop(Exception):
         self.code, self.t, self.outcome = code, t, outcome
 
 
-def not_linear(scene: Scene) -> str:
-    """Reason why a scene is not linear between events, as some methods need; empty where it is."""
-    if scene.structure.chords:
-        return f"members change their stiffness as they move (GEOMETRY {scene.structure.model.geometry})"
-    curved = next((s for s in scene.structure.laws if s.law.curved), None)
+def not_linear(system: ReducedSystem) -> str:
+    """Reason why a reduced system is not linear between events, as some methods need; empty where it is."""
+    if system.structure.corotational:
+        return f"members change their stiffness as they move (GEOMETRY {system.structure.model.geometry})"
+    curved = next((s for s in system.structure.laws if s.law.curved), None)
     return "" if curved is None else f"the law {curved.rule} of element {curved.element} is curved"
 
 
-def light(scene: Scene) -> Flags:
+def light(system: ReducedSystem) -> Flags:
     """Which laws hold an unknown without mass, whose velocity may jump, shape (n_laws,): the force of their
     dashpots is only known when the velocities have settled.
     """
-    return np.asarray((scene.law_rows[:, massless(scene.mass)] != 0.0).any(axis=1))
+    return np.asarray((system.law_rows[:, massless(system.mass)] != 0.0).any(axis=1))
 
 
-def blurred(laws: Sequence[LawSpring], peaks: Peaks, still: float = STILL) -> list[tuple[str, str, str]]:
+def rounding_check(
+    laws: Sequence[LawSpring], peaks: Peaks, still: float = STILL
+) -> list[tuple[str, str, str]]:
     """Check whether springs are so stiff that their force is lost in the last digits of their deformation,
     of which a share `still` of the largest cannot be told from none.
     """
@@ -300,16 +302,16 @@ def blurred(laws: Sequence[LawSpring], peaks: Peaks, still: float = STILL) -> li
     return [(name, f"{worst:.1e}", "look: too stiff for the distance that it gives way")]
 
 
-def refuse_rigid(scene: Scene, start: Start, method: str) -> None:
-    """Raise Stop where a scene has rigid contacts and the method knows none, or none where the scene is not
-    linear between events: that no method does.
+def refuse_rigid(system: ReducedSystem, start: Start, method: str) -> None:
+    """Raise Stop where a reduced system has rigid contacts and the method knows none, or none where the
+    reduced system is not linear between events: that no method does.
     """
-    rigid = next((s for s in scene.structure.laws if s.law.rigid), None)
+    rigid = next((s for s in system.structure.laws if s.law.rigid), None)
     if rigid is None:
         return
     contact = f"{rigid.rule} of element {rigid.element}"
-    if why := not_linear(scene):
-        other = "another GEOMETRY" if scene.structure.chords else "laws that are linear in pieces"
+    if why := not_linear(system):
+        other = "another GEOMETRY" if system.structure.corotational else "laws that are linear in pieces"
         told = f"no method takes a rigid contact, which {contact} is, where {why}"
         cure = f"give the contact a LAW with a stiffness, or choose {other}"
     else:
@@ -318,11 +320,11 @@ def refuse_rigid(scene: Scene, start: Start, method: str) -> None:
     raise Stop("A505", float(start.times[0]), f"{told}: {cure}")
 
 
-class Ledger:
+class ResponseTracker:
     """Collisions, yield events and extremes of the laws while a run goes on; shared by all methods."""
 
-    def __init__(self, scene: Scene, n_watch: int) -> None:
-        self.laws = scene.structure.laws
+    def __init__(self, system: ReducedSystem, n_watch: int) -> None:
+        self.laws = system.structure.laws
         n = len(self.laws)
         self.peaks = Peaks(
             [Extreme() for _ in range(n_watch)],
@@ -333,11 +335,13 @@ class Ledger:
         )
         self.open: dict[int, Collision] = {}
 
-    def begin(self, scene: Scene, t: float, u: Array, v: Array, branches: Sequence[Branch]) -> None:
+    def begin(
+        self, system: ReducedSystem, t: float, u: Array, v: Array, branches: Sequence[Branch]
+    ) -> None:
         """Note the contacts that are closed at the start."""
-        ex = scene.excitation
-        d = scene.law_rows @ u + scene.law_inputs @ ex.value(t)
-        rate = scene.law_rows @ v + scene.law_inputs @ ex.value(t, 1)
+        ex = system.excitation
+        d = system.law_rows @ u + system.law_inputs @ ex.value(t)
+        rate = system.law_rows @ v + system.law_inputs @ ex.value(t, 1)
         for i, (s, b) in enumerate(zip(self.laws, branches)):
             if s.is_contact and b.name.startswith("pressed"):
                 x, y = float(d[i]), float(rate[i])
@@ -392,24 +396,24 @@ class _Running:
 
     low = -np.inf
 
-    def __init__(self, ledger: Ledger, law: int) -> None:
-        self.ledger, self.law = ledger, law
+    def __init__(self, tracker: ResponseTracker, law: int) -> None:
+        self.tracker, self.law = tracker, law
 
     @property
     def high(self) -> float:
-        return self.ledger.open[self.law].peak
+        return self.tracker.open[self.law].peak
 
     def take(self, value: float, t: float) -> None:
-        self.ledger.force(self.law, value, t)
+        self.tracker.force(self.law, value, t)
 
 
-def goals(scene: Scene, times: Array) -> tuple[Array, Flags]:
+def goals(system: ReducedSystem, times: Array) -> tuple[Array, Flags]:
     """Return the times after 0 at which an integrator must arrive, and which of them are output times.
 
     They come after the first of `times`, the start.
     Breaks of the excitation and output times that differ by rounding only are one: no interval is a sliver.
     """
-    breaks, end = scene.excitation.breaks, float(times[-1])
+    breaks, end = system.excitation.breaks, float(times[-1])
     inner = breaks[(breaks > times[0]) & (breaks < end)]
     near = np.clip(np.searchsorted(times, inner), 1, len(times) - 1)
     apart = np.minimum(np.abs(inner - times[near]), np.abs(inner - times[near - 1])) > 1e-12 * end
@@ -417,12 +421,14 @@ def goals(scene: Scene, times: Array) -> tuple[Array, Flags]:
     return out, np.isin(out, times[1:])
 
 
-def energies(scene: Scene, t: Array, u: Array, v: Array, stored: Array, lost: Array, works: Array) -> Array:
+def energies(
+    system: ReducedSystem, t: Array, u: Array, v: Array, stored: Array, lost: Array, works: Array
+) -> Array:
     """Return all energies at some times.
 
     Parameters
     ----------
-    scene : Scene
+    system : ReducedSystem
     t : ndarray, shape (n_times,)
     u, v : ndarray, shape (n_times, n)
     stored, lost : ndarray, shape (n_times, n_laws)
@@ -434,14 +440,16 @@ def energies(scene: Scene, t: Array, u: Array, v: Array, stored: Array, lost: Ar
     ndarray, shape (n_times, 6)
         In the order of `ENERGIES` [F L].
     """
-    mass, stiffness, turning = scene.mass, scene.stiffness, np.zeros(len(t))
-    if scene.chords:
-        turning = scene.chords.survey(scene.quantities(u, scene.excitation.values(t)))[:, :, 0].sum(axis=1)
-    if scene.total:  # moved supports have mass and stretch elements too
-        mass, stiffness = scene.structure.mass, scene.structure.stiffness
-        u = scene.expanded(u.T, scene.excitation.values(t).T).T
-        v = scene.expanded(v.T, scene.excitation.values(t, 1).T, 1).T
-    contact = np.array([s.is_contact for s in scene.structure.laws], bool)
+    mass, stiffness, turning = system.mass, system.stiffness, np.zeros(len(t))
+    if system.corotational:
+        turning = system.corotational.envelopes(system.quantities(u, system.excitation.values(t)))[
+            :, :, 0
+        ].sum(axis=1)
+    if system.total:  # moved supports have mass and stretch elements too
+        mass, stiffness = system.structure.mass, system.structure.stiffness
+        u = system.expanded(u.T, system.excitation.values(t).T).T
+        v = system.expanded(v.T, system.excitation.values(t, 1).T, 1).T
+    contact = np.array([s.is_contact for s in system.structure.laws], bool)
     out = np.zeros((len(t), len(ENERGIES)))
     out[:, 0], out[:, 3], out[:, 5] = works.T
     out[:, 1] = 0.5 * (v * (v @ mass)).sum(axis=1)
@@ -451,9 +459,9 @@ def energies(scene: Scene, t: Array, u: Array, v: Array, stored: Array, lost: Ar
     return out
 
 
-def energy_at_start(scene: Scene, start: Start) -> float:
+def energy_at_start(system: ReducedSystem, start: Start) -> float:
     """Kinetic and recoverable energy [F L]: with the work put in since, all that the motion can hold."""
     t, u, v = start.times[:1], start.u, start.v
-    laws = law_values(scene, t, u[:, None], v[:, None], start.states)
-    whole = energies(scene, t, u[None], v[None], laws.stored.T, laws.lost.T, np.zeros((1, 3)))
+    laws = law_values(system, t, u[:, None], v[:, None], start.states)
+    whole = energies(system, t, u[None], v[None], laws.stored.T, laws.lost.T, np.zeros((1, 3)))
     return float(whole[0, 1] + whole[0, 2])

@@ -16,14 +16,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
-PARAMETERS, MEMORY, EXITS = 20, 16, 3  #: numbers in a law's parameters and memory, exits of a branch
+PARAMETERS, MEMORY, EVENTS = 20, 16, 3  #: numbers in a law's parameters and memory, exits of a branch
 PUSH, PUSH_RATE = MEMORY - 2, MEMORY - 1  #: where a law that leans on another finds its force and its rate
 
 Numbers = tuple[float, ...]
 State = tuple[int, float, float, Numbers]  #: branch; deformation and work at its entry; memory
 
 NEVER = (0.0, 0.0, -1.0)  #: the exit that is not there
-TURNS_DOWN, TURNS_UP = (0.0, -1.0, 0.0), (0.0, 1.0, 0.0)  #: exits where the rate changes its sign
+REVERSAL_DOWN, REVERSAL_UP = (0.0, -1.0, 0.0), (0.0, 1.0, 0.0)  #: exits where the rate changes its sign
 
 
 def above(d: float) -> tuple[float, float, float]:
@@ -36,7 +36,7 @@ def below(d: float) -> tuple[float, float, float]:
     return (-1.0, 0.0, d)
 
 
-def piece(
+def linear(
     k: float,
     f0: float,
     first: tuple[float, float, float] = NEVER,
@@ -48,7 +48,7 @@ def piece(
     return (k, c, f0, *first, *second, *third)
 
 
-def remember(
+def internal_variables(
     a: float = 0.0,
     b: float = 0.0,
     c: float = 0.0,
@@ -88,8 +88,8 @@ class Rule(NamedTuple):
     branch : callable
         ``branch(p, at, m) -> piece(...)``.
     leave : callable
-        ``leave(p, at, m, way, d, v) -> (at, m)``: the state after exit `way` was reached at deformation `d`
-        and rate `v`.
+        ``transition(p, at, m, way, d, v) -> (at, m)``: the state after exit `event` was reached at
+        deformation `d` and rate `v`.
         The force must be the same on both sides, unless a dashpot or a release makes it jump.
     recoverable : callable
         ``recoverable(p, at, m, d, f) -> energy`` that comes back when the force `f` is taken off.
@@ -105,7 +105,7 @@ class Rule(NamedTuple):
     branches: tuple[str, ...]
     start: Callable[[Numbers], tuple[int, Numbers]]
     branch: Callable[[Numbers, int, Numbers], Numbers]
-    leave: Callable[[Numbers, int, Numbers, int, float, float], tuple[int, Numbers]]
+    transition: Callable[[Numbers, int, Numbers, int, float, float], tuple[int, Numbers]]
     recoverable: Callable[[Numbers, int, Numbers, float, float], float] = on_spring
     curve: (
         Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]] | None
@@ -113,7 +113,7 @@ class Rule(NamedTuple):
     held: int = -1
 
 
-class Exit(NamedTuple):
+class EventFunction(NamedTuple):
     """Leave the branch when ``d_factor * d + v_factor * v + constant`` rises through zero."""
 
     d_factor: float
@@ -128,7 +128,7 @@ class Branch(NamedTuple):
     stiffness: float
     damping: float
     force0: float
-    exits: tuple[Exit, ...]
+    exits: tuple[EventFunction, ...]
     held: bool = False  #: by a rigid contact, see `Rule.held`
 
     def force(self, d: float, v: float) -> float:
@@ -169,7 +169,7 @@ class Law:
     def branch(self, state: State) -> Branch:
         """Return the linear piece that `state` is on (of a curved law its exits, and a tangent)."""
         k, c, f0, *flat = self.rule.branch(self.p, state[0], state[3])
-        exits = [Exit(*flat[i : i + 3]) for i in range(0, 3 * EXITS, 3)]
+        exits = [EventFunction(*flat[i : i + 3]) for i in range(0, 3 * EVENTS, 3)]
         while exits and exits[-1] == NEVER:
             exits.pop()
         return Branch(self.rule.branches[state[0]], k, c, f0, tuple(exits), state[0] == self.rule.held)
@@ -189,9 +189,9 @@ class Law:
         k, _, f0 = self.rule.branch(self.p, at, m)[:3]
         return before + (0.5 * k * (d + d0) + f0) * (d - d0)
 
-    def leave(self, state: State, exit_index: int, d: float, v: float = 0.0) -> State:
+    def transition(self, state: State, event_index: int, d: float, v: float = 0.0) -> State:
         """Return the state after that exit of the branch was reached at deformation `d` and rate `v`."""
-        at, m = self.rule.leave(self.p, state[0], state[3], exit_index, d, v)
+        at, m = self.rule.transition(self.p, state[0], state[3], event_index, d, v)
         return at, d, self.work(state, d), m
 
     def stored(self, state: State, d: float) -> float:
@@ -205,7 +205,7 @@ class Law:
         return lost if abs(lost) > 1e-14 * self.p[0] * max(abs(d), abs(state[1])) ** 2 else 0.0
 
 
-def settle(law: Law, state: State, d: float, v: float) -> State:
+def consistent(law: Law, state: State, d: float, v: float) -> State:
     """Leave every branch whose exit is passed already at deformation `d` and rate `v`,
     as at a sudden start.
     """
@@ -214,7 +214,7 @@ def settle(law: Law, state: State, d: float, v: float) -> State:
         passed = [n for n, e in enumerate(exits) if e.d_factor * d + e.v_factor * v + e.constant > 0.0]
         if not passed:
             break
-        state = law.leave(state, passed[0], d, v)
+        state = law.transition(state, passed[0], d, v)
     return state
 
 
@@ -222,15 +222,15 @@ class NoProgressError(Exception):
     """A law changed branch again and again without moving."""
 
 
-def follow(law: Law, state: State, d0: float, d1: float, limit: int = 1000) -> State:
-    """Drive a law quasi-statically along a straight path from `d0` to `d1`; see `changes`."""
+def drive(law: Law, state: State, d0: float, d1: float, limit: int = 1000) -> State:
+    """Drive a law quasi-statically along a straight path from `d0` to `d1`; see `transitions`."""
     after = state
-    for change in changes(law, state, d0, d1, limit=limit):
+    for change in transitions(law, state, d0, d1, limit=limit):
         after = change[1]
     return after
 
 
-def changes(
+def transitions(
     law: Law, state: State, d0: float, d1: float, rate: float = 0.0, limit: int = 1000
 ) -> Iterator[tuple[float, State]]:
     """Changes of branch along a straight path from `d0` to `d1`.
@@ -276,6 +276,6 @@ def changes(
         if first is None:
             return
         at = first[0]
-        state = law.leave(state, first[1], at, v)
+        state = law.transition(state, first[1], at, v)
         yield at, state
     raise NoProgressError("the law changed branch again and again")

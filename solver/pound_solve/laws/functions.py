@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from pound_solve.laws.automaton import EXITS, MEMORY, PARAMETERS, Rule
+from pound_solve.laws.automaton import EVENTS, MEMORY, PARAMETERS, Rule
 from pound_solve.numerics.jit import Function, compiled, numba
 
 ROOM = 8  #: rules that the tables have room for, or a multiple of it
@@ -15,7 +15,7 @@ class Tables(NamedTuple):
     """The functions of several rules, one tuple a kind, in the order of the rules."""
 
     branch: tuple[Function, ...]
-    leave: tuple[Function, ...]
+    transition: tuple[Function, ...]
     recoverable: tuple[Function, ...]
     curve: tuple[Function, ...]
 
@@ -40,11 +40,11 @@ def tables(rules: Sequence[Rule]) -> Tables:
         f8, i8 = t.float64, t.int64
         p, m = t.UniTuple(f8, PARAMETERS), t.UniTuple(f8, MEMORY)
         signatures = [
-            t.UniTuple(f8, 3 + 3 * EXITS)(p, i8, m),
+            t.UniTuple(f8, 3 + 3 * EVENTS)(p, i8, m),
             t.Tuple((i8, m))(p, i8, m, i8, f8, f8),
             f8(p, i8, m, f8, f8),
             t.UniTuple(f8, 4)(p, i8, m, f8, f8, f8),
         ]
-    own = [(r.branch, r.leave, r.recoverable, r.curve or straight) for r in rules]
+    own = [(r.branch, r.transition, r.recoverable, r.curve or straight) for r in rules]
     own += own[-1:] * (-len(own) % ROOM)
     return Tables(*(tuple(compiled(f, s) for f in column) for column, s in zip(zip(*own), signatures)))

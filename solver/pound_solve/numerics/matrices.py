@@ -1,7 +1,7 @@
 """Matrices of a structure: plain arrays while they are small, sparse rows (CSR) beyond.
 
-A sparse matrix pays from some hundred freedoms on; below, it costs more than it saves, and a deck with few
-freedoms need not even import it.  What works on both (``@``, ``+``, ``.T``, slices, ``numpy.ix_``) is
+A sparse matrix pays from some hundred DOFs on; below, it costs more than it saves, and a deck with few
+DOFs need not even import it.  What works on both (``@``, ``+``, ``.T``, slices, ``numpy.ix_``) is
 written as for arrays; the rest is here.
 """
 

@@ -1,10 +1,10 @@
-r"""Free vibration: :math:`(K - \omega^2 M)\,\phi = 0` on the freedoms that have stiffness.
+r"""Free vibration: :math:`(K - \omega^2 M)\,\phi = 0` on the DOFs that have stiffness.
 
-Massless freedoms are condensed first, which is exact for free vibration.  Modes are scaled to
+Massless DOFs are condensed first, which is exact for free vibration.  Modes are scaled to
 :math:`\phi^T M \phi = 1` with the largest component positive.
 
 Of a sparse K only the slowest modes are found, by Lanczos' method on :math:`(K - \sigma M)^{-1} M`, which
-takes massless freedoms as they are (Ericsson and Ruhe 1980).  As many pivots of :math:`K - \mu M` are
+takes massless DOFs as they are (Ericsson and Ruhe 1980).  As many pivots of :math:`K - \mu M` are
 negative as there are modes below :math:`\mu` (Sylvester): that none was passed over is seen by counting.
 
 References
@@ -45,7 +45,7 @@ class Modes:
 
 
 def massless(m: Matrix) -> Flags:
-    """Which freedoms have no mass at all, shape (n,)."""
+    """Which DOFs have no mass at all, shape (n,)."""
     return ~used_rows(m)
 
 
@@ -157,7 +157,7 @@ def deficiency(k: Array) -> int:
 def moving_mass(k: Matrix, m: Matrix, ground: Array) -> Array:
     """Sum of the effective masses of all modes, for each row of `ground` = M r, shape (n_rows,).
 
-    What rides on freedoms that nothing holds is no part of any mode.
+    What rides on DOFs that nothing holds is no part of any mode.
     """
     at = np.flatnonzero(used_rows(k) & ~massless(m))
     root = 1.0 / np.sqrt(diagonal(m[np.ix_(at, at)]))
@@ -166,9 +166,9 @@ def moving_mass(k: Matrix, m: Matrix, ground: Array) -> Array:
 
 
 def condense(k: Matrix, out: Flags) -> Array:
-    """Map from the kept freedoms to all, with those of `out` following statically, shape (n, n_kept).
+    """Map from the kept DOFs to all, with those of `out` following statically, shape (n, n_kept).
 
-    Freedoms of `out` without any stiffness stay at zero.
+    DOFs of `out` without any stiffness stay at zero.
 
     Raises
     ------
@@ -187,7 +187,7 @@ def condense(k: Matrix, out: Flags) -> Array:
 
 
 def solve(k: Matrix, m: Matrix, count: int | None = None) -> Modes:
-    """Return all modes of the freedoms that have mass and are tied to any stiffness.
+    """Return all modes of the DOFs that have mass and are tied to any stiffness.
 
     Parameters
     ----------
@@ -216,8 +216,8 @@ def solve(k: Matrix, m: Matrix, count: int | None = None) -> Modes:
         root = 1.0 / np.sqrt(np.diag(mm))
         share, basis = np.linalg.eigh(root[:, None] * mm * root)
         if share[0] < 1e-13 * len(share):
-            turned = root[:, None] * basis
-            t = t @ turned @ condense(turned.T @ kk @ turned, share < 1e-13 * len(share))
+            stationary = root[:, None] * basis
+            t = t @ stationary @ condense(stationary.T @ kk @ stationary, share < 1e-13 * len(share))
             kk, mm = t.T @ (k @ t), t.T @ (m @ t)
     values, shapes = _eigen(kk, mm)
     return Modes(np.sqrt(values), _signed(t @ shapes))
@@ -281,7 +281,7 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
 
 
 def fastest(k: Matrix, m: Matrix) -> float:
-    """Highest circular frequency [rad/T] of a structure all of whose freedoms have mass; 0 without any."""
+    """Highest circular frequency [rad/T] of a structure all of whose DOFs have mass; 0 without any."""
     if isinstance(k, np.ndarray):
         return float(solve(k, m).omega.max(initial=0.0))
     # above the highest frequency all pivots of w^2 M - K are positive

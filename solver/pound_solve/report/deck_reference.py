@@ -269,8 +269,8 @@ _RULES: Final = r"""
 # Deck reference
 
 Everything that a deck may hold. The first part says how a deck is written; the rest is made from the
-program's own tables by `python -m pound_solve.report.deck_reference`, so it is what the program reads. On a terminal,
-`pound-solve list` prints the same tables. New to decks? Start with the [tutorial](tutorial.md).
+program's own tables by `python -m pound_solve.report.deck_reference`, so it is what the program reads. On a
+terminal, `pound-solve list` prints the same tables. New to decks? Start with the [tutorial](tutorial.md).
 
 ## Lines
 

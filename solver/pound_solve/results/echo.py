@@ -14,7 +14,7 @@ from pound_solve.analyses.history import contact_name
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import Motion
 from pound_solve.structure.assembly import Structure
-from pound_solve.structure.diaphragms import Meeting
+from pound_solve.structure.diaphragms import DiaphragmCollision
 
 Rows = list[tuple[Any, ...]]
 
@@ -197,10 +197,12 @@ def contact_laws(structure: Structure) -> Rows:
     return out
 
 
-def diaphragms(structure: Structure, meetings: Mapping[int, Meeting]) -> Rows:
-    """Rows of ``diaphragms``: both sides of every contact; `meetings` by the number of the law."""
+def diaphragms(structure: Structure, diaphragm_collisions: Mapping[int, DiaphragmCollision]) -> Rows:
+    """Rows of ``diaphragms``: both sides of every contact; `diaphragm_collisions` by the number of the
+    law.
+    """
     out = []
-    for i, m in meetings.items():
+    for i, m in diaphragm_collisions.items():
         name = contact_name(structure.model, structure.laws[i].element)
         nothing = (math.nan, math.nan)
         alphas = (m.pair.alpha_lumped, m.pair.alpha_paper, m.pair.alpha) if m.pair else (nothing,) * 3
@@ -211,10 +213,10 @@ def diaphragms(structure: Structure, meetings: Mapping[int, Meeting]) -> Rows:
     return out
 
 
-def collision_theory(structure: Structure, meetings: Mapping[int, Meeting]) -> Rows:
+def collision_theory(structure: Structure, diaphragm_collisions: Mapping[int, DiaphragmCollision]) -> Rows:
     """Rows of ``collision_theory``: what the theory of two diaphragms says of every contact."""
     out: Rows = []
-    for i, m in meetings.items():
+    for i, m in diaphragm_collisions.items():
         name = contact_name(structure.model, structure.laws[i].element)
         if m.pair is None:
             out.append((name, *[math.nan] * 5, m.note))
@@ -225,16 +227,16 @@ def collision_theory(structure: Structure, meetings: Mapping[int, Meeting]) -> R
 
 
 def size(structure: Structure) -> Rows:
-    """Rows of ``size``; those of the freedoms add up to the unknowns."""
-    nodes, moved = structure.model.nodes.values(), len(structure.freedoms.moved)
+    """Rows of ``size``; those of the DOFs add up to the unknowns."""
+    nodes, moved = structure.model.nodes.values(), len(structure.dofs.moved)
     fixed = sum(len(n.fixed) for n in nodes) - moved
     slaved = sum(len(set(n.slaved) - set(n.fixed)) for n in nodes)
-    internal = sum(d >= 3 for _, d in structure.freedoms.free)
+    internal = sum(d >= 3 for _, d in structure.dofs.free)
     contacts = sum(x.is_contact for x in structure.laws)
     counts = {
         "nodes": len(nodes),
         "elements": len(structure.model.elements),
-        "freedoms of nodes": 3 * len(nodes),
+        "degrees of freedom of nodes": 3 * len(nodes),
         "less fixed": fixed,
         "less prescribed at moved supports": moved,
         "less slaved": slaved,

@@ -1,7 +1,7 @@
 """The results file: HDF5, written in blocks while the solver runs, read lazily afterwards.
 
-All that a reader of results needs stands in the file; :mod:`pound_solve.results.schema` lists what may stand there.
-This is the only module that knows HDF5.
+All that a reader of results needs stands in the file; :mod:`pound_solve.results.schema` lists what may
+stand there. This is the only module that knows HDF5.
 """
 
 from __future__ import annotations

@@ -466,7 +466,7 @@ _PUSHOVER = (
             Column("first", "at the start", "", "num", "force or moment for a load factor of one"),
             Column("last", "at the end", "", "num", "force or moment for a load factor of one"),
         ),
-        note="For a load factor of one. Forces on slaved freedoms stand at their masters.",
+        note="For a load factor of one. Forces on slaved degrees of freedom stand at their masters.",
     ),
     Table(
         "capacity_curve",

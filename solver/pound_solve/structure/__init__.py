@@ -1,1 +1,1 @@
-"""The assembled structure: degrees of freedom, elements, damping, geometry, reduction."""
+"""The assembled structure: DOFs, elements, damping, geometry, reduction."""

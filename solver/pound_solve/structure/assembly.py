@@ -1,4 +1,4 @@
-"""Assembly: a Model becomes matrices, laws and load vectors over its freedoms."""
+"""Assembly: a Model becomes matrices, laws and load vectors over its DOFs."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from pound_deck.model import Card, Element, Model
 from pound_solve.numerics import modes
 from pound_solve.numerics.matrices import Matrix, entries, gathered, least_squares, weighted
 from pound_solve.numerics.types import Array
-from pound_solve.structure.corotational import Chords
-from pound_solve.structure.damping.base import DampingError, Ground
+from pound_solve.structure.corotational import CorotationalMembers
+from pound_solve.structure.damping.base import DampingContext, DampingError
 from pound_solve.structure.damping.secant import SecantLaw
-from pound_solve.structure.dofs import DIRECTIONS, Freedom, Freedoms, label, number
+from pound_solve.structure.dofs import DIRECTIONS, Dof, DofMap, label, number
 from pound_solve.structure.elements.base import (
-    Block,
+    ElementContext,
     ElementError,
+    ElementMatrix,
     Geometric,
     LawSpring,
     Output,
     Parts,
-    Site,
 )
 
 
 @dataclass
 class Structure:
-    """The assembled structure; arrays run over `freedoms` columns (unknowns, then prescribed),
+    """The assembled structure; arrays run over `DOFs` columns (unknowns, then prescribed),
     matrices are plain or sparse (see `matrices`).
 
     Attributes
@@ -54,14 +54,14 @@ class Structure:
         supports included [F T^2/L], [F T^2].
     laws : tuple of LawSpring
     law_rows : Matrix, shape (n_laws, n)
-        Deformation of each law from the freedoms.
+        Deformation of each law from the DOFs.
     outputs : tuple of Output
         Quantities of the elements outside laws.
     geometric : tuple of Geometric
         Stiffness of the members from their axial forces; empty for small displacements.
-    chords : Chords
+    corotational : Chords
         Of the members whose forces follow their displaced line; over all columns.
-    nodal_mass : mapping of Freedom to float
+    nodal_mass : mapping of Dof to float
         Diagonal mass by node and direction, weights and members.
     self_weight : bool
         Whether the weight of members is among the loads.
@@ -71,7 +71,7 @@ class Structure:
     """
 
     model: Model
-    freedoms: Freedoms
+    dofs: DofMap
     stiffness: Matrix
     initial_stiffness: Matrix
     mass: Matrix
@@ -84,16 +84,16 @@ class Structure:
     law_rows: Matrix
     outputs: tuple[Output, ...]
     geometric: tuple[Geometric, ...]
-    chords: Chords
-    nodal_mass: dict[Freedom, float]
+    corotational: CorotationalMembers
+    nodal_mass: dict[Dof, float]
     self_weight: bool
     parts: dict[int, Parts]
     damping_texts: list[tuple[Card, str]] = field(default_factory=list)
 
     @property
     def n_free(self) -> int:
-        """Number of unknown freedoms."""
-        return len(self.freedoms.free)
+        """Number of unknown DOFs."""
+        return len(self.dofs.free)
 
     @property
     def held(self) -> Array:
@@ -114,7 +114,7 @@ class Structure:
 
     def axial(self, u: Array) -> Array:
         """Axial forces of the members of `geometric` at displacements `u` of all columns [F]."""
-        return np.array([self.freedoms.value(g.freedoms, g.axial, u) + g.constant for g in self.geometric])
+        return np.array([self.dofs.value(g.dofs, g.axial, u) + g.constant for g in self.geometric])
 
     def stressed(self, axial: Array) -> Structure:
         """The structure whose members carry these axial forces, shape (n_geometric,):
@@ -123,12 +123,12 @@ class Structure:
         if not len(axial):
             return self
         rows: dict[tuple[int, str], Array] = {}
-        blocks: list[Block] = []
+        blocks: list[ElementMatrix] = []
         for g, force in zip(self.geometric, axial.tolist()):
-            blocks.append(Block(g.freedoms, force * g.matrix))
+            blocks.append(ElementMatrix(g.dofs, force * g.matrix))
             for quantity, row in g.forces.items():
                 rows[g.element, quantity] = force * row
-        matrix = _sum(self.freedoms, blocks)
+        matrix = _sum(self.dofs, blocks)
         outputs = tuple(
             replace(o, u_row=o.u_row + rows.get((o.element, o.quantity), 0.0)) for o in self.outputs
         )
@@ -141,10 +141,10 @@ class Structure:
 
     def displaced(self, u: Array) -> Structure:
         """The structure whose initial stiffness is that at displacements `u` of the unknowns."""
-        if not self.chords:
+        if not self.corotational:
             return self
-        pad = np.zeros(len(self.freedoms.moved))
-        k = self.initial_stiffness + self.framed(self.chords.stiffness(np.append(u, pad)))
+        pad = np.zeros(len(self.dofs.moved))
+        k = self.initial_stiffness + self.framed(self.corotational.stiffness(np.append(u, pad)))
         return replace(self, initial_stiffness=k)
 
     def framed(self, k: Matrix) -> Matrix:
@@ -155,11 +155,11 @@ class Structure:
 
     def member_forces(self, u: Array) -> Array:
         """All of `outputs` at displacements `u` of all columns and no velocity, shape (n_outputs,)."""
-        linear = [self.freedoms.value(o.freedoms, o.u_row, u) + o.constant for o in self.outputs]
-        if not self.chords:
+        linear = [self.dofs.value(o.dofs, o.u_row, u) + o.constant for o in self.outputs]
+        if not self.corotational:
             return np.array(linear)
-        at, share = self.chords.shares([(o.element, o.quantity) for o in self.outputs])
-        found = self.chords.survey(self.chords.quantities(u)[None])[0]
+        at, share = self.corotational.shares([(o.element, o.quantity) for o in self.outputs])
+        found = self.corotational.envelopes(self.corotational.quantities(u)[None])[0]
         return np.array(linear) + (share * found[at, 1:]).sum(axis=1)
 
     def influence(self) -> Array:
@@ -189,14 +189,14 @@ def _refusal(model: Model, label: str, message: str, item: str, elements: list[E
     )
 
 
-def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = True) -> Structure:
+def assemble(model: Model, moved: Collection[Dof] = (), self_weight: bool = True) -> Structure:
     """Assemble a model.
 
     Parameters
     ----------
     model : Model
-    moved : collection of Freedom
-        Fixed freedoms whose motion is prescribed (supports that move apart from each other).
+    moved : collection of Dof
+        Fixed DOFs whose motion is prescribed (supports that move apart from each other).
     self_weight : bool
         Whether the weight of members loads the structure.
 
@@ -207,7 +207,7 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
     """
     problems: list[Diagnostic] = []
     # the mass of the nodes comes first: contacts need it
-    mass_terms: list[tuple[frozenset[int], tuple[Freedom, ...], Array]] = []
+    mass_terms: list[tuple[frozenset[int], tuple[Dof, ...], Array]] = []
     for card in model.weights:
         wy = card["WX"] if card["WY"] is None else card["WY"]
         diagonal = np.array([card["WX"], wy, card["WR"]]) / model.gravity
@@ -218,7 +218,7 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
     for card in model.member_loads:
         for e in card["ELEMENTS"]:
             loads_of.setdefault(e, []).append(card)
-    nodal_mass: dict[Freedom, float] = {}
+    nodal_mass: dict[Dof, float] = {}
 
     parts: dict[int, Parts] = {}
     contacts_last = sorted(
@@ -231,7 +231,7 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
         if prop.spec.name == "CONTACT" and not masses_known:
             _add_diagonals(mass_terms, model, nodal_mass)
             masses_known = True
-        site = Site(
+        context = ElementContext(
             element,
             prop,
             model.nodes[element.i],
@@ -244,51 +244,51 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
             partial(mass_along, model, nodal_mass),
             partial(stiffness_along, model, parts),
         )
-        if site.member_loads and prop.spec.name not in ("FRAME", "BEAM_COLUMN"):
+        if context.member_loads and prop.spec.name not in ("FRAME", "BEAM_COLUMN"):
             wrong = f"element {element.id} is a {prop.spec.name}"
             message = f"{wrong}: only FRAME and BEAM_COLUMN take member loads"
-            problems.append(Diagnostic("P331", message, site.member_loads[0].span))
+            problems.append(Diagnostic("P331", message, context.member_loads[0].span))
         try:
-            parts[element.id] = prop.spec.impl(site)
+            parts[element.id] = prop.spec.impl(context)
         except ElementError as err:
             refused.setdefault((prop.label, str(err), err.item), []).append(element)
             continue
         nodes = frozenset(k for k in (element.i, element.j) if k is not None)
-        mass_terms += [(nodes, b.freedoms, b.matrix) for b in parts[element.id].mass]
+        mass_terms += [(nodes, b.dofs, b.matrix) for b in parts[element.id].mass]
     if not masses_known:
         _add_diagonals(mass_terms, model, nodal_mass)
     problems += [_refusal(model, *why, elements) for why, elements in refused.items()]
     if problems:
         raise AssemblyError(problems)
     ordered = [parts[e] for e in model.elements]
-    freedoms = number(model.nodes, moved, [f for p in ordered for f in p.internal()])
-    n = freedoms.size
+    dofs = number(model.nodes, moved, [f for p in ordered for f in p.internal()])
+    n = dofs.size
 
     laws = tuple(s for p in ordered for s in p.laws)
-    rows = freedoms.rows([(s.freedoms, s.row) for s in laws])
-    k_linear = _sum(freedoms, (b for p in ordered for b in p.stiffness))
-    c = _sum(freedoms, (b for p in ordered for b in p.damping))
+    rows = dofs.rows([(s.dofs, s.row) for s in laws])
+    k_linear = _sum(dofs, (b for p in ordered for b in p.stiffness))
+    c = _sum(dofs, (b for p in ordered for b in p.damping))
     loads, released = np.zeros(n), np.zeros(n)
     for p in ordered:
         for at, vector in p.loads:
-            freedoms.add(loads, at, vector)
+            dofs.add(loads, at, vector)
     for card in model.loads:
         for node in card["NODES"]:
             at, push = tuple((node, d) for d in range(3)), (card["FX"], card["FY"], card["MZ"])
-            freedoms.add(loads, at, push)
+            dofs.add(loads, at, push)
             if card["HELD"] == "NO":
-                freedoms.add(released, at, push)
-    mass = _sum(freedoms, (Block(at, matrix) for _, at, matrix in mass_terms))
+                dofs.add(released, at, push)
+    mass = _sum(dofs, (ElementMatrix(at, matrix) for _, at, matrix in mass_terms))
     ground = np.zeros((3, n))
     for _, at, matrix in mass_terms:
         for d in range(3):
-            freedoms.add(ground[d], at, matrix @ [_ridden(model, f, d) for f in at])
+            dofs.add(ground[d], at, matrix @ [_ridden(model, f, d) for f in at])
     k0 = k_linear + weighted(rows, [s.k0 for s in laws])
-    chords = [c for p in ordered for c in p.chords]
+    corotational = [c for p in ordered for c in p.corotational]
 
     structure = Structure(
         model,
-        freedoms,
+        dofs,
         k_linear,
         k0,
         mass,
@@ -301,7 +301,9 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
         rows,
         tuple(o for p in ordered for o in p.outputs),
         tuple(g for p in ordered for g in p.geometric),
-        Chords(chords, freedoms.rows([(c.freedoms, row) for c in chords for row in c.rows])),
+        CorotationalMembers(
+            corotational, dofs.rows([(c.dofs, row) for c in corotational for row in c.rows])
+        ),
         nodal_mass,
         self_weight,
         parts,
@@ -313,7 +315,7 @@ def assemble(model: Model, moved: Collection[Freedom] = (), self_weight: bool = 
 
 
 def mass_along(
-    model: Model, nodal_mass: Mapping[Freedom, float], node: int, normal: tuple[float, float]
+    model: Model, nodal_mass: Mapping[Dof, float], node: int, normal: tuple[float, float]
 ) -> float:
     """Mass of a node felt along an oblique direction, 1/m = sum n_d^2 / m_d over directions that can move;
     infinite where none can [F T^2/L].
@@ -340,7 +342,7 @@ def stiffness_along(
     out = {}
     for name, own in parts.items():
         e, initial = model.elements[name], own.initial()
-        at = [n for n, f in enumerate(initial.freedoms) if f in ((node, 0), (node, 1))]
+        at = [n for n, f in enumerate(initial.dofs) if f in ((node, 0), (node, 1))]
         if not at:
             continue
         way, length = np.array(normal), 0.0
@@ -349,18 +351,18 @@ def stiffness_along(
             line = np.array([j.x - i.x, j.y - i.y])
             length = float(np.hypot(*line))
             way = line / length if length else way
-        t = way[[initial.freedoms[n][1] for n in at]]
+        t = way[[initial.dofs[n][1] for n in at]]
         k = float(t @ initial.matrix[np.ix_(at, at)] @ t) * float(way @ normal) ** 2
         if k > 1e-12 * np.abs(initial.matrix).max():  # a column's cosine may be rounding
             out[name] = k
     return out
 
 
-def _ridden(model: Model, freedom: Freedom, d: int) -> float:
-    """Motion of a freedom that rides on the ground, which moves by one along `d`
+def _ridden(model: Model, dof: Dof, d: int) -> float:
+    """Motion of a DOF that rides on the ground, which moves by one along `d`
     (2: turns about the origin).
     """
-    owner, own = freedom
+    owner, own = dof
     if own > 2:  # what is inside an element turns against its nodes
         return 0.0
     if d < 2:
@@ -370,14 +372,14 @@ def _ridden(model: Model, freedom: Freedom, d: int) -> float:
 
 
 def _add_diagonals(
-    terms: list[tuple[frozenset[int], tuple[Freedom, ...], Array]], model: Model, out: dict[Freedom, float]
+    terms: list[tuple[frozenset[int], tuple[Dof, ...], Array]], model: Model, out: dict[Dof, float]
 ) -> None:
     for _, at, matrix in terms:
-        for a, freedom in enumerate(at):
+        for a, dof in enumerate(at):
             # a consistent matrix is summed along the row of its own direction:
             # the node's share of rigid motion
-            same = [b for b, other in enumerate(at) if other[1] == freedom[1]] if freedom[1] < 2 else [a]
-            out[freedom] = out.get(freedom, 0.0) + float(matrix[a, same].sum())
+            same = [b for b, other in enumerate(at) if other[1] == dof[1]] if dof[1] < 2 else [a]
+            out[dof] = out.get(dof, 0.0) + float(matrix[a, same].sum())
     # what follows a master is felt at the master
     for node in model.nodes.values():
         for letter, master in node.slaved.items():
@@ -385,11 +387,11 @@ def _add_diagonals(
             out[master, d] = out.get((master, d), 0.0) + out.get((node.id, d), 0.0)
 
 
-def _sum(freedoms: Freedoms, blocks: Iterable[Block]) -> Matrix:
-    """Sum of small matrices at their freedoms, through slaving, shape (n, n)."""
+def _sum(dofs: DofMap, blocks: Iterable[ElementMatrix]) -> Matrix:
+    """Sum of small matrices at their DOFs, through slaving, shape (n, n)."""
     rows, columns, values = [], [], []
     for block in blocks:
-        terms = [freedoms.terms[f] for f in block.freedoms]
+        terms = [dofs.terms[f] for f in block.dofs]
         for own, line in zip(terms, block.matrix.tolist()):
             for other, value in zip(terms, line):
                 if value != 0.0:
@@ -398,46 +400,46 @@ def _sum(freedoms: Freedoms, blocks: Iterable[Block]) -> Matrix:
                             rows.append(i)
                             columns.append(j)
                             values.append(value * fi * fj)
-    return gathered((freedoms.size, freedoms.size), rows, columns, values)
+    return gathered((dofs.size, dofs.size), rows, columns, values)
 
 
 def _add_damping(
     structure: Structure,
-    mass_terms: list[tuple[frozenset[int], tuple[Freedom, ...], Array]],
+    mass_terms: list[tuple[frozenset[int], tuple[Dof, ...], Array]],
     parts: dict[int, Parts],
     problems: list[Diagnostic],
 ) -> None:
-    model, freedoms, n = structure.model, structure.freedoms, structure.n_free
+    model, dofs, n = structure.model, structure.dofs, structure.n_free
 
     def mass_of(nodes: Collection[int] | None) -> Matrix:
         if nodes is None:
             return structure.mass
-        blocks, chosen = list[Block](), frozenset(nodes)
+        blocks, chosen = list[ElementMatrix](), frozenset(nodes)
         for where, at, matrix in mass_terms:
             inside = np.array([f[1] < 3 and f[0] in chosen for f in at])
             if not matrix[np.ix_(inside, ~inside)].any():  # lumped: each node takes its own
-                blocks.append(Block(at, np.where(inside[:, None] & inside, matrix, 0.0)))
+                blocks.append(ElementMatrix(at, np.where(inside[:, None] & inside, matrix, 0.0)))
             else:  # a consistent matrix is shared evenly by the nodes that can move
                 loose = {k for k in where if len(set(model.nodes[k].fixed)) < 3}
-                blocks.append(Block(at, matrix * (len(loose & chosen) / max(len(loose), 1))))
-        return _sum(freedoms, blocks)
+                blocks.append(ElementMatrix(at, matrix * (len(loose & chosen) / max(len(loose), 1))))
+        return _sum(dofs, blocks)
 
     def stiffness_of(labels: Collection[str] | None, laws: bool) -> Matrix:
         chosen = [parts[e.id] for e in model.elements.values() if labels is None or e.prop in labels]
-        return _sum(freedoms, (b for p in chosen for b in ([p.initial()] if laws else p.stiffness)))
+        return _sum(dofs, (b for p in chosen for b in ([p.initial()] if laws else p.stiffness)))
 
     def modes_of(nodes: Collection[int] | None, count: int | None) -> modes.Modes:
         if nodes is None:
             return structure.vibration(count)
         k, m = structure.initial_stiffness[:n, :n], structure.mass[:n, :n]
         named = np.zeros(n, bool)
-        named[[i for k in nodes for d in range(3) for i, _ in freedoms.terms[k, d] if i < n]] = True
+        named[[i for k in nodes for d in range(3) for i, _ in dofs.terms[k, d] if i < n]] = True
         if not named.any():
             raise DampingError("none of these nodes can move", "NODES")
         linked, inside = abs(k) + abs(m), named
         while (more := inside | (linked @ inside > 0.0)).sum() > inside.sum():
             inside = more
-        strange = [f for f, x in zip(freedoms.free, inside & ~named) if x and f[1] < 3]
+        strange = [f for f, x in zip(dofs.free, inside & ~named) if x and f[1] < 3]
         if strange:
             raise DampingError(
                 f"{label(strange[0])} hangs together with these nodes: only a whole building has modes",
@@ -452,7 +454,7 @@ def _add_damping(
     betas = np.zeros((2, len(structure.laws)))  # tangent, secant
     for card in model.damping:
         try:
-            group = card.spec.impl(card, Ground(mass_of, stiffness_of, modes_of))
+            group = card.spec.impl(card, DampingContext(mass_of, stiffness_of, modes_of))
         except DampingError as err:
             problems.append(Diagnostic("P332", str(err), card.place(err.item)))
             continue
@@ -467,7 +469,7 @@ def _add_damping(
             continue
         if group.relative is not None:
             structure.damping = structure.damping + structure.framed(group.relative)
-            if len(freedoms.moved):
+            if len(dofs.moved):
                 structure.damping = structure.damping + _against(structure, group.relative[:n, :n])
         if group.between is not None:
             structure.damping = structure.damping + group.between

@@ -40,7 +40,7 @@ import numpy as np
 from pound_solve.numerics import jit
 from pound_solve.numerics.matrices import Matrix, by_rows, gathered
 from pound_solve.numerics.types import Array, Index
-from pound_solve.structure.dofs import Freedom
+from pound_solve.structure.dofs import Dof
 
 QUANTITIES = 6
 #: columns of the parameters; KNN, KNT, KTT are k_z, LEAN the share of I's rotation in the member's own
@@ -49,13 +49,13 @@ STRING, TURNING = 0.0, 1.0  #: kinds
 
 
 @dataclass(frozen=True)
-class Chord:
+class CorotationalMember:
     """The chord of one member.
 
     Attributes
     ----------
     rows : ndarray, shape (6, n)
-        The quantities over `freedoms`.
+        The quantities over `DOFs`.
     p : tuple of float
         Parameters, columns as above.
     forces : mapping of str to ndarray, shape (3,)
@@ -64,7 +64,7 @@ class Chord:
     """
 
     element: int
-    freedoms: tuple[Freedom, ...]
+    dofs: tuple[Dof, ...]
     rows: Array
     p: tuple[float, ...]
     forces: Mapping[str, Array] = field(default_factory=dict)
@@ -151,7 +151,7 @@ def bend(p: Array, c: int, s: Array, at: int, h: Array, to: int) -> None:
     h[to, 35] += end2 * (n * (co * cj + si * tj) + t / now * (co * tj - si * cj))
 
 
-def survey(p: Array, s: Array, out: Array) -> None:
+def envelopes(p: Array, s: Array, out: Array) -> None:
     """Potential, eta, rho and the shear of the lengthening of all chords at several instants.
 
     Parameters
@@ -174,7 +174,7 @@ def survey(p: Array, s: Array, out: Array) -> None:
             out[i, c, 3] = (t + dt) * (1.0 / p[c, LENGTH] - 1.0 / now)
 
 
-class Chords:
+class CorotationalMembers:
     """The chords of a structure.
 
     Parameters
@@ -188,16 +188,16 @@ class Chords:
     p : ndarray, shape (n_chords, 10)
     """
 
-    def __init__(self, own: Sequence[Chord], rows: Matrix) -> None:
+    def __init__(self, own: Sequence[CorotationalMember], rows: Matrix) -> None:
         self.own, self.rows = tuple(own), rows
         self.p = np.array([c.p for c in own]).reshape(len(own), 10)
 
     def __len__(self) -> int:
         return len(self.own)
 
-    def on(self, columns: list[int] | slice) -> Chords:
+    def on(self, columns: list[int] | slice) -> CorotationalMembers:
         """The same over some of the columns, the others at rest."""
-        return Chords(self.own, self.rows[:, columns])
+        return CorotationalMembers(self.own, self.rows[:, columns])
 
     def quantities(self, u: Array) -> Array:
         """The six quantities of every chord at displacements `u`, shape (n_chords, 6)."""
@@ -235,11 +235,11 @@ class Chords:
         n = self.rows.shape[1]
         return gathered((n, n), np.concatenate(i), np.concatenate(j), np.concatenate(x))
 
-    def survey(self, s: Array) -> Array:
-        """`survey` at the quantities `s`, shape (n_times, n_chords, 6) to (n_times, n_chords, 4)."""
+    def envelopes(self, s: Array) -> Array:
+        """`envelopes` at the quantities `s`, shape (n_times, n_chords, 6) to (n_times, n_chords, 4)."""
         out = np.zeros((*s.shape[:2], 4))
         with jit.compiling():
-            jit.compiled(survey)(self.p, np.ascontiguousarray(s), out)
+            jit.compiled(envelopes)(self.p, np.ascontiguousarray(s), out)
         return out
 
     def shares(self, outputs: Sequence[tuple[int, str]]) -> tuple[Index, Array]:

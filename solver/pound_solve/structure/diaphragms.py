@@ -23,7 +23,7 @@ STRAIGHT = 1e-6  #: sine of the angle by which a member may miss the contact's d
 
 
 @dataclass(frozen=True)
-class Meeting:
+class DiaphragmCollision:
     """What meets in a contact.
 
     Attributes
@@ -81,21 +81,25 @@ def sides(
     return first, second
 
 
-def meetings(structure: Structure) -> dict[int, Meeting]:
+def diaphragm_collisions(structure: Structure) -> dict[int, DiaphragmCollision]:
     """What meets in every contact, by the number of its law."""
     members: dict[int, list[int]] = {}
     for e in structure.model.elements.values():
         if e.j is not None:
             members.setdefault(e.i, []).append(e.id)
             members.setdefault(e.j, []).append(e.id)
-    return {i: _meeting(structure, members, s) for i, s in enumerate(structure.laws) if s.is_contact}
+    return {
+        i: _diaphragm_collision(structure, members, s) for i, s in enumerate(structure.laws) if s.is_contact
+    }
 
 
-def _meeting(structure: Structure, members: Mapping[int, Sequence[int]], spring: LawSpring) -> Meeting:
+def _diaphragm_collision(
+    structure: Structure, members: Mapping[int, Sequence[int]], spring: LawSpring
+) -> DiaphragmCollision:
     """Both sides of a contact, and what the theory says of them."""
     first, second = both = sides(structure, members, spring)
     if 0.0 in (first.mass, second.mass):
-        return Meeting(both, None, math.nan, "no theory: a diaphragm has no mass")
+        return DiaphragmCollision(both, None, math.nan, "no theory: a diaphragm has no mass")
     prop = structure.model.props[structure.model.elements[spring.element].prop]
     given = prop["DIAPHRAGMS"] is not None
     rigid = [n for n, d in zip("IJ", both) if math.isinf(d.stiffness) and not math.isinf(d.mass)]
@@ -103,7 +107,7 @@ def _meeting(structure: Structure, members: Mapping[int, Sequence[int]], spring:
         # a mass at a column is no floor: what holds it matters, and the theory does not know it
         who = " and ".join(rigid)
         what = f"no theory: {who} rigid, no member behind; DIAPHRAGMS under PROPS gives a stiffness"
-        return Meeting(both, None, math.nan, what)
+        return DiaphragmCollision(both, None, math.nan, what)
     pair = Pair(first, second)
     plasticity = prop["R"] if spring.rule == "EQUIVALENT" else 1.0
     lumped = given and math.isfinite(spring.facts["e_given"])
@@ -111,7 +115,7 @@ def _meeting(structure: Structure, members: Mapping[int, Sequence[int]], spring:
     error = (1.0 + e) / (1.0 + plasticity * pair.e) - 1.0
     notes = [] if pair.paper_holds else ["Z of the shorter period is the larger: Eqs 7, 8, 14-17 fail"]
     notes.append(_verdict(lumped, error))
-    return Meeting(both, pair, error, "; ".join(notes))
+    return DiaphragmCollision(both, pair, error, "; ".join(notes))
 
 
 def _verdict(lumped: bool, error: float) -> str:
@@ -161,7 +165,7 @@ def _straight_on(
             continue
         block = structure.parts[member].initial()
         from_here, from_there = (
-            np.array([way[d] if owner == n and d < 2 else 0.0 for owner, d in block.freedoms])
+            np.array([way[d] if owner == n and d < 2 else 0.0 for owner, d in block.dofs])
             for n in (node, other.id)
         )
         along = -float(from_here @ block.matrix @ from_there)

@@ -1,9 +1,9 @@
-"""Freedoms: which displacements are unknown, which follow a master, which are prescribed.
+"""DOFs: which displacements are unknown, which follow a master, which are prescribed.
 
-Every node has ``ux``, ``uy`` and ``rz``; an element may have internal freedoms besides (the turns of its
+Every node has ``ux``, ``uy`` and ``rz``; an element may have internal DOFs besides (the turns of its
 hinges).  A fixed one is zero, a slaved one follows its master
 with the rigid arm between them, one at a moved support is prescribed; the rest are the unknowns.
-Columns of every assembled matrix are the unknowns first, then the prescribed freedoms.
+Columns of every assembled matrix are the unknowns first, then the prescribed DOFs.
 """
 
 from __future__ import annotations
@@ -22,79 +22,79 @@ NAMES = ("ux", "uy", "rz")
 INTERNAL = ("turn inside I", "turn inside J", "stretch inside I", "stretch inside J")
 
 #: node number and direction (0 x, 1 y, 2 rotation), or element number and 3, 4, ... for its internal ones
-Freedom = tuple[int, int]
+Dof = tuple[int, int]
 
 
-def label(freedom: Freedom) -> str:
-    """Freedom in words."""
-    owner, d = freedom
+def label(dof: Dof) -> str:
+    """DOF in words."""
+    owner, d = dof
     return f"node {owner} {NAMES[d]}" if d < 3 else f"element {owner} {INTERNAL[d - 3]}"
 
 
 @dataclass(frozen=True)
-class Freedoms:
-    """Numbering of the freedoms.
+class DofMap:
+    """Numbering of the DOFs.
 
     Attributes
     ----------
-    free : tuple of Freedom
+    free : tuple of Dof
         The unknowns, in the order of the nodes; internal ones of elements last.
-    moved : tuple of Freedom
-        Freedoms at moved supports, whose motion is prescribed.
-    terms : mapping of Freedom to tuple of (int, float)
-        Each freedom as a sum of columns; empty for a fixed one.
+    moved : tuple of Dof
+        DOFs at moved supports, whose motion is prescribed.
+    terms : mapping of Dof to tuple of (int, float)
+        Each DOF as a sum of columns; empty for a fixed one.
     """
 
-    free: tuple[Freedom, ...]
-    moved: tuple[Freedom, ...]
-    terms: Mapping[Freedom, tuple[tuple[int, float], ...]]
+    free: tuple[Dof, ...]
+    moved: tuple[Dof, ...]
+    terms: Mapping[Dof, tuple[tuple[int, float], ...]]
 
     @property
     def size(self) -> int:
         """Number of columns."""
         return len(self.free) + len(self.moved)
 
-    def add(self, out: Array, freedoms: Collection[Freedom], values: Collection[float]) -> None:
-        """Add `values` times `freedoms` to a row over the columns, shape (size,)."""
-        for freedom, value in zip(freedoms, values):
-            for column, factor in self.terms[freedom]:
+    def add(self, out: Array, dofs: Collection[Dof], values: Collection[float]) -> None:
+        """Add `values` times `DOFs` to a row over the columns, shape (size,)."""
+        for dof, value in zip(dofs, values):
+            for column, factor in self.terms[dof]:
                 out[column] += value * factor
 
-    def row(self, freedoms: Collection[Freedom], values: Collection[float]) -> Array:
-        """Sum of `values` times `freedoms` as a row over the columns, shape (size,)."""
+    def row(self, dofs: Collection[Dof], values: Collection[float]) -> Array:
+        """Sum of `values` times `DOFs` as a row over the columns, shape (size,)."""
         out = np.zeros(self.size)
-        self.add(out, freedoms, values)
+        self.add(out, dofs, values)
         return out
 
-    def rows(self, sums: Sequence[tuple[Collection[Freedom], Collection[float]]]) -> Matrix:
+    def rows(self, sums: Sequence[tuple[Collection[Dof], Collection[float]]]) -> Matrix:
         """Several such rows, shape (len(sums), size)."""
         terms = [
             (i, column, value * factor)
-            for i, (freedoms, values) in enumerate(sums)
-            for freedom, value in zip(freedoms, values)
-            for column, factor in self.terms[freedom]
+            for i, (dofs, values) in enumerate(sums)
+            for dof, value in zip(dofs, values)
+            for column, factor in self.terms[dof]
         ]
         return gathered((len(sums), self.size), *np.array(terms).reshape(-1, 3).T)
 
-    def matrix(self, freedoms: Collection[Freedom]) -> Matrix:
-        """Rows of several freedoms, shape (len(freedoms), size)."""
-        return self.rows([((f,), (1.0,)) for f in freedoms])
+    def matrix(self, dofs: Collection[Dof]) -> Matrix:
+        """Rows of several DOFs, shape (len(DOFs), size)."""
+        return self.rows([((f,), (1.0,)) for f in dofs])
 
-    def value(self, freedoms: Collection[Freedom], values: Collection[float], u: Array) -> float:
-        """Sum of `values` times `freedoms` at displacements `u` of all columns."""
+    def value(self, dofs: Collection[Dof], values: Collection[float], u: Array) -> float:
+        """Sum of `values` times `DOFs` at displacements `u` of all columns."""
         return float(
             sum(
                 value * factor * u[column]
-                for freedom, value in zip(freedoms, values)
-                for column, factor in self.terms[freedom]
+                for dof, value in zip(dofs, values)
+                for column, factor in self.terms[dof]
             )
         )
 
 
 def number(
-    nodes: Mapping[int, Node], moved: Collection[Freedom] = (), internal: Collection[Freedom] = ()
-) -> Freedoms:
-    """Number the freedoms of `nodes` and the `internal` ones of elements;
+    nodes: Mapping[int, Node], moved: Collection[Dof] = (), internal: Collection[Dof] = ()
+) -> DofMap:
+    """Number the DOFs of `nodes` and the `internal` ones of elements;
     those in `moved` (fixed ones) get prescribed columns.
     """
     moved, prescribed = tuple(sorted(moved)), frozenset(moved)
@@ -105,7 +105,7 @@ def number(
         if DIRECTIONS[d] not in n.fixed and DIRECTIONS[d] not in n.slaved and (n.id, d) not in prescribed
     ) + tuple(internal)
     column = {f: i for i, f in enumerate(free + moved)}
-    terms: dict[Freedom, tuple[tuple[int, float], ...]] = {f: ((column[f], 1.0),) for f in internal}
+    terms: dict[Dof, tuple[tuple[int, float], ...]] = {f: ((column[f], 1.0),) for f in internal}
     for n in nodes.values():
         for d in range(3):
             if DIRECTIONS[d] in n.slaved:
@@ -124,4 +124,4 @@ def number(
             own = terms[master.id, d]
             turn = tuple((c, f * arm) for c, f in terms[master.id, 2]) if arm else ()
             terms[n.id, d] = own + turn
-    return Freedoms(free, moved, terms)
+    return DofMap(free, moved, terms)

@@ -1,6 +1,6 @@
-r"""The scene: what this deck needs of the structure, and why the rest is left out.
+r"""The reduced system: what this deck needs of the structure, and why the rest is left out.
 
-Freedoms that nothing can set in motion are dropped, and what is left is written as
+DOFs that nothing can set in motion are dropped, and what is left is written as
 
 .. math:: M\ddot u + C\dot u + K u + \sum_i b_i f_i(d_i, \dot d_i) = F s(t) + p_0, \qquad
           d_i = b_i^T u + e_i^T s(t)
@@ -8,7 +8,7 @@ Freedoms that nothing can set in motion are dropped, and what is left is written
 with the laws' forces :math:`f_i`, the inputs :math:`s(t)` (ground accelerations, or displacement,
 velocity and acceleration of moved supports; histories of forces) and constant loads :math:`p_0`.
 
-Massless freedoms that only linear elements touch can be condensed besides: few unknowns, but full matrices,
+Massless DOFs that only linear elements touch can be condensed besides: few unknowns, but full matrices,
 which suits EXACT.  Stepping methods keep them, and with them the sparse matrices.
 
 With one motion for the whole base the displacements are relative to the ground;
@@ -42,11 +42,11 @@ from pound_solve.numerics.matrices import (
 from pound_solve.numerics.modes import massless, softest
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.assembly import Structure
-from pound_solve.structure.corotational import QUANTITIES, Chords
-from pound_solve.structure.dofs import Freedom, label
+from pound_solve.structure.corotational import QUANTITIES, CorotationalMembers
+from pound_solve.structure.dofs import Dof, label
 
 
-class SceneError(Exception):
+class ReductionError(Exception):
     """A structure whose motion no method can follow."""
 
 
@@ -126,12 +126,12 @@ class Excitation:
 
 
 @dataclass
-class Scene:
+class ReducedSystem:
     """The reduced problem of a history; see the module's head.
 
     Attributes
     ----------
-    freedoms : tuple of Freedom
+    dofs : tuple of Dof
         The n unknowns that are left.
     mass, damping, stiffness : Matrix, shape (n, n)
     inputs : ndarray, shape (n, n_inputs)
@@ -146,7 +146,7 @@ class Scene:
     expand : Matrix, shape (n_free, n)
     expand_constant : ndarray, shape (n_free,)
     expand_inputs : ndarray, shape (n_free, n_inputs)
-        All unknown freedoms: ``expand u + expand_constant + expand_inputs s``.
+        All unknown DOFs: ``expand u + expand_constant + expand_inputs s``.
     support_inputs : ndarray, shape (n_moved, n_inputs)
         Prescribed displacements from s.
     total : bool
@@ -155,12 +155,12 @@ class Scene:
         Acceleration of the ground along x and y at the origin, and of its turn, from s;
         zero rows in the total form.
     force_inputs : ndarray, shape (n_free, n_inputs)
-        Part of F on all unknown freedoms that is FORCES.
+        Part of F on all unknown DOFs that is FORCES.
     decisions : list of Decision
     """
 
     structure: Structure
-    freedoms: tuple[Freedom, ...]
+    dofs: tuple[Dof, ...]
     mass: Matrix
     damping: Matrix
     stiffness: Matrix
@@ -180,7 +180,7 @@ class Scene:
     forces: Sequence[Force]
     decisions: list[Decision] = field(default_factory=list)
 
-    def all_freedoms(self, u: Array, t: float, order: int = 0) -> Array:
+    def all_dofs(self, u: Array, t: float, order: int = 0) -> Array:
         """All columns of the structure, prescribed ones included, from the unknowns' motion at `t`.
 
         With `order` 1 or 2 `u` is their velocity or acceleration, and so is the result.
@@ -208,48 +208,48 @@ class Scene:
         )
 
     def applied(self, s: Array) -> Array:
-        """Held loads and FORCES on all unknown freedoms at inputs `s`; columns are instants
+        """Held loads and FORCES on all unknown DOFs at inputs `s`; columns are instants
         where there are several.
         """
         constant = self.structure.held[: self.structure.n_free]
         return ((self.force_inputs @ s).T + constant).T
 
     @cached_property
-    def chords(self) -> Chords:
+    def corotational(self) -> CorotationalMembers:
         """The members' chords over the unknowns."""
-        return self.structure.chords.on(self.columns)
+        return self.structure.corotational.on(self.columns)
 
     @cached_property
-    def chord_inputs(self) -> Array:
+    def corotational_inputs(self) -> Array:
         """Their quantities from the inputs, shape (n_chords, 6, n_inputs)."""
-        chords = self.structure.chords
-        own = chords.rows[:, self.structure.n_free :] @ self.support_inputs
-        return np.asarray(own, float).reshape(len(chords), QUANTITIES, own.shape[1])
+        corotational = self.structure.corotational
+        own = corotational.rows[:, self.structure.n_free :] @ self.support_inputs
+        return np.asarray(own, float).reshape(len(corotational), QUANTITIES, own.shape[1])
 
     def quantities(self, u: Array, s: Array) -> Array:
         """Quantities of the chords, shape (n_times, n_chords, 6), for rows of unknowns and of inputs."""
-        own = (u @ self.chords.rows.T).reshape(len(u), len(self.chords), QUANTITIES)
-        return np.asarray(own + np.einsum("ti,cji->tcj", s, self.chord_inputs), float)
+        own = (u @ self.corotational.rows.T).reshape(len(u), len(self.corotational), QUANTITIES)
+        return np.asarray(own + np.einsum("ti,cji->tcj", s, self.corotational_inputs), float)
 
     @property
     def columns(self) -> list[int]:
         """Columns of the structure's matrices that the unknowns stand at."""
-        column = {f: i for i, f in enumerate(self.structure.freedoms.free)}
-        return [column[f] for f in self.freedoms]
+        column = {f: i for i, f in enumerate(self.structure.dofs.free)}
+        return [column[f] for f in self.dofs]
 
     @property
     def size(self) -> int:
         """Number of unknowns."""
-        return len(self.freedoms)
+        return len(self.dofs)
 
     def name(self, index: int) -> str:
         """Unknown in words."""
-        return label(self.freedoms[index])
+        return label(self.dofs[index])
 
 
-def moved_supports(motions: Sequence[Motion], fixed: Sequence[Freedom]) -> tuple[Freedom, ...]:
-    """Fixed freedoms that the motions with SUPPORTS prescribe."""
-    out: set[Freedom] = set()
+def moved_supports(motions: Sequence[Motion], fixed: Sequence[Dof]) -> tuple[Dof, ...]:
+    """Fixed DOFs that the motions with SUPPORTS prescribe."""
+    out: set[Dof] = set()
     for m in motions:
         if m.supports is not None:
             out |= {(node, d) for node in m.supports for d in m.directions}
@@ -263,7 +263,7 @@ def build(
     start: Array,
     start_rate: Array,
     forces: Sequence[Force] = (),
-) -> Scene:
+) -> ReducedSystem:
     """Reduce a structure to what its history needs.
 
     Parameters
@@ -273,19 +273,19 @@ def build(
     t_end : float
         Length of the history [T].
     start, start_rate : ndarray, shape (n_free,)
-        Displacement and velocity at t = 0: freedoms that start in motion stay.
+        Displacement and velocity at t = 0: DOFs that start in motion stay.
     forces : sequence of Force
 
     Raises
     ------
     SceneError
         Mass on arms of slaved nodes leaves some motion without inertia; or a force that jumps on a massless
-        freedom would throw a spring with memory from one place to another.
+        DOF would throw a spring with memory from one place to another.
     """
-    n, total = structure.n_free, bool(structure.freedoms.moved)
+    n, total = structure.n_free, bool(structure.dofs.moved)
     decisions: list[Decision] = []
     excitation, inputs, displacement_of, ground, force_inputs = _inputs(structure, motions, forces, t_end)
-    names = structure.freedoms.free
+    names = structure.dofs.free
     k, c, m = (a[:n, :n] for a in (structure.stiffness, structure.damping, structure.mass))
     rows = structure.law_rows[:, :n]
     law_inputs = structure.law_rows[:, n:] @ displacement_of
@@ -296,14 +296,16 @@ def build(
         dead = [f for f, ok in zip(names, live) if not ok]
         decisions.append(
             Decision(
-                f"{len(dead)} of {n} freedoms", "dropped", "nothing sets them in motion: " + _some(dead)
+                f"{len(dead)} of {n} degrees of freedom",
+                "dropped",
+                "nothing sets them in motion: " + _some(dead),
             )
         )
     keep = np.flatnonzero(live)
     mass = m[np.ix_(keep, keep)]
     _all_inert(mass, [names[i] for i in keep])
     _no_leap(structure, force_inputs[:, excitation.jumps()], live)
-    return Scene(
+    return ReducedSystem(
         structure,
         tuple(names[i] for i in keep),
         mass,
@@ -329,20 +331,20 @@ def build(
 
 @dataclass(frozen=True)
 class Condensed:
-    """A scene without the massless freedoms that follow the others, and the way back.
+    """A reduced system without the massless DOFs that follow the others, and the way back.
 
     Attributes
     ----------
-    scene : Scene
+    system : ReducedSystem
     keep : ndarray, shape (n_left,)
         Which unknowns are left.
     expand, follow, constant : ndarray, shapes (n, n_left), (n, n_inputs), (n,)
         All unknowns: ``expand u + follow s + constant``.
     loads : ndarray, shape (n, n_inputs + 1)
-        FORCES, and held loads in the last column, on the condensed freedoms.
+        FORCES, and held loads in the last column, on the condensed DOFs.
     """
 
-    scene: Scene
+    system: ReducedSystem
     keep: Index
     expand: Array
     follow: Array
@@ -350,10 +352,10 @@ class Condensed:
     loads: Array
 
     def put_in(self, t: Array) -> Array:
-        """Work of the loads on condensed freedoms by that part of their displacements which follows
+        """Work of the loads on condensed DOFs by that part of their displacements which follows
         the loads at once, since these were zero [F L], at some times.
         """
-        s = np.vstack([self.scene.excitation.values(t).T, np.ones(len(t))])
+        s = np.vstack([self.system.excitation.values(t).T, np.ones(len(t))])
         own = np.column_stack([self.follow, self.constant]) @ s
         return np.asarray(0.5 * (own * (self.loads @ s)).sum(axis=0))
 
@@ -365,72 +367,72 @@ class Condensed:
         return (out.T + self.constant).T if order == 0 else out
 
 
-def condense(scene: Scene) -> Condensed:
-    """Condense massless freedoms on linear elements.
+def condense(system: ReducedSystem) -> Condensed:
+    """Condense massless DOFs on linear elements.
 
     They follow the others exactly, if what damps them is proportional to what holds them
     (C_ca + C_cc G = 0) or they are not damped at all; and what pushes them alone meets no dashpot.
     """
-    structure, n = scene.structure, scene.size
-    scene = replace(
-        scene,
-        mass=dense(scene.mass),
-        damping=dense(scene.damping),
-        stiffness=dense(scene.stiffness),
-        law_rows=dense(scene.law_rows),
-        expand=dense(scene.expand),
+    structure, n = system.structure, system.size
+    system = replace(
+        system,
+        mass=dense(system.mass),
+        damping=dense(system.damping),
+        stiffness=dense(system.stiffness),
+        law_rows=dense(system.law_rows),
+        expand=dense(system.expand),
     )
-    k, support = scene.stiffness, scene.support_inputs
-    at = scene.columns
+    k, support = system.stiffness, system.support_inputs
+    at = system.columns
     to_supports = dense(structure.stiffness[at, structure.n_free :])
-    pushed = scene.force_inputs[at]
-    light = massless(scene.mass) & ~np.any(scene.law_rows != 0.0, axis=0)
+    pushed = system.force_inputs[at]
+    light = massless(system.mass) & ~np.any(system.law_rows != 0.0, axis=0)
     slave = _condensable(
         np.hstack([k, to_supports]),
-        np.hstack([scene.damping, dense(structure.damping[at, structure.n_free :])]),
+        np.hstack([system.damping, dense(structure.damping[at, structure.n_free :])]),
         np.column_stack([pushed, structure.released[at]]),
         light,
     )
     if slave.any():
-        scene.decisions.append(
+        system.decisions.append(
             Decision(
-                f"{int(slave.sum())} massless freedoms",
+                f"{int(slave.sum())} massless degrees of freedom",
                 "condensed",
                 "they follow the others statically, no error is made",
             )
         )
     left = light & ~slave
     if left.any():
-        scene.decisions.append(
+        system.decisions.append(
             Decision(
-                f"{int(left.sum())} massless freedoms",
+                f"{int(left.sum())} massless degrees of freedom",
                 "kept",
-                "dashpots move them: " + _some([f for f, x in zip(scene.freedoms, left) if x]),
+                "dashpots move them: " + _some([f for f, x in zip(system.dofs, left) if x]),
             )
         )
     keep, s = np.flatnonzero(~slave), np.flatnonzero(slave)
     expand = np.eye(n)[:, keep]
-    constant, follow = np.zeros(n), np.zeros((n, scene.inputs.shape[1]))
+    constant, follow = np.zeros(n), np.zeros((n, system.inputs.shape[1]))
     if len(s):
         inverse = np.linalg.inv(k[np.ix_(s, s)])
         expand[s] = -inverse @ k[np.ix_(s, keep)]
-        constant[s] = inverse @ scene.constant[s]
+        constant[s] = inverse @ system.constant[s]
         follow[s] = inverse @ (pushed[s] - to_supports[s] @ support)
     inner = replace(
-        scene,
-        freedoms=tuple(scene.freedoms[i] for i in keep),
-        mass=expand.T @ scene.mass @ expand,
-        damping=expand.T @ scene.damping @ expand,
+        system,
+        dofs=tuple(system.dofs[i] for i in keep),
+        mass=expand.T @ system.mass @ expand,
+        damping=expand.T @ system.damping @ expand,
         stiffness=expand.T @ k @ expand,
-        inputs=expand.T @ scene.inputs,
-        constant=expand.T @ scene.constant,
-        law_rows=scene.law_rows @ expand,
-        expand=scene.expand @ expand,
-        expand_constant=scene.expand @ constant,
-        expand_inputs=scene.expand @ follow,
+        inputs=expand.T @ system.inputs,
+        constant=expand.T @ system.constant,
+        law_rows=system.law_rows @ expand,
+        expand=system.expand @ expand,
+        expand_constant=system.expand @ constant,
+        expand_inputs=system.expand @ follow,
     )
-    loads = np.zeros((n, scene.inputs.shape[1] + 1))
-    loads[s] = np.column_stack([pushed[s], scene.constant[s]])
+    loads = np.zeros((n, system.inputs.shape[1] + 1))
+    loads[s] = np.column_stack([pushed[s], system.constant[s]])
     return Condensed(inner, keep, expand, follow, constant, loads)
 
 
@@ -440,22 +442,22 @@ def _inputs(
     """Excitation, its force on the unknowns, prescribed displacements from it,
     ground acceleration from it, part of its force that is FORCES.
     """
-    n, freedoms, nodes = structure.n_free, structure.freedoms, structure.model.nodes
+    n, dofs, nodes = structure.n_free, structure.dofs, structure.model.nodes
     channels: list[Piecewise] = []
-    each = 3 if freedoms.moved else 1  # channels of a motion
+    each = 3 if dofs.moved else 1  # channels of a motion
     count = each * len(motions) + len(forces)
     push, own = np.zeros((n, count)), np.zeros((n, count))
-    ground, displacement_of = np.zeros((3, count)), np.zeros((len(freedoms.moved), count))
+    ground, displacement_of = np.zeros((3, count)), np.zeros((len(dofs.moved), count))
     for j, motion in enumerate(motions):
         at = each * j
-        if not freedoms.moved:
+        if not dofs.moved:
             ground[:, at] = [motion.share(d, 0.0, 0.0) for d in range(3)]
             push[:, at] = -ground[:, at] @ structure.ground[:, :n]
             channels.append(motion.acceleration)
             continue
         shares = [
             motion.share(d, nodes[node].x, nodes[node].y) if node in (motion.supports or ()) else 0.0
-            for node, d in freedoms.moved
+            for node, d in dofs.moved
         ]
         displacement_of[:, at] = shares
         for k, matrix in enumerate((structure.stiffness, structure.damping, structure.mass)):
@@ -464,7 +466,7 @@ def _inputs(
     for j, force in enumerate(forces, each * len(motions)):
         for node in force.nodes:
             for d, share in enumerate(force.push):
-                for column, factor in freedoms.terms[node, d]:
+                for column, factor in dofs.terms[node, d]:
                     if column < n:
                         own[column, j] += share * factor
         channels.append(force.history)
@@ -496,13 +498,13 @@ def _can_move(
         for i in touched[1:].tolist():
             parent[root(int(touched[0]))] = root(i)
 
-    real = np.zeros(n, bool)  # a freedom without mass, stiffness, dashpot or law takes part in nothing
+    real = np.zeros(n, bool)  # a DOF without mass, stiffness, dashpot or law takes part in nothing
     for rows, columns in linked:
         real[rows] = True
         for i, j in zip(rows.tolist(), columns.tolist()):
             if i < j:
                 parent[root(i)] = root(j)
-    for touched, _ in structure.chords.on(slice(n)).touched():
+    for touched, _ in structure.corotational.on(slice(n)).touched():
         join(touched)
     driven = (start != 0) | (start_rate != 0) | (structure.held[:n] != 0)
     active = np.abs(excitation.coefs).max(axis=(0, 1), initial=0.0) > 0
@@ -518,7 +520,7 @@ def _can_move(
 
 
 def _condensable(k: Array, c: Array, push: Array, light: Flags) -> Flags:
-    """Which massless freedoms follow the others exactly; those that do not are taken out
+    """Which massless DOFs follow the others exactly; those that do not are taken out
     until the rest do.  Columns of `k` and `c` beyond the unknowns are those of moved supports,
     columns of `push` the forces that change in time.
     """
@@ -534,7 +536,7 @@ def _condensable(k: Array, c: Array, push: Array, light: Flags) -> Flags:
                 return none
             candidates = undamped
             continue
-        # prescribed freedoms are among the others that they follow
+        # prescribed DOFs are among the others that they follow
         rest = np.concatenate([np.flatnonzero(~candidates), np.arange(len(light), k.shape[1])])
         g = -np.linalg.solve(k[np.ix_(s, s)], k[np.ix_(s, rest)])
         misfit = np.abs(c[np.ix_(s, rest)] + c[np.ix_(s, s)] @ g).max(axis=1, initial=0.0)
@@ -550,7 +552,7 @@ def _condensable(k: Array, c: Array, push: Array, light: Flags) -> Flags:
     return none
 
 
-def _all_inert(m: Matrix, names: Sequence[Freedom]) -> None:
+def _all_inert(m: Matrix, names: Sequence[Dof]) -> None:
     """Raise where mass on arms of slaved nodes leaves some motion without inertia: no method takes that."""
     heavy = np.flatnonzero(~massless(m))
     part = m[np.ix_(heavy, heavy)]
@@ -561,7 +563,7 @@ def _all_inert(m: Matrix, names: Sequence[Freedom]) -> None:
         # the rotation at the other end of the arms, where one takes part
         share = np.abs(vector) * [2.0 if names[int(i)][1] == 2 else 1.0 for i in heavy]
         worst = label(names[int(heavy[int(np.argmax(share))])])
-        raise SceneError(
+        raise ReductionError(
             f"{worst} has no inertia of its own beside the mass on slaved nodes: "
             "give it a rotational weight WR"
         )
@@ -569,7 +571,7 @@ def _all_inert(m: Matrix, names: Sequence[Freedom]) -> None:
 
 def _no_leap(structure: Structure, pushes: Array, live: Flags) -> None:
     """Raise where forces that jump, or loads that are let go, move springs with memory at once:
-    on freedoms with neither mass nor dashpot nothing says along which path.
+    on DOFs with neither mass nor dashpot nothing says along which path.
     """
     n = structure.n_free
     quick = live & massless(structure.mass[:n, :n]) & ~used_rows(structure.damping[:n, :n])
@@ -583,14 +585,14 @@ def _no_leap(structure: Structure, pushes: Array, live: Flags) -> None:
             np.abs(row @ leap[at]) > 1e-9 * np.abs(row).max(initial=0.0) * np.abs(leap).max()
         ):
             where = int(z[int(np.argmax(np.abs(pushes).max(axis=1)))])
-            raise SceneError(
-                f"a force jumps, or a load is let go, at {label(structure.freedoms.free[where])}, which "
+            raise ReductionError(
+                f"a force jumps, or a load is let go, at {label(structure.dofs.free[where])}, which "
                 f"has no mass, and throws the spring {spring.element} {spring.component} along: give it "
                 "weight, or let the force change within a short time (FORCES)"
             )
 
 
-def _some(freedoms: Sequence[Freedom], most: int = 6) -> str:
-    """Name a few freedoms."""
-    text = ", ".join(label(f).removeprefix("node ") for f in freedoms[:most])
-    return text + (f", and {len(freedoms) - most} more" if len(freedoms) > most else "")
+def _some(dofs: Sequence[Dof], most: int = 6) -> str:
+    """Name a few DOFs."""
+    text = ", ".join(label(f).removeprefix("node ") for f in dofs[:most])
+    return text + (f", and {len(dofs) - most} more" if len(dofs) > most else "")

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from pound_solve.integrate.closed_form.dense_output import Window
+from pound_solve.integrate.closed_form.dense_output import DenseOutput
 from pound_solve.integrate.closed_form.subsystems import Part
 from pound_solve.numerics.types import Array, Flags
 
 
-class Account:
+class DeferredWork:
     """Work put in, lost in dashpots of structure and springs, and lost in those of contacts [F L].
 
     Parameters
@@ -41,15 +41,15 @@ class Account:
         self._known.append((self.rows, work))
         self.rows += 1
 
-    def note(self, window: Window, first: int, last: int, lengths: Array) -> None:
+    def note(self, window: DenseOutput, first: int, last: int, lengths: Array) -> None:
         """Enter some intervals of a window, or the first part of each."""
         chosen, place = slice(first, last), self.rows + np.arange(last - first)
-        for block in window.partition.blocks:
-            ps = None if block.ps is None else block.ps[chosen]
-            for part in block.regime.parts:
-                qs, gs = block.qs[part.q, chosen].T, block.gs[chosen, :, part.q]
+        for subsystem in window.subsystems.active:
+            ps = None if subsystem.ps is None else subsystem.ps[chosen]
+            for part in subsystem.decomposition.parts:
+                qs, gs = subsystem.qs[part.q, chosen].T, subsystem.gs[chosen, :, part.q]
                 own = qs, gs, lengths, window.coefs[chosen], place, ps
-                self._open.setdefault(id(part.meter), (part, []))[1].append(own)
+                self._open.setdefault(id(part.work), (part, []))[1].append(own)
         self.rows += last - first
 
     def measured(self) -> tuple[Array, dict[int, float]]:
@@ -65,7 +65,7 @@ class Account:
             *noted, ps = zip(*entries)
             qs, gs, lengths, coefs, place = (np.concatenate(x) for x in noted)
             forces = None if ps[0] is None else np.concatenate(ps)
-            found = part.meter.measures(qs.T, gs, lengths, coefs, self.constant[part.unknowns], forces)
+            found = part.work.measures(qs.T, gs, lengths, coefs, self.constant[part.unknowns], forces)
             new[place + 1, 0] += found.input
             new[place + 1, 1] += found.damping
             for law, loss in found.laws:

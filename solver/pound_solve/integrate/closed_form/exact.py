@@ -1,7 +1,7 @@
 r"""EXACT: event-driven integration without a time step.
 
-Between events (a spring yields or unloads, a contact closes or opens) the scene is linear and its motion
-under piecewise-polynomial excitation is known in closed form (:mod:`.propagator`).
+Between events (a spring yields or unloads, a contact closes or opens) the reduced system is linear and its
+motion under piecewise-polynomial excitation is known in closed form (:mod:`.propagator`).
 So only the event times need finding.  The exits of all laws are sampled with their slopes in cells whose
 length the motion itself sets: how far it can bend within one is bounded by what its modes carry,
 
@@ -30,11 +30,11 @@ import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate.closed_form import work_integrals
-from pound_solve.integrate.closed_form.deferred_work import Account
-from pound_solve.integrate.closed_form.dense_output import Arcs, Window
-from pound_solve.integrate.closed_form.propagator import MOST_CONDITION, Mechanism, SeriesFlow
-from pound_solve.integrate.closed_form.rigid_contact import NOISE, Weightless
-from pound_solve.integrate.closed_form.subsystems import Partition
+from pound_solve.integrate.closed_form.deferred_work import DeferredWork
+from pound_solve.integrate.closed_form.dense_output import DenseOutput, GridSamples
+from pound_solve.integrate.closed_form.propagator import MOST_CONDITION, Mechanism, SeriesPropagator
+from pound_solve.integrate.closed_form.rigid_contact import NOISE, MasslessContact
+from pound_solve.integrate.closed_form.subsystems import Subsystems
 from pound_solve.integrate.condensed import condensed
 from pound_solve.integrate.events import grid
 from pound_solve.integrate.events.functions import exits, followed
@@ -45,24 +45,24 @@ from pound_solve.integrate.protocol import (
     STEPPED,
     STILL,
     LawValues,
-    Ledger,
+    MonitoredOutputs,
     Outcome,
-    Sink,
+    Recorder,
+    ResponseTracker,
     Start,
     Stop,
-    Watch,
-    blurred,
     energy_at_start,
     law_values,
     light,
     not_linear,
     refuse_rigid,
+    rounding_check,
 )
 from pound_solve.integrate.protocol import goals as goals_of
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Flags, Index
-from pound_solve.structure.reduction import Decision, Scene
+from pound_solve.structure.reduction import Decision, ReducedSystem
 
 MOST_POINTS = 4096  #: points of the fine grid in one window
 MOST_STEPS = 64  #: of the fine grid in one cell
@@ -92,57 +92,62 @@ class Exact:
     """One run; see the module's head."""
 
     def __init__(
-        self, scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink
+        self,
+        system: ReducedSystem,
+        start: Start,
+        monitored: MonitoredOutputs,
+        options: Mapping[str, Any],
+        recorder: Recorder,
     ) -> None:
-        self.scene, self.sink, self.times = scene, sink, start.times
+        self.system, self.recorder, self.times = system, recorder, start.times
         self.refine = 2.0 ** -int(options.get("REFINE") or 0)
         self.spent, self.most = 0.0, options.get("COST", np.inf)
         self.trial = options.get("TRIAL", self.most)
         self.per_radian = options.get("PER_RADIAN", 0.0)
-        self.most_regimes = options.get("REGIMES", np.inf)
+        self.most_decompositions = options.get("REGIMES", np.inf)
         self.begin, self.end = float(start.times[0]), float(start.times[-1])
-        self.laws = scene.structure.laws
+        self.laws = system.structure.laws
         n = self.n_laws = len(self.laws)
-        self.light = light(scene)
+        self.light = light(system)
         self.states = list(start.states)
         self.branches: list[Branch] = [s.branch(x) for s, x in zip(self.laws, self.states)]
         # the rows that are followed: deformations of the laws, then the drifts
-        self.partition = Partition(
-            scene,
-            np.vstack([scene.law_rows, watch.rows]),
-            np.vstack([scene.law_inputs, watch.input_rows]),
-            np.concatenate([np.zeros(n), watch.constants]),
-            sink.shown,
+        self.subsystems = Subsystems(
+            system,
+            np.vstack([system.law_rows, monitored.rows]),
+            np.vstack([system.law_inputs, monitored.input_rows]),
+            np.concatenate([np.zeros(n), monitored.constants]),
+            recorder.shown,
         )
-        if (parts := self.partition.parts) > 1:
-            scene.decisions.append(
+        if (parts := self.subsystems.parts) > 1:
+            system.decisions.append(
                 Decision(
                     f"{parts} parts", "solved apart", "each on its own while no closed contact joins them"
                 )
             )
-        self.ledger = Ledger(scene, len(watch.names))
+        self.tracker = ResponseTracker(system, len(monitored.names))
         self.t, self.u, self.v = float(start.times[0]), start.u.copy(), start.v.copy()
         contact = np.array([s.is_contact for s in self.laws], bool)
-        self.account = Account(start.works.copy(), scene.constant, contact)
+        self.deferred = DeferredWork(start.works.copy(), system.constant, contact)
         # what waits for the sink: samples whose works are not known yet, and motions between them
         self.held_back: list[tuple[Any, ...]] = []
         self.seen: list[tuple[Any, ...]] = []
-        self.turned: list[tuple[Array, Array]] = []  # where displacements turn between those
-        self.range = np.array([self.u, self.u])[:, self.partition.shown]  # of the displacements there
-        self.rigid = self.partition.rigid
+        self.stationary: list[tuple[Array, Array]] = []  # where displacements turn between those
+        self.range = np.array([self.u, self.u])[:, self.subsystems.shown]  # of the displacements there
+        self.rigid = self.subsystems.rigid
         # |value|, |rate| of all rows seen, the scale of the exits
-        self.largest = np.zeros((2, len(self.partition.rows)))
+        self.largest = np.zeros((2, len(self.subsystems.rows)))
         self.ahead = AFTER  # intervals of the next window
         self.usual = 0.0  # length of most intervals
         self.events = self.windows = self.same_instant = self.pieces = 0
-        self.held = energy_at_start(scene, start)
+        self.held = energy_at_start(system, start)
 
     def run(self) -> Outcome:
         """Integrate to the last output time."""
-        self.ledger.begin(self.scene, self.t, self.u, self.v, self.branches)
+        self.tracker.begin(self.system, self.t, self.u, self.v, self.branches)
         self._no_overlap()
         self._form()
-        goals, self.is_output = goals_of(self.scene, self.times)
+        goals, self.is_output = goals_of(self.system, self.times)
         self._show_now()
         cursor = 0
         while cursor < len(goals):
@@ -154,12 +159,12 @@ class Exact:
         will do at this rate.
         """
         self.spent += cost
-        if len(self.partition.regimes) > self.most_regimes:
+        if len(self.subsystems.decompositions) > self.most_decompositions:
             raise CostlyError(self.spent, self.t)
         if self.spent > self.trial:
             length = self.end - self.begin
             whole = self.spent * length / max(self.t - self.begin, 1e-300)
-            if whole > self.most + self.per_radian * self.partition.fastest * length:
+            if whole > self.most + self.per_radian * self.subsystems.fastest * length:
                 raise CostlyError(self.spent, self.t)
 
     def _no_overlap(self) -> None:
@@ -175,23 +180,23 @@ class Exact:
     def _form(self) -> None:
         """Form the blocks for the present branches and gather their exits."""
         try:
-            self.partition.form(self.branches, self.u, self.v, self._spend)
+            self.subsystems.form(self.branches, self.u, self.v, self._spend)
         except Mechanism as err:
             worst = int(np.argmax(np.abs(err.shape)))
-            raise self.stop("A501", f"{self.scene.name(worst)} has no mass and nothing holds it") from None
-        self.exits, self.exit_pairs = exits(self.branches, self.partition.force_row)
-        self.followed, self.peaks = followed(self.ledger, self.branches, self.partition.force_row)
+            raise self.stop("A501", f"{self.system.name(worst)} has no mass and nothing holds it") from None
+        self.exits, self.exit_pairs = exits(self.branches, self.subsystems.force_row)
+        self.followed, self.peaks = followed(self.tracker, self.branches, self.subsystems.force_row)
         # second rates matter where rates decide
         self.bending = self.exits.by_rate or self.followed.by_rate
 
-    def _window(self, lengths: Array, starts: Array) -> Window:
-        return Window(self.partition, self.branches, self.scene.excitation.about(starts), lengths)
+    def _window(self, lengths: Array, starts: Array) -> DenseOutput:
+        return DenseOutput(self.subsystems, self.branches, self.system.excitation.about(starts), lengths)
 
     def _show_now(self) -> None:
         """Hand out a sample of the present."""
         at = np.array([self.t])
         motion = self._window(np.zeros(1), at).path(0, np.zeros(1))
-        self._hand_out(at, *motion, np.array([self.account.rows]))
+        self._hand_out(at, *motion, np.array([self.deferred.rows]))
 
     def _advance(self, goals: Array, cursor: int) -> int:
         """Advance by a window of intervals up to the next goals, or to an event; return the new cursor."""
@@ -211,7 +216,7 @@ class Exact:
         if coarse.h > h:
             fine = coarse.closer(self._near(coarse, bends), h, self.bending)
         self._spend(WINDOW + POINT * (coarse.t.size + fine.t.size) * len(self.u))
-        self._spend(SEEN * window.length / (EACH * h) * self.partition.shown.sum())
+        self._spend(SEEN * window.length / (EACH * h) * self.subsystems.shown.sum())
         event = None
         if self.exit_pairs and fine.t.size:
             event = self.exits.first_rise(fine, self.largest, STILL)
@@ -229,10 +234,10 @@ class Exact:
             window.accept(window.intervals - 1, float(lengths[-1]))
             self.ahead = min(2 * self.ahead, MOST_INTERVALS)
             self.same_instant = 0
-            self.sink.trial(self.t)
+            self.recorder.trial(self.t)
             return cursor
         tau, n, arc, cell = event
-        law, exit_index = self.exit_pairs[n]
+        law, event_index = self.exit_pairs[n]
         interval, within = window.place(tau)
         now = window.all_at(tau)
         fine.cut(arc, cell, tau, now)
@@ -245,7 +250,7 @@ class Exact:
         self.same_instant = self.same_instant + 1 if tau <= 1e-13 * max(1.0, self.t) else 0
         self.t = float(starts[interval]) + within
         self.ahead = AFTER
-        self._switch(law, exit_index, float(now[0][law]), float(now[1][law]))
+        self._switch(law, event_index, float(now[0][law]), float(now[1][law]))
         return cursor + interval
 
     def _intervals(self, goals: Array, cursor: int) -> tuple[Array, Array, float, bool]:
@@ -290,7 +295,7 @@ class Exact:
         steps = 4.0 ** np.floor(np.log2(max(cell / h, 1.0)) / 2.0)
         return h * float(min(steps, MOST_STEPS))
 
-    def _near(self, coarse: Arcs, bends: Array) -> Flags:
+    def _near(self, coarse: GridSamples, bends: Array) -> Flags:
         """Which cells may hold an event or a peak, shape (n, count)."""
         out = np.zeros((len(coarse.width), coarse.t.shape[1] - 1), bool)
         last = out.size
@@ -315,7 +320,7 @@ class Exact:
         """Stop where the fastest mode cannot be followed: time would not advance, or too slowly."""
         self.pieces += 1
         if length < 1e-15 * max(1.0, self.t) or self.pieces > MOST_PIECES:
-            fastest = self.partition.fastest
+            fastest = self.subsystems.fastest
             raise self.stop(
                 "A503",
                 f"the fastest mode, {fastest:.3g} rad per unit of time, is too fast to be followed: "
@@ -326,7 +331,7 @@ class Exact:
         """Step of the search grid: it resolves the fastest mode; a power of two,
         so that tables are found again.
         """
-        fastest = self.partition.fastest
+        fastest = self.subsystems.fastest
         h = 2.0 ** np.ceil(np.log2(length / 8))
         return (
             float(min(h, 2.0 ** np.floor(np.log2(GRID * self.refine / fastest))))
@@ -334,18 +339,18 @@ class Exact:
             else float(h)
         )
 
-    def _sample(self, window: Window, goals: Array, cursor: int, count: int) -> None:
+    def _sample(self, window: DenseOutput, goals: Array, cursor: int, count: int) -> None:
         """Note the work of the first `count` intervals and hand out the samples at their ends."""
-        before = self.account.rows
+        before = self.deferred.rows
         self._work(window, 0, window.lengths[:count])
         out = np.flatnonzero(self.is_output[cursor : cursor + count])
         if len(out):
             self._hand_out(goals[cursor + out], *window.ends(out), before + out + 1)
-        if self.account.rows > MOST_OPEN or cursor + count == len(goals):
+        if self.deferred.rows > MOST_OPEN or cursor + count == len(goals):
             self._settle()
             _, v, _ = window.ends(np.array([count - 1]))
-            kinetic = 0.5 * float(v[:, 0] @ self.scene.mass @ v[:, 0])
-            if not kinetic <= 10.0 * (self.held + self.account.put_in) + 1e-300:
+            kinetic = 0.5 * float(v[:, 0] @ self.system.mass @ v[:, 0])
+            if not kinetic <= 10.0 * (self.held + self.deferred.put_in) + 1e-300:
                 raise self.stop("A504", RUNAWAY.format(kinetic))
 
     def _settle(self) -> None:
@@ -353,36 +358,36 @@ class Exact:
 
         An interrupt on the way loses nothing: the sink passes over what it has been given already.
         """
-        works, losses = self.account.measured()
+        works, losses = self.deferred.measured()
         self._show_seen()
         if self.held_back:
             times, *motion, laws, row = zip(*self.held_back)
             u, v, a = (np.concatenate(x, axis=1) for x in motion)
             by_law = LawValues(*(np.concatenate(x, axis=1) for x in zip(*laws)))
-            self.sink.sample(np.concatenate(times), u, v, a, by_law, works[np.concatenate(row)].T)
+            self.recorder.sample(np.concatenate(times), u, v, a, by_law, works[np.concatenate(row)].T)
         for law, loss in losses.items():
-            self.ledger.peaks.dashpot_losses[law] += loss
+            self.tracker.peaks.dashpot_losses[law] += loss
         self.held_back.clear()
-        self.account.close(works)
+        self.deferred.close(works)
 
     def _show_seen(self) -> None:
         """Give the sink the motions between the samples."""
         if self.seen:
             *motion, apart = zip(*self.seen)
             t, u, v, a = (np.concatenate(x, axis=-1) for x in motion)
-            self.sink.between(t, u, v, a, max(apart))
+            self.recorder.between(t, u, v, a, max(apart))
             self.seen.clear()
-        if self.turned:
-            t, u = (np.concatenate(x, axis=-1) for x in zip(*self.turned))
-            self.sink.turned(t, u)
-            self.turned.clear()
+        if self.stationary:
+            t, u = (np.concatenate(x, axis=-1) for x in zip(*self.stationary))
+            self.recorder.stationary(t, u)
+            self.stationary.clear()
 
-    def _turn(self, window: Window, tau: Array, u: Array, v: Array, end: float) -> None:
+    def _turn(self, window: DenseOutput, tau: Array, u: Array, v: Array, end: float) -> None:
         """Keep the displacements at the instants at which one that the envelopes look at turns beyond its
         range so far, for the sink: of each the highest and the lowest, from the cubic from one point to
         the next and a step of Newton's method on the motion itself.
         """
-        shown, known = np.flatnonzero(self.partition.shown), self.range
+        shown, known = np.flatnonzero(self.subsystems.shown), self.range
         last = window.motion(*window.place(end))
         x, rate = (np.column_stack([y[shown], z[shown]]) for y, z in zip((u, v), last))
         known[0] = np.maximum(known[0], x.max(axis=1))
@@ -398,72 +403,72 @@ class Exact:
         chosen = np.flatnonzero((value == best[0][row]) | (-value == best[1][row]))
         if not len(chosen):
             return
-        times, freedom = (tau[at] + s * length)[chosen], shown[row[chosen]]
-        _, v, a = (y[freedom, np.arange(len(chosen))] for y in window.at(times))
+        times, dof = (tau[at] + s * length)[chosen], shown[row[chosen]]
+        _, v, a = (y[dof, np.arange(len(chosen))] for y in window.at(times))
         times -= np.divide(v, a, out=np.zeros_like(v), where=np.abs(v) < 0.1 * np.abs(a) * length[chosen])
         times = np.unique(np.clip(times, 0.0, end))
         u = window.at(times)[0]
         known[0] = np.maximum(known[0], u[shown].max(axis=1))
         known[1] = np.minimum(known[1], u[shown].min(axis=1))
-        self.turned.append((self.t + times, u))
+        self.stationary.append((self.t + times, u))
 
-    def _between(self, window: Window, h: float, end: float) -> None:
+    def _between(self, window: DenseOutput, h: float, end: float) -> None:
         """Keep the motion between the samples, up to the local time `end`, for the sink."""
-        if not self.partition.shown.any():
+        if not self.subsystems.shown.any():
             return
         tau, u, v, a = window.between(EACH * h, end)
         self.seen.append((self.t + tau, u, v, a, float(np.diff(tau, append=end).max(initial=0.0))))
         self._turn(window, tau, u, v, end)
-        if sum(x[1].size for x in (*self.seen, *self.turned)) > MOST_SEEN:
+        if sum(x[1].size for x in (*self.seen, *self.stationary)) > MOST_SEEN:
             self._show_seen()
 
     def _hand_out(self, t: Array, u: Array, v: Array, a: Array, row: Index) -> None:
         """Keep samples for the sink, with the rows of the account that they stand at."""
-        laws = law_values(self.scene, t, u, v, self.states)
+        laws = law_values(self.system, t, u, v, self.states)
         held = np.array([self.branches[i].held for i in self.rigid.laws], bool)
         if held.any():
-            ex = self.scene.excitation
+            ex = self.system.excitation
             s = np.stack([ex.values(t, order) for order in range(3)])
             for i in range(len(t)):
                 now = self.rigid.forces(held, self.branches, u[:, i], v[:, i], s[:, i])
                 laws.force[self.rigid.laws, i] = now
         self.held_back.append((t, u, v, a, laws, row))
 
-    def _work(self, window: Window, first: int, lengths: Array) -> None:
+    def _work(self, window: DenseOutput, first: int, lengths: Array) -> None:
         """Note the work, and the contacts' impulses, over some `lengths` of intervals from `first` on."""
         last = first + len(lengths)
-        if self.scene.total:
+        if self.system.total:
             for i, tau in zip(range(first, last), lengths.tolist()):
                 self._total_work(window, i, tau)
         elif len(lengths):
-            self.account.note(window, first, last, lengths)
-        for law, collision in self.ledger.open.items():
+            self.deferred.note(window, first, last, lengths)
+        for law, collision in self.tracker.open.items():
             for i, tau in zip(range(first, last), lengths.tolist()):
                 collision.impulse += window.impulse(law, i, tau)
 
-    def _total_work(self, window: Window, interval: int, tau: float) -> None:
+    def _total_work(self, window: DenseOutput, interval: int, tau: float) -> None:
         """Note the work over the first `tau` of an interval in the total form."""
         found = work_integrals.total_work(
-            self.scene,
+            self.system,
             tau,
-            self.partition.fastest,
+            self.subsystems.fastest,
             window.coefs[interval],
             lambda x: window.path(interval, x),
             self.branches,
         )
         entry = np.array([found.input, found.damping, 0.0])
         for law, loss in found.laws:
-            self.ledger.peaks.dashpot_losses[law] += loss
+            self.tracker.peaks.dashpot_losses[law] += loss
             entry[2 if self.laws[law].is_contact else 1] += loss
-        self.account.put(entry)
+        self.deferred.put(entry)
 
-    def _switch(self, law: int, exit_index: int, d: float, v: float) -> None:
+    def _switch(self, law: int, event_index: int, d: float, v: float) -> None:
         self.events += 1
         try:
             if self.laws[law].law.rigid and not self.branches[law].held:
                 self._meet()
             else:
-                self._leave(law, exit_index, d, v)
+                self._leave(law, event_index, d, v)
                 self._press()
         except ArithmeticError as err:
             raise self.stop("A503", str(err)) from None
@@ -473,17 +478,17 @@ class Exact:
             raise self.stop("A503", why)
         self._form()
 
-    def _leave(self, law: int, exit_index: int, d: float, v: float) -> None:
+    def _leave(self, law: int, event_index: int, d: float, v: float) -> None:
         before = self.branches[law].name
-        self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, d, v)
+        self.states[law] = self.laws[law].law.transition(self.states[law], event_index, d, v)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
         force = self.laws[law].force(self.states[law], d, 0.0 if self.light[law] else v)
-        self.ledger.switched(law, before, after.name, self.t, d, v, force)
-        self.ledger.peaks.force[law].take(force, self.t)
+        self.tracker.switched(law, before, after.name, self.t, d, v, force)
+        self.tracker.peaks.force[law].take(force, self.t)
 
     def _inputs(self) -> Array:
         """Inputs and their first two derivatives just after now, shape (3, n_inputs)."""
-        ex = self.scene.excitation
+        ex = self.system.excitation
         own = ex.about(np.array([self.t]))[0]
         return np.stack([polynomial.value(own, 0.0, order) for order in range(3)])
 
@@ -498,20 +503,20 @@ class Exact:
         impulse, lost, after = r.strike(rates, touching, fastest)
         self.v = self.v - r.yielding @ impulse
         # input by supports that move
-        self.account.put(np.array([float(impulse @ (r.inputs @ s[1])), 0.0, lost.sum()]))
+        self.deferred.put(np.array([float(impulse @ (r.inputs @ s[1])), 0.0, lost.sum()]))
         still = touching & (after >= -NOISE * fastest)
         for i, law in enumerate(r.laws):
-            self.ledger.peaks.dashpot_losses[law] += float(lost[i])
+            self.tracker.peaks.dashpot_losses[law] += float(lost[i])
             if not held[i] and (still[i] or impulse[i] > 0.0):
                 self._leave(law, 0, float(d[i]), float(rates[i]))
-            if law in self.ledger.open:
-                self.ledger.open[law].impulse += float(impulse[i])
+            if law in self.tracker.open:
+                self.tracker.open[law].impulse += float(impulse[i])
             if self.branches[law].held and not still[i]:
                 if not held[i]:
-                    self.ledger.open[law].peak = np.nan  # beyond all numbers
+                    self.tracker.open[law].peak = np.nan  # beyond all numbers
                 self._leave(law, 0, float(d[i]), float(after[i]))
         self._press()
-        self.partition.blocks = []  # the velocities have jumped
+        self.subsystems.active = []  # the velocities have jumped
 
     def _press(self) -> None:
         """Open those of the closed rigid contacts that would have to pull."""
@@ -527,16 +532,16 @@ class Exact:
         s = self._inputs()
         free, size = r.accelerations(self.branches, self.u, self.v, s)
         # displacements come from modes that carry the velocities as well
-        size = size + self.partition.fastest * (np.abs(r.rows) @ np.abs(self.v))
+        size = size + self.subsystems.fastest * (np.abs(r.rows) @ np.abs(self.v))
         force = r.plastic(free, held)
         parting = held & (force == 0.0) & (free - r.compliance @ force < -NOISE * size)
         for i in np.flatnonzero(parting).tolist():
             d, v = r.rows[i] @ self.u + r.inputs[i] @ s[0], r.rows[i] @ self.v + r.inputs[i] @ s[1]
             self._leave(r.laws[i], 0, float(d), float(v))
-        rows = [self.partition.force_row[i] for i in r.laws]
+        rows = [self.subsystems.force_row[i] for i in r.laws]
         self.largest[0, rows] = np.maximum(self.largest[0, rows], size / np.diag(r.compliance))
 
-    def _peaks(self, coarse: Arcs, fine: Arcs, end: float) -> None:
+    def _peaks(self, coarse: GridSamples, fine: GridSamples, end: float) -> None:
         """Count in what happened up to the local time `end`; the fine arcs are cut there."""
         seen = coarse.t <= end
         if self.n_laws:
@@ -550,22 +555,22 @@ class Exact:
         grid.count(self.peaks, self.t + coarse.t[seen], self.followed.of(coarse)[0][:, seen])
         if fine.t.size:
             grid.widen(self.peaks, self.t, fine.t, *self.followed.of(fine), self.followed.at(fine))
-        for i, collision in self.ledger.open.items():
-            self.ledger.peaks.force[i].take(collision.peak, collision.t_peak)
+        for i, collision in self.tracker.open.items():
+            self.tracker.peaks.force[i].take(collision.peak, collision.t_peak)
 
     def outcome(self) -> Outcome:
         """What the run gathered."""
         self._settle()
-        flows = [r.flow for r in self.partition.regimes.values()]
+        propagators = [r.propagator for r in self.subsystems.decompositions.values()]
         residual, condition = (
-            max((f.residual for f in flows), default=0.0),
-            max((f.condition for f in flows), default=1.0),
+            max((f.residual for f in propagators), default=0.0),
+            max((f.condition for f in propagators), default=1.0),
         )
         figures = {
             "method": "EXACT, event-driven",
             "events": self.events,
             "windows": self.windows,
-            "linear regimes": len(flows),
+            "linear regimes": len(propagators),
         }
         checks = [
             (
@@ -579,10 +584,10 @@ class Exact:
                 "good" if condition < MOST_CONDITION else "look",
             ),
         ]
-        if any(isinstance(f, SeriesFlow) for f in flows):
+        if any(isinstance(f, SeriesPropagator) for f in propagators):
             checks.append(("defective modes, integrated by the exponential series", "present", "good"))
-        peaks = self.ledger.close()
-        checks += blurred(self.scene.structure.laws, peaks)
+        peaks = self.tracker.close()
+        checks += rounding_check(self.system.structure.laws, peaks)
         return Outcome(peaks, figures, tuple(self.states), checks, exact=True, turns=True)
 
     def stop(self, code: str, why: str) -> Stop:
@@ -590,8 +595,14 @@ class Exact:
         return Stop(code, self.t, why, self.outcome())
 
 
-def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
-    """Integrate a scene exactly; see the module's head.
+def integrate(
+    system: ReducedSystem,
+    start: Start,
+    monitored: MonitoredOutputs,
+    options: Mapping[str, Any],
+    recorder: Recorder,
+) -> Outcome:
+    """Integrate a reduced system exactly; see the module's head.
 
     Raises
     ------
@@ -601,14 +612,14 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
         It has cost more than TRIAL and will cost more than COST and PER_RADIAN for each radian of the
         fastest mode, or takes more than REGIMES, of the options; no deck sets them.
     """
-    if why := not_linear(scene):
-        refuse_rigid(scene, start, "EXACT")
+    if why := not_linear(system):
+        refuse_rigid(system, start, "EXACT")
         why = f"EXACT needs linear pieces, and {why}: AUTO takes steps"
         raise Stop("A505", float(start.times[0]), why)
-    scene, start, watch, sink = condensed(scene, start, watch, sink, "EXACT")
+    system, start, monitored, recorder = condensed(system, start, monitored, recorder, "EXACT")
     try:
-        run = Exact(scene, start, watch, options, sink)
-    except Weightless as err:
+        run = Exact(system, start, monitored, options, recorder)
+    except MasslessContact as err:
         raise Stop("A505", float(start.times[0]), str(err)) from None
     try:
         with np.errstate(over="ignore", invalid="ignore"):  # what grows beyond all numbers is told as such
@@ -626,6 +637,6 @@ SPEC = Spec(
             "REFINE", Kind.INT, default=0, lo=0, hi=8, doc="halvings of the search grid, for a self-check"
         ),
     ),
-    reference="after Nigam & Jennings 1969, for many freedoms and events",
+    reference="after Nigam & Jennings 1969, for many degrees of freedom and events",
     impl=integrate,
 )

@@ -46,23 +46,23 @@ from pound_solve.integrate.protocol import (
     CHATTER,
     INTERRUPTED,
     RUNAWAY,
-    Ledger,
+    MonitoredOutputs,
     Outcome,
-    Sink,
+    Recorder,
+    ResponseTracker,
     Start,
     Stop,
-    Watch,
-    blurred,
     energy_at_start,
     law_values,
     light,
     not_linear,
     refuse_rigid,
+    rounding_check,
 )
 from pound_solve.numerics import phi
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Complex
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 STARTS = 5  #: highest derivative at the start that is taken off
 DAMPING = 24.0  #: alpha times the window: 1e-10 in its first half
@@ -115,29 +115,34 @@ class Laplace:
     """One run; see the module's head."""
 
     def __init__(
-        self, scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink
+        self,
+        system: ReducedSystem,
+        start: Start,
+        monitored: MonitoredOutputs,
+        options: Mapping[str, Any],
+        recorder: Recorder,
     ) -> None:
-        self.scene, self.sink, self.watch, self.times = scene, sink, watch, start.times
+        self.system, self.recorder, self.monitored, self.times = system, recorder, monitored, start.times
         self.dt, self.points = options["DT"], 2 * (options["POINTS"] // 2)
-        self.laws = scene.structure.laws
+        self.laws = system.structure.laws
         self.states = list(start.states)
         self.branches = [s.branch(x) for s, x in zip(self.laws, self.states)]
-        self.ledger = Ledger(scene, len(watch.names))
+        self.tracker = ResponseTracker(system, len(monitored.names))
         self.t, self.u, self.v = float(start.times[0]), start.u.copy(), start.v.copy()
         self.works = start.works.copy()
-        self.rows = np.vstack([scene.law_rows, watch.rows])
-        self.row_inputs = np.vstack([scene.law_inputs, watch.input_rows])
-        self.row_constants = np.concatenate([np.zeros(len(self.laws)), watch.constants])
+        self.rows = np.vstack([system.law_rows, monitored.rows])
+        self.row_inputs = np.vstack([system.law_inputs, monitored.input_rows])
+        self.row_constants = np.concatenate([np.zeros(len(self.laws)), monitored.constants])
         self.largest = np.zeros((2, len(self.laws)))
-        self.heavy, self.light = np.flatnonzero(~massless(scene.mass)), light(scene)
+        self.heavy, self.light = np.flatnonzero(~massless(system.mass)), light(system)
         self.events = self.transforms = self.same_instant = 0
-        self.held, self.put_in = energy_at_start(scene, start), 0.0
+        self.held, self.put_in = energy_at_start(system, start), 0.0
         self.s = (DAMPING + 2j * np.pi * np.arange(self.points // 2 + 1)) / (self.points * self.dt)
-        self._regimes: dict[tuple[float, ...], tuple[StateSpace, float, Complex]] = {}
+        self._decompositions: dict[tuple[float, ...], tuple[StateSpace, float, Complex]] = {}
 
     def run(self) -> Outcome:
         """Integrate to the last output time."""
-        self.ledger.begin(self.scene, self.t, self.u, self.v, self.branches)
+        self.tracker.begin(self.system, self.t, self.u, self.v, self.branches)
         first, end = True, float(self.times[-1])
         while first or end - self.t > 1e-12 * max(1.0, end):
             self._piece(end, first)
@@ -146,37 +151,37 @@ class Laplace:
 
     def _matrices(self) -> tuple[Array, Array, Array]:
         """Damping, stiffness and constant forces on the present branches."""
-        scene, b = self.scene, self.scene.law_rows
+        system, b = self.system, self.system.law_rows
         k, c, f0 = (
             np.array([getattr(x, name) for x in self.branches])
             for name in ("stiffness", "damping", "force0")
         )
         return (
-            scene.damping + (b.T * c) @ b,
-            scene.stiffness + (b.T * k) @ b,
-            scene.constant - b.T @ f0,
+            system.damping + (b.T * c) @ b,
+            system.stiffness + (b.T * k) @ b,
+            system.constant - b.T @ f0,
         )
 
-    def _regime(self, c: Array, k: Array) -> tuple[StateSpace, float, Complex]:
+    def _decomposition(self, c: Array, k: Array) -> tuple[StateSpace, float, Complex]:
         """First-order form, fastest rate, and 1/D(s) at all frequencies, of a set of branches."""
         key = tuple(x for b in self.branches for x in (b.stiffness, b.damping))
-        if key not in self._regimes:
+        if key not in self._decompositions:
             try:
-                space = state_space(self.scene.mass, c, k)
+                space = state_space(self.system.mass, c, k)
             except Mechanism as err:
-                name = self.scene.name(int(np.argmax(np.abs(err.shape))))
+                name = self.system.name(int(np.argmax(np.abs(err.shape))))
                 raise self.stop("A501", f"{name} has no mass and nothing holds it") from None
             fastest = float(np.abs(np.linalg.eigvals(space.a)).max(initial=0.0))
             if fastest * self.dt > 1.0:
                 why = "DT={:g} does not resolve the fastest mode, {:.4g} rad per unit of time: {:.3g} does"
                 raise self.stop("A502", why.format(self.dt, fastest, 0.5 / fastest))
             s = self.s[:, None, None]
-            self._regimes[key] = space, fastest, np.linalg.inv(s * s * self.scene.mass + s * c + k)
-        return self._regimes[key]
+            self._decompositions[key] = space, fastest, np.linalg.inv(s * s * self.system.mass + s * c + k)
+        return self._decompositions[key]
 
     def _transform(self) -> Complex:
         """Transform of the inputs from now on, shape (n_frequencies, n_inputs)."""
-        ex, s = self.scene.excitation, self.s
+        ex, s = self.system.excitation, self.s
         out = np.zeros((len(s), ex.coefs.shape[2]), complex)
         begin, end = self.t, self.t + self.points * self.dt
         first = ex.piece(begin + 1e-13 * max(1.0, begin))
@@ -212,16 +217,16 @@ class Laplace:
 
     def _response(self) -> tuple[Array, Array]:
         """Displacements and velocities at the samples of the half window, shape (n, n_samples)."""
-        scene, s, half = self.scene, self.s, self.points // 2
+        system, s, half = self.system, self.s, self.points // 2
         c, k, constant = self._matrices()
-        space, beta, inverse = self._regime(c, k)
-        ex = scene.excitation
+        space, beta, inverse = self._decomposition(c, k)
+        ex = system.excitation
         coefs = ex.local(ex.piece(self.t + 1e-13 * max(1.0, self.t)), self.t)
         # derivatives at the start, from the first-order form
         z = space.z_u @ self.u + space.z_v @ self.v
-        derivatives, force = [], np.zeros(scene.size)
+        derivatives, force = [], np.zeros(system.size)
         for j in range(STARTS + 1):
-            force = math.factorial(j) * scene.inputs @ coefs[j] if j < len(coefs) else 0.0 * force
+            force = math.factorial(j) * system.inputs @ coefs[j] if j < len(coefs) else 0.0 * force
             force = force + constant * (j == 0)
             follow = 0.0 if space.u_p is None else space.u_p @ force
             derivatives.append(space.u_z @ z + follow)
@@ -236,8 +241,8 @@ class Laplace:
                 for j in range(STARTS + 1)
             ]
         )
-        right = self._transform() @ scene.inputs.T + constant / s[:, None]
-        right += s[:, None] * (scene.mass @ derivatives[0]) + scene.mass @ self.v + c @ derivatives[0]
+        right = self._transform() @ system.inputs.T + constant / s[:, None]
+        right += s[:, None] * (system.mass @ derivatives[0]) + system.mass @ self.v + c @ derivatives[0]
         start = sum(math.factorial(j) * q[j] / (s[:, None] + beta) ** (j + 1) for j in range(STARTS + 1))
         rest = (inverse @ right[:, :, None])[:, :, 0] - start
         t = self.dt * np.arange(half + 1)
@@ -255,13 +260,13 @@ class Laplace:
         """From the equations of motion, at instants that are columns."""
         c, k, constant = self._matrices()
         out, h = np.zeros_like(u), self.heavy
-        force = (self.scene.inputs @ s - c @ v - k @ u) + constant[:, None]
-        out[h] = np.linalg.solve(self.scene.mass[np.ix_(h, h)], force[h])
+        force = (self.system.inputs @ s - c @ v - k @ u) + constant[:, None]
+        out[h] = np.linalg.solve(self.system.mass[np.ix_(h, h)], force[h])
         return out
 
     def _piece(self, end: float, first: bool) -> None:
         """Go on to the next event, to the middle of the window, or to the end."""
-        ex = self.scene.excitation
+        ex = self.system.excitation
         u, v = self._response()
         count = min(u.shape[1], int(np.ceil((end - self.t) / self.dt * (1 - 1e-12))) + 1)
         t = self.dt * np.arange(count)
@@ -300,7 +305,7 @@ class Laplace:
         if event is not None and event[0] < span:
             self._switch(event[1], event[2], float(ends[0][event[1]]), float(ends[1][event[1]]))
         self.put_in += abs(float(self.works[0] - done[0]))
-        kinetic = 0.5 * float(self.v @ self.scene.mass @ self.v)
+        kinetic = 0.5 * float(self.v @ self.system.mass @ self.v)
         if not kinetic <= 10.0 * (self.held + self.put_in + abs(float(self.works[0]))) + 1e-300:
             why = f" as samples {self.dt:g} apart see it: is DT too long for the excitation?"
             raise self.stop("A504", RUNAWAY.format(kinetic) + why)
@@ -312,12 +317,12 @@ class Laplace:
 
     def _switch(self, law: int, exit_index: int, d: float, v: float) -> None:
         before = self.branches[law].name
-        self.states[law] = self.laws[law].law.leave(self.states[law], exit_index, d, v)
+        self.states[law] = self.laws[law].law.transition(self.states[law], exit_index, d, v)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
         force = self.laws[law].force(self.states[law], d, 0.0 if self.light[law] else v)
         self.events += 1
-        self.ledger.switched(law, before, after.name, self.t, d, v, force)
-        self.ledger.peaks.force[law].take(force, self.t)
+        self.tracker.switched(law, before, after.name, self.t, d, v, force)
+        self.tracker.peaks.force[law].take(force, self.t)
         if self.same_instant > 50 + 4 * len(self.laws):
             s = self.laws[law]
             why = CHATTER.format(self.same_instant, s.element, s.rule, after.name, "EXACT")
@@ -329,7 +334,7 @@ class Laplace:
         """
         if end <= begin:
             return np.zeros(3)
-        h, scene = self.dt, self.scene
+        h, system = self.dt, self.system
         inner = h * np.arange(math.floor(begin / h) + 1, math.ceil(end / h))
         ends = np.concatenate([[begin], inner[(inner > begin) & (inner < end)], [end]])
         width = np.diff(ends)
@@ -342,36 +347,36 @@ class Laplace:
         x = t - i * h
         place = hermite(h, x, np.stack([u[:, i], u[:, i + 1]]), np.stack([v[:, i], v[:, i + 1]]))[0]
         speed = hermite(h, x, np.stack([v[:, i], v[:, i + 1]]), np.stack([a[:, i], a[:, i + 1]]))[0]
-        s, ds = (scene.excitation.values(self.t + t, order).T for order in (0, 1))
-        d, rate = scene.law_rows @ place + scene.law_inputs @ s, scene.law_rows @ speed
-        rate = rate + scene.law_inputs @ ds
-        power = ((scene.inputs @ s + scene.constant[:, None]) * speed).sum(axis=0)
-        damping, lost = float((speed * (scene.damping @ speed)).sum(axis=0) @ weight), 0.0
+        s, ds = (system.excitation.values(self.t + t, order).T for order in (0, 1))
+        d, rate = system.law_rows @ place + system.law_inputs @ s, system.law_rows @ speed
+        rate = rate + system.law_inputs @ ds
+        power = ((system.inputs @ s + system.constant[:, None]) * speed).sum(axis=0)
+        damping, lost = float((speed * (system.damping @ speed)).sum(axis=0) @ weight), 0.0
         for law, branch in enumerate(self.branches):
             loss = float(branch.damping * rate[law] ** 2 @ weight)
-            self.ledger.peaks.dashpot_losses[law] += loss
+            self.tracker.peaks.dashpot_losses[law] += loss
             if self.laws[law].is_contact:
                 lost += loss
             else:
                 damping += loss
-            if law in self.ledger.open:
+            if law in self.tracker.open:
                 force = branch.stiffness * d[law] + branch.damping * rate[law] + branch.force0
-                self.ledger.open[law].impulse += float(force @ weight)
+                self.tracker.open[law].impulse += float(force @ weight)
         return np.array([float(power @ weight), damping, lost])
 
     def _peaks(self, seen: Samples) -> None:
         n = len(self.laws)
         both = np.abs([seen.value[:n, 0], seen.rate[:n, 0]]).max(axis=2)
         np.maximum(self.largest, both, out=self.largest)
-        watched, kept = followed(self.ledger, self.branches, {})
+        watched, kept = followed(self.tracker, self.branches, {})
         grid.widen(kept, self.t, seen.t, *watched.of(seen), watched.at(seen))
-        for i, collision in self.ledger.open.items():
-            self.ledger.peaks.force[i].take(collision.peak, collision.t_peak)
+        for i, collision in self.tracker.open.items():
+            self.tracker.peaks.force[i].take(collision.peak, collision.t_peak)
 
     def _hand_out(self, t: float, u: Array, v: Array, a: Array, works: Array) -> None:
         at, (u, v, a) = np.array([t]), np.stack([u, v, a])[:, :, None]
-        laws = law_values(self.scene, at, u, v, self.states)
-        self.sink.sample(at, u, v, a, laws, works[:, None])
+        laws = law_values(self.system, at, u, v, self.states)
+        self.recorder.sample(at, u, v, a, laws, works[:, None])
 
     def outcome(self) -> Outcome:
         """What the run gathered."""
@@ -379,10 +384,10 @@ class Laplace:
             "method": f"LAPLACE, {self.points} samples {self.dt:g} apart",
             "events": self.events,
             "transforms": self.transforms,
-            "linear regimes": len(self._regimes),
+            "linear regimes": len(self._decompositions),
         }
-        peaks = self.ledger.close()
-        checks = blurred(self.laws, peaks, STILL)
+        peaks = self.tracker.close()
+        checks = rounding_check(self.laws, peaks, STILL)
         return Outcome(peaks, figures, tuple(self.states), checks)
 
     def stop(self, code: str, why: str) -> Stop:
@@ -390,20 +395,26 @@ class Laplace:
         return Stop(code, self.t, why, self.outcome())
 
 
-def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
-    """Integrate a scene by numerical Laplace transforms; see the module's head.
+def integrate(
+    system: ReducedSystem,
+    start: Start,
+    monitored: MonitoredOutputs,
+    options: Mapping[str, Any],
+    recorder: Recorder,
+) -> Outcome:
+    """Integrate a reduced system by numerical Laplace transforms; see the module's head.
 
     Raises
     ------
     Stop
-        A scene that is not piecewise linear or whose supports move apart from each other, a DT that does
-        not resolve it, a mechanism, numbers beyond all bounds, or an interrupt.
+        A reduced system that is not piecewise linear or whose supports move apart from each other, a DT
+        that does not resolve it, a mechanism, numbers beyond all bounds, or an interrupt.
     """
-    refuse_rigid(scene, start, "LAPLACE")
-    if why := not_linear(scene) or ("the supports move apart from each other" if scene.total else ""):
+    refuse_rigid(system, start, "LAPLACE")
+    if why := not_linear(system) or ("the supports move apart from each other" if system.total else ""):
         raise Stop("A505", float(start.times[0]), f"LAPLACE cannot take this: {why}; AUTO can")
-    scene, start, watch, sink = condensed(scene, start, watch, sink, "LAPLACE")
-    run = Laplace(scene, start, watch, options, sink)
+    system, start, monitored, recorder = condensed(system, start, monitored, recorder, "LAPLACE")
+    run = Laplace(system, start, monitored, options, recorder)
     try:
         return run.run()
     except KeyboardInterrupt:

@@ -2,7 +2,7 @@ r"""Exact solution of a linear block between events.
 
 .. math:: M\ddot u + C\dot u + K u = p(t) = F s(t) + f, \qquad s(t)\ \text{polynomial in } t
 
-The massive freedoms are written in the undamped modes, :math:`u = \Phi\eta`,
+The massive DOFs are written in the undamped modes, :math:`u = \Phi\eta`,
 with the state :math:`z = (\omega\eta, \dot\eta)`, which balances displacement
 against velocity and leaves a nearly normal matrix.  Its complex modes :math:`q` are uncoupled,
 :math:`\dot q_i = \lambda_i q_i + \sum_k g_{ik} t^k`, hence
@@ -10,11 +10,12 @@ against velocity and leaves a nearly normal matrix.  Its complex modes :math:`q`
 .. math:: q_i(t) = e^{\lambda_i t} q_i(0) + \sum_k g_{ik}\, t^{k+1} K_k(\lambda_i t)
 
 (:mod:`~pound_solve.numerics.phi`).  Undamped rigid-body modes are polynomials and are kept apart, so that
-the double eigenvalue zero of a plastic storey needs no special care.  Massless freedoms are eliminated:
+the double eigenvalue zero of a plastic storey needs no special care.  Massless DOFs are eliminated:
 those that a dashpot moves keep a first-order state, the others follow statically.
 
 Where the modes do not span the space (critical damping, repeated defective eigenvalues)
-`SeriesFlow` takes over: the exponential series of the same matrix, exact to rounding as well, only slower.
+`SeriesPropagator` takes over: the exponential series of the same matrix, exact to rounding as well, only
+slower.
 
 References
 ----------
@@ -44,7 +45,7 @@ RECURRING = 64  #: lengths of segments for which the response is kept
 RIGID = 1e-14  #: omega^2 below this share of the rounding scale (times the size) is a rigid-body mode
 
 
-#: k! m! / (k + m + 1)!: what the m-th of `Flow._derivatives` makes of a force t^k
+#: k! m! / (k + m + 1)!: what the m-th of `Propagator._derivatives` makes of a force t^k
 _SHARES = [
     np.array([factorial(k) * factorial(m) / factorial(k + m + 1) for m in range(TERMS - k - 1)])
     for k in range(TERMS - 1)
@@ -52,10 +53,10 @@ _SHARES = [
 
 
 class Mechanism(Exception):
-    """Massless freedoms that nothing holds; `shape` is their motion over the block's freedoms."""
+    """Massless DOFs that nothing holds; `shape` is their motion over the block's DOFs."""
 
     def __init__(self, shape: Array) -> None:
-        super().__init__("massless freedoms without stiffness")
+        super().__init__("massless degrees of freedom without stiffness")
         self.shape = shape
 
 
@@ -80,7 +81,7 @@ class StateSpace:
 
 
 def state_space(m: Array, c: Array, k: Array) -> StateSpace:
-    """Return the balanced first-order form of a block, massless freedoms eliminated.
+    """Return the balanced first-order form of a block, massless DOFs eliminated.
 
     Parameters
     ----------
@@ -90,7 +91,7 @@ def state_space(m: Array, c: Array, k: Array) -> StateSpace:
     Raises
     ------
     Mechanism
-        Massless freedoms with neither stiffness nor dashpot.
+        Massless DOFs with neither stiffness nor dashpot.
     """
     n = len(m)
     heavy = np.any(m != 0.0, axis=1)
@@ -98,7 +99,7 @@ def state_space(m: Array, c: Array, k: Array) -> StateSpace:
         return _second_order(m, c, k)
     z = np.flatnonzero(~heavy)
     h = np.flatnonzero(heavy)
-    # split the massless freedoms into what dashpots move (range of C)
+    # split the massless DOFs into what dashpots move (range of C)
     # and what follows statically (its kernel)
     values, vectors = np.linalg.eigh(c[np.ix_(z, z)])
     damped = values > 1e-12 * max(np.abs(c).max(), 1e-300)
@@ -125,14 +126,14 @@ def state_space(m: Array, c: Array, k: Array) -> StateSpace:
     c_h = c1[:nh, :nh] - to_h @ c1[nh:, :nh]
     k_h = k1[:nh, :nh] - to_h @ k1[nh:, :nh]
     k_hd = k1[:nh, nh:] - to_h @ k1[nh:, nh:]
-    # scaled to the root of the energy with the dashpots' freedoms held
+    # scaled to the root of the energy with the dashpots' DOFs held
     omega2, phi_h = _undamped(m1[:nh, :nh], k1[:nh, :nh])
     top = np.abs(omega2).max(initial=0.0)
     scale = np.sqrt(np.where(np.abs(omega2) > 1e-12 * top, np.abs(omega2), min(1.0, top) if top else 1.0))
     size = 2 * nh + nd
     a = np.zeros((size, size))
     u, v, d = slice(0, nh), slice(nh, 2 * nh), slice(2 * nh, size)
-    # like the others, displacements of damped massless freedoms are scaled to the root of their energy
+    # like the others, displacements of damped massless DOFs are scaled to the root of their energy
     grip = np.sqrt(np.abs(np.diag(k1)[nh:]))
     grip[grip == 0.0] = 1.0
     rate_z = grip[:, None] * rate
@@ -174,7 +175,7 @@ def held_space(m: Array, c: Array, k: Array, rows: Array) -> StateSpace:
     ----------
     m, c, k : ndarray, shape (n, n)
     rows : ndarray, shape (n_held, n)
-        They touch massive freedoms only.
+        They touch massive DOFs only.
     """
     n = len(m)
     touched = np.flatnonzero(rows.any(axis=0))
@@ -286,8 +287,8 @@ def on_stacked(rows: NDArray[Any]) -> Array:
     return np.concatenate([rows.real, -rows.imag], axis=1) if np.iscomplexobj(rows) else rows
 
 
-class Flow(ABC):
-    """A block's exact motion; the base of `ModalFlow` and `SeriesFlow`.
+class Propagator(ABC):
+    """A block's exact motion; the base of `ModalPropagator` and `SeriesPropagator`.
 
     Attributes
     ----------
@@ -295,7 +296,7 @@ class Flow(ABC):
         Largest |eigenvalue| [1/T]: what the sampling grid must resolve.
     u_q, v_q : ndarray, shape (n, n_q)
     u_p, v_p : ndarray, shape (n, n), or None
-        ``u = Re(u_q q) + u_p p``, ``v = Re(v_q q) + v_p p + u_p p'``; None without massless freedoms.
+        ``u = Re(u_q q) + u_p p``, ``v = Re(v_q q) + v_p p + u_p p'``; None without massless DOFs.
     condition, residual : float
         Of the matrix of modes; of its eigenvectors, relative to `fastest`.
     """
@@ -397,7 +398,7 @@ def powers(t: NDArray[Any] | float, degree: int) -> Array:
     return np.stack([np.asarray(t, float) ** k for k in range(degree + 1)])
 
 
-class ModalFlow(Flow):
+class ModalPropagator(Propagator):
     """Motion in complex modes; of each conjugate pair one is kept, with double weight."""
 
     def __init__(self, space: StateSpace, inputs: Array) -> None:
@@ -449,24 +450,27 @@ class ModalFlow(Flow):
         self._single: dict[tuple[float, int], tuple[Complex, Complex]] = {}
 
     @classmethod
-    def joined(cls, flows: Sequence[ModalFlow]) -> ModalFlow:
-        """Return the motion of several blocks without massless freedoms as that of one."""
+    def joined(cls, propagators: Sequence[ModalPropagator]) -> ModalPropagator:
+        """Return the motion of several blocks without massless DOFs as that of one."""
         out = cls.__new__(cls)
         out.u_p = out.v_p = None
         out.inputs, out._input = (
-            np.concatenate([getattr(f, x) for f in flows]) for x in ("inputs", "_input")
+            np.concatenate([getattr(f, x) for f in propagators]) for x in ("inputs", "_input")
         )
-        out.lam, out.scale = (np.concatenate([getattr(f, x) for f in flows]) for x in ("lam", "scale"))
-        before = np.cumsum([0, *(len(f.lam) for f in flows)])
+        out.lam, out.scale = (
+            np.concatenate([getattr(f, x) for f in propagators]) for x in ("lam", "scale")
+        )
+        before = np.cumsum([0, *(len(f.lam) for f in propagators)])
         out.a_rows, out.b_rows = (
-            np.concatenate([getattr(f, x) + n for f, n in zip(flows, before)]) for x in ("a_rows", "b_rows")
+            np.concatenate([getattr(f, x) + n for f, n in zip(propagators, before)])
+            for x in ("a_rows", "b_rows")
         )
-        out.u_q, out.v_q = (diagonal([getattr(f, x) for f in flows]) for x in ("u_q", "v_q"))
+        out.u_q, out.v_q = (diagonal([getattr(f, x) for f in propagators]) for x in ("u_q", "v_q"))
         out._enter_u, out._enter_v, out._force = (
-            diagonal([getattr(f, x) for f in flows]) for x in ("_enter_u", "_enter_v", "_force")
+            diagonal([getattr(f, x) for f in propagators]) for x in ("_enter_u", "_enter_v", "_force")
         )
         out.fastest, out.condition, out.residual = (
-            max(getattr(f, x) for f in flows) for x in ("fastest", "condition", "residual")
+            max(getattr(f, x) for f in propagators) for x in ("fastest", "condition", "residual")
         )
         out._keep_nothing()
         return out
@@ -600,17 +604,17 @@ class ModalFlow(Flow):
                 out[a] += s * gs[:, k, b].T[:, :, None] * t ** (k + 2) / ((k + 1) * (k + 2))
 
 
-def diagonal(blocks: Sequence[NDArray[Any]]) -> NDArray[Any]:
+def diagonal(active: Sequence[NDArray[Any]]) -> NDArray[Any]:
     """Return matrices as the blocks of one, zero elsewhere."""
-    out = np.zeros(np.sum([b.shape for b in blocks], axis=0), np.result_type(*blocks))
+    out = np.zeros(np.sum([b.shape for b in active], axis=0), np.result_type(*active))
     i = j = 0
-    for b in blocks:
+    for b in active:
         out[i : i + b.shape[0], j : j + b.shape[1]] = b
         i, j = i + b.shape[0], j + b.shape[1]
     return out
 
 
-class SeriesFlow(Flow):
+class SeriesPropagator(Propagator):
     """Motion by the exponential series of the state matrix; q is the state itself."""
 
     def __init__(self, space: StateSpace, inputs: Array) -> None:
@@ -716,9 +720,9 @@ def gauss(t: float, fastest: float) -> tuple[Array, Array]:
     return np.tile(_W * width, cells), (np.arange(cells)[:, None] * width + _X * width).ravel()
 
 
-def make_flow(
+def make_propagator(
     m: Array, c: Array, k: Array, inputs: Array, rows: Array | None = None
-) -> ModalFlow | SeriesFlow:
+) -> ModalPropagator | SeriesPropagator:
     """Return the exact motion of a block: in modes, or by series where the modes are defective.
 
     With `rows` it is that of `held_space`.
@@ -729,7 +733,7 @@ def make_flow(
         space = held_space(m, c, k, rows)
         inputs = np.vstack([inputs, np.zeros((3 * len(rows), inputs.shape[1]))])
     try:
-        flow = ModalFlow(space, inputs)
+        propagator = ModalPropagator(space, inputs)
     except np.linalg.LinAlgError:
-        return SeriesFlow(space, inputs)
-    return flow if flow.condition < MOST_CONDITION else SeriesFlow(space, inputs)
+        return SeriesPropagator(space, inputs)
+    return propagator if propagator.condition < MOST_CONDITION else SeriesPropagator(space, inputs)

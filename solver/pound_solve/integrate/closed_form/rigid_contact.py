@@ -18,7 +18,7 @@ References
 ----------
 Murty KG (1974), Note on a Bard-type scheme for solving the complementarity problem, Opsearch 11: 123-130
 (the pivots).
-Moreau JJ (1988), Unilateral contact and dry friction in finite freedom dynamics, in Nonsmooth Mechanics and
+Moreau JJ (1988), Unilateral contact and dry friction in finite DOF dynamics, in Nonsmooth Mechanics and
 Applications, CISM 302: 1-82, Springer.
 """
 
@@ -31,7 +31,7 @@ import numpy as np
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 SLOW = 1e-6  #: share of a contact's fastest rate below which an approach has no rebound
 NOISE = 1e-12  #: share of its terms below which an acceleration is rounding
@@ -39,12 +39,12 @@ MOST_ROUNDS = 100_000  #: of impacts at one instant
 MOST_PIVOTS = 10_000
 
 
-class Weightless(Exception):
-    """A rigid contact on a freedom without mass."""
+class MasslessContact(Exception):
+    """A rigid contact on a DOF without mass."""
 
 
 class Rigid:
-    """The rigid contacts of a scene.
+    """The rigid contacts of a reduced system.
 
     Attributes
     ----------
@@ -61,24 +61,24 @@ class Rigid:
     Raises
     ------
     Weightless
-        A contact on a freedom without mass.
+        A contact on a DOF without mass.
     """
 
-    def __init__(self, scene: Scene) -> None:
-        laws = scene.structure.laws
-        self.scene = scene
+    def __init__(self, system: ReducedSystem) -> None:
+        laws = system.structure.laws
+        self.system = system
         self.laws = [i for i, s in enumerate(laws) if s.law.rigid]
-        self.rows, self.inputs = scene.law_rows[self.laws], scene.law_inputs[self.laws]
-        light = massless(scene.mass)
+        self.rows, self.inputs = system.law_rows[self.laws], system.law_inputs[self.laws]
+        light = massless(system.mass)
         if (bad := self.rows[:, light].any(axis=1)).any():
             s = laws[self.laws[int(np.argmax(bad))]]
-            raise Weightless(
-                f"the rigid contact {s.element} ({s.rule}) touches a freedom without mass, which nothing "
-                "would stop: give it weight"
+            raise MasslessContact(
+                f"the rigid contact {s.element} ({s.rule}) touches a degree of freedom without mass, which "
+                "nothing would stop: give it weight"
             )
         heavy = np.flatnonzero(~light) if self.laws else np.zeros(0, np.intp)
         self.yielding = np.zeros(self.rows.T.shape)
-        self.yielding[heavy] = np.linalg.solve(scene.mass[np.ix_(heavy, heavy)], self.rows[:, heavy].T)
+        self.yielding[heavy] = np.linalg.solve(system.mass[np.ix_(heavy, heavy)], self.rows[:, heavy].T)
         self.compliance = self.rows @ self.yielding
         self.gap = np.array([laws[i].law.p[2] for i in self.laws])
         self.restitution = np.array([laws[i].law.p[1] for i in self.laws])
@@ -155,17 +155,17 @@ class Rigid:
         inputs : ndarray, shape (3, n_inputs)
             Inputs and their first two derivatives.
         """
-        scene = self.scene
+        system = self.system
         k, c, f0 = np.array([(b.stiffness, b.damping, b.force0) for b in branches]).reshape(-1, 3).T
-        force = k * (scene.law_rows @ u + scene.law_inputs @ inputs[0])
-        force += c * (scene.law_rows @ v + scene.law_inputs @ inputs[1]) + f0
+        force = k * (system.law_rows @ u + system.law_inputs @ inputs[0])
+        force += c * (system.law_rows @ v + system.law_inputs @ inputs[1]) + f0
         terms = np.array(
             [
-                scene.inputs @ inputs[0],
-                scene.constant,
-                -scene.damping @ v,
-                -scene.stiffness @ u,
-                -scene.law_rows.T @ force,
+                system.inputs @ inputs[0],
+                system.constant,
+                -system.damping @ v,
+                -system.stiffness @ u,
+                -system.law_rows.T @ force,
             ]
         )
         size = np.abs(self.yielding).T @ np.abs(terms).sum(axis=0)

@@ -1,4 +1,5 @@
-"""The scene in blocks: parts that move on their own between events (see `window` for their motion).
+"""The reduced system in blocks: parts that move on their own between events (see `window` for their
+motion).
 
 Each part has its modes for each combination of stiffnesses.  Small ones are put together: a hundred numbers
 more in a product cost less than a product more.
@@ -13,12 +14,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.closed_form import work_integrals
-from pound_solve.integrate.closed_form.propagator import Flow, Mechanism, ModalFlow, make_flow, on_stacked
+from pound_solve.integrate.closed_form.propagator import (
+    Mechanism,
+    ModalPropagator,
+    Propagator,
+    make_propagator,
+    on_stacked,
+)
 from pound_solve.integrate.closed_form.rigid_contact import Rigid
+from pound_solve.integrate.closed_form.work_integrals import WorkIntegrals
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.types import Array, Flags, Index
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 Key = tuple[Any, ...]
 
@@ -27,7 +34,7 @@ REGIME, PRODUCTS, MODES = 8e-4, 1.5e-6, 8e-9
 SMALL = 128  #: modes that blocks put together may have
 
 
-def cost_of_regime(n: int) -> float:
+def cost_of_decomposition(n: int) -> float:
     """Cost of a new combination of stiffnesses of `n` unknowns."""
     return REGIME + PRODUCTS * n**2 + MODES * n**3
 
@@ -46,7 +53,7 @@ class Reactions:
         The deformations that the unknowns are held to are ``gaps - inputs s``.
     on_q : ndarray, shape (n_held, n_q)
     on_p, on_rate : ndarray, shape (n_held, n + 3 n_held)
-        On the forces, extended as in `flow.held_space`.
+        On the forces, extended as in `propagator.held_space`.
     """
 
     laws: Index
@@ -76,11 +83,11 @@ class Part(NamedTuple):
 
     q: slice
     unknowns: Index
-    meter: work_integrals.Meter
+    work: WorkIntegrals
 
 
 @dataclass(frozen=True)
-class Regime:
+class Decomposition:
     """A block's exact motion for one set of stiffnesses; kept for when they return.
 
     Attributes
@@ -97,7 +104,7 @@ class Regime:
     size : ndarray, shape (n_watched, n_q)
         Its magnitude.
     on_q : ndarray, shape (3 n_watched, n_q or 2 n_q)
-        What their values, rates and second rates take from `flow.stacked` q.
+        What their values, rates and second rates take from `propagator.stacked` q.
     motion : ndarray, shape (3 n, n_q or 2 n_q)
         What displacements, velocities and accelerations take from it.
     shown : ndarray of int
@@ -110,7 +117,7 @@ class Regime:
 
     index: Index
     laws: Index
-    flow: Flow
+    propagator: Propagator
     watched: Index
     place: list[int]
     rows: Array
@@ -125,7 +132,7 @@ class Regime:
 
 
 @dataclass
-class Block:
+class Subsystem:
     """A regime at work: its state `q` and its motion over the present window.
 
     Attributes
@@ -138,11 +145,11 @@ class Block:
     gs : ndarray, shape (n_intervals, degree + 1, n_q)
         States at the starts of the window's intervals and forcing within them.
     ps : ndarray, shape (n_intervals, degree + 1, n) or None
-        Force polynomials, where massless freedoms or moved supports need them.
+        Force polynomials, where massless DOFs or moved supports need them.
     """
 
     keys: tuple[Key, ...]
-    regime: Regime
+    decomposition: Decomposition
     constant: Array
     q: NDArray[Any]
     qs: NDArray[Any] = field(default_factory=lambda: np.zeros((0, 0)))
@@ -150,12 +157,12 @@ class Block:
     ps: Array | None = None
 
 
-class Partition:
-    """Keeps the scene divided into blocks as contacts close and springs yield.
+class Subsystems:
+    """Keeps the reduced system divided into blocks as contacts close and springs yield.
 
     Parameters
     ----------
-    scene : Scene
+    system : ReducedSystem
     rows : ndarray, shape (n_rows, n)
         Functionals that the run watches; the first are the laws' deformations.
         The forces of the rigid contacts come after them.
@@ -167,13 +174,13 @@ class Partition:
 
     def __init__(
         self,
-        scene: Scene,
+        system: ReducedSystem,
         rows: Array,
         row_inputs: Array,
         row_constants: Array,
         shown: Flags,
     ) -> None:
-        self.scene, self.rigid, more = scene, Rigid(scene), len(rows)
+        self.system, self.rigid, more = system, Rigid(system), len(rows)
         self.shown = shown
         count = len(self.rigid.laws)
         self.force_row = {law: more + i for i, law in enumerate(self.rigid.laws)}
@@ -181,9 +188,9 @@ class Partition:
         self.row_inputs = np.pad(row_inputs, ((0, count), (0, 0)))
         self.row_constants = np.pad(row_constants, (0, count))
         self.known = bool(np.any(row_inputs))
-        self.blocks: list[Block] = []
-        self.regimes: dict[Key, Regime] = {}
-        self._together: dict[tuple[Key, ...], Regime] = {}
+        self.active: list[Subsystem] = []
+        self.decompositions: dict[Key, Decomposition] = {}
+        self._together: dict[tuple[Key, ...], Decomposition] = {}
         self._base = self._parts_with_contacts_open()
 
     @property
@@ -194,13 +201,13 @@ class Partition:
     @property
     def fastest(self) -> float:
         """Largest |eigenvalue| of the present blocks [1/T]."""
-        return max((b.regime.flow.fastest for b in self.blocks), default=0.0)
+        return max((b.decomposition.propagator.fastest for b in self.active), default=0.0)
 
     def _parts_with_contacts_open(self) -> Index:
         """Label the unknowns by what hangs together, shape (n,)."""
-        scene, n = self.scene, self.scene.size
-        linked = (scene.stiffness != 0) | (scene.damping != 0) | (scene.mass != 0)
-        for s, row in zip(scene.structure.laws, scene.law_rows):
+        system, n = self.system, self.system.size
+        linked = (system.stiffness != 0) | (system.damping != 0) | (system.mass != 0)
+        for s, row in zip(system.structure.laws, system.law_rows):
             if not s.is_contact:
                 at = np.flatnonzero(row)
                 linked[np.ix_(at, at)] = True
@@ -219,120 +226,122 @@ class Partition:
         Raises
         ------
         Mechanism
-            Massless freedoms that nothing holds; its shape is over all unknowns.
+            Massless DOFs that nothing holds; its shape is over all unknowns.
         """
-        scene = self.scene
+        system = self.system
         labels = self._base.copy()
-        for i, (s, b) in enumerate(zip(scene.structure.laws, branches)):
+        for i, (s, b) in enumerate(zip(system.structure.laws, branches)):
             if s.is_contact and (b.stiffness or b.damping or b.held):
-                parts = np.unique(labels[scene.law_rows[i] != 0])
+                parts = np.unique(labels[system.law_rows[i] != 0])
                 if len(parts):
                     labels[np.isin(labels, parts)] = parts[0]
         acting = [i for i, b in enumerate(branches) if b.stiffness or b.damping or b.force0 or b.held]
         found: list[tuple[Key, Array]] = []  # what there is, with its constant forces
         for label in np.unique(labels):
             index = np.flatnonzero(labels == label)
-            laws = np.array([i for i in acting if np.any(scene.law_rows[i, index])], np.intp)
+            laws = np.array([i for i in acting if np.any(system.law_rows[i, index])], np.intp)
             key = (
                 int(label),
                 len(index),
                 *((int(i), branches[i].stiffness, branches[i].damping, branches[i].held) for i in laws),
             )
-            if key not in self.regimes:
-                spend(cost_of_regime(len(index)))
-                self.regimes[key] = self._regime(index, laws, branches)
+            if key not in self.decompositions:
+                spend(cost_of_decomposition(len(index)))
+                self.decompositions[key] = self._decomposition(index, laws, branches)
             own = [branches[i].force0 for i in laws]
-            found.append((key, scene.constant[index] - scene.law_rows[np.ix_(laws, index)].T @ own))
+            found.append((key, system.constant[index] - system.law_rows[np.ix_(laws, index)].T @ own))
         on_way = {
-            key: block.q[part.q]
-            for block in self.blocks
-            for key, part in zip(block.keys, block.regime.parts)
+            key: subsystem.q[part.q]
+            for subsystem in self.active
+            for key, part in zip(subsystem.keys, subsystem.decomposition.parts)
         }
-        self.blocks = []
+        self.active = []
         for group in self._groups(found):
             keys, constants = zip(*group)
-            own = [self.regimes[key] for key in keys]
+            own = [self.decompositions[key] for key in keys]
             states = [
-                on_way[key] if key in on_way else r.flow.enter(u[r.index], v[r.index])
+                on_way[key] if key in on_way else r.propagator.enter(u[r.index], v[r.index])
                 for key, r in zip(keys, own)
             ]
-            whole = Block(keys, self._joined(keys), np.concatenate(constants), np.concatenate(states))
-            self.blocks.append(whole)
+            whole = Subsystem(keys, self._joined(keys), np.concatenate(constants), np.concatenate(states))
+            self.active.append(whole)
 
     def _groups(self, found: list[tuple[Key, Array]]) -> list[list[tuple[Key, Array]]]:
         """What is put together."""
         groups: list[list[tuple[Key, Array]]] = []
         room = 0  # in the last one of those that may grow
         for own in found:
-            flow = self.regimes[own[0]].flow
-            if not isinstance(flow, ModalFlow) or flow.u_p is not None:
+            propagator = self.decompositions[own[0]].propagator
+            if not isinstance(propagator, ModalPropagator) or propagator.u_p is not None:
                 groups.append([own])
-            elif len(flow.lam) <= room:
+            elif len(propagator.lam) <= room:
                 groups[0].append(own)
-                room -= len(flow.lam)
+                room -= len(propagator.lam)
             else:
                 groups.insert(0, [own])
-                room = SMALL - len(flow.lam)
+                room = SMALL - len(propagator.lam)
         return groups
 
-    def _joined(self, keys: tuple[Key, ...]) -> Regime:
+    def _joined(self, keys: tuple[Key, ...]) -> Decomposition:
         """The regimes of some keys as one."""
         if len(keys) == 1:
-            return self.regimes[keys[0]]
+            return self.decompositions[keys[0]]
         if keys not in self._together:
-            own = [self.regimes[key] for key in keys]
-            flow = ModalFlow.joined([r.flow for r in own if isinstance(r.flow, ModalFlow)])
+            own = [self.decompositions[key] for key in keys]
+            propagator = ModalPropagator.joined(
+                [r.propagator for r in own if isinstance(r.propagator, ModalPropagator)]
+            )
             ends = np.cumsum([0, *(r.on_u.shape[1] for r in own)]).tolist()
             parts = [
                 part._replace(q=slice(i, j)) for r, i, j in zip(own, ends, ends[1:]) for part in r.parts
             ]
             index, laws = (np.concatenate([getattr(r, x) for r in own]) for x in ("index", "laws"))
-            self._together[keys] = self._described(index, laws, flow, tuple(parts), None)
+            self._together[keys] = self._described(index, laws, propagator, tuple(parts), None)
         return self._together[keys]
 
-    def _regime(self, index: Index, laws: Index, branches: Sequence[Branch]) -> Regime:
-        scene = self.scene
+    def _decomposition(self, index: Index, laws: Index, branches: Sequence[Branch]) -> Decomposition:
+        system = self.system
         grid = np.ix_(index, index)
-        b = scene.law_rows[np.ix_(laws, index)]
-        k = scene.stiffness[grid] + (b.T * [branches[i].stiffness for i in laws]) @ b
-        c = scene.damping[grid] + (b.T * [branches[i].damping for i in laws]) @ b
+        b = system.law_rows[np.ix_(laws, index)]
+        k = system.stiffness[grid] + (b.T * [branches[i].stiffness for i in laws]) @ b
+        c = system.damping[grid] + (b.T * [branches[i].damping for i in laws]) @ b
         held = np.array([i for i in laws if branches[i].held], np.intp)
-        held_rows = scene.law_rows[np.ix_(held, index)] if len(held) else None
+        held_rows = system.law_rows[np.ix_(held, index)] if len(held) else None
         try:
-            flow = make_flow(scene.mass[grid], c, k, scene.inputs[index], held_rows)
+            propagator = make_propagator(system.mass[grid], c, k, system.inputs[index], held_rows)
         except Mechanism as err:
-            whole = np.zeros(scene.size)
+            whole = np.zeros(system.size)
             whole[index] = err.shape
             raise Mechanism(whole) from None
         dashpots = [
-            (int(i), branches[i].damping, scene.law_rows[i, index]) for i in laws if branches[i].damping
+            (int(i), branches[i].damping, system.law_rows[i, index]) for i in laws if branches[i].damping
         ]
-        meter = work_integrals.Meter(flow, scene.damping[grid], scene.inputs[index], dashpots)
-        parts = (Part(slice(None), index, meter),)
-        reactions = self._reactions(held, index, flow, c, k) if len(held) else None
-        return self._described(index, laws, flow, parts, reactions)
+        work = WorkIntegrals(propagator, system.damping[grid], system.inputs[index], dashpots)
+        parts = (Part(slice(None), index, work),)
+        reactions = self._reactions(held, index, propagator, c, k) if len(held) else None
+        return self._described(index, laws, propagator, parts, reactions)
 
     def _described(
         self,
         index: Index,
         laws: Index,
-        flow: Flow,
+        propagator: Propagator,
         parts: tuple[Part, ...],
         reactions: Reactions | None,
-    ) -> Regime:
+    ) -> Decomposition:
         """A regime with what rows and unknowns take from its state."""
         watched = np.flatnonzero(np.any(self.rows[:, index] != 0, axis=1))
         place = [-1] * len(self.rows)
         for i, row in enumerate(watched.tolist()):
             place[row] = i
         rows = self.rows[np.ix_(watched, index)]
-        motion = on_stacked(np.vstack([flow.u_q, flow.v_q, flow.onward(flow.v_q)]))
-        on_u = rows @ flow.u_q
+        motion = on_stacked(np.vstack([propagator.u_q, propagator.v_q, propagator.onward(propagator.v_q)]))
+        on_u = rows @ propagator.u_q
         shown = np.flatnonzero(self.shown[index])
-        return Regime(
+        return Decomposition(
             index,
             laws,
-            flow,
+            propagator,
             watched,
             place,
             rows,
@@ -346,13 +355,15 @@ class Partition:
             reactions,
         )
 
-    def _reactions(self, held: Index, index: Index, flow: Flow, c: Array, k: Array) -> Reactions:
-        """From ``G f = B M^-1 (p - C v - K u) - x''``, see `rigid` and `flow.held_space`."""
-        assert flow.u_p is not None and flow.v_p is not None  # of all that is held
+    def _reactions(
+        self, held: Index, index: Index, propagator: Propagator, c: Array, k: Array
+    ) -> Reactions:
+        """From ``G f = B M^-1 (p - C v - K u) - x''``, see `rigid` and `propagator.held_space`."""
+        assert propagator.u_p is not None and propagator.v_p is not None  # of all that is held
         at = np.array([self.rigid.laws.index(i) for i in held], np.intp)
         inverse = np.linalg.pinv(self.rigid.compliance[np.ix_(at, at)], rcond=1e-12)
         x = inverse @ self.rigid.yielding[np.ix_(index, at)].T
-        on_p = -x @ (k @ flow.u_p + c @ flow.v_p)
+        on_p = -x @ (k @ propagator.u_p + c @ propagator.v_p)
         on_p[:, : len(index)] += x
         on_p[:, on_p.shape[1] - len(held) :] -= inverse
         return Reactions(
@@ -360,7 +371,7 @@ class Partition:
             np.array([self.force_row[i] for i in held], np.intp),
             self.rigid.gap[at],
             self.rigid.inputs[at],
-            -x @ (k @ flow.u_q + c @ flow.v_q),
+            -x @ (k @ propagator.u_q + c @ propagator.v_q),
             on_p,
-            -x @ c @ flow.u_p,
+            -x @ c @ propagator.u_p,
         )

@@ -22,11 +22,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.closed_form.propagator import ModalFlow, SeriesFlow, gauss, powers
+from pound_solve.integrate.closed_form.propagator import ModalPropagator, SeriesPropagator, gauss, powers
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import phi, polynomial
 from pound_solve.numerics.types import Array, Complex
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 SLOW = 0.1  #: modes with |eigenvalue| times interval below this are expanded in powers of time
 TERMS = 11  #: of that expansion, beyond the force's own
@@ -50,12 +50,12 @@ class Works(NamedTuple):
     laws: list[tuple[int, Array]]
 
 
-class Meter:
+class WorkIntegrals:
     """Measures the work in one block and regime.
 
     Parameters
     ----------
-    flow : ModalFlow or SeriesFlow
+    propagator : ModalFlow or SeriesFlow
     damping : ndarray, shape (n, n)
         Of the structure, laws apart.
     inputs : ndarray, shape (n, n_inputs)
@@ -65,22 +65,24 @@ class Meter:
 
     def __init__(
         self,
-        flow: ModalFlow | SeriesFlow,
+        propagator: ModalPropagator | SeriesPropagator,
         damping: Array,
         inputs: Array,
         laws: list[tuple[int, float, Array]],
     ) -> None:
-        self.flow, self.inputs, self.laws, self.damping_matrix = flow, inputs, laws, damping
+        self.propagator, self.inputs, self.laws, self.damping_matrix = propagator, inputs, laws, damping
         self.damped = bool(np.any(damping))
         # the quadratic forms lose the square of the modes' condition
         self.closed_form = (
-            isinstance(flow, ModalFlow) and flow.u_p is None and flow.condition < MOST_SQUARED
+            isinstance(propagator, ModalPropagator)
+            and propagator.u_p is None
+            and propagator.condition < MOST_SQUARED
         )
-        if not isinstance(flow, ModalFlow) or not self.closed_form:
+        if not isinstance(propagator, ModalPropagator) or not self.closed_form:
             return
-        self.lam = flow.lam
-        self.form = self._form(flow.v_q, damping) if self.damped else np.zeros((0, 0))
-        self.law_forms = [c * self._form(row[None, :] @ flow.v_q, np.eye(1)) for _, c, row in laws]
+        self.lam = propagator.lam
+        self.form = self._form(propagator.v_q, damping) if self.damped else np.zeros((0, 0))
+        self.law_forms = [c * self._form(row[None, :] @ propagator.v_q, np.eye(1)) for _, c, row in laws]
 
     def _form(self, v: Complex, c: Array) -> Array:
         """Return the quadratic form of the real and imaginary parts of free amplitudes whose change over
@@ -146,7 +148,7 @@ class Meter:
         coefs : ndarray, shape (n, degree + 1, n_inputs)
             Inputs; their forces and `constant` loads (n_unknowns,) do the input work.
         ps : ndarray, shape (n, degree + 1, n_unknowns), or None
-            Force polynomials on the unknowns, where massless freedoms need them.
+            Force polynomials on the unknowns, where massless DOFs need them.
         """
         if not self.closed_form or gs.shape[1] > 2:
             return self._quadratures(qs, gs, tau, coefs, constant, ps)
@@ -155,7 +157,7 @@ class Meter:
         ends = np.concatenate([ends.real, ends.imag])
         # of the velocities: the forced polynomials, and the integrals of t^k times the free part, and all;
         # shape (powers, n, n_intervals) each
-        steady, free = ((self.flow.v_q @ x).real for x in (forced, c0 * moments))
+        steady, free = ((self.propagator.v_q @ x).real for x in (forced, c0 * moments))
         both = np.add.outer(np.arange(len(forced)), np.arange(1, len(forced) + 1))[:, :, None]
         whole = free + np.einsum("kln,lin->kin", tau**both / both, steady)
         loss, losses = np.zeros(len(gs)), []
@@ -187,17 +189,17 @@ class Meter:
         """Return `measures` by Gauss's rule."""
         loss, done, *losses = np.zeros((2 + len(self.laws), len(tau)))
         for length in np.unique(tau).tolist():
-            w, points = gauss(length, self.flow.fastest)
+            w, points = gauss(length, self.propagator.fastest)
             same = np.flatnonzero(tau == length)
             at_once = max(1, MOST_NUMBERS // (len(points) * max(len(qs), len(constant))))
             for i in range(0, len(same), at_once):
                 chosen = same[i : i + at_once]
                 times = np.broadcast_to(points, (len(chosen), len(points)))
-                q = self.flow.paths(qs[:, chosen], gs[chosen], points)
-                v = np.tensordot(self.flow.v_q, q, 1).real
-                if self.flow.u_p is not None and self.flow.v_p is not None and ps is not None:
-                    v += np.tensordot(self.flow.v_p, polynomial.on(ps[chosen], times), 1)
-                    v += np.tensordot(self.flow.u_p, polynomial.on(ps[chosen], times, 1), 1)
+                q = self.propagator.paths(qs[:, chosen], gs[chosen], points)
+                v = np.tensordot(self.propagator.v_q, q, 1).real
+                if self.propagator.u_p is not None and self.propagator.v_p is not None and ps is not None:
+                    v += np.tensordot(self.propagator.v_p, polynomial.on(ps[chosen], times), 1)
+                    v += np.tensordot(self.propagator.u_p, polynomial.on(ps[chosen], times, 1), 1)
                 force = np.tensordot(self.inputs, polynomial.on(coefs[chosen], times), 1)
                 force += constant[:, None, None]
                 done[chosen] = np.einsum("int,int,t->n", v, force, w)
@@ -210,7 +212,7 @@ class Meter:
 
 
 def total_work(
-    scene: Scene,
+    system: ReducedSystem,
     tau: float,
     fastest: float,
     coefs: Array,
@@ -224,7 +226,7 @@ def total_work(
 
     Parameters
     ----------
-    scene : Scene
+    system : ReducedSystem
     tau : float
         Length of the segment [T].
     fastest : float
@@ -236,7 +238,7 @@ def total_work(
     branches : sequence of Branch
         Of all laws.
     """
-    structure, n = scene.structure, scene.structure.n_free
+    structure, n = system.structure, system.structure.n_free
     w, x = gauss(tau, fastest)
     inputs = [np.array([polynomial.value(coefs, float(y), order) for y in x]).T for order in range(3)]
     u, v, a = path(x)
@@ -244,18 +246,18 @@ def total_work(
         np.array([getattr(b, name) for b in branches])[:, None]
         for name in ("stiffness", "damping", "force0")
     )
-    rate = scene.law_rows @ v + scene.law_inputs @ inputs[1]
-    law = k * (scene.law_rows @ u + scene.law_inputs @ inputs[0]) + c * rate + f0
-    u, v, a = (scene.expanded(y, s, order) for order, (y, s) in enumerate(zip((u, v, a), inputs)))
+    rate = system.law_rows @ v + system.law_inputs @ inputs[1]
+    law = k * (system.law_rows @ u + system.law_inputs @ inputs[0]) + c * rate + f0
+    u, v, a = (system.expanded(y, s, order) for order, (y, s) in enumerate(zip((u, v, a), inputs)))
     force = (
         structure.stiffness @ u + structure.damping @ v + structure.mass @ a + structure.law_rows.T @ law
     )
     held = [i for i, b in enumerate(branches) if b.held]
     if held:  # what the unknowns leave out of balance is what rigid contacts take
         rows = structure.law_rows[held]
-        rest = scene.applied(inputs[0]) - force[:n]
+        rest = system.applied(inputs[0]) - force[:n]
         force += rows.T @ np.linalg.lstsq(rows[:, :n].T, rest, rcond=1e-12)[0]
-    power = (force[n:] * v[n:]).sum(axis=0) + (scene.applied(inputs[0]) * v[:n]).sum(axis=0)
+    power = (force[n:] * v[n:]).sum(axis=0) + (system.applied(inputs[0]) * v[:n]).sum(axis=0)
     losses = (c * rate**2) @ w
     return Work(
         float(w @ (v * (structure.damping @ v)).sum(axis=0)),

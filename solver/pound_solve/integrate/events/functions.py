@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from pound_solve.integrate.events import grid
-from pound_solve.integrate.protocol import Ledger, Peak
+from pound_solve.integrate.protocol import Peak, ResponseTracker
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.types import Array
 
@@ -108,20 +108,20 @@ def exits(
 
 
 def followed(
-    ledger: Ledger, branches: Sequence[Branch], force_row: Mapping[int, int]
+    tracker: ResponseTracker, branches: Sequence[Branch], force_row: Mapping[int, int]
 ) -> tuple[Functionals, list[Peak]]:
     """Deformations, drifts, and the forces of springs and of contacts that are pressed, with what keeps
     their peaks: forces of contacts go to the collision that runs.
     """
-    peaks, running = ledger.peaks, ledger.open
-    rows = list(range(len(branches) + len(peaks.watch)))
+    peaks, running = tracker.peaks, tracker.open
+    rows = list(range(len(branches) + len(peaks.monitored)))
     factors = [(1.0, 0.0, 0.0)] * len(rows)
-    kept: list[Peak] = [*peaks.deformation, *peaks.watch]
-    for i, (spring, b) in enumerate(zip(ledger.laws, branches)):
+    kept: list[Peak] = [*peaks.deformation, *peaks.monitored]
+    for i, (spring, b) in enumerate(zip(tracker.laws, branches)):
         if spring.is_contact and i not in running:
             continue
         rows.append(force_row[i] if b.held else i)
         # a spring's force is without damping
         factors.append((1.0 if b.held else b.stiffness, b.damping * spring.is_contact, b.force0))
-        kept.append(ledger.running(i) if i in running else peaks.force[i])
+        kept.append(tracker.running(i) if i in running else peaks.force[i])
     return Functionals(rows, factors), kept

@@ -1,4 +1,4 @@
-"""Kernels of members that turn: forces and tangents of the chords (see `chords`)."""
+"""Kernels of members that turn: forces and tangents of the chords (see `corotational`)."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def stiffen(m: Matrices, b: Turning, x: Motion, c: int, h: int, factor: float, l
 
 def turn_start(w: Laws, x: Motion, s: Array) -> None:
     """Quantities and forces of the chords at the start of a step."""
-    b = w.chords
+    b = w.corotational
     locate(b, x.q, U, s, S0)
     for c in range(len(b.p)):
         push(b.p, c, b.s, S0, b.s, G0)
@@ -81,7 +81,7 @@ def turn_start(w: Laws, x: Motion, s: Array) -> None:
 
 def aim(w: Laws, x: Motion, s: Array) -> None:
     """Begin the chords' iterations: a line through their forces where the step leads without its end."""
-    b = w.chords
+    b = w.corotational
     locate(b, x.q, U1, s, AHEAD)
     for c in range(len(b.p)):
         push(b.p, c, b.s, AHEAD, b.s, REST)
@@ -92,7 +92,7 @@ def miss(w: Laws, x: Motion, bk: float) -> float:
     """Find the chords' forces for the accelerations tried, and their largest distance from the line,
     over that allowed; lead the line through them.
     """
-    b, worst = w.chords, 0.0
+    b, worst = w.corotational, 0.0
     size = b.most[0]
     for c in range(len(b.p)):
         for j in range(6):

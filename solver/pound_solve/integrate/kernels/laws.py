@@ -138,12 +138,12 @@ def law_force(w: Laws, f: Tables, i: int, d: float, v: float) -> float:
     return w.f[i, K] * d + w.f[i, C] * v + w.f[i, F0]
 
 
-def leave(w: Laws, f: Tables, i: int, way: int, d: float, v: float) -> None:
+def transition(w: Laws, f: Tables, i: int, way: int, d: float, v: float) -> None:
     """Change the branch of law `i` at deformation `d` and rate `v`."""
     done = law_work(w, f, i, d)
     if w.f[i, EXIT + 3 * way] == 0.0 and w.f[i, EXIT + 3 * way + 2] == 0.0 and abs(d) > w.memory[i, TURN]:
         w.memory[i, TURN], w.memory[i, STIFFNESS] = abs(d), max(law_force(w, f, i, d, 0.0) / d, 0.0)
-    at, m = f.leave[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), way, d, v)
+    at, m = f.transition[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), way, d, v)
     w.i[i, AT], w.f[i, D0], w.f[i, WORK] = at, d, done
     for j in range(len(m)):
         w.memory[i, j] = m[j]
@@ -182,7 +182,7 @@ def grip(w: Laws, f: Tables, q: Array, i: int) -> None:
     lean(w, i, w.f[j, LD], w.f[j, LV], along(w.rows, j, q, A))
     pressed = (w.i[i, PRESSED] >> w.i[j, AT]) & 1
     if pressed != (w.i[i, AT] != 0):
-        leave(w, f, i, 0 if pressed else 2, w.f[i, LD], w.f[i, LV])
+        transition(w, f, i, 0 if pressed else 2, w.f[i, LD], w.f[i, LV])
     enter(w, f, i)
     w.f[i, HELD] = w.f[i, K] * w.f[i, LD] + w.f[i, F0]
 

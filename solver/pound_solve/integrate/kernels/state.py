@@ -132,7 +132,7 @@ class Matrices(NamedTuple):
 
 
 class Turning(NamedTuple):
-    """Members whose forces follow their displaced line (see `chords`).
+    """Members whose forces follow their displaced line (see `corotational`).
 
     Attributes
     ----------
@@ -191,7 +191,7 @@ class Laws(NamedTuple):
         State at the start of a step that is not cut at events.
     leans : ndarray, shape (n_leaning,)
         The laws that lean on another, which comes before them.
-    chords : Turning
+    corotational : Turning
     """
 
     rows: tuple[Index, Place, Array]
@@ -204,7 +204,7 @@ class Laws(NamedTuple):
     i: Index
     saved: Array
     leans: Index
-    chords: Turning
+    corotational: Turning
 
 
 class Motion(NamedTuple):

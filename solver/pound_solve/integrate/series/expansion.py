@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise, highest, size
-from pound_solve.integrate.kernels.laws import along, leave, load, motions, times
+from pound_solve.integrate.kernels.laws import along, load, motions, times, transition
 from pound_solve.integrate.kernels.state import (
     A1,
     AT,
@@ -455,7 +455,7 @@ def show(
 def change(w: Laws, z: Samples, f: Tables, count: Index, t: float, law: int, way: int) -> None:
     """Let a law leave its branch."""
     before = w.i[law, AT]
-    leave(w, f, law, way, w.f[law, LD], w.f[law, LV])
+    transition(w, f, law, way, w.f[law, LD], w.f[law, LV])
     force = w.f[law, K] * w.f[law, LD] + w.f[law, C] * w.f[law, LV] + w.f[law, F0]
     if before != w.i[law, AT]:
         write(w, z, count, law, before, t, force)

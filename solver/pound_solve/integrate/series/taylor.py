@@ -1,11 +1,11 @@
 r"""TAYLOR: event-driven integration by power series, explicit, without a time step to choose.
 
-Between events the scene is linear, so the motion has a power series that converges however far; its
-coefficients follow one from another by products with the sparse K and C (see `expansion`).  A step goes as
-far as `expansion.TERMS` terms are right to rounding, some five radians of the fastest mode that takes part.
-Within it every exit of a law and every quantity whose peak is kept is a polynomial, whose first rise and
-extremes are found with proof (see `isolate`).  Works are integrated by Gauss's rule, each on its own, so
-that the balance of energies remains a check.
+Between events the reduced system is linear, so the motion has a power series that converges however far;
+its coefficients follow one from another by products with the sparse K and C (see `expansion`).  A step goes
+as far as `expansion.TERMS` terms are right to rounding, some five radians of the fastest mode that takes
+part. Within it every exit of a law and every quantity whose peak is kept is a polynomial, whose first rise
+and extremes are found with proof (see `isolate`).  Works are integrated by Gauss's rule, each on its own,
+so that the balance of energies remains a check.
 
 There is no decomposition into modes, and a step costs what its products cost: where EXACT has to decompose
 many unknowns, or many combinations of stiffnesses, TAYLOR is faster, and as exact.  Where the fastest mode
@@ -33,22 +33,22 @@ from pound_solve.integrate.protocol import (
     CHATTER,
     RUNAWAY,
     STEPPED,
+    MonitoredOutputs,
     Outcome,
     Peaks,
-    Sink,
+    Recorder,
     Start,
     Stop,
-    Watch,
-    blurred,
     goals,
     not_linear,
     refuse_rigid,
+    rounding_check,
 )
 from pound_solve.integrate.series import expansion
 from pound_solve.integrate.stepping.stepper import Stepper
 from pound_solve.numerics.matrices import diagonal, weighted
 from pound_solve.numerics.modes import massless
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 MOST_STEPS = 5_000_000  #: that a run may come to
 RADIANS = 5.0  #: of the fastest mode in a step
@@ -60,11 +60,13 @@ class Taylor(Stepper):
 
     exact = True
 
-    def __init__(self, scene: Scene, start: Start, watch: Watch, sink: Sink) -> None:
+    def __init__(
+        self, system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: Recorder
+    ) -> None:
         length = float(start.times[-1] - start.times[0])
         nothing_to_solve = state.Scheme(0.0, 0.0)
         super().__init__(
-            scene, start, watch, sink, {"DT": length}, nothing_to_solve, "TAYLOR, power series"
+            system, start, monitored, recorder, {"DT": length}, nothing_to_solve, "TAYLOR, power series"
         )
         terms = expansion.TERMS + 1
         rules = expansion.TERMS // expansion.CHECK + 1
@@ -74,9 +76,9 @@ class Taylor(Stepper):
             places, weights = np.polynomial.legendre.leggauss(count)
             gauss[i, :, :count] = 0.5 * weights, 0.5 * (1.0 + places)
         self.series = expansion.Series(
-            u=np.zeros((terms + 2, scene.size)),
+            u=np.zeros((terms + 2, system.size)),
             d=np.zeros((len(self.laws), terms)),
-            s=np.zeros((terms, scene.inputs.shape[1])),
+            s=np.zeros((terms, system.inputs.shape[1])),
             p=np.zeros(polynomial_roots.room(expansion.TERMS)),
             inverse=1.0 / self.matrices.m.diagonals[0],
             gauss=gauss,
@@ -85,8 +87,8 @@ class Taylor(Stepper):
 
     def _run(self) -> Outcome:
         self._begin(expansion.march)
-        ex = self.scene.excitation
-        ends, is_output = goals(self.scene, self.times)
+        ex = self.system.excitation
+        ends, is_output = goals(self.system, self.times)
         pieces = ex.pieces_after(np.append(self.times[0], ends[:-1]))
         self._loop(
             expansion.march, self.matrices, self.w, self.x, self.z, self.tables, self.series,
@@ -125,50 +127,56 @@ class Taylor(Stepper):
         }
 
     def _checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
-        return blurred(self.laws, peaks)
+        return rounding_check(self.laws, peaks)
 
 
-def rate(scene: Scene) -> float:
+def rate(system: ReducedSystem) -> float:
     """Radians that its steps have to follow at most [1/T]: of the fastest mode with all springs elastic and
     all contacts open (they are closed for moments only), or of the fastest decay.
 
     By the row sums of ``M^-1/2 A M^-1/2``, which bound its eigenvalues (Gershgorin).
     """
-    stiffest = [0.0 if s.is_contact else s.facts.get("k", s.k0) for s in scene.structure.laws]
-    root = 1.0 / np.sqrt(diagonal(scene.mass))
+    stiffest = [0.0 if s.is_contact else s.facts.get("k", s.k0) for s in system.structure.laws]
+    root = 1.0 / np.sqrt(diagonal(system.mass))
     omega2, decay = (
         float((root * (abs(a) @ root)).max(initial=0.0))
-        for a in (scene.stiffness + weighted(scene.law_rows, stiffest), scene.damping)
+        for a in (system.stiffness + weighted(system.law_rows, stiffest), system.damping)
     )
     return max(omega2**0.5, decay)
 
 
-def cost_of_radian(scene: Scene) -> float:
-    """What it costs to follow a scene for a radian of `rate`, as those of `exact`."""
-    return (STEP + EACH * scene.size) / RADIANS
+def cost_of_radian(system: ReducedSystem) -> float:
+    """What it costs to follow a reduced system for a radian of `rate`, as those of `exact`."""
+    return (STEP + EACH * system.size) / RADIANS
 
 
-def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
-    """Integrate a scene by power series; see the module's head.
+def integrate(
+    system: ReducedSystem,
+    start: Start,
+    monitored: MonitoredOutputs,
+    options: Mapping[str, Any],
+    recorder: Recorder,
+) -> Outcome:
+    """Integrate a reduced system by power series; see the module's head.
 
     Raises
     ------
     Stop
-        A scene that is not piecewise linear, massless freedoms that cannot be condensed, too many changes
-        at one instant, too many steps, numbers beyond all bounds, or an interrupt.
+        A reduced system that is not piecewise linear, massless DOFs that cannot be condensed, too many
+        changes at one instant, too many steps, numbers beyond all bounds, or an interrupt.
     """
-    refuse_rigid(scene, start, "TAYLOR")
+    refuse_rigid(system, start, "TAYLOR")
     begin = float(start.times[0])
-    if why := not_linear(scene):
+    if why := not_linear(system):
         raise Stop("A505", begin, f"TAYLOR needs linear pieces, and {why}: AUTO takes steps")
-    if massless(scene.mass).any():
-        scene, start, watch, sink = condensed(scene, start, watch, sink, "TAYLOR")
-    light = massless(scene.mass)
+    if massless(system.mass).any():
+        system, start, monitored, recorder = condensed(system, start, monitored, recorder, "TAYLOR")
+    light = massless(system.mass)
     if light.any():
-        name = scene.name(int(np.argmax(light)))
+        name = system.name(int(np.argmax(light)))
         weight = "give it weight, or " if name.startswith("node") else ""
         raise Stop("A505", begin, f"TAYLOR needs mass at {name}: {weight}use EXACT or NEWMARK")
-    return Taylor(scene, start, watch, sink).run()
+    return Taylor(system, start, monitored, recorder).run()
 
 
 SPEC = Spec(

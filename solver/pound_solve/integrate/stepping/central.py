@@ -19,46 +19,52 @@ import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate.kernels.state import Scheme
-from pound_solve.integrate.protocol import Outcome, Sink, Start, Stop, Watch, refuse_rigid
+from pound_solve.integrate.protocol import MonitoredOutputs, Outcome, Recorder, Start, Stop, refuse_rigid
 from pound_solve.integrate.stepping.stepper import Stepper
 from pound_solve.numerics import modes
 from pound_solve.numerics.matrices import weighted
 from pound_solve.numerics.types import Array
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 
-def limit(scene: Scene, u: Array) -> float:
+def limit(system: ReducedSystem, u: Array) -> float:
     """Largest stable step [T]: 2 over the highest frequency with all contacts pressed
     and all springs elastic, members as they are at displacements `u`.  The stiffness of a curved contact
     is not known before it is pressed: it is left out.
     """
     stiffest = [
-        0.0 if s.is_contact and s.law.curved else s.facts.get("k", s.k0) for s in scene.structure.laws
+        0.0 if s.is_contact and s.law.curved else s.facts.get("k", s.k0) for s in system.structure.laws
     ]
-    k = scene.stiffness + scene.chords.stiffness(u) + weighted(scene.law_rows, stiffest)
-    omega = modes.fastest(k, scene.mass)
+    k = system.stiffness + system.corotational.stiffness(u) + weighted(system.law_rows, stiffest)
+    omega = modes.fastest(k, system.mass)
     return 2.0 / omega if omega > 0.0 else float("inf")
 
 
-def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
-    """Integrate a scene step by step, explicitly.
+def integrate(
+    system: ReducedSystem,
+    start: Start,
+    monitored: MonitoredOutputs,
+    options: Mapping[str, Any],
+    recorder: Recorder,
+) -> Outcome:
+    """Integrate a reduced system step by step, explicitly.
 
     Raises
     ------
     Stop
-        Step above the stability limit, massless freedoms that cannot be condensed,
+        Step above the stability limit, massless DOFs that cannot be condensed,
         or numbers beyond all bounds.
     """
-    refuse_rigid(scene, start, "CENTRAL")
-    light = modes.massless(scene.mass)
+    refuse_rigid(system, start, "CENTRAL")
+    light = modes.massless(system.mass)
     if light.any():
         raise Stop(
             "A505",
             0.0,
-            f"CENTRAL needs mass at {scene.name(int(np.argmax(light)))}: "
+            f"CENTRAL needs mass at {system.name(int(np.argmax(light)))}: "
             "give it weight, or use EXACT or NEWMARK",
         )
-    longest = limit(scene, start.u)
+    longest = limit(system, start.u)
     if options["DT"] > longest:
         raise Stop(
             "A502",
@@ -66,7 +72,9 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
             f"the step {options['DT']:g} is above the stability limit {longest:.4g}; "
             "EXACT needs no step, NEWMARK has no such limit",
         )
-    stepper = Stepper(scene, start, watch, sink, options, Scheme(0.0, 0.5), "CENTRAL, central differences")
+    stepper = Stepper(
+        system, start, monitored, recorder, options, Scheme(0.0, 0.5), "CENTRAL, central differences"
+    )
     outcome = stepper.run()
     outcome.checks.append(
         (

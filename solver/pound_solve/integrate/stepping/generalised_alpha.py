@@ -17,13 +17,19 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate.kernels.state import Scheme
-from pound_solve.integrate.protocol import Outcome, Sink, Start, Watch
+from pound_solve.integrate.protocol import MonitoredOutputs, Outcome, Recorder, Start
 from pound_solve.integrate.stepping.stepper import COMMON, Stepper
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 
-def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
-    """Integrate a scene step by step.
+def integrate(
+    system: ReducedSystem,
+    start: Start,
+    monitored: MonitoredOutputs,
+    options: Mapping[str, Any],
+    recorder: Recorder,
+) -> Outcome:
+    """Integrate a reduced system step by step.
 
     Raises
     ------
@@ -33,7 +39,9 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     rho = options["RHO"]
     am, af = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
     scheme = Scheme(0.25 * (1.0 - am + af) ** 2, 0.5 - am + af, am, af)
-    return Stepper(scene, start, watch, sink, options, scheme, f"GENERALISED_ALPHA, rho {rho:g}").run()
+    return Stepper(
+        system, start, monitored, recorder, options, scheme, f"GENERALISED_ALPHA, rho {rho:g}"
+    ).run()
 
 
 SPEC = Spec(

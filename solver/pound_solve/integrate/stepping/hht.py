@@ -16,13 +16,19 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate.kernels.state import Scheme
-from pound_solve.integrate.protocol import Outcome, Sink, Start, Watch
+from pound_solve.integrate.protocol import MonitoredOutputs, Outcome, Recorder, Start
 from pound_solve.integrate.stepping.stepper import COMMON, Stepper
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 
-def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
-    """Integrate a scene step by step.
+def integrate(
+    system: ReducedSystem,
+    start: Start,
+    monitored: MonitoredOutputs,
+    options: Mapping[str, Any],
+    recorder: Recorder,
+) -> Outcome:
+    """Integrate a reduced system step by step.
 
     Raises
     ------
@@ -31,7 +37,7 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
     """
     alpha = options["ALPHA"]
     scheme = Scheme(0.25 * (1.0 - alpha) ** 2, 0.5 - alpha, 0.0, -alpha)
-    return Stepper(scene, start, watch, sink, options, scheme, f"HHT, alpha {alpha:g}").run()
+    return Stepper(system, start, monitored, recorder, options, scheme, f"HHT, alpha {alpha:g}").run()
 
 
 SPEC = Spec(

@@ -42,7 +42,6 @@ from pound_solve.integrate.kernels.laws import (
     law_force,
     law_work,
     lean,
-    leave,
     limit,
     load,
     memory,
@@ -54,6 +53,7 @@ from pound_solve.integrate.kernels.laws import (
     slide,
     tangent,
     times,
+    transition,
 )
 from pound_solve.integrate.kernels.state import (
     A1,
@@ -164,8 +164,8 @@ def refactor(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float, at: int)
             for q in range(w.pairs[0][i], w.pairs[0][i + 1]):
                 x.ax[w.pairs[1][q]] += change * w.pairs[2][q]
     if sk != 0.0:
-        for c in range(len(w.chords.p)):
-            stiffen(m, w.chords, x, c, c, sk, False)
+        for c in range(len(w.corotational.p)):
+            stiffen(m, w.corotational, x, c, c, sk, False)
     return factor(m.pattern, x.ax, x.l, at, x.q, D + at, W)
 
 
@@ -214,7 +214,7 @@ def attempt(
             dd += w.rows[2][q] * x.q[U1, w.rows[1][q]]
             vv += w.rows[2][q] * x.q[V1, w.rows[1][q]]
         w.f[i, LD1], w.f[i, LV1] = dd, vv
-    b = w.chords
+    b = w.corotational
     aim(w, x, s)
     last, off, count[WORST] = np.inf, -1, -1
     for _ in range(50):
@@ -313,9 +313,9 @@ def power(m: Matrices, w: Laws, x: Motion, at: int) -> tuple[float, float]:
         for i in range(len(w.i)):
             if w.supports[i, q] != 0.0:
                 force += w.supports[i, q] * (w.f[i, K] * w.f[i, d] + w.f[i, C] * w.f[i, rate] + w.f[i, F0])
-        for c in range(len(w.chords.p)):
+        for c in range(len(w.corotational.p)):
             for j in range(6):
-                force += w.chords.supports[c, j, q] * w.chords.s[c, (G0 if at == 0 else G1) + j]
+                force += w.corotational.supports[c, j, q] * w.corotational.s[c, (G0 if at == 0 else G1) + j]
         put += (force + drag) * speed
         lost += 2.0 * drag * speed
         for z in range(moved):
@@ -432,7 +432,7 @@ def accept(
         loss += 1.5 * (lost0 + lost1)
     else:
         work += gained(x.q)
-    b = w.chords
+    b = w.corotational
     for c in range(len(b.p)):
         if b.p[c, KIND] == STRING:  # what its axial force does on the way that a string leaves out
             y0, y1 = b.s[c, S0 + 3], b.s[c, S1 + 3]
@@ -518,7 +518,7 @@ def loosen(m: Matrices, w: Laws, x: Motion, s: int) -> float:
             at = w.pairs[1][q]
             if not m.heavy[m.pattern.ai[at]] and not m.heavy[m.column[at]]:
                 x.ax[at] += change * w.pairs[2][q]
-    b = w.chords
+    b = w.corotational
     for c in range(len(b.p) * m.shifts):
         present = len(b.p) + c
         bend_chord(b.p, c, b.s, s, b.h, present)
@@ -542,7 +542,7 @@ def pull(m: Matrices, w: Laws, x: Motion, v: int, lv: int, rate: Array, out: int
     for i in range(len(w.i)):
         for q in range(w.rows[0][i], w.rows[0][i + 1]):
             x.q[out, w.rows[1][q]] -= w.rows[2][q] * w.f[i, K] * w.f[i, lv]
-    b = w.chords
+    b = w.corotational
     if m.shifts:
         locate(b, x.q, v, rate, AHEAD)
     for c in range(len(b.p) * m.shifts):
@@ -592,8 +592,8 @@ def release(m: Matrices, w: Laws, x: Motion) -> None:
         for q in range(w.rows[0][i], w.rows[0][i + 1]):
             x.q[BASE, w.rows[1][q]] -= w.rows[2][q] * force
             x.q[Y, w.rows[1][q]] += abs(w.rows[2][q] * force)
-    for c in range(len(w.chords.p)):
-        resist(w.chords, c, x.q, BASE, G0)
+    for c in range(len(w.corotational.p)):
+        resist(w.corotational, c, x.q, BASE, G0)
     for i in range(n):  # rounding, or an exit not met to the last digit, is no jump of a dashpot's force
         if not m.heavy[i] and abs(x.q[BASE, i]) > NEAR * x.q[Y, i]:
             x.q[A1, i] += one * x.q[BASE, i]
@@ -619,8 +619,8 @@ def settle(m: Matrices, w: Laws, x: Motion) -> None:
         if force != 0.0:
             for q in range(w.rows[0][i], w.rows[0][i + 1]):
                 x.q[R, w.rows[1][q]] -= w.rows[2][q] * force
-    for c in range(len(w.chords.p)):
-        resist(w.chords, c, x.q, R, G0)
+    for c in range(len(w.corotational.p)):
+        resist(w.corotational, c, x.q, R, G0)
     for i in range(n):
         if not m.heavy[i]:
             x.q[R, i] = 0.0  # in balance, but for rounding that the alphas would take for a load
@@ -641,7 +641,7 @@ def switch(
     before, k, c = w.i[i, AT], w.f[i, K], w.f[i, C]
     if w.i[i, NORMAL] >= 0:
         grip(w, f, x.q, i)
-    leave(w, f, i, way, w.f[i, LD], w.f[i, LV])
+    transition(w, f, i, way, w.f[i, LD], w.f[i, LV])
     if w.i[i, CURVED]:
         tangent(w, f, i)
     change = scheme.gamma * h * (w.f[i, C] - c) + scheme.beta * h * h * (w.f[i, K] - k)
@@ -746,7 +746,7 @@ def uncut_step(
                 way, where = next_exit(w, i, d, d1, w.f[i, LV1])
                 if way < 0:
                     break
-                leave(w, f, i, way, where, w.f[i, LV1])
+                transition(w, f, i, way, where, w.f[i, LV1])
                 driven += 1
                 d = where
             if w.i[i, CURVED]:
@@ -786,7 +786,7 @@ def start_again(w: Laws, f: Tables) -> None:
     for i in range(len(w.i)):
         if w.i[i, CURVED]:
             tangent(w, f, i)
-    linearise(w.chords, S0)
+    linearise(w.corotational, S0)
 
 
 def cut(

@@ -7,13 +7,19 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate.kernels.state import Scheme
-from pound_solve.integrate.protocol import Outcome, Sink, Start, Stop, Watch
+from pound_solve.integrate.protocol import MonitoredOutputs, Outcome, Recorder, Start, Stop
 from pound_solve.integrate.stepping.stepper import COMMON, Stepper
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 
-def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, Any], sink: Sink) -> Outcome:
-    """Integrate a scene step by step.
+def integrate(
+    system: ReducedSystem,
+    start: Start,
+    monitored: MonitoredOutputs,
+    options: Mapping[str, Any],
+    recorder: Recorder,
+) -> Outcome:
+    """Integrate a reduced system step by step.
 
     Raises
     ------
@@ -33,7 +39,7 @@ def integrate(scene: Scene, start: Start, watch: Watch, options: Mapping[str, An
         if (beta, gamma) == (0.25, 0.5)
         else f"NEWMARK, beta {beta:g}, gamma {gamma:g}"
     )
-    return Stepper(scene, start, watch, sink, options, Scheme(beta, gamma), name).run()
+    return Stepper(system, start, monitored, recorder, options, Scheme(beta, gamma), name).run()
 
 
 SPEC = Spec(

@@ -1,7 +1,7 @@
 r"""Step-by-step integration with events located within the step: what NEWMARK, HHT, GENERALISED_ALPHA
 and CENTRAL share.
 
-Lays the scene out for the kernels (see `kernel`), lets them run, and takes in what they kept:
+Lays the reduced system out for the kernels (see `kernel`), lets them run, and takes in what they kept:
 samples, changes of branches, peaks.
 
 Energies are integrated from velocities taken as straight lines over a step,
@@ -31,18 +31,18 @@ from pound_solve.integrate.protocol import (
     Collision,
     Extreme,
     LawValues,
-    Ledger,
+    MonitoredOutputs,
     Outcome,
     Peaks,
-    Sink,
+    Recorder,
+    ResponseTracker,
     Start,
     Stop,
-    Watch,
-    blurred,
     energy_at_start,
     goals,
     not_linear,
     refuse_rigid,
+    rounding_check,
 )
 from pound_solve.integrate.stepping import kernel
 from pound_solve.laws import functions
@@ -53,7 +53,7 @@ from pound_solve.numerics.matrices import Matrix, at, by_rows, dense, entries, i
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.elements.base import LawSpring
-from pound_solve.structure.reduction import Scene
+from pound_solve.structure.reduction import ReducedSystem
 
 COMMON = (
     Field("DT", Kind.REAL, "T", above=0, doc="longest time step"),
@@ -124,7 +124,7 @@ class Stepper:
 
     Parameters
     ----------
-    scene, start, watch, sink
+    reduced system, start, watch, sink
         See `integrate.base`.
     options : mapping
         DT, the longest step [T]: every interval between output times and record points is divided evenly;
@@ -138,21 +138,21 @@ class Stepper:
 
     def __init__(
         self,
-        scene: Scene,
+        system: ReducedSystem,
         start: Start,
-        watch: Watch,
-        sink: Sink,
+        monitored: MonitoredOutputs,
+        recorder: Recorder,
         options: Mapping[str, Any],
         scheme: arrays.Scheme,
         name: str,
     ) -> None:
-        refuse_rigid(scene, start, name.partition(",")[0])
-        self.scene, self.watch, self.sink = scene, watch, sink
+        refuse_rigid(system, start, name.partition(",")[0])
+        self.system, self.monitored, self.recorder = system, monitored, recorder
         self.dt, self.name = options["DT"], name
         self.scheme = scheme._replace(locate=options.get("EVENTS", "LOCATED") == "LOCATED")
-        self.laws = scene.structure.laws
+        self.laws = system.structure.laws
         self.times = start.times
-        self.ledger = Ledger(scene, len(watch.names))
+        self.tracker = ResponseTracker(system, len(monitored.names))
         self.rules = list(dict.fromkeys(s.law.rule for s in self.laws))
         self.tables = functions.tables(
             self.rules or [bilinear.RULE]
@@ -161,35 +161,35 @@ class Stepper:
         self.count = np.zeros(12, np.int64)
         self.rush = np.zeros(2)  # v M v and a M a, summed over the samples
         self.seen = float(start.times[0])  # latest instant that the sink was shown
-        self.clock = np.array([start.times[0], -1.0, energy_at_start(scene, start), np.inf])
+        self.clock = np.array([start.times[0], -1.0, energy_at_start(system, start), np.inf])
 
     def _lay_out(self, start: Start) -> None:
-        scene, watch, laws = self.scene, self.watch, self.laws
-        n, count = scene.size, len(laws)
+        system, monitored, laws = self.system, self.monitored, self.laws
+        n, count = system.size, len(laws)
         damps = np.array([bool(s.facts.get("c") or s.beta or s.secant) or s.law.curved for s in laws], bool)
         stiff, damped = self.scheme.beta > 0.0, self.scheme.gamma > 0.0
-        solved = (scene.mass, *[scene.damping] * damped, *[scene.stiffness] * stiff)
+        solved = (system.mass, *[system.damping] * damped, *[system.stiffness] * stiff)
         linked = [entries(a)[:2] for a in solved]
         joined = damps & damped | stiff
-        touched = [row for (row, _), joins in zip(by_rows(scene.law_rows), joined) if joins]
+        touched = [row for (row, _), joins in zip(by_rows(system.law_rows), joined) if joins]
         if stiff:
-            touched += [columns for columns, _ in scene.chords.touched()]
+            touched += [columns for columns, _ in system.corotational.touched()]
         linked.append(coupled(touched))
         one, other = (np.concatenate(part) for part in zip(*linked))
         self.order = ldl.order(n, one, other)
         o, grid, place = self.order, np.ix_(self.order, self.order), np.argsort(self.order)
         pattern = ldl.analyse(n, place[one], place[other])
-        mass, damping, stiffness = (a[grid] for a in (scene.mass, scene.damping, scene.stiffness))
+        mass, damping, stiffness = (a[grid] for a in (system.mass, system.damping, system.stiffness))
         columns = np.repeat(np.arange(n), np.diff(pattern.ap))
         heavy = ~massless(mass)
         light = o[~heavy]
-        bends = [columns for columns, _ in scene.chords.touched()]
-        bends += [row for (row, _), x in zip(by_rows(scene.law_rows), laws) if x.law.curved]
+        bends = [columns for columns, _ in system.corotational.touched()]
+        bends += [row for (row, _), x in zip(by_rows(system.law_rows), laws) if x.law.curved]
         lower = pattern.ai.astype(np.int64)
         on_pattern = [at(a, lower, columns) for a in (mass, damping * damped, stiffness * stiff)]
-        moved = scene.support_inputs
-        s = scene.structure
-        free = np.array(scene.columns, int)[o]
+        moved = system.support_inputs
+        s = system.structure
+        free = np.array(system.columns, int)[o]
         nf = s.n_free
         rate_of, bend_of = np.zeros_like(moved), np.zeros_like(moved)
         rate_of[:, 1:], bend_of[:, 2:] = moved[:, :-1], moved[:, :-2]
@@ -197,9 +197,9 @@ class Stepper:
             k=product(stiffness),
             c=product(damping),
             m=product(mass),
-            inputs=np.ascontiguousarray(scene.inputs[o].T),
-            pushed=np.ascontiguousarray(scene.force_inputs[free]),
-            constant=scene.constant[o],
+            inputs=np.ascontiguousarray(system.inputs[o].T),
+            pushed=np.ascontiguousarray(system.force_inputs[free]),
+            constant=system.constant[o],
             pattern=pattern,
             a=np.array(on_pattern),
             column=columns,
@@ -210,9 +210,9 @@ class Stepper:
             implicit=stiff,
             diagonal=is_diagonal(mass),
             explicit=not (stiff or len(pattern.li) or damps.any()),
-            rows=sparse(watch.rows[:, o]),
-            row_inputs=np.ascontiguousarray(watch.input_rows),
-            row_constants=np.ascontiguousarray(watch.constants),
+            rows=sparse(monitored.rows[:, o]),
+            row_inputs=np.ascontiguousarray(monitored.input_rows),
+            row_constants=np.ascontiguousarray(monitored.constants),
             reactions=np.array([dense(a[nf:][:, free]) for a in (s.stiffness, s.damping, s.mass)]),
             supports=np.array(
                 [
@@ -224,7 +224,7 @@ class Stepper:
             ),
             support_c=np.ascontiguousarray(dense(s.damping[nf:, nf:])),
         )
-        rows = sparse(scene.law_rows[:, o])
+        rows = sparse(system.law_rows[:, o])
         position = {(int(i), int(j)): q for q, (i, j) in enumerate(zip(pattern.ai, columns))}
         pairs: list[list[tuple[int, float]]] = [[] for _ in laws]
         for i in range(count):
@@ -238,12 +238,12 @@ class Stepper:
                 for b in range(len(on))
                 if on[a] >= on[b]
             ]
-        t, inputs = float(start.times[0]), scene.excitation.value
-        d = scene.law_rows @ start.u + scene.law_inputs @ inputs(t)
-        v = scene.law_rows @ start.v + scene.law_inputs @ inputs(t, 1)
+        t, inputs = float(start.times[0]), system.excitation.value
+        d = system.law_rows @ start.u + system.law_inputs @ inputs(t)
+        v = system.law_rows @ start.v + system.law_inputs @ inputs(t, 1)
         self.w = w = arrays.Laws(
             rows=rows,
-            inputs=np.ascontiguousarray(scene.law_inputs),
+            inputs=np.ascontiguousarray(system.law_inputs),
             pairs=(
                 np.concatenate([[0], np.cumsum([len(p) for p in pairs])]).astype(np.int64),
                 np.array([q for p in pairs for q, _ in p], np.uint32),
@@ -256,7 +256,7 @@ class Stepper:
             i=np.zeros((count, 8), np.int64),
             saved=np.zeros((count, 5 + MEMORY)),
             leans=np.flatnonzero([bool(s.normal) for s in laws]).astype(np.int64),
-            chords=self._turning(position if stiff else {}),
+            corotational=self._turning(position if stiff else {}),
         )
         for i, (law, state) in enumerate(zip(laws, start.states)):
             w.i[i, :4] = self.rules.index(law.law.rule), law.law.curved, law.is_contact, state[0]
@@ -269,9 +269,9 @@ class Stepper:
             np.zeros((19, n)),
             np.zeros((4, len(pattern.li))),
             np.zeros(len(columns)),
-            np.zeros((7, len(watch.names) + 2 * count)),
+            np.zeros((7, len(monitored.names) + 2 * count)),
             np.zeros(4),
-            np.zeros((4, scene.inputs.shape[1])),
+            np.zeros((4, system.inputs.shape[1])),
         )
         x.q[arrays.U], x.q[arrays.V] = start.u[o], start.v[o]
         x.q[arrays.CV] = damping @ start.v[o]
@@ -283,7 +283,7 @@ class Stepper:
         else:
             ldl.factor(pattern, padded, x.l, arrays.MASS, x.q, arrays.D + arrays.MASS, arrays.W)
         samples = min(SAMPLES, max(HELD // (3 * max((1 + arrays.SHOWS) * n, count, 1)), 2))
-        which = place[np.flatnonzero(self.sink.shown)]
+        which = place[np.flatnonzero(self.recorder.shown)]
         shown = max(samples * arrays.SHOWS, min(16 * SAMPLES, HELD // (3 * max(len(which), 1))))
         self.z = arrays.Samples(
             np.zeros((samples, 3, n)),
@@ -299,7 +299,7 @@ class Stepper:
             if w.i[i, arrays.CURVED]:
                 law_kernels.tangent(w, self.tables, i)
         corotational.turn_start(w, x, inputs(t))
-        corotational.linearise(w.chords, arrays.S0)
+        corotational.linearise(w.corotational, arrays.S0)
 
     def _leans_on(self, law: LawSpring) -> tuple[int, int]:
         """Law that this one leans on, and a bit for each branch where that one is pressed; -1 if none."""
@@ -311,9 +311,9 @@ class Stepper:
 
     def _turning(self, position: Mapping[tuple[int, int], int]) -> arrays.Turning:
         """The members' chords; `position` of pairs of unknowns in A, none if that needs no stiffness."""
-        scene, chords = self.scene, self.scene.chords
-        whole = scene.structure.chords.rows[:, scene.structure.n_free :]
-        found = chords.on(self.order.tolist()).touched()
+        system, corotational = self.system, self.system.corotational
+        whole = system.structure.corotational.rows[:, system.structure.n_free :]
+        found = corotational.on(self.order.tolist()).touched()
         touched = [x for x, _ in found]
         at = np.concatenate([[0], np.cumsum([len(x) for x in touched])]).astype(np.int64)
         pairs = [
@@ -326,23 +326,23 @@ class Stepper:
             for first, x in zip(at.tolist(), (x.tolist() for x in touched))
         ]
         return arrays.Turning(
-            p=chords.p,
+            p=corotational.p,
             at=at,
             unknown=np.concatenate([*touched, np.zeros(0)]).astype(np.int64),
             rows=np.concatenate([*(rows.T for _, rows in found), np.zeros((0, 6))]),
             pairs=np.concatenate([[0], np.cumsum([len(x) for x in pairs])]).astype(np.int64),
             pair=np.array([x for p in pairs for x in p], np.int64).reshape(-1, 3),
-            inputs=np.ascontiguousarray(scene.chord_inputs),
-            supports=dense(whole).reshape(len(chords), 6, whole.shape[1]),
-            s=np.zeros((len(chords), 36)),
-            h=np.zeros((2 * len(chords), 36)),
+            inputs=np.ascontiguousarray(system.corotational_inputs),
+            supports=dense(whole).reshape(len(corotational), 6, whole.shape[1]),
+            s=np.zeros((len(corotational), 36)),
+            h=np.zeros((2 * len(corotational), 36)),
             product=np.zeros((max((len(x) for x in touched), default=1), 6)),
             most=np.zeros(1),
         )
 
     def _force(self, t: float) -> Array:
         """Loads on the unknowns, in the order of elimination."""
-        return self.scene.inputs[self.order] @ self.scene.excitation.value(t) + self.matrices.constant
+        return self.system.inputs[self.order] @ self.system.excitation.value(t) + self.matrices.constant
 
     def run(self) -> Outcome:
         """Integrate to the last output time.
@@ -360,7 +360,7 @@ class Stepper:
 
     def _begin(self, advance: jit.Function) -> None:
         """Take the first sample, before a kernel advances."""
-        m, w, x, z, scene = self.matrices, self.w, self.x, self.z, self.scene
+        m, w, x, z, system = self.matrices, self.w, self.x, self.z, self.system
         rubs = next((s for s in self.laws if s.normal), None)
         if rubs is not None and not self.scheme.locate:
             raise self.stop("A505", f"friction (element {rubs.element}) needs steps with EVENTS=LOCATED")
@@ -369,14 +369,14 @@ class Stepper:
             if s.is_contact and s.law.rule.branches[w.i[i, arrays.AT]].startswith("pressed"):
                 d, v = w.f[i, [arrays.LD, arrays.LV]].tolist()
                 force = law_kernels.law_force(w, self.tables, i, d, v)
-                self.ledger.switched(i, "open", "pressed", t0, d, v, force)
+                self.tracker.switched(i, "open", "pressed", t0, d, v, force)
                 w.f[i, arrays.PEAK] = force
         x.q[arrays.P] = self._force(t0)
-        x.inputs[:2] = scene.excitation.value(t0), scene.excitation.value(t0, 1)
+        x.inputs[:2] = system.excitation.value(t0), system.excitation.value(t0, 1)
         for i in w.leans.tolist():
             law_kernels.grip(w, self.tables, x.q, i)
         if jit.cold(advance):
-            self.sink.trial(t0, "compiling the kernels, once for this version: some 40 s")
+            self.recorder.trial(t0, "compiling the kernels, once for this version: some 40 s")
         with jit.compiling():
             jit.compiled(kernel.settle)(m, w, x)
         kernel.note(m, w, x, t0, 0.0)
@@ -384,9 +384,9 @@ class Stepper:
 
     def _run(self) -> Outcome:
         self._begin(kernel.advance)
-        m, w, x, z, scene = self.matrices, self.w, self.x, self.z, self.scene
+        m, w, x, z, system = self.matrices, self.w, self.x, self.z, self.system
         t0 = float(self.times[0])
-        ends, is_output = goals(scene, self.times)
+        ends, is_output = goals(system, self.times)
         lengths = np.diff(ends, prepend=t0)
         steps = np.maximum(1, np.ceil(lengths / self.dt * (1 - 1e-9))).astype(np.int64)
         # twelve digits: steps of equal length share their factor, whatever the rounding of the times
@@ -394,7 +394,7 @@ class Stepper:
         # steps from one output to the next, of which so many are shown to the envelopes
         output = np.concatenate([[0], np.cumsum(is_output)[:-1]])
         shows = -(-np.bincount(output, steps).astype(np.int64) // (arrays.SHOWS + 1))[output]
-        ex = scene.excitation
+        ex = system.excitation
         pieces = ex.pieces_after(ends - lengths)
         coefs = np.ascontiguousarray(ex.coefs)
         self._loop(
@@ -422,22 +422,22 @@ class Stepper:
         for row in z.log[: count[arrays.LOGGED]].tolist():
             law, before, after = (int(x) for x in row[:3])
             names = laws[law].law.rule.branches
-            if law in self.ledger.open:
-                self._count(self.ledger.open[law], row[7:])
-            self.ledger.switched(law, names[before], names[after], *row[3:7])
+            if law in self.tracker.open:
+                self._count(self.tracker.open[law], row[7:])
+            self.tracker.switched(law, names[before], names[after], *row[3:7])
         shown, kept = count[arrays.SHOWN], count[arrays.KEPT]
         if shown:
             seen = np.sort(np.concatenate([[self.seen], z.when[:shown], z.works[:kept, 0]]))
             u, v, a = motion = np.zeros((3, len(back), shown))
             motion[:, self.order[z.which]] = z.shown[:shown].transpose(1, 2, 0)
-            self.sink.between(z.when[:shown].copy(), u, v, a, float(np.diff(seen).max()))
+            self.recorder.between(z.when[:shown].copy(), u, v, a, float(np.diff(seen).max()))
             self.seen = seen[-1]
         if kept:
             t, *works = z.works[:kept].T.copy()
             u, v, a = z.motion[:kept, :, back].transpose(1, 2, 0)
-            self.rush += (v * (self.scene.mass @ v)).sum(), (a * (self.scene.mass @ a)).sum()
+            self.rush += (v * (self.system.mass @ v)).sum(), (a * (self.system.mass @ a)).sum()
             values = LawValues(*z.laws[:kept].transpose(1, 2, 0).copy())
-            self.sink.sample(t, u, v, a, values, np.array(works))
+            self.recorder.sample(t, u, v, a, values, np.array(works))
         count[arrays.LOGGED] = count[arrays.KEPT] = count[arrays.SHOWN] = 0
 
     @staticmethod
@@ -452,11 +452,11 @@ class Stepper:
         worst = int(self.count[arrays.WORST])
         if why == arrays.RUNAWAY:
             fastest = int(self.order[np.argmax(np.abs(self.x.q[arrays.V]))])
-            name = self.scene.name(fastest)
+            name = self.system.name(fastest)
             cause = f", fastest at {name}: the structure collapses, or DT={self.dt:g} is too long"
             return self.stop("A504", RUNAWAY.format(self.clock[2]) + cause)
         if why == arrays.PIVOT:
-            name = self.scene.name(int(self.order[worst]))
+            name = self.system.name(int(self.order[worst]))
             return self.stop("A501", f"{name} has no mass and nothing holds it")
         place, last = "the members' turning", ""
         if worst >= 0:
@@ -469,17 +469,17 @@ class Stepper:
             told = f"laws change branch more than {len(self.z.log) // 2} times within one step, {last}"
         else:
             told = f"Newton's iterations find no equilibrium of {place}, however short the step"
-        exact = "" if not_linear(self.scene) else ", or METHOD=EXACT"
+        exact = "" if not_linear(self.system) else ", or METHOD=EXACT"
         return self.stop("A503", f"{told}; try a DT well below {self.dt:g}{exact}")
 
     def outcome(self) -> Outcome:
         """What the run gathered."""
-        for law, collision in self.ledger.open.items():
+        for law, collision in self.tracker.open.items():
             self._count(collision, self.w.f[law, arrays.PEAK : arrays.IMPULSE + 1].tolist())
-        peaks, x, n = self.ledger.close(), self.x, len(self.laws)
+        peaks, x, n = self.tracker.close(), self.x, len(self.laws)
         found = [Extreme(*e) for e in x.peak[: arrays.SLOPE].T.tolist()]
         rest = len(found) - 2 * n
-        peaks.watch, peaks.deformation, peaks.force = (
+        peaks.monitored, peaks.deformation, peaks.force = (
             found[:rest],
             found[rest : rest + n],
             found[rest + n :],
@@ -514,7 +514,7 @@ class Stepper:
         if falls := int(self.count[arrays.FALLING]):
             told = "look: a DT that follows how it gives way, or EXACT"
             out.append(("steps too long for a branch that falls", str(falls), told))
-        out += [*self._springs(peaks), *blurred(self.laws, peaks)]
+        out += [*self._springs(peaks), *rounding_check(self.laws, peaks)]
         ended = [c for c in peaks.collisions if c.t_end > c.t_start]
         hardest = [
             max((c for c in ended if c.law == law), key=lambda c: c.peak) for law in {c.law for c in ended}

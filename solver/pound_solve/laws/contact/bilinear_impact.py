@@ -37,15 +37,15 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
-    TURNS_DOWN,
-    TURNS_UP,
+    REVERSAL_DOWN,
+    REVERSAL_UP,
     Law,
     Numbers,
     Rule,
     above,
     below,
-    piece,
-    remember,
+    internal_variables,
+    linear,
 )
 from pound_solve.laws.contact.kelvin_voigt import Built
 
@@ -54,33 +54,35 @@ OPEN, STIFF, SOFT, BACK = 0, 1, 2, 3
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (STIFF if p[3] < 0.0 else OPEN), remember()
+    return (STIFF if p[3] < 0.0 else OPEN), internal_variables()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure; the memory holds where the slider stands."""
     k1, k2, dy, gap = p[:4]
     if at == OPEN:
-        return piece(0.0, 0.0, above(gap))
+        return linear(0.0, 0.0, above(gap))
     if at == SOFT:
-        return piece(k2, (k1 - k2) * dy - k2 * gap, TURNS_DOWN)
+        return linear(k2, (k1 - k2) * dy - k2 * gap, REVERSAL_DOWN)
     if at == BACK:
-        return piece(k2, -k2 * gap, TURNS_UP, below(gap))
-    return piece(k1, -k1 * gap - (k1 - k2) * m[0], above(gap + m[0] + dy), below(gap + m[0]))
+        return linear(k2, -k2 * gap, REVERSAL_UP, below(gap))
+    return linear(k1, -k1 * gap - (k1 - k2) * m[0], above(gap + m[0] + dy), below(gap + m[0]))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, slide, turn, or part."""
     dy, overlap = p[2], d - p[3]
     if at == OPEN:
-        return STIFF, remember()
+        return STIFF, internal_variables()
     if at == SOFT:
-        return STIFF, remember(max(overlap - dy, 0.0))
+        return STIFF, internal_variables(max(overlap - dy, 0.0))
     if at == BACK:
-        return (STIFF, remember(max(overlap, 0.0))) if way == 0 else (OPEN, remember())
-    if way == 0:
+        return (
+            (STIFF, internal_variables(max(overlap, 0.0))) if event == 0 else (OPEN, internal_variables())
+        )
+    if event == 0:
         return SOFT, m
-    return (BACK, m) if m[0] > 0.0 else (OPEN, remember())
+    return (BACK, m) if m[0] > 0.0 else (OPEN, internal_variables())
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -93,7 +95,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.5 * (k2 * corner * corner + (k2 * corner + f) * (overlap - corner))
 
 
-RULE = Rule(("open", "pressed", "pressed, soft", "pressed, back"), start, branch, leave, recoverable)
+RULE = Rule(("open", "pressed", "pressed, soft", "pressed, back"), start, branch, transition, recoverable)
 
 
 def restitution(k1: float, k2: float, dy: float, overlap: float) -> float:

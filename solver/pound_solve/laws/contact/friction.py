@@ -24,7 +24,7 @@ dry friction.
 
 from __future__ import annotations
 
-from pound_solve.laws.automaton import PUSH, PUSH_RATE, Law, Numbers, Rule, piece, remember
+from pound_solve.laws.automaton import PUSH, PUSH_RATE, Law, Numbers, Rule, internal_variables, linear
 from pound_solve.laws.mirror import side
 
 OPEN, PLUS, MINUS, STICKING = 0, 1, 2, 3
@@ -33,33 +33,33 @@ RELEASED = 2  #: way to leave when the contact opens
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open: whether the contact is closed will be told."""
-    return OPEN, remember()
+    return OPEN, internal_variables()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """The memory: where the spring has no force, and the contact's force and its rate."""
     kt, mu, mud = p[:3]
     if at == OPEN:
-        return piece(0.0, 0.0)
+        return linear(0.0, 0.0)
     if at == STICKING:
         pull, limit = kt * m[0], mu * m[PUSH]
-        return piece(kt, -pull, (kt, 0.0, -pull - limit), (-kt, 0.0, pull - limit))
-    return piece(0.0, side(at) * mud * m[PUSH], (0.0, -side(at), mud * m[PUSH_RATE] / kt))
+        return linear(kt, -pull, (kt, 0.0, -pull - limit), (-kt, 0.0, pull - limit))
+    return linear(0.0, side(at) * mud * m[PUSH], (0.0, -side(at), mud * m[PUSH_RATE] / kt))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, slip, stick, or let go."""
     kt, mu, mud = p[:3]
-    if at != OPEN and way == RELEASED:
-        return OPEN, remember()
+    if at != OPEN and event == RELEASED:
+        return OPEN, internal_variables()
     if at == STICKING:
-        return (PLUS if way == 0 else MINUS), m
+        return (PLUS if event == 0 else MINUS), m
     after, anchor = STICKING, d
     if at != OPEN:
         anchor = d - side(at) * mud * m[PUSH] / kt
     elif m[PUSH] == 0.0 and kt * abs(v) > mu * m[PUSH_RATE]:
         after = PLUS if v > 0.0 else MINUS
-    return after, remember(anchor, o=m[PUSH], q=m[PUSH_RATE])
+    return after, internal_variables(anchor, o=m[PUSH], q=m[PUSH_RATE])
 
 
 def curve(
@@ -70,7 +70,7 @@ def curve(
     return k * d + f0, k, 0.0, (0.5 * k * (d + d0) + f0) * (d - d0)
 
 
-RULE = Rule(("open", "slipping +", "slipping -", "sticking"), start, branch, leave, curve=curve)
+RULE = Rule(("open", "slipping +", "slipping -", "sticking"), start, branch, transition, curve=curve)
 
 
 def build(kt: float, mu: float, mud: float) -> Law:

@@ -26,7 +26,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
 from pound_solve.laws.contact import constants, restitution
 from pound_solve.laws.contact.kelvin_voigt import OPEN, PRESSED, Built, start
 from pound_solve.laws.contact.power import (
@@ -41,12 +41,12 @@ from pound_solve.laws.contact.power import (
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure, overlap = closure - gap."""
-    return piece(0.0, 0.0, above(p[2]) if at == OPEN else below(p[2]))
+    return linear(0.0, 0.0, above(p[2]) if at == OPEN else below(p[2]))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, and remember the speed, or part."""
-    return (PRESSED, remember(max(v, 0.0))) if at == OPEN else (OPEN, remember())
+    return (PRESSED, internal_variables(max(v, 0.0))) if at == OPEN else (OPEN, internal_variables())
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -75,7 +75,7 @@ def curve(
     return force, n * spring / x + slope, c, work
 
 
-RULE = Rule(("open", "pressed"), start, branch, leave, recoverable, curve)
+RULE = Rule(("open", "pressed"), start, branch, transition, recoverable, curve)
 
 
 def law(k: float, n: float, gap: float, d: float, mass: float) -> Law:

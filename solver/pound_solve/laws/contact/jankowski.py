@@ -19,10 +19,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import TURNS_DOWN, TURNS_UP, Law, Numbers, Rule, above, below, piece
+from pound_solve.laws.automaton import REVERSAL_DOWN, REVERSAL_UP, Law, Numbers, Rule, above, below, linear
 from pound_solve.laws.contact import constants, restitution
 from pound_solve.laws.contact.kelvin_voigt import Built, start
-from pound_solve.laws.contact.mahmoud_jankowski import APPROACH, BRANCHES, OPEN, leave
+from pound_solve.laws.contact.mahmoud_jankowski import APPROACH, BRANCHES, OPEN, transition
 from pound_solve.laws.contact.power import (
     drag,
     drag_slope,
@@ -36,10 +36,10 @@ from pound_solve.laws.contact.power import (
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure, overlap = closure - gap."""
     if at == OPEN:
-        return piece(0.0, 0.0, above(p[2]))
+        return linear(0.0, 0.0, above(p[2]))
     if at == APPROACH:
-        return piece(0.0, 0.0, TURNS_DOWN, below(p[2]))
-    return piece(0.0, 0.0, below(p[2]), TURNS_UP)
+        return linear(0.0, 0.0, REVERSAL_DOWN, below(p[2]))
+    return linear(0.0, 0.0, below(p[2]), REVERSAL_UP)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -64,7 +64,7 @@ def curve(
     return spring + c * v, stiffness + drag_slope(k, n, mass, x, v, c), c, work
 
 
-RULE = Rule(BRANCHES, start, branch, leave, recoverable, curve)
+RULE = Rule(BRANCHES, start, branch, transition, recoverable, curve)
 
 
 def published(e: float) -> float:

@@ -19,7 +19,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
 from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.constants import dashpot, linear_fields
 
@@ -28,23 +28,23 @@ OPEN, PRESSED, RELEASED = 0, 1, 2
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (PRESSED if p[2] < 0.0 else OPEN), remember()
+    return (PRESSED if p[2] < 0.0 else OPEN), internal_variables()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure, overlap = closure - gap."""
     k, c, gap, tension = p[:4]
     if at == OPEN:
-        return piece(0.0, 0.0, above(gap))
+        return linear(0.0, 0.0, above(gap))
     if at == RELEASED:
         # overlap left, force zero: pressed again if k*overlap + c*rate turns positive
-        return piece(0.0, 0.0, (k, c, -k * gap), below(gap))
-    return piece(k, -k * gap, below(gap) if tension != 0.0 else (-k, -c, k * gap), c=c)
+        return linear(0.0, 0.0, (k, c, -k * gap), below(gap))
+    return linear(k, -k * gap, below(gap) if tension != 0.0 else (-k, -c, k * gap), c=c)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, let go, or part."""
-    if at == OPEN or (at == RELEASED and way == 0):
+    if at == OPEN or (at == RELEASED and event == 0):
         return PRESSED, m
     return (OPEN if at == RELEASED or p[3] != 0.0 or p[1] == 0.0 else RELEASED), m
 
@@ -54,7 +54,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.5 * p[0] * (d - p[2]) ** 2 if at == PRESSED else 0.0
 
 
-RULE = Rule(("open", "pressed", "released"), start, branch, leave, recoverable)
+RULE = Rule(("open", "pressed", "released"), start, branch, transition, recoverable)
 
 
 class Built(NamedTuple):

@@ -17,7 +17,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import TURNS_DOWN, TURNS_UP, Law, Numbers, Rule, above, below, piece
+from pound_solve.laws.automaton import REVERSAL_DOWN, REVERSAL_UP, Law, Numbers, Rule, above, below, linear
 from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.constants import dashpot, linear_fields
 from pound_solve.laws.contact.kelvin_voigt import Built, start
@@ -30,17 +30,17 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure, overlap = closure - gap."""
     k, c, gap = p[:3]
     if at == OPEN:
-        return piece(0.0, 0.0, above(gap))
+        return linear(0.0, 0.0, above(gap))
     if at == APPROACH:
-        return piece(k, -k * gap, TURNS_DOWN, below(gap), c=c)
-    return piece(k, -k * gap, below(gap), TURNS_UP)
+        return linear(k, -k * gap, REVERSAL_DOWN, below(gap), c=c)
+    return linear(k, -k * gap, below(gap), REVERSAL_UP)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, turn, or part."""
-    if at == OPEN or (at == PARTING and way == 1):
+    if at == OPEN or (at == PARTING and event == 1):
         return APPROACH, m
-    return (PARTING if at == APPROACH and way == 0 else OPEN), m
+    return (PARTING if at == APPROACH and event == 0 else OPEN), m
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -48,7 +48,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.0 if at == OPEN else 0.5 * p[0] * (d - p[2]) ** 2
 
 
-RULE = Rule(BRANCHES, start, branch, leave, recoverable)
+RULE = Rule(BRANCHES, start, branch, transition, recoverable)
 
 
 def published(e: float) -> float:

@@ -25,7 +25,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, remember
+from pound_solve.laws.automaton import Law, Numbers, Rule, internal_variables
 from pound_solve.laws.contact import constants, restitution
 from pound_solve.laws.contact.jankowski import branch
 from pound_solve.laws.contact.kelvin_voigt import Built, start
@@ -33,13 +33,13 @@ from pound_solve.laws.contact.mahmoud_jankowski import APPROACH, BRANCHES, OPEN,
 from pound_solve.laws.contact.power import power_fields, spring_energy, spring_force, stiffness_unit
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, and remember the speed; turn, or part."""
     if at == OPEN:
-        return APPROACH, remember(max(v, 0.0))
-    if at == PARTING and way == 1:
+        return APPROACH, internal_variables(max(v, 0.0))
+    if at == PARTING and event == 1:
         return APPROACH, m
-    return (PARTING, m) if at == APPROACH and way == 0 else (OPEN, remember())
+    return (PARTING, m) if at == APPROACH and event == 0 else (OPEN, internal_variables())
 
 
 def spring(p: Numbers, x: float) -> tuple[float, float, float]:
@@ -80,7 +80,7 @@ def curve(
     return force + c * v, stiffness + slope * v, c, work
 
 
-RULE = Rule(BRANCHES, start, branch, leave, recoverable, curve)
+RULE = Rule(BRANCHES, start, branch, transition, recoverable, curve)
 
 
 def published(e: float) -> float:

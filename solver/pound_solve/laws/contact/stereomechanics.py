@@ -22,7 +22,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
 from pound_solve.laws.contact.kelvin_voigt import Built
 
 OPEN, PRESSED = 0, 1
@@ -30,15 +30,15 @@ OPEN, PRESSED = 0, 1
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open."""
-    return OPEN, remember()
+    return OPEN, internal_variables()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Open up to the gap; pressed until the force falls below zero."""
-    return piece(0.0, 0.0, above(p[2]) if at == OPEN else below(0.0))
+    return linear(0.0, 0.0, above(p[2]) if at == OPEN else below(0.0))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch or part."""
     return (PRESSED if at == OPEN else OPEN), m
 
@@ -48,7 +48,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.0
 
 
-RULE = Rule(("open", "pressed"), start, branch, leave, recoverable, held=PRESSED)
+RULE = Rule(("open", "pressed"), start, branch, transition, recoverable, held=PRESSED)
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:

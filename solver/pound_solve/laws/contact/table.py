@@ -23,7 +23,16 @@ from itertools import pairwise
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import TURNS_DOWN, Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.automaton import (
+    REVERSAL_DOWN,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    internal_variables,
+    linear,
+)
 from pound_solve.laws.contact.kelvin_voigt import Built
 
 OPEN, MOST = 0, 8  #: pieces of the table are branches 1 to MOST
@@ -38,37 +47,37 @@ def point(p: Numbers, i: int) -> tuple[float, float]:
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (1 if p[1] < 0.0 else OPEN), remember()
+    return (1 if p[1] < 0.0 else OPEN), internal_variables()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """The memory: residual depth, largest overlap, and the piece of the table that this is on."""
     gap, ku, count = p[1], p[2], int(p[3])
     if at == OPEN:
-        return piece(0.0, 0.0, above(gap + m[0]))
+        return linear(0.0, 0.0, above(gap + m[0]))
     if at == UNLOADING:
-        return piece(ku, -ku * (gap + m[0]), above(gap + m[1]), below(gap + m[0]))
+        return linear(ku, -ku * (gap + m[0]), above(gap + m[1]), below(gap + m[0]))
     (d0, f0), (d1, f1) = point(p, at - 1), point(p, at)
     k = (f1 - f0) / (d1 - d0)
     further = above(gap + d1) if at < count else (0.0, 0.0, -1.0)
-    return piece(k, f0 - k * (gap + d0), further, below(gap + d0) if ku == 0.0 else TURNS_DOWN)
+    return linear(k, f0 - k * (gap + d0), further, below(gap + d0) if ku == 0.0 else REVERSAL_DOWN)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, go to the next piece of the table or back, unload, or part."""
     gap, ku = p[1], p[2]
     if at == OPEN:
         return (1 if m[1] == 0.0 else UNLOADING), m
     if at == UNLOADING:
-        return (int(m[2]) if way == 0 else OPEN), m
-    if way == 0:
+        return (int(m[2]) if event == 0 else OPEN), m
+    if event == 0:
         return at + 1, m
     if ku == 0.0:
         return at - 1, m
     d0, f0 = point(p, at - 1)
     d1, f1 = point(p, at)
     force = f0 + (f1 - f0) / (d1 - d0) * (d - gap - d0)
-    return UNLOADING, remember(max(d - gap - force / ku, m[0]), d - gap, float(at))
+    return UNLOADING, internal_variables(max(d - gap - force / ku, m[0]), d - gap, float(at))
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -86,7 +95,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 PIECES = tuple(f"pressed, piece {i}" for i in range(1, MOST + 1))
-RULE = Rule(("open", *PIECES, "pressed, unloading"), start, branch, leave, recoverable)
+RULE = Rule(("open", *PIECES, "pressed, unloading"), start, branch, transition, recoverable)
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:

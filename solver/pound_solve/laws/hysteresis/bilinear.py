@@ -20,14 +20,22 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import TURNS_DOWN, TURNS_UP, Law, Numbers, Rule, piece, remember
+from pound_solve.laws.automaton import (
+    REVERSAL_DOWN,
+    REVERSAL_UP,
+    Law,
+    Numbers,
+    Rule,
+    internal_variables,
+    linear,
+)
 
 ELASTIC, YIELDING_PLUS, YIELDING_MINUS = 0, 1, 2
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, remember()
+    return ELASTIC, internal_variables()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -36,21 +44,21 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     ke = (1.0 - r) * k
     if at == ELASTIC:
         pull = ke * m[0]
-        return piece(k, -pull, (ke, 0.0, -pull - (1.0 - r) * plus), (-ke, 0.0, pull + (1.0 - r) * minus))
+        return linear(k, -pull, (ke, 0.0, -pull - (1.0 - r) * plus), (-ke, 0.0, pull + (1.0 - r) * minus))
     if at == YIELDING_PLUS:
-        return piece(r * k, (1.0 - r) * plus, TURNS_DOWN)
-    return piece(r * k, (1.0 - r) * minus, TURNS_UP)
+        return linear(r * k, (1.0 - r) * plus, REVERSAL_DOWN)
+    return linear(r * k, (1.0 - r) * minus, REVERSAL_UP)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield out of the elastic branch, or unload where the motion turns."""
     k, plus, minus = p[:3]
     if at == ELASTIC:
-        return (YIELDING_PLUS if way == 0 else YIELDING_MINUS), m
-    return ELASTIC, remember(d - (plus if at == YIELDING_PLUS else minus) / k)
+        return (YIELDING_PLUS if event == 0 else YIELDING_MINUS), m
+    return ELASTIC, internal_variables(d - (plus if at == YIELDING_PLUS else minus) / k)
 
 
-RULE = Rule(("elastic", "yielding +", "yielding -"), start, branch, leave)
+RULE = Rule(("elastic", "yielding +", "yielding -"), start, branch, transition)
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:

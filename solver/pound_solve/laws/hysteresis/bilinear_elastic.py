@@ -15,30 +15,30 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
 
 STIFF, SOFT_PLUS, SOFT_MINUS = 0, 1, 2
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: stiff."""
-    return STIFF, remember()
+    return STIFF, internal_variables()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Stiff between the limits, soft beyond."""
     k, plus, minus, r = p[:4]
     if at == STIFF:
-        return piece(k, 0.0, above(plus / k), below(minus / k))
+        return linear(k, 0.0, above(plus / k), below(minus / k))
     if at == SOFT_PLUS:
-        return piece(r * k, (1.0 - r) * plus, below(plus / k))
-    return piece(r * k, (1.0 - r) * minus, above(minus / k))
+        return linear(r * k, (1.0 - r) * plus, below(plus / k))
+    return linear(r * k, (1.0 - r) * minus, above(minus / k))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Soften, or come back."""
     if at == STIFF:
-        return (SOFT_PLUS if way == 0 else SOFT_MINUS), m
+        return (SOFT_PLUS if event == 0 else SOFT_MINUS), m
     return STIFF, m
 
 
@@ -51,7 +51,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.5 * limit * limit / k + 0.5 * (limit + f) * (d - limit / k)
 
 
-RULE = Rule(("stiff", "soft +", "soft -"), start, branch, leave, recoverable)
+RULE = Rule(("stiff", "soft +", "soft -"), start, branch, transition, recoverable)
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:

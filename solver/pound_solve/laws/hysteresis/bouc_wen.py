@@ -38,7 +38,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import TURNS_DOWN, TURNS_UP, Law, Numbers, Rule, piece, remember
+from pound_solve.laws.automaton import (
+    REVERSAL_DOWN,
+    REVERSAL_UP,
+    Law,
+    Numbers,
+    Rule,
+    internal_variables,
+    linear,
+)
 from pound_solve.laws.mirror import need_both_sides
 
 LOADING, UNLOADING = 0, 1
@@ -47,12 +55,12 @@ SATURATED = 40.0  #: -log(1 - y^n) from which on y is 1 to the last digit
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: z = 0."""
-    return LOADING, remember()
+    return LOADING, internal_variables()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Loading until the motion turns, and unloading until it turns."""
-    return piece(p[0], 0.0, TURNS_DOWN if at == LOADING else TURNS_UP)
+    return linear(p[0], 0.0, REVERSAL_DOWN if at == LOADING else REVERSAL_UP)
 
 
 # ---------------------------------------------------------------------- y, u and w
@@ -198,11 +206,11 @@ def curve(
     return k * (r * d + (1.0 - r) * s * z), k * (r + (1.0 - r) * slope), 0.0, work
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Turn."""
     s = 1.0 if at == LOADING else -1.0
     x, done = position(p, -s, -along(p, s, m[0] + s * (d - m[1]))[0])
-    return (UNLOADING if at == LOADING else LOADING), remember(x, d, done)
+    return (UNLOADING if at == LOADING else LOADING), internal_variables(x, d, done)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -224,7 +232,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return k * (0.5 * r * (d - end) * (d + end) + (1.0 - r) * (before - done))
 
 
-RULE = Rule(("loading", "unloading"), start, branch, leave, recoverable, curve)
+RULE = Rule(("loading", "unloading"), start, branch, transition, recoverable, curve)
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:

@@ -22,7 +22,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
 from pound_solve.laws.hysteresis.backbone import (
     ALFA,
     ELASTIC,
@@ -42,7 +42,7 @@ from pound_solve.laws.mirror import side
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, remember(1.0, 1.0)
+    return ELASTIC, internal_variables(1.0, 1.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -52,15 +52,15 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     plus, minus, d, f = m[:4]
     k = unloading(p, max(plus, minus))
     up, down = meets(p, m, 1.0, k, d, f), meets(p, m, -1.0, k, d, f)
-    return piece(k, f - k * d, above(up * p[1] / p[0]), below(down * p[2] / p[0]))
+    return linear(k, f - k * d, above(up * p[1] / p[0]), below(down * p[2] / p[0]))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield out of the elastic branch, or unload where the motion turns."""
     if at == ELASTIC:
-        s = 1.0 if way == 0 else -1.0
+        s = 1.0 if event == 0 else -1.0
         return enter(p, m, s, meets(p, m, s, unloading(p, max(m[0], m[1])), m[2], m[3]))
-    if way == 1:
+    if event == 1:
         return next_piece(p, at, m)
     return ELASTIC, turn(p, at, m, d)
 
@@ -76,7 +76,7 @@ RULE = Rule(
     ("elastic", "yielding +", "yielding -", "yielding weaker +", "yielding weaker -"),
     start,
     branch,
-    leave,
+    transition,
     recoverable,
 )
 

@@ -24,7 +24,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
 from pound_solve.laws.mirror import (
     inward,
     need_both_sides,
@@ -39,39 +39,39 @@ ELASTIC, YIELDING_PLUS, YIELDING_MINUS, INSIDE_PLUS, INSIDE_MINUS, BACK_PLUS, BA
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, remember()
+    return ELASTIC, internal_variables()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Elastic through the origin, along one of the two lines, or between them."""
     k, plus, minus, r, beta = p[:5]
     if at == ELASTIC:
-        return piece(k, 0.0, above(plus / k), below(minus / k))
+        return linear(k, 0.0, above(plus / k), below(minus / k))
     s = side(at)
     fy = s * (plus if s > 0.0 else minus)
     low = (1.0 - beta) * fy
     if at <= YIELDING_MINUS:
-        return piece(r * k, s * (1.0 - r) * fy, turns_inward(s))
+        return linear(r * k, s * (1.0 - r) * fy, turns_inward(s))
     if at <= INSIDE_MINUS:
         shift = m[0] / (1.0 - r)
-        return piece(k, -s * k * m[0], outward(s, shift + fy / k), inward(s, shift + low / k))
-    return piece(r * k, s * (1.0 - r) * low, turns_outward(s), inward(s, low / k))
+        return linear(k, -s * k * m[0], outward(s, shift + fy / k), inward(s, shift + low / k))
+    return linear(r * k, s * (1.0 - r) * low, turns_outward(s), inward(s, low / k))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield, unload from a line where the motion turns, reach a line, or be elastic again."""
     k, plus, minus, r, beta = p[:5]
     if at == ELASTIC:
-        return (YIELDING_PLUS if way == 0 else YIELDING_MINUS), remember()
+        return (YIELDING_PLUS if event == 0 else YIELDING_MINUS), internal_variables()
     s = side(at)
     fy = s * (plus if s > 0.0 else minus)
     if at <= YIELDING_MINUS:
-        return at + 2, remember((1.0 - r) * (s * d - fy / k))
+        return at + 2, internal_variables((1.0 - r) * (s * d - fy / k))
     if at <= INSIDE_MINUS:
-        return (at - 2 if way == 0 else at + 2), m
-    if way == 1:
-        return ELASTIC, remember()
-    return at - 2, remember((1.0 - r) * (s * d - (1.0 - beta) * fy / k))
+        return (at - 2 if event == 0 else at + 2), m
+    if event == 1:
+        return ELASTIC, internal_variables()
+    return at - 2, internal_variables((1.0 - r) * (s * d - (1.0 - beta) * fy / k))
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -91,7 +91,7 @@ RULE = Rule(
     ("elastic", "yielding +", "yielding -", "inside +", "inside -", "yielding back +", "yielding back -"),
     start,
     branch,
-    leave,
+    transition,
     recoverable,
 )
 

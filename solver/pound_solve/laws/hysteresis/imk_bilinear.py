@@ -19,7 +19,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, piece
+from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, linear
 from pound_solve.laws.hysteresis.imk import (
     BRANCHES,
     FAILED,
@@ -107,33 +107,33 @@ def yields(p: Numbers, s: float, m: Numbers) -> tuple[int, float]:
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Elastic between the bounds, or along a piece of a bound."""
     if at == FAILED:
-        return piece(0.0, 0.0)
+        return linear(0.0, 0.0)
     s = side(at)
     last = ultimate(p, s) if ultimate(p, s) > 0.0 else FAR
     if at < LEAST:
         ku, foot = m[KU], m[FOOT]
-        return piece(ku, -ku * foot, outward(s, min(own(m, s)[3], last)), inward(s, s * foot))
+        return linear(ku, -ku * foot, outward(s, min(own(m, s)[3], last)), inward(s, s * foot))
     kind = at if s > 0.0 else at - 1
     k, f0 = line(p, s, m, kind)
     to = min(following(p, s, m, kind)[1], last)
-    return piece(k, s * f0, turns_inward(s), outward(s, to) if to < FAR else NEVER)
+    return linear(k, s * f0, turns_inward(s), outward(s, to) if to < FAR else NEVER)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield, pass to the next piece of the bound, fail, turn, or end an excursion."""
     s = side(at)
     kind = at if s > 0.0 else at - 1
     now = branch(p, at, m)
     m = advance(now, m, d)
     mine = own(m, s)
-    if kind == ELASTIC and way == 1:
+    if kind == ELASTIC and event == 1:
         m, _, fails = end_excursion(p, m, -s, d)
         meets, where = yields(p, -s, m)
         m = renew(m, -s, (*own(m, -s)[0:3], where, float(meets)))
         return (FAILED if fails else pair(ELASTIC, -s)), m
     if kind == ELASTIC:
         then, where = int(mine[4]), mine[3]
-    elif way == 1:
+    elif event == 1:
         then, where = following(p, s, m, kind)
     else:
         f = s * (now[0] * d + now[2])
@@ -170,7 +170,7 @@ RULE = Rule(
     ),
     start,
     branch,
-    leave,
+    transition,
     recoverable,
 )
 

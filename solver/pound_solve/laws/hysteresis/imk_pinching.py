@@ -36,7 +36,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, piece
+from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, linear
 from pound_solve.laws.hysteresis.imk import (
     BRANCHES,
     FAILED,
@@ -190,7 +190,7 @@ def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Along the backbone, back from it, or along a reloading path."""
     if at == FAILED:
-        return piece(0.0, 0.0)
+        return linear(0.0, 0.0)
     s = side(at)
     kind = at if s > 0.0 else at - 1
     k, f0 = line(p, s, m, kind)
@@ -198,7 +198,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     if ultimate(p, s) > 0.0:
         to = min(to, ultimate(p, s))
     back = inward(s, -f0 / k) if kind in (ELASTIC, UNLOADING) else turns_inward(s)
-    return piece(k, s * f0, back, outward(s, to) if to < FAR else NEVER)
+    return linear(k, s * f0, back, outward(s, to) if to < FAR else NEVER)
 
 
 def enter(p: Numbers, m: Numbers, s: float, d: float) -> tuple[int, Numbers]:
@@ -219,13 +219,13 @@ def enter(p: Numbers, m: Numbers, s: float, d: float) -> tuple[int, Numbers]:
     return pair(FOOT_LOCAL if by_local(p, s, m, s * d, 0.0) else FOOT_PEAK, s), m
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Go on to the next piece of a path, fail, turn, or end an excursion."""
     s = side(at)
     kind = at if s > 0.0 else at - 1
     now = branch(p, at, m)
     m = advance(now, m, d)
-    if way == 1:
+    if event == 1:
         then, where = following(p, s, m, kind)
         lost = then == RESIDUAL and residual(p, s) == 0.0
         if lost or 0.0 < ultimate(p, s) < where:
@@ -272,7 +272,7 @@ RULE = Rule(
     ),
     start,
     branch,
-    leave,
+    transition,
     recoverable,
 )
 

@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
 from pound_solve.laws.hysteresis.backbone import (
     ELASTIC,
     LOSS,
@@ -39,29 +39,29 @@ SECANT = 5
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, remember(1.0, 1.0)
+    return ELASTIC, internal_variables(1.0, 1.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Elastic, on the backbone, or on the line between the origin and a side's peak."""
     if at == ELASTIC:
-        return piece(p[0], 0.0, above(p[1] / p[0]), below(p[2] / p[0]))
+        return linear(p[0], 0.0, above(p[1] / p[0]), below(p[2] / p[0]))
     if at < SECANT:
         return yield_branch(p, at, m)
     s = side(at)
     mu = reached(m, s)
     peak = mu * yield_force(p, s) / p[0]
-    return piece(backbone(p, m, s, mu) / peak, 0.0, outward(s, peak), inward(s, 0.0))
+    return linear(backbone(p, m, s, mu) / peak, 0.0, outward(s, peak), inward(s, 0.0))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield; turn; arrive at the peak, or pass through the origin."""
     if at == ELASTIC:
-        return enter(p, m, 1.0 if way == 0 else -1.0, 1.0)
+        return enter(p, m, 1.0 if event == 0 else -1.0, 1.0)
     s = side(at)
     if at < SECANT:
-        return next_piece(p, at, m) if way == 1 else (pair(SECANT, s), turn(p, at, m, d))
-    return enter(p, m, s, reached(m, s)) if way == 0 else (pair(SECANT, -s), m)
+        return next_piece(p, at, m) if event == 1 else (pair(SECANT, s), turn(p, at, m, d))
+    return enter(p, m, s, reached(m, s)) if event == 0 else (pair(SECANT, -s), m)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -81,7 +81,7 @@ RULE = Rule(
     ),
     start,
     branch,
-    leave,
+    transition,
     recoverable,
 )
 

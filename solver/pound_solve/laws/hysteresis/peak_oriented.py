@@ -18,7 +18,7 @@ Memory: the largest ductilities; the point where the motion turned last, or wher
 
 from __future__ import annotations
 
-from pound_solve.laws.automaton import Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.automaton import Numbers, Rule, above, below, internal_variables, linear
 from pound_solve.laws.hysteresis.backbone import (
     ELASTIC,
     backbone,
@@ -41,7 +41,7 @@ BETA, MIRRORED = 9, 10
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, remember(1.0, 1.0)
+    return ELASTIC, internal_variables(1.0, 1.0)
 
 
 def aim(p: Numbers, m: Numbers, s: float) -> tuple[float, float]:
@@ -49,48 +49,50 @@ def aim(p: Numbers, m: Numbers, s: float) -> tuple[float, float]:
     mu, fy = reached(m, s), yield_force(p, s)
     target = mu - p[BETA] * (mu - 1.0)
     steepest = unloading(p, mu)
-    way, rise = target * fy / p[0] - s * m[2], backbone(p, m, s, target) - s * m[3]
-    if 0.0 < rise < steepest * way:
-        return rise / way, target
+    event, rise = target * fy / p[0] - s * m[2], backbone(p, m, s, target) - s * m[3]
+    if 0.0 < rise < steepest * event:
+        return rise / event, target
     return steepest, meets(p, m, s, steepest, m[2], m[3])
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Elastic, on the backbone, unloading, or reloading."""
     if at == ELASTIC:
-        return piece(p[0], 0.0, above(p[1] / p[0]), below(p[2] / p[0]))
+        return linear(p[0], 0.0, above(p[1] / p[0]), below(p[2] / p[0]))
     if at < UNLOADING:
         return yield_branch(p, at, m)
     s, d, f = side(at), m[2], m[3]
     if at < RELOADING:
         k = unloading(p, reached(m, s))
-        return piece(k, f - k * d, outward(s, s * d), inward(s, s * (d - f / k)))
+        return linear(k, f - k * d, outward(s, s * d), inward(s, s * (d - f / k)))
     k, end = aim(p, m, s)
-    return piece(k, f - k * d, turns_inward(s), outward(s, end * yield_force(p, s) / p[0]))
+    return linear(k, f - k * d, turns_inward(s), outward(s, end * yield_force(p, s) / p[0]))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Yield; turn; come back to the last turn, or lose the force; arrive at the backbone."""
     if at == ELASTIC:
-        return enter(p, m, 1.0 if way == 0 else -1.0, 1.0)
+        return enter(p, m, 1.0 if event == 0 else -1.0, 1.0)
     s = side(at)
     if at < UNLOADING:
-        if way == 1:
+        if event == 1:
             return next_piece(p, at, m)
         plus, minus, d, f = turn(p, at, m, d)[:4]
         if p[MIRRORED] != 0.0:
             plus = minus = max(plus, minus)
-        return pair(UNLOADING, s), remember(plus, minus, d, f)
+        return pair(UNLOADING, s), internal_variables(plus, minus, d, f)
     plus, minus, d0, f0 = m[:4]
     if at < RELOADING:
-        if way == 1:
-            return pair(RELOADING, -s), remember(plus, minus, d0 - f0 / unloading(p, reached(m, s)))
+        if event == 1:
+            return pair(RELOADING, -s), internal_variables(
+                plus, minus, d0 - f0 / unloading(p, reached(m, s))
+            )
         # a turn on the backbone too: the line from there ends where it begins
         return pair(RELOADING, s), m
     k, end = aim(p, m, s)
-    if way == 1:
+    if event == 1:
         return enter(p, m, s, end)
-    return pair(UNLOADING, s), remember(plus, minus, d, f0 + k * (d - d0))
+    return pair(UNLOADING, s), internal_variables(plus, minus, d, f0 + k * (d - d0))
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -116,6 +118,6 @@ RULE = Rule(
     ),
     start,
     branch,
-    leave,
+    transition,
     recoverable,
 )

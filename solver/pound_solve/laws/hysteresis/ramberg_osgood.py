@@ -34,7 +34,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, piece, remember
+from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, internal_variables, linear
 from pound_solve.laws.mirror import need_both_sides, outward, turns_inward
 
 LOADING, UNLOADING = 0, 1
@@ -43,7 +43,7 @@ DEPTH = 7.0  #: reversals remembered
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: on the skeleton."""
-    return LOADING, remember()
+    return LOADING, internal_variables()
 
 
 def strain(p: Numbers, w: float) -> float:
@@ -119,7 +119,7 @@ def end(p: Numbers, m: Numbers) -> tuple[float, float]:
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Turns, or closes its loop."""
     s = 1.0 if at == LOADING else -1.0
-    return piece(p[0], 0.0, turns_inward(s), outward(s, s * end(p, m)[0]) if m[0] > 0.0 else NEVER)
+    return linear(p[0], 0.0, turns_inward(s), outward(s, s * end(p, m)[0]) if m[0] > 0.0 else NEVER)
 
 
 def curve(
@@ -146,16 +146,16 @@ def close(m: Numbers) -> Numbers:
     if beside_forgotten(m):
         d0, f0 = bound(m)
         if m[0] == 2.0:
-            return remember(2.0, 0.0, d0, f0, m[4], m[5])
-        return remember(1.0, 0.0, d0, f0)
+            return internal_variables(2.0, 0.0, d0, f0, m[4], m[5])
+        return internal_variables(1.0, 0.0, d0, f0)
     if m[0] <= 2.0:
-        return remember()
+        return internal_variables()
     return (m[0] - 2.0, m[1], *m[6:16], 0.0, 0.0, 0.0, 0.0)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Turn, or go on along the curve that the branch came from."""
-    if way == 1:
+    if event == 1:
         return at, close(m)
     back = UNLOADING if at == LOADING else LOADING
     s = 1.0 if at == LOADING else -1.0
@@ -180,7 +180,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return back * fy / k
 
 
-RULE = Rule(("loading", "unloading"), start, branch, leave, recoverable, curve)
+RULE = Rule(("loading", "unloading"), start, branch, transition, recoverable, curve)
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:

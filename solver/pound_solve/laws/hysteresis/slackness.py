@@ -23,15 +23,15 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
-    TURNS_DOWN,
-    TURNS_UP,
+    REVERSAL_DOWN,
+    REVERSAL_UP,
     Law,
     Numbers,
     Rule,
     above,
     below,
-    piece,
-    remember,
+    internal_variables,
+    linear,
 )
 
 SLACK, ELASTIC_PLUS, ELASTIC_MINUS, YIELDING_PLUS, YIELDING_MINUS, BACK_PLUS, BACK_MINUS = range(7)
@@ -40,8 +40,8 @@ SLACK, ELASTIC_PLUS, ELASTIC_MINUS, YIELDING_PLUS, YIELDING_MINUS, BACK_PLUS, BA
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: in the slack, or on a side that has none (or less than none, a prestress)."""
     if p[3] <= 0.0:
-        return ELASTIC_PLUS, remember()
-    return (ELASTIC_MINUS if p[4] >= 0.0 else SLACK), remember()
+        return ELASTIC_PLUS, internal_variables()
+    return (ELASTIC_MINUS if p[4] >= 0.0 else SLACK), internal_variables()
 
 
 def line(p: Numbers, at: int) -> tuple[float, float, float]:
@@ -69,47 +69,47 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     hard = k * r / (1.0 - r)
     on_plus, on_minus = gap_plus + m[0], gap_minus + m[1]
     if at == SLACK:
-        return piece(0.0, 0.0, above(on_plus), below(on_minus))
+        return linear(0.0, 0.0, above(on_plus), below(on_minus))
     if at == ELASTIC_PLUS:
         lets_go = (-k, 0.0, k * on_plus + max(yields_back(p, at, m), 0.0))
-        return piece(k, -k * on_plus, (k, 0.0, -k * on_plus - plus - hard * m[0]), lets_go)
+        return linear(k, -k * on_plus, (k, 0.0, -k * on_plus - plus - hard * m[0]), lets_go)
     if at == ELASTIC_MINUS:
         lets_go = (k, 0.0, -k * on_minus - min(yields_back(p, at, m), 0.0))
-        return piece(k, -k * on_minus, (-k, 0.0, k * on_minus + minus + hard * m[1]), lets_go)
+        return linear(k, -k * on_minus, (-k, 0.0, k * on_minus + minus + hard * m[1]), lets_go)
     gap, fy, side = line(p, at)
     slope = r * k
     f0 = (1.0 - r) * fy - slope * gap
     if at == YIELDING_PLUS:
-        return piece(slope, f0, TURNS_DOWN)
+        return linear(slope, f0, REVERSAL_DOWN)
     if at == YIELDING_MINUS:
-        return piece(slope, f0, TURNS_UP)
-    turn = TURNS_UP if side > 0.0 else TURNS_DOWN
-    return piece(slope, f0, turn, (-side * slope, 0.0, -side * f0))
+        return linear(slope, f0, REVERSAL_UP)
+    turn = REVERSAL_UP if side > 0.0 else REVERSAL_DOWN
+    return linear(slope, f0, turn, (-side * slope, 0.0, -side * f0))
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Take hold, yield, let go, or unload where the motion turns."""
     k, grow = p[0], p[6]
     if at == SLACK:
-        return (ELASTIC_PLUS if way == 0 else ELASTIC_MINUS), m
+        return (ELASTIC_PLUS if event == 0 else ELASTIC_MINUS), m
     if at == ELASTIC_PLUS:
-        if way == 0:
+        if event == 0:
             return YIELDING_PLUS, m
         return (BACK_PLUS if yields_back(p, at, m) > 0.0 else SLACK), m
     if at == ELASTIC_MINUS:
-        if way == 0:
+        if event == 0:
             return YIELDING_MINUS, m
         return (BACK_MINUS if yields_back(p, at, m) < 0.0 else SLACK), m
     gap, fy, side = line(p, at)
     slope = p[5] * k
     now = d - gap - ((1.0 - p[5]) * fy + slope * (d - gap)) / k
     if grow == 0.0:
-        m = remember(now, now)
+        m = internal_variables(now, now)
     elif side > 0.0:
-        m = remember(now, m[1])
+        m = internal_variables(now, m[1])
     else:
-        m = remember(m[0], now)
-    if way == 1:
+        m = internal_variables(m[0], now)
+    if event == 1:
         return SLACK, m
     return (ELASTIC_PLUS if side > 0.0 else ELASTIC_MINUS), m
 
@@ -118,7 +118,7 @@ RULE = Rule(
     ("slack", "elastic +", "elastic -", "yielding +", "yielding -", "yielding back +", "yielding back -"),
     start,
     branch,
-    leave,
+    transition,
 )
 
 

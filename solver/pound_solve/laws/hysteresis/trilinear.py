@@ -26,15 +26,15 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
-    TURNS_DOWN,
-    TURNS_UP,
+    REVERSAL_DOWN,
+    REVERSAL_UP,
     Law,
     Numbers,
     Rule,
     above,
     below,
-    piece,
-    remember,
+    internal_variables,
+    linear,
 )
 
 ELASTIC, FIRST_PLUS, FIRST_MINUS, SECOND_PLUS, SECOND_MINUS = range(5)
@@ -42,7 +42,7 @@ ELASTIC, FIRST_PLUS, FIRST_MINUS, SECOND_PLUS, SECOND_MINUS = range(5)
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, remember()
+    return ELASTIC, internal_variables()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -50,32 +50,35 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     k, r, r2, d1_plus, d1_minus, d2_plus, d2_minus = p[:7]
     first, second = (1.0 - r) * k, (r - r2) * k
     if at == ELASTIC:
-        return piece(k, -first * m[0] - second * m[1], above(m[0] + d1_plus), below(m[0] + d1_minus))
+        return linear(k, -first * m[0] - second * m[1], above(m[0] + d1_plus), below(m[0] + d1_minus))
     if at == FIRST_PLUS:
-        return piece(r * k, first * d1_plus - second * m[1], TURNS_DOWN, above(m[1] + d2_plus))
+        return linear(r * k, first * d1_plus - second * m[1], REVERSAL_DOWN, above(m[1] + d2_plus))
     if at == FIRST_MINUS:
-        return piece(r * k, first * d1_minus - second * m[1], TURNS_UP, below(m[1] + d2_minus))
+        return linear(r * k, first * d1_minus - second * m[1], REVERSAL_UP, below(m[1] + d2_minus))
     if at == SECOND_PLUS:
-        return piece(r2 * k, first * d1_plus + second * d2_plus, TURNS_DOWN)
-    return piece(r2 * k, first * d1_minus + second * d2_minus, TURNS_UP)
+        return linear(r2 * k, first * d1_plus + second * d2_plus, REVERSAL_DOWN)
+    return linear(r2 * k, first * d1_minus + second * d2_minus, REVERSAL_UP)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Slip, slip more, or unload where the motion turns."""
     d1_plus, d1_minus, d2_plus, d2_minus = p[3:7]
     if at == ELASTIC:
-        return (FIRST_PLUS if way == 0 else FIRST_MINUS), m
+        return (FIRST_PLUS if event == 0 else FIRST_MINUS), m
     if at == FIRST_PLUS:
-        return (ELASTIC, remember(d - d1_plus, m[1])) if way == 0 else (SECOND_PLUS, m)
+        return (ELASTIC, internal_variables(d - d1_plus, m[1])) if event == 0 else (SECOND_PLUS, m)
     if at == FIRST_MINUS:
-        return (ELASTIC, remember(d - d1_minus, m[1])) if way == 0 else (SECOND_MINUS, m)
+        return (ELASTIC, internal_variables(d - d1_minus, m[1])) if event == 0 else (SECOND_MINUS, m)
     if at == SECOND_PLUS:
-        return ELASTIC, remember(d - d1_plus, d - d2_plus)
-    return ELASTIC, remember(d - d1_minus, d - d2_minus)
+        return ELASTIC, internal_variables(d - d1_plus, d - d2_plus)
+    return ELASTIC, internal_variables(d - d1_minus, d - d2_minus)
 
 
 RULE = Rule(
-    ("elastic", "yielding +", "yielding -", "yielding + again", "yielding - again"), start, branch, leave
+    ("elastic", "yielding +", "yielding -", "yielding + again", "yielding - again"),
+    start,
+    branch,
+    transition,
 )
 
 

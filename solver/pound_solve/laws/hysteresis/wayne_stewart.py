@@ -39,7 +39,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, piece, remember
+from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
 from pound_solve.laws.mirror import inward, need_both_sides, outward, pair, side, turns_inward
 
 SLACK, FAILED, UNLOADING = 0, 1, 2
@@ -51,7 +51,7 @@ Line = tuple[float, float]  #: slope and force at zero deformation
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: in the slack."""
-    return SLACK, remember()
+    return SLACK, internal_variables()
 
 
 def backbone(p: Numbers, s: float) -> tuple[float, float, float, Line, Line]:
@@ -123,28 +123,28 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Nothing; along the backbone; between the paths of both sides; along a side's pinched path."""
     k = p[0]
     if at == SLACK:
-        return piece(0.0, 0.0, above(p[8]), below(p[9]))
+        return linear(0.0, 0.0, above(p[8]), below(p[9]))
     if at == FAILED:
-        return piece(0.0, 0.0)
+        return linear(0.0, 0.0)
     if at == UNLOADING:
         ku = unloading(p)
-        return piece(ku, -ku * m[2], above(m[4]), below(m[6]))
+        return linear(ku, -ku * m[2], above(m[4]), below(m[6]))
     s = side(at)
     gap, dy, du, (k1, f1), (k2, f2) = backbone(p, s)
     if at < YIELDING:
-        return piece(k, -s * k * gap, outward(s, dy), inward(s, gap))
+        return linear(k, -s * k * gap, outward(s, dy), inward(s, gap))
     if at < BEYOND:
-        return piece(k1, s * f1, turns_inward(s), outward(s, du))
+        return linear(k1, s * f1, turns_inward(s), outward(s, du))
     slope, f0 = pinched(p)
     if at < PINCHED:
         # it fails at zero force or on the other side's pinched line, slope d - f0
         no_force = (-s * k2, 0.0, -f2)
         meets = (s * (slope - k2), 0.0, -f0 - f2)
-        return piece(k2, s * f2, turns_inward(s), no_force, meets)
+        return linear(k2, s * f2, turns_inward(s), no_force, meets)
     if at < RELOADING:
-        return piece(slope, s * f0, turns_inward(s), outward(s, pinch_end(p, s, m)[1]))
+        return linear(slope, s * f0, turns_inward(s), outward(s, pinch_end(p, s, m)[1]))
     target, kp, f = reloading(p, s, m)
-    return piece(kp, s * f, turns_inward(s), outward(s, target))
+    return linear(kp, s * f, turns_inward(s), outward(s, target))
 
 
 def unload(p: Numbers, at: int, m: Numbers, s: float, d: float, f: float) -> tuple[int, Numbers]:
@@ -152,31 +152,31 @@ def unload(p: Numbers, at: int, m: Numbers, s: float, d: float, f: float) -> tup
     foot = d - f / unloading(p)
     other, end = upper_end(p, -s, m, -s * foot)
     if s > 0.0:
-        return UNLOADING, remember(m[0], m[1], foot, float(at), d, other, -end)
-    return UNLOADING, remember(m[0], m[1], foot, other, end, float(at), d)
+        return UNLOADING, internal_variables(m[0], m[1], foot, float(at), d, other, -end)
+    return UNLOADING, internal_variables(m[0], m[1], foot, other, end, float(at), d)
 
 
-def leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Take hold, yield, let go, pass the ultimate force, fail, turn, or reach the next line of a path."""
     if at == SLACK:
-        return (ELASTIC if way == 0 else ELASTIC + 1), m
+        return (ELASTIC if event == 0 else ELASTIC + 1), m
     if at == UNLOADING:
-        return (int(m[3]) if way == 0 else int(m[5])), m
+        return (int(m[3]) if event == 0 else int(m[5])), m
     s = side(at)
     if at < YIELDING:
-        return (pair(YIELDING, s) if way == 0 else SLACK), m
+        return (pair(YIELDING, s) if event == 0 else SLACK), m
     if at < PINCHED:
-        if way == 0:
+        if event == 0:
             most = s * d - backbone(p, s)[0]
             if s > 0.0:
-                m = remember(max(most, m[0]), m[1])
+                m = internal_variables(max(most, m[0]), m[1])
             else:
-                m = remember(m[0], max(most, m[1]))
+                m = internal_variables(m[0], max(most, m[1]))
         elif at < BEYOND:
             return pair(BEYOND, s), m
         else:
             return FAILED, m
-    elif way == 1:
+    elif event == 1:
         if at < RELOADING:
             return pair(RELOADING if pinch_end(p, s, m)[0] else BEYOND, s), m
         return pair(YIELDING if reloading(p, s, m)[0] < backbone(p, s)[2] else BEYOND, s), m
@@ -220,7 +220,7 @@ RULE = Rule(
     ),
     start,
     branch,
-    leave,
+    transition,
     recoverable,
 )
 

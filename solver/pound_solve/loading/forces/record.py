@@ -11,10 +11,10 @@ from typing import Any, Final
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.loading.forces.base import COMMON, Force, finish
 from pound_solve.loading.motions import record
-from pound_solve.loading.motions.base import Context
+from pound_solve.loading.motions.base import LoadingContext
 
 
-def build(card_values: Mapping[str, Any], context: Context) -> Force:
+def build(card_values: Mapping[str, Any], context: LoadingContext) -> Force:
     """Force of a RECORD card; raises as `motions.record.samples` does."""
     found = record.samples(card_values, context)
     info = {"kind": SPEC.name, "name": str(card_values["FILE"]), "dt": record.step(found.raw)}

@@ -10,10 +10,10 @@ import numpy as np
 from pound_deck.schema import Spec
 from pound_solve.loading.forces.base import COMMON, Force, finish
 from pound_solve.loading.motions import sine
-from pound_solve.loading.motions.base import Context, Piecewise
+from pound_solve.loading.motions.base import LoadingContext, Piecewise
 
 
-def build(card_values: Mapping[str, Any], context: Context) -> Force:
+def build(card_values: Mapping[str, Any], context: LoadingContext) -> Force:
     """Force of a SINE card.
 
     Raises

@@ -7,11 +7,11 @@ from typing import Any, Final
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.loading.forces.base import COMMON, Force, finish
-from pound_solve.loading.motions.base import Context
+from pound_solve.loading.motions.base import LoadingContext
 from pound_solve.loading.motions.table import lines
 
 
-def build(card_values: Mapping[str, Any], context: Context) -> Force:
+def build(card_values: Mapping[str, Any], context: LoadingContext) -> Force:
     """Force of a TABLE card.
 
     Raises

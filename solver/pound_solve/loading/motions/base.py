@@ -15,7 +15,16 @@ from pound_solve.loading.motions.piecewise import Piecewise, merged
 from pound_solve.loading.records.base import RecordError
 from pound_solve.numerics.types import Array
 
-__all__ = ("COMMON", "METRE", "Context", "Motion", "Piecewise", "RecordError", "common_breaks", "finish")
+__all__ = (
+    "COMMON",
+    "METRE",
+    "LoadingContext",
+    "Motion",
+    "Piecewise",
+    "RecordError",
+    "common_breaks",
+    "finish",
+)
 
 COMMON: Final = (
     Field(
@@ -61,7 +70,7 @@ _STRONG, _WEAK = 3.0, 0.001  # [g]
 
 
 @dataclass(frozen=True, slots=True)
-class Context:
+class LoadingContext:
     """What a motion needs to know of its deck.
 
     Attributes
@@ -166,7 +175,7 @@ class Motion:
 def finish(
     card: Mapping[str, Any],
     acceleration: Piecewise,
-    context: Context,
+    context: LoadingContext,
     info: Mapping[str, Any],
     velocity0: float = 0.0,
     displacement0: float = 0.0,

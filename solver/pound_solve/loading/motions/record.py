@@ -13,7 +13,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.loading.motions.base import COMMON, Context, Motion, Piecewise, finish
+from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, finish
 from pound_solve.loading.records import formats
 from pound_solve.loading.records.base import RawRecord, RecordError
 from pound_solve.loading.records.known import find, known, load
@@ -48,7 +48,7 @@ class Samples(NamedTuple):
         return lines if lines.start <= 0 else lines.slice(0.0, lines.end)
 
 
-def samples(card_values: Mapping[str, Any], context: Context) -> Samples:
+def samples(card_values: Mapping[str, Any], context: LoadingContext) -> Samples:
     """Read the record that a card names.
 
     Parameters
@@ -73,7 +73,7 @@ def samples(card_values: Mapping[str, Any], context: Context) -> Samples:
     return Samples(t * float(card_values.get("TSCALE", 1.0)), values, raw, path, digest)
 
 
-def build(card_values: Mapping[str, Any], context: Context) -> Motion:
+def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     """Motion of a RECORD card; raises as `samples` does."""
     name = str(card_values["FILE"])
     found = samples(card_values, context)
@@ -122,7 +122,7 @@ def _unit(raw: RawRecord, wanted: str | None) -> tuple[str, list[str]]:
     return wanted, []
 
 
-def _factor(unit: str, context: Context) -> float:
+def _factor(unit: str, context: LoadingContext) -> float:
     """Factor from samples to [L/T^2]."""
     if unit == "DECK":
         return 1.0

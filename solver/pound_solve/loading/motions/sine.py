@@ -15,7 +15,7 @@ from typing import Any, Final
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.loading.motions.base import COMMON, Context, Motion, Piecewise, RecordError, finish
+from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, RecordError, finish
 from pound_solve.numerics.types import Array
 
 _PER_PERIOD: Final = 32
@@ -25,7 +25,7 @@ _MOST_PIECES: Final = 2_000_000
 _Long = np.longdouble
 
 
-def build(card_values: Mapping[str, Any], context: Context) -> Motion:
+def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     """Motion of a SINE card.
 
     Parameters
@@ -104,7 +104,7 @@ def omega(card_values: Mapping[str, Any]) -> np.longdouble:
     return 2 * np.arccos(_Long(-1)) / _Long(period) if given is None else _Long(given)
 
 
-def ending(card_values: Mapping[str, Any], context: Context) -> float:
+def ending(card_values: Mapping[str, Any], context: LoadingContext) -> float:
     """Time at which the sine ends [T]: with the analysis at the latest."""
     duration = card_values.get("DURATION")
     start = float(card_values.get("START", 0.0))

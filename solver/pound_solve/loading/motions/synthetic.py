@@ -23,13 +23,13 @@ from typing import Any, Final
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.loading.motions.base import COMMON, Context, Motion, Piecewise, RecordError, finish
+from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, RecordError, finish
 from pound_solve.numerics.types import Array
 
 MOST_SAMPLES: Final = 10_000_000
 
 
-def build(card_values: Mapping[str, Any], context: Context) -> Motion:
+def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     """Motion of a SYNTHETIC card; the same SEED gives the same motion.
 
     Parameters

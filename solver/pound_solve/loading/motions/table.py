@@ -9,10 +9,10 @@ from typing import Any, Final
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.loading.motions.base import COMMON, Context, Motion, Piecewise, RecordError, finish
+from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, RecordError, finish
 
 
-def build(card_values: Mapping[str, Any], context: Context) -> Motion:
+def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     """Motion of a TABLE card.
 
     Raises

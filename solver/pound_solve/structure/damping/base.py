@@ -23,7 +23,7 @@ BUILDING = Field(
 
 
 @dataclass(frozen=True)
-class Ground:
+class DampingContext:
     """What damping models build upon.
 
     Attributes

@@ -6,7 +6,7 @@ r"""CAUGHEY: the series that has given ratios at as many frequencies, constant m
 The second is a polynomial in :math:`\omega^2` through n points.  It is written in Lagrange's form and
 summed mode by mode, :math:`C = M \Phi\,\mathrm{diag}(2\xi_n\omega_n)\,\Phi^T M`: the coefficients
 :math:`a_b`, whose sizes lie many powers of ten apart, are never formed, nor are powers of matrices, and
-freedoms without mass, for which the series has no meaning, are not damped (Bernal 1994).
+DOFs without mass, for which the series has no meaning, are not damped (Bernal 1994).
 
 Two terms are Rayleigh damping.  With more the ratio swings between the points, and beyond the last it runs
 away, upwards for an even number and downwards for an odd one.  A negative ratio of any mode, or anywhere
@@ -27,8 +27,8 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.numerics.types import Array
 from pound_solve.structure.damping.base import (
     BUILDING,
+    DampingContext,
     DampingError,
-    Ground,
     Group,
     apart,
     frequencies,
@@ -51,9 +51,9 @@ def rates(omega: Array, at: Array, xi: Array) -> Array:
     return out
 
 
-def build(card: Card, ground: Ground) -> Group:
+def build(card: Card, context: DampingContext) -> Group:
     """Damping of the whole structure, or of one building of several."""
-    modes = ground.modes(card["NODES"], None)
+    modes = context.modes(card["NODES"], None)
     at = frequencies(card, lambda: modes.omega)
     xi = ratios(card, len(at))
     apart(at, "OMEGA" if card["OMEGA"] is not None else "MODES")
@@ -77,7 +77,7 @@ def build(card: Card, ground: Ground) -> Group:
         )
     given = np.maximum(given, 0.0)
     return Group(
-        ground.from_modes(modes, given),
+        context.from_modes(modes, given),
         None,
         f"{len(at)} terms, XI {values(xi)} at omega {values(at)}; {span(modes.omega, given)}",
     )

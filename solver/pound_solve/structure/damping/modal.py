@@ -24,8 +24,8 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.numerics.types import Array
 from pound_solve.structure.damping.base import (
     BUILDING,
+    DampingContext,
     DampingError,
-    Ground,
     Group,
     apart,
     frequencies,
@@ -84,12 +84,12 @@ def interpolated(card: Card, omega: Array) -> tuple[Array, str]:
     return xi, f"{text}; {span(omega, 2.0 * xi * omega)}"
 
 
-def build(card: Card, ground: Ground) -> Group:
+def build(card: Card, context: DampingContext) -> Group:
     """Damping of the whole structure, or of one building of several."""
-    modes = ground.modes(card["NODES"], None)
+    modes = context.modes(card["NODES"], None)
     points = card["OMEGA"] is not None or card["MODES"] is not None
     xi, text = (interpolated if points else listed)(card, modes.omega)
-    return Group(ground.from_modes(modes, 2.0 * xi * modes.omega), None, text)
+    return Group(context.from_modes(modes, 2.0 * xi * modes.omega), None, text)
 
 
 SPEC = Spec(

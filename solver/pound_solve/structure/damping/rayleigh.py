@@ -22,9 +22,9 @@ from __future__ import annotations
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.structure.damping.base import (
+    DampingContext,
     DampingError,
     Dashpots,
-    Ground,
     Group,
     frequencies,
     ratios,
@@ -55,14 +55,14 @@ def coefficients(xi: tuple[float, float], w: tuple[float, float]) -> tuple[float
     return max(alpha, 0.0), max(2 * (x2 * w2 - x1 * w1) / spread, 0.0)
 
 
-def build(card: Card, ground: Ground) -> Group:
+def build(card: Card, context: DampingContext) -> Group:
     """Damping of one group."""
     alpha, beta = card["ALPHA"], card["BETA"]
     how = "ALPHA and BETA given"
     if card["XI"] is not None:
         if alpha is not None or beta is not None:
             raise DampingError("give ALPHA and BETA, or XI with OMEGA or MODES, not both", "XI")
-        w1, w2 = frequencies(card, lambda: ground.modes(None, max(card["MODES"])).omega)
+        w1, w2 = frequencies(card, lambda: context.modes(None, max(card["MODES"])).omega)
         x1, x2 = ratios(card, 2)
         alpha, beta = coefficients((x1, x2), (w1, w2))
         how = f"XI {values(card['XI'])} at omega {w1:.6g} and {w2:.6g}"
@@ -71,8 +71,8 @@ def build(card: Card, ground: Ground) -> Group:
     alpha, beta = alpha or 0.0, beta or 0.0
     follows = card["STIFFNESS"] in ("TANGENT", "SECANT")
     return Group(
-        alpha * ground.mass(card["NODES"]),
-        beta * ground.stiffness(card["PROPS"], card["STIFFNESS"] == "INITIAL"),
+        alpha * context.mass(card["NODES"]),
+        beta * context.stiffness(card["PROPS"], card["STIFFNESS"] == "INITIAL"),
         f"alpha {alpha:.9g}, beta {beta:.9g} of the {card['STIFFNESS'].lower()} stiffness ({how})",
         Dashpots(card["PROPS"], beta, card["STIFFNESS"] == "SECANT") if follows else None,
     )

@@ -22,11 +22,11 @@ class SecantLaw(Law):
         at, d0, work, m = super().start()
         return at, d0, work, (*m, 0.0, self.p[0])
 
-    def leave(self, state: State, exit_index: int, d: float, v: float = 0.0) -> State:
+    def transition(self, state: State, event_index: int, d: float, v: float = 0.0) -> State:
         """Return the state after that exit of the branch was reached at deformation `d` and rate `v`."""
         *own, farthest, secant = state[3]
-        d_factor, _, constant = self.branch(state).exits[exit_index]
+        d_factor, _, constant = self.branch(state).exits[event_index]
         if d_factor == 0.0 == constant and abs(d) > farthest:
             farthest, secant = abs(d), max(self.force(state, d)[0] / d, 0.0)
-        at, d0, work, m = super().leave((*state[:3], tuple(own)), exit_index, d, v)
+        at, d0, work, m = super().transition((*state[:3], tuple(own)), event_index, d, v)
         return at, d0, work, (*m, farthest, secant)

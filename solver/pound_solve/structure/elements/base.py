@@ -13,15 +13,15 @@ from pound_deck.model import Card, Element, Node
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import Branch, Law, State
 from pound_solve.numerics.types import Array
-from pound_solve.structure.corotational import Chord
-from pound_solve.structure.dofs import Freedom
+from pound_solve.structure.corotational import CorotationalMember
+from pound_solve.structure.dofs import Dof
 
 
 @dataclass(frozen=True)
-class Block:
-    """A small symmetric matrix on some freedoms."""
+class ElementMatrix:
+    """A small symmetric matrix on some DOFs."""
 
-    freedoms: tuple[Freedom, ...]
+    dofs: tuple[Dof, ...]
     matrix: Array
 
 
@@ -29,7 +29,7 @@ class Block:
 class LawSpring:
     """A component whose force follows a piecewise-linear law.
 
-    The deformation is ``sum(row * u[freedoms])``; the force acts back on the freedoms along `row`.
+    The deformation is ``sum(row * u[DOFs])``; the force acts back on the DOFs along `row`.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class LawSpring:
     element: int
     component: str
     rule: str
-    freedoms: tuple[Freedom, ...]
+    dofs: tuple[Dof, ...]
     row: tuple[float, ...]
     law: Law
     k0: float = 0.0
@@ -90,13 +90,13 @@ class LawSpring:
 class Output:
     """A quantity of an element that is linear in displacement and velocity.
 
-    ``value = u_row . u + v_row . v + constant`` on `freedoms`; `unit` in dimensions.
+    ``value = u_row . u + v_row . v + constant`` on `DOFs`; `unit` in dimensions.
     """
 
     element: int
     quantity: str
     unit: str
-    freedoms: tuple[Freedom, ...]
+    dofs: tuple[Dof, ...]
     u_row: Array
     v_row: Array | None = None
     constant: float = 0.0
@@ -109,7 +109,7 @@ class Geometric:
     Attributes
     ----------
     matrix : ndarray, shape (n, n)
-        For an axial force of one (tension), on `freedoms` [1/L, -, L].
+        For an axial force of one (tension), on `DOFs` [1/L, -, L].
     axial : ndarray, shape (n,)
         The axial force is ``axial . u + constant``, tension positive [F].
     forces : mapping of str to ndarray, shape (n,)
@@ -117,7 +117,7 @@ class Geometric:
     """
 
     element: int
-    freedoms: tuple[Freedom, ...]
+    dofs: tuple[Dof, ...]
     matrix: Array
     axial: Array
     constant: float
@@ -128,46 +128,46 @@ class Geometric:
 class Parts:
     """Everything one element adds to the structure."""
 
-    stiffness: list[Block] = field(default_factory=list)
+    stiffness: list[ElementMatrix] = field(default_factory=list)
     geometric: list[Geometric] = field(default_factory=list)
-    chords: list[Chord] = field(default_factory=list)
-    damping: list[Block] = field(default_factory=list)
-    mass: list[Block] = field(default_factory=list)
-    loads: list[tuple[tuple[Freedom, ...], Array]] = field(default_factory=list)
+    corotational: list[CorotationalMember] = field(default_factory=list)
+    damping: list[ElementMatrix] = field(default_factory=list)
+    mass: list[ElementMatrix] = field(default_factory=list)
+    loads: list[tuple[tuple[Dof, ...], Array]] = field(default_factory=list)
     laws: list[LawSpring] = field(default_factory=list)
     outputs: list[Output] = field(default_factory=list)
 
-    def internal(self) -> tuple[Freedom, ...]:
-        """Freedoms of the element's own, beside those of its nodes."""
+    def internal(self) -> tuple[Dof, ...]:
+        """DOFs of the element's own, beside those of its nodes."""
         blocks = [*self.stiffness, *self.damping, *self.mass]
-        touched = [b.freedoms for b in blocks] + [s.freedoms for s in self.laws]
-        used = [f for freedoms in touched for f in freedoms if f[1] > 2]
+        touched = [b.dofs for b in blocks] + [s.dofs for s in self.laws]
+        used = [f for dofs in touched for f in dofs if f[1] > 2]
         return tuple(sorted(set(used)))
 
-    def initial(self) -> Block:
-        """Initial stiffness on the nodes' freedoms alone, the element's own following statically.
+    def initial(self) -> ElementMatrix:
+        """Initial stiffness on the nodes' DOFs alone, the element's own following statically.
 
         Damping in proportion to it acts on the member as a whole; on a hinge, whose initial stiffness is
         large, it would add to the yield moment.
         """
-        blocks = self.stiffness + [Block(s.freedoms, s.k0 * np.outer(s.row, s.row)) for s in self.laws]
-        freedoms = tuple(dict.fromkeys(f for b in blocks for f in b.freedoms))
-        place = {f: i for i, f in enumerate(freedoms)}
-        k = np.zeros((len(freedoms), len(freedoms)))
+        blocks = self.stiffness + [ElementMatrix(s.dofs, s.k0 * np.outer(s.row, s.row)) for s in self.laws]
+        dofs = tuple(dict.fromkeys(f for b in blocks for f in b.dofs))
+        place = {f: i for i, f in enumerate(dofs)}
+        k = np.zeros((len(dofs), len(dofs)))
         for b in blocks:
-            at = [place[f] for f in b.freedoms]
+            at = [place[f] for f in b.dofs]
             k[np.ix_(at, at)] += b.matrix
         own = [i for f, i in place.items() if f[1] > 2 and k[i].any()]
         nodes = [i for f, i in place.items() if f[1] < 3]
-        if len(nodes) == len(freedoms):
-            return Block(freedoms, k)
+        if len(nodes) == len(dofs):
+            return ElementMatrix(dofs, k)
         follow = np.linalg.solve(k[np.ix_(own, own)], k[np.ix_(own, nodes)])
         left = k[np.ix_(nodes, nodes)] - k[np.ix_(nodes, own)] @ follow
-        return Block(tuple(freedoms[i] for i in nodes), left)
+        return ElementMatrix(tuple(dofs[i] for i in nodes), left)
 
 
 @dataclass(frozen=True)
-class Site:
+class ElementContext:
     """Where an element stands and what it may ask.
 
     Attributes
@@ -246,7 +246,7 @@ def hysteretic(
     element: int,
     component: str,
     unit: str,
-    row: Mapping[Freedom, float],
+    row: Mapping[Dof, float],
     card: Card,
     rule: Spec,
     k: float,
@@ -256,7 +256,7 @@ def hysteretic(
 
     Parameters
     ----------
-    row : mapping of Freedom to float
+    row : mapping of Dof to float
         Its deformation.
     card : Card
         Holds the rule's items.
@@ -277,9 +277,9 @@ def hysteretic(
         law = rule.impl(card.values, k, plus, minus)
     except ValueError as err:
         raise ElementError(str(err), "RULE") from None
-    freedoms, factors = zip(*((f, float(x)) for f, x in row.items() if x != 0.0))
+    dofs, factors = zip(*((f, float(x)) for f, x in row.items() if x != 0.0))
     yields = (plus / k, minus / k)
-    return LawSpring(element, component, rule.name, freedoms, factors, law, k, yields, unit=unit)
+    return LawSpring(element, component, rule.name, dofs, factors, law, k, yields, unit=unit)
 
 
 def axes(angle: float) -> tuple[tuple[float, float], tuple[float, float]]:

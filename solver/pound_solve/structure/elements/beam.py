@@ -14,7 +14,7 @@ Local axes: x from I to J, y to its left.  Interpolation over the flexible lengt
 consistent loads alike.
 
 A member that yields has hinges at the ends of the flexible length.  The beam between them then hangs on
-freedoms of its own, which the hinges join to the nodes; hinges with a length take their flexibility off the
+DOFs of its own, which the hinges join to the nodes; hinges with a length take their flexibility off the
 beam, so that the elastic member is the same with and without them.
 
 References
@@ -32,15 +32,15 @@ import numpy as np
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind
 from pound_solve.numerics.types import Array
-from pound_solve.structure.corotational import STRING, TURNING, Chord
-from pound_solve.structure.dofs import Freedom
+from pound_solve.structure.corotational import STRING, TURNING, CorotationalMember
+from pound_solve.structure.dofs import Dof
 from pound_solve.structure.elements.base import (
-    Block,
+    ElementContext,
     ElementError,
+    ElementMatrix,
     Geometric,
     Output,
     Parts,
-    Site,
     direction,
 )
 
@@ -48,7 +48,7 @@ from pound_solve.structure.elements.base import (
 _GAUSS_X, _GAUSS_W = (a for a in np.polynomial.legendre.leggauss(4))
 _GAUSS_X, _GAUSS_W = 0.5 * (_GAUSS_X + 1.0), 0.5 * _GAUSS_W
 
-INSIDE = {2: 3, 5: 4, 0: 5, 3: 6}  #: number of the element's own freedom behind a hinge, by local freedom
+INSIDE = {2: 3, 5: 4, 0: 5, 3: 6}  #: number of the element's own DOF behind a hinge, by local DOF
 
 
 @dataclass(frozen=True)
@@ -58,15 +58,15 @@ class Member:
     Attributes
     ----------
     parts : Parts
-    freedoms : tuple of Freedom
+    dofs : tuple of Dof
         Those of the nodes, then the member's own.
     opening : ndarray, shape (6, n_freedoms)
-        Deformation of the hinges by local freedom: stretch (rows 0, 3) and bend (rows 2, 5), positive in
+        Deformation of the hinges by local DOF: stretch (rows 0, 3) and bend (rows 2, 5), positive in
         tension and where the member sags (tension on the right of the way from I to J).
     """
 
     parts: Parts
-    freedoms: tuple[Freedom, ...]
+    dofs: tuple[Dof, ...]
     opening: Array
 
 
@@ -124,7 +124,7 @@ def soften(k: Array, pins: list[int], soft: Array) -> tuple[Array, Array, Array]
     k : ndarray, shape (6, 6)
         Local stiffness of the beam.
     pins : list of int
-        Local freedoms that are not held.
+        Local DOFs that are not held.
     soft : ndarray, shape (6, 6)
         Flexibility of the joints [L/F, 1/F, 1/(F L)]; negative where the beam is stiffened.
 
@@ -174,15 +174,15 @@ def pinned(p: Card) -> list[int]:
     return {"NONE": [], "I": [2], "J": [5], "BOTH": [2, 5]}[p["PIN"] if p["I"] > 0.0 else "BOTH"]
 
 
-def build(site: Site, hinged: tuple[int, ...] = (), taken: Array | None = None) -> Member:
+def build(context: ElementContext, hinged: tuple[int, ...] = (), taken: Array | None = None) -> Member:
     """Build a beam's matrices, loads and end forces.
 
     Parameters
     ----------
-    site : Site
+    context : Site
         With a property card that has the fields `FIELDS`.
     hinged : tuple of int
-        Local freedoms (0, 3 stretch, 2, 5 bend) that a hinge holds.
+        Local DOFs (0, 3 stretch, 2, 5 bend) that a hinge holds.
     taken : ndarray, shape (6, 6)
         Flexibility that the hinges have and the beam gives up [L/F, 1/F, 1/(F L)].
 
@@ -191,10 +191,10 @@ def build(site: Site, hinged: tuple[int, ...] = (), taken: Array | None = None) 
     ElementError
         No length or, by the hinges, no flexibility is left; the item is ``LP``.
     """
-    p = site.prop
-    if site.j is None:
+    p = context.prop
+    if context.j is None:
         raise ElementError(f"a {p.spec.name} member needs two nodes")
-    dx, dy = site.j.x - site.i.x, site.j.y - site.i.y
+    dx, dy = context.j.x - context.i.x, context.j.y - context.i.y
     full = math.hypot(dx, dy)
     length = full - p["END1"] - p["END2"]
     if length <= 0.0:
@@ -227,8 +227,8 @@ def build(site: Site, hinged: tuple[int, ...] = (), taken: Array | None = None) 
     # local displacements of the flexible ends: as the nodes move them, and of the beam behind the hinges
     at_nodes = np.zeros((6, 6))
     at_nodes[:3, :3] = at_nodes[3:, 3:] = rotation
-    own = tuple((site.element.id, INSIDE[d]) for d in hinged)
-    freedoms = tuple((n.id, d) for n in (site.i, site.j) for d in range(3)) + own
+    own = tuple((context.element.id, INSIDE[d]) for d in hinged)
+    dofs = tuple((n.id, d) for n in (context.i, context.j) for d in range(3)) + own
     to_ends = end_blocks(p["END1"], p["END2"]) @ at_nodes
     outer = np.hstack([to_ends, np.zeros((6, len(own)))])
     inner = outer.copy()
@@ -237,18 +237,18 @@ def build(site: Site, hinged: tuple[int, ...] = (), taken: Array | None = None) 
         inner[d, 6 + n] = 1.0
     opening = np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0])[:, None] * (inner - outer)
 
-    parts = Parts(stiffness=[Block(freedoms, inner.T @ forces @ inner)])
-    m = p["WGT"] / site.gravity
+    parts = Parts(stiffness=[ElementMatrix(dofs, inner.T @ forces @ inner)])
+    m = p["WGT"] / context.gravity
     if m > 0.0:
-        # closed hinges: a member's own freedoms have no mass
+        # closed hinges: a member's own DOFs have no mass
         _, rigid, _ = soften(k, pins, joints) if taken is not None else (None, shape, None)
-        mass = _mass(site, m, length, phi, rigid @ to_ends, at_nodes)
-        parts.mass.append(Block(freedoms[:6], mass))
-    equivalent, nodal = _loads(site, length, phi, rotation[:2, :2])
+        mass = _mass(context, m, length, phi, rigid @ to_ends, at_nodes)
+        parts.mass.append(ElementMatrix(dofs[:6], mass))
+    equivalent, nodal = _loads(context, length, phi, rotation[:2, :2])
     whole = (shape @ inner).T @ equivalent
     whole[:6] += nodal
     if whole.any():
-        parts.loads.append((freedoms, whole))
+        parts.loads.append((dofs, whole))
 
     # end forces of the beam: k (shape u + flexibility f) - f
     force_rows = forces @ inner
@@ -265,44 +265,44 @@ def build(site: Site, hinged: tuple[int, ...] = (), taken: Array | None = None) 
         if row not in (0, 3) and ei == 0.0:
             continue
         u_row, c0 = sign * force_rows[row], sign * float(constant[row])
-        parts.outputs.append(Output(site.element.id, name, unit, freedoms, u_row, None, c0))
+        parts.outputs.append(Output(context.element.id, name, unit, dofs, u_row, None, c0))
     axial = 0.5 * (force_rows[3] - force_rows[0])
     mean = 0.5 * float(constant[3] - constant[0])
-    if site.geometry in ("PDELTA_VARYING", "LARGE"):
-        quantities = np.zeros((6, len(freedoms)))
+    if context.geometry in ("PDELTA_VARYING", "LARGE"):
+        quantities = np.zeros((6, len(dofs)))
         quantities[0], quantities[1] = axial, -force_rows[2] - force_rows[5]
         quantities[2:4, :6] = at_nodes[3:5] - at_nodes[:2]
         quantities[4, 2] = quantities[5, 5] = 1.0
-        if site.geometry == "LARGE":
+        if context.geometry == "LARGE":
             initial = _initial(p, length)
             held = initial - k @ (flexibility @ initial)
             held[pins] = 0.0
             chord = _turning(p, length, forces, held)
         else:
             chord = (STRING, full, 0.0, 0.0, 0.5, float(forces[3, 3]), 0.0, 0.0, mean, 0.0), {}
-        parts.chords.append(Chord(site.element.id, freedoms, quantities, *chord))
-    elif site.geometry != "SMALL":
+        parts.corotational.append(CorotationalMember(context.element.id, dofs, quantities, *chord))
+    elif context.geometry != "SMALL":
         rows: dict[str, Array] = {}
-        if site.geometry == "PDELTA":
-            across = np.zeros(len(freedoms))
+        if context.geometry == "PDELTA":
+            across = np.zeros(len(dofs))
             across[:6] = (at_nodes[4] - at_nodes[1]) / full
             matrix = full * np.outer(across, across)
         else:
             matrix, rows = _bowed(p, length, phi, shape, inner, at_nodes)
-        parts.geometric.append(Geometric(site.element.id, freedoms, matrix, axial, mean, rows))
-    return Member(parts, freedoms, opening)
+        parts.geometric.append(Geometric(context.element.id, dofs, matrix, axial, mean, rows))
+    return Member(parts, dofs, opening)
 
 
-def _loads(site: Site, length: float, phi: float, turn: Array) -> tuple[Array, Array]:
+def _loads(context: ElementContext, length: float, phi: float, turn: Array) -> tuple[Array, Array]:
     """Consistent loads on the beam's ends, initial forces among them, and what stands on the end blocks,
     shape (6,) each, local and global.
     """
-    p = site.prop
+    p = context.prop
     uniform = np.zeros(2)
     points: list[tuple[float, Array]] = []
-    if site.self_weight:
+    if context.self_weight:
         uniform[1] -= p["WGT"]
-    for card in site.member_loads:
+    for card in context.member_loads:
         uniform += (card["WX"], card["WY"])
         if card["PX"] or card["PY"]:
             points.append((card["AT"], np.array([card["PX"], card["PY"]])))
@@ -329,7 +329,8 @@ def _initial(p: Card, length: float) -> Array:
 def _turning(
     p: Card, length: float, forces: Array, held: Array
 ) -> tuple[tuple[float, ...], dict[str, Array]]:
-    """Parameters of a chord that turns and lengthens (see `chords`), and what it adds to the end forces.
+    """Parameters of a chord that turns and lengthens (see `corotational`), and what it adds to the end
+    forces.
 
     Parameters
     ----------
@@ -378,10 +379,12 @@ def _bowed(
     return matrix, rows
 
 
-def _mass(site: Site, m: float, length: float, phi: float, from_nodes: Array, at_nodes: Array) -> Array:
-    """Mass of the member on its global nodal freedoms, shape (6, 6)."""
-    p = site.prop
-    if not site.consistent:
+def _mass(
+    context: ElementContext, m: float, length: float, phi: float, from_nodes: Array, at_nodes: Array
+) -> Array:
+    """Mass of the member on its global nodal DOFs, shape (6, 6)."""
+    p = context.prop
+    if not context.consistent:
         half = m * length / 2
         ends = (half + m * p["END1"], half + m * p["END2"])
         return np.diag([ends[0], ends[0], 0.0, ends[1], ends[1], 0.0])

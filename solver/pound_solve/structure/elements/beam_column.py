@@ -38,7 +38,7 @@ from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.numerics.types import Array
 from pound_solve.structure.elements import beam
-from pound_solve.structure.elements.base import ElementError, Parts, Site, hysteretic, signed
+from pound_solve.structure.elements.base import ElementContext, ElementError, Parts, hysteretic, signed
 from pound_solve.structure.elements.beam import pair
 
 OUTMOST = 2.0  #: levers (largest moment over axial force) from the axis that a spring stands at most
@@ -144,9 +144,9 @@ def springs(corners: Array) -> Springs:
     return Springs(direction, strength, shift, float(np.abs(given - made).max()))
 
 
-def build(site: Site) -> Parts:
+def build(context: ElementContext) -> Parts:
     """Build the beam and the springs of its hinges."""
-    p = site.prop
+    p = context.prop
     (rule,) = p.laws["RULE"]
     if rule.impl is None:
         raise ElementError("an elastic beam-column is a FRAME; here RULE yields", "RULE")
@@ -171,14 +171,14 @@ def build(site: Site) -> Parts:
             ends.append((name, axial, bend, scale))
     if not ends:
         raise ElementError("no end is left that yields: the one of HINGES is pinned", "HINGES")
-    member = beam.build(site, tuple(d for _, axial, bend, _ in ends for d in (axial, bend)), taken)
+    member = beam.build(context, tuple(d for _, axial, bend, _ in ends for d in (axial, bend)), taken)
     for name, axial, bend, scale in ends:
         rows = made.direction @ member.opening[[axial, bend]]
         for n, (row, f, s) in enumerate(zip(rows, made.strength.tolist(), made.shift.tolist()), 1):
-            at = dict(zip(member.freedoms, row))
+            at = dict(zip(member.dofs, row))
             strength = (f * (s + 1.0), f * (s - 1.0))
             member.parts.laws.append(
-                hysteretic(site.element.id, f"hinge {name} {n}", "F", at, p, rule, scale * f, strength)
+                hysteretic(context.element.id, f"hinge {name} {n}", "F", at, p, rule, scale * f, strength)
             )
     return member.parts
 

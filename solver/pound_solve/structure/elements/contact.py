@@ -17,29 +17,29 @@ from __future__ import annotations
 import math
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.structure.dofs import Freedom
+from pound_solve.structure.dofs import Dof
 from pound_solve.structure.elements import base
-from pound_solve.structure.elements.base import ElementError, LawSpring, Parts, Site, axes
+from pound_solve.structure.elements.base import ElementContext, ElementError, LawSpring, Parts, axes
 
 
-def direction(site: Site) -> tuple[float, float]:
+def direction(context: ElementContext) -> tuple[float, float]:
     """Unit vector along which I closes on J."""
-    angle = site.prop["ANGLE"]
+    angle = context.prop["ANGLE"]
     if angle is not None:
         return axes(angle)[0]
-    if site.j is None:
+    if context.j is None:
         return 1.0, 0.0
-    dx, dy = site.j.x - site.i.x, site.j.y - site.i.y
+    dx, dy = context.j.x - context.i.x, context.j.y - context.i.y
     if dx == 0.0 and dy == 0.0:
         raise ElementError("the nodes coincide: ANGLE must say along which direction they meet", "ANGLE")
     return base.direction(dx, dy)
 
 
-def adjacent(site: Site, nodes: list[int], normal: tuple[float, float]) -> tuple[float, str]:
+def adjacent(context: ElementContext, nodes: list[int], normal: tuple[float, float]) -> tuple[float, str]:
     """Stiffness that a contact takes from its neighbours [F/L], and whose it is."""
-    choice, found = site.prop["ADJACENT"], []
+    choice, found = context.prop["ADJACENT"], []
     for node in nodes:
-        own = site.stiffness_along(node, normal)
+        own = context.stiffness_along(node, normal)
         if not own:
             raise ElementError(
                 f"K=ADJACENT, but no element that meets node {node} is stiff axially along the contact's "
@@ -59,10 +59,10 @@ def adjacent(site: Site, nodes: list[int], normal: tuple[float, float]) -> tuple
 
 
 def rubbing(
-    site: Site, ends: list[tuple[int, float]], normal: tuple[float, float]
+    context: ElementContext, ends: list[tuple[int, float]], normal: tuple[float, float]
 ) -> tuple[list[LawSpring], str]:
     """Friction of the contact, if it has any, and what the report says of it."""
-    card, (nx, ny) = site.prop, normal
+    card, (nx, ny) = context.prop, normal
     if card["MU"] is None:
         for item in ("MUD", "KT"):
             if card[item] is not None:
@@ -78,25 +78,25 @@ def rubbing(
     except ValueError as err:
         raise ElementError(str(err), "MUD") from None
     row, facts = across(ends, (-ny, nx)), {"k": card["KT"]}
-    spring = LawSpring(site.element.id, "friction", "COULOMB", *row, law, facts=facts, normal="contact")
+    spring = LawSpring(context.element.id, "friction", "COULOMB", *row, law, facts=facts, normal="contact")
     return [spring], f"; friction {card['MU']:g}, {mud:g} while it slips"
 
 
 def across(
     ends: list[tuple[int, float]], way: tuple[float, float]
-) -> tuple[tuple[Freedom, ...], tuple[float, ...]]:
-    """Freedoms of the nodes, and their share in the displacement of I against J along a unit vector."""
+) -> tuple[tuple[Dof, ...], tuple[float, ...]]:
+    """DOFs of the nodes, and their share in the displacement of I against J along a unit vector."""
     pairs = [((node, d), sign * n) for node, sign in ends for d, n in enumerate(way) if n != 0.0]
     return tuple(f for f, _ in pairs), tuple(x for _, x in pairs)
 
 
-def build(site: Site) -> Parts:
+def build(context: ElementContext) -> Parts:
     """Build the contact's component, and that of its friction."""
-    card, (nx, ny) = site.prop, direction(site)
-    ends = [(site.i.id, 1.0)] + ([(site.j.id, -1.0)] if site.j is not None else [])
-    masses = card["MASSES"] or tuple(site.mass_along(node, (nx, ny)) for node, _ in ends)
+    card, (nx, ny) = context.prop, direction(context)
+    ends = [(context.i.id, 1.0)] + ([(context.j.id, -1.0)] if context.j is not None else [])
+    masses = card["MASSES"] or tuple(context.mass_along(node, (nx, ny)) for node, _ in ends)
     masses = (*masses, math.inf)[:2]
-    if card["DIAPHRAGMS"] is not None and len(card["DIAPHRAGMS"]) == 2 and site.j is None:
+    if card["DIAPHRAGMS"] is not None and len(card["DIAPHRAGMS"]) == 2 and context.j is None:
         raise ElementError("a wall has no diaphragm: give the one stiffness of node I", "DIAPHRAGMS")
     inverse = math.inf if 0.0 in masses else sum(1.0 / m for m in masses)
     if inverse == 0.0:
@@ -104,7 +104,7 @@ def build(site: Site) -> Parts:
     reduced = 0.0 if math.isinf(inverse) else 1.0 / inverse
     values, note = card.values, ""
     if values.get("K") == "ADJACENT":
-        k, whose = adjacent(site, [node for node, _ in ends], (nx, ny))
+        k, whose = adjacent(context, [node for node, _ in ends], (nx, ny))
         values, note = {**values, "K": k}, f"; {whose}"
     elif "ADJACENT" in card.spans:
         raise ElementError(
@@ -114,7 +114,7 @@ def build(site: Site) -> Parts:
         built = card.laws["LAW"][0].impl({**values, "MASSES": masses}, reduced)
     except ValueError as err:
         raise ElementError(str(err), "LAW") from None
-    rubbed, rubs = rubbing(site, ends, (nx, ny))
+    rubbed, rubs = rubbing(context, ends, (nx, ny))
     facts = {
         "k": built.k,
         "k_unit": built.unit,
@@ -129,7 +129,7 @@ def build(site: Site) -> Parts:
         "angle": math.degrees(math.atan2(ny, nx)),
     }
     spring = LawSpring(
-        site.element.id,
+        context.element.id,
         "contact",
         card["LAW"],
         *across(ends, (nx, ny)),

@@ -5,22 +5,22 @@ from __future__ import annotations
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.structure.elements.base import Block, Output, Parts, Site
+from pound_solve.structure.elements.base import ElementContext, ElementMatrix, Output, Parts
 from pound_solve.structure.elements.spring import components
 
 
-def build(site: Site) -> Parts:
+def build(context: ElementContext) -> Parts:
     """Build the components that have a dashpot."""
     parts = Parts()
-    for name, freedoms, row in components(site):
-        c = site.prop["C" + name]
+    for name, dofs, row in components(context):
+        c = context.prop["C" + name]
         if c == 0.0:
             continue
         r = np.array(row)
-        parts.damping.append(Block(freedoms, c * np.outer(r, r)))
+        parts.damping.append(ElementMatrix(dofs, c * np.outer(r, r)))
         unit, kind = ("F*L", "moment") if name == "R" else ("F", "force")
         parts.outputs.append(
-            Output(site.element.id, f"{kind} {name}", unit, freedoms, np.zeros(len(row)), c * r)
+            Output(context.element.id, f"{kind} {name}", unit, dofs, np.zeros(len(row)), c * r)
         )
     return parts
 

@@ -34,11 +34,11 @@ import numpy as np
 
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.structure.dofs import Freedom
-from pound_solve.structure.elements.base import Block, ElementError, Output, Parts, Site
+from pound_solve.structure.dofs import Dof
+from pound_solve.structure.elements.base import ElementContext, ElementError, ElementMatrix, Output, Parts
 from pound_solve.structure.elements.multispring import lobatto, no_tension
 
-TAIL, ROW = 3, 5  #: own freedoms: rotation of the rocking cone's mass, settlement of the row of springs
+TAIL, ROW = 3, 5  #: own DOFs: rotation of the rocking cone's mass, settlement of the row of springs
 
 
 def stiffness(g: float, nu: float, b: float, across: float) -> tuple[float, float, float]:
@@ -78,12 +78,12 @@ def radiation(p: Card, gravity: float, rocking: float) -> tuple[float, float, fl
     return rho * shear * area, rho * press * area, rho * press * inertia, rho * inertia * reach
 
 
-def build(site: Site) -> Parts:
+def build(context: ElementContext) -> Parts:
     """Build springs, dashpots and the mass of the rocking cone."""
-    p, number = site.prop, site.element.id
+    p, number = context.prop, context.element.id
     kx, ky, kr = stiffness(p["G"], p["NU"], p["B"], p["L"])
-    cx, cy, cr, mass = radiation(p, site.gravity, kr)
-    ends = [(site.i.id, 1.0)] if site.j is None else [(site.j.id, 1.0), (site.i.id, -1.0)]
+    cx, cy, cr, mass = radiation(p, context.gravity, kr)
+    ends = [(context.i.id, 1.0)] if context.j is None else [(context.j.id, 1.0), (context.i.id, -1.0)]
     x, y, turn = ({(node, d): sign for node, sign in ends} for d in range(3))
     parts = Parts()
     settling, k_settling = y, ky
@@ -108,21 +108,21 @@ def build(site: Site) -> Parts:
             parts.stiffness.append(_block(spring, k))
         if c:
             parts.damping.append(_block(dashpot, c))
-        freedoms = tuple({**spring, **dashpot})
+        dofs = tuple({**spring, **dashpot})
         u_row, v_row = (
-            factor * np.array([row.get(f, 0.0) for f in freedoms])
+            factor * np.array([row.get(f, 0.0) for f in dofs])
             for factor, row in ((k, spring), (c, dashpot))
         )
         if k or c:
-            parts.outputs.append(Output(number, name if k else "dashpot R", unit, freedoms, u_row, v_row))
+            parts.outputs.append(Output(number, name if k else "dashpot R", unit, dofs, u_row, v_row))
     if cr:
-        parts.mass.append(Block(((number, TAIL),), np.array([[mass]])))
+        parts.mass.append(ElementMatrix(((number, TAIL),), np.array([[mass]])))
     return parts
 
 
-def _block(row: Mapping[Freedom, float], factor: float) -> Block:
+def _block(row: Mapping[Dof, float], factor: float) -> ElementMatrix:
     r = np.array(list(row.values()))
-    return Block(tuple(row), factor * np.outer(r, r))
+    return ElementMatrix(tuple(row), factor * np.outer(r, r))
 
 
 SPEC = Spec(

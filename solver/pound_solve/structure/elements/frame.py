@@ -22,20 +22,27 @@ import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.structure.elements import beam
-from pound_solve.structure.elements.base import DAMAGE, ElementError, Parts, Site, hysteretic, signed
+from pound_solve.structure.elements.base import (
+    DAMAGE,
+    ElementContext,
+    ElementError,
+    Parts,
+    hysteretic,
+    signed,
+)
 from pound_solve.structure.elements.beam import pair
 
-ENDS = ((2, "I", "MI"), (5, "J", "MJ"))  #: local freedom, name and strength of the hinges
+ENDS = ((2, "I", "MI"), (5, "J", "MJ"))  #: local DOF, name and strength of the hinges
 
 
-def build(site: Site) -> Parts:
+def build(context: ElementContext) -> Parts:
     """Build the beam and the hinges that have a strength."""
-    p = site.prop
+    p = context.prop
     (rule,) = p.laws["RULE"]
     ends = [end for end in ENDS if p[end[2]] is not None]
-    _consistent(site, [item for _, _, item in ends])
+    _consistent(context, [item for _, _, item in ends])
     if not ends:
-        return beam.build(site).parts
+        return beam.build(context).parts
     ei = p["E"] * p["I"]
     if p["KH"] is not None:
         stiffness, taken = dict(zip((2, 5), pair(p["KH"]))), None
@@ -44,20 +51,20 @@ def build(site: Site) -> Parts:
         stiffness, taken = {d: ei / lengths[d] for d in lengths}, np.zeros((6, 6))
         for d, _, _ in ends:
             taken[d, d] = lengths[d] / ei
-    member = beam.build(site, tuple(d for d, _, _ in ends), taken)
+    member = beam.build(context, tuple(d for d, _, _ in ends), taken)
     for d, end, item in ends:
-        row = dict(zip(member.freedoms, member.opening[d]))
+        row = dict(zip(member.dofs, member.opening[d]))
         member.parts.laws.append(
             hysteretic(
-                site.element.id, f"hinge {end}", "F*L", row, p, rule, stiffness[d], signed(p[item], item)
+                context.element.id, f"hinge {end}", "F*L", row, p, rule, stiffness[d], signed(p[item], item)
             )
         )
     return member.parts
 
 
-def _consistent(site: Site, strengths: list[str]) -> None:
+def _consistent(context: ElementContext, strengths: list[str]) -> None:
     """Raise where what the card says of hinges does not fit together."""
-    p = site.prop
+    p = context.prop
     (rule,) = p.laws["RULE"]
     given = [item for item in ("KH", "LP") if p[item] is not None]
     if not strengths:

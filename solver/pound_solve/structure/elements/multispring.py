@@ -29,14 +29,14 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import Law
 from pound_solve.laws.hysteresis.slackness import RULE
 from pound_solve.numerics.types import Array
-from pound_solve.structure.dofs import Freedom
+from pound_solve.structure.dofs import Dof
 from pound_solve.structure.elements.base import (
-    Block,
+    ElementContext,
     ElementError,
+    ElementMatrix,
     LawSpring,
     Output,
     Parts,
-    Site,
     axes,
     hysteretic,
     signed,
@@ -56,7 +56,7 @@ def lobatto(count: int) -> tuple[Array, Array]:
 def no_tension(
     element: int,
     component: str,
-    row: Mapping[Freedom, float],
+    row: Mapping[Dof, float],
     k: float,
     strength: float | None,
     width: float,
@@ -65,21 +65,21 @@ def no_tension(
     far = FAR * width
     limit = k * far if strength is None else strength
     law = Law(RULE, (k, limit, -limit, far, 0.0, 0.0, 1.0))
-    freedoms, factors = zip(*((f, float(x)) for f, x in row.items() if x != 0.0))
+    dofs, factors = zip(*((f, float(x)) for f, x in row.items() if x != 0.0))
     yields = None if strength is None else (math.nan, -strength / k)
-    return LawSpring(element, component, "BILINEAR_SLACK", freedoms, factors, law, k, yields)
+    return LawSpring(element, component, "BILINEAR_SLACK", dofs, factors, law, k, yields)
 
 
-def _row(site: Site, y: float) -> dict[Freedom, float]:
+def _row(context: ElementContext, y: float) -> dict[Dof, float]:
     """Deformation of the spring at `y`."""
-    ax, _ = axes(site.prop["ANGLE"])
-    ends = [(site.i.id, 1.0)] if site.j is None else [(site.j.id, 1.0), (site.i.id, -1.0)]
+    ax, _ = axes(context.prop["ANGLE"])
+    ends = [(context.i.id, 1.0)] if context.j is None else [(context.j.id, 1.0), (context.i.id, -1.0)]
     return {(node, d): sign * x for node, sign in ends for d, x in enumerate((*ax, -y))}
 
 
-def _places(site: Site) -> tuple[Array, Array, float]:
+def _places(context: ElementContext) -> tuple[Array, Array, float]:
     """Distances of the springs from the axis, their shares, and the width that they stand on."""
-    p = site.prop
+    p = context.prop
     if (p["WIDTH"] is None) == (p["Y"] is None):
         raise ElementError("give the springs' places as WIDTH or as Y", "Y")
     if p["WIDTH"] is not None:
@@ -94,11 +94,11 @@ def _places(site: Site) -> tuple[Array, Array, float]:
     return y, shares / shares.sum(), float(np.abs(y).max()) or 1.0
 
 
-def build(site: Site) -> Parts:
+def build(context: ElementContext) -> Parts:
     """Build the springs."""
-    p = site.prop
+    p = context.prop
     (rule,) = p.laws["RULE"]
-    y, shares, width = _places(site)
+    y, shares, width = _places(context)
     k, force = p["KX"], p["FX"]
     parts = Parts()
     if rule.impl is not None and p["TENSION"] == "NO":
@@ -108,25 +108,25 @@ def build(site: Site) -> Parts:
     if rule.impl is None and p["TENSION"] == "YES":
         if force is not None:
             raise ElementError("FX has no effect with RULE=ELASTIC: name a rule that yields", "FX")
-        freedoms = tuple(_row(site, 0.0))
-        rows = np.array([list(_row(site, at).values()) for at in y])
+        dofs = tuple(_row(context, 0.0))
+        rows = np.array([list(_row(context, at).values()) for at in y])
         each = (rows.T * (k * shares)).T
-        parts.stiffness.append(Block(freedoms, rows.T @ each))
+        parts.stiffness.append(ElementMatrix(dofs, rows.T @ each))
         parts.outputs += [
-            Output(site.element.id, "axial", "F", freedoms, each.sum(axis=0)),
-            Output(site.element.id, "moment", "F*L", freedoms, -y @ each),
+            Output(context.element.id, "axial", "F", dofs, each.sum(axis=0)),
+            Output(context.element.id, "moment", "F*L", dofs, -y @ each),
         ]
         return parts
     for n, (at, share) in enumerate(zip(y.tolist(), shares.tolist()), 1):
-        name, row = f"spring {n}", _row(site, at)
+        name, row = f"spring {n}", _row(context, at)
         if rule.impl is None:
             strength = None if force is None else -share * signed(force, "FX")[1]
-            parts.laws.append(no_tension(site.element.id, name, row, share * k, strength, width))
+            parts.laws.append(no_tension(context.element.id, name, row, share * k, strength, width))
         else:
             plus, minus = signed(force, "FX")
             parts.laws.append(
                 hysteretic(
-                    site.element.id, name, "F", row, p, rule, share * k, (share * plus, share * minus)
+                    context.element.id, name, "F", row, p, rule, share * k, (share * plus, share * minus)
                 )
             )
     return parts

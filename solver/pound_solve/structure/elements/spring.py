@@ -10,24 +10,24 @@ from __future__ import annotations
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.structure.dofs import Freedom
+from pound_solve.structure.dofs import Dof
 from pound_solve.structure.elements.base import (
     DAMAGE,
-    Block,
+    ElementContext,
     ElementError,
+    ElementMatrix,
     Output,
     Parts,
-    Site,
     axes,
     hysteretic,
     signed,
 )
 
 
-def components(site: Site) -> list[tuple[str, tuple[Freedom, ...], tuple[float, ...]]]:
-    """Name, freedoms and row of the components X, Y and R."""
-    ax, ay = axes(site.prop["ANGLE"])
-    i, j = site.i.id, None if site.j is None else site.j.id
+def components(context: ElementContext) -> list[tuple[str, tuple[Dof, ...], tuple[float, ...]]]:
+    """Name, DOFs and row of the components X, Y and R."""
+    ax, ay = axes(context.prop["ANGLE"])
+    i, j = context.i.id, None if context.j is None else context.j.id
     out = []
     for name, direction in (
         ("X", ((0, ax[0]), (1, ax[1]))),
@@ -36,22 +36,22 @@ def components(site: Site) -> list[tuple[str, tuple[Freedom, ...], tuple[float, 
     ):
         parts = tuple(p for p in direction if p[1] != 0.0)
         if j is None:
-            freedoms, row = tuple((i, d) for d, _ in parts), tuple(f for _, f in parts)
+            dofs, row = tuple((i, d) for d, _ in parts), tuple(f for _, f in parts)
         else:
-            freedoms = tuple((j, d) for d, _ in parts) + tuple((i, d) for d, _ in parts)
+            dofs = tuple((j, d) for d, _ in parts) + tuple((i, d) for d, _ in parts)
             row = tuple(f for _, f in parts) + tuple(-f for _, f in parts)
-        out.append((name, freedoms, row))
+        out.append((name, dofs, row))
     return out
 
 
-def build(site: Site) -> Parts:
+def build(context: ElementContext) -> Parts:
     """Build the components that have stiffness."""
-    card, parts = site.prop, Parts()
+    card, parts = context.prop, Parts()
     names = card["RULE"]
     if len(names) == 2:
         raise ElementError("RULE takes one rule for all components, or three for x, y, rotation", "RULE")
     specs = {spec.name: spec for spec in card.laws["RULE"]}
-    for n, (name, freedoms, row) in enumerate(components(site)):
+    for n, (name, dofs, row) in enumerate(components(context)):
         k, item = card["K" + name], "F" + name if name != "R" else "MR"
         force = card[item]
         rule = specs[names[n] if len(names) == 3 else names[0]]
@@ -68,11 +68,13 @@ def build(site: Site) -> Parts:
             raise ElementError(f"{item} has no effect with RULE=ELASTIC: name a rule that yields", item)
         if rule.impl is None:
             r = np.array(row)
-            parts.stiffness.append(Block(freedoms, k * np.outer(r, r)))
-            parts.outputs.append(Output(site.element.id, f"{kind} {name}", unit, freedoms, k * r))
+            parts.stiffness.append(ElementMatrix(dofs, k * np.outer(r, r)))
+            parts.outputs.append(Output(context.element.id, f"{kind} {name}", unit, dofs, k * r))
             continue
-        at = dict(zip(freedoms, row))
-        parts.laws.append(hysteretic(site.element.id, name, unit, at, card, rule, k, signed(force, item)))
+        at = dict(zip(dofs, row))
+        parts.laws.append(
+            hysteretic(context.element.id, name, unit, at, card, rule, k, signed(force, item))
+        )
     if card["DUCTU"] is not None and not parts.laws:
         raise ElementError("DUCTU has no effect where nothing yields: name a rule that yields", "DUCTU")
     return parts

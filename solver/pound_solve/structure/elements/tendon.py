@@ -16,17 +16,17 @@ import math
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import Law
 from pound_solve.laws.hysteresis.slackness import RULE
-from pound_solve.structure.elements.base import ElementError, LawSpring, Parts, Site, direction
+from pound_solve.structure.elements.base import ElementContext, ElementError, LawSpring, Parts, direction
 
 FAR = 1e3  #: strain that is never reached
 
 
-def build(site: Site) -> Parts:
+def build(context: ElementContext) -> Parts:
     """Build the tendon's one component."""
-    p = site.prop
-    if site.j is None:
+    p = context.prop
+    if context.j is None:
         raise ElementError("a TENDON needs two nodes")
-    dx, dy = site.j.x - site.i.x, site.j.y - site.i.y
+    dx, dy = context.j.x - context.i.x, context.j.y - context.i.y
     length = math.hypot(dx, dy)
     if p["N0"] and p["SLACK"]:
         raise ElementError("a tendon is slack or prestressed, not both: SLACK or N0", "N0")
@@ -37,12 +37,12 @@ def build(site: Site) -> Parts:
     strength = k * far if p["PY"] is None else p["PY"]
     row = [
         ((node, d), sign * x)
-        for node, sign in ((site.j.id, 1.0), (site.i.id, -1.0))
+        for node, sign in ((context.j.id, 1.0), (context.i.id, -1.0))
         for d, x in enumerate(direction(dx, dy))
         if x != 0.0
     ]
     spring = LawSpring(
-        site.element.id,
+        context.element.id,
         "axial",
         "BILINEAR_SLACK",
         tuple(f for f, _ in row),
