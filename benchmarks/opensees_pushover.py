@@ -22,7 +22,7 @@ def node(floor: int, line: int) -> int:
 
 
 def member(
-    number: int, i: int, j: int, inertia: float, area: float, strength: float, stationary: int
+    number: int, i: int, j: int, inertia: float, area: float, strength: float, transformation: int
 ) -> None:
     """Elastic member between two hinges."""
     ends = []
@@ -33,7 +33,7 @@ def member(
         # no equalDOF: it would chain with the floor's, which OpenSees takes without a word, and wrongly
         ops.element("zeroLength", inner, joint, inner, "-mat", 1, 1, inner, "-dir", 1, 2, 6)
         ends.append(inner)
-    ops.element("elasticBeamColumn", number, *ends, area, 2e8, inertia, stationary)
+    ops.element("elasticBeamColumn", number, *ends, area, 2e8, inertia, transformation)
 
 
 def build() -> None:

@@ -60,7 +60,7 @@ def build(storeys, bays, tall, geometry):
     ops.geomTransf("Linear", 2)
     hinges, members = {}, []
 
-    def member(number, i, j, section, length, stationary):
+    def member(number, i, j, section, length, transformation):
         area, inertia, modulus = section
         material = 10 * number
         ops.uniaxialMaterial("Steel01", material, modulus * FY, RATIO * 6.0 * E * inertia / length, HINGE)
@@ -73,7 +73,7 @@ def build(storeys, bays, tall, geometry):
             hinges[f"{number} hinge {end}"] = own
             inner.append(own)
         ops.element(
-            "elasticBeamColumn", number, *inner, area, E, inertia * (RATIO + 1.0) / RATIO, stationary
+            "elasticBeamColumn", number, *inner, area, E, inertia * (RATIO + 1.0) / RATIO, transformation
         )
         members.append(number)
 

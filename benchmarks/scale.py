@@ -1,4 +1,4 @@
-"""What a run costs against the size of its reduced system, and where AUTO goes over from EXACT to other
+"""What a run costs against the size of its model, and where AUTO goes over from EXACT to other
 methods.
 
     python benchmarks/scale.py                              # all; some eight minutes
@@ -45,7 +45,7 @@ class Run(NamedTuple):
     facts: dict[str, str]  # the table `run`
 
 
-# ---------------------------------------------------------------------- reduced systems
+# ---------------------------------------------------------------------- models
 
 
 def deck(nodes, elements, props, weights, t, every, **more):
@@ -140,7 +140,7 @@ SCENES = {
 
 
 def run(folder, source, method, rounds=ROUNDS, **options):
-    """One reduced system by one method; the least of some rounds."""
+    """One model by one method; the least of some rounds."""
     from pound_solve import run as solve  # not before the number of threads is set
 
     path = Path(folder, "scene.inp")
@@ -186,7 +186,7 @@ def one(path, params, method, tol, barred):
 
 
 def process(path, params, method, tol, barred=False):
-    """One reduced system by one method in a process of its own, the least of two after one that
+    """One model by one method in a process of its own, the least of two after one that
     compiles.
     """
     command = [sys.executable, __file__, "--one", json.dumps([str(path), params, method, tol, barred])]
@@ -222,7 +222,7 @@ def memory(folder, source, method, **options):
 
 # ---------------------------------------------------------------------- growth
 
-#: name: (of what, sizes, reduced system, {method: (options, largest size)}, the reason of the exponents)
+#: name: (of what, sizes, model, {method: (options, largest size)}, the reason of the exponents)
 GROWTH = {
     "degrees of freedom": (
         "degrees of freedom of an elastic chain, 2 s, steps of 10 ms",
@@ -267,7 +267,7 @@ GROWTH = {
 def growth(args, folder):
     """Time and memory against size."""
     lines = []
-    for name, (what, sizes, system, methods, reason) in GROWTH.items():
+    for name, (what, sizes, model, methods, reason) in GROWTH.items():
         if args.only and name not in args.only:
             continue
         print(f"\n{name}: {what}\n{'':>10}", *(f"{m:>10} s {'MB':>8} events" for m in methods), flush=True)
@@ -277,8 +277,8 @@ def growth(args, folder):
             for method, (options, largest) in methods.items():
                 if size > largest:
                     continue
-                done = run(folder, system(size), method, **options)
-                held = memory(folder, system(size), method, **options)
+                done = run(folder, model(size), method, **options)
+                held = memory(folder, model(size), method, **options)
                 events = done.facts.get("events", "-")
                 rows[method].append((size, done.seconds, held))
                 cells.append(f"{done.seconds:12.4f} {held:8.1f} {events:>6}")
@@ -310,7 +310,7 @@ def exponent(sizes, costs):
 
 
 def changeover(args, folder):
-    """EXACT, TAYLOR, steps and AUTO on reduced systems of different size."""
+    """EXACT, TAYLOR, steps and AUTO on models of different size."""
     heads = "unknowns", "EXACT s", "TAYLOR s", "steps s", "AUTO s", "took", "of best"
     print("\n{:20}".format("scene"), *(f"{h:>9}" for h in heads))
     for name, (source, params) in SCENES.items():

@@ -62,11 +62,11 @@ class Model:
         for i, row in enumerate(DRIFT):
             if self.flow[i]:  # unloads where its rate turns
 
-                def stationary(y, i=i, row=row):
+                def reversal(y, i=i, row=row):
                     self.slip[i] = row @ y[:4] - self.flow[i] * FY[i] / K[i]
                     self.flow[i] = 0
 
-                yield (lambda t, y, row=row: row @ y[4:]), -self.flow[i], stationary
+                yield (lambda t, y, row=row: row @ y[4:]), -self.flow[i], reversal
                 continue
             for sign in (1.0, -1.0):
 

@@ -64,11 +64,11 @@ def test_an_elastic_row():
     assert not s.structure.laws
 
 
-@pytest.mark.parametrize("turned", [0, 90, 200])
-def test_springs_where_they_are_put(stationary):
+@pytest.mark.parametrize("angle", [0, 90, 200])
+def test_springs_where_they_are_put(angle):
     """Bars at y = -0.2, 0.1, 0.3 of shares 1, 1, 2 along any direction; elastic and yielding agree."""
     y, share, k = np.array([-0.2, 0.1, 0.3]), np.array([0.25, 0.25, 0.5]), 4e4
-    c, s = math.cos(math.radians(stationary)), math.sin(math.radians(stationary))
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     deck = f"""
 NODES
  1 0 0 FIX=XYR
@@ -77,8 +77,8 @@ ELEMENTS
  5 S 1 2
  6 T 1 2
 PROPS
- S MULTISPRING KX={k} ANGLE={stationary} Y=-0.2,0.1,0.3 SHARE=1,1,2 {{}}
- T SPRING KY=1e3 ANGLE={stationary}
+ S MULTISPRING KX={k} ANGLE={angle} Y=-0.2,0.1,0.3 SHARE=1,1,2 {{}}
+ T SPRING KY=1e3 ANGLE={angle}
 LOADS
  2 {30 * c!r} {30 * s!r} 4
 """

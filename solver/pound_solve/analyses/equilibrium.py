@@ -90,8 +90,8 @@ class SupportReactions:
         if couples.any():
             rows.append(("couples that springs and contacts without length do not carry", -couples))
         if s.geometric or s.corotational:
-            stationary = self.geometric @ full + s.corotational.forces(full)
-            rows.append(("axial forces on displaced members", -self.rigid @ stationary))
+            displaced = self.geometric @ full + s.corotational.forces(full)
+            rows.append(("axial forces on displaced members", -self.rigid @ displaced))
         rows.append(("sum", sum(x for _, x in rows)))
         return [(name, *map(float, x)) for name, x in rows]
 

@@ -374,8 +374,8 @@ class Path:
         force = self.forces(self.deformations(u, factor))[0]
         applied = self.applied + (factor - self.factor) * self.load
         size = np.abs(self.k) @ np.abs(u) + np.abs(self.rows.T) @ np.abs(force) + np.abs(applied)
-        stationary = self.corotational.forces(u)
-        return self.k @ u + stationary + self.rows.T @ force - applied, size + np.abs(stationary)
+        displaced = self.corotational.forces(u)
+        return self.k @ u + displaced + self.rows.T @ force - applied, size + np.abs(displaced)
 
     def _stiffness(self, u: Array, stiffness: Array) -> Matrix:
         law, i, j = (x.astype(int) for x in self._outer)

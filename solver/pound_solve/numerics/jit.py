@@ -27,15 +27,21 @@ Function = Callable[..., Any]
 
 
 SHORT = 700  #: bytes of Python's code up to which a function is put into its callers
-#: rooms that hold what is compiled, or what it depends on
-KERNELS = ("numerics", "laws", "structure", "integrate")
+#: files that hold what is compiled, or what it depends on
+KERNELS = (
+    "numerics/*.py",
+    "laws/**/*.py",
+    "structure/corotational.py",
+    "integrate/protocol.py",
+    "integrate/[!c]*/*.py",  # all methods but the closed forms, which numpy serves
+)
 LOOSE = {"contract", "reassoc"}  #: what compiled code may do to the rounding of kernels marked so
 
 
 def folder() -> Path:
     """Where compiled kernels are kept: the user's cache, or a temporary folder if that is read-only."""
     program = Path(__file__).parents[1]
-    sources = sorted(p for room in KERNELS for p in (program / room).rglob("*.py"))
+    sources = sorted(p for pattern in KERNELS for p in program.glob(pattern))
     key = hashlib.sha256(b"".join(p.read_bytes() for p in sources)).hexdigest()[:16]
     home = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     place = Path(home) / "pound-solve" / key
