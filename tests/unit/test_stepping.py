@@ -11,9 +11,9 @@ from scipy.integrate import solve_ivp
 import pound_solve
 from pound_solve.integrate import auto, condensed
 from pound_solve.integrate.events import within_step
-from pound_solve.integrate.kernels import laws
+from pound_solve.integrate.kernels import allocation, products
 from pound_solve.integrate.protocol import Outcome, Peaks, Start, Stop
-from pound_solve.integrate.stepping import kernel, stepper
+from pound_solve.integrate.stepping import kernel, locating
 from pound_solve.laws import functions
 from pound_solve.laws.hysteresis import bilinear, imk_bilinear
 from pound_solve.numerics import jit, ldl
@@ -402,8 +402,11 @@ def test_a_contact_that_opens_and_closes_again_late_in_a_coarse_step(tmp_path):
 
 def test_changes_at_one_instant_stop_with_time_place_and_what_helps(tmp_path, monkeypatch, interpret):
     """With an interpolation from where the contact has just opened it would close there again and again."""
-    start = lambda w, x, i, e: within_step.excess(w, i, e, w.f[i, kernel.LD], w.f[i, kernel.LV])[0]  # noqa: E731
-    monkeypatch.setattr(kernel, "behind", start)
+
+    def at_start(laws, step, i, e):
+        return within_step.event_value(laws, i, e, laws.now.deformation[i], laws.now.rate[i])[0]
+
+    monkeypatch.setattr(locating, "value_at_start", at_start)
     interpret()
     told = bar(tmp_path, 0.05).message
     assert told.startswith("A503 at t = 0.703") and "at one instant" in told
@@ -411,7 +414,7 @@ def test_changes_at_one_instant_stop_with_time_place_and_what_helps(tmp_path, mo
 
 
 def test_too_many_changes_within_a_step_stop_before_their_log_is_full(tmp_path, monkeypatch):
-    monkeypatch.setattr(stepper, "LOG", 4 - 16 * 5)  # four rows for five laws
+    monkeypatch.setattr(allocation, "TRANSITIONS", 4 - 16 * 5)  # four rows for five laws
     told = run(tmp_path, "NEWMARK DT=0.1").message
     assert "more than 2 times within one step, the last in element" in told
 
@@ -471,28 +474,26 @@ def test_the_sparse_factor_and_its_updates(seed, n):
     a = a + a.T + np.diag(4.0 + np.abs(a).sum(axis=1))
     s = ldl.analyse(n, *np.nonzero(linked))
     columns = np.repeat(np.arange(n), np.diff(s.ap))
-    l, q = np.zeros((1, len(s.li))), np.zeros((3, n))  # noqa: E741
-    assert ldl.factor(s, a[s.ai, columns], l, 0, q, 0, 1) == -1
+    l, d, row = np.zeros(len(s.li)), np.zeros(n), np.zeros(n)  # noqa: E741
+    assert ldl.factor(s, a[s.ai, columns], l, d, row) == -1
     for _ in range(3):
         b = rng.standard_normal(n)
-        q[2] = b
-        ldl.solve(s, l, 0, q, 0, 2)
-        assert np.abs(a @ q[2] - b).max() < 1e-10
+        x = b.copy()
+        ldl.solve(s, l, d, x)
+        assert np.abs(a @ x - b).max() < 1e-10
         first = int(rng.integers(n))
         rest = np.flatnonzero(linked[first] & (np.arange(n) > first))[:1]
-        row = np.zeros(n)
         row[first], row[rest] = 1.0, -1.0
-        q[1] = row
-        assert ldl.update(s, l, 0, q, 0, 1, first, 2.5)
-        assert not q[1].any()
         a += 2.5 * np.outer(row, row)
+        assert ldl.update(s, l, d, row, first, 2.5)
+        assert not row.any()
 
 
 def test_a_singular_matrix_names_its_unknown():
     s = ldl.analyse(3, *np.nonzero(np.ones((3, 3))))
     a = np.array([[2.0, 1.0, 1.0], [1.0, 1.0, 0.0], [1.0, 0.0, 1.0]])  # its last pivot is zero
     columns = np.repeat(np.arange(3), np.diff(s.ap))
-    assert ldl.factor(s, a[s.ai, columns], np.zeros((1, 3)), 0, np.zeros((2, 3)), 0, 1) == 2
+    assert ldl.factor(s, a[s.ai, columns], *np.zeros((3, 3))) == 2
 
 
 PUSHED = """NODES
@@ -568,11 +569,11 @@ def test_products_along_diagonals_and_row_by_row_are_those_of_the_matrix():
         + np.diag(rng.normal(size=n - 1), -1)
     )
     a[0, -1], a[7, 3], a[5, 5] = 3.0, -2.0, 0.0
-    laid = stepper.product(a)
+    laid = allocation.product(a)
     assert laid.offsets.tolist() == [0, -1, 2] and laid.row.tolist() == [0, 7]
-    q = np.vstack([rng.normal(size=n), np.full(n, np.nan)])
-    laws.times(laid, q, 0, 1)
-    assert np.allclose(q[1], a @ q[0], rtol=1e-14, atol=1e-14)
+    x, y = rng.normal(size=n), np.full(n, np.nan)
+    products.multiply(laid, x, y)
+    assert np.allclose(y, a @ x, rtol=1e-14, atol=1e-14)
 
 
 def test_lines_and_rings_are_eliminated_from_both_ends_on_few_diagonals():

@@ -108,88 +108,84 @@ def analyse(n: int, i: Index, j: Index) -> Pattern:
     return Pattern(ap, np.array([row for x in lower for row in x], np.uint32), lp, li, rp, rk, rq)
 
 
-def factor(s: Pattern, ax: Array, l: Array, at: int, q: Array, d: int, w: int) -> int:  # noqa: E741
-    """Factorise A with the values `ax` into row `at` of `l` and row `d` of `q`;
-    row `w` of `q` is zero before and after.
+def factor(s: Pattern, a: Array, l: Array, d: Array, w: Array) -> int:  # noqa: E741
+    """Factorise A with the values `a` into L and D, its pivots; `w` is zero before and after.
+
+    Parameters
+    ----------
+    s : Pattern
+    a, l : ndarray
+        Values on the pattern, as many as `s.ai` and `s.li`.
+    d, w : ndarray, shape (n,)
 
     Returns
     -------
     int
         -1, or the first unknown whose pivot vanishes.
     """
-    for j in range(q.shape[1]):
+    for j in range(len(d)):
         for y in range(s.ap[j], s.ap[j + 1]):
-            q[w, s.ai[y]] = ax[y]
-        pivot = q[w, j]
+            w[s.ai[y]] = a[y]
+        pivot = w[j]
         size = abs(pivot)
         for r in range(s.rp[j], s.rp[j + 1]):
             k, y = s.rk[r], s.rq[r]
-            t = l[at, y] * q[d, k]
-            pivot -= l[at, y] * t
+            t = l[y] * d[k]
+            pivot -= l[y] * t
             for x in range(y + 1, s.lp[k + 1]):
-                q[w, s.li[x]] -= l[at, x] * t
-        q[w, j] = 0.0
+                w[s.li[x]] -= l[x] * t
+        w[j] = 0.0
         if not abs(pivot) > 1e-14 * size:
             for y in range(s.lp[j], s.lp[j + 1]):
-                q[w, s.li[y]] = 0.0
+                w[s.li[y]] = 0.0
             return j
-        q[d, j] = pivot
+        d[j] = pivot
         for y in range(s.lp[j], s.lp[j + 1]):
-            l[at, y] = q[w, s.li[y]] / pivot
-            q[w, s.li[y]] = 0.0
+            l[y] = w[s.li[y]] / pivot
+            w[s.li[y]] = 0.0
     return -1
 
 
-def update(
-    s: Pattern,
-    l: Array,  # noqa: E741
-    at: int,
-    q: Array,
-    d: int,
-    w: int,
-    first: int,
-    change: float,
-) -> bool:
-    """Add ``change * w w^T`` to the factored matrix; row `w` of `q`, which begins at unknown `first`,
-    is zeroed.
+def update(s: Pattern, l: Array, d: Array, w: Array, first: int, change: float) -> bool:  # noqa: E741
+    """Add ``change * w w^T`` to the factored matrix; `w`, which begins at unknown `first`, is zeroed.
 
     Returns
     -------
     bool
         False where a pivot (nearly) vanishes: the factor must be made anew.
     """
-    j, n = first, q.shape[1]
+    j, n = first, len(d)
     good = True
     while j < n:
-        p = q[w, j]
-        q[w, j] = 0.0
+        p = w[j]
+        w[j] = 0.0
         if p != 0.0:
-            pivot = q[d, j] + change * p * p
-            if not abs(pivot) > 1e-8 * abs(q[d, j]):
+            pivot = d[j] + change * p * p
+            if not abs(pivot) > 1e-8 * abs(d[j]):
                 good = False
-                pivot = q[d, j]
+                pivot = d[j]
             g = p * change / pivot
-            change *= q[d, j] / pivot
-            q[d, j] = pivot
+            change *= d[j] / pivot
+            d[j] = pivot
             for y in range(s.lp[j], s.lp[j + 1]):
                 i = s.li[y]
-                q[w, i] -= p * l[at, y]
-                l[at, y] += g * q[w, i]
+                w[i] -= p * l[y]
+                l[y] += g * w[i]
         j = s.li[s.lp[j]] if s.lp[j + 1] > s.lp[j] else n
     return good
 
 
-def solve(s: Pattern, l: Array, at: int, q: Array, d: int, x: int) -> None:  # noqa: E741
-    """Solve in place for row `x` of `q`."""
-    n = q.shape[1]
+def solve(s: Pattern, l: Array, d: Array, x: Array) -> None:  # noqa: E741
+    """Solve in place for `x`, shape (n,)."""
+    n = len(d)
     for j in range(n):
-        t = q[x, j]
+        t = x[j]
         for y in range(s.lp[j], s.lp[j + 1]):
-            q[x, s.li[y]] -= l[at, y] * t
+            x[s.li[y]] -= l[y] * t
     for j in range(n):
-        q[x, j] /= q[d, j]
+        x[j] /= d[j]
     for j in range(n - 1, -1, -1):
-        t = q[x, j]
+        t = x[j]
         for y in range(s.lp[j], s.lp[j + 1]):
-            t -= l[at, y] * q[x, s.li[y]]
-        q[x, j] = t
+            t -= l[y] * x[s.li[y]]
+        x[j] = t

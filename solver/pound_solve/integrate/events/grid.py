@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from pound_solve.integrate.events.within_step import summit
 from pound_solve.integrate.protocol import STILL, Peak
+from pound_solve.numerics.cubic import cubic_peak
 from pound_solve.numerics.types import Array, Flags
 
 #: value and slope of function n in some arc and cell at time t
@@ -255,7 +255,7 @@ def widen(peaks: Sequence[Peak], t0: float, t: Array, value: Array, rate: Array,
         best = peaks[i].high if sign > 0 else -peaks[i].low
         f_low, f_high, s_low, s_high = (sign * float(x) for x in (low[1], high[1], low[2], high[2]))
         # the cubic through both ends tells whether it can win; only then is it polished
-        top = summit(f_low, f_high, s_low, s_high, high[0] - low[0])[1]
+        top = cubic_peak(f_low, f_high, s_low, s_high, high[0] - low[0])[1]
         if top + 0.02 * (top - max(f_low, f_high)) <= best:
             return
 

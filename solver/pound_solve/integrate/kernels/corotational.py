@@ -1,133 +1,146 @@
-"""Kernels of members that turn: forces and tangents of the chords (see `corotational`)."""
+"""Kernels of corotational members: their quantities, forces and tangents within a step."""
 
 from __future__ import annotations
 
-from pound_solve.integrate.kernels.state import (
-    A1,
-    AHEAD,
-    CLEAR,
-    G0,
-    G1,
-    REST,
-    ROUNDING,
-    S0,
-    S1,
-    U1,
-    Laws,
-    Matrices,
-    Motion,
-    Turning,
-    U,
-)
+from pound_solve.integrate.kernels.state import Corotational, Laws, LinearSystem, MemberState, Step
 from pound_solve.numerics.types import Array
-from pound_solve.structure.corotational import KNN, KTT, LENGTH, push
-from pound_solve.structure.corotational import bend as bend_chord
+from pound_solve.structure.corotational import KNN, KTT, LENGTH, bend, push
+
+CLEAR = 1e-12  #: share of the largest force that the members' forces are found to
+ROUNDING = 1e-15  #: share of a member's axial stiffness that its forces are rounded to
 
 
-def locate(b: Turning, q: Array, row: int, s: Array, to: int) -> None:
-    """Quantities of the chords at row `row` of `q` and the inputs `s`."""
-    for c in range(len(b.p)):
+def form_quantities(members: Corotational, u: Array, inputs: Array, out: Array) -> None:
+    """Quantities of the members at displacements `u` and some inputs."""
+    for c in range(len(out)):
         for j in range(6):
             total = 0.0
-            for y in range(b.at[c], b.at[c + 1]):
-                total += b.rows[y, j] * q[row, b.unknown[y]]
-            for i in range(len(s)):
-                total += b.inputs[c, j, i] * s[i]
-            b.s[c, to + j] = total
+            for y in range(members.pointers[c], members.pointers[c + 1]):
+                total += members.rows[y, j] * u[members.unknown[y]]
+            for i in range(len(inputs)):
+                total += members.inputs[c, j, i] * inputs[i]
+            out[c, j] = total
 
 
-def resist(b: Turning, c: int, q: Array, row: int, of: int) -> None:
-    """Take the forces of chord `c` off row `row` of `q`."""
-    for y in range(b.at[c], b.at[c + 1]):
+def subtract_force(members: Corotational, c: int, forces: Array, out: Array) -> None:
+    """Subtract the forces of member `c` from those on the unknowns."""
+    for y in range(members.pointers[c], members.pointers[c + 1]):
         total = 0.0
         for j in range(6):
-            total += b.rows[y, j] * b.s[c, of + j]
-        q[row, b.unknown[y]] -= total
+            total += members.rows[y, j] * forces[c, j]
+        out[members.unknown[y]] -= total
 
 
-def straight_force(b: Turning, c: int, h: int, s: int, to: int, sign: float) -> None:
-    """Add the force of the tangent in row `h` at the quantities in columns `s` to columns `to`."""
+def add_tangent_force(tangent: Array, c: int, quantities: Array, out: Array, sign: float) -> None:
+    """Add the force that the tangent of member `c` gives at some quantities."""
     for i in range(6):
         total = 0.0
         for j in range(6):
-            total += b.h[h, 6 * i + j] * b.s[c, s + j]
-        b.s[c, to + i] += sign * total
+            total += tangent[c, 6 * i + j] * quantities[c, j]
+        out[c, i] += sign * total
 
 
-def stiffen(m: Matrices, b: Turning, x: Motion, c: int, h: int, factor: float, light: bool) -> None:
-    """Add `factor` times the tangent of chord `c` in row `h` to A, with `light` where massless only."""
-    first = b.at[c]
-    for y in range(first, b.at[c + 1]):
+def add_tangent(
+    linear: LinearSystem, members: Corotational, step: Step, c: int, tangent: Array, factor: float,
+    massless_only: bool,
+) -> None:  # fmt: skip
+    """Add `factor` times the tangent of member `c` to A; of massless unknowns only, if so asked."""
+    first = members.pointers[c]
+    for y in range(first, members.pointers[c + 1]):
         for i in range(6):
             total = 0.0
             for j in range(6):
-                total += b.h[h, 6 * i + j] * b.rows[y, j]
-            b.product[y - first, i] = factor * total
-    for y in range(b.pairs[c], b.pairs[c + 1]):
-        at = b.pair[y, 0]
-        if light and (m.heavy[m.pattern.ai[at]] or m.heavy[m.column[at]]):
+                total += tangent[c, 6 * i + j] * members.rows[y, j]
+            members.product[y - first, i] = factor * total
+    for y in range(members.pair_pointers[c], members.pair_pointers[c + 1]):
+        at = members.pair[y, 0]
+        has_mass = linear.has_mass[linear.pattern.ai[at]] or linear.has_mass[linear.column[at]]
+        if massless_only and has_mass:
             continue
+        one, other = members.pair[y, 1], members.pair[y, 2] - first
         for j in range(6):
-            x.ax[at] += b.rows[b.pair[y, 1], j] * b.product[b.pair[y, 2] - first, j]
+            step.matrix[at] += members.rows[one, j] * members.product[other, j]
 
 
-def turn_start(w: Laws, x: Motion, s: Array) -> None:
-    """Quantities and forces of the chords at the start of a step."""
-    b = w.corotational
-    locate(b, x.q, U, s, S0)
-    for c in range(len(b.p)):
-        push(b.p, c, b.s, S0, b.s, G0)
+def form_members(laws: Laws, step: Step) -> None:
+    """Quantities and forces of the members at the start of a step."""
+    members = laws.members
+    form_quantities(members, step.now.displacement, step.now.inputs, members.now.quantities)
+    for c in range(len(members.parameters)):
+        push(members.parameters, c, members.now.quantities, 0, members.now.forces, 0)
 
 
-def aim(w: Laws, x: Motion, s: Array) -> None:
-    """Begin the chords' iterations: a line through their forces where the step leads without its end."""
-    b = w.corotational
-    locate(b, x.q, U1, s, AHEAD)
-    for c in range(len(b.p)):
-        push(b.p, c, b.s, AHEAD, b.s, REST)
-        straight_force(b, c, c, AHEAD, REST, -1.0)
+def predict_members(laws: Laws, step: Step) -> None:
+    """Begin the members' iterations: a line through their forces where the step leads without its end."""
+    members = laws.members
+    form_quantities(members, step.trial.displacement, step.trial.inputs, members.predicted)
+    for c in range(len(members.parameters)):
+        push(members.parameters, c, members.predicted, 0, members.at_zero, 0)
+        add_tangent_force(members.tangent, c, members.predicted, members.at_zero, -1.0)
 
 
-def miss(w: Laws, x: Motion, bk: float) -> float:
-    """Find the chords' forces for the accelerations tried, and their largest distance from the line,
-    over that allowed; lead the line through them.
+def predicted_force(members: Corotational, c: int) -> None:
+    """Force of member `c` on its line at the predicted quantities, as its force at the end of the step."""
+    for j in range(6):
+        members.trial.forces[c, j] = members.at_zero[c, j]
+    add_tangent_force(members.tangent, c, members.predicted, members.trial.forces, 1.0)
+
+
+def anchor(members: Corotational, c: int) -> None:
+    """Draw the line of member `c` through its force at the end of the step."""
+    for j in range(6):
+        members.at_zero[c, j] = members.trial.forces[c, j]
+    add_tangent_force(members.tangent, c, members.trial.quantities, members.at_zero, -1.0)
+
+
+def correct_members(laws: Laws, step: Step, beta_h2: float) -> float:
+    """Find the members' forces at the acceleration that was tried, and draw their lines through them.
+
+    Returns
+    -------
+    float
+        Largest distance of a force from its line, over what is allowed.
     """
-    b, worst = w.corotational, 0.0
-    size = b.most[0]
-    for c in range(len(b.p)):
+    members, worst = laws.members, 0.0
+    trial, p = members.trial, members.parameters
+    size = members.largest[0]
+    for c in range(len(p)):
         for j in range(6):
             total = 0.0
-            for y in range(b.at[c], b.at[c + 1]):
-                total += b.rows[y, j] * x.q[A1, b.unknown[y]]
-            b.s[c, S1 + j] = b.s[c, AHEAD + j] + bk * total
-        push(b.p, c, b.s, S1, b.s, G1)
-        size = max(size, chord_force(b, c))
-    for c in range(len(b.p)):
-        length, knn = b.p[c, LENGTH], b.p[c, KNN]
-        allowed = CLEAR * size + ROUNDING * knn * (length + abs(b.s[c, S1 + 2]) + abs(b.s[c, S1 + 3]))
-        straight_force(b, c, c, S1, REST, 1.0)
+            for y in range(members.pointers[c], members.pointers[c + 1]):
+                total += members.rows[y, j] * step.trial.acceleration[members.unknown[y]]
+            trial.quantities[c, j] = members.predicted[c, j] + beta_h2 * total
+        push(p, c, trial.quantities, 0, trial.forces, 0)
+        size = max(size, force_size(trial, c, p[c, LENGTH]))
+    for c in range(len(p)):
+        length, knn = p[c, LENGTH], p[c, KNN]
+        reach = length + abs(trial.quantities[c, 2]) + abs(trial.quantities[c, 3])
+        allowed = CLEAR * size + ROUNDING * knn * reach
+        add_tangent_force(members.tangent, c, trial.quantities, members.at_zero, 1.0)
         for j in range(6):
-            off = abs(b.s[c, G1 + j] - b.s[c, REST + j])
+            off = abs(trial.forces[c, j] - members.at_zero[c, j])
             if j == 0:
                 off *= knn
             elif j == 1:
-                off *= b.p[c, KTT] / length
+                off *= p[c, KTT] / length
             elif j > 3:
                 off /= length
             worst = off / allowed if not off <= worst * allowed else worst
-            b.s[c, REST + j] = b.s[c, G1 + j]
-        straight_force(b, c, c, S1, REST, -1.0)
+        anchor(members, c)
     return worst
 
 
-def chord_force(b: Turning, c: int) -> float:
-    """Size of the forces of chord `c` at the end of the step."""
+def force_size(state: MemberState, c: int, length: float) -> float:
+    """Size of the forces of member `c` [F]."""
     return max(
-        abs(b.s[c, S1]), abs(b.s[c, S1 + 1]) / b.p[c, LENGTH], abs(b.s[c, G1 + 2]), abs(b.s[c, G1 + 3])
+        abs(state.quantities[c, 0]),
+        abs(state.quantities[c, 1]) / length,
+        abs(state.forces[c, 2]),
+        abs(state.forces[c, 3]),
     )
 
 
-def linearise(b: Turning, s: int) -> None:
-    """Take the chords' tangents at the quantities in columns `s` for the factor to come."""
-    for c in range(len(b.p)):
-        bend_chord(b.p, c, b.s, s, b.h, c)
+def take_tangents(members: Corotational, quantities: Array) -> None:
+    """Take the members' tangents at some quantities for the factor to come."""
+    for c in range(len(members.parameters)):
+        bend(members.parameters, c, quantities, 0, members.tangent, c)

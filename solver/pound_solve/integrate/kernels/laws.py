@@ -1,40 +1,12 @@
-"""Kernels of the laws: their branches, forces and states, and products with sparse rows."""
+"""Kernels of the laws: their branches, forces, work and internal variables."""
 
 from __future__ import annotations
 
-from pound_solve.integrate.kernels.state import (
-    A1,
-    AT,
-    BETA,
-    CODE,
-    CURVED,
-    D0,
-    EXIT,
-    F0,
-    HELD,
-    LD,
-    LD1,
-    LV,
-    LV1,
-    N_EXITS,
-    NORMAL,
-    PRESSED,
-    SAVED,
-    SECANT,
-    STIFFNESS,
-    TURN,
-    WORK,
-    A,
-    C,
-    K,
-    Laws,
-    Matrices,
-    Product,
-)
+from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.state import STIFFNESS, TURN, Laws
 from pound_solve.laws.automaton import PUSH, PUSH_RATE
 from pound_solve.laws.functions import Tables
-from pound_solve.numerics.ldl import Place
-from pound_solve.numerics.types import Array, Index
+from pound_solve.numerics.types import Array
 
 
 def parameters(p: Array, i: int) -> tuple[float, ...]:
@@ -45,198 +17,183 @@ def parameters(p: Array, i: int) -> tuple[float, ...]:
     )  # fmt: skip
 
 
-def memory(m: Array, i: int) -> tuple[float, ...]:
-    """Row of a memory as a tuple."""
+def internal(m: Array, i: int) -> tuple[float, ...]:
+    """Row of internal variables as a tuple."""
     return (
         m[i, 0], m[i, 1], m[i, 2], m[i, 3], m[i, 4], m[i, 5], m[i, 6], m[i, 7],
         m[i, 8], m[i, 9], m[i, 10], m[i, 11], m[i, 12], m[i, 13], m[i, 14], m[i, 15],
     )  # fmt: skip
 
 
-def motions(coefs: Array, s: float, out: Array, at: int) -> None:
-    """Inputs and their rates at the local time `s` of a piece, into rows `at` and `at + 1`."""
-    top, n = coefs.shape
-    for j in range(n):
-        value, rate = coefs[top - 1, j], 0.0
-        for k in range(top - 2, -1, -1):
-            rate = rate * s + value
-            value = value * s + coefs[k, j]
-        out[at, j], out[at + 1, j] = value, rate
+def curve(laws: Laws, rules: Tables, i: int, d: float, v: float) -> tuple[float, float, float, float]:
+    """Force of a curved law, its derivatives by `d` and `v`, and the work since the branch was entered."""
+    return rules.curve[laws.rule[i]](
+        parameters(laws.parameters, i),
+        laws.branch[i],
+        internal(laws.internal, i),
+        laws.entry_deformation[i],
+        d,
+        v,
+    )
 
 
-def load(m: Matrices, s: Array, q: Array, out: int) -> None:
-    """Loads for the inputs `s`, into row `out`."""
-    for i in range(q.shape[1]):
-        q[out, i] = m.constant[i]
-    for j in range(len(s)):
-        for i in range(q.shape[1]):
-            q[out, i] += m.inputs[j, i] * s[j]
+def linear_force(laws: Laws, i: int, d: float, v: float) -> float:
+    """Force of law `i` on its linear branch or tangent."""
+    return laws.stiffness[i] * d + laws.damping[i] * v + laws.offset[i]
 
 
-def carry(q: Array, x: int, out: int) -> None:
-    """Copy row `x` of `q` into row `out`."""
-    for i in range(q.shape[1]):
-        q[out, i] = q[x, i]
+def proportional_damping(laws: Laws, i: int, k: float) -> float:
+    """Dashpot in proportion to the tangent stiffness `k` of law `i`, or to its secant stiffness."""
+    return laws.tangent_damping[i] * max(k, 0.0) + laws.secant_damping[i] * laws.internal[i, STIFFNESS]
 
 
-def times(a: Product, q: Array, x: int, out: int) -> None:
-    """Product of a matrix with row `x` of `q`, into row `out`."""
-    n = q.shape[1]
-    for i in range(n):
-        q[out, i] = a.diagonals[0, i] * q[x, i]
-    for z in range(1, len(a.offsets)):
-        first, size = max(0, -a.offsets[z]), n - abs(a.offsets[z])
-        near, far = q[out, first : first + size], q[x, first + a.offsets[z] :]
-        for i in range(size):
-            near[i] += a.diagonals[z, i] * far[i]
-    for r in range(len(a.row)):
-        total = 0.0
-        for j in range(a.pointers[r], a.pointers[r + 1]):
-            total += a.values[j] * q[x, a.columns[j]]
-        q[out, a.row[r]] += total
-
-
-def along(a: tuple[Index, Place, Array], i: int, q: Array, x: int) -> float:
-    """One sparse row times row `x` of `q`."""
-    total = 0.0
-    for j in range(a[0][i], a[0][i + 1]):
-        total += a[2][j] * q[x, a[1][j]]
-    return total
-
-
-def follows(w: Laws, i: int, k: float) -> float:
-    """Dashpot that follows law `i`, whose tangent stiffness is `k`."""
-    return w.f[i, BETA] * max(k, 0.0) + w.f[i, SECANT] * w.memory[i, STIFFNESS]
-
-
-def enter(w: Laws, f: Tables, i: int) -> None:
-    """Take over the branch that law `i` is on."""
-    b = f.branch[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i))
-    w.f[i, K], w.f[i, C], w.f[i, F0] = b[0], b[1] + follows(w, i, b[0]), b[2]
-    count = 0
-    for e in range(3):
+def enter_branch(laws: Laws, rules: Tables, i: int) -> None:
+    """Take over the linear branch that law `i` is on, and its event functions."""
+    b = rules.branch[laws.rule[i]](
+        parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
+    )
+    laws.stiffness[i], laws.damping[i], laws.offset[i] = (
+        b[0],
+        b[1] + proportional_damping(laws, i, b[0]),
+        b[2],
+    )
+    n_events = 0
+    for e in range(laws.events.shape[1]):
         x, y, z = b[3 + 3 * e], b[4 + 3 * e], b[5 + 3 * e]
-        w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2] = x, y, z
+        laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2] = x, y, z
         if x != 0.0 or y != 0.0:
-            count = e + 1
-    w.i[i, N_EXITS] = count
+            n_events = e + 1
+    laws.n_events[i] = n_events
 
 
-def law_work(w: Laws, f: Tables, i: int, d: float) -> float:
+def law_work(laws: Laws, rules: Tables, i: int, d: float) -> float:
     """Work done on law `i` so far, dashpots apart."""
-    if w.i[i, CURVED]:
-        c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, 0.0)
-        return w.f[i, WORK] + c[3]
-    return w.f[i, WORK] + (0.5 * w.f[i, K] * (d + w.f[i, D0]) + w.f[i, F0]) * (d - w.f[i, D0])
+    if laws.curved[i]:
+        return laws.entry_work[i] + curve(laws, rules, i, d, 0.0)[3]
+    mean = 0.5 * laws.stiffness[i] * (d + laws.entry_deformation[i]) + laws.offset[i]
+    return laws.entry_work[i] + mean * (d - laws.entry_deformation[i])
 
 
-def law_force(w: Laws, f: Tables, i: int, d: float, v: float) -> float:
+def law_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
     """Force of law `i`."""
-    if w.i[i, CURVED]:
-        c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, v)
-        return c[0] + follows(w, i, c[1]) * v
-    return w.f[i, K] * d + w.f[i, C] * v + w.f[i, F0]
+    if laws.curved[i]:
+        c = curve(laws, rules, i, d, v)
+        return c[0] + proportional_damping(laws, i, c[1]) * v
+    return linear_force(laws, i, d, v)
 
 
-def transition(w: Laws, f: Tables, i: int, way: int, d: float, v: float) -> None:
-    """Change the branch of law `i` at deformation `d` and rate `v`."""
-    done = law_work(w, f, i, d)
-    if w.f[i, EXIT + 3 * way] == 0.0 and w.f[i, EXIT + 3 * way + 2] == 0.0 and abs(d) > w.memory[i, TURN]:
-        w.memory[i, TURN], w.memory[i, STIFFNESS] = abs(d), max(law_force(w, f, i, d, 0.0) / d, 0.0)
-    at, m = f.transition[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), way, d, v)
-    w.i[i, AT], w.f[i, D0], w.f[i, WORK] = at, d, done
+def transition(laws: Laws, rules: Tables, i: int, event: int, d: float, v: float) -> None:
+    """Change the branch of law `i` by one of its events, at deformation `d` and rate `v`."""
+    done = law_work(laws, rules, i, d)
+    reversal = laws.events[i, event, 0] == 0.0 and laws.events[i, event, 2] == 0.0
+    if reversal and abs(d) > laws.internal[i, TURN]:
+        laws.internal[i, TURN] = abs(d)
+        laws.internal[i, STIFFNESS] = max(law_force(laws, rules, i, d, 0.0) / d, 0.0)
+    at, m = rules.transition[laws.rule[i]](
+        parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i), event, d, v
+    )
+    laws.branch[i], laws.entry_deformation[i], laws.entry_work[i] = at, d, done
     for j in range(len(m)):
-        w.memory[i, j] = m[j]
-    enter(w, f, i)
+        laws.internal[i, j] = m[j]
+    enter_branch(laws, rules, i)
 
 
-def lean(w: Laws, i: int, d: float, v: float, a: float) -> None:
-    """Tell law `i` the force of the one that it leans on, and its rate, at the motion of that one."""
-    j = w.i[i, NORMAL]
-    k, c = w.f[j, K], w.f[j, C]
-    w.memory[i, PUSH], w.memory[i, PUSH_RATE] = max(k * d + c * v + w.f[j, F0], 0.0), k * v + c * a
-
-
-def limit(w: Laws, f: Tables, q: Array) -> None:
-    """Limits of the laws that lean on others, at the end of a step."""
-    for i in w.leans:
-        j = w.i[i, NORMAL]
-        lean(w, i, w.f[j, LD1], w.f[j, LV1], along(w.rows, j, q, A1))
-        enter(w, f, i)
-
-
-def slide(w: Laws, h: float) -> None:
-    """Add up the work of the laws that lean on others and slip, over a step of length `h`."""
-    for i in w.leans:
-        if w.f[i, K] == 0.0:
-            before, after = w.f[i, HELD], w.f[i, F0]
-            w.f[i, WORK] += (
-                h / 6.0 * ((2.0 * before + after) * w.f[i, LV] + (before + 2.0 * after) * w.f[i, LV1])
-            )
-            w.f[i, HELD], w.f[i, D0] = after, w.f[i, LD1]
-
-
-def grip(w: Laws, f: Tables, q: Array, i: int) -> None:
-    """Let law `i` touch or let go with the one that it leans on, and take over what that does now."""
-    j = w.i[i, NORMAL]
-    lean(w, i, w.f[j, LD], w.f[j, LV], along(w.rows, j, q, A))
-    pressed = (w.i[i, PRESSED] >> w.i[j, AT]) & 1
-    if pressed != (w.i[i, AT] != 0):
-        transition(w, f, i, 0 if pressed else 2, w.f[i, LD], w.f[i, LV])
-    enter(w, f, i)
-    w.f[i, HELD] = w.f[i, K] * w.f[i, LD] + w.f[i, F0]
-
-
-def tangent(w: Laws, f: Tables, i: int) -> None:
-    """Linearise a curved law where it is."""
-    bend(w, f, i, w.f[i, LD], w.f[i, LV])
-
-
-def bend(w: Laws, f: Tables, i: int, d: float, v: float) -> None:
-    """Linearise a curved law at deformation `d` and rate `v`."""
-    c = f.curve[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), w.f[i, D0], d, v)
-    k, own = c[1], follows(w, i, c[1])
-    w.f[i, K], w.f[i, C] = k, c[2] + own
-    w.f[i, F0] = c[0] - k * d - c[2] * v
-
-
-def save(w: Laws, i: int) -> None:
-    """Keep the state of law `i`."""
-    w.i[i, SAVED] = 1
-    w.saved[i, 0], w.saved[i, 1], w.saved[i, 2] = w.i[i, AT], w.f[i, D0], w.f[i, WORK]
-    for j in range(w.memory.shape[1]):
-        w.saved[i, 3 + j] = w.memory[i, j]
-
-
-def restore(w: Laws, f: Tables, i: int) -> None:
-    """Put law `i` back into the state that was kept."""
-    w.i[i, AT], w.f[i, D0], w.f[i, WORK] = int(w.saved[i, 0]), w.saved[i, 1], w.saved[i, 2]
-    for j in range(w.memory.shape[1]):
-        w.memory[i, j] = w.saved[i, 3 + j]
-    enter(w, f, i)
-
-
-def next_exit(w: Laws, i: int, at: float, to: float, rate: float) -> tuple[int, float]:
-    """First exit on the straight path from `at` to `to` with the rate at its end, and where
-    (see `laws.follow`); -1 where there is none.
+def set_normal_force(laws: Laws, i: int, d: float, v: float, a: float) -> None:
+    """Give coupled law `i` its normal force and the rate of that, at the motion of the law that makes
+    it.
     """
-    way = 1.0 if to >= at else -1.0
+    j = laws.normal[i]
+    k, c = laws.stiffness[j], laws.damping[j]
+    laws.internal[i, PUSH] = max(linear_force(laws, j, d, v), 0.0)
+    laws.internal[i, PUSH_RATE] = k * v + c * a
+
+
+def update_friction_limits(laws: Laws, rules: Tables, acceleration: Array) -> None:
+    """Strengths of the coupled laws at the end of a step."""
+    for i in laws.coupled:
+        j = laws.normal[i]
+        a = along(laws.rows, j, acceleration)
+        set_normal_force(laws, i, laws.trial.deformation[j], laws.trial.rate[j], a)
+        enter_branch(laws, rules, i)
+
+
+def add_slip_work(laws: Laws, h: float) -> None:
+    """Add up the work of the coupled laws that slip, over a step of length `h`."""
+    for i in laws.coupled:
+        if laws.stiffness[i] == 0.0:
+            f0, f1 = laws.friction_force[i], laws.offset[i]
+            v0, v1 = laws.now.rate[i], laws.trial.rate[i]
+            laws.entry_work[i] += h / 6.0 * ((2.0 * f0 + f1) * v0 + (f0 + 2.0 * f1) * v1)
+            laws.friction_force[i], laws.entry_deformation[i] = f1, laws.trial.deformation[i]
+
+
+def couple(laws: Laws, rules: Tables, acceleration: Array, i: int) -> None:
+    """Let coupled law `i` engage or release with the contact that presses it, at the present normal
+    force.
+    """
+    j = laws.normal[i]
+    set_normal_force(laws, i, laws.now.deformation[j], laws.now.rate[j], along(laws.rows, j, acceleration))
+    pressed = (laws.pressed_branches[i] >> laws.branch[j]) & 1
+    if pressed != (laws.branch[i] != 0):
+        transition(laws, rules, i, 0 if pressed else 2, laws.now.deformation[i], laws.now.rate[i])
+    enter_branch(laws, rules, i)
+    laws.friction_force[i] = laws.stiffness[i] * laws.now.deformation[i] + laws.offset[i]
+
+
+def linearise_law(laws: Laws, rules: Tables, i: int, d: float, v: float) -> None:
+    """Put the tangent of a curved law at deformation `d` and rate `v` in the place of its branch."""
+    c = curve(laws, rules, i, d, v)
+    k, own = c[1], proportional_damping(laws, i, c[1])
+    laws.stiffness[i], laws.damping[i] = k, c[2] + own
+    laws.offset[i] = c[0] - k * d - c[2] * v
+
+
+def linearise_laws(laws: Laws, rules: Tables) -> None:
+    """Linearise all curved laws at the start of the step."""
+    for i in range(len(laws.rule)):
+        if laws.curved[i]:
+            linearise_law(laws, rules, i, laws.now.deformation[i], laws.now.rate[i])
+
+
+def save_state(laws: Laws, i: int) -> None:
+    """Save the state of law `i`."""
+    laws.saved[i] = 1
+    row = laws.saved_state[i]
+    row[0], row[1], row[2] = laws.branch[i], laws.entry_deformation[i], laws.entry_work[i]
+    for j in range(laws.internal.shape[1]):
+        row[3 + j] = laws.internal[i, j]
+
+
+def restore_state(laws: Laws, rules: Tables, i: int) -> None:
+    """Restore the saved state of law `i`."""
+    row = laws.saved_state[i]
+    laws.branch[i], laws.entry_deformation[i], laws.entry_work[i] = int(row[0]), row[1], row[2]
+    for j in range(laws.internal.shape[1]):
+        laws.internal[i, j] = row[3 + j]
+    enter_branch(laws, rules, i)
+
+
+def event_on_path(laws: Laws, i: int, start: float, end: float, rate: float) -> tuple[int, float]:
+    """First event of law `i` on the straight path of deformations from `start` to `end`, at the rate that
+    holds at its end, and the deformation there (see `laws.automaton.drive`); -1 where there is none.
+    """
+    sign = 1.0 if end >= start else -1.0
     best, where = -1, 0.0
-    for e in range(w.i[i, N_EXITS]):
-        a, b, c = w.f[i, EXIT + 3 * e], w.f[i, EXIT + 3 * e + 1], w.f[i, EXIT + 3 * e + 2]
+    for e in range(laws.n_events[i]):
+        a, b, c = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
         if a != 0.0:
             c += b * rate
-        now, slope = a * at + c, a * way
+        value, slope = a * start + c, a * sign
         if b != 0.0 and a == 0.0 and c == 0.0:
-            if b * way <= 0.0 or to == at:
+            if b * sign <= 0.0 or end == start:
                 continue
-            place = at
-        elif now >= 0.0 and (slope > 0.0 or (slope == 0.0 and now > 0.0)):
-            place = at
-        elif slope > 0.0 and a * to + c > 0.0:
-            place = at - now / slope * way
+            place = start
+        elif value >= 0.0 and (slope > 0.0 or (slope == 0.0 and value > 0.0)):
+            place = start
+        elif slope > 0.0 and a * end + c > 0.0:
+            place = start - value / slope * sign
         else:
             continue
-        if best < 0 or (place - where) * way < 0.0:
+        if best < 0 or (place - where) * sign < 0.0:
             best, where = e, place
     return best, where

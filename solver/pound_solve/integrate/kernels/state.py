@@ -1,45 +1,68 @@
-"""What the kernels work on: arrays in the order of elimination, and names for their rows and columns."""
+"""What the kernels work on: named arrays in the order of elimination, and the records of a run.
+
+Every array has a name and one place where it is allocated (`allocation`).  An instant of the motion is a
+`Motion`; a step has one at its start, ``now``, and one at its end, ``trial``, until the end is accepted.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol, get_type_hints
 
-from pound_solve.laws.automaton import MEMORY
+import numpy as np
+
 from pound_solve.numerics.ldl import Pattern, Place
 from pound_solve.numerics.types import Array, Flags, Index
 
-# why `advance` came back
+# why a kernel returns to Python
 DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON = range(7)
-#: integers of `count`
-GOAL, STEP, KEPT, LOGGED, STEPS, EVENTS, UPDATES, WORST, SINCE, SHOWN, STALE, FALLING = range(12)
-BACK = 1e-6  #: share of its largest rate that a law must move back with before it counts as turned
-NEAR = 1e-6  #: share of its largest value within which an exit is taken where it cannot be met better
-CLOSE = 1e-9  #: share of a step within which two events are at one instant
-SHOWS = 4  #: steps between two outputs, at most, that the envelopes see
-#: steps, and steps times unknowns, after which Python may look whether the user wants to stop
-PAUSE, BUSY = 100_000, 10_000_000
-FIRST = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
-INSTANT = 1e-6  #: share of the longest step that the time which tells massless velocities keeps below
-DELAY = 1e-8  #: share of the longest C / K among massless unknowns that it is
-REFRESH = 200  #: updates of rank one before a factor is made anew
-COLUMNS = 10  #: of the log: law, branches before and after, t, d, v, force; peak, its time, impulse
-# rows of `Motion.q`: at the start (0) and the end (1) of a step; loads; residual; scratch; pivots
-U, V, A, U1, V1, A1, CV, CA, CA1, P, P1, R, BASE, Y, W, D = range(16)
-HIGH, T_HIGH, LOW, T_LOW, SLOPE, VALUE, STEEPEST = range(7)  #: rows of `Motion.peak`
-WHOLE, PIECE, MASS, LIGHT = range(4)  #: rows of `Motion.l`, and of its pivots
-# columns of `Laws.f`: the linear piece, exits; entry of the state; motion; dashpot; what a contact counts
-K, C, F0, EXIT, D0, WORK = 0, 1, 2, 3, 12, 13
-LD, LV, LD1, LV1, MOST_D, MOST_V, BETA, DASHPOT, PEAK, T_PEAK, IMPULSE, SECANT, HELD = range(14, 27)
-TURN, STIFFNESS = MEMORY, MEMORY + 1  #: columns of `Laws.memory` beside the rule's own (see `SecantLaw`)
-# columns of `Laws.i`; the last two: the law that this one leans on, or -1, and a bit for each branch of
-# that one where it is pressed
-CODE, CURVED, CONTACT, AT, N_EXITS, SAVED, NORMAL, PRESSED = range(8)
-# columns of `Turning.s`: quantities and forces at the start and the end of a step, quantities at the end
-# but for the acceleration there, forces at no quantities of the line that stands for the chord
-S0, S1, G0, G1, AHEAD, REST = range(0, 36, 6)
-CLEAR = 1e-12  #: share of the largest force that the chords' forces are found to
-ROUNDING = 1e-15  #: share of a chord's axial stiffness that its forces are rounded to
-SLOW = 0.05  #: part of an error that an iteration may leave before the factor is made anew
+#: rows of `Step.factors` and of their pivots: A for the nominal step, A for a part of it, M, and
+#: ``K + C / e``, e a tiny time, over the massless unknowns
+WHOLE, PART, MASS, MASSLESS = range(4)
+TURN, STIFFNESS = -2, -1  #: columns of `Laws.internal` beside the rule's own (see `SecantLaw`)
+LOGGED = (
+    10  #: columns of `Buffers.log`: law, branches before and after, t, d, v, force; peak, its time, impulse
+)
+
+
+class Run(Protocol):
+    """Counters and clocks of a run: a numpy record."""
+
+    started: int  #: whether the first sample is taken
+    goal: int  #: the time that is integrated to, by its number
+    step: int  #: steps taken towards it
+    kept: int  #: samples in the buffers
+    logged: int  #: transitions in the buffers
+    shown: int  #: motions between samples in the buffers
+    since_shown: int  #: steps since the motion was last shown or sampled
+    steps: int
+    events: int
+    same_instant: int  #: transitions at one instant
+    driven: int  #: branches left in a step that is not cut at events
+    updates: int  #: of rank one since the factor was made
+    stale: int  #: whether the factor of the massless unknowns must be made anew
+    falling: int  #: steps that are too long for a falling branch
+    fault: int  #: law or unknown at fault, -1 for none
+    time: float
+    factor_length: float  #: step that the factor at hand is for
+    energy_at_start: float
+    longest_part: float  #: that a step may take at once for now
+    last_event: float  #: time of the last transition
+
+
+class Energy(Protocol):
+    r"""Works since the start [F L]: a numpy record."""
+
+    input: float
+    damping: float  #: lost in the dashpots of the structure, of springs and of dampers
+    contact: float  #: lost in the dashpots of contacts
+    gross_input: float  #: sum of all \|input\|
+
+
+def record(kind: type) -> Any:
+    """A numpy record with the fields of a protocol, all zero; kernels change it in place."""
+    numbers = {int: np.int64, float: np.float64}
+    fields = [(name, numbers[own]) for name, own in get_type_hints(kind).items()]
+    return np.zeros(1, np.dtype(fields, align=True)).view(np.recarray)[0]
 
 
 class Product(NamedTuple):
@@ -66,205 +89,364 @@ class Product(NamedTuple):
     values: Array
 
 
-class Matrices(NamedTuple):
-    """The linear part, constant through a run; sparse rows as (pointers, columns, values).
+class Rows(NamedTuple):
+    """Sparse rows over the unknowns.
 
     Attributes
     ----------
-    k, c, m : Product
-        Stiffness, damping and mass.
+    pointers : ndarray, shape (n_rows + 1,)
+    columns, values : ndarray, shape (n_entries,)
+    """
+
+    pointers: Index
+    columns: Place
+    values: Array
+
+
+class LinearSystem(NamedTuple):
+    """The linear part of the equations of motion, constant through a run.
+
+    Attributes
+    ----------
+    stiffness, damping, mass : Product
     inputs : ndarray, shape (n_inputs, n)
+        Loads of unit inputs.
     pushed : ndarray, shape (n, n_inputs)
         The part of them that is forces on nodes.
     constant : ndarray, shape (n,)
+        Constant loads.
     pattern : Pattern
-    a : ndarray, shape (3, n_entries)
+        Of A and its factor.
+    on_pattern : ndarray, shape (3, n_entries)
         M, C and K on the pattern.
     column : ndarray, shape (n_entries,)
         Columns of the pattern's entries.
-    heavy : ndarray, shape (n,)
+    has_mass : ndarray, shape (n,)
         Which unknowns have mass.
-    inert : bool
+    all_mass : bool
         Whether all have.
-    shifts : bool
-        Whether the stiffness of massless unknowns changes along a branch: by curved laws, or by chords.
+    massless_vary : bool
+        Whether the stiffness of massless unknowns changes along a branch: by curved laws or by corotational
+        members.
     instant : float
-        A time that is tiny against a step, for massless unknowns.
+        A time that is tiny against a step, for the velocities of massless unknowns.
     implicit : bool
         Whether the stiffness is in the pattern.
     diagonal : bool
         Whether M is.
     explicit : bool
         Whether a step needs no factor: M + gamma h C is diagonal and never changes.
-    rows : tuple of ndarray
-        Quantities whose peaks are kept, over the unknowns.
-    row_inputs : ndarray, shape (n_rows, n_inputs)
-    row_constants : ndarray, shape (n_rows,)
+    monitored : Rows
+        Monitored outputs over the unknowns.
+    monitored_inputs : ndarray, shape (n_monitored, n_inputs)
+    monitored_constants : ndarray, shape (n_monitored,)
     reactions : ndarray, shape (3, n_moved, n)
         Of moved supports from displacements, velocities, accelerations; empty with one motion for the base.
-    supports : ndarray, shape (2, n_moved, n_inputs)
+    support_forces, support_rates : ndarray, shape (n_moved, n_inputs)
         Reactions from the inputs, and the supports' velocities.
-    support_c : ndarray, shape (n_moved, n_moved)
+    support_damping : ndarray, shape (n_moved, n_moved)
     """
 
-    k: Product
-    c: Product
-    m: Product
+    stiffness: Product
+    damping: Product
+    mass: Product
     inputs: Array
     pushed: Array
     constant: Array
     pattern: Pattern
-    a: Array
+    on_pattern: Array
     column: Index
-    heavy: Flags
-    inert: bool
-    shifts: bool
+    has_mass: Flags
+    all_mass: bool
+    massless_vary: bool
     instant: float
     implicit: bool
     diagonal: bool
     explicit: bool
-    rows: tuple[Index, Place, Array]
-    row_inputs: Array
-    row_constants: Array
+    monitored: Rows
+    monitored_inputs: Array
+    monitored_constants: Array
     reactions: Array
-    supports: Array
-    support_c: Array
+    support_forces: Array
+    support_rates: Array
+    support_damping: Array
 
 
-class Turning(NamedTuple):
-    """Members whose forces follow their displaced line (see `corotational`).
+class MemberState(NamedTuple):
+    """Corotational members at one instant.
 
     Attributes
     ----------
-    p : ndarray, shape (n_chords, 10)
-    at : ndarray, shape (n_chords + 1,)
-        Pointers into the unknowns that each touches.
+    quantities, forces : ndarray, shape (n_members, 6)
+        Their quantities (see `structure.corotational`) and the forces on them.
+    """
+
+    quantities: Array
+    forces: Array
+
+
+class Corotational(NamedTuple):
+    """Members whose forces follow their displaced line (see `structure.corotational`).
+
+    Attributes
+    ----------
+    parameters : ndarray, shape (n_members, 10)
+    pointers : ndarray, shape (n_members + 1,)
+        Into the unknowns that each touches.
     unknown : ndarray, shape (n_touched,)
     rows : ndarray, shape (n_touched, 6)
         Their share in the six quantities.
-    pairs : ndarray, shape (n_chords + 1,)
-        Pointers into the pairs of unknowns.
+    pair_pointers : ndarray, shape (n_members + 1,)
+        Into the pairs of unknowns.
     pair : ndarray, shape (n_pairs, 3)
         Position in the pattern of A, and the two touched ones.
-    inputs : ndarray, shape (n_chords, 6, n_inputs)
-    supports : ndarray, shape (n_chords, 6, n_moved)
-    s : ndarray, shape (n_chords, 36)
-        Columns as above.
-    h : ndarray, shape (2 n_chords, 36)
-        Tangents: those in the factor, those of the present.
+    inputs : ndarray, shape (n_members, 6, n_inputs)
+    supports : ndarray, shape (n_members, 6, n_moved)
+    now, trial : MemberState
+    predicted : ndarray, shape (n_members, 6)
+        Quantities at the end of the step but for the acceleration there.
+    at_zero : ndarray, shape (n_members, 6)
+        Forces at zero quantities of the straight line that stands for the member in an iteration.
+    tangent : ndarray, shape (n_members, 36)
+        Tangents that are in the factor.
+    present : ndarray, shape (n_members, 36)
+        Tangents at the present quantities.
     product : ndarray, shape (most touched, 6)
         Scratch.
-    most : ndarray, shape (1,)
+    largest : ndarray, shape (1,)
         Largest force so far.
     """
 
-    p: Array
-    at: Index
+    parameters: Array
+    pointers: Index
     unknown: Index
     rows: Array
-    pairs: Index
+    pair_pointers: Index
     pair: Index
     inputs: Array
     supports: Array
-    s: Array
-    h: Array
+    now: MemberState
+    trial: MemberState
+    predicted: Array
+    at_zero: Array
+    tangent: Array
+    present: Array
     product: Array
-    most: Array
+    largest: Array
+
+
+class LawMotion(NamedTuple):
+    """Deformations and rates of the laws at one instant, shape (n_laws,)."""
+
+    deformation: Array
+    rate: Array
 
 
 class Laws(NamedTuple):
-    """The laws: what they are, and the state they are in.
+    """The laws: what they are, and the state they are in.  Arrays of one number a law have shape (n_laws,).
 
     Attributes
     ----------
-    rows : tuple of ndarray
+    rows : Rows
         Their deformations over the unknowns.
     inputs : ndarray, shape (n_laws, n_inputs)
-    pairs : tuple of ndarray
+        Deformations of unit inputs.
+    pair_pointers, pair_places, pair_values : ndarray
         Where each law's ``b b^T`` adds to A: pointers, positions in its pattern, products.
     supports : ndarray, shape (n_laws, n_moved)
-    p : ndarray, shape (n_laws, PARAMETERS)
-    memory : ndarray, shape (n_laws, MEMORY + 2)
-    f, i : ndarray, shapes (n_laws, 27), (n_laws, 8)
-        Columns as above.
-    saved : ndarray, shape (n_laws, 5 + MEMORY)
+    rule : ndarray of int
+        Number of the rule in the tables of functions.
+    curved, contact : ndarray of int
+        Whether the law is curved; whether it is a contact.
+    coupled : ndarray, shape (n_coupled,)
+        Laws whose strength is a share of the force of another, which comes before them.
+    normal : ndarray of int
+        The law whose force is that normal force, -1 if none.
+    pressed_branches : ndarray of int
+        A bit for each branch of that one where it is pressed.
+    tangent_damping, secant_damping : ndarray
+        Dashpot as a multiple of the tangent, and of the secant stiffness [T].
+    parameters : ndarray, shape (n_laws, PARAMETERS)
+    internal : ndarray, shape (n_laws, INTERNAL + 2)
+        Internal variables; the last two serve the secant stiffness.
+    branch : ndarray of int
+    entry_deformation, entry_work : ndarray
+        Where the branch was entered, and the work done up to there.
+    stiffness, damping, offset : ndarray
+        The linear branch, or the tangent of a curved one: ``f = k d + c v + f0``.
+    n_events : ndarray of int
+    events : ndarray, shape (n_laws, EVENTS, 3)
+        Event functions of the branch, ``a d + b v + c``.
+    now, trial : LawMotion
+    largest_deformation, largest_rate : ndarray
+    friction_force : ndarray
+        Of a coupled law, at the start of the step.
+    dashpot_loss : ndarray
+        Energy lost in its dashpot so far [F L].
+    peak_force, peak_time, impulse : ndarray
+        Of the collision that is under way.
+    saved : ndarray of int
+        Whether the state is saved.
+    saved_state : ndarray, shape (n_laws, 3 + INTERNAL + 2)
         State at the start of a step that is not cut at events.
-    leans : ndarray, shape (n_leaning,)
-        The laws that lean on another, which comes before them.
-    corotational : Turning
+    members : Corotational
     """
 
-    rows: tuple[Index, Place, Array]
+    rows: Rows
     inputs: Array
-    pairs: tuple[Index, Place, Array]
+    pair_pointers: Index
+    pair_places: Place
+    pair_values: Array
     supports: Array
-    p: Array
-    memory: Array
-    f: Array
-    i: Index
-    saved: Array
-    leans: Index
-    corotational: Turning
+    rule: Index
+    curved: Index
+    contact: Index
+    coupled: Index
+    normal: Index
+    pressed_branches: Index
+    tangent_damping: Array
+    secant_damping: Array
+    parameters: Array
+    internal: Array
+    branch: Index
+    entry_deformation: Array
+    entry_work: Array
+    stiffness: Array
+    damping: Array
+    offset: Array
+    n_events: Index
+    events: Array
+    now: LawMotion
+    trial: LawMotion
+    largest_deformation: Array
+    largest_rate: Array
+    friction_force: Array
+    dashpot_loss: Array
+    peak_force: Array
+    peak_time: Array
+    impulse: Array
+    saved: Index
+    saved_state: Array
+    members: Corotational
 
 
 class Motion(NamedTuple):
-    """The motion, and scratch space.
+    """The motion of the unknowns at one instant, shape (n,), and what drives it.
 
     Attributes
     ----------
-    q : ndarray, shape (19, n)
-        Rows as above; `W` is zero between uses.
-    l : ndarray, shape (4, n_entries of L)
-        Factors for the nominal step, for a piece of one, of M (with ones for massless unknowns), and of
-        ``K + C / e``, e a tiny time, over the massless unknowns (with ones for the others).
-    ax : ndarray
-        Values of A.
-    peak : ndarray, shape (6, n_rows + 2 n_laws)
-        Of the rows, the deformations and the forces.
-    works : ndarray, shape (4,)
-        Work put in; lost in the structure's, in the contacts' dashpots; sum of all \\|input\\|.
-    inputs : ndarray, shape (4, n_inputs)
-        The motions and their rates, at the start and at the end of a step.
+    displacement, velocity, acceleration : ndarray
+    damping_force, damping_rate : ndarray
+        ``C v`` and ``C a``.
+    load : ndarray
+    inputs, input_rates : ndarray, shape (n_inputs,)
+        The excitation and its rate.
     """
 
-    q: Array
-    l: Array  # noqa: E741
-    ax: Array
-    peak: Array
-    works: Array
+    displacement: Array
+    velocity: Array
+    acceleration: Array
+    damping_force: Array
+    damping_rate: Array
+    load: Array
     inputs: Array
+    input_rates: Array
 
 
-class Samples(NamedTuple):
+class Peaks(NamedTuple):
+    """Extremes of the tracked quantities: monitored outputs, deformations and forces of the laws, in this
+    order; shape (n_monitored + 2 n_laws,) each.
+
+    Attributes
+    ----------
+    high, t_high, low, t_low : ndarray
+        Largest and smallest value so far and their times.
+    value, slope : ndarray
+        At the last instant that was tracked.
+    steepest : ndarray
+        Largest magnitude of the slope so far.
+    """
+
+    high: Array
+    t_high: Array
+    low: Array
+    t_low: Array
+    value: Array
+    slope: Array
+    steepest: Array
+
+
+class Step(NamedTuple):
+    """A step from one instant to the next, and scratch space.
+
+    Attributes
+    ----------
+    now, trial : Motion
+        At its start and at its end.
+    residual : ndarray, shape (n,)
+        ``p - C v - K u - f`` at the start, in balance with the inertia.
+    right_side : ndarray, shape (n,)
+        Of the equations for the acceleration, laws apart.
+    product : ndarray, shape (n,)
+        Scratch.
+    row : ndarray, shape (n,)
+        Scratch of the factorisation; zero between uses.
+    matrix : ndarray, shape (n_entries,)
+        Values of A.
+    factors : ndarray, shape (4, n_entries of L)
+        Rows `WHOLE`, `PART`, `MASS` (ones for massless unknowns), `MASSLESS` (ones for the others).
+    pivots : ndarray, shape (4, n)
+    peaks : Peaks
+    """
+
+    now: Motion
+    trial: Motion
+    residual: Array
+    right_side: Array
+    product: Array
+    row: Array
+    matrix: Array
+    factors: Array
+    pivots: Array
+    peaks: Peaks
+
+
+class Buffers(NamedTuple):
     """What is kept until Python fetches it.
 
     Attributes
     ----------
-    motion : ndarray, shape (n_samples, 3, n)
-    laws : ndarray, shape (n_samples, 3, n_laws)
-        Forces, recoverable and lost energies.
-    works : ndarray, shape (n_samples, 4)
-        Time, and the first three works.
-    log : ndarray, shape (n_log, COLUMNS)
+    displacement, velocity, acceleration : ndarray, shape (n_samples, n)
+    force, stored, lost : ndarray, shape (n_samples, n_laws)
+        Of the laws: forces, recoverable and lost energies.
+    time : ndarray, shape (n_samples,)
+    works : ndarray, shape (n_samples, 3)
+        Input, lost in the structure's, in the contacts' dashpots.
+    log : ndarray, shape (n_log, LOGGED)
+        Transitions.
     which : ndarray, shape (n_which,)
         Unknowns that the envelopes look at.
     shown : ndarray, shape (n_shown, 3, n_which)
-        The motion between the samples.
-    when : ndarray, shape (n_shown,)
-        Its times.
+        Their motion between the samples.
+    shown_time : ndarray, shape (n_shown,)
     """
 
-    motion: Array
-    laws: Array
+    displacement: Array
+    velocity: Array
+    acceleration: Array
+    force: Array
+    stored: Array
+    lost: Array
+    time: Array
     works: Array
     log: Array
     which: Index
     shown: Array
-    when: Array
+    shown_time: Array
 
 
 class Scheme(NamedTuple):
-    """Parameters of the method, and whether events are located."""
+    """Parameters of the generalised-alpha family, and whether events are located."""
 
     beta: float
     gamma: float

@@ -28,10 +28,12 @@ import numpy as np
 from pound_deck.schema import Spec
 from pound_solve.integrate.condensed import condensed
 from pound_solve.integrate.events import polynomial_roots
-from pound_solve.integrate.kernels import state
+from pound_solve.integrate.kernels.engine import KernelEngine
+from pound_solve.integrate.kernels.recording import PAUSE
+from pound_solve.integrate.kernels.state import CHATTER, RUNAWAY, Scheme, record
+from pound_solve.integrate.protocol import CHATTER as CHANGES
+from pound_solve.integrate.protocol import RUNAWAY as GROWS
 from pound_solve.integrate.protocol import (
-    CHATTER,
-    RUNAWAY,
     STEPPED,
     MonitoredOutputs,
     Outcome,
@@ -45,7 +47,6 @@ from pound_solve.integrate.protocol import (
     rounding_check,
 )
 from pound_solve.integrate.series import expansion
-from pound_solve.integrate.stepping.stepper import Stepper
 from pound_solve.numerics.matrices import diagonal, weighted
 from pound_solve.numerics.modes import massless
 from pound_solve.structure.reduction import ReducedSystem
@@ -55,7 +56,7 @@ RADIANS = 5.0  #: of the fastest mode in a step
 STEP, EACH = 9e-6, 5.5e-8  #: cost of a step and of each of its unknowns, as `exact.WINDOW`
 
 
-class Taylor(Stepper):
+class Taylor(KernelEngine):
     """One run; see the module's head."""
 
     exact = True
@@ -64,70 +65,73 @@ class Taylor(Stepper):
         self, system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: Recorder
     ) -> None:
         length = float(start.times[-1] - start.times[0])
-        nothing_to_solve = state.Scheme(0.0, 0.0)
+        nothing_to_solve = Scheme(0.0, 0.0)
         super().__init__(
-            system, start, monitored, recorder, {"DT": length}, nothing_to_solve, "TAYLOR, power series"
+            system, start, monitored, recorder, nothing_to_solve, length, "TAYLOR, power series"
         )
-        terms = expansion.TERMS + 1
-        rules = expansion.TERMS // expansion.CHECK + 1
+        terms, rules = expansion.TERMS + 1, expansion.TERMS // expansion.CHECK + 1
         gauss = np.zeros((rules, 2, 2 * rules))
         for i in range(rules):
             count = 2 * (i + 1)
             places, weights = np.polynomial.legendre.leggauss(count)
             gauss[i, :, :count] = 0.5 * weights, 0.5 * (1.0 + places)
         self.series = expansion.Series(
-            u=np.zeros((terms + 2, system.size)),
-            d=np.zeros((len(self.laws), terms)),
-            s=np.zeros((terms, system.inputs.shape[1])),
-            p=np.zeros(polynomial_roots.room(expansion.TERMS)),
-            inverse=1.0 / self.matrices.m.diagonals[0],
+            motion=np.zeros((terms, system.size)),
+            stiffness_product=np.zeros(system.size),
+            damping_product=np.zeros(system.size),
+            deformation=np.zeros((len(self.springs), terms)),
+            inputs=np.zeros((terms, system.inputs.shape[1])),
+            polynomial=np.zeros(polynomial_roots.room(expansion.TERMS)),
+            inverse=1.0 / self.linear.mass.diagonals[0],
             gauss=gauss,
-            step=np.array([length, 0.0, np.inf, 0.0]),
         )
+        self.lengths: expansion.Lengths = record(expansion.Lengths)
+        self.lengths.next, self.lengths.shortest = length, np.inf
 
-    def _run(self) -> Outcome:
-        self._begin(expansion.march)
+    def integrate(self) -> None:
+        """Integrate by series from event to event."""
+        self.begin(expansion.march)
         ex = self.system.excitation
         ends, is_output = goals(self.system, self.times)
         pieces = ex.pieces_after(np.append(self.times[0], ends[:-1]))
-        self._loop(
-            expansion.march, self.matrices, self.w, self.x, self.z, self.tables, self.series,
-            np.ascontiguousarray(ex.coefs), ex.breaks, ends, is_output, pieces, self.count, self.clock,
-        )  # fmt: skip
-        return self.outcome()
+        coefs = np.ascontiguousarray(ex.coefs)
+        self.advance(expansion.march, self.series, self.lengths, coefs, ex.breaks, ends, is_output, pieces)
 
-    def _fetch(self) -> None:
-        super()._fetch()
-        done, steps = float(self.clock[0] - self.times[0]), int(self.count[state.STEPS])
-        if steps > state.PAUSE // 2 and steps * self.dt > MOST_STEPS * done:
+    def fetch(self) -> None:
+        """Take in what was kept; stop where steps are too short for the length of the run."""
+        super().fetch()
+        done, steps = float(self.state.time - self.times[0]), int(self.state.steps)
+        if steps > PAUSE // 2 and steps * self.dt > MOST_STEPS * done:
             count = f"some {steps * self.dt / done:.1g}" if done else "far too many"
-            step = self.series.step[expansion.LENGTH]
-            why = f"the fastest mode asks for {count} steps (now {step:.3g} long)"
+            why = f"the fastest mode asks for {count} steps (now {self.lengths.next:.3g} long)"
             raise self.stop("A502", f"{why}: EXACT or NEWMARK need not follow it")
 
-    def _trouble(self, why: int) -> Stop:
+    def trouble(self, why: int) -> Stop:
+        """What the kernel came back for, in words."""
         if why == expansion.SHORT:
             return self.stop("A502", "the fastest mode asks for steps too short to tell the times apart")
-        if why == state.RUNAWAY:
-            return self.stop("A504", RUNAWAY.format(self.clock[2]))
-        if why == state.CHATTER:
-            worst = int(self.count[state.WORST])
-            s, at = self.laws[worst], self.w.i[worst, state.AT]
-            told = (int(self.count[expansion.SAME]), s.element, s.rule, s.law.rule.branches[at])
-            return self.stop("A503", CHATTER.format(*told, STEPPED))
-        return super()._trouble(why)
+        if why == RUNAWAY:
+            return self.stop("A504", GROWS.format(self.state.energy_at_start))
+        if why == CHATTER:
+            fault = int(self.state.fault)
+            s, at = self.springs[fault], self.laws.branch[fault]
+            what = (int(self.state.same_instant), s.element, s.rule, s.law.rule.branches[at])
+            return self.stop("A503", CHANGES.format(*what, STEPPED))
+        return super().trouble(why)
 
-    def _figures(self) -> dict[str, Any]:
-        shortest = float(self.series.step[expansion.SHORTEST])
+    def figures(self) -> dict[str, Any]:
+        """Figures of the run for the report."""
+        shortest = float(self.lengths.shortest)
         return {
             "method": self.name,
-            "series": int(self.count[state.STEPS]),
+            "series": int(self.state.steps),
             **({"shortest series": f"{shortest:.4g}"} if np.isfinite(shortest) else {}),
-            "events": int(self.count[state.EVENTS]),
+            "events": int(self.state.events),
         }
 
-    def _checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
-        return rounding_check(self.laws, peaks)
+    def checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
+        """Self-checks of the run."""
+        return rounding_check(self.springs, peaks)
 
 
 def rate(system: ReducedSystem) -> float:

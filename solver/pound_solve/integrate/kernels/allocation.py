@@ -1,0 +1,374 @@
+"""The one place where the arrays of the kernels are allocated, from a reduced system and a start."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from pound_solve.integrate.kernels import state
+from pound_solve.integrate.kernels.state import Product, Rows, Scheme
+from pound_solve.integrate.protocol import MonitoredOutputs, Start
+from pound_solve.laws.automaton import EVENTS, MEMORY, PARAMETERS, Rule
+from pound_solve.numerics import ldl
+from pound_solve.numerics.matrices import Matrix, at, by_rows, dense, entries, is_diagonal
+from pound_solve.numerics.modes import massless
+from pound_solve.numerics.types import Array, Flags, Index
+from pound_solve.structure.elements.base import LawSpring
+from pound_solve.structure.reduction import ReducedSystem
+
+#: samples and transitions kept between two visits of Python, which cost 2 ms each
+SAMPLES, TRANSITIONS = 1024, 4096
+MOST_HELD = 2**20  #: numbers of one kind in those samples, at most, but for two
+SHOWS = 4  #: steps between two samples, at most, that the envelopes see
+INSTANT = 1e-6  #: share of the longest step that the time which tells massless velocities keeps below
+FULL_DIAGONAL = 0.25  #: part of a diagonal from which its zeros cost less than naming its entries
+
+
+class Layout(NamedTuple):
+    """The order of elimination, and where a law or a member adds to A.
+
+    Attributes
+    ----------
+    order : ndarray, shape (n,)
+        Unknowns of the reduced system in the order of elimination.
+    place : ndarray, shape (n,)
+        Their places in it.
+    pattern : Pattern
+    column : ndarray, shape (n_entries,)
+        Columns of the pattern's entries.
+    joins : ndarray of bool, shape (n_laws,)
+        Which laws add to A.
+    position : mapping
+        Of pairs of unknowns in the pattern; empty where the stiffness is not in A.
+    """
+
+    order: Index
+    place: Index
+    pattern: ldl.Pattern
+    column: Index
+    joins: Flags
+    position: Mapping[tuple[int, int], int]
+
+
+def sparse_rows(a: Matrix) -> Rows:
+    """Rows of a matrix as pointers, columns and values."""
+    rows, columns, values = entries(a)
+    return Rows(*_rows(rows, np.arange(a.shape[0]), columns, values))
+
+
+def _rows(rows: Index, wanted: Index, columns: Index, values: Array) -> tuple[Index, ldl.Place, Array]:
+    """The entries of some rows, which come row by row, as pointers, columns and values."""
+    pointers = np.append(np.searchsorted(rows, wanted), len(rows)).astype(np.int64)
+    return pointers, columns.astype(np.uint32), np.ascontiguousarray(values)
+
+
+def product(a: Matrix) -> Product:
+    """Lay a square matrix out for products."""
+    n = a.shape[0]
+    rows, columns, values = entries(a)
+    off = columns - rows
+    found, number = np.unique(off, return_counts=True)
+    full = (number >= FULL_DIAGONAL * n) & (found != 0)
+    offsets = np.concatenate([[0], found[full]]).astype(np.int64)
+    diagonals = np.zeros((len(offsets), n))
+    for z, own in enumerate(offsets.tolist()):
+        diagonals[z, rows[off == own] - max(0, -own)] = values[off == own]
+    rest = ~np.isin(off, offsets)
+    row = np.unique(rows[rest])
+    return Product(
+        offsets, diagonals, row.astype(np.uint32), *_rows(rows[rest], row, columns[rest], values[rest])
+    )
+
+
+def coupled_pairs(touched: Iterable[Index]) -> tuple[Index, Index]:
+    """All pairs among the unknowns that each of some laws or members touches."""
+    nothing, sets = np.zeros(0, np.int64), list(touched)
+    return (
+        np.concatenate([nothing, *(np.repeat(x, len(x)) for x in sets)]),
+        np.concatenate([nothing, *(np.tile(x, len(x)) for x in sets)]),
+    )
+
+
+def layout(system: ReducedSystem, scheme: Scheme) -> Layout:
+    """Choose the order of elimination for a method."""
+    laws = system.structure.laws
+    damps = np.array([damped(s) for s in laws], bool)
+    in_stiffness, in_damping = scheme.beta > 0.0, scheme.gamma > 0.0
+    solved = [system.mass, *[system.damping] * in_damping, *[system.stiffness] * in_stiffness]
+    linked = [entries(a)[:2] for a in solved]
+    joins = damps & in_damping | in_stiffness
+    touched = [row for (row, _), own in zip(by_rows(system.law_rows), joins) if own]
+    if in_stiffness:
+        touched += [columns for columns, _ in system.corotational.touched()]
+    linked.append(coupled_pairs(touched))
+    one, other = (np.concatenate(part) for part in zip(*linked))
+    order = ldl.order(system.size, one, other)
+    place = np.argsort(order)
+    pattern = ldl.analyse(system.size, place[one], place[other])
+    column = np.repeat(np.arange(system.size), np.diff(pattern.ap))
+    position = {(int(i), int(j)): q for q, (i, j) in enumerate(zip(pattern.ai, column))}
+    return Layout(order, place, pattern, column, joins, position)
+
+
+def damped(spring: LawSpring) -> bool:
+    """Whether a law adds to the damping matrix."""
+    return bool(spring.facts.get("c") or spring.beta or spring.secant) or spring.law.curved
+
+
+def linear_system(
+    system: ReducedSystem, monitored: MonitoredOutputs, own: Layout, scheme: Scheme, dt: float
+) -> state.LinearSystem:
+    """The linear part of the equations of motion, for steps up to `dt`."""
+    o, s, laws = own.order, system.structure, system.structure.laws
+    grid = np.ix_(o, o)
+    mass, damping, stiffness = (a[grid] for a in (system.mass, system.damping, system.stiffness))
+    in_stiffness, in_damping = scheme.beta > 0.0, scheme.gamma > 0.0
+    has_mass = ~massless(mass)
+    without = o[~has_mass]
+    varying = [columns for columns, _ in system.corotational.touched()]
+    varying += [row for (row, _), x in zip(by_rows(system.law_rows), laws) if x.law.curved]
+    lower = own.pattern.ai.astype(np.int64)
+    solved = (mass, damping * in_damping, stiffness * in_stiffness)
+    moved = system.support_inputs
+    free, nf = np.array(system.columns, int)[o], s.n_free
+    rate_of, second_of = np.zeros_like(moved), np.zeros_like(moved)
+    rate_of[:, 1:], second_of[:, 2:] = moved[:, :-1], moved[:, :-2]
+    held = s.stiffness[nf:, nf:] @ moved + s.damping[nf:, nf:] @ rate_of + s.mass[nf:, nf:] @ second_of
+    return state.LinearSystem(
+        stiffness=product(stiffness),
+        damping=product(damping),
+        mass=product(mass),
+        inputs=np.ascontiguousarray(system.inputs[o].T),
+        pushed=np.ascontiguousarray(system.force_inputs[free]),
+        constant=system.constant[o],
+        pattern=own.pattern,
+        on_pattern=np.array([at(a, lower, own.column) for a in solved]),
+        column=own.column,
+        has_mass=has_mass,
+        all_mass=bool(has_mass.all()),
+        massless_vary=any(len(np.intersect1d(x, without)) for x in varying),
+        instant=INSTANT * dt,
+        implicit=in_stiffness,
+        diagonal=is_diagonal(mass),
+        explicit=not (in_stiffness or len(own.pattern.li) or any(map(damped, laws))),
+        monitored=sparse_rows(monitored.rows[:, o]),
+        monitored_inputs=np.ascontiguousarray(monitored.input_rows),
+        monitored_constants=np.ascontiguousarray(monitored.constants),
+        reactions=np.array([dense(a[nf:][:, free]) for a in (s.stiffness, s.damping, s.mass)]),
+        support_forces=np.ascontiguousarray(held),
+        support_rates=rate_of,
+        support_damping=np.ascontiguousarray(dense(s.damping[nf:, nf:])),
+    )
+
+
+def places_in_pattern(rows: Rows, own: Layout) -> tuple[Index, ldl.Place, Array]:
+    """Where each law's ``b b^T`` adds to A: pointers, positions in its pattern, products."""
+    pairs: list[list[tuple[int, float]]] = [[] for _ in own.joins]
+    for i in np.flatnonzero(own.joins).tolist():
+        span = slice(rows.pointers[i], rows.pointers[i + 1])
+        on, values = rows.columns[span].tolist(), rows.values[span].tolist()
+        pairs[i] = [
+            (own.position[a, b], x * y) for a, x in zip(on, values) for b, y in zip(on, values) if a >= b
+        ]
+    return (
+        np.concatenate([[0], np.cumsum([len(p) for p in pairs])]).astype(np.int64),
+        np.array([q for p in pairs for q, _ in p], np.uint32),
+        np.array([x for p in pairs for _, x in p], float),
+    )
+
+
+def normal_of(laws: Sequence[LawSpring], law: LawSpring) -> tuple[int, int]:
+    """The law whose force is the normal force of another, and a bit for each branch where it is pressed;
+    -1 if none.
+    """
+    for j, other in enumerate(laws if law.normal else ()):
+        if (other.element, other.component) == (law.element, law.normal):
+            pressed = enumerate(x.startswith("pressed") for x in other.law.rule.branches)
+            return j, sum(yes << n for n, yes in pressed)
+    return -1, 0
+
+
+def law_arrays(
+    system: ReducedSystem, start: Start, own: Layout, scheme: Scheme, rules: Sequence[Rule]
+) -> state.Laws:
+    """The laws in the state of a start; their branches are not entered yet."""
+    laws, count = system.structure.laws, len(system.structure.laws)
+    t, value = float(start.times[0]), system.excitation.value
+    d = np.asarray(system.law_rows @ start.u + system.law_inputs @ value(t), float)
+    v = np.asarray(system.law_rows @ start.v + system.law_inputs @ value(t, 1), float)
+    rows = sparse_rows(system.law_rows[:, own.order])
+    pointers, places, values = places_in_pattern(rows, own)
+    normal = np.array([normal_of(laws, s) for s in laws], np.int64).reshape(count, 2).T
+    internal = np.zeros((count, MEMORY + 2))
+    for i, (_, _, _, variables) in enumerate(start.states):
+        internal[i, : len(variables)] = variables
+    branch, entry, work = (np.array([s[k] for s in start.states]) for k in range(3))
+
+    def integers(values: Iterable[int]) -> Index:
+        return np.array(list(values), np.int64).reshape(count)
+
+    def zeros() -> Array:
+        return np.zeros(count)
+
+    return state.Laws(
+        rows=rows,
+        inputs=np.ascontiguousarray(system.law_inputs),
+        pair_pointers=pointers,
+        pair_places=places,
+        pair_values=values,
+        supports=np.ascontiguousarray(dense(system.structure.law_rows[:, system.structure.n_free :])),
+        rule=integers(rules.index(s.law.rule) for s in laws),
+        curved=integers(s.law.curved for s in laws),
+        contact=integers(s.is_contact for s in laws),
+        coupled=np.flatnonzero([bool(s.normal) for s in laws]).astype(np.int64),
+        normal=np.ascontiguousarray(normal[0]),
+        pressed_branches=np.ascontiguousarray(normal[1]),
+        tangent_damping=np.array([s.beta for s in laws], float),
+        secant_damping=np.array([s.secant for s in laws], float),
+        parameters=np.array([s.law.p for s in laws]).reshape(count, PARAMETERS),
+        internal=internal,
+        branch=branch.astype(np.int64),
+        entry_deformation=entry.astype(float),
+        entry_work=work.astype(float),
+        stiffness=zeros(),
+        damping=zeros(),
+        offset=zeros(),
+        n_events=np.zeros(count, np.int64),
+        events=np.zeros((count, EVENTS, 3)),
+        now=state.LawMotion(d, v),
+        trial=state.LawMotion(zeros(), zeros()),
+        largest_deformation=np.abs(d),
+        largest_rate=np.abs(v),
+        friction_force=zeros(),
+        dashpot_loss=zeros(),
+        peak_force=zeros(),
+        peak_time=zeros(),
+        impulse=zeros(),
+        saved=np.zeros(count, np.int64),
+        saved_state=np.zeros((count, 3 + internal.shape[1])),
+        members=member_arrays(system, own, scheme),
+    )
+
+
+def member_arrays(system: ReducedSystem, own: Layout, scheme: Scheme) -> state.Corotational:
+    """The corotational members at rest."""
+    members = system.corotational
+    count = len(members)
+    supports = system.structure.corotational.rows[:, system.structure.n_free :]
+    found = members.on(own.order.tolist()).touched()
+    touched = [x for x, _ in found]
+    first = np.concatenate([[0], np.cumsum([len(x) for x in touched])]).astype(np.int64)
+    position = own.position if scheme.beta > 0.0 else {}
+    pairs = [
+        [
+            (position[i, j], begin + a, begin + b)
+            for a, i in enumerate(x)
+            for b, j in enumerate(x)
+            if (i, j) in position
+        ]
+        for begin, x in zip(first.tolist(), (x.tolist() for x in touched))
+    ]
+
+    def six() -> Array:
+        return np.zeros((count, 6))
+
+    return state.Corotational(
+        parameters=members.p,
+        pointers=first,
+        unknown=np.concatenate([*touched, np.zeros(0)]).astype(np.int64),
+        rows=np.concatenate([*(rows.T for _, rows in found), np.zeros((0, 6))]),
+        pair_pointers=np.concatenate([[0], np.cumsum([len(x) for x in pairs])]).astype(np.int64),
+        pair=np.array([x for p in pairs for x in p], np.int64).reshape(-1, 3),
+        inputs=np.ascontiguousarray(system.corotational_inputs),
+        supports=dense(supports).reshape(count, 6, supports.shape[1]),
+        now=state.MemberState(six(), six()),
+        trial=state.MemberState(six(), six()),
+        predicted=six(),
+        at_zero=six(),
+        tangent=np.zeros((count, 36)),
+        present=np.zeros((count, 36)),
+        product=np.zeros((max((len(x) for x in touched), default=1), 6)),
+        largest=np.zeros(1),
+    )
+
+
+def step_arrays(
+    system: ReducedSystem,
+    monitored: MonitoredOutputs,
+    start: Start,
+    own: Layout,
+    linear: state.LinearSystem,
+) -> state.Step:
+    """The motion of a start, and the factor of the mass."""
+    n, o, t = system.size, own.order, float(start.times[0])
+    inputs = system.inputs.shape[1]
+    tracked = len(monitored.names) + 2 * len(system.structure.laws)
+    value = system.excitation.value
+
+    def motion() -> state.Motion:
+        return state.Motion(*np.zeros((6, n)), *np.zeros((2, inputs)))
+
+    out = state.Step(
+        now=motion(),
+        trial=motion(),
+        residual=np.zeros(n),
+        right_side=np.zeros(n),
+        product=np.zeros(n),
+        row=np.zeros(n),
+        matrix=np.zeros(len(own.column)),
+        factors=np.zeros((4, len(own.pattern.li))),
+        pivots=np.zeros((4, n)),
+        peaks=state.Peaks(*np.zeros((7, tracked))),
+    )
+    out.now.displacement[:], out.now.velocity[:] = start.u[o], start.v[o]
+    out.now.damping_force[:] = system.damping[np.ix_(o, o)] @ start.v[o]
+    out.now.load[:] = system.inputs[o] @ value(t) + linear.constant
+    out.now.inputs[:], out.now.input_rates[:] = value(t), value(t, 1)
+    out.peaks.high[:], out.peaks.low[:] = -np.inf, np.inf
+    diagonal = own.pattern.ai == own.column
+    mass = np.where(diagonal & ~linear.has_mass[own.column], 1.0, linear.on_pattern[0])
+    if linear.diagonal:
+        out.pivots[state.MASS] = mass[own.pattern.ap[:-1]]
+    else:
+        ldl.factor(own.pattern, mass, out.factors[state.MASS], out.pivots[state.MASS], out.row)
+    return out
+
+
+def buffers(n: int, n_laws: int, which: Index) -> state.Buffers:
+    """Room for samples and transitions; `which` unknowns are shown between the samples."""
+    samples = min(SAMPLES, max(MOST_HELD // (3 * max((1 + SHOWS) * n, n_laws, 1)), 2))
+    shown = max(samples * SHOWS, min(16 * SAMPLES, MOST_HELD // (3 * max(len(which), 1))))
+    u, v, a = np.zeros((3, samples, n))
+    force, stored, lost = np.zeros((3, samples, n_laws))
+    return state.Buffers(
+        displacement=u,
+        velocity=v,
+        acceleration=a,
+        force=force,
+        stored=stored,
+        lost=lost,
+        time=np.zeros(samples),
+        works=np.zeros((samples, 3)),
+        log=np.zeros((TRANSITIONS + 16 * n_laws, state.LOGGED)),
+        which=which,
+        shown=np.zeros((shown, 3, len(which))),
+        shown_time=np.zeros(shown),
+    )
+
+
+def run_record(t: float, energy_at_start: float) -> state.Run:
+    """Counters and clocks at the start of a run."""
+    out: state.Run = state.record(state.Run)
+    out.time, out.factor_length, out.energy_at_start = t, -1.0, energy_at_start
+    out.longest_part = np.inf
+    out.fault = -1
+    return out
+
+
+def energy_record(works: Array) -> state.Energy:
+    """Works at the start of a run, shape (3,)."""
+    out: state.Energy = state.record(state.Energy)
+    out.input, out.damping, out.contact = works.tolist()
+    return out

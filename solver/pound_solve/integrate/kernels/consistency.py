@@ -1,0 +1,205 @@
+r"""Kernels that make the state at an instant consistent with the branches that the laws are on.
+
+Accelerations follow from the equations of motion.  Velocities of massless unknowns have jumped where a
+stiffness or a dashpot did: an implicit step of a tiny length e finds them,
+
+.. math:: (C + e K)\,\Delta v = p - C v - K u - f + e\,\tfrac{d}{dt}(p - K u - f)
+
+over the massless unknowns.
+"""
+
+from __future__ import annotations
+
+from pound_solve.integrate.kernels.corotational import (
+    add_tangent,
+    add_tangent_force,
+    form_members,
+    form_quantities,
+    subtract_force,
+)
+from pound_solve.integrate.kernels.laws import linear_force
+from pound_solve.integrate.kernels.products import along, multiply
+from pound_solve.integrate.kernels.state import MASS, MASSLESS, Laws, LinearSystem, Step
+from pound_solve.numerics.ldl import factor, solve
+from pound_solve.numerics.types import Array
+from pound_solve.structure.corotational import bend
+
+NEAR = 1e-6  #: share of its largest value within which an event is accepted where it cannot be met better
+DELAY = 1e-8  #: share of the longest C / K among massless unknowns that e is
+
+
+def touches_massless(linear: LinearSystem, laws: Laws, i: int) -> bool:
+    """Whether law `i` holds a massless unknown, whose velocity may jump."""
+    if not linear.all_mass:
+        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+            if not linear.has_mass[laws.rows.columns[q]]:
+                return True
+    return False
+
+
+def slowest_decay(linear: LinearSystem, laws: Laws, step: Step) -> float:
+    """Longest ratio of dashpot to stiffness of a massless unknown, by their diagonals [T]."""
+    stiffness, damping, slowest = step.product, step.right_side, 0.0
+    for i in range(len(stiffness)):
+        stiffness[i], damping[i] = 0.0, 0.0
+    for q in range(len(step.matrix)):
+        i = linear.column[q]
+        if linear.pattern.ai[q] == i and not linear.has_mass[i]:
+            stiffness[i], damping[i] = linear.on_pattern[2, q], linear.on_pattern[1, q]
+    for i in range(len(laws.rule)):
+        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+            j, square = laws.rows.columns[q], laws.rows.values[q] * laws.rows.values[q]
+            stiffness[j] += laws.stiffness[i] * square
+            damping[j] += laws.damping[i] * square
+    for i in range(len(stiffness)):
+        if not linear.has_mass[i] and stiffness[i] > 0.0:
+            slowest = max(slowest, damping[i] / stiffness[i])
+    return slowest
+
+
+def factorise_massless(linear: LinearSystem, laws: Laws, step: Step, quantities: Array) -> float:
+    """Factorise ``K + C / e`` over the massless unknowns, with the members at some quantities.
+
+    Returns
+    -------
+    float
+        1 / e: large enough to leave alone what dashpots hold, not so large that the springs are lost beside
+        them.
+    """
+    slowest = slowest_decay(linear, laws, step)
+    rate = max(1.0 / linear.instant, 1.0 / (DELAY * slowest) if slowest > 0.0 else 0.0)
+    for q in range(len(step.matrix)):
+        i, j = linear.pattern.ai[q], linear.column[q]
+        step.matrix[q] = 0.0
+        if not linear.has_mass[i] and not linear.has_mass[j]:
+            step.matrix[q] = linear.on_pattern[2, q] + rate * linear.on_pattern[1, q]
+        elif i == j:
+            step.matrix[q] = 1.0
+    for i in range(len(laws.rule)):
+        change = laws.stiffness[i] + rate * laws.damping[i]
+        for q in range(laws.pair_pointers[i], laws.pair_pointers[i + 1]):
+            at = laws.pair_places[q]
+            if not linear.has_mass[linear.pattern.ai[at]] and not linear.has_mass[linear.column[at]]:
+                step.matrix[at] += change * laws.pair_values[q]
+    members = laws.members
+    for c in range(len(members.parameters) * linear.massless_vary):
+        bend(members.parameters, c, quantities, 0, members.present, c)
+        add_tangent(linear, members, step, c, members.present, 1.0, True)
+    if factor(linear.pattern, step.matrix, step.factors[MASSLESS], step.pivots[MASSLESS], step.row) >= 0:
+        for i in range(len(step.row)):  # what nothing holds goes on as it did
+            step.pivots[MASSLESS, i] = float("inf")
+    return rate
+
+
+def force_rates(
+    linear: LinearSystem, laws: Laws, velocity: Array, rate: Array, input_rates: Array, out: Array
+) -> None:
+    """Rates of the forces on the massless unknowns, dashpots apart, at some velocities and rates of the
+    laws.
+    """
+    multiply(linear.stiffness, velocity, out)
+    for i in range(len(out)):
+        change = 0.0
+        for j in range(len(input_rates)):
+            change += linear.inputs[j, i] * input_rates[j]
+        out[i] = change - out[i]
+    for i in range(len(laws.rule)):
+        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+            out[laws.rows.columns[q]] -= laws.rows.values[q] * laws.stiffness[i] * rate[i]
+    members = laws.members
+    if linear.massless_vary:
+        form_quantities(members, velocity, input_rates, members.predicted)
+    for c in range(len(members.parameters) * linear.massless_vary):
+        for j in range(6):
+            members.at_zero[c, j] = 0.0
+        add_tangent_force(members.present, c, members.predicted, members.at_zero, 1.0)
+        subtract_force(members, c, members.at_zero, out)
+    for i in range(len(out)):
+        if linear.has_mass[i]:
+            out[i] = 0.0
+
+
+def correct_massless_rates(linear: LinearSystem, laws: Laws, step: Step, stale: bool, h: float) -> None:
+    """Correct velocities of massless unknowns that no dashpot holds, at the end of a step of length `h`.
+
+    They follow from the rates of the forces, which stay in balance.  The method takes about twice their
+    mean over the step less those at its start, which would swing about the true ones for ever.
+
+    Parameters
+    ----------
+    stale : bool
+        Whether the factor of the massless unknowns must be made anew.
+    """
+    if stale:
+        factorise_massless(linear, laws, step, laws.members.trial.quantities)
+    now, trial, change = step.now, step.trial, step.product
+    force_rates(linear, laws, trial.velocity, laws.trial.rate, trial.input_rates, change)
+    solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], change)
+    for i in range(len(change)):
+        if not linear.has_mass[i]:
+            trial.velocity[i] += change[i]
+            trial.acceleration[i] = (trial.velocity[i] - now.velocity[i]) / h
+    for i in range(len(laws.rule)):
+        laws.trial.rate[i] += along(laws.rows, i, change)
+
+
+def jump_massless_rates(linear: LinearSystem, laws: Laws, step: Step) -> None:
+    """Give massless unknowns the velocities that the present branches ask for (see the module's head)."""
+    now, change, force, size = step.now, step.trial.acceleration, step.right_side, step.product
+    rate = factorise_massless(linear, laws, step, laws.members.now.quantities)
+    force_rates(linear, laws, now.velocity, laws.now.rate, now.input_rates, change)
+    multiply(linear.stiffness, now.displacement, force)
+    for i in range(len(force)):
+        force[i] = now.load[i] - force[i] - now.damping_force[i]
+        own = abs(linear.stiffness.diagonals[0, i] * now.displacement[i])
+        size[i] = abs(now.load[i]) + own + abs(now.damping_force[i])
+    for i in range(len(laws.rule)):
+        f = (
+            laws.stiffness[i] * laws.now.deformation[i]
+            + laws.offset[i]
+            + laws.damping[i] * laws.now.rate[i]
+        )
+        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+            force[laws.rows.columns[q]] -= laws.rows.values[q] * f
+            size[laws.rows.columns[q]] += abs(laws.rows.values[q] * f)
+    for c in range(len(laws.members.parameters)):
+        subtract_force(laws.members, c, laws.members.now.forces, force)
+    for i in range(
+        len(force)
+    ):  # rounding, or an event not met to the last digit, is no jump of a dashpot's force
+        if not linear.has_mass[i] and abs(force[i]) > NEAR * size[i]:
+            change[i] += rate * force[i]
+    solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], change)
+    for i in range(len(change)):
+        now.velocity[i] += change[i]
+    multiply(linear.damping, now.velocity, now.damping_force)
+    for i in range(len(laws.rule)):
+        laws.now.rate[i] += along(laws.rows, i, change)
+
+
+def make_consistent(linear: LinearSystem, laws: Laws, step: Step) -> None:
+    """Make velocities of massless unknowns and all accelerations consistent with the present branches."""
+    now, residual = step.now, step.residual
+    form_members(laws, step)
+    if linear.implicit and not linear.all_mass:
+        jump_massless_rates(linear, laws, step)
+    multiply(linear.stiffness, now.displacement, step.right_side)
+    for i in range(len(residual)):
+        residual[i] = now.load[i] - step.right_side[i] - now.damping_force[i]
+    for i in range(len(laws.rule)):
+        f = linear_force(laws, i, laws.now.deformation[i], laws.now.rate[i])
+        if f != 0.0:
+            for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+                residual[laws.rows.columns[q]] -= laws.rows.values[q] * f
+    for c in range(len(laws.members.parameters)):
+        subtract_force(laws.members, c, laws.members.now.forces, residual)
+    for i in range(len(residual)):
+        if not linear.has_mass[i]:
+            residual[i] = 0.0  # in balance, but for rounding that the alphas would take for a load
+        now.acceleration[i] = residual[i]
+    if linear.diagonal:
+        for i in range(len(residual)):
+            now.acceleration[i] /= step.pivots[MASS, i]
+    else:
+        solve(linear.pattern, step.factors[MASS], step.pivots[MASS], now.acceleration)
+    multiply(linear.damping, now.acceleration, now.damping_rate)

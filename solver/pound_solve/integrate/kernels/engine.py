@@ -1,0 +1,236 @@
+"""What the methods share that run as compiled kernels: a run allocates its arrays, lets a kernel advance,
+and takes in what it keeps: samples, transitions, peaks.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+import numpy as np
+
+from pound_solve.integrate.kernels import allocation, corotational
+from pound_solve.integrate.kernels import laws as law_kernels
+from pound_solve.integrate.kernels.state import CHATTER, CROWD, DONE, FULL, PIVOT, RUNAWAY, Scheme
+from pound_solve.integrate.protocol import (
+    INTERRUPTED,
+    Collision,
+    Extreme,
+    LawValues,
+    MonitoredOutputs,
+    Outcome,
+    Peaks,
+    Recorder,
+    ResponseTracker,
+    Start,
+    Stop,
+    energy_at_start,
+    not_linear,
+)
+from pound_solve.integrate.protocol import RUNAWAY as GROWS
+from pound_solve.laws import functions
+from pound_solve.laws.hysteresis import bilinear
+from pound_solve.numerics import jit
+from pound_solve.structure.reduction import ReducedSystem
+
+
+class KernelEngine(ABC):
+    """One run of a method.
+
+    Parameters
+    ----------
+    system, start, monitored, recorder
+        See `integrate.protocol`.
+    scheme : Scheme
+    dt : float
+        Longest time step [T].
+    name : str
+        For the report.
+    """
+
+    exact = False  #: whether there is no error but rounding
+
+    def __init__(
+        self,
+        system: ReducedSystem,
+        start: Start,
+        monitored: MonitoredOutputs,
+        recorder: Recorder,
+        scheme: Scheme,
+        dt: float,
+        name: str,
+    ) -> None:
+        self.system, self.recorder, self.scheme, self.dt, self.name = system, recorder, scheme, dt, name
+        self.springs, self.times = system.structure.laws, start.times
+        self.tracker = ResponseTracker(system, len(monitored.names))
+        rules = list(dict.fromkeys(s.law.rule for s in self.springs))
+        self.rules = functions.tables(rules or [bilinear.RULE])  # never empty, which compiles to nothing
+        own = allocation.layout(system, scheme)
+        self.order = own.order
+        self.linear = allocation.linear_system(system, monitored, own, scheme, dt)
+        self.laws = allocation.law_arrays(system, start, own, scheme, rules)
+        self.step = allocation.step_arrays(system, monitored, start, own, self.linear)
+        which = own.place[np.flatnonzero(recorder.shown)]
+        self.buffers = allocation.buffers(system.size, len(self.springs), which)
+        self.energy = allocation.energy_record(start.works)
+        self.state = allocation.run_record(float(self.times[0]), energy_at_start(system, start))
+        for i in range(len(self.springs)):
+            law_kernels.enter_branch(self.laws, self.rules, i)
+        law_kernels.linearise_laws(self.laws, self.rules)
+        corotational.form_members(self.laws, self.step)
+        corotational.take_tangents(self.laws.members, self.laws.members.now.quantities)
+        self.speed = np.zeros(2)  # v M v and a M a, summed over the samples
+        self.seen = float(self.times[0])  # latest instant that the recorder was shown
+
+    def run(self) -> Outcome:
+        """Integrate to the last output time.
+
+        Raises
+        ------
+        Stop
+            Too many changes within one step, a step that finds no solution, numbers beyond all bounds,
+            or an interrupt.
+        """
+        try:
+            self.integrate()
+        except KeyboardInterrupt:
+            raise self.stop("A506", INTERRUPTED) from None
+        return self.outcome()
+
+    @abstractmethod
+    def integrate(self) -> None:
+        """Let the method's kernel advance to the end."""
+
+    @abstractmethod
+    def figures(self) -> dict[str, Any]:
+        """Figures of the run for the report."""
+
+    @abstractmethod
+    def checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
+        """Self-checks of the run."""
+
+    def begin(self, advance: jit.Function) -> None:
+        """Note the contacts that are closed at the start, before a kernel advances."""
+        laws, t = self.laws, float(self.times[0])
+        for i, s in enumerate(self.springs):
+            if s.is_contact and s.law.rule.branches[laws.branch[i]].startswith("pressed"):
+                d, v = float(laws.now.deformation[i]), float(laws.now.rate[i])
+                force = law_kernels.law_force(laws, self.rules, i, d, v)
+                self.tracker.switched(i, "open", "pressed", t, d, v, force)
+                laws.peak_force[i] = force
+        for i in laws.coupled.tolist():
+            law_kernels.couple(laws, self.rules, self.step.now.acceleration, i)
+        if jit.cold(advance):
+            self.recorder.trial(t, "compiling the kernels, once for this version: some 40 s")
+
+    def advance(self, kernel: jit.Function, *given: Any) -> None:
+        """Let a kernel advance to the end, and take in what it keeps."""
+        compiled = jit.compiled(kernel)
+        own = self.linear, self.laws, self.step, self.buffers, self.rules
+        while True:
+            with np.errstate(all="ignore"), jit.compiling():  # a runaway is reported in words
+                why = compiled(*own, *given, self.energy, self.state)
+            self.fetch()
+            if why == DONE:
+                return
+            if why != FULL:
+                raise self.trouble(why)
+
+    def fetch(self) -> None:
+        """Take in the samples and the transitions that were kept."""
+        self._fetch_transitions()
+        self._fetch_shown()
+        self._fetch_samples()
+        self.state.logged = self.state.kept = self.state.shown = 0
+
+    def _fetch_transitions(self) -> None:
+        for row in self.buffers.log[: self.state.logged].tolist():
+            law, before, after = (int(x) for x in row[:3])
+            names = self.springs[law].law.rule.branches
+            if law in self.tracker.open:
+                self._count(self.tracker.open[law], row[7:])
+            self.tracker.switched(law, names[before], names[after], *row[3:7])
+
+    def _fetch_shown(self) -> None:
+        buffers, shown = self.buffers, self.state.shown
+        if not shown:
+            return
+        times = buffers.shown_time[:shown]
+        seen = np.sort(np.concatenate([[self.seen], times, buffers.time[: self.state.kept]]))
+        u, v, a = motion = np.zeros((3, len(self.order), shown))
+        motion[:, self.order[buffers.which]] = buffers.shown[:shown].transpose(1, 2, 0)
+        self.recorder.between(times.copy(), u, v, a, float(np.diff(seen).max()))
+        self.seen = float(seen[-1])
+
+    def _fetch_samples(self) -> None:
+        buffers, kept, back = self.buffers, self.state.kept, np.argsort(self.order)
+        if not kept:
+            return
+        motions = buffers.displacement, buffers.velocity, buffers.acceleration
+        u, v, a = (np.ascontiguousarray(x[:kept, back].T) for x in motions)
+        mass = self.system.mass
+        self.speed += (v * (mass @ v)).sum(), (a * (mass @ a)).sum()
+        values = LawValues(*(x[:kept].T.copy() for x in (buffers.force, buffers.stored, buffers.lost)))
+        self.recorder.sample(buffers.time[:kept].copy(), u, v, a, values, buffers.works[:kept].T.copy())
+
+    @staticmethod
+    def _count(collision: Collision, running: list[float]) -> None:
+        """Count what a contact went through on one branch into its collision."""
+        peak, t_peak, impulse = running
+        collision.impulse += impulse
+        if peak > collision.peak:
+            collision.peak, collision.t_peak = peak, t_peak
+
+    def trouble(self, why: int) -> Stop:
+        """What a kernel came back for, in words."""
+        fault = int(self.state.fault)
+        if why == RUNAWAY:
+            fastest = int(self.order[np.argmax(np.abs(self.step.now.velocity))])
+            name = self.system.name(fastest)
+            cause = f", fastest at {name}: the structure collapses, or DT={self.dt:g} is too long"
+            return self.stop("A504", GROWS.format(self.state.energy_at_start) + cause)
+        if why == PIVOT:
+            name = self.system.name(int(self.order[fault]))
+            return self.stop("A501", f"{name} has no mass and nothing holds it")
+        place, last = "the members' turning", ""
+        if fault >= 0:
+            s = self.springs[fault]
+            place = f"element {s.element} ({s.rule})"
+            last = f"the last in {place} to {s.law.rule.branches[self.laws.branch[fault]]!r}"
+        if why == CHATTER:
+            text = f"laws change branch again and again at one instant, {last}"
+        elif why == CROWD:
+            most = len(self.buffers.log) // 2
+            text = f"laws change branch more than {most} times within one step, {last}"
+        else:
+            text = f"Newton's iterations find no equilibrium of {place}, however short the step"
+        exact = "" if not_linear(self.system) else ", or METHOD=EXACT"
+        return self.stop("A503", f"{text}; try a DT well below {self.dt:g}{exact}")
+
+    def outcome(self) -> Outcome:
+        """What the run gathered."""
+        laws, peaks, n = self.laws, self.step.peaks, len(self.springs)
+        for law, collision in self.tracker.open.items():
+            running = laws.peak_force[law], laws.peak_time[law], laws.impulse[law]
+            self._count(collision, [float(x) for x in running])
+        out = self.tracker.close()
+        four = zip(*(x.tolist() for x in (peaks.high, peaks.t_high, peaks.low, peaks.t_low)))
+        found = [Extreme(*e) for e in four]
+        rest = len(found) - 2 * n
+        out.monitored, out.deformation, out.force = (
+            found[:rest],
+            found[rest : rest + n],
+            found[rest + n :],
+        )
+        out.dashpot_losses = laws.dashpot_loss.tolist()
+        states = zip(
+            laws.branch.tolist(),
+            laws.entry_deformation.tolist(),
+            laws.entry_work.tolist(),
+            map(tuple, laws.internal.tolist()),
+        )
+        return Outcome(out, self.figures(), tuple(states), self.checks(out), self.exact)
+
+    def stop(self, code: str, why: str) -> Stop:
+        """The exception that ends the run here."""
+        return Stop(code, float(self.state.time), why, self.outcome())

@@ -1,0 +1,137 @@
+"""Kernels that keep what Python fetches: peaks, transitions, samples, motions between the samples."""
+
+from __future__ import annotations
+
+from pound_solve.integrate.kernels.consistency import make_consistent, touches_massless
+from pound_solve.integrate.kernels.laws import internal, law_force, law_work, parameters
+from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.state import Buffers, Energy, Laws, LinearSystem, Run, Step
+from pound_solve.laws.functions import Tables
+from pound_solve.numerics.cubic import cubic_peak
+
+#: steps, and steps times unknowns, after which Python may look whether the user wants to stop
+PAUSE, BUSY = 100_000, 10_000_000
+
+
+def next_pause(step: Step, run: Run) -> int:
+    """Number of steps after which Python may look again whether the user wants to stop."""
+    return run.steps + min(PAUSE, 1 + BUSY // (1 + len(step.residual)))
+
+
+def count_extreme(laws: Laws, step: Step, law: int, i: int, value: float, t: float) -> None:
+    """Count a value into peak `i`; `law` is not negative for the force of a law."""
+    peaks = step.peaks
+    if value > peaks.high[i]:
+        peaks.high[i], peaks.t_high[i] = value, t
+    if value < peaks.low[i]:
+        peaks.low[i], peaks.t_low[i] = value, t
+    if law >= 0 and laws.contact[law] and value > laws.peak_force[law]:
+        laws.peak_force[law], laws.peak_time[law] = value, t
+
+
+def tracked(linear: LinearSystem, laws: Laws, step: Step, i: int) -> tuple[float, float]:
+    """Value and slope of tracked quantity `i` at the start of the coming step (see `state.Peaks`)."""
+    now, outputs, n_laws = step.now, len(linear.monitored_constants), len(laws.rule)
+    if i < outputs:
+        value = along(linear.monitored, i, now.displacement) + linear.monitored_constants[i]
+        slope = along(linear.monitored, i, now.velocity)
+        for j in range(len(now.inputs)):
+            value += linear.monitored_inputs[i, j] * now.inputs[j]
+            slope += linear.monitored_inputs[i, j] * now.input_rates[j]
+        return value, slope
+    if i < outputs + n_laws:
+        return laws.now.deformation[i - outputs], laws.now.rate[i - outputs]
+    law = i - outputs - n_laws
+    d, v = laws.now.deformation[law], laws.now.rate[law]
+    value, slope = laws.stiffness[law] * d + laws.offset[law], laws.stiffness[law] * v
+    if laws.contact[law] and laws.damping[law] != 0.0:  # damping is no part of a spring's force
+        value += laws.damping[law] * v
+        slope += laws.damping[law] * along(laws.rows, law, now.acceleration)
+        if touches_massless(
+            linear, laws, law
+        ):  # its acceleration is a jump of its velocity over a step, or a part
+            slope = 0.0
+    return value, slope
+
+
+def track(linear: LinearSystem, laws: Laws, step: Step, t: float, since: float) -> None:
+    """Count the motion at the start of the coming step into the peaks, and stationary points on the same
+    branches since the last count, `since` ago.
+    """
+    peaks, forces = step.peaks, len(linear.monitored_constants) + len(laws.rule)
+    for i in range(forces + len(laws.rule)):
+        value, slope = tracked(linear, laws, step, i)
+        count_extreme(laws, step, i - forces, i, value, t)
+        if since > 0.0 and peaks.slope[i] * slope < 0.0:
+            sign = 1.0 if peaks.slope[i] > 0.0 else -1.0
+            place, top = cubic_peak(
+                sign * peaks.value[i], sign * value, sign * peaks.slope[i], sign * slope, since
+            )
+            count_extreme(laws, step, i - forces, i, sign * top, t - since + place)
+        peaks.value[i], peaks.slope[i] = value, slope
+        peaks.steepest[i] = max(peaks.steepest[i], abs(slope))
+
+
+def log_transition(
+    laws: Laws, buffers: Buffers, run: Run, i: int, before: int, t: float, force: float
+) -> None:
+    """Put a change of branch into the log; a contact begins to count its force anew."""
+    row = buffers.log[run.logged]
+    row[0], row[1], row[2], row[3] = i, before, laws.branch[i], t
+    row[4], row[5], row[6] = laws.now.deformation[i], laws.now.rate[i], force
+    row[7], row[8], row[9] = laws.peak_force[i], laws.peak_time[i], laws.impulse[i]
+    run.logged += 1
+    if laws.contact[i]:
+        laws.peak_force[i], laws.peak_time[i], laws.impulse[i] = force, t, 0.0
+
+
+def store_sample(
+    laws: Laws, step: Step, buffers: Buffers, rules: Tables, energy: Energy, run: Run, t: float
+) -> None:
+    """Keep the motion, the laws' forces and energies, and the works."""
+    at, now = run.kept, step.now
+    buffers.time[at] = t
+    for i in range(len(step.residual)):
+        buffers.displacement[at, i] = now.displacement[i]
+        buffers.velocity[at, i] = now.velocity[i]
+        buffers.acceleration[at, i] = now.acceleration[i]
+    for i in range(len(laws.rule)):
+        d = laws.now.deformation[i]
+        still = law_force(laws, rules, i, d, 0.0)
+        buffers.force[at, i] = law_force(laws, rules, i, d, laws.now.rate[i]) if laws.contact[i] else still
+        held = rules.recoverable[laws.rule[i]](
+            parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i), d, still
+        )
+        lost = law_work(laws, rules, i, d) - held
+        size = max(abs(d), abs(laws.entry_deformation[i]))
+        buffers.stored[at, i] = held
+        buffers.lost[at, i] = lost if abs(lost) > 1e-14 * laws.parameters[i, 0] * size * size else 0.0
+    works = buffers.works[at]
+    works[0], works[1], works[2] = energy.input, energy.damping, energy.contact
+    run.kept += 1
+
+
+def take_first_sample(
+    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, energy: Energy, run: Run
+) -> None:
+    """Make the start consistent and keep it as the first sample."""
+    make_consistent(linear, laws, step)
+    track(linear, laws, step, run.time, 0.0)
+    store_sample(laws, step, buffers, rules, energy, run, run.time)
+    run.started = 1
+
+
+def store_motion(step: Step, buffers: Buffers, run: Run, t: float, each: int) -> None:
+    """Keep the motion after every `each`-th step between two samples."""
+    run.since_shown += 1
+    if run.since_shown < each or len(buffers.which) == 0:
+        return
+    at, now = run.shown, step.now
+    buffers.shown_time[at] = t
+    for i in range(len(buffers.which)):
+        which = buffers.which[i]
+        buffers.shown[at, 0, i] = now.displacement[which]
+        buffers.shown[at, 1, i] = now.velocity[which]
+        buffers.shown[at, 2, i] = now.acceleration[which]
+    run.since_shown = 0
+    run.shown += 1

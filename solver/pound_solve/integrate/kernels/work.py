@@ -1,0 +1,73 @@
+"""Kernels of power: what moved supports, loads and dashpots put in and take out."""
+
+from __future__ import annotations
+
+from pound_solve.integrate.kernels.laws import linear_force
+from pound_solve.integrate.kernels.state import LawMotion, Laws, LinearSystem, MemberState, Motion
+from pound_solve.numerics.jit import loose
+from pound_solve.numerics.types import Array
+
+
+def support_power(
+    linear: LinearSystem, laws: Laws, motion: Motion, law_motion: LawMotion, members: MemberState
+) -> tuple[float, float]:
+    """Power that moved supports put in, and that lost in dashpots which end at them, at one instant."""
+    put, lost = 0.0, 0.0
+    moved = len(linear.support_damping)
+    for q in range(moved):
+        speed, force, drag = 0.0, 0.0, 0.0
+        for j in range(len(motion.inputs)):
+            speed += linear.support_rates[q, j] * motion.inputs[j]
+            force += linear.support_forces[q, j] * motion.inputs[j]
+        if speed == 0.0:
+            continue
+        for i in range(len(motion.displacement)):
+            force += (
+                linear.reactions[0, q, i] * motion.displacement[i]
+                + linear.reactions[2, q, i] * motion.acceleration[i]
+            )
+            drag += linear.reactions[1, q, i] * motion.velocity[i]
+        for i in range(len(laws.rule)):
+            if laws.supports[i, q] != 0.0:
+                f = linear_force(laws, i, law_motion.deformation[i], law_motion.rate[i])
+                force += laws.supports[i, q] * f
+        for c in range(len(members.forces)):
+            for j in range(6):
+                force += laws.members.supports[c, j, q] * members.forces[c, j]
+        put += (force + drag) * speed
+        lost += 2.0 * drag * speed
+        for z in range(moved):
+            for j in range(len(motion.inputs)):
+                lost += speed * linear.support_damping[q, z] * linear.support_rates[z, j] * motion.inputs[j]
+    return put, lost
+
+
+def load_on_nodes(linear: LinearSystem, inputs: Array, i: int) -> float:
+    """Force on unknown `i` by constant loads and FORCES."""
+    force = linear.constant[i]
+    for j in range(len(inputs)):
+        force += linear.pushed[i, j] * inputs[j]
+    return force
+
+
+@loose
+def mean_damping_power(now: Motion, trial: Motion) -> float:
+    """Three times the mean power that the dashpots of the structure take in a step."""
+    loss = 0.0
+    for i in range(len(now.velocity)):
+        loss += (
+            now.damping_force[i] * (now.velocity[i] + trial.velocity[i])
+            + trial.damping_force[i] * trial.velocity[i]
+        )
+    return loss
+
+
+@loose
+def mean_load_power(now: Motion, trial: Motion) -> float:
+    """Six times the mean power that the loads put in, in a step."""
+    work = 0.0
+    for i in range(len(now.velocity)):
+        work += (2.0 * now.load[i] + trial.load[i]) * now.velocity[i] + (
+            now.load[i] + 2.0 * trial.load[i]
+        ) * trial.velocity[i]
+    return work

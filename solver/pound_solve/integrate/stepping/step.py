@@ -1,0 +1,378 @@
+r"""One step of the generalised-alpha family (Chung & Hulbert 1993): factor, predict, solve, correct,
+accept.
+
+With the length h of the step,
+
+.. math::
+    u_1 = \tilde u + \beta h^2 a_1, \qquad \tilde u = u_0 + h v_0 + h^2(\tfrac12-\beta) a_0 \\
+    v_1 = \tilde v + \gamma h a_1, \qquad \tilde v = v_0 + (1-\gamma) h a_0 \\
+    \Bigl[\tfrac{1-\alpha_m}{1-\alpha_f} M + \gamma h C + \beta h^2 K\Bigr] a_1
+      = p_1 - C\tilde v - K\tilde u - f(\tilde u, \tilde v)
+      + \frac{\alpha_f r_0 - \alpha_m M a_0}{1-\alpha_f}
+
+with the residual :math:`r = p - C v - K u - f` at the start of the step.  Between events the laws are
+linear, so a step is one solution; curved laws take Newton iterations that change the factor by rank one.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.integrate.kernels.consistency import correct_massless_rates
+from pound_solve.integrate.kernels.corotational import (
+    add_tangent,
+    anchor,
+    correct_members,
+    force_size,
+    predict_members,
+    predicted_force,
+    subtract_force,
+    take_tangents,
+)
+from pound_solve.integrate.kernels.laws import (
+    add_slip_work,
+    curve,
+    law_force,
+    linear_force,
+    linearise_laws,
+    proportional_damping,
+    set_normal_force,
+    update_friction_limits,
+)
+from pound_solve.integrate.kernels.products import along, copy, evaluate_inputs, form_load, multiply
+from pound_solve.integrate.kernels.state import WHOLE, Energy, Laws, LinearSystem, Run, Scheme, Step
+from pound_solve.integrate.kernels.work import (
+    load_on_nodes,
+    mean_damping_power,
+    mean_load_power,
+    support_power,
+)
+from pound_solve.laws.functions import Tables
+from pound_solve.numerics.ldl import factor, update
+from pound_solve.numerics.ldl import solve as solve_factored
+from pound_solve.numerics.types import Array
+from pound_solve.structure.corotational import KIND, LENGTH, STRING
+
+REFRESH = 200  #: updates of rank one before a factor is made anew
+CONVERGED = 1e-12  #: share of a curved law's force that its tangent may miss it by
+SLOW = 0.05  #: part of an error that an iteration may leave before the factor is made anew
+MOST_ITERATIONS = 50
+
+
+def factorise(linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, h: float, at: int) -> int:
+    """Factorise A for steps of length `h`; return -1 or the unknown whose pivot vanishes."""
+    on_mass = (1.0 - scheme.alpha_m) / (1.0 - scheme.alpha_f)
+    on_damping, on_stiffness = scheme.gamma * h, scheme.beta * h * h
+    a = linear.on_pattern
+    for q in range(len(step.matrix)):
+        step.matrix[q] = on_mass * a[0, q] + on_damping * a[1, q] + on_stiffness * a[2, q]
+    for i in range(len(laws.rule)):
+        change = on_damping * laws.damping[i] + on_stiffness * laws.stiffness[i]
+        if change != 0.0:
+            for q in range(laws.pair_pointers[i], laws.pair_pointers[i + 1]):
+                step.matrix[laws.pair_places[q]] += change * laws.pair_values[q]
+    if on_stiffness != 0.0:
+        members = laws.members
+        for c in range(len(members.parameters)):
+            add_tangent(linear, members, step, c, members.tangent, on_stiffness, False)
+    return factor(linear.pattern, step.matrix, step.factors[at], step.pivots[at], step.row)
+
+
+def update_factor(linear: LinearSystem, laws: Laws, step: Step, i: int, change: float, at: int) -> bool:
+    """Add ``change b b^T`` of law `i` to a factor; False where it must be made anew."""
+    rows = laws.rows
+    if change == 0.0 or rows.pointers[i] == rows.pointers[i + 1]:
+        return True
+    first = len(step.row)
+    for q in range(rows.pointers[i], rows.pointers[i + 1]):
+        step.row[rows.columns[q]] += rows.values[q]
+        first = min(first, rows.columns[q])
+    return update(linear.pattern, step.factors[at], step.pivots[at], step.row, first, change)
+
+
+def predict(
+    linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, coefs: Array, end: float, h: float
+) -> None:
+    """Motion and forces at the end of a step of length `h`, at the local time `end`, but for the
+    acceleration there.
+    """
+    now, trial, right = step.now, step.trial, step.right_side
+    b2, g1 = h * h * (0.5 - scheme.beta), (1.0 - scheme.gamma) * h
+    n = len(right)
+    evaluate_inputs(coefs, end, trial.inputs, trial.input_rates)
+    form_load(linear, trial.inputs, trial.load)
+    for i in range(n):
+        trial.displacement[i] = now.displacement[i] + h * now.velocity[i] + b2 * now.acceleration[i]
+    for i in range(n):
+        trial.velocity[i] = now.velocity[i] + g1 * now.acceleration[i]
+    multiply(linear.stiffness, trial.displacement, right)
+    if scheme.alpha_f != 0.0 or scheme.alpha_m != 0.0:
+        multiply(linear.mass, now.acceleration, step.product)
+        one = 1.0 / (1.0 - scheme.alpha_f)
+        for i in range(n):
+            right[i] -= one * (scheme.alpha_f * step.residual[i] - scheme.alpha_m * step.product[i])
+    for i in range(n):
+        right[i] = trial.load[i] - right[i] - now.damping_force[i] - g1 * now.damping_rate[i]
+    for i in range(len(laws.rule)):
+        d, v = 0.0, 0.0
+        for j in range(len(trial.inputs)):
+            d += laws.inputs[i, j] * trial.inputs[j]
+            v += laws.inputs[i, j] * trial.input_rates[j]
+        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+            d += laws.rows.values[q] * trial.displacement[laws.rows.columns[q]]
+            v += laws.rows.values[q] * trial.velocity[laws.rows.columns[q]]
+        laws.trial.deformation[i], laws.trial.rate[i] = d, v
+    predict_members(laws, step)
+
+
+def solve(linear: LinearSystem, laws: Laws, step: Step, at: int) -> None:
+    """Acceleration at the end of the step, with the laws and the members on their present tangents."""
+    acceleration = step.trial.acceleration
+    copy(step.right_side, acceleration)
+    for i in range(len(laws.rule)):
+        f = linear_force(laws, i, laws.trial.deformation[i], laws.trial.rate[i])
+        if f != 0.0:
+            for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+                acceleration[laws.rows.columns[q]] -= laws.rows.values[q] * f
+    for c in range(len(laws.members.parameters)):
+        predicted_force(laws.members, c)
+        subtract_force(laws.members, c, laws.members.trial.forces, acceleration)
+    solve_factored(linear.pattern, step.factors[at], step.pivots[at], acceleration)
+
+
+def correct_curved(
+    linear: LinearSystem, laws: Laws, step: Step, rules: Tables, scheme: Scheme, h: float, at: int,
+    run: Run,
+) -> tuple[float, int]:  # fmt: skip
+    """Linearise the curved laws at the acceleration that was tried, and let the factor follow.
+
+    Returns
+    -------
+    worst, law : float, int
+        Largest distance of a law from its last tangent, over its force, and which law it is; -1.0 where the
+        factor fails.
+    """
+    bk, gk = scheme.beta * h * h, scheme.gamma * h
+    acceleration, worst, law = step.trial.acceleration, 0.0, -1
+    for i in range(len(laws.rule)):
+        if not laws.curved[i]:
+            continue
+        j = laws.normal[i]
+        if j >= 0:
+            a = along(laws.rows, j, acceleration)
+            set_normal_force(laws, i, laws.trial.deformation[j] + bk * a, laws.trial.rate[j] + gk * a, a)
+        a = along(laws.rows, i, acceleration)
+        d, v = laws.trial.deformation[i] + bk * a, laws.trial.rate[i] + gk * a
+        c = curve(laws, rules, i, d, v)
+        k, own = c[1], proportional_damping(laws, i, c[1])
+        damp, force = c[2] + own, c[0] + own * v
+        guess = linear_force(laws, i, d, v)
+        size = max(abs(force), abs(k * laws.largest_deformation[i]), 1e-300)
+        if abs(force - guess) > worst * size:
+            worst, law = abs(force - guess) / size, i
+        change = bk * (k - laws.stiffness[i]) + gk * (damp - laws.damping[i])
+        laws.stiffness[i], laws.damping[i], laws.offset[i] = k, damp, force - k * d - damp * v
+        run.updates += 1
+        if linear.explicit or update_factor(linear, laws, step, i, change, at):
+            continue
+        if factorise(linear, laws, step, scheme, h, at) >= 0:
+            return -1.0, -1
+    return worst, law
+
+
+def redraw_members(
+    linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, h: float, at: int, run: Run
+) -> bool:
+    """Take the members' tangents anew, with the factor; False where that fails."""
+    members = laws.members
+    take_tangents(members, members.trial.quantities)
+    for c in range(len(members.parameters)):
+        anchor(members, c)
+    if factorise(linear, laws, step, scheme, h, at) >= 0:
+        return False
+    if at != WHOLE:
+        run.updates = REFRESH + 1
+    return True
+
+
+def iterate(
+    linear: LinearSystem, laws: Laws, step: Step, rules: Tables, scheme: Scheme, h: float, at: int,
+    run: Run,
+) -> bool:  # fmt: skip
+    """Solve for the acceleration at the end of the step; False where Newton does not converge, and the law
+    furthest from it in `run.fault`.
+    """
+    last, worst, law = np.inf, 0.0, -1
+    run.fault = -1
+    for _ in range(MOST_ITERATIONS):
+        solve(linear, laws, step, at)
+        worst, law = correct_curved(linear, laws, step, rules, scheme, h, at, run)
+        if worst == -1.0:
+            return False
+        has_members = len(laws.members.parameters) > 0
+        error = correct_members(laws, step, scheme.beta * h * h) if has_members else 0.0
+        if worst <= CONVERGED and error <= 1.0:
+            return True
+        if not error < np.inf:
+            return False
+        slow = error > 1.0 and error > SLOW * last
+        if slow and not redraw_members(linear, laws, step, scheme, h, at, run):
+            return False
+        last = error
+    if worst > CONVERGED:
+        run.fault = law
+    return False
+
+
+def try_step(
+    linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, rules: Tables, coefs: Array, end: float,
+    h: float, at: int, run: Run,
+) -> bool:  # fmt: skip
+    """Try a step of length `h` that ends at the local time `end`, with the factor `at`; False where Newton
+    does not converge (see `iterate`).
+    """
+    predict(linear, laws, step, scheme, coefs, end, h)
+    if not iterate(linear, laws, step, rules, scheme, h, at, run):
+        return False
+    trial, bk, gk = step.trial, scheme.beta * h * h, scheme.gamma * h
+    for i in range(len(trial.acceleration)):
+        trial.displacement[i] += bk * trial.acceleration[i]
+    for i in range(len(trial.acceleration)):
+        trial.velocity[i] += gk * trial.acceleration[i]
+    for i in range(len(laws.rule)):
+        a = along(laws.rows, i, trial.acceleration)
+        laws.trial.deformation[i] += bk * a
+        laws.trial.rate[i] += gk * a
+    if len(laws.coupled) > 0:
+        update_friction_limits(laws, rules, trial.acceleration)
+    if linear.implicit and not linear.all_mass:
+        correct_massless_rates(linear, laws, step, linear.massless_vary or run.stale != 0, h)
+        run.stale = 0
+    return True
+
+
+def start_again(laws: Laws, rules: Tables) -> None:
+    """Linearise all that is curved at the start of the step."""
+    linearise_laws(laws, rules)
+    take_tangents(laws.members, laws.members.now.quantities)
+
+
+def add_external_work(linear: LinearSystem, laws: Laws, step: Step, h: float, energy: Energy) -> None:
+    """Add up the work of loads and moved supports over the step, and the loss in dashpots of the
+    structure.
+    """
+    now, trial = step.now, step.trial
+    before, work, loss = energy.input, 0.0, 0.0
+    loss += mean_damping_power(now, trial)
+    if len(linear.support_damping) > 0:
+        for i in range(len(now.velocity)):
+            pushed0 = load_on_nodes(linear, now.inputs, i)
+            pushed1 = load_on_nodes(linear, trial.inputs, i)
+            work += 3.0 * (pushed0 * now.velocity[i] + pushed1 * trial.velocity[i])
+        put0, lost0 = support_power(linear, laws, now, laws.now, laws.members.now)
+        put1, lost1 = support_power(linear, laws, trial, laws.trial, laws.members.trial)
+        work += 3.0 * (put0 + put1)
+        loss += 1.5 * (lost0 + lost1)
+    else:
+        work += mean_load_power(now, trial)
+    p, members = laws.members.parameters, laws.members
+    for c in range(len(p)):
+        if p[c, KIND] == STRING:  # what its axial force does on the way that a string leaves out
+            s0, s1 = members.now.quantities, members.trial.quantities
+            square = s0[c, 3] * s0[c, 3] + s1[c, 3] * s1[c, 3]
+            energy.input += 0.25 * square / p[c, LENGTH] * (s1[c, 0] - s0[c, 0])
+    energy.input += work * h / 6.0
+    energy.damping += loss * h / 3.0
+    energy.gross_input += abs(energy.input - before)
+
+
+def accept_laws(laws: Laws, rules: Tables, h: float, energy: Energy) -> None:
+    """Add up the losses in the laws' dashpots and the contacts' impulses; take over the end of the step."""
+    for i in range(len(laws.rule)):
+        k, c, f0 = laws.stiffness[i], laws.damping[i], laws.offset[i]
+        d0, d1 = laws.now.deformation[i], laws.trial.deformation[i]
+        v0, v1 = laws.now.rate[i], laws.trial.rate[i]
+        drag0, drag1 = c * v0, c * v1
+        force0, force1 = k * d0 + f0 + drag0, k * d1 + f0 + drag1
+        if laws.contact[i] and laws.curved[i]:  # its damping is what the rate adds to the force
+            force0, force1 = law_force(laws, rules, i, d0, v0), law_force(laws, rules, i, d1, v1)
+            drag0 = force0 - law_force(laws, rules, i, d0, 0.0)
+            drag1 = force1 - law_force(laws, rules, i, d1, 0.0)
+        if drag0 != 0.0 or drag1 != 0.0:
+            lost = h / 6.0 * (drag0 * (2.0 * v0 + v1) + drag1 * (v0 + 2.0 * v1))
+            laws.dashpot_loss[i] += lost
+            if laws.contact[i]:
+                energy.contact += lost
+            else:
+                energy.damping += lost
+        if laws.contact[i]:
+            laws.impulse[i] += 0.5 * h * (force0 + force1)
+        laws.now.deformation[i], laws.now.rate[i] = d1, v1
+        laws.largest_deformation[i] = max(laws.largest_deformation[i], abs(d1))
+        laws.largest_rate[i] = max(laws.largest_rate[i], abs(v1))
+
+
+def accept_members(laws: Laws) -> None:
+    """Take over the members at the end of the step."""
+    members = laws.members
+    for c in range(len(members.parameters)):
+        size = force_size(members.trial, c, members.parameters[c, LENGTH])
+        members.largest[0] = max(members.largest[0], size)
+        for j in range(6):
+            members.now.quantities[c, j] = members.trial.quantities[c, j]
+            members.now.forces[c, j] = members.trial.forces[c, j]
+
+
+def update_residual(linear: LinearSystem, step: Step, scheme: Scheme) -> None:
+    """Residual of the alpha methods at the end of the step."""
+    one = 1.0 / (1.0 - scheme.alpha_f)
+    now, trial, residual = step.now, step.trial, step.residual
+    for i in range(len(residual)):  # the acceleration at the start is of no further use
+        now.acceleration[i] = (1.0 - scheme.alpha_m) * trial.acceleration[
+            i
+        ] + scheme.alpha_m * now.acceleration[i]
+    multiply(linear.mass, now.acceleration, step.right_side)
+    for i in range(len(residual)):
+        residual[i] = one * (step.right_side[i] - scheme.alpha_f * residual[i])
+
+
+def accept(
+    linear: LinearSystem, laws: Laws, step: Step, rules: Tables, scheme: Scheme, h: float, at: int,
+    energy: Energy, run: Run,
+) -> None:  # fmt: skip
+    """Make the end of the step that was tried the start of the next; count it, if it is longer than the
+    time in which a falling branch gives way.
+
+    A then has a negative eigenvalue, which its pivots in row `at` tell (Sylvester's law of inertia): along
+    that mode the method goes against the force, where the motion goes with it.
+    """
+    now, trial = step.now, step.trial
+    n = len(now.velocity)
+    for i in range(n):
+        if step.pivots[at, i] < 0.0:
+            run.falling += 1
+            break
+    multiply(linear.damping, trial.acceleration, trial.damping_rate)
+    if linear.all_mass:
+        g1, gk = (1.0 - scheme.gamma) * h, scheme.gamma * h
+        for i in range(n):
+            trial.damping_force[i] = (
+                now.damping_force[i] + g1 * now.damping_rate[i] + gk * trial.damping_rate[i]
+            )
+    else:
+        multiply(linear.damping, trial.velocity, trial.damping_force)
+    add_external_work(linear, laws, step, h, energy)
+    accept_members(laws)
+    if len(laws.coupled) > 0:
+        add_slip_work(laws, h)
+    accept_laws(laws, rules, h, energy)
+    if scheme.alpha_f != 0.0 or scheme.alpha_m != 0.0:
+        update_residual(linear, step, scheme)
+    copy(trial.displacement, now.displacement)
+    copy(trial.velocity, now.velocity)
+    copy(trial.acceleration, now.acceleration)
+    copy(trial.damping_force, now.damping_force)
+    copy(trial.damping_rate, now.damping_rate)
+    copy(trial.load, now.load)
+    copy(trial.inputs, now.inputs)
+    copy(trial.input_rates, now.input_rates)
