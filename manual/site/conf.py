@@ -63,6 +63,7 @@ PACKAGES = {"pound_solve": ROOT / "solver/pound_solve", "pound_deck": ROOT / "pa
 # a name that a module passes on is described where it is defined
 autodoc_default_options = {"members": True, "show-inheritance": True, "ignore-module-all": True}
 autodoc_member_order = "bysource"
+viewcode_follow_imported_members = False  # else the list of sources names builtins, which have no page
 napoleon_google_docstring = False
 napoleon_use_ivar = True  # dataclasses and named tuples describe their fields under Attributes
 add_module_names = False
