@@ -1,13 +1,14 @@
 # make example   run the paper's buildings under El Centro 1940 and show where the report is
 # make test      run the test suite
-# Both set up a virtual environment in $(VENV) first.
+# make docs      build the site: build/site/index.html
+# All set up a virtual environment in $(VENV) first.
 
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 OUT ?= build/example
 
-.PHONY: example test lint manual clean
+.PHONY: example test lint manual docs clean
 
 $(VENV)/ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -28,5 +29,12 @@ lint: $(VENV)/ready
 manual: $(VENV)/ready   # rewrite the pages that the program makes
 	$(BIN)/python tests/refresh_manual.py
 
+$(VENV)/ready-docs: $(VENV)/ready
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[docs]"
+	touch $@
+
+docs: $(VENV)/ready-docs   # warnings are errors, references that lead nowhere are warnings
+	$(BIN)/sphinx-build --nitpicky --fail-on-warning --keep-going -c manual/site -d build/doctrees . build/site
+
 clean:
-	rm -rf $(VENV) build
+	rm -rf $(VENV) build manual/api

@@ -176,7 +176,7 @@ def columns_everywhere(lines: str) -> str:
 
 RAYLEIGH = "   RAYLEIGH  XI=xi"
 VARIANTS = (
-    Variant("as the decks stand"),
+    Variant("decks unchanged"),
     Variant("record's own sign", record=Record("El Centro", "ELCENTRO_270", 1, 1)),
     Variant("record from 2.05 s", record=Record("El Centro", "ELCENTRO_270", -1, 1, 2.05)),
     Variant(

@@ -17,7 +17,7 @@ HOLDS, PARTLY, FAILS = "holds", "holds in part", "does not hold"
 
 @dataclass(frozen=True)
 class Verdict:
-    """A statement of the paper, whether it holds here, and the figures that tell so."""
+    """A statement of the paper, whether it holds here, and the supporting figures."""
 
     statement: str
     verdict: str
@@ -55,12 +55,12 @@ def some(found: Sequence[Drift], *tests: str) -> list[Drift]:
 
 
 def share(count: int, of: int) -> str:
-    """Write a count with its whole."""
+    """Write a count and its total."""
     return f"{count} of {of}"
 
 
 def graded(good: int, of: int, most: float = 0.8) -> str:
-    """Verdict of a statement that holds in `good` of some cases; from the share `most` on in part."""
+    """Verdict of a statement that holds in `good` of `of` cases: in part from the fraction `most`."""
     return HOLDS if good == of else PARTLY if good >= most * of else FAILS
 
 
@@ -88,7 +88,7 @@ def underestimate(found: Sequence[Drift]) -> Verdict:
 def like_one_element(found: Sequence[Drift]) -> Verdict:
     equiv, one = (fmean(abs(d.error) for d in some(found, test)) for test in ("0(equiv)", "1"))
     return Verdict(
-        "0(equiv) is about as accurate as one element a diaphragm",
+        "0(equiv) is about as accurate as one element per diaphragm",
         HOLDS if equiv <= 1.5 * one else FAILS,
         f"mean errors {equiv:.1f} % and {one:.1f} %",
     )
@@ -100,9 +100,9 @@ def only_one_beyond(found: Sequence[Drift]) -> Verdict:
     names = ", ".join(sorted(f"{place} ({record})" for record, place in where)) or "none"
     expected = all(place == "B2 storey 2" for _, place in where) and len(where) <= 1
     return Verdict(
-        "0(equiv) is beyond 10 % for one record only, in the second storey of building 2",
+        "The error of 0(equiv) exceeds 10 % for one record only, in the second storey of building 2",
         HOLDS if expected else FAILS,
-        f"beyond 10 %: {names}",
+        f"above 10 %: {names}",
     )
 
 
@@ -111,7 +111,7 @@ def far_ends(found: Sequence[Drift]) -> Verdict:
     for d in some(found, "0(equiv)"):
         (far if d.place.endswith("left") == d.place.startswith("B1") else near).append(abs(d.error))
     return Verdict(
-        "0(equiv) is worse at the far ends of the buildings than at the interface",
+        "0(equiv) is less accurate at the far ends of the buildings than at the interface",
         HOLDS if fmean(far) > fmean(near) else FAILS,
         f"mean errors {fmean(far):.1f} % at the far ends, {fmean(near):.1f} % at the interface",
     )
@@ -123,7 +123,7 @@ def two_elements(found: Sequence[Drift]) -> Verdict:
     return Verdict(
         "With two or more elements every error is below 5 %",
         graded(small, len(errors)),
-        f"{share(small, len(errors))} errors are; the largest is {worst(errors):.1f} %",
+        f"{share(small, len(errors))} errors are below; the largest is {worst(errors):.1f} %",
     )
 
 
@@ -131,7 +131,7 @@ def progressive(found: Sequence[Drift]) -> Verdict:
     means = [fmean(abs(d.error) for d in some(found, str(n))) for n in (1, 2, 3, 4, 5)]
     falls = sum(a > b for a, b in pairwise(means))
     return Verdict(
-        "More elements increase the accuracy step by step",
+        "The accuracy increases steadily with the number of elements",
         graded(falls, 4, 0.75),
         "mean errors with 1 to 5 elements: " + ", ".join(f"{m:.2f}" for m in means) + " %",
     )
@@ -156,14 +156,14 @@ def ductility(runs: Mapping[str, Sequence[Run]]) -> Verdict:
         )
     ordered = [reached[r] for r in ("El Centro", "Mexico City", "Loma Prieta") if r in reached]
     return Verdict(
-        "El Centro yields little, Mexico City moderately, Loma Prieta much",
+        "Yielding is slight in El Centro, moderate in Mexico City and severe in Loma Prieta",
         HOLDS if all(a < b for a, b in pairwise(ordered)) else FAILS,
         "largest drift over yield drift: " + ", ".join(f"{r} {x:.1f}" for r, x in reached.items()),
     )
 
 
 def forces(runs: Mapping[str, Sequence[Run]], per_speed: float) -> list[Verdict]:
-    """Statements on Eq. 11, whose recorded force is read as the peak and as the plateau."""
+    """Statements on Eq. 11, with the recorded force read as the peak and as the plateau."""
     out = []
     for of in ("peak", "plateau"):
         own = [
@@ -196,15 +196,15 @@ def all_tests(found: Sequence[Prediction], of: str) -> Verdict:
     strong = [abs(p.error) for p in found if p.force > 1000 and p.test not in TRADITIONAL]
     within15, beyond10 = sum(e <= 15 for e in strong), sum(e > 10 for e in strong)
     return Verdict(
-        "El Centro, traditional models apart: Eq. 11 at each test's own speed is within 15 % for every "
-        f"collision above 1000 kN, within 10 % for all but two (recorded force: {of})",
+        "El Centro, without traditional models: Eq. 11 at each test's own speed is within 15 % for every "
+        f"collision above 1000 kN and within 10 % for all but two (recorded force: {of})",
         HOLDS if within15 == len(strong) and beyond10 <= 2 else graded(within15, len(strong)),
-        f"{share(within15, len(strong))} within 15 %, {beyond10} beyond 10 %",
+        f"{share(within15, len(strong))} within 15 %, {beyond10} above 10 %",
     )
 
 
 def sensitivity(variant: str, runs: Sequence[Run]) -> list[object]:
-    """One row of the grid over what the paper does not say: the main figures of a variant."""
+    """One row of the sensitivity table: the main figures of a variant."""
     found = list(drifts(runs, benchmark_of(runs)))
     tests = by_test(runs)
     bench = tests[BENCHMARK]
