@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pound_solve.catalog import catalog
-from pound_solve.integrate.series import expansion, taylor
+from pound_solve.integrate.series import march, taylor
 from pound_solve.numerics import jit
 from unit.test_laplace import SOIL
 from verification.cases import ROOT, Ran, run_deck, run_text
@@ -672,7 +672,7 @@ def test_changes_at_one_instant_are_told(monkeypatch: pytest.MonkeyPatch) -> Non
     """Were every change taken for one of the same instant, the first reduced system that has many would
     stop.
     """
-    monkeypatch.setattr(expansion, "INSTANT", 10.0)
+    monkeypatch.setattr(march, "INSTANT", 10.0)
     with monkeypatch.context() as m:
         m.setenv("POUND_COMPILE", "0")
         forget()

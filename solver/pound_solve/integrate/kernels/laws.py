@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import STIFFNESS, TURN, Laws
 from pound_solve.laws.automaton import PUSH, PUSH_RATE
@@ -180,20 +182,23 @@ def event_on_path(laws: Laws, i: int, start: float, end: float, rate: float) -> 
     sign = 1.0 if end >= start else -1.0
     best, where = -1, 0.0
     for e in range(laws.n_events[i]):
-        a, b, c = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
-        if a != 0.0:
-            c += b * rate
-        value, slope = a * start + c, a * sign
-        if b != 0.0 and a == 0.0 and c == 0.0:
-            if b * sign <= 0.0 or end == start:
-                continue
-            place = start
-        elif value >= 0.0 and (slope > 0.0 or (slope == 0.0 and value > 0.0)):
-            place = start
-        elif slope > 0.0 and a * end + c > 0.0:
-            place = start - value / slope * sign
-        else:
-            continue
-        if best < 0 or (place - where) * sign < 0.0:
+        place = event_place(laws, i, e, start, end, rate)
+        if place == place and (best < 0 or (place - where) * sign < 0.0):
             best, where = e, place
     return best, where
+
+
+def event_place(laws: Laws, i: int, e: int, start: float, end: float, rate: float) -> float:
+    """Deformation of event `e` of law `i` on such a path; NaN where it is not met."""
+    sign = 1.0 if end >= start else -1.0
+    a, b, c = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
+    if a != 0.0:
+        c += b * rate
+    value, slope = a * start + c, a * sign
+    if b != 0.0 and a == 0.0 and c == 0.0:
+        return np.nan if b * sign <= 0.0 or end == start else start
+    if value >= 0.0 and (slope > 0.0 or (slope == 0.0 and value > 0.0)):
+        return start
+    if slope > 0.0 and a * end + c > 0.0:
+        return start - value / slope * sign
+    return np.nan

@@ -1,4 +1,4 @@
-r"""Kernels of TAYLOR: the motion of a step as a power series, its length, events, peaks and works.
+r"""Kernels of TAYLOR: the motion of a step as a power series, and how far it is right.
 
 With :math:`s = t/h` the coefficients of :math:`u = \sum_k c_k s^k` follow from the equations of motion,
 
@@ -9,8 +9,6 @@ With :math:`s = t/h` the coefficients of :math:`u = \sum_k c_k s^k` follow from 
 Terms are taken until two in a row are below a share `SMALL` of the motion in the norm of energy,
 :math:`k^2 c_k^T M c_k / h^2`; where even the last are not, the step ends where they would be, or is tried
 again if that is far from its end.
-
-Everything that is looked for within a step is a polynomial: exits of laws, deformations, forces.
 """
 
 from __future__ import annotations
@@ -19,47 +17,17 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise, highest, size
-from pound_solve.integrate.kernels.consistency import make_consistent
-from pound_solve.integrate.kernels.laws import linear_force, transition
-from pound_solve.integrate.kernels.products import along, evaluate_inputs, form_load, multiply
-from pound_solve.integrate.kernels.recording import (
-    log_transition,
-    next_pause,
-    store_sample,
-    take_first_sample,
-)
-from pound_solve.integrate.kernels.state import (
-    CHATTER,
-    DONE,
-    FULL,
-    MASS,
-    RUNAWAY,
-    Buffers,
-    Energy,
-    Laws,
-    LinearSystem,
-    Motion,
-    Run,
-    Step,
-)
-from pound_solve.integrate.kernels.work import load_on_nodes, support_power
-from pound_solve.integrate.protocol import STILL
-from pound_solve.laws.functions import Tables
+from pound_solve.integrate.kernels.products import along, multiply
+from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Step
 from pound_solve.numerics.jit import flat, loose
 from pound_solve.numerics.ldl import solve
-from pound_solve.numerics.types import Array, Flags, Index
+from pound_solve.numerics.types import Array
 
 TERMS = 32  #: of a series, at most
 CHECK = 4  #: terms after which it is seen whether they suffice
 SMALL = 1e-14  #: share of the motion that a term left out may be
 QUIET = 1e-13  #: share of its energy that a term may carry that works need not see
 GROW = 2.0  #: how much longer than the last a step may be
-AHEAD = 1e-3  #: part of a step that laws are looked at for which may leave at the instant of another
-LOOKS = 2  #: instants of a step that envelopes of nodes and members see: some 2.5 radians apart
-CUT = 0.5  #: part of a step, as it was tried, that is taken at least
-INSTANT = 1e-13  #: share of the time within which two events are at one instant
-SHORT = 7  #: why `march` came back, beside those of `kernels.state`: steps are too short for the clock
 
 
 class Lengths(Protocol):
@@ -228,101 +196,6 @@ def expand(
     return terms, end
 
 
-def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: int) -> tuple[int, float]:
-    """The first event of law `i` before `end`, and where; -1 where there is none."""
-    event, d, p = -1, series.deformation, series.polynomial[POLYNOMIAL]
-    for e in range(laws.n_events[i]):
-        on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
-        if on_d == 0.0 and on_v == 0.0:
-            continue
-        for k in range(terms + 1):
-            p[k] = on_d * d[i, k]
-        p[0] += constant
-        if on_v != 0.0:
-            for k in range(terms):
-                p[k] += on_v * (k + 1) / h * d[i, k + 1]
-        scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i] + abs(constant)
-        at = first_rise(series.polynomial, terms, end, STILL * scale)
-        if at >= 0.0 and (event < 0 or at < end):
-            event, end = e, at
-    return event, end
-
-
-def first_event(laws: Laws, series: Series, terms: int, h: float, end: float) -> tuple[int, int, float]:
-    """The first event of any law before `end`: law, event and place; law -1 where there is none."""
-    law, event = -1, -1
-    for i in range(len(laws.rule)):
-        own, at = event_of(laws, series, terms, h, end, i)
-        if own >= 0 and (law < 0 or at < end):
-            law, event, end = i, own, at
-    return law, event, end
-
-
-def count_crest(
-    laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t: float, i: int, law: int
-) -> None:
-    """Count the polynomial at work into peak `i`; `law` is not negative for the force of a law."""
-    peaks, p = step.peaks, series.polynomial
-    known = peaks.high[i]
-    contact = law >= 0 and laws.contact[law]
-    if contact:
-        known = min(known, laws.peak_force[law])
-    high, place = highest(p, terms, end, known)
-    if high > peaks.high[i]:
-        peaks.high[i], peaks.t_high[i] = high, t + h * place
-    if contact and high > laws.peak_force[law]:
-        laws.peak_force[law], laws.peak_time[law] = high, t + h * place
-    for k in range(terms + 1):
-        p[POLYNOMIAL, k] = -p[POLYNOMIAL, k]
-    high, place = highest(p, terms, end, -peaks.low[i])
-    if place >= 0.0:
-        peaks.low[i], peaks.t_low[i] = -high, t + h * place
-
-
-def track_outputs(
-    linear: LinearSystem, laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t:
-    float, top: int,
-) -> None:  # fmt: skip
-    """Count the monitored outputs up to `end` into the peaks."""
-    p = series.polynomial[POLYNOMIAL]
-    for i in range(len(linear.monitored_constants)):
-        for k in range(terms + 1):
-            p[k] = along(linear.monitored, i, series.motion[k])
-        for k in range(min(top, terms + 1)):
-            for j in range(series.inputs.shape[1]):
-                p[k] += linear.monitored_inputs[i, j] * series.inputs[k, j]
-        p[0] += linear.monitored_constants[i]
-        count_crest(laws, step, series, terms, h, end, t, i, -1)
-
-
-def track_laws(
-    laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t: float, first: int
-) -> None:
-    """Count deformations and forces of the laws up to `end` into the peaks, from peak `first` on."""
-    peaks, d, p = step.peaks, series.deformation, series.polynomial[POLYNOMIAL]
-    for i in range(len(laws.rule)):
-        begin, far = d[i, 0], size(d, i, terms)
-        if begin + far > peaks.high[first + i] or begin - far < peaks.low[first + i]:
-            for k in range(terms + 1):
-                p[k] = d[i, k]
-            count_crest(laws, step, series, terms, h, end, t, first + i, -1)
-        own = first + len(laws.rule) + i
-        stiffness, damping = laws.stiffness[i], laws.damping[i] if laws.contact[i] else 0.0
-        far *= abs(stiffness)
-        high = peaks.high[own]
-        if laws.contact[i]:
-            high = min(high, laws.peak_force[i])
-        force = laws.offset[i] + stiffness * begin
-        if damping != 0.0 or force + far > high or force - far < peaks.low[own]:
-            for k in range(terms + 1):
-                p[k] = stiffness * d[i, k]
-            p[0] += laws.offset[i]
-            if damping != 0.0:
-                for k in range(terms):
-                    p[k] += damping * (k + 1) / h * d[i, k + 1]
-            count_crest(laws, step, series, terms, h, end, t, own, i)
-
-
 def derived(k: int, order: int, h: float) -> float:
     """What a derivative makes of the power `k`."""
     out = 1.0
@@ -365,226 +238,3 @@ def law_at(series: Series, terms: int, s: float, h: float, i: int) -> tuple[floa
         v = v * s + d
         d = d * s + series.deformation[i, k]
     return d, v / h
-
-
-def add_law_losses(
-    laws: Laws,
-    series: Series,
-    terms: int,
-    s: float,
-    h: float,
-    weight: float,
-    moved: bool,
-    energy: Energy,
-) -> None:
-    """Add up the losses in the laws' dashpots and the contacts' impulses at one Gauss point."""
-    for i in range(len(laws.rule)):
-        drag = laws.damping[i]
-        pressed = laws.contact[i] and (laws.stiffness[i] != 0.0 or laws.offset[i] != 0.0)
-        if drag != 0.0 or moved or pressed:
-            d, v = law_at(series, terms, s, h, i)
-            laws.trial.deformation[i], laws.trial.rate[i] = d, v
-            lost = weight * drag * v * v
-            laws.dashpot_loss[i] += lost
-            if laws.contact[i]:
-                energy.contact += lost
-                laws.impulse[i] += weight * (laws.stiffness[i] * d + drag * v + laws.offset[i])
-            else:
-                energy.damping += lost
-
-
-@flat
-def add_works(
-    linear: LinearSystem, laws: Laws, step: Step, series: Series, coefs: Array, begin: float, terms: int,
-    carried: int, h: float, end: float, energy: Energy,
-) -> None:  # fmt: skip
-    """Add up the works over the step to `end`, by Gauss's rule."""
-    moved, trial = len(linear.support_damping) > 0, step.trial
-    put = 0.0
-    rule = min(carried, TERMS) // CHECK
-    for g in range(2 * (rule + 1)):
-        weight, s = series.gauss[rule, 0, g] * end * h, series.gauss[rule, 1, g] * end
-        evaluate(series, terms, s, h, 1, trial.velocity)
-        multiply(linear.damping, trial.velocity, step.product)
-        energy.damping += weight * dot(trial.velocity, step.product)
-        evaluate_inputs(coefs, begin + s * h, trial.inputs, trial.input_rates)
-        add_law_losses(laws, series, terms, s, h, weight, moved, energy)
-        if moved:
-            evaluate(series, terms, s, h, 0, trial.displacement)
-            evaluate(series, terms, s, h, 2, trial.acceleration)
-            given, lost = support_power(linear, laws, trial, laws.trial, laws.members.trial)
-            put += weight * given
-            energy.damping += weight * lost
-            for i in range(len(trial.velocity)):
-                put += weight * load_on_nodes(linear, trial.inputs, i) * trial.velocity[i]
-        else:
-            form_load(linear, trial.inputs, trial.load)
-            put += weight * dot(trial.load, trial.velocity)
-    energy.input += put
-    energy.gross_input += abs(put)
-
-
-def accept(laws: Laws, now: Motion, series: Series, terms: int, h: float, end: float) -> None:
-    """Make the place `end` the present."""
-    evaluate(series, terms, end, h, 0, now.displacement)
-    evaluate(series, terms, end, h, 1, now.velocity)
-    for i in range(len(laws.rule)):
-        d, v = law_at(series, terms, end, h, i)
-        laws.now.deformation[i], laws.now.rate[i] = d, v
-        laws.largest_deformation[i] = max(laws.largest_deformation[i], abs(d))
-        laws.largest_rate[i] = max(laws.largest_rate[i], abs(v))
-
-
-@flat
-def store_looks(
-    trial: Motion,
-    buffers: Buffers,
-    series: Series,
-    terms: int,
-    h: float,
-    end: float,
-    run: Run,
-    t: float,
-) -> None:
-    """Keep the motion at the start of the step, where its acceleration may have jumped, and on its way."""
-    for look in range(LOOKS):
-        s, at = look * end / LOOKS, run.shown
-        for j in range(3):
-            out = trial.displacement if j == 0 else trial.velocity if j == 1 else trial.acceleration
-            evaluate(series, terms if look else j, s, h, j, out)
-            for i in range(len(buffers.which)):
-                buffers.shown[at, j, i] = out[buffers.which[i]]
-        buffers.shown_time[at] = t + s * h
-        run.shown += 1
-
-
-def change_branch(
-    laws: Laws, buffers: Buffers, rules: Tables, run: Run, t: float, law: int, event: int
-) -> None:
-    """Let a law leave its branch."""
-    before, d, v = laws.branch[law], laws.now.deformation[law], laws.now.rate[law]
-    transition(laws, rules, law, event, d, v)
-    force = linear_force(laws, law, d, v)
-    if before != laws.branch[law]:
-        log_transition(laws, buffers, run, law, before, t, force)
-    run.events += 1
-    run.fault = law
-
-
-def change_branches(
-    laws: Laws, buffers: Buffers, rules: Tables, series: Series, terms: int, h: float, at: float, end:
-    float, law: int, event: int, run: Run,
-) -> None:  # fmt: skip
-    """Let a law leave its branch at the place `at`, and others whose events are at the same instant."""
-    now, instant = run.time, INSTANT * max(run.time, h)
-    change_branch(laws, buffers, rules, run, now, law, event)
-    for i in range(len(laws.rule)):
-        if i != law:
-            own, place = event_of(laws, series, terms, h, min(at + AHEAD, end), i)
-            if own >= 0 and place <= at + instant / h:
-                change_branch(laws, buffers, rules, run, now, i, own)
-    run.same_instant = run.same_instant + 1 if now - run.last_event <= instant else 0
-    run.last_event = now
-
-
-def stride(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
-    lengths: Lengths, coefs: Array, begin: float, goal: float, pause: int, energy: Energy,
-    run: Run,
-) -> int:  # fmt: skip
-    """Take steps on one piece of the excitation up to a goal, or until Python must look at it.
-
-    Returns
-    -------
-    int
-        DONE, or what is wrong.
-    """
-    room, first = len(buffers.log) // 2, len(linear.monitored_constants)
-    while run.time < goal:
-        crowded = len(buffers.log) - run.logged < room
-        if crowded or run.steps >= pause or run.shown + LOOKS > len(buffers.shown_time):
-            return FULL
-        t = run.time
-        left = goal - t
-        h = left / np.ceil(max(left / lengths.next, 1.0) * (1.0 - 1e-9))
-        if h < left:
-            h = t + h - t  # the motion goes as far as the clock does, which is rounded
-        if h == 0.0:
-            return SHORT
-        terms, fit = expand(linear, laws, step, series, lengths, coefs, t - begin, h)
-        if not fit >= CUT:  # what is known of the motion from terms far too large misleads
-            lengths.next = h * fit if fit > 1.0 / 16.0 else h / 16.0
-            continue
-        end = 1.0 if fit >= 1.0 else (t + fit * h - t) / h
-        if end == 0.0:
-            return SHORT
-        whole = end == 1.0 and h == left
-        # terms that were not needed make room for a longer step
-        lengths.next = max(h * min(fit * TERMS / terms, GROW), lengths.next if end == 1.0 else 0.0)
-        law, event, at = first_event(laws, series, terms, h, end)
-        track_outputs(linear, laws, step, series, terms, h, at, t, len(coefs))
-        track_laws(laws, step, series, terms, h, at, t, first)
-        if at > 0.0:
-            if len(buffers.which) > 0:
-                store_looks(step.trial, buffers, series, terms, h, at, run, t)
-            add_works(linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, at, energy)
-            accept(laws, step.now, series, terms, h, at)
-        run.steps += 1
-        if law < 0:
-            if not whole:
-                lengths.shortest = min(lengths.shortest, at * h)
-            run.time = goal if whole else t + at * h
-            continue
-        run.time = t + at * h
-        change_branches(laws, buffers, rules, series, terms, h, at, end, law, event, run)
-        if run.same_instant > 50 + 4 * len(laws.rule):
-            return CHATTER
-    return DONE
-
-
-def march(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
-    lengths: Lengths, coefs: Array, breaks: Array, goals: Array, outputs: Flags, pieces: Index,
-    energy: Energy, run: Run,
-) -> int:  # fmt: skip
-    """Integrate to the last goal, or until Python must look at something (see
-    `stepping.kernel.advance`).
-    """
-    pause, now = next_pause(step, run), step.now
-    if run.started == 0:
-        take_first_sample(linear, laws, step, buffers, rules, energy, run)
-    while run.goal < len(goals):
-        goal = run.goal
-        begin, piece = breaks[pieces[goal]], coefs[pieces[goal]]
-        why = stride(
-            linear,
-            laws,
-            step,
-            buffers,
-            rules,
-            series,
-            lengths,
-            piece,
-            begin,
-            goals[goal],
-            pause,
-            energy,
-            run,
-        )
-        if why != DONE:
-            return why
-        multiply(linear.mass, now.velocity, step.product)
-        kinetic = 0.5 * dot(now.velocity, step.product)
-        if not kinetic <= 10.0 * (run.energy_at_start + energy.gross_input) + 1e-300:
-            run.energy_at_start = kinetic
-            return RUNAWAY
-        run.goal += 1
-        if outputs[goal]:
-            evaluate_inputs(piece, run.time - begin, now.inputs, now.input_rates)
-            form_load(linear, now.inputs, now.load)
-            multiply(linear.damping, now.velocity, now.damping_force)
-            make_consistent(linear, laws, step)
-            store_sample(laws, step, buffers, rules, energy, run, run.time)
-            if run.kept == len(buffers.time):
-                return FULL
-    return DONE

@@ -46,7 +46,7 @@ from pound_solve.integrate.protocol import (
     refuse_rigid,
     rounding_check,
 )
-from pound_solve.integrate.series import expansion
+from pound_solve.integrate.series import expansion, march
 from pound_solve.numerics.matrices import diagonal, weighted
 from pound_solve.numerics.modes import massless
 from pound_solve.structure.reduction import ReducedSystem
@@ -90,12 +90,12 @@ class Taylor(KernelEngine):
 
     def integrate(self) -> None:
         """Integrate by series from event to event."""
-        self.begin(expansion.march)
+        self.begin(march.march)
         ex = self.system.excitation
         ends, is_output = goals(self.system, self.times)
         pieces = ex.pieces_after(np.append(self.times[0], ends[:-1]))
         coefs = np.ascontiguousarray(ex.coefs)
-        self.advance(expansion.march, self.series, self.lengths, coefs, ex.breaks, ends, is_output, pieces)
+        self.advance(march.march, self.series, self.lengths, coefs, ex.breaks, ends, is_output, pieces)
 
     def fetch(self) -> None:
         """Take in what was kept; stop where steps are too short for the length of the run."""
@@ -108,7 +108,7 @@ class Taylor(KernelEngine):
 
     def trouble(self, why: int) -> Stop:
         """What the kernel came back for, in words."""
-        if why == expansion.SHORT:
+        if why == march.SHORT:
             return self.stop("A502", "the fastest mode asks for steps too short to tell the times apart")
         if why == RUNAWAY:
             return self.stop("A504", GROWS.format(self.state.energy_at_start))

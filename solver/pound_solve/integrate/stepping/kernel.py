@@ -179,9 +179,12 @@ def begin_goal(
     linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, coefs: Array, s: float, h: float,
     run: Run,
 ) -> None:  # fmt: skip
-    """Take over the excitation at the local time `s`; make the state consistent where a load jumps, and
+    """Take over the excitation at the local time `s`, before the first step towards a goal; make the state
+    consistent where a load jumps, and
     with it the acceleration.
     """
+    if run.step > 0:
+        return
     now, load = step.now, step.product
     evaluate_inputs(coefs, s, now.inputs, now.input_rates)
     form_load(linear, now.inputs, load)
@@ -197,13 +200,40 @@ def begin_goal(
         track(linear, laws, step, run.time, 0.0)
 
 
-def kinetic_energy(linear: LinearSystem, step: Step) -> float:
-    """Kinetic energy at the start of the coming step [F L]."""
-    energy, velocity = 0.0, step.now.velocity
+def renew_factor(linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, h: float, run: Run) -> int:
+    """Factorise A for steps of length `h` where the factor at hand is of another, or was updated too
+    often.
+    """
+    if run.factor_length == h and run.updates <= REFRESH:
+        return DONE
+    bad = factorise(linear, laws, step, scheme, h, WHOLE)
+    if bad >= 0:
+        run.fault = bad
+        return PIVOT
+    run.factor_length, run.updates = h, 0
+    return DONE
+
+
+def end_goal(
+    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, sampled: bool,
+    energy: Energy, run: Run,
+) -> int:  # fmt: skip
+    """Take a sample at a goal; RUNAWAY where the kinetic energy is far above what was put in."""
+    kinetic, velocity = 0.0, step.now.velocity
     multiply(linear.mass, velocity, step.product)
     for i in range(len(velocity)):
-        energy += 0.5 * velocity[i] * step.product[i]
-    return energy
+        kinetic += 0.5 * velocity[i] * step.product[i]
+    if not kinetic <= 10.0 * (run.energy_at_start + energy.gross_input) + 1e-300:
+        run.energy_at_start = kinetic
+        return RUNAWAY
+    run.goal += 1
+    run.step = 0
+    if sampled:
+        store_sample(laws, step, buffers, rules, energy, run, run.time)
+        run.since_shown = 0
+        if run.kept == len(buffers.time):
+            return FULL
+    return DONE
 
 
 def advance(
@@ -234,17 +264,13 @@ def advance(
         goal = run.goal
         h, piece = lengths[goal], coefs[pieces[goal]]
         begin = breaks[pieces[goal]]
-        if run.step == 0:
-            begin_goal(linear, laws, step, scheme, piece, run.time - begin, h, run)
+        begin_goal(linear, laws, step, scheme, piece, run.time - begin, h, run)
         while run.step < steps[goal]:
             if len(buffers.log) - run.logged < room or run.steps >= pause:
                 return FULL
-            if run.factor_length != h or run.updates > REFRESH:
-                bad = factorise(linear, laws, step, scheme, h, WHOLE)
-                if bad >= 0:
-                    run.fault = bad
-                    return PIVOT
-                run.factor_length, run.updates = h, 0
+            why = renew_factor(linear, laws, step, scheme, h, run)
+            if why != DONE:
+                return why
             last = min(steps[goal] - 1, run.step + pause - run.steps)
             tried = plain_steps(
                 linear, laws, step, buffers, rules, scheme, piece, begin, energy, run, h, last, shows[goal]
@@ -269,15 +295,7 @@ def advance(
             if run.step < steps[goal] or not outputs[goal]:
                 store_motion(step, buffers, run, run.time, shows[goal])
         run.time = goals[goal]
-        kinetic = kinetic_energy(linear, step)
-        if not kinetic <= 10.0 * (run.energy_at_start + energy.gross_input) + 1e-300:
-            run.energy_at_start = kinetic
-            return RUNAWAY
-        run.goal += 1
-        run.step = 0
-        if outputs[goal]:
-            store_sample(laws, step, buffers, rules, energy, run, run.time)
-            run.since_shown = 0
-            if run.kept == len(buffers.time):
-                return FULL
+        why = end_goal(linear, laws, step, buffers, rules, outputs[goal], energy, run)
+        if why != DONE:
+            return why
     return DONE

@@ -4,6 +4,8 @@ there; then the law changes its branch, the state is made consistent, and the re
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from pound_solve.integrate.events.within_step import event_value, first_event, value_at_start
@@ -42,6 +44,7 @@ from pound_solve.numerics.types import Array
 CLOSE = 1e-9  #: share of a step within which two events are at one instant
 FIRST = 1.0 / 32.0  #: part of a step taken after a curved contact has touched; it doubles from then on
 MOST_HALVINGS = 25
+GO_ON, MET, NONE = range(3)
 PATIENCE = 12  #: trials by interpolation; bisection follows
 
 
@@ -77,6 +80,52 @@ def change_branch(
             run.updates = REFRESH + 1
 
 
+class Bracket(NamedTuple):
+    """Times of a step between which an event function rises through zero, and its values there.
+
+    NaN stands for what is not known; `third` was tried before.
+    """
+
+    low: float
+    high: float
+    third: float
+    g_low: float
+    g_high: float
+    g_third: float
+
+
+def narrowed(b: Bracket, tau: float, g: float, passed: bool) -> Bracket:
+    """The bracket after a trial at `tau`, where the event function is `g`, and the event passed or not."""
+    if passed:
+        return Bracket(b.low, tau, b.high, b.g_low, g, b.g_high)
+    return Bracket(tau, b.high, b.low, g, b.g_high, b.g_low)
+
+
+def next_time(b: Bracket, passed: bool, guess: float, h: float) -> float:
+    """Time of the next trial: by interpolation from the end that is nearer to the event."""
+    if passed and b.g_low != b.g_low:
+        tau = guess
+        if b.g_third == b.g_third:
+            tau = next_trial(b.high, b.third, np.nan, b.g_high, b.g_third, np.nan)
+    elif passed:
+        tau = next_trial(b.high, b.low, b.third, b.g_high, b.g_low, b.g_third)
+    else:
+        tau = next_trial(b.low, b.high, b.third, b.g_low, b.g_high, b.g_third)
+    tau += 0.5 * CLOSE * h  # a trial just beyond the event ends the search, one before it does not
+    return tau if b.low < tau < b.high else 0.5 * (b.low + b.high)
+
+
+def verdict(
+    b: Bracket, g: float, size: float, tau: float, guess: float, passed: bool, last: bool, h: float
+) -> int:
+    """Whether the search ends at `tau`, and whether an event is MET there; `size` is that of its terms."""
+    if abs(g) <= STILL * size or last or 0.0 <= tau - guess <= CLOSE * h:
+        # no event after all: rates of massless unknowns may mislead
+        return NONE if not passed and abs(g) > NEAR * size else MET
+    # up to here there is no event; the rest of the step may have one
+    return NONE if not passed and b.g_high <= 0.0 else GO_ON
+
+
 def locate(
     linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, rules: Tables, coefs: Array, begin: float,
     length: float, h: float, law: int, event: int, tau: float, run: Run,
@@ -96,20 +145,17 @@ def locate(
         DONE or what failed; the law and its event, law -1 where none is met after all; the length, which
         was tried last, or 0 where the event is met at once.
     """
-    low, high, third, stuck = 0.0, length, np.nan, False
-    g_low = value_at_start(laws, step, law, event)
-    g_high, g_third = (
-        event_value(laws, law, event, laws.trial.deformation[law], laws.trial.rate[law])[0],
-        np.nan,
-    )
+    g = event_value(laws, law, event, laws.trial.deformation[law], laws.trial.rate[law])[0]
+    b = Bracket(0.0, length, np.nan, value_at_start(laws, step, law, event), g, np.nan)
+    bisects = False
     for trial in range(100):
         if tau <= CLOSE * h:
             return DONE, law, event, 0.0
-        last = high - low <= CLOSE * h
+        last = b.high - b.low <= CLOSE * h
         if last:
-            tau = high
-        elif trial > PATIENCE or stuck:
-            tau = 0.5 * (low + high)
+            tau = b.high
+        elif trial > PATIENCE or bisects:
+            tau = 0.5 * (b.low + b.high)
         bad = factorise(linear, laws, step, scheme, tau, PART)
         if bad >= 0:
             run.fault = bad
@@ -118,115 +164,87 @@ def locate(
             if last:
                 return NEWTON, law, event, 0.0
             start_again(laws, rules)  # at `high` there was a solution: look for the event nearer to it
-            low, g_low, third, g_third, stuck = tau, np.nan, np.nan, np.nan, True
+            b, bisects = Bracket(tau, b.high, np.nan, np.nan, b.g_high, np.nan), True
             continue
-        passed, other, tau2 = first_event(laws, step, tau)
-        if passed >= 0 and (passed != law or other != event):
-            law, event, g_low, g_high = passed, other, np.nan, np.nan
-            if low == 0.0:
-                g_low = value_at_start(laws, step, law, event)
+        found, other, guess = first_event(laws, step, tau)
+        passed = found >= 0
+        if passed and (found != law or other != event):
+            law, event = found, other
+            at_start = value_at_start(laws, step, law, event) if b.low == 0.0 else np.nan
+            b = Bracket(b.low, b.high, b.third, at_start, np.nan, b.g_third)
         g, size = event_value(laws, law, event, laws.trial.deformation[law], laws.trial.rate[law])
-        if abs(g) <= STILL * size or last or 0.0 <= tau - tau2 <= CLOSE * h:
-            if passed < 0 and abs(g) > NEAR * size:
-                law = -1  # it was no event: rates of massless unknowns may mislead
-            return DONE, law, event, tau
-        if passed >= 0:
-            third, g_third, high, g_high = high, g_high, tau, g
-        elif g_high <= 0.0:
-            return DONE, -1, event, tau  # no event up to here; the rest of the step may have one
-        else:
-            third, g_third, low, g_low = low, g_low, tau, g
-        if passed >= 0 and g_low != g_low:
-            tau = tau2 if g_third != g_third else next_trial(high, third, np.nan, g_high, g_third, np.nan)
-        elif passed >= 0:
-            tau = next_trial(high, low, third, g_high, g_low, g_third)
-        else:
-            tau = next_trial(low, high, third, g_low, g_high, g_third)
-        tau += 0.5 * CLOSE * h  # a trial just beyond the event ends the search, one before it does not
-        if not low < tau < high:
-            tau = 0.5 * (low + high)
+        ends = verdict(b, g, size, tau, guess, passed, last, h)
+        if ends != GO_ON:
+            return DONE, law if ends == MET else -1, event, tau
+        b = narrowed(b, tau, g, passed)
+        tau = next_time(b, passed, guess, h)
     return NEWTON, law, event, 0.0
 
 
-def try_part(
-    linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, rules: Tables, coefs: Array, begin: float,
-    length: float, at: int, run: Run,
-) -> float:  # fmt: skip
-    """Try a step from the local time `begin`, halved until Newton converges; return its length, or 0 where
-    it does not however short the step.
-    """
-    halvings = 0
-    while not try_step(linear, laws, step, scheme, rules, coefs, begin + length, length, at, run):
-        halvings += 1
-        if halvings > MOST_HALVINGS:
-            return 0.0
-        at, length, run.updates = PART, 0.5 * length, REFRESH + 1
-        start_again(laws, rules)
-        if factorise(linear, laws, step, scheme, length, PART) >= 0:
-            return 0.0
-    return length
+def factorise_part(
+    linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, length: float, halvings: int, run: Run
+) -> int:
+    """Factorise A for a part of a step, which Newton's iterations may have halved."""
+    bad = factorise(linear, laws, step, scheme, length, PART)
+    if bad < 0:
+        return DONE
+    if halvings > 0:
+        return NEWTON
+    run.fault = bad
+    return PIVOT
 
 
 def step_in_parts(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
-    coefs: Array, piece_start: float, energy: Energy, run: Run, length: float, h: float,
-    tried: bool,
+    coefs: Array, piece_start: float, energy: Energy, run: Run, length: float, h: float, tried: bool,
 ) -> int:  # fmt: skip
     """Advance by `length`, in parts where events cut it; the factor at hand is for the step `h`,
     and `tried` says that the first trial is made.
 
-    After the touch of a curved contact the parts grow from a short one: forces like the fourth root
-    of time begin there.
+    A part is halved until Newton converges.  After the touch of a curved contact the parts grow from a
+    short one: forces like the fourth root of time begin there.
     """
-    left, first, same = length, True, 0
-    most = 100 + 8 * len(laws.rule)
-    curved = laws.curved.any()
+    left, same, halvings, longest = length, 0, 0, np.inf
+    most, curved = 100 + 8 * len(laws.rule), laws.curved.any()
+    at = WHOLE if abs(length - h) <= 1e-9 * h else PART
     while left > 0.0:
         if len(buffers.log) - run.logged <= len(laws.coupled):
             return CROWD
-        t, part = run.time, left
-        if run.longest_part < left:
-            part, first = run.longest_part, False
-        at = WHOLE if first else PART
-        if not first:
-            bad = factorise(linear, laws, step, scheme, part, PART)
-            if bad >= 0:
-                run.fault = bad
-                return PIVOT
-        elif abs(length - h) > 1e-9 * h:
-            first = False
-            continue
-        if not tried:
-            tried_length = try_part(
-                linear, laws, step, scheme, rules, coefs, t - piece_start, part, at, run
-            )
-            if tried_length == 0.0:
+        t, part = run.time, min(left, run.longest_part, longest)
+        if at == PART or part < left:
+            at = PART
+            why = factorise_part(linear, laws, step, scheme, part, halvings, run)
+            if why != DONE:
+                return why
+        end = t + part - piece_start
+        if not tried and not try_step(linear, laws, step, scheme, rules, coefs, end, part, at, run):
+            halvings, longest, at = halvings + 1, 0.5 * part, PART
+            if halvings > MOST_HALVINGS:
                 return NEWTON
-            if tried_length != part:
-                part, at = tried_length, PART
-        tried, first = False, False
+            run.updates = REFRESH + 1
+            start_again(laws, rules)
+            continue
+        tried, halvings, longest = False, 0, np.inf
         law, event, tau = first_event(laws, step, part)
-        if law < 0:
-            accept(linear, laws, step, rules, scheme, part, at, energy, run)
+        if law >= 0:
+            if curved:  # what is tried from here on moves the tangents away from the factor at hand
+                run.updates = REFRESH + 1
+            at = PART
+            why, law, event, part = locate(
+                linear, laws, step, scheme, rules, coefs, t - piece_start, part, h, law, event, tau, run
+            )
+            if why != DONE:
+                return why
+            if part > 1e-9 * h:
+                same = 0
+        else:
             run.longest_part *= 2.0
+        if part > 0.0:
+            accept(linear, laws, step, rules, scheme, part, at, energy, run)
             left -= part
             run.time = t + part
             track(linear, laws, step, run.time, part)
-            continue
-        if curved:  # what is tried from here on moves the tangents away from the factor at hand
-            run.updates = REFRESH + 1
-        why, law, event, tau = locate(
-            linear, laws, step, scheme, rules, coefs, t - piece_start, part, h, law, event, tau, run
-        )
-        if why != DONE:
-            return why
-        if tau > 0.0:
-            accept(linear, laws, step, rules, scheme, tau, PART, energy, run)
-            left -= tau
-            run.time = t + tau
-            track(linear, laws, step, run.time, tau)
-            if tau > 1e-9 * h:
-                same = 0
+        at = PART
         if law < 0:
             continue
         change_branch(linear, laws, step, buffers, rules, scheme, run, h, law, event)

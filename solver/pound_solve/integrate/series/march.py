@@ -1,0 +1,285 @@
+"""Kernels of TAYLOR: the march from event to event, the works of a step, and what is kept of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.integrate.kernels.consistency import make_consistent
+from pound_solve.integrate.kernels.laws import linear_force, transition
+from pound_solve.integrate.kernels.products import evaluate_inputs, form_load, multiply
+from pound_solve.integrate.kernels.recording import (
+    log_transition,
+    next_pause,
+    store_sample,
+    take_first_sample,
+)
+from pound_solve.integrate.kernels.state import (
+    CHATTER,
+    DONE,
+    FULL,
+    RUNAWAY,
+    Buffers,
+    Energy,
+    Laws,
+    LinearSystem,
+    Motion,
+    Run,
+    Step,
+)
+from pound_solve.integrate.kernels.work import load_on_nodes, support_power
+from pound_solve.integrate.series.expansion import (
+    CHECK,
+    GROW,
+    TERMS,
+    Lengths,
+    Series,
+    dot,
+    evaluate,
+    expand,
+    law_at,
+)
+from pound_solve.integrate.series.tracking import event_of, first_event, track_laws, track_outputs
+from pound_solve.laws.functions import Tables
+from pound_solve.numerics.jit import flat
+from pound_solve.numerics.types import Array, Flags, Index
+
+AHEAD = 1e-3  #: part of a step that laws are looked at for which may leave at the instant of another
+LOOKS = 2  #: instants of a step that envelopes of nodes and members see: some 2.5 radians apart
+CUT = 0.5  #: part of a step, as it was tried, that is taken at least
+INSTANT = 1e-13  #: share of the time within which two events are at one instant
+SHORT = 7  #: why `march` came back, beside those of `kernels.state`: steps are too short for the clock
+
+
+def add_law_losses(
+    laws: Laws,
+    series: Series,
+    terms: int,
+    s: float,
+    h: float,
+    weight: float,
+    moved: bool,
+    energy: Energy,
+) -> None:
+    """Add up the losses in the laws' dashpots and the contacts' impulses at one Gauss point."""
+    for i in range(len(laws.rule)):
+        drag = laws.damping[i]
+        pressed = laws.contact[i] and (laws.stiffness[i] != 0.0 or laws.offset[i] != 0.0)
+        if drag != 0.0 or moved or pressed:
+            d, v = law_at(series, terms, s, h, i)
+            laws.trial.deformation[i], laws.trial.rate[i] = d, v
+            lost = weight * drag * v * v
+            laws.dashpot_loss[i] += lost
+            if laws.contact[i]:
+                energy.contact += lost
+                laws.impulse[i] += weight * (laws.stiffness[i] * d + drag * v + laws.offset[i])
+            else:
+                energy.damping += lost
+
+
+@flat
+def add_works(
+    linear: LinearSystem, laws: Laws, step: Step, series: Series, coefs: Array, begin: float, terms: int,
+    carried: int, h: float, end: float, energy: Energy,
+) -> None:  # fmt: skip
+    """Add up the works over the step to `end`, by Gauss's rule."""
+    moved, trial = len(linear.support_damping) > 0, step.trial
+    put = 0.0
+    rule = min(carried, TERMS) // CHECK
+    for g in range(2 * (rule + 1)):
+        weight, s = series.gauss[rule, 0, g] * end * h, series.gauss[rule, 1, g] * end
+        evaluate(series, terms, s, h, 1, trial.velocity)
+        multiply(linear.damping, trial.velocity, step.product)
+        energy.damping += weight * dot(trial.velocity, step.product)
+        evaluate_inputs(coefs, begin + s * h, trial.inputs, trial.input_rates)
+        add_law_losses(laws, series, terms, s, h, weight, moved, energy)
+        if moved:
+            evaluate(series, terms, s, h, 0, trial.displacement)
+            evaluate(series, terms, s, h, 2, trial.acceleration)
+            given, lost = support_power(linear, laws, trial, laws.trial, laws.members.trial)
+            put += weight * given
+            energy.damping += weight * lost
+            for i in range(len(trial.velocity)):
+                put += weight * load_on_nodes(linear, trial.inputs, i) * trial.velocity[i]
+        else:
+            form_load(linear, trial.inputs, trial.load)
+            put += weight * dot(trial.load, trial.velocity)
+    energy.input += put
+    energy.gross_input += abs(put)
+
+
+def accept(laws: Laws, now: Motion, series: Series, terms: int, h: float, end: float) -> None:
+    """Make the place `end` the present."""
+    evaluate(series, terms, end, h, 0, now.displacement)
+    evaluate(series, terms, end, h, 1, now.velocity)
+    for i in range(len(laws.rule)):
+        d, v = law_at(series, terms, end, h, i)
+        laws.now.deformation[i], laws.now.rate[i] = d, v
+        laws.largest_deformation[i] = max(laws.largest_deformation[i], abs(d))
+        laws.largest_rate[i] = max(laws.largest_rate[i], abs(v))
+
+
+@flat
+def store_looks(
+    trial: Motion,
+    buffers: Buffers,
+    series: Series,
+    terms: int,
+    h: float,
+    end: float,
+    run: Run,
+    t: float,
+) -> None:
+    """Keep the motion at the start of the step, where its acceleration may have jumped, and on its way."""
+    if len(buffers.which) == 0:
+        return
+    for look in range(LOOKS):
+        s, at = look * end / LOOKS, run.shown
+        for j in range(3):
+            out = trial.displacement if j == 0 else trial.velocity if j == 1 else trial.acceleration
+            evaluate(series, terms if look else j, s, h, j, out)
+            for i in range(len(buffers.which)):
+                buffers.shown[at, j, i] = out[buffers.which[i]]
+        buffers.shown_time[at] = t + s * h
+        run.shown += 1
+
+
+def change_branch(
+    laws: Laws, buffers: Buffers, rules: Tables, run: Run, t: float, law: int, event: int
+) -> None:
+    """Let a law leave its branch."""
+    before, d, v = laws.branch[law], laws.now.deformation[law], laws.now.rate[law]
+    transition(laws, rules, law, event, d, v)
+    force = linear_force(laws, law, d, v)
+    if before != laws.branch[law]:
+        log_transition(laws, buffers, run, law, before, t, force)
+    run.events += 1
+    run.fault = law
+
+
+def change_branches(
+    laws: Laws, buffers: Buffers, rules: Tables, series: Series, terms: int, h: float, at: float, end:
+    float, law: int, event: int, run: Run,
+) -> None:  # fmt: skip
+    """Let a law leave its branch at the place `at`, and others whose events are at the same instant."""
+    now, instant = run.time, INSTANT * max(run.time, h)
+    change_branch(laws, buffers, rules, run, now, law, event)
+    for i in range(len(laws.rule)):
+        if i != law:
+            own, place = event_of(laws, series, terms, h, min(at + AHEAD, end), i)
+            if own >= 0 and place <= at + instant / h:
+                change_branch(laws, buffers, rules, run, now, i, own)
+    run.same_instant = run.same_instant + 1 if now - run.last_event <= instant else 0
+    run.last_event = now
+
+
+def must_pause(buffers: Buffers, run: Run, pause: int) -> bool:
+    """Whether Python must empty the buffers, or may look whether the user wants to stop."""
+    crowded = len(buffers.log) - run.logged < len(buffers.log) // 2
+    return crowded or run.steps >= pause or run.shown + LOOKS > len(buffers.shown_time)
+
+
+def step_length(lengths: Lengths, t: float, left: float) -> float:
+    """Length of the next step: what is `left` in equal parts; 0 where the clock cannot tell it from
+    none.
+    """
+    h = left / np.ceil(max(left / lengths.next, 1.0) * (1.0 - 1e-9))
+    return t + h - t if h < left else h  # the motion goes as far as the clock does, which is rounded
+
+
+def stride(
+    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
+    lengths: Lengths, coefs: Array, begin: float, goal: float, pause: int, energy: Energy,
+    run: Run,
+) -> int:  # fmt: skip
+    """Take steps on one piece of the excitation up to a goal, or until Python must look at it.
+
+    Returns
+    -------
+    int
+        DONE, or what is wrong.
+    """
+    first = len(linear.monitored_constants)
+    while run.time < goal:
+        if must_pause(buffers, run, pause):
+            return FULL
+        t = run.time
+        left = goal - t
+        h = step_length(lengths, t, left)
+        if h == 0.0:
+            return SHORT
+        terms, fit = expand(linear, laws, step, series, lengths, coefs, t - begin, h)
+        if not fit >= CUT:  # what is known of the motion from terms far too large misleads
+            lengths.next = h * fit if fit > 1.0 / 16.0 else h / 16.0
+            continue
+        end = 1.0 if fit >= 1.0 else (t + fit * h - t) / h
+        if end == 0.0:
+            return SHORT
+        whole = end == 1.0 and h == left
+        # terms that were not needed make room for a longer step
+        lengths.next = max(h * min(fit * TERMS / terms, GROW), lengths.next if end == 1.0 else 0.0)
+        law, event, at = first_event(laws, series, terms, h, end)
+        track_outputs(linear, laws, step, series, terms, h, at, t, len(coefs))
+        track_laws(laws, step, series, terms, h, at, t, first)
+        if at > 0.0:
+            store_looks(step.trial, buffers, series, terms, h, at, run, t)
+            add_works(linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, at, energy)
+            accept(laws, step.now, series, terms, h, at)
+        run.steps += 1
+        if law < 0:
+            if not whole:
+                lengths.shortest = min(lengths.shortest, at * h)
+            run.time = goal if whole else t + at * h
+            continue
+        run.time = t + at * h
+        change_branches(laws, buffers, rules, series, terms, h, at, end, law, event, run)
+        if run.same_instant > 50 + 4 * len(laws.rule):
+            return CHATTER
+    return DONE
+
+
+def march(
+    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
+    lengths: Lengths, coefs: Array, breaks: Array, goals: Array, outputs: Flags, pieces: Index,
+    energy: Energy, run: Run,
+) -> int:  # fmt: skip
+    """Integrate to the last goal, or until Python must look at something (see
+    `stepping.kernel.advance`).
+    """
+    pause, now = next_pause(step, run), step.now
+    if run.started == 0:
+        take_first_sample(linear, laws, step, buffers, rules, energy, run)
+    while run.goal < len(goals):
+        goal = run.goal
+        begin, piece = breaks[pieces[goal]], coefs[pieces[goal]]
+        why = stride(
+            linear,
+            laws,
+            step,
+            buffers,
+            rules,
+            series,
+            lengths,
+            piece,
+            begin,
+            goals[goal],
+            pause,
+            energy,
+            run,
+        )
+        if why != DONE:
+            return why
+        multiply(linear.mass, now.velocity, step.product)
+        kinetic = 0.5 * dot(now.velocity, step.product)
+        if not kinetic <= 10.0 * (run.energy_at_start + energy.gross_input) + 1e-300:
+            run.energy_at_start = kinetic
+            return RUNAWAY
+        run.goal += 1
+        if outputs[goal]:
+            evaluate_inputs(piece, run.time - begin, now.inputs, now.input_rates)
+            form_load(linear, now.inputs, now.load)
+            multiply(linear.damping, now.velocity, now.damping_force)
+            make_consistent(linear, laws, step)
+            store_sample(laws, step, buffers, rules, energy, run, run.time)
+            if run.kept == len(buffers.time):
+                return FULL
+    return DONE

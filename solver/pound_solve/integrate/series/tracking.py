@@ -1,0 +1,106 @@
+"""Kernels of TAYLOR: within a step event functions, deformations, forces and monitored outputs are
+polynomials, whose first rise and extremes are isolated with proof (`events.polynomial_roots`).
+"""
+
+from __future__ import annotations
+
+from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise, highest, size
+from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
+from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.series.expansion import Series
+
+
+def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: int) -> tuple[int, float]:
+    """The first event of law `i` before `end`, and where; -1 where there is none."""
+    event, d, p = -1, series.deformation, series.polynomial[POLYNOMIAL]
+    for e in range(laws.n_events[i]):
+        on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
+        if on_d == 0.0 and on_v == 0.0:
+            continue
+        for k in range(terms + 1):
+            p[k] = on_d * d[i, k]
+        p[0] += constant
+        if on_v != 0.0:
+            for k in range(terms):
+                p[k] += on_v * (k + 1) / h * d[i, k + 1]
+        scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i] + abs(constant)
+        at = first_rise(series.polynomial, terms, end, STILL * scale)
+        if at >= 0.0 and (event < 0 or at < end):
+            event, end = e, at
+    return event, end
+
+
+def first_event(laws: Laws, series: Series, terms: int, h: float, end: float) -> tuple[int, int, float]:
+    """The first event of any law before `end`: law, event and place; law -1 where there is none."""
+    law, event = -1, -1
+    for i in range(len(laws.rule)):
+        own, at = event_of(laws, series, terms, h, end, i)
+        if own >= 0 and (law < 0 or at < end):
+            law, event, end = i, own, at
+    return law, event, end
+
+
+def count_crest(
+    laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t: float, i: int, law: int
+) -> None:
+    """Count the polynomial at work into peak `i`; `law` is not negative for the force of a law."""
+    peaks, p = step.peaks, series.polynomial
+    known = peaks.high[i]
+    contact = law >= 0 and laws.contact[law]
+    if contact:
+        known = min(known, laws.peak_force[law])
+    high, place = highest(p, terms, end, known)
+    if high > peaks.high[i]:
+        peaks.high[i], peaks.t_high[i] = high, t + h * place
+    if contact and high > laws.peak_force[law]:
+        laws.peak_force[law], laws.peak_time[law] = high, t + h * place
+    for k in range(terms + 1):
+        p[POLYNOMIAL, k] = -p[POLYNOMIAL, k]
+    high, place = highest(p, terms, end, -peaks.low[i])
+    if place >= 0.0:
+        peaks.low[i], peaks.t_low[i] = -high, t + h * place
+
+
+def track_outputs(
+    linear: LinearSystem, laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t:
+    float, top: int,
+) -> None:  # fmt: skip
+    """Count the monitored outputs up to `end` into the peaks."""
+    p = series.polynomial[POLYNOMIAL]
+    for i in range(len(linear.monitored_constants)):
+        for k in range(terms + 1):
+            p[k] = along(linear.monitored, i, series.motion[k])
+        for k in range(min(top, terms + 1)):
+            for j in range(series.inputs.shape[1]):
+                p[k] += linear.monitored_inputs[i, j] * series.inputs[k, j]
+        p[0] += linear.monitored_constants[i]
+        count_crest(laws, step, series, terms, h, end, t, i, -1)
+
+
+def track_laws(
+    laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t: float, first: int
+) -> None:
+    """Count deformations and forces of the laws up to `end` into the peaks, from peak `first` on."""
+    peaks, d, p = step.peaks, series.deformation, series.polynomial[POLYNOMIAL]
+    for i in range(len(laws.rule)):
+        begin, far = d[i, 0], size(d, i, terms)
+        if begin + far > peaks.high[first + i] or begin - far < peaks.low[first + i]:
+            for k in range(terms + 1):
+                p[k] = d[i, k]
+            count_crest(laws, step, series, terms, h, end, t, first + i, -1)
+        own = first + len(laws.rule) + i
+        stiffness, damping = laws.stiffness[i], laws.damping[i] if laws.contact[i] else 0.0
+        far *= abs(stiffness)
+        high = peaks.high[own]
+        if laws.contact[i]:
+            high = min(high, laws.peak_force[i])
+        force = laws.offset[i] + stiffness * begin
+        if damping != 0.0 or force + far > high or force - far < peaks.low[own]:
+            for k in range(terms + 1):
+                p[k] = stiffness * d[i, k]
+            p[0] += laws.offset[i]
+            if damping != 0.0:
+                for k in range(terms):
+                    p[k] += damping * (k + 1) / h * d[i, k + 1]
+            count_crest(laws, step, series, terms, h, end, t, own, i)
