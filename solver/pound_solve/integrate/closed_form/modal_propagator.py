@@ -108,23 +108,24 @@ class ModalPropagator(Propagator):
     @classmethod
     def joined(cls, propagators: Sequence[ModalPropagator]) -> ModalPropagator:
         """Return the motion of several subsystems without massless DOFs as that of one."""
+
+        def each(name: str) -> list[Any]:
+            return [getattr(x, name) for x in propagators]
+
         out = cls.__new__(cls)
         out.u_p = out.v_p = None
-        out.inputs = np.concatenate([x.inputs for x in propagators])
-        out._input_forcing = np.concatenate([x._input_forcing for x in propagators])
-        out.eigenvalues = np.concatenate([x.eigenvalues for x in propagators])
-        out.rigid_scale = np.concatenate([x.rigid_scale for x in propagators])
-        first = np.cumsum([0, *(len(x.eigenvalues) for x in propagators)])
-        out.rigid_u = np.concatenate([x.rigid_u + n for x, n in zip(propagators, first)])
-        out.rigid_v = np.concatenate([x.rigid_v + n for x, n in zip(propagators, first)])
-        out.u_q = block_diagonal([x.u_q for x in propagators])
-        out.v_q = block_diagonal([x.v_q for x in propagators])
-        out._state_u = block_diagonal([x._state_u for x in propagators])
-        out._state_v = block_diagonal([x._state_v for x in propagators])
-        out._load_forcing = block_diagonal([x._load_forcing for x in propagators])
-        out.spectral_radius = max(x.spectral_radius for x in propagators)
-        out.condition = max(x.condition for x in propagators)
-        out.residual = max(x.residual for x in propagators)
+        first = np.cumsum([0, *map(len, each("eigenvalues"))])
+        out.eigenvalues = np.concatenate(each("eigenvalues"))
+        out.rigid_u = np.concatenate([x + n for x, n in zip(each("rigid_u"), first)])
+        out.rigid_v = np.concatenate([x + n for x, n in zip(each("rigid_v"), first)])
+        out.rigid_scale = np.concatenate(each("rigid_scale"))
+        out.inputs = np.concatenate(each("inputs"))
+        out._input_forcing = np.concatenate(each("_input_forcing"))
+        out._load_forcing = block_diagonal(each("_load_forcing"))
+        out._state_u, out._state_v = block_diagonal(each("_state_u")), block_diagonal(each("_state_v"))
+        out.u_q, out.v_q = block_diagonal(each("u_q")), block_diagonal(each("v_q"))
+        out.spectral_radius = max(each("spectral_radius"))
+        out.condition, out.residual = max(each("condition")), max(each("residual"))
         out._clear_tables()
         return out
 

@@ -11,7 +11,7 @@ from pound_solve.integrate.closed_form.series_propagator import SeriesPropagator
 from pound_solve.integrate.closed_form.work_integrals import Work, WorkIntegrals
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
-from unit.test_flow import KINDS, loads, massless, subsystem
+from unit.test_propagators import KINDS, loads, massless, subsystem
 
 X, W = np.polynomial.legendre.leggauss(24)
 DASHPOT = 0.7  #: of the contact between the first and the last mass
@@ -39,7 +39,7 @@ def measure(
 
 
 class Case:
-    """A block with a pressed contact, its loads and start, measured and integrated densely."""
+    """A subsystem with a pressed contact, its loads and start, measured and integrated densely."""
 
     def __init__(
         self, m: Array, c: Array, k: Array, degree: int, seed: int = 0, dashpot: float = DASHPOT
@@ -113,7 +113,7 @@ def test_balance_of_energy(kind: str, tau: float) -> None:
 
 
 def test_undamped_modes_among_damped_ones() -> None:
-    """Two oscillators that share a block on paper only: just the damped one loses energy."""
+    """Two oscillators that share a subsystem on paper only: just the damped one loses energy."""
     m, k, c = np.eye(2), np.diag([9.0, 4.0]), np.diag([0.0, 0.4])
     case = Case(m, c, k, 1, dashpot=0.0)
     alone = Case(m, 0.0 * c, k, 1, dashpot=0.0)

@@ -256,8 +256,8 @@ def test_nearly_critical_damping(off: float, side: int) -> None:
     c = np.array([2.0 * xi * 3.0, 0.2, 0.1])
     p = np.array([[0.3, -0.2, 0.1], [1.0, 0.5, -0.4]])
     u, v = np.array([0.4, 1.0, -0.3]), np.array([-2.0, 0.5, 0.1])
-    stationary = (np.eye(3), turn @ np.diag(c) @ turn.T, turn @ np.diag(k) @ turn.T)
-    propagator = make_propagator(*stationary, np.eye(3))
+    rotated = (np.eye(3), turn @ np.diag(c) @ turn.T, turn @ np.diag(k) @ turn.T)
+    propagator = make_propagator(*rotated, np.eye(3))
     found = motion(
         propagator, propagator.state_of(turn @ u, turn @ v), propagator.load_forcing(p @ turn.T), 0.7
     )
@@ -346,14 +346,14 @@ def test_hardly_damped_rigid_body(decay: float) -> None:
 
 
 def massless(
-    heavy: int, damped: int, static: int, units: float, seed: int
+    with_mass: int, damped: int, static: int, units: float, seed: int
 ) -> tuple[Array, Array, Array, NDArray[np.intp]]:
-    """Random block with massless DOFs, with and without dashpots, in mixed order, and that order."""
-    rng = np.random.default_rng([seed, heavy, damped, static])
-    n = heavy + damped + static
+    """Random subsystem with massless DOFs, with and without dashpots, in mixed order, and that order."""
+    rng = np.random.default_rng([seed, with_mass, damped, static])
+    n = with_mass + damped + static
     x, y = rng.normal(size=(n, n)), np.zeros((n, n))
-    y[: heavy + damped] = rng.normal(size=(heavy + damped, n))
-    m = np.diag(np.r_[rng.uniform(0.5, 2.0, heavy), np.zeros(damped + static)])
+    y[: with_mass + damped] = rng.normal(size=(with_mass + damped, n))
+    m = np.diag(np.r_[rng.uniform(0.5, 2.0, with_mass), np.zeros(damped + static)])
     order = rng.permutation(n)
     k = x @ x.T + 0.3 * np.eye(n)
     m, c, k = (units * a[np.ix_(order, order)] for a in (m, 0.3 * y @ y.T, k))
@@ -369,12 +369,12 @@ def eliminated(
     v: Array,
     t: float,
     order: NDArray[np.intp],
-    heavy: int,
+    with_mass: int,
     damped: int,
 ) -> tuple[Array, Array]:
     """The same motion with the massless DOFs eliminated by hand."""
     where = np.argsort(order)
-    h, d, s = where[:heavy], where[heavy : heavy + damped], where[heavy + damped :]
+    h, d, s = where[:with_mass], where[with_mass : with_mass + damped], where[with_mass + damped :]
     x = np.r_[h, d]
     flex = np.linalg.inv(k[np.ix_(s, s)])
     carry = flex @ k[np.ix_(s, x)]  # u_s = flex p_s - carry u_x
