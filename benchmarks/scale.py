@@ -334,7 +334,7 @@ def changeover(args, folder):
         print(f"{name:20}", f"{auto.facts['unknowns']:>9}", *cells, f"{took:>9} {over:9.2f}", end="  ")
         print("look" if over > WITHIN else "    ", end="")
         if exact:
-            facts = (f"{exact.facts[k]} {k}" for k in ("events", "windows", "linear regimes"))
+            facts = (f"{exact.facts[k]} {k}" for k in ("events", "windows", "modal decompositions"))
             print("  EXACT:", *facts, f"{exact.facts['solving']:.2f} s", end="")
         if series:
             print(f"; TAYLOR: {series.facts['series']} series, {series.facts['solving']:.2f} s", end="")

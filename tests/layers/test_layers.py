@@ -35,6 +35,7 @@ WITHIN = {
     "laws": ("automaton", "functions", "mirror", "contact", "hysteresis"),
     "integrate": (
         "protocol",
+        "costs",
         "kernels",
         "events",
         "condensed",

@@ -13,8 +13,9 @@ from decks import scene_of, structure_of
 from pound_solve.analyses import static
 from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.catalog import catalog
-from pound_solve.integrate.closed_form.propagator import held_space, make_propagator, state_space
-from pound_solve.integrate.closed_form.rigid_contact import SLOW, Rigid
+from pound_solve.integrate.closed_form.decomposition import make_propagator
+from pound_solve.integrate.closed_form.rigid_contact import SLOW, RigidContacts
+from pound_solve.integrate.closed_form.state_space import held_space, state_space
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import AssemblyError
@@ -108,10 +109,10 @@ def test_impacts_keep_momentum_and_never_win_energy(n: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
     masses, v = 10.0 ** rng.uniform(-2, 2, n), rng.normal(size=n)
     es = rng.choice([0.0, 0.3, 0.8, 1.0], n - 1).tolist()
-    r = Rigid(scene_of(row(masses.tolist(), v.tolist(), es)))
+    r = RigidContacts(scene_of(row(masses.tolist(), v.tolist(), es)))
     rates = r.rows @ v
-    impulse, lost, after = r.strike(rates, np.ones(n - 1, bool), np.abs(rates))
-    w = v - r.yielding @ impulse
+    impulse, lost, after = r.impact(rates, np.ones(n - 1, bool), np.abs(rates))
+    w = v - r.velocity_change @ impulse
     scale = float(masses @ v**2)
     assert np.all(impulse >= 0.0) and lost.sum() >= -1e-14 * scale
     assert after == pytest.approx(r.rows @ w, abs=1e-10 * np.abs(w).max())
@@ -297,12 +298,12 @@ def test_what_is_held_stays_held_and_the_rest_balances(light: int) -> None:
     first, second = np.array([x[1], 2 * x[2], 0 * x[2]]), np.array([2 * x[2], 0 * x[2], 0 * x[2]])
     whole = np.hstack([p, x, first, second])
     propagator = make_propagator(m, c, k, np.zeros((n, 1)), rows)
-    g, q0 = propagator.push(whole), propagator.enter(*rng.normal(size=(2, n)))
+    g, q0 = propagator.load_forcing(whole), propagator.state_of(*rng.normal(size=(2, n)))
     u_p, v_p = propagator.u_p, propagator.v_p
     assert u_p is not None and v_p is not None
     for t in (0.0, 0.3, 2.0):
         q = propagator.at(q0, g, t)
-        rate = propagator.onward(np.eye(len(q), dtype=q.dtype)) @ q + polynomial.value(g, t)
+        rate = propagator.rate_rows(np.eye(len(q), dtype=q.dtype)) @ q + polynomial.value(g, t)
         f, df = whole[0] + t * whole[1] + t * t * whole[2], whole[1] + 2 * t * whole[2]
         ddf = 2 * whole[2]
         u = (propagator.u_q @ q).real + u_p @ f

@@ -216,8 +216,8 @@ def test_auto_keeps_its_last_whole_run_when_it_is_interrupted(tmp_path, monkeypa
     monkeypatch.setattr(auto, "Replay", Interrupted)
     found = run(tmp_path, "AUTO TOL=1e-6")
     assert len(runs) == 3 and found.status == "stopped" and found.message.startswith("A506 at t = ")
-    second = np.concatenate([told[1][:, -1] for told in runs[1].told[-1:]])
-    assert found.time[-1] == runs[1].told[-1][0][-1] > 0.5
+    second = np.concatenate([told[1][:, -1] for told in runs[1].samples[-1:]])
+    assert found.time[-1] == runs[1].samples[-1][0][-1] > 0.5
     assert np.abs(found.history("node/u")[-1]).max() == pytest.approx(np.abs(second).max(), rel=1e-12)
     (check,) = [c for c in found.table("checks") if "estimated error" in c["check"]]
     assert check["verdict"].startswith("look: not met") and check["verdict"].endswith("interrupted")
@@ -237,7 +237,7 @@ def test_an_interrupt_between_two_runs_ends_with_a_report(tmp_path, monkeypatch)
 @pytest.mark.parametrize("few", [0, 3, 10**6])
 def test_auto_takes_one_way_and_the_same_again(tmp_path, monkeypatch, few):
     """EXACT given up at once, on its way, or never: one method is named, and all figures return."""
-    monkeypatch.setattr(auto, "FEW", few)
+    monkeypatch.setattr(auto, "MAX_DECOMPOSITIONS", few)
     truth = figures(run(tmp_path, "EXACT"))
     rounds = []
     for _ in range(2):
@@ -328,7 +328,7 @@ def test_auto_hands_on_the_envelopes_of_its_last_run_alone(tmp_path, monkeypatch
 
 def test_full_matrices_have_an_end(tmp_path, monkeypatch):
     """EXACT and LAPLACE refuse more unknowns than they can hold, in words; AUTO takes another method."""
-    monkeypatch.setattr(condensed, "MOST_UNKNOWNS", 2)
+    monkeypatch.setattr(condensed, "MAX_UNKNOWNS", 2)
     for method in ("EXACT", "LAPLACE DT=0.001"):
         found = run(tmp_path, method, "")
         assert found.status == "stopped" and "A505" in found.message
@@ -743,7 +743,7 @@ def test_auto_gives_up_what_would_cost_too_much():
     start = Start(np.zeros(1), np.zeros(1), (), np.array([0.0, 1.0, 2.0]))
     peaks = Peaks([], [], [], [], [])
     stop = Stop("A503", 0.5, "", Outcome(peaks, figures, ()))
-    limit = auto.MOST / (4.0 * 10_000 * 4.0)
+    limit = auto.MAX_RETRY_COST / (4.0 * 10_000 * 4.0)
     assert auto.hopeless(stop, start, 1.001 * limit)
     assert not auto.hopeless(stop, start, 0.999 * limit)
     assert auto.hopeless(Stop("A503", 0.0, "", Outcome(peaks, figures, ())), start, 1e-12)

@@ -1,4 +1,4 @@
-"""Scenes without massless DOFs that follow the others, for methods that work on full matrices."""
+"""Static condensation of massless DOFs without dashpots, for methods that work on full matrices."""
 
 from __future__ import annotations
 
@@ -10,57 +10,64 @@ from pound_solve.integrate.protocol import LawValues, MonitoredOutputs, Recorder
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.reduction import Condensed, ReducedSystem, condense
 
-MOST_UNKNOWNS = 4000  #: of one run: a full matrix of as many takes 128 MB
+MAX_UNKNOWNS = 4000  #: of one run: a full matrix of as many takes 128 MB
 
 
-class Whole:
-    """Hands samples on with all unknowns, condensed ones too."""
+class ExpandingRecorder:
+    """Passes samples to a recorder with all unknowns, the condensed ones included."""
 
-    def __init__(self, recorder: Recorder, small: Condensed) -> None:
-        self.recorder, self.small, self.at_start = recorder, small, small.put_in(np.zeros(1))
+    def __init__(self, recorder: Recorder, condensed: Condensed) -> None:
+        self.recorder, self.condensed = recorder, condensed
+        self._input_at_start = condensed.put_in(np.zeros(1))
+
+    def _expanded(self, t: Array, *motion: Array) -> list[Array]:
+        """Displacements of all unknowns, and of their derivatives in order, shape (n, n_times) each."""
+        excitation = self.condensed.system.excitation
+        return [
+            self.condensed.all(x, excitation.values(t, order).T, order) for order, x in enumerate(motion)
+        ]
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take some samples (see `integrate.base.HistoryRecorder`)."""
-        ex = self.small.system.excitation
-        u, v, a = (self.small.all(x, ex.values(t, order).T, order) for order, x in enumerate((u, v, a)))
-        if not self.small.system.total:  # the total form counts the work on all DOFs
+        """Take some samples (see `Recorder`)."""
+        u, v, a = self._expanded(t, u, v, a)
+        if not self.condensed.system.total:  # the total form counts the work on all DOFs
             works = works.copy()
-            works[0] += self.small.put_in(t) - self.at_start
+            works[0] += self.condensed.put_in(t) - self._input_at_start
         self.recorder.sample(t, u, v, a, laws, works)
 
     @property
     def shown(self) -> Flags:
-        """Which unknowns `between` looks at (see `integrate.base.HistoryRecorder`)."""
-        return np.asarray(self.small.expand[self.recorder.shown].any(axis=0))
+        """Which unknowns `between` needs (see `Recorder`)."""
+        return np.asarray(self.condensed.expand[self.recorder.shown].any(axis=0))
 
     def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
-        """Take the motion between samples (see `integrate.base.HistoryRecorder`)."""
-        ex = self.small.system.excitation
-        u, v, a = (self.small.all(x, ex.values(t, order).T, order) for order, x in enumerate((u, v, a)))
+        """Take the motion between samples (see `Recorder`)."""
+        u, v, a = self._expanded(t, u, v, a)
         self.recorder.between(t, u, v, a, apart)
 
     def stationary(self, t: Array, u: Array) -> None:
-        """Take displacements that turn (see `integrate.base.HistoryRecorder`)."""
-        self.recorder.stationary(t, self.small.all(u, self.small.system.excitation.values(t).T))
+        """Take displacements at stationary points (see `Recorder`)."""
+        self.recorder.stationary(t, *self._expanded(t, u))
 
     def trial(self, t: float, doing: str = "") -> None:
-        """Pass it on."""
+        """Pass the progress on."""
         self.recorder.trial(t, doing)
 
 
 def condensed(
     system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: Recorder, method: str
 ) -> tuple[ReducedSystem, Start, MonitoredOutputs, Recorder]:
-    """What a method is given that works on full matrices: no massless DOFs that follow the others.
+    """Return the arguments of a method that works on full matrices, with massless DOFs without dashpots
+    condensed.
 
     Raises
     ------
     Stop
-        There are more unknowns than `MOST_UNKNOWNS`.
+        There are more unknowns than `MAX_UNKNOWNS`.
     """
-    if system.size > MOST_UNKNOWNS:
+    if system.size > MAX_UNKNOWNS:
         why = f"{method} works on full matrices, and {system.size} unknowns are too many for them"
-        raise Stop("A505", float(start.times[0]), f"{why} ({MOST_UNKNOWNS} at most): NEWMARK takes them")
+        raise Stop("A505", float(start.times[0]), f"{why} ({MAX_UNKNOWNS} at most): NEWMARK takes them")
     small = condense(system)
     return (
         small.system,
@@ -71,5 +78,5 @@ def condensed(
             monitored.input_rows + monitored.rows @ small.follow,
             monitored.constants + monitored.rows @ small.constant,
         ),
-        recorder if len(small.keep) == system.size else Whole(recorder, small),
+        recorder if len(small.keep) == system.size else ExpandingRecorder(recorder, small),
     )

@@ -1,4 +1,6 @@
-"""Works of a run, put off: intervals that one regime governs are measured together, when somebody asks."""
+"""Work of a run, integrated late: the intervals of one decomposition are integrated together, when the
+work is needed.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from pound_solve.integrate.closed_form.decomposition import Part
 from pound_solve.integrate.closed_form.dense_output import DenseOutput
-from pound_solve.integrate.closed_form.subsystems import Part
 from pound_solve.numerics.types import Array, Flags
 
 
@@ -19,53 +21,54 @@ class DeferredWork:
     works : ndarray, shape (3,)
         At the start.
     constant : ndarray, shape (n,)
-        Loads on the unknowns.
+        Constant loads on the unknowns.
     contact : ndarray of bool, shape (n_laws,)
         Which laws are contacts.
 
     Attributes
     ----------
-    rows : int
-        Entries since it was closed last.
-    put_in : float
+    entries : int
+        Number of entries since the last `restart`.
+    gross_input : float
         Sum of all \\|input\\| up to there.
     """
 
     def __init__(self, works: Array, constant: Array, contact: Flags) -> None:
-        self.works, self.constant, self.contact, self.rows, self.put_in = works, constant, contact, 0, 0.0
+        self.works, self.constant, self.contact = works, constant, contact
+        self.entries, self.gross_input = 0, 0.0
         self._known: list[tuple[int, Array]] = []
-        self._open: dict[int, tuple[Part, list[tuple[Any, ...]]]] = {}
+        self._deferred: dict[int, tuple[Part, list[tuple[Any, ...]]]] = {}
 
-    def put(self, work: Array) -> None:
-        """Enter what is known already, shape (3,)."""
-        self._known.append((self.rows, work))
-        self.rows += 1
+    def add(self, work: Array) -> None:
+        """Enter work that is known already, shape (3,)."""
+        self._known.append((self.entries, work))
+        self.entries += 1
 
-    def note(self, window: DenseOutput, first: int, last: int, lengths: Array) -> None:
-        """Enter some intervals of a window, or the first part of each."""
-        chosen, place = slice(first, last), self.rows + np.arange(last - first)
-        for subsystem in window.subsystems.active:
-            ps = None if subsystem.ps is None else subsystem.ps[chosen]
+    def add_intervals(self, dense: DenseOutput, first: int, last: int, lengths: Array) -> None:
+        """Enter some intervals of a window, or the first part of each, shape (last - first,)."""
+        chosen, place = slice(first, last), self.entries + np.arange(last - first)
+        for subsystem in dense.subsystems.present:
+            loads = None if subsystem.loads is None else subsystem.loads[chosen]
             for part in subsystem.decomposition.parts:
-                qs, gs = subsystem.qs[part.q, chosen].T, subsystem.gs[chosen, :, part.q]
-                own = qs, gs, lengths, window.coefs[chosen], place, ps
-                self._open.setdefault(id(part.work), (part, []))[1].append(own)
-        self.rows += last - first
+                qs, gs = subsystem.states[part.q, chosen].T, subsystem.forcing[chosen, :, part.q]
+                own = qs, gs, lengths, dense.input_coefs[chosen], place, loads
+                self._deferred.setdefault(id(part.work), (part, []))[1].append(own)
+        self.entries += last - first
 
-    def measured(self) -> tuple[Array, dict[int, float]]:
-        """Works before the first entry and after each, shape (rows + 1, 3), and what the dashpots of laws
-        have lost over all entries, by law.
+    def evaluated(self) -> tuple[Array, dict[int, float]]:
+        """Return the works before the first entry and after each, shape (entries + 1, 3), and the losses of
+        the laws' dashpots over all entries, by law.
         """
-        new = np.zeros((self.rows + 1, 3))
+        new = np.zeros((self.entries + 1, 3))
         new[0] = self.works
-        for row, work in self._known:
-            new[row + 1] += work
+        for entry, work in self._known:
+            new[entry + 1] += work
         losses: dict[int, float] = {}
-        for part, entries in self._open.values():
-            *noted, ps = zip(*entries)
-            qs, gs, lengths, coefs, place = (np.concatenate(x) for x in noted)
-            forces = None if ps[0] is None else np.concatenate(ps)
-            found = part.work.measures(qs.T, gs, lengths, coefs, self.constant[part.unknowns], forces)
+        for part, entries in self._deferred.values():
+            *arrays, loads = zip(*entries)
+            qs, gs, lengths, input_coefs, place = (np.concatenate(x) for x in arrays)
+            forces = None if loads[0] is None else np.concatenate(loads)
+            found = part.work.over(qs.T, gs, lengths, input_coefs, self.constant[part.unknowns], forces)
             new[place + 1, 0] += found.input
             new[place + 1, 1] += found.damping
             for law, loss in found.laws:
@@ -73,9 +76,9 @@ class DeferredWork:
                 new[place + 1, 2 if self.contact[law] else 1] += loss
         return np.cumsum(new, axis=0), losses
 
-    def close(self, works: Array) -> None:
-        """Begin anew after the last of the works that `measured` told."""
-        self.put_in += float(np.abs(np.diff(works[:, 0])).sum())
-        self.works, self.rows = works[-1], 0
+    def restart(self, works: Array) -> None:
+        """Start anew from the last of the `evaluated` works."""
+        self.gross_input += float(np.abs(np.diff(works[:, 0])).sum())
+        self.works, self.entries = works[-1], 0
         self._known.clear()
-        self._open.clear()
+        self._deferred.clear()

@@ -1,24 +1,24 @@
-r"""Rigid contacts: what impulses and forces they take.
+r"""Rigid contacts: impulses of impacts and forces of closed contacts.
 
-With the rows B of the contacts that touch, their rates :math:`w = B v` and
-:math:`G = B M^{-1} B^T`, an impact without rebound asks for impulses
+With the rows B of the contacts that touch, their rates :math:`w = B v` and the Delassus matrix
+:math:`G = B M^{-1} B^T`, the impulses of an impact without rebound satisfy
 
 .. math:: J \ge 0, \qquad w - G J \le 0, \qquad J^T (w - G J) = 0
 
-a problem with one answer for :math:`M^{-1} B^T J`: the velocities nearest to v, in the sense of the kinetic
-energy, in which nothing approaches.  With restitution e the impulses are :math:`(1+e)J` (Moreau).
-Momentum is kept, and the energy :math:`\tfrac12(1-e^2) J^T w` is lost, never won.
+a linear complementarity problem with a unique :math:`M^{-1} B^T J`: the velocities nearest to v, in the
+sense of the kinetic energy, in which nothing approaches.  With restitution e the impulses are
+:math:`(1+e)J` (Moreau).  Momentum is conserved, and the energy :math:`\tfrac12(1-e^2) J^T w` is lost.
 
-The contact that approaches fastest strikes first, and with it all that approach and have its E, which
-keeps what is symmetric symmetric; what is then found to approach strikes next, at the same instant, so
-that a row of equal masses hands an impact through.  Forces of contacts that have closed follow from the
-same problem with accelerations for rates.
+The contact that approaches fastest strikes first, together with all that approach and have its E, which
+preserves symmetry; contacts that approach after that strike next, at the same instant, so that a row of
+equal masses transmits an impact.  Forces of closed contacts follow from the same problem with
+accelerations in place of rates.
 
 References
 ----------
 Murty KG (1974), Note on a Bard-type scheme for solving the complementarity problem, Opsearch 11: 123-130
 (the pivots).
-Moreau JJ (1988), Unilateral contact and dry friction in finite DOF dynamics, in Nonsmooth Mechanics and
+Moreau JJ (1988), Unilateral contact and dry friction in finite freedom dynamics, in Nonsmooth Mechanics and
 Applications, CISM 302: 1-82, Springer.
 """
 
@@ -34,16 +34,16 @@ from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.reduction import ReducedSystem
 
 SLOW = 1e-6  #: share of a contact's fastest rate below which an approach has no rebound
-NOISE = 1e-12  #: share of its terms below which an acceleration is rounding
-MOST_ROUNDS = 100_000  #: of impacts at one instant
-MOST_PIVOTS = 10_000
+ROUNDING = 1e-12  #: share of its terms below which an acceleration is rounding
+MAX_IMPACTS = 100_000  #: at one instant
+MAX_PIVOTS = 10_000
 
 
 class MasslessContact(Exception):
     """A rigid contact on a DOF without mass."""
 
 
-class Rigid:
+class RigidContacts:
     """The rigid contacts of a reduced system.
 
     Attributes
@@ -52,15 +52,15 @@ class Rigid:
     rows : ndarray, shape (n_rigid, n)
     inputs : ndarray, shape (n_rigid, n_inputs)
         Deformations from the unknowns and the inputs.
-    yielding : ndarray, shape (n, n_rigid)
+    velocity_change : ndarray, shape (n, n_rigid)
         M^-1 B^T: change of the velocities for unit impulses.
-    compliance : ndarray, shape (n_rigid, n_rigid)
+    delassus : ndarray, shape (n_rigid, n_rigid)
         G [1/M].
     gap, restitution : ndarray, shape (n_rigid,)
 
     Raises
     ------
-    Weightless
+    MasslessContact
         A contact on a DOF without mass.
     """
 
@@ -69,48 +69,55 @@ class Rigid:
         self.system = system
         self.laws = [i for i, s in enumerate(laws) if s.law.rigid]
         self.rows, self.inputs = system.law_rows[self.laws], system.law_inputs[self.laws]
-        light = massless(system.mass)
-        if (bad := self.rows[:, light].any(axis=1)).any():
+        without_mass = massless(system.mass)
+        if (bad := self.rows[:, without_mass].any(axis=1)).any():
             s = laws[self.laws[int(np.argmax(bad))]]
             raise MasslessContact(
                 f"the rigid contact {s.element} ({s.rule}) touches a degree of freedom without mass, which "
                 "nothing would stop: give it weight"
             )
-        heavy = np.flatnonzero(~light) if self.laws else np.zeros(0, np.intp)
-        self.yielding = np.zeros(self.rows.T.shape)
-        self.yielding[heavy] = np.linalg.solve(system.mass[np.ix_(heavy, heavy)], self.rows[:, heavy].T)
-        self.compliance = self.rows @ self.yielding
+        with_mass = np.flatnonzero(~without_mass) if self.laws else np.zeros(0, np.intp)
+        mass = system.mass[np.ix_(with_mass, with_mass)]
+        self.velocity_change = np.zeros(self.rows.T.shape)
+        self.velocity_change[with_mass] = np.linalg.solve(mass, self.rows[:, with_mass].T)
+        self.delassus = self.rows @ self.velocity_change
         self.gap = np.array([laws[i].law.p[2] for i in self.laws])
         self.restitution = np.array([laws[i].law.p[1] for i in self.laws])
 
-    def plastic(self, rates: Array, which: Flags) -> Array:
-        """Impulses, shape (n_rigid,), that take all approach from `rates`; others than `which` take none.
+    def plastic_impulses(self, rates: Array, chosen: Flags) -> Array:
+        """Return the impulses, shape (n_rigid,), of an impact without rebound of the `chosen` contacts.
 
         Raises
         ------
         ArithmeticError
-            They are not found.
+            The pivots do not end.
         """
-        at = np.flatnonzero(which)
-        out, press, small = np.zeros(len(rates)), np.zeros(len(rates), bool), np.zeros(len(rates))
-        small[at] = NOISE * np.abs(rates[at]).max(initial=0.0)
-        for _ in range(MOST_PIVOTS):
-            # one contact at a time is taken in or let go, the first that asks: this ends
-            asks = np.where(
-                press, out < -small / np.diag(self.compliance), rates - self.compliance @ out > small
+        at = np.flatnonzero(chosen)
+        impulse, pressed = np.zeros(len(rates)), np.zeros(len(rates), bool)
+        tolerance = np.zeros(len(rates))
+        tolerance[at] = ROUNDING * np.abs(rates[at]).max(initial=0.0)
+        for _ in range(MAX_PIVOTS):
+            # one contact at a time becomes pressed or free, the first that violates its condition: this
+            # scheme ends
+            violated = np.where(
+                pressed,
+                impulse < -tolerance / np.diag(self.delassus),
+                rates - self.delassus @ impulse > tolerance,
             )
-            first = np.flatnonzero(asks & which)
+            first = np.flatnonzero(violated & chosen)
             if not len(first):
-                return np.maximum(out, 0.0)
-            press[first[0]] = not press[first[0]]
-            own = np.flatnonzero(press)
-            out = np.zeros(len(rates))
-            # contacts that cannot be told apart share evenly
-            out[own] = np.linalg.lstsq(self.compliance[np.ix_(own, own)], rates[own], rcond=NOISE)[0]
-        raise ArithmeticError("which of the rigid contacts press cannot be found")
+                return np.maximum(impulse, 0.0)
+            pressed[first[0]] = not pressed[first[0]]
+            own = np.flatnonzero(pressed)
+            impulse = np.zeros(len(rates))
+            # contacts with dependent rows share evenly
+            delassus = self.delassus[np.ix_(own, own)]
+            impulse[own] = np.linalg.lstsq(delassus, rates[own], rcond=ROUNDING)[0]
+        raise ArithmeticError("the set of rigid contacts that press cannot be found")
 
-    def strike(self, rates: Array, touching: Flags, fastest: Array) -> tuple[Array, Array, Array]:
-        """Impulses, energies lost, and the rates after the impacts of one instant, shape (n_rigid,) each.
+    def impact(self, rates: Array, touching: Flags, fastest: Array) -> tuple[Array, Array, Array]:
+        """Return impulses, energies lost, and the rates after the impacts of one instant, shape (n_rigid,)
+        each.
 
         Parameters
         ----------
@@ -123,29 +130,29 @@ class Rigid:
         Raises
         ------
         ArithmeticError
-            The impacts do not end, or `plastic` finds none.
+            The impacts do not end, or `plastic_impulses` finds none.
         """
         impulse, lost = np.zeros(len(rates)), np.zeros(len(rates))
-        for _ in range(MOST_ROUNDS):
+        for _ in range(MAX_IMPACTS):
             hit = touching & (rates > SLOW * fastest)
             if not hit.any():
                 break
             e = float(self.restitution[np.argmax(np.where(hit, rates, 0.0))])
             hit &= self.restitution == e
-            push = self.plastic(rates, hit)
-            lost += 0.5 * (1.0 - e) * (1.0 + e) * push * rates
-            impulse += (1.0 + e) * push
-            rates = rates - self.compliance @ ((1.0 + e) * push)
+            plastic = self.plastic_impulses(rates, hit)
+            lost += 0.5 * (1.0 - e) * (1.0 + e) * plastic * rates
+            impulse += (1.0 + e) * plastic
+            rates = rates - self.delassus @ ((1.0 + e) * plastic)
         else:
             raise ArithmeticError("the impacts of rigid contacts at one instant do not end")
-        push = self.plastic(rates, touching)
-        return impulse + push, lost + 0.5 * push * rates, rates - self.compliance @ push
+        plastic = self.plastic_impulses(rates, touching)
+        return impulse + plastic, lost + 0.5 * plastic * rates, rates - self.delassus @ plastic
 
-    def accelerations(
+    def free_accelerations(
         self, branches: Sequence[Branch], u: Array, v: Array, inputs: Array
     ) -> tuple[Array, Array]:
-        """Second rates of the deformations if no rigid contact pressed, and the terms that make them up,
-        (n_rigid,) each: a share of these is rounding.
+        """Return the second rates of the deformations without contact forces, and the magnitude of their
+        terms, (n_rigid,) each: a share of the magnitude is rounding.
 
         Parameters
         ----------
@@ -168,12 +175,14 @@ class Rigid:
                 -system.law_rows.T @ force,
             ]
         )
-        size = np.abs(self.yielding).T @ np.abs(terms).sum(axis=0)
-        return self.yielding.T @ terms.sum(axis=0) + self.inputs @ inputs[2], size
+        size = np.abs(self.velocity_change).T @ np.abs(terms).sum(axis=0)
+        return self.velocity_change.T @ terms.sum(axis=0) + self.inputs @ inputs[2], size
 
     def forces(self, held: Flags, branches: Sequence[Branch], u: Array, v: Array, inputs: Array) -> Array:
-        """Forces of the contacts that are `held`, shape (n_rigid,)."""
+        """Return the forces of the contacts that are `held` closed, shape (n_rigid,); parameters as of
+        `free_accelerations`.
+        """
         out, at = np.zeros(len(held)), np.flatnonzero(held)
-        free = self.accelerations(branches, u, v, inputs)[0]
-        out[at] = np.linalg.pinv(self.compliance[np.ix_(at, at)], rcond=1e-12) @ free[at]
+        free = self.free_accelerations(branches, u, v, inputs)[0]
+        out[at] = np.linalg.pinv(self.delassus[np.ix_(at, at)], rcond=1e-12) @ free[at]
         return out

@@ -1,4 +1,4 @@
-r"""Work done on and by a block over a segment, in closed form.
+r"""Work done on and by a subsystem over intervals of time, in closed form.
 
 Split each mode into a free and a forced part, :math:`q_i = c_i e^{\lambda_i t} + p_i(t)` with a polynomial
 :math:`p_i`.  Then with :math:`S = V^T C V` (V the modes' velocities)
@@ -22,7 +22,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.closed_form.propagator import ModalPropagator, SeriesPropagator, gauss, powers
+from pound_solve.integrate.closed_form.modal_propagator import ModalPropagator
+from pound_solve.integrate.closed_form.propagator import Propagator, gauss, powers
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import phi, polynomial
 from pound_solve.numerics.types import Array, Complex
@@ -30,8 +31,8 @@ from pound_solve.structure.reduction import ReducedSystem
 
 SLOW = 0.1  #: modes with |eigenvalue| times interval below this are expanded in powers of time
 TERMS = 11  #: of that expansion, beyond the force's own
-MOST_NUMBERS = 2**20  #: velocities that the quadrature holds at once
-MOST_SQUARED = 3e3  #: condition of the modes up to which their products are used
+MAX_NUMBERS = 2**20  #: velocities that the quadrature holds at once
+MAX_CONDITION = 3e3  #: condition of the modes up to which their products are used
 
 
 class Work(NamedTuple):
@@ -42,7 +43,7 @@ class Work(NamedTuple):
     laws: list[tuple[int, float]]
 
 
-class Works(NamedTuple):
+class IntervalWork(NamedTuple):
     """`Work` of several intervals, arrays of shape (n,)."""
 
     damping: Array
@@ -51,48 +52,50 @@ class Works(NamedTuple):
 
 
 class WorkIntegrals:
-    """Measures the work in one block and regime.
+    """Work in one subsystem for one set of stiffnesses.
 
     Parameters
     ----------
-    propagator : ModalFlow or SeriesFlow
+    propagator : Propagator
     damping : ndarray, shape (n, n)
-        Of the structure, laws apart.
+        Of the structure, without the laws.
     inputs : ndarray, shape (n, n_inputs)
     laws : list of (law, c, row)
-        Laws that have dashpots at the time: pressed contacts, springs whose damping follows them.
+        Laws with a dashpot on their present branch: pressed contacts, springs whose damping follows their
+        stiffness.
     """
 
     def __init__(
         self,
-        propagator: ModalPropagator | SeriesPropagator,
+        propagator: Propagator,
         damping: Array,
         inputs: Array,
         laws: list[tuple[int, float, Array]],
     ) -> None:
-        self.propagator, self.inputs, self.laws, self.damping_matrix = propagator, inputs, laws, damping
+        self.propagator, self.inputs, self.laws, self.damping = propagator, inputs, laws, damping
         self.damped = bool(np.any(damping))
         # the quadratic forms lose the square of the modes' condition
         self.closed_form = (
             isinstance(propagator, ModalPropagator)
             and propagator.u_p is None
-            and propagator.condition < MOST_SQUARED
+            and propagator.condition < MAX_CONDITION
         )
         if not isinstance(propagator, ModalPropagator) or not self.closed_form:
             return
-        self.lam = propagator.lam
+        self.eigenvalues = propagator.eigenvalues
         self.form = self._form(propagator.v_q, damping) if self.damped else np.zeros((0, 0))
         self.law_forms = [c * self._form(row[None, :] @ propagator.v_q, np.eye(1)) for _, c, row in laws]
 
     def _form(self, v: Complex, c: Array) -> Array:
         """Return the quadratic form of the real and imaginary parts of free amplitudes whose change over
-        a segment is their dissipation, shape (2 n_q, 2 n_q): each term already divided by its exponent.
+        an interval is their dissipation, shape (2 n_q, 2 n_q): each term is divided by its exponent.
         """
         cv = c @ v
         plain, mixed = v.T @ cv, v.conj().T @ cv
-        s1, s2 = self.lam[:, None] + self.lam[None, :], self.lam.conj()[:, None] + self.lam[None, :]
+        values = self.eigenvalues
+        s1, s2 = values[:, None] + values[None, :], values.conj()[:, None] + values[None, :]
         # an undamped pair has no dissipation to divide: 0/0 is 0
-        floor = 1e-15 * max(float(np.abs(self.lam).max(initial=0.0)), 1e-300)
+        floor = 1e-15 * max(float(np.abs(values).max(initial=0.0)), 1e-300)
         r1 = np.where(np.abs(s1) > floor, plain / np.where(np.abs(s1) > floor, s1, 1.0), 0.0)
         r2 = np.where(np.abs(s2) > floor, mixed / np.where(np.abs(s2) > floor, s2, 1.0), 0.0)
         # v = Re(V q): v^T C v = (q^T S1 q + q^H S2 q) / 2, real part
@@ -102,146 +105,152 @@ class WorkIntegrals:
         """Free amplitudes at 0 and tau (n_q, n), forced polynomials and moments (powers, n_q, n)."""
         degree = gs.shape[1] - 1
         g = gs.transpose(1, 2, 0)
-        # split into free and forced, a slow mode would be the small difference of large numbers: its
-        # power series serves instead (of a rigid-body mode it ends by itself)
-        slow = np.abs(self.lam) * tau.max() < SLOW
-        more = 0 if not slow.any() else 1 if not self.lam[slow].any() else TERMS
+        # split into free and forced, a slow mode would be the small difference of large numbers: it is a
+        # power series instead (which for a rigid-body mode is finite)
+        slow = np.abs(self.eigenvalues) * tau.max() < SLOW
+        more = 0 if not slow.any() else 1 if not self.eigenvalues[slow].any() else TERMS
         count = degree + 1 + more
         # many intervals are of the same length
         lengths, place = np.unique(tau, return_inverse=True)
-        z: Complex = np.where(slow, 0j, self.lam)[:, None] * lengths.astype(complex)
-        grown = np.exp(z)[:, place]
+        z: Complex = np.where(slow, 0j, self.eigenvalues)[:, None] * lengths.astype(complex)
+        growth = np.exp(z)[:, place]
         moments = (phi.moments(z, count - 1) * powers(lengths, count)[1:, None])[:, :, place]
-        lam = np.where(slow, 1.0, self.lam)[:, None]
+        eigenvalues = np.where(slow, 1.0, self.eigenvalues)[:, None]
         p = np.zeros((count + 1, *qs.shape), complex)
         for k in range(degree, -1, -1):
-            p[k] = ((k + 1) * p[k + 1] - g[k]) / lam
+            p[k] = ((k + 1) * p[k + 1] - g[k]) / eigenvalues
         p[:, slow] = 0.0
         c0 = np.where(slow[:, None], 0.0, qs - p[0])
         if slow.any():
-            own, force = np.empty((count, slow.sum(), qs.shape[1]), complex), g[:, slow]
-            own[0] = qs[slow]
-            for k in range(count - 1):
-                own[k + 1] = (self.lam[slow, None] * own[k] + (force[k] if k <= degree else 0.0)) / (k + 1)
-            p[:count, slow] = own
-        return c0, c0 * grown, p[:count], moments
+            p[:count, slow] = self._slow_series(qs[slow], g[:, slow], self.eigenvalues[slow, None], count)
+        return c0, c0 * growth, p[:count], moments
 
-    def measures(
+    @staticmethod
+    def _slow_series(q: Complex, g: Complex, eigenvalues: Complex, count: int) -> Complex:
+        """Coefficients of ``q' = eigenvalue q + g`` in powers of time, shape (count, n_slow, n)."""
+        out = np.empty((count, *q.shape), complex)
+        out[0] = q
+        for k in range(count - 1):
+            out[k + 1] = (eigenvalues * out[k] + (g[k] if k < len(g) else 0.0)) / (k + 1)
+        return out
+
+    def over(
         self,
         qs: NDArray[Any],
         gs: NDArray[Any],
         tau: Array,
-        coefs: Array,
+        input_coefs: Array,
         constant: Array,
-        ps: Array | None = None,
-    ) -> Works:
+        loads: Array | None = None,
+    ) -> IntervalWork:
         """Return the work over several intervals.
 
         Parameters
         ----------
         qs : ndarray, shape (n_q, n)
-            Modal states at their starts.
+            States at their starts.
         gs : ndarray, shape (n, degree + 1, n_q)
             Their forcing.
         tau : ndarray, shape (n,)
             Their lengths [T].
-        coefs : ndarray, shape (n, degree + 1, n_inputs)
+        input_coefs : ndarray, shape (n, degree + 1, n_inputs)
             Inputs; their forces and `constant` loads (n_unknowns,) do the input work.
-        ps : ndarray, shape (n, degree + 1, n_unknowns), or None
-            Force polynomials on the unknowns, where massless DOFs need them.
+        loads : ndarray, shape (n, degree + 1, n_unknowns), or None
+            Load polynomials on the unknowns, where massless DOFs need them.
         """
         if not self.closed_form or gs.shape[1] > 2:
-            return self._quadratures(qs, gs, tau, coefs, constant, ps)
+            return self._quadrature(qs, gs, tau, input_coefs, constant, loads)
         c0, c1, forced, moments = self._split(qs, gs, tau)
         ends = np.concatenate([c0, c1], axis=1)
         ends = np.concatenate([ends.real, ends.imag])
-        # of the velocities: the forced polynomials, and the integrals of t^k times the free part, and all;
-        # shape (powers, n, n_intervals) each
+        # of the velocities: the forced polynomials, and the integrals of t^k times the free part, and times
+        # both parts; shape (powers, n, n_intervals) each
         steady, free = ((self.propagator.v_q @ x).real for x in (forced, c0 * moments))
         both = np.add.outer(np.arange(len(forced)), np.arange(1, len(forced) + 1))[:, :, None]
         whole = free + np.einsum("kln,lin->kin", tau**both / both, steady)
         loss, losses = np.zeros(len(gs)), []
         if self.damped:
             loss = self._change(self.form, ends)
-            loss += ((self.damping_matrix @ steady) * (free + whole)).sum(axis=(0, 1))
+            loss += ((self.damping @ steady) * (free + whole)).sum(axis=(0, 1))
         for (law, c, row), form in zip(self.laws, self.law_forms):
             own = self._change(form, ends) + c * ((row @ steady) * (row @ (free + whole))).sum(axis=0)
             losses.append((law, own))
         total = np.asarray(constant @ whole[0])
-        for k in range(coefs.shape[1]):
-            total += ((self.inputs @ coefs[:, k].T) * whole[k]).sum(axis=0)
-        return Works(loss, total, losses)
+        for k in range(input_coefs.shape[1]):
+            total += ((self.inputs @ input_coefs[:, k].T) * whole[k]).sum(axis=0)
+        return IntervalWork(loss, total, losses)
 
     def _change(self, form: Array, ends: Array) -> Array:
         """Change of a form of `_form` between the amplitudes at the starts and those at the ends."""
         start, end = np.split((ends * (form @ ends)).sum(axis=0), 2)
         return np.asarray(end - start)
 
-    def _quadratures(
+    def _quadrature(
         self,
         qs: NDArray[Any],
         gs: NDArray[Any],
         tau: Array,
-        coefs: Array,
+        input_coefs: Array,
         constant: Array,
-        ps: Array | None,
-    ) -> Works:
-        """Return `measures` by Gauss's rule."""
+        loads: Array | None,
+    ) -> IntervalWork:
+        """Return `over` by Gauss's rule."""
         loss, done, *losses = np.zeros((2 + len(self.laws), len(tau)))
+        v_q, u_p, v_p = self.propagator.v_q, self.propagator.u_p, self.propagator.v_p
         for length in np.unique(tau).tolist():
-            w, points = gauss(length, self.propagator.fastest)
+            w, points = gauss(length, self.propagator.spectral_radius)
             same = np.flatnonzero(tau == length)
-            at_once = max(1, MOST_NUMBERS // (len(points) * max(len(qs), len(constant))))
+            at_once = max(1, MAX_NUMBERS // (len(points) * max(len(qs), len(constant))))
             for i in range(0, len(same), at_once):
                 chosen = same[i : i + at_once]
                 times = np.broadcast_to(points, (len(chosen), len(points)))
-                q = self.propagator.paths(qs[:, chosen], gs[chosen], points)
-                v = np.tensordot(self.propagator.v_q, q, 1).real
-                if self.propagator.u_p is not None and self.propagator.v_p is not None and ps is not None:
-                    v += np.tensordot(self.propagator.v_p, polynomial.on(ps[chosen], times), 1)
-                    v += np.tensordot(self.propagator.u_p, polynomial.on(ps[chosen], times, 1), 1)
-                force = np.tensordot(self.inputs, polynomial.on(coefs[chosen], times), 1)
+                q = self.propagator.trajectories(qs[:, chosen], gs[chosen], points)
+                v = np.tensordot(v_q, q, 1).real
+                if u_p is not None and v_p is not None and loads is not None:
+                    v += np.tensordot(v_p, polynomial.on(loads[chosen], times), 1)
+                    v += np.tensordot(u_p, polynomial.on(loads[chosen], times, 1), 1)
+                force = np.tensordot(self.inputs, polynomial.on(input_coefs[chosen], times), 1)
                 force += constant[:, None, None]
                 done[chosen] = np.einsum("int,int,t->n", v, force, w)
                 if self.damped:
-                    drag = np.tensordot(self.damping_matrix, v, 1)
+                    drag = np.tensordot(self.damping, v, 1)
                     loss[chosen] = np.einsum("int,int,t->n", v, drag, w)
                 for own, (_, c, row) in zip(losses, self.laws):
                     own[chosen] = c * (np.tensordot(row, v, 1) ** 2 @ w)
-        return Works(loss, done, [(law, own) for (law, _, _), own in zip(self.laws, losses)])
+        return IntervalWork(loss, done, [(law, own) for (law, _, _), own in zip(self.laws, losses)])
 
 
 def total_work(
     system: ReducedSystem,
     tau: float,
-    fastest: float,
-    coefs: Array,
-    path: Callable[[Array], tuple[Array, Array, Array]],
+    spectral_radius: float,
+    input_coefs: Array,
+    motion: Callable[[Array], tuple[Array, Array, Array]],
     branches: Sequence[Branch],
 ) -> Work:
-    """Return the work over a segment in the total form.
+    """Return the work over an interval in the total form.
 
     The input is the power of the supports, their reactions times their velocities,
-    and of held loads and FORCES; dashpots of laws may reach to supports.
+    and of constant loads and FORCES; dashpots of laws may be attached to supports.
 
     Parameters
     ----------
     system : ReducedSystem
     tau : float
-        Length of the segment [T].
-    fastest : float
-        Fastest eigenvalue [1/T], for the quadrature.
-    coefs : ndarray, shape (degree + 1, n_inputs)
-        Inputs over the segment.
-    path : callable
+        Length of the interval [T].
+    spectral_radius : float
+        Of the subsystems [1/T], for the quadrature.
+    input_coefs : ndarray, shape (degree + 1, n_inputs)
+        Inputs over the interval.
+    motion : callable
         Displacement, velocity and acceleration of the unknowns at local times, shape (n, n_times) each.
     branches : sequence of Branch
         Of all laws.
     """
     structure, n = system.structure, system.structure.n_free
-    w, x = gauss(tau, fastest)
-    inputs = [np.array([polynomial.value(coefs, float(y), order) for y in x]).T for order in range(3)]
-    u, v, a = path(x)
+    w, x = gauss(tau, spectral_radius)
+    inputs = [np.array([polynomial.value(input_coefs, float(y), order) for y in x]).T for order in range(3)]
+    u, v, a = motion(x)
     k, c, f0 = (
         np.array([getattr(b, name) for b in branches])[:, None]
         for name in ("stiffness", "damping", "force0")
@@ -253,7 +262,7 @@ def total_work(
         structure.stiffness @ u + structure.damping @ v + structure.mass @ a + structure.law_rows.T @ law
     )
     held = [i for i, b in enumerate(branches) if b.held]
-    if held:  # what the unknowns leave out of balance is what rigid contacts take
+    if held:  # the imbalance of the unknowns is the force of the rigid contacts
         rows = structure.law_rows[held]
         rest = system.applied(inputs[0]) - force[:n]
         force += rows.T @ np.linalg.lstsq(rows[:, :n].T, rest, rcond=1e-12)[0]

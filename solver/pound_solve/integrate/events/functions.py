@@ -1,25 +1,42 @@
-"""What a run by linear pieces watches: exits of the laws, and the quantities whose peaks it keeps."""
+"""Functions of the motion that a run monitors: event functions of the laws, and quantities with peaks."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from pound_solve.integrate.events import grid
+from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.protocol import Peak, ResponseTracker
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.types import Array
 
 
-class Sampled(Protocol):
-    """Rows seen at some points of some arcs, and between them.
+class RowSet(NamedTuple):
+    """Linear functionals of the unknowns that a run monitors, ``rows u + inputs s + constants``; the first
+    are the laws' deformations.
 
     Attributes
     ----------
-    t : ndarray, shape (n_arcs, n_points)
-    value, rate, second : ndarray, shape (n_rows, n_arcs, n_points)
+    rows : ndarray, shape (n_rows, n)
+    inputs : ndarray, shape (n_rows, n_inputs)
+    constants : ndarray, shape (n_rows,)
+    """
+
+    rows: Array
+    inputs: Array
+    constants: Array
+
+
+class Sampled(Protocol):
+    """Rows at the points of some segments, and between them.
+
+    Attributes
+    ----------
+    t : ndarray, shape (n_segments, n_points)
+    value, rate, second : ndarray, shape (n_rows, n_segments, n_points)
     """
 
     t: Array
@@ -27,12 +44,12 @@ class Sampled(Protocol):
     rate: Array
     second: Array
 
-    def at(self, row: int, arc: int, cell: int, tau: float) -> tuple[float, float, float]:
-        """Value, rate and second rate of a row at a time in the cell after a point of an arc."""
+    def at(self, row: int, segment: int, cell: int, tau: float) -> tuple[float, float, float]:
+        """Value, rate and second rate of a row at a time in the cell after a point of a segment."""
         ...
 
 
-class Functionals:
+class RowFunctions:
     """Linear functions of a row's value and rate: ``a value + b rate + c``.
 
     Parameters
@@ -43,75 +60,107 @@ class Functionals:
     Attributes
     ----------
     by_rate : bool
-        Whether any has a part by the rate.
+        Whether any depends on a rate.
     """
 
     def __init__(self, row: Sequence[int], factors: Sequence[Sequence[float]]) -> None:
         self.row, self.factors = np.array(row, np.intp), np.array(factors).reshape(-1, 3).T
         self.by_rate = bool(self.factors[1].any())
 
-    def of(self, seen: Sampled) -> tuple[Array, Array]:
-        """Values and slopes at the points, shape (n, n_arcs, n_points)."""
+    def sampled(self, samples: Sampled) -> tuple[Array, Array]:
+        """Values and slopes at the points, shape (n, n_segments, n_points)."""
         a, b, c = self.factors[:, :, None, None]
-        rate = seen.rate[self.row]
-        value, slope = a * seen.value[self.row] + c, a * rate
+        rate = samples.rate[self.row]
+        value, slope = a * samples.value[self.row] + c, a * rate
         if self.by_rate:
             value += b * rate
-            slope += b * seen.second[self.row]
+            slope += b * samples.second[self.row]
         return value, slope
 
-    def bends(self, bends: Array) -> Array:
-        """Bounds of their second derivatives, shape (n, n_arcs), from those of the rows' values and rates,
-        shape (2, n_rows, n_arcs), which may be infinite.
+    def curvature_bounds(self, bounds: Array) -> Array:
+        """Bounds of their second derivatives, shape (n, n_segments), from those of the rows' values and
+        rates, shape (2, n_rows, n_segments), which may be infinite.
         """
         a, b, _ = np.abs(self.factors)[:, :, None]
-        out = np.asarray(a * np.where(a != 0.0, bends[0, self.row], 0.0))
+        out = np.asarray(a * np.where(a != 0.0, bounds[0, self.row], 0.0))
         if self.by_rate:
-            out += b * np.where(b != 0.0, bends[1, self.row], 0.0)
+            out += b * np.where(b != 0.0, bounds[1, self.row], 0.0)
         return out
 
     def scale(self, largest: Array) -> Array:
-        """Largest magnitude of what makes them up, shape (n,), from that of rows and rates (2, n_rows)."""
+        """Largest magnitude of their terms, shape (n,), from that of rows and rates (2, n_rows)."""
         a, b, c = np.abs(self.factors)
         return np.asarray(a * largest[0, self.row] + b * largest[1, self.row] + c)
 
-    def first_rise(self, seen: Sampled, largest: Array, still: float) -> tuple[float, int, int, int] | None:
-        """When, which of them and where first rises through zero (see `search.first_rise`), by more than a
-        share `still` of what makes it up.
-        """
-        g, slope = self.of(seen)
-        scale = np.maximum(self.scale(largest), np.abs(g[:, 0, :2]).max(axis=1, initial=0.0))
-        return grid.first_rise(seen.t, g, slope, still * scale[:, None, None], self.at(seen))
-
-    def at(self, seen: Sampled) -> grid.Exact:
-        """What evaluates one of them, its value and its slope, within a cell."""
+    def evaluator(self, samples: Sampled) -> grid.Evaluate:
+        """Return what evaluates one of them, its value and its slope, within a cell."""
         a, b, c = self.factors.tolist()
         row = self.row.tolist()
 
-        def exact(n: int, arc: int, cell: int, tau: float) -> tuple[float, float]:
-            d, v, w = seen.at(row[n], arc, cell, tau)
+        def evaluate(n: int, segment: int, cell: int, tau: float) -> tuple[float, float]:
+            d, v, w = samples.at(row[n], segment, cell, tau)
             return a[n] * d + b[n] * v + c[n], a[n] * v + b[n] * w
 
-        return exact
+        return evaluate
 
 
-def exits(
-    branches: Sequence[Branch], force_row: Mapping[int, int]
-) -> tuple[Functionals, list[tuple[int, int]]]:
-    """Exits of all laws, and the law and number of each.
+class GridEvent(NamedTuple):
+    """An event located on a grid, and the cell that it lies in."""
 
-    What a closed rigid contact may leave by is its force, a row of its own.
+    event: LocatedEvent
+    segment: int
+    cell: int
+
+
+class EventFunctions(RowFunctions):
+    """Event functions of all laws on their present branches.
+
+    The event function of a closed rigid contact depends on its force, which is a row of its own.
+
+    Parameters
+    ----------
+    branches : sequence of Branch
+    reaction_row : mapping of int to int
+        Row of the force of every rigid contact, by law.
+
+    Attributes
+    ----------
+    keys : list of (law, event_index)
     """
-    pairs = [(i, e) for i, b in enumerate(branches) for e in range(len(b.exits))]
-    rows = [force_row[i] if branches[i].held else i for i, _ in pairs]
-    return Functionals(rows, [branches[i].exits[e] for i, e in pairs]), pairs
+
+    def __init__(self, branches: Sequence[Branch], reaction_row: Mapping[int, int]) -> None:
+        self.keys = [(i, e) for i, b in enumerate(branches) for e in range(len(b.exits))]
+        rows = [reaction_row[i] if branches[i].held else i for i, _ in self.keys]
+        super().__init__(rows, [branches[i].exits[e] for i, e in self.keys])
+
+    def first_event(self, samples: Sampled, largest: Array, tolerance: float) -> GridEvent | None:
+        """Return the earliest event of some samples, or None.
+
+        Parameters
+        ----------
+        samples : Sampled
+        largest : ndarray, shape (2, n_rows)
+            Largest magnitudes of rows and rates so far.
+        tolerance : float
+            Share of the magnitude of its terms up to which a function counts as not above zero.
+        """
+        if not self.keys or not samples.t.size:
+            return None
+        g, slope = self.sampled(samples)
+        scale = np.maximum(self.scale(largest), np.abs(g[:, 0, :2]).max(axis=1, initial=0.0))
+        tol = tolerance * scale[:, None, None]
+        rise = grid.first_rise(samples.t, g, slope, tol, self.evaluator(samples))
+        if rise is None:
+            return None
+        law, event_index = self.keys[rise.function]
+        return GridEvent(LocatedEvent(law, event_index, rise.time), rise.segment, rise.cell)
 
 
-def followed(
-    tracker: ResponseTracker, branches: Sequence[Branch], force_row: Mapping[int, int]
-) -> tuple[Functionals, list[Peak]]:
-    """Deformations, drifts, and the forces of springs and of contacts that are pressed, with what keeps
-    their peaks: forces of contacts go to the collision that runs.
+def monitored_functions(
+    tracker: ResponseTracker, branches: Sequence[Branch], reaction_row: Mapping[int, int]
+) -> tuple[RowFunctions, list[Peak]]:
+    """Return deformations, drifts, and the forces of springs and of closed contacts, and their peaks:
+    forces of contacts belong to the present collision.
     """
     peaks, running = tracker.peaks, tracker.open
     rows = list(range(len(branches) + len(peaks.monitored)))
@@ -120,8 +169,8 @@ def followed(
     for i, (spring, b) in enumerate(zip(tracker.laws, branches)):
         if spring.is_contact and i not in running:
             continue
-        rows.append(force_row[i] if b.held else i)
+        rows.append(reaction_row[i] if b.held else i)
         # a spring's force is without damping
         factors.append((1.0 if b.held else b.stiffness, b.damping * spring.is_contact, b.force0))
         kept.append(tracker.running(i) if i in running else peaks.force[i])
-    return Functionals(rows, factors), kept
+    return RowFunctions(rows, factors), kept

@@ -1,4 +1,4 @@
-"""search: cells that may hold an event or a peak, and the first event in them."""
+"""Location on a grid: cells that may hold an event or a peak, and the first event in them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Waves:
     def __init__(self, terms: list[tuple[float, float, float]], constant: float) -> None:
         self.a, self.w, self.p = np.array(terms).T[:, :, None]
         self.constant = constant
-        self.bend = float((self.a * self.w**2).sum())
+        self.curvature = float((self.a * self.w**2).sum())
 
     def value(self, t: Array) -> Array:
         x = np.ravel(t)
@@ -32,18 +32,18 @@ class Waves:
         return (self.a * self.w * np.cos(self.w * x + self.p)).sum(axis=0).reshape(np.shape(t))
 
 
-def mesh(step: float, arcs: int, cells: int) -> Array:
-    return step * (cells * np.arange(arcs)[:, None] + np.arange(cells + 1))
+def mesh(step: float, segments: int, cells: int) -> Array:
+    return step * (cells * np.arange(segments)[:, None] + np.arange(cells + 1))
 
 
 @given(waves, st.floats(-4.0, 0.0), st.floats(0.01, 0.3))
 def test_no_rise_is_passed_over(terms: list[tuple[float, float, float]], c: float, step: float) -> None:
     f, t = Waves(terms, c), mesh(step, 3, 4)
-    bend = np.full((1, 3), f.bend)
+    curvature = np.full((1, 3), f.curvature)
     marked = grid.may_rise(
         f.value(t)[None],
         f.slope(t)[None],
-        bend,
+        curvature,
         np.diff(t),
     )[0]
     within = t[:, :-1, None] + np.diff(t)[:, :, None] * np.linspace(0.0, 1.0, 41)
@@ -55,10 +55,10 @@ def test_no_rise_is_passed_over(terms: list[tuple[float, float, float]], c: floa
 def test_no_peak_is_passed_over(terms: list[tuple[float, float, float]], step: float) -> None:
     f, t = Waves(terms, 0.0), mesh(step, 3, 4)
     peak, seen = Extreme(), Extreme()
-    marked = grid.may_peak(f.value(t)[None], f.slope(t)[None], np.full((1, 3), f.bend), np.diff(t), [peak])[
-        0
-    ]
-    grid.count([seen], t.ravel(), f.value(t).reshape(1, -1))
+    marked = grid.may_peak(
+        f.value(t)[None], f.slope(t)[None], np.full((1, 3), f.curvature), np.diff(t), [peak]
+    )[0]
+    grid.count_samples([seen], t.ravel(), f.value(t).reshape(1, -1))
     within = t[:, :-1, None] + np.diff(t)[:, :, None] * np.linspace(0.0, 1.0, 41)
     x = f.value(within[marked])
     high = max(seen.high, x.max(initial=-np.inf))
@@ -70,39 +70,39 @@ def test_no_peak_is_passed_over(terms: list[tuple[float, float, float]], step: f
 def test_cells_that_cannot_matter_are_left_out() -> None:
     """A wave far below zero, and one that stays within its peaks."""
     f, t = Waves([(1.0, 1.0, 0.0)], -2.0), mesh(0.1, 2, 30)
-    value, slope, bend = f.value(t)[None], f.slope(t)[None], np.full((1, 2), f.bend)
-    assert not grid.may_rise(value, slope, bend, np.diff(t)).any()
+    value, slope, curvature = f.value(t)[None], f.slope(t)[None], np.full((1, 2), f.curvature)
+    assert not grid.may_rise(value, slope, curvature, np.diff(t)).any()
     fresh, known = Extreme(), Extreme()
     known.take(0.0, 0.0)
     known.take(-4.0, 0.0)
-    assert not grid.may_peak(value, slope, bend, np.diff(t), [known]).any()
+    assert not grid.may_peak(value, slope, curvature, np.diff(t), [known]).any()
     # otherwise only where it turns: at pi/2 and 3 pi/2, and on the way down from its start nothing
-    marked = grid.may_peak(value, slope, bend, np.diff(t), [fresh]).ravel()
+    marked = grid.may_peak(value, slope, curvature, np.diff(t), [fresh]).ravel()
     assert 2 <= marked.sum() <= 6
     assert marked[15] and marked[47]
 
 
 @given(waves, st.floats(-3.0, -0.1), st.integers(1, 3))
-def test_first_rise(terms: list[tuple[float, float, float]], c: float, arcs: int) -> None:
+def test_first_rise(terms: list[tuple[float, float, float]], c: float, segments: int) -> None:
     f = Waves(terms, c)
-    t = mesh(0.01, arcs, 32)
+    t = mesh(0.01, segments, 32)
     if f.value(t)[0, 0] > -1e-9:
         return
 
-    def exact(n: int, arc: int, cell: int, x: float) -> tuple[float, float]:
-        assert t[arc, cell] <= x <= t[arc, cell + 1]
+    def evaluate(n: int, segment: int, cell: int, x: float) -> tuple[float, float]:
+        assert t[segment, cell] <= x <= t[segment, cell + 1]
         return float(f.value(np.array([x]))[0]), float(f.slope(np.array([x]))[0])
 
     g, slope = f.value(t)[None], f.slope(t)[None]
-    found = grid.first_rise(t, g, slope, np.zeros((1, 1, 1)), exact)
+    found = grid.first_rise(t, g, slope, np.zeros((1, 1, 1)), evaluate)
     fine = np.linspace(0.0, t[-1, -1], 20001)
     above = np.flatnonzero(f.value(fine) > 1e-9)
     if found is None:
         assert not len(above)
     else:
-        at, n, arc, cell = found
-        assert n == 0 and t[arc, cell] <= at <= t[arc, cell + 1]
-        assert abs(f.value(np.array([at]))[0]) < 1e-12 * f.bend
+        at, n, segment, cell = found
+        assert n == 0 and t[segment, cell] <= at <= t[segment, cell + 1]
+        assert abs(f.value(np.array([at]))[0]) < 1e-12 * f.curvature
         assert not len(above) or at <= fine[above[0]]
 
 
@@ -126,16 +126,16 @@ def test_two_turns_within_one_cell_are_seen(first: float, second: float, share: 
     g = shape - (low + share * (top - low))  # zero between the ends, or the trough, and the summit
     t = np.array([[0.0, 1.0]])
 
-    def exact(n: int, arc: int, cell: int, x: float) -> tuple[float, float]:
+    def evaluate(n: int, segment: int, cell: int, x: float) -> tuple[float, float]:
         return float(g(x)), float(rate(x))
 
     value, slope = g(t)[None], rate(t)[None]
     peak = Extreme()
-    grid.widen([peak], 0.0, t, value, slope, exact)
+    grid.count_extremes([peak], 0.0, t, value, slope, evaluate)
     assert abs(peak.high - max(g(np.array([0.0, 1.0, first, second])))) < 1e-12
     assert abs(peak.low - min(g(np.array([0.0, 1.0, first, second])))) < 1e-12
     if value.max() > 1e-9:
         return  # it ends above zero: a crossing that samples show
-    found = grid.first_rise(t, value.copy(), slope, np.full((1, 1, 1), 1e-12), exact)
+    found = grid.first_rise(t, value.copy(), slope, np.full((1, 1, 1), 1e-12), evaluate)
     assert found is not None
     assert abs(g(found[0])) < 1e-9 and rate(found[0]) > 0.0

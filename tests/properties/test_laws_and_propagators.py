@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from paths import Walk
-from pound_solve.integrate.closed_form.propagator import make_propagator
+from pound_solve.integrate.closed_form.decomposition import make_propagator
 from pound_solve.integrate.closed_form.work_integrals import WorkIntegrals
 from pound_solve.laws.automaton import Law, drive, internal_variables
 from pound_solve.laws.contact import kelvin_voigt
@@ -118,10 +118,10 @@ def test_two_intervals_are_one(seed: int, first: float, second: float) -> None:
     rng = np.random.default_rng(seed + 1)
     propagator = make_propagator(m, c, k, np.eye(n))
     u, v, p = rng.normal(size=n), rng.normal(size=n), rng.normal(size=(3, n))
-    q, g = propagator.enter(u, v), propagator.push(p)
+    q, g = propagator.state_of(u, v), propagator.load_forcing(p)
     middle = propagator.at(q, g, first)
-    again = propagator.enter((propagator.u_q @ middle).real, (propagator.v_q @ middle).real)
-    end = propagator.at(again, propagator.push(polynomial.shift(p, first)), second)
+    again = propagator.state_of((propagator.u_q @ middle).real, (propagator.v_q @ middle).real)
+    end = propagator.at(again, propagator.load_forcing(polynomial.shift(p, first)), second)
     direct = propagator.at(q, g, first + second)
     for row in (propagator.u_q, propagator.v_q):
         a, b = (row @ end).real, (row @ direct).real
@@ -134,9 +134,9 @@ def test_energy_balances(seed: int, tau: float) -> None:
     rng = np.random.default_rng(seed + 1)
     propagator = make_propagator(m, c, k, np.eye(n))
     u, v, p = rng.normal(size=n), rng.normal(size=n), rng.normal(size=(2, n))
-    q, g = propagator.enter(u, v), propagator.push(p)
+    q, g = propagator.state_of(u, v), propagator.load_forcing(p)
     work_integrals = WorkIntegrals(propagator, c, np.eye(n), [])
-    found = work_integrals.measures(q[:, None], g[None], np.array([tau]), p[None], np.zeros(n))
+    found = work_integrals.over(q[:, None], g[None], np.array([tau]), p[None], np.zeros(n))
     energies = []
     for at in (q, propagator.at(q, g, tau)):
         x, y = (propagator.u_q @ at).real, (propagator.v_q @ at).real

@@ -1,15 +1,17 @@
-"""work: losses and input of an interval by dense quadrature, closed forms and the balance of energy."""
+"""Work integrals: losses and input by dense quadrature, closed forms and the balance of energy."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from pound_solve.integrate.closed_form.propagator import ModalPropagator, SeriesPropagator, make_propagator
+from pound_solve.integrate.closed_form.decomposition import make_propagator
+from pound_solve.integrate.closed_form.modal_propagator import ModalPropagator
+from pound_solve.integrate.closed_form.series_propagator import SeriesPropagator
 from pound_solve.integrate.closed_form.work_integrals import Work, WorkIntegrals
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
-from unit.test_flow import KINDS, loads, massless, subsystem
+from unit.test_propagators import KINDS, loads, massless, subsystem
 
 X, W = np.polynomial.legendre.leggauss(24)
 DASHPOT = 0.7  #: of the contact between the first and the last mass
@@ -30,14 +32,14 @@ def measure(
 ) -> Work:
     """Work over one interval."""
     ps = None if p is None else p[None]
-    out = work_integrals.measures(q[:, None], g[None], np.array([tau]), coefs[None], constant, ps)
+    out = work_integrals.over(q[:, None], g[None], np.array([tau]), coefs[None], constant, ps)
     return Work(
         float(out.damping[0]), float(out.input[0]), [(law, float(loss[0])) for law, loss in out.laws]
     )
 
 
 class Case:
-    """A block with a pressed contact, its loads and start, measured and integrated densely."""
+    """A subsystem with a pressed contact, its loads and start, measured and integrated densely."""
 
     def __init__(
         self, m: Array, c: Array, k: Array, degree: int, seed: int = 0, dashpot: float = DASHPOT
@@ -50,7 +52,7 @@ class Case:
         contacts = [(5, dashpot, self.row)] if dashpot else []
         self.work_integrals = WorkIntegrals(self.propagator, c, self.inputs, contacts)
         self.q, self.g = (
-            self.propagator.enter(self.u, self.v),
+            self.propagator.state_of(self.u, self.v),
             self.propagator.forcing(self.coefs, self.constant),
         )
 
@@ -58,7 +60,7 @@ class Case:
         return measure(self.work_integrals, self.q, self.g, tau, self.coefs, self.constant, self.p)
 
     def velocity(self, t: Array) -> Array:
-        v = (self.propagator.v_q @ self.propagator.path(self.q, self.g, t)).real
+        v = (self.propagator.v_q @ self.propagator.trajectory(self.q, self.g, t)).real
         if self.propagator.u_p is not None:
             p, slope = (
                 np.array([polynomial.value(self.p, float(x), order) for x in t]).T for order in (0, 1)
@@ -68,7 +70,7 @@ class Case:
 
     def dense(self, tau: float) -> tuple[float, float, float]:
         """Structure's loss, input and contact's loss by quadrature, 24 points on every 1/fastest."""
-        cells = int(np.ceil(tau * self.propagator.fastest)) + 1
+        cells = int(np.ceil(tau * self.propagator.spectral_radius)) + 1
         width = tau / cells
         t = (width * (np.arange(cells)[:, None] + 0.5 + 0.5 * X)).ravel()
         w = np.tile(0.5 * width * W, cells)
@@ -101,7 +103,7 @@ def test_against_dense_quadrature(kind: str, degree: int, tau: float) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("tau", [8.0, 0.1, 1e-5])
 def test_balance_of_energy(kind: str, tau: float) -> None:
-    """Input = change of energy + losses: the meter itself uses no balance, so this is a check."""
+    """Input = change of energy + losses: the work integrals use no balance, so this is a check."""
     for degree in (0, 1, 4):
         case = Case(*subsystem(kind), degree)
         found = case.measure(tau)
@@ -111,7 +113,7 @@ def test_balance_of_energy(kind: str, tau: float) -> None:
 
 
 def test_undamped_modes_among_damped_ones() -> None:
-    """Two oscillators that share a block on paper only: just the damped one loses energy."""
+    """Two oscillators that share a subsystem on paper only: just the damped one loses energy."""
     m, k, c = np.eye(2), np.diag([9.0, 4.0]), np.diag([0.0, 0.4])
     case = Case(m, c, k, 1, dashpot=0.0)
     alone = Case(m, 0.0 * c, k, 1, dashpot=0.0)
@@ -140,7 +142,7 @@ def test_plastic_storey_with_hardly_any_damping(decay: float) -> None:
         propagator = make_propagator(np.eye(2), c, k, np.eye(2))
         work_integrals = WorkIntegrals(propagator, np.diag([decay, 0.0]), np.eye(2), [])
         coefs = np.array([[f, 0.0], [g, 0.0]])
-        q = propagator.enter(np.zeros(2), np.array([v0, 1.0]))
+        q = propagator.state_of(np.zeros(2), np.array([v0, 1.0]))
         found = measure(work_integrals, q, propagator.forcing(coefs, np.zeros(2)), tau, coefs, np.zeros(2))
         assert found.damping == pytest.approx(loss, rel=1e-12, abs=0.0)
         assert found.input == pytest.approx(done, rel=1e-12)
@@ -156,10 +158,10 @@ def test_many_intervals_at_once(kind: str, degree: int) -> None:
     gs = np.stack([polynomial.shift(case.g, i * h) for i in range(n)])
     coefs = np.stack([polynomial.shift(case.coefs, i * h) for i in range(n)])
     qs = case.propagator.march(case.q, gs, np.full(n, h))[:, :-1]
-    several = case.work_integrals.measures(qs, gs, np.full(n, h), coefs, case.constant)
+    several = case.work_integrals.over(qs, gs, np.full(n, h), coefs, case.constant)
     whole = case.measure(n * h)
     lengths = h * np.array([1.0, 0.4, 1.0, 1e-3, 1.0, 0.4])
-    cut = case.work_integrals.measures(qs, gs, lengths, coefs, case.constant)
+    cut = case.work_integrals.over(qs, gs, lengths, coefs, case.constant)
     assert several.damping.shape == several.input.shape == several.laws[0][1].shape == (n,)
     assert several.damping.sum() == pytest.approx(whole.damping, rel=1e-12)
     assert several.input.sum() == pytest.approx(whole.input, rel=1e-12)

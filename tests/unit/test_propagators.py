@@ -1,4 +1,4 @@
-"""flow: exact motion of linear blocks, against the matrix exponential of the system with its forcing."""
+"""Propagators: exact motion of subsystems, against the matrix exponential with their forcing."""
 
 from __future__ import annotations
 
@@ -7,14 +7,11 @@ import pytest
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from pound_solve.integrate.closed_form.propagator import (
-    Mechanism,
-    ModalPropagator,
-    SeriesPropagator,
-    gauss,
-    make_propagator,
-    state_space,
-)
+from pound_solve.integrate.closed_form.decomposition import make_propagator
+from pound_solve.integrate.closed_form.modal_propagator import ModalPropagator
+from pound_solve.integrate.closed_form.propagator import gauss
+from pound_solve.integrate.closed_form.series_propagator import SeriesPropagator
+from pound_solve.integrate.closed_form.state_space import Mechanism, state_space
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
 
@@ -123,7 +120,7 @@ def loads(n: int, degree: int, seed: int = 0) -> tuple[Array, Array, Array, Arra
 
 @pytest.mark.parametrize("degree", [0, 1, 3, 10])
 @pytest.mark.parametrize("kind", KINDS)
-def test_both_flows_against_the_matrix_exponential(kind: str, degree: int) -> None:
+def test_both_propagators_against_the_matrix_exponential(kind: str, degree: int) -> None:
     # measured: 3e-14 at worst
     for seed in range(3):
         m, c, k = subsystem(kind, seed=seed)
@@ -132,11 +129,11 @@ def test_both_flows_against_the_matrix_exponential(kind: str, degree: int) -> No
             make_propagator(m, c, k, inputs),
             SeriesPropagator(state_space(m, c, k), inputs),
         ):
-            q, g = propagator.enter(u, v), propagator.forcing(coefs, constant)
+            q, g = propagator.state_of(u, v), propagator.forcing(coefs, constant)
             found, expected = motion(propagator, q, g, 1.3), reference(m, c, k, p, u, v, 1.3)
             # without stiffness the slowest random decay leaves a condition of 1e5
             assert apart(found, expected) < (1e-11 if kind == "no stiffness" else 5e-13)
-            assert np.allclose(g, propagator.push(p), rtol=1e-13, atol=1e-13)
+            assert np.allclose(g, propagator.load_forcing(p), rtol=1e-13, atol=1e-13)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -144,7 +141,7 @@ def test_enter_and_read_back(kind: str) -> None:
     m, c, k = subsystem(kind)
     inputs, *_, u, v = loads(4, 0)
     for propagator in (make_propagator(m, c, k, inputs), SeriesPropagator(state_space(m, c, k), inputs)):
-        q = propagator.enter(u, v)
+        q = propagator.state_of(u, v)
         assert apart(((propagator.u_q @ q).real, (propagator.v_q @ q).real), (u, v)) < 1e-12
 
 
@@ -156,7 +153,7 @@ def test_state_space_is_the_same_system(kind: str) -> None:
         to, back = np.vstack([space.u_z, space.v_z]), np.hstack([space.z_u, space.z_v])
         assert np.abs(back @ to - np.eye(2 * n)).max() < 1e-13
         force, none = np.linalg.inv(m), np.zeros((n, n))
-        whole = np.subsystem([[none, np.eye(n)], [-force @ k, -force @ c]])
+        whole = np.block([[none, np.eye(n)], [-force @ k, -force @ c]])
         assert np.abs(to @ space.a @ back - whole).max() < 1e-13 * np.abs(whole).max()
         assert np.abs(to @ space.b - np.vstack([none, force])).max() < 1e-13
 
@@ -167,14 +164,14 @@ def test_samples_steps_and_rates_agree_with_single_times(kind: str, degree: int)
     m, c, k = subsystem(kind)
     inputs, coefs, constant, _, u, v = loads(4, degree)
     for propagator in (make_propagator(m, c, k, inputs), SeriesPropagator(state_space(m, c, k), inputs)):
-        q, g = propagator.enter(u, v), propagator.forcing(coefs, constant)
+        q, g = propagator.state_of(u, v), propagator.forcing(coefs, constant)
         times = 0.125 * np.arange(9)
         single = np.stack([propagator.at(q, g, float(t)) for t in times], axis=1)
         scale = np.abs(single).max()
         assert (
             np.abs(propagator.samples(q[:, None], g[None], 0.125, 9)[:, 0] - single).max() < 1e-13 * scale
         )
-        assert np.abs(propagator.path(q, g, times) - single).max() < 1e-13 * scale
+        assert np.abs(propagator.trajectory(q, g, times) - single).max() < 1e-13 * scale
         # successive intervals, the forcing of each about its own start
         gs = np.stack([polynomial.shift(g, float(t)) for t in times[:-1]])
         marched = propagator.march(q, gs, np.full(len(gs), 0.125))
@@ -187,10 +184,10 @@ def test_samples_steps_and_rates_agree_with_single_times(kind: str, degree: int)
             (propagator.at(q, g, 0.5 + s * h) - propagator.at(q, g, 0.5 - s * h)) / (2 * s * h)
             for s in (1, 2)
         ]
-        slope = propagator.onward(np.eye(len(q), dtype=q.dtype)) @ propagator.at(
+        slope = propagator.rate_rows(np.eye(len(q), dtype=q.dtype)) @ propagator.at(
             q, g, 0.5
         ) + polynomial.value(g, 0.5)
-        speed = np.abs(slope).max() * max(1.0, propagator.fastest) ** 4
+        speed = np.abs(slope).max() * max(1.0, propagator.spectral_radius) ** 4
         assert np.abs((4 * d[0] - d[1]) / 3 - slope).max() < 1e-10 * speed
 
 
@@ -201,19 +198,19 @@ def test_bounds_of_the_derivatives(kind: str, degree: int) -> None:
         inputs, coefs, constant, _, u, v = loads(4, degree, seed)
         m, c, k = subsystem(kind, seed=seed)
         propagator = make_propagator(m, c, k, inputs)
-        q, g = propagator.enter(u, v), propagator.forcing(coefs, constant)
-        onward = propagator.onward(np.eye(len(q), dtype=q.dtype))
+        q, g = propagator.state_of(u, v), propagator.forcing(coefs, constant)
+        rate_rows = propagator.rate_rows(np.eye(len(q), dtype=q.dtype))
         lengths = np.array([0.3, 1.1])
-        bends = propagator.bends(np.stack([q, q], axis=1), np.stack([g, g]), lengths)
+        bounds = propagator.derivative_bounds(np.stack([q, q], axis=1), np.stack([g, g]), lengths)
         if isinstance(propagator, SeriesPropagator):
-            assert np.isinf(bends).all()
+            assert np.isinf(bounds).all()
             continue
         for n, length in enumerate(lengths.tolist()):
             for t in np.linspace(0.0, length, 23).tolist():
-                rate = onward @ propagator.at(q, g, t) + polynomial.value(g, t)
-                second = onward @ rate + polynomial.value(g, t, 1)
-                third = onward @ second + polynomial.value(g, t, 2)
-                for found, most in zip((second, third), bends[:, :, n]):
+                rate = rate_rows @ propagator.at(q, g, t) + polynomial.value(g, t)
+                second = rate_rows @ rate + polynomial.value(g, t, 1)
+                third = rate_rows @ second + polynomial.value(g, t, 2)
+                for found, most in zip((second, third), bounds[:, :, n]):
                     assert (np.abs(found) <= most * (1 + 1e-9) + 1e-9 * np.abs(found).max()).all()
                     if t == 0.0 and degree == 1 and kind == "damped":  # no larger than it need be
                         assert np.allclose(np.abs(found), most, rtol=1e-9)
@@ -226,11 +223,11 @@ def test_integral_of_the_motion(kind: str, degree: int) -> None:
     inputs, coefs, constant, _, u, v = loads(4, degree)
     x, w = np.polynomial.legendre.leggauss(20)
     for propagator in (make_propagator(m, c, k, inputs), SeriesPropagator(state_space(m, c, k), inputs)):
-        q, g = propagator.enter(u, v), propagator.forcing(coefs, constant)
-        cells = int(np.ceil(1.3 * propagator.fastest)) + 1
+        q, g = propagator.state_of(u, v), propagator.forcing(coefs, constant)
+        cells = int(np.ceil(1.3 * propagator.spectral_radius)) + 1
         width = 1.3 / cells
         points = (width * (np.arange(cells)[:, None] + 0.5 + 0.5 * x)).ravel()
-        expected = propagator.path(q, g, points) @ np.tile(0.5 * width * w, cells)
+        expected = propagator.trajectory(q, g, points) @ np.tile(0.5 * width * w, cells)
         assert np.abs(propagator.integral(q, g, 1.3) - expected).max() < 1e-12 * np.abs(expected).max()
 
 
@@ -244,7 +241,7 @@ def test_critically_damped_closed_form() -> None:
     # u = (u0 + (v0 + w u0) t) exp(-w t) with w = 3
     propagator = make_propagator(np.eye(1), np.array([[6.0]]), np.array([[9.0]]), np.eye(1))
     assert isinstance(propagator, SeriesPropagator)
-    u, v = motion(propagator, propagator.enter(np.array([0.4]), np.array([-2.0])), np.zeros((1, 2)), 0.7)
+    u, v = motion(propagator, propagator.state_of(np.array([0.4]), np.array([-2.0])), np.zeros((1, 2)), 0.7)
     fall, b = np.exp(-2.1), -2.0 + 3.0 * 0.4
     assert u[0] == pytest.approx((0.4 + b * 0.7) * fall, rel=1e-13)
     assert v[0] == pytest.approx((b - 3.0 * (0.4 + b * 0.7)) * fall, rel=1e-13)
@@ -259,9 +256,11 @@ def test_nearly_critical_damping(off: float, side: int) -> None:
     c = np.array([2.0 * xi * 3.0, 0.2, 0.1])
     p = np.array([[0.3, -0.2, 0.1], [1.0, 0.5, -0.4]])
     u, v = np.array([0.4, 1.0, -0.3]), np.array([-2.0, 0.5, 0.1])
-    stationary = (np.eye(3), turn @ np.diag(c) @ turn.T, turn @ np.diag(k) @ turn.T)
-    propagator = make_propagator(*stationary, np.eye(3))
-    found = motion(propagator, propagator.enter(turn @ u, turn @ v), propagator.push(p @ turn.T), 0.7)
+    rotated = (np.eye(3), turn @ np.diag(c) @ turn.T, turn @ np.diag(k) @ turn.T)
+    propagator = make_propagator(*rotated, np.eye(3))
+    found = motion(
+        propagator, propagator.state_of(turn @ u, turn @ v), propagator.load_forcing(p @ turn.T), 0.7
+    )
     expected = reference(np.eye(3), np.diag(c), np.diag(k), p, u, v, 0.7)
     # the solution itself is smooth in the damping: the exponential has no trouble here
     assert apart(found, (turn @ expected[0], turn @ expected[1])) < 1e-10
@@ -280,8 +279,8 @@ def test_light_mass_beside_heavy_ones(ratio: float) -> None:
     propagator = make_propagator(m, np.zeros((3, 3)), k, np.eye(3))
     u, _ = motion(
         propagator,
-        propagator.enter(np.array([1.0, 0.0, -1.0]), np.zeros(3)),
-        np.zeros((1, len(propagator.lam))),
+        propagator.state_of(np.array([1.0, 0.0, -1.0]), np.zeros(3)),
+        np.zeros((1, len(propagator.eigenvalues))),
         40.0,
     )
     expected = np.array([1.0, 0.0, -1.0]) * np.cos(np.sqrt(2.0) * 40.0)
@@ -291,7 +290,10 @@ def test_light_mass_beside_heavy_ones(ratio: float) -> None:
     w = 2.0 / ((1.0 + ratio) + np.sqrt(1.0 + ratio * ratio))
     shape = np.array([1.0, 2.0 - w, 1.0])
     u, _ = motion(
-        propagator, propagator.enter(shape, np.zeros(3)), np.zeros((1, len(propagator.lam))), 40.0
+        propagator,
+        propagator.state_of(shape, np.zeros(3)),
+        np.zeros((1, len(propagator.eigenvalues))),
+        40.0,
     )
     assert np.abs(u - shape * np.cos(np.sqrt(w) * 40.0)).max() < 1e-11
 
@@ -313,16 +315,16 @@ def test_masses_that_nothing_holds_beside_bodies_that_move_as_one(loose: int, pa
     c = 0.5 * m + 1e-3 * k
     propagator = make_propagator(m, c, k, np.eye(n))
     assert isinstance(propagator, ModalPropagator)
-    assert np.sum(np.abs(propagator.lam) < 1e-12 * propagator.fastest) == loose + pairs
+    assert np.sum(np.abs(propagator.eigenvalues) < 1e-12 * propagator.spectral_radius) == loose + pairs
     assert (
-        np.abs(propagator.onward(propagator.u_q) - propagator.v_q).max()
-        < 1e-12 * propagator.fastest * np.abs(propagator.u_q).max()
+        np.abs(propagator.rate_rows(propagator.u_q) - propagator.v_q).max()
+        < 1e-12 * propagator.spectral_radius * np.abs(propagator.u_q).max()
     )
     assert np.abs(propagator.u_q).max() < 1.0
     v = np.linspace(1.0, 2.0, n)
-    q = propagator.enter(np.zeros(n), v)
-    found = motion(propagator, q, np.zeros((1, len(propagator.lam))), 0.5)
-    whole = np.subsystem([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(m, k), -np.linalg.solve(m, c)]])
+    q = propagator.state_of(np.zeros(n), v)
+    found = motion(propagator, q, np.zeros((1, len(propagator.eigenvalues))), 0.5)
+    whole = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(m, k), -np.linalg.solve(m, c)]])
     expected = (expm(0.5 * whole) @ np.r_[np.zeros(n), v]).reshape(2, n)
     assert apart(found, (expected[0], expected[1])) < 1e-11
 
@@ -335,7 +337,7 @@ def test_hardly_damped_rigid_body(decay: float) -> None:
     # v = t - decay t^2 / 2 + ..., u = t^2 / 2 - decay t^3 / 6 + ...: series of (1 - exp(-decay t)) / decay
     v = sum((-decay) ** j * t ** (j + 1) / float(np.prod(np.arange(1, j + 2))) for j in range(12))
     u = sum((-decay) ** j * t ** (j + 2) / float(np.prod(np.arange(1, j + 3))) for j in range(12))
-    found = motion(propagator, propagator.enter(zero, zero), propagator.push(np.ones((1, 1))), t)
+    found = motion(propagator, propagator.state_of(zero, zero), propagator.load_forcing(np.ones((1, 1))), t)
     assert found[0][0] == pytest.approx(u, rel=1e-9)
     assert found[1][0] == pytest.approx(v, rel=1e-12)
 
@@ -344,14 +346,14 @@ def test_hardly_damped_rigid_body(decay: float) -> None:
 
 
 def massless(
-    heavy: int, damped: int, static: int, units: float, seed: int
+    with_mass: int, damped: int, static: int, units: float, seed: int
 ) -> tuple[Array, Array, Array, NDArray[np.intp]]:
-    """Random block with massless DOFs, with and without dashpots, in mixed order, and that order."""
-    rng = np.random.default_rng([seed, heavy, damped, static])
-    n = heavy + damped + static
+    """Random subsystem with massless DOFs, with and without dashpots, in mixed order, and that order."""
+    rng = np.random.default_rng([seed, with_mass, damped, static])
+    n = with_mass + damped + static
     x, y = rng.normal(size=(n, n)), np.zeros((n, n))
-    y[: heavy + damped] = rng.normal(size=(heavy + damped, n))
-    m = np.diag(np.r_[rng.uniform(0.5, 2.0, heavy), np.zeros(damped + static)])
+    y[: with_mass + damped] = rng.normal(size=(with_mass + damped, n))
+    m = np.diag(np.r_[rng.uniform(0.5, 2.0, with_mass), np.zeros(damped + static)])
     order = rng.permutation(n)
     k = x @ x.T + 0.3 * np.eye(n)
     m, c, k = (units * a[np.ix_(order, order)] for a in (m, 0.3 * y @ y.T, k))
@@ -367,12 +369,12 @@ def eliminated(
     v: Array,
     t: float,
     order: NDArray[np.intp],
-    heavy: int,
+    with_mass: int,
     damped: int,
 ) -> tuple[Array, Array]:
     """The same motion with the massless DOFs eliminated by hand."""
     where = np.argsort(order)
-    h, d, s = where[:heavy], where[heavy : heavy + damped], where[heavy + damped :]
+    h, d, s = where[:with_mass], where[with_mass : with_mass + damped], where[with_mass + damped :]
     x = np.r_[h, d]
     flex = np.linalg.inv(k[np.ix_(s, s)])
     carry = flex @ k[np.ix_(s, x)]  # u_s = flex p_s - carry u_x
@@ -416,7 +418,7 @@ def test_massless_dofs(damped: int, static: int, units: float) -> None:
         propagator = make_propagator(m, c, k, inputs)
         assert isinstance(propagator, ModalPropagator)
         assert propagator.u_p is not None
-        q, g = propagator.enter(u, v), propagator.forcing(units * coefs, units * constant)
+        q, g = propagator.state_of(u, v), propagator.forcing(units * coefs, units * constant)
         at = propagator.at(q, g, 1.3)
         found = (
             (propagator.u_q @ at).real + propagator.u_p @ polynomial.value(p, 1.3),
@@ -439,7 +441,7 @@ def test_massless_dofs_keep_continuity_of_position_only() -> None:
     m, c, k, order = massless(3, 1, 1, 1.0, 0)
     propagator = make_propagator(m, c, k, np.eye(5))
     _, _, _, p, u, v = loads(5, 0)
-    q = propagator.enter(u, v)
+    q = propagator.state_of(u, v)
     kept_u, kept_v = np.isin(order, [0, 1, 2, 3]), np.isin(order, [0, 1, 2])
     found_u = (propagator.u_q @ q).real + propagator.u_p @ p[0]
     found_v = (propagator.v_q @ q).real + propagator.v_p @ p[0]

@@ -1,0 +1,117 @@
+"""What the methods with a closed form between events share: the laws on their branches, the response
+tracker, and when a run stops.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+
+from pound_solve.integrate.events.functions import RowSet
+from pound_solve.integrate.protocol import (
+    CHATTER,
+    RUNAWAY,
+    MonitoredOutputs,
+    Outcome,
+    Recorder,
+    ResponseTracker,
+    Start,
+    Stop,
+    energy_at_start,
+    light,
+)
+from pound_solve.laws.automaton import Branch
+from pound_solve.numerics.types import Array
+from pound_solve.structure.reduction import ReducedSystem
+
+CHANGES, CHANGES_PER_LAW = 50, 4  #: of branch at one instant, at most, and more for each law
+GROWTH = 10.0  #: kinetic energy over the energy put in above which the motion grows without bound
+
+
+class EventDrivenRun(ABC):
+    """A run from event to event; the base of EXACT and LAPLACE.
+
+    Attributes
+    ----------
+    t, u, v
+        Present time, displacement and velocity.
+    states : list of State
+    branches : list of Branch
+        Of all laws at the present time.
+    rows : RowSet
+        Deformations of the laws, then the drifts.
+    largest : ndarray, shape (2, n_rows)
+        Largest magnitudes of the rows and their rates so far: the scale of the event functions.
+    initial_energy : float
+        Kinetic and recoverable energy at the start.
+    """
+
+    def __init__(
+        self, system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: Recorder
+    ) -> None:
+        self.system, self.recorder, self.times = system, recorder, start.times
+        self.laws = system.structure.laws
+        self.states = list(start.states)
+        self.branches: list[Branch] = [s.branch(x) for s, x in zip(self.laws, self.states)]
+        self.rows = RowSet(
+            np.vstack([system.law_rows, monitored.rows]),
+            np.vstack([system.law_inputs, monitored.input_rows]),
+            np.concatenate([np.zeros(len(self.laws)), monitored.constants]),
+        )
+        self.largest = np.zeros((2, len(self.rows.rows)))
+        self.tracker = ResponseTracker(system, len(monitored.names))
+        self.t, self.u, self.v = float(start.times[0]), start.u.copy(), start.v.copy()
+        self.initial_energy = energy_at_start(system, start)
+        self.events = self.changes_at_instant = 0
+        self._massless_laws = light(system)
+
+    def transition(self, law: int, event_index: int, d: float, v: float) -> None:
+        """Let a law leave its branch at deformation `d` and rate `v`."""
+        before = self.branches[law].name
+        self.states[law] = self.laws[law].law.transition(self.states[law], event_index, d, v)
+        after = self.branches[law] = self.laws[law].branch(self.states[law])
+        force = self.laws[law].force(self.states[law], d, 0.0 if self._massless_laws[law] else v)
+        self.tracker.switched(law, before, after.name, self.t, d, v, force)
+        self.tracker.peaks.force[law].take(force, self.t)
+
+    def count_change(self, elapsed: float, rounding: float) -> None:
+        """Count changes of branch at one instant: an event after a share `rounding` of the time is one."""
+        same = elapsed <= rounding * max(1.0, self.t)
+        self.changes_at_instant = self.changes_at_instant + 1 if same else 0
+
+    def stop_chatter(self, law: int, remedy: str) -> None:
+        """Stop where too many changes of branch fall on one instant."""
+        if self.changes_at_instant > CHANGES + CHANGES_PER_LAW * len(self.laws):
+            s, count = self.laws[law], self.changes_at_instant
+            why = CHATTER.format(count, s.element, s.rule, self.branches[law].name, remedy)
+            raise self.stop("A503", why)
+
+    def stop_growth(self, v: Array, gross_input: float, hint: str = "") -> None:
+        """Stop where the kinetic energy at velocity `v` is far above the energy put in."""
+        kinetic = 0.5 * float(v @ self.system.mass @ v)
+        if not kinetic <= GROWTH * (self.initial_energy + gross_input) + 1e-300:
+            raise self.stop("A504", RUNAWAY.format(kinetic) + hint)
+
+    def count_magnitudes(self, value: Array, rate: Array) -> None:
+        """Count values and rates of the first rows, shape (n_rows, n_times), into the largest."""
+        n = len(value)
+        both = np.abs([value, rate]).max(axis=2)
+        self.largest[:, :n] = np.maximum(self.largest[:, :n], both)
+
+    def count_collision_peaks(self) -> None:
+        """Count the peak forces of the present collisions into those of their contacts."""
+        for law, collision in self.tracker.open.items():
+            self.tracker.peaks.force[law].take(collision.peak, collision.t_peak)
+
+    @abstractmethod
+    def run(self) -> Outcome:
+        """Integrate to the last output time."""
+
+    @abstractmethod
+    def outcome(self) -> Outcome:
+        """Return the results so far."""
+
+    def stop(self, code: str, why: str) -> Stop:
+        """Return the exception that ends the run here."""
+        return Stop(code, self.t, why, self.outcome())

@@ -1,0 +1,103 @@
+r"""Search of EXACT for events and peaks: coarse cells that the motion sets, fine steps where needed.
+
+The event functions of all laws are sampled with their slopes in cells whose length follows from a bound of
+their curvature,
+
+.. math:: |\ddot y(t)| \le \sum_i |r_i|\,|\ddot q_i(0)|
+
+for a functional :math:`y = \mathrm{Re} \sum r_i q_i`, modes that do not grow and excitation along a
+straight line, so that most cells cannot hold an event.  The others are sampled on a grid that resolves the
+fastest mode.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pound_solve.integrate.closed_form.dense_output import DenseOutput
+from pound_solve.integrate.closed_form.grid_samples import GridSamples
+from pound_solve.integrate.events import grid
+from pound_solve.integrate.events.functions import EventFunctions, RowFunctions
+from pound_solve.integrate.protocol import STILL, Peak
+from pound_solve.numerics.types import Array, Flags
+
+MAX_STEPS = 64  #: of the fine grid in one cell
+SLACK = 0.05  #: share of an event function's scale that its curvature may contribute within a cell
+SURE = 1e3  #: times the tolerance of event functions: a value above is sure to count as an event
+
+
+class Search:
+    """Event functions and monitored functions of a run on its present branches.
+
+    Parameters
+    ----------
+    events : EventFunctions
+    monitored : RowFunctions
+    peaks : sequence of Peak
+        Of the monitored functions.
+    """
+
+    def __init__(self, events: EventFunctions, monitored: RowFunctions, peaks: Sequence[Peak]) -> None:
+        self.events, self.monitored, self.peaks = events, monitored, peaks
+        self.second_rates = events.by_rate or monitored.by_rate
+
+    def samples(self, dense: DenseOutput, h: float, largest: Array) -> tuple[GridSamples, GridSamples]:
+        """Sample a window in coarse cells, and at steps of `h` those that may hold an event or a peak."""
+        bounds = dense.derivative_bounds()
+        coarse = GridSamples.of_window(dense, self._cell_length(bounds, h, largest), self.second_rates)
+        if coarse.h <= h or not (np.isfinite(coarse.value).all() and np.isfinite(coarse.rate).all()):
+            return coarse, coarse
+        return coarse, coarse.refined(self._cells(coarse, bounds, largest), h, self.second_rates)
+
+    def _cell_length(self, bounds: Array, h: float, largest: Array) -> float:
+        """Length of the coarse cells: a multiple of `h`, over which little curvature is possible."""
+        if self.events.keys:
+            curvature, scale = self.events.curvature_bounds(bounds), self.events.scale(largest)
+        else:  # by their range so far
+            curvature = self.monitored.curvature_bounds(bounds)
+            scale = np.array([max(x.high - x.low, 0.0) for x in self.peaks])
+        most = curvature.max(axis=1, initial=0.0)
+        chosen = (scale > 0.0) & (most > 0.0)
+        if not np.isfinite(most).all():
+            return h
+        if not chosen.any():
+            return h * MAX_STEPS
+        cell = float(np.sqrt(8.0 * SLACK * (scale[chosen] / most[chosen]).min()))
+        # powers of four: few lengths, so that tables recur
+        steps = 4.0 ** np.floor(np.log2(max(cell / h, 1.0)) / 2.0)
+        return h * float(min(steps, MAX_STEPS))
+
+    def _cells(self, coarse: GridSamples, bounds: Array, largest: Array) -> Flags:
+        """Which cells may hold an event or a peak, shape (n_segments, count)."""
+        out = np.zeros((len(coarse.span), coarse.t.shape[1] - 1), bool)
+        last = out.size
+        if self.events.keys:
+            g, slope = self.events.sampled(coarse)
+            scale = np.maximum(self.events.scale(largest), np.abs(g).max(axis=(1, 2)))
+            least = SURE * STILL * scale[:, None, None]
+            g[:, 0, 0] = np.minimum(g[:, 0, 0], 0.0)
+            curvature = self.events.curvature_bounds(bounds)
+            out |= grid.may_rise(g, slope, curvature, coarse.widths).any(axis=0)
+            sure = ((g[..., 1:] > least) & (g[..., :-1] <= 0.0)).any(axis=0).ravel()
+            if sure.any():
+                last = int(sure.argmax())
+        if self.peaks:
+            value, slope = self.monitored.sampled(coarse)
+            curvature = self.monitored.curvature_bounds(bounds)
+            out |= grid.may_peak(value, slope, curvature, coarse.widths, self.peaks).any(axis=0)
+        out.ravel()[last + 1 :] = False  # the run goes no further
+        return out
+
+    def count_peaks(self, coarse: GridSamples, fine: GridSamples, t0: float, end: float) -> None:
+        """Count the monitored functions into their peaks up to the local time `end` of a window from `t0`
+        on, where the fine samples are cut.
+        """
+        if not self.peaks:
+            return
+        seen = coarse.t <= end
+        grid.count_samples(self.peaks, t0 + coarse.t[seen], self.monitored.sampled(coarse)[0][:, seen])
+        if fine.t.size:
+            evaluate = self.monitored.evaluator(fine)
+            grid.count_extremes(self.peaks, t0, fine.t, *self.monitored.sampled(fine), evaluate)

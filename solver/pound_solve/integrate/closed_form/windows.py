@@ -1,0 +1,86 @@
+"""Windows of EXACT: how many intervals of the excitation one dense output covers, and the step of the grid
+that resolves its fastest mode.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pound_solve.numerics.types import Array
+
+MAX_POINTS = 4096  #: points of the fine grid in one window
+MAX_INTERVALS = 128  #: intervals of one window
+INTERVALS_AFTER_EVENT = 8  #: of the first window after an event
+GRID = 1.0  #: fine step times the fastest eigenvalue
+
+
+class Window(NamedTuple):
+    """Intervals of the next window.
+
+    Attributes
+    ----------
+    lengths, starts : ndarray, shape (n,)
+        All lengths but the first are equal [T].
+    h : float
+        Step of the fine grid [T], a power of two.
+    whole : bool
+        Whether the intervals end at goals: an interval of too many steps is integrated in pieces.
+    """
+
+    lengths: Array
+    starts: Array
+    h: float
+    whole: bool
+
+
+class Windows:
+    """Chooses the windows of a run.
+
+    Parameters
+    ----------
+    refinement : int
+        Halvings of the fine grid.
+    """
+
+    def __init__(self, refinement: int) -> None:
+        self._grid = GRID * 2.0**-refinement
+        self._usual = 0.0  # length of most intervals
+        self.restart()
+
+    def restart(self) -> None:
+        """Begin with few intervals again, after an event."""
+        self._intervals = INTERVALS_AFTER_EVENT
+
+    def widen(self) -> None:
+        """Take more intervals next, as there was no event."""
+        self._intervals = min(2 * self._intervals, MAX_INTERVALS)
+
+    def next(self, t: float, goals: Array, spectral_radius: float) -> Window:
+        """Return the window from time `t` towards the next `goals`."""
+        ends = goals[: self._intervals + 1]
+        own = np.diff(np.append(t, ends))
+        # intervals of equal length share their exponentials, whatever the rounding of the times
+        close = 1e-11 * own + 4.0 * np.spacing(ends)
+        if abs(own[-1] - self._usual) > close[-1]:
+            self._usual = float(f"{own[-1]:.12e}")
+        own = np.where(np.abs(own - self._usual) <= close, self._usual, own)
+        usual = own[min(1, len(own) - 1)]
+        longest = float(max(own[0], usual))
+        h = self._step(longest, spectral_radius)
+        per_interval = int(np.ceil(longest / h * (1 - 1e-12)))
+        if per_interval > MAX_POINTS:
+            length = float(min(own[0], MAX_POINTS * h))
+            return Window(np.array([length]), np.array([t]), h, bool(length == own[0]))
+        most = min(len(own), MAX_POINTS // per_interval)
+        other = np.flatnonzero(own[1:most] != usual)
+        count = int(other[0]) + 1 if len(other) else most
+        return Window(own[:count], np.append(t, ends[: count - 1]), h, True)
+
+    def _step(self, length: float, spectral_radius: float) -> float:
+        """Step of the fine grid in intervals of a length: a power of two, so that tables recur."""
+        h = 2.0 ** np.ceil(np.log2(length / 8))
+        if spectral_radius <= 0.0:
+            return float(h)
+        return float(min(h, 2.0 ** np.floor(np.log2(self._grid / spectral_radius))))

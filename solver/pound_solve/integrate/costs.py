@@ -1,0 +1,86 @@
+"""Counted costs of the methods, by which AUTO chooses: in seconds of a nominal machine, never measured, so
+that a choice by them repeats.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.structure.reduction import ReducedSystem
+
+WINDOW = 1.3e-3  #: of EXACT: a window of dense output
+GRID_POINT = 2e-8  #: each point of its search grids, times the unknowns
+ENVELOPE_POINT = 5e-8  #: each of its points for the envelopes, times their unknowns
+DECOMPOSITION = 8e-4  #: a modal decomposition
+PRODUCTS = 1.5e-6  #: matrix products of a decomposition, over the square of its unknowns
+MODES = 8e-9  #: modes of a decomposition, over the cube of its unknowns
+STEP, STEP_UNKNOWN = 3e-7, 2.5e-8  #: a compiled step of NEWMARK, and each of its unknowns, twice for a law
+EVENT_STEPS = 10  #: steps that a located event costs as much as
+INTERPRETED = 100  #: cost of an interpreted step over that of a compiled one
+RADIAN_STEPS = 5  #: steps of NEWMARK that follow the fastest mode through a radian
+
+
+def of_decomposition(n: int) -> float:
+    """Return the cost of the modal decomposition of `n` unknowns."""
+    return DECOMPOSITION + PRODUCTS * n**2 + MODES * n**3
+
+
+def of_step(system: ReducedSystem) -> float:
+    """Return the cost of a compiled step of NEWMARK."""
+    return STEP + STEP_UNKNOWN * (system.size + 2 * len(system.structure.laws))
+
+
+class CostlyError(Exception):
+    """A run exceeds its budget; `cost` brought it to time `t`."""
+
+    def __init__(self, cost: float, t: float) -> None:
+        super().__init__(f"more than {cost:g}, at {t:g}")
+        self.cost, self.t = cost, t
+
+
+class Budget:
+    """What a run of EXACT may cost.
+
+    Parameters
+    ----------
+    begin, end : float
+        Times of the run [T].
+    most : float
+        Cost of the whole run at the present rate, at most.
+    trial : float or None
+        Cost after which that is checked first (None: `most`).
+    per_radian : float
+        Addition to `most` for each radian of the fastest mode.
+    decompositions : float
+        Modal decompositions, at most.
+    """
+
+    def __init__(
+        self,
+        begin: float,
+        end: float,
+        most: float = np.inf,
+        trial: float | None = None,
+        per_radian: float = 0.0,
+        decompositions: float = np.inf,
+    ) -> None:
+        self.begin, self.length, self.most, self.per_radian = begin, end - begin, most, per_radian
+        self.trial = most if trial is None else trial
+        self.decompositions = decompositions
+        self.cost = 0.0
+
+    def charge(self, cost: float, t: float, spectral_radius: float, decompositions: int) -> None:
+        """Add a cost at time `t`.
+
+        Raises
+        ------
+        CostlyError
+            The budget is exceeded, or will be at the present rate.
+        """
+        self.cost += cost
+        if decompositions > self.decompositions:
+            raise CostlyError(self.cost, t)
+        if self.cost > self.trial:
+            whole = self.cost * self.length / max(t - self.begin, 1e-300)
+            if whole > self.most + self.per_radian * spectral_radius * self.length:
+                raise CostlyError(self.cost, t)

@@ -1,0 +1,28 @@
+"""What every locator of events returns.
+
+A law leaves its branch when one of its event functions ``a d + b v + c`` of deformation and rate rises
+through zero.  Three locators find the earliest such instant: on a grid of samples with bounds (`grid`, for
+methods with a closed form), within a step (`within_step`, for methods with steps), and by isolation of
+polynomial roots (`polynomial_roots`, for power series).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class LocatedEvent(NamedTuple):
+    """The instant at which an event function of a law rises through zero.
+
+    Attributes
+    ----------
+    law : int
+    event_index : int
+        Which event function of the law's present branch.
+    time : float
+        Since the start of the window or step that was searched [T].
+    """
+
+    law: int
+    event_index: int
+    time: float
