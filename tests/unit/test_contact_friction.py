@@ -301,7 +301,7 @@ def test_without_mu_there_is_none():
     assert [s.component for s in structure_of(CARD.format("")).laws] == ["contact"]
     contact, rubs = structure_of(CARD.format("MU=0.5 KT=3")).laws
     assert contact.facts["note"] == "elastic; friction 0.5, 0.5 while it slips"
-    assert (rubs.normal, rubs.dofs, rubs.row) == ("contact", ((1, 1),), (1.0,))
+    assert (rubs.normal_component, rubs.dofs, rubs.row) == ("contact", ((1, 1),), (1.0,))
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ from pound_solve.analyses import modal
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Rule,
     drive,
@@ -708,7 +709,7 @@ def bend(k, d):
 
 
 CURVED = Rule(
-    ("loading", "unloading"),
+    BranchKind.ELASTIC.named("loading", "unloading"),
     lambda p: (0, internal_variables()),
     lambda p, at, m: linear(p[0], 0.0, REVERSAL_DOWN if at == 0 else REVERSAL_UP),
     lambda p, at, m, way, d, v: (1 - at, internal_variables(d, bend(p[0], d))),

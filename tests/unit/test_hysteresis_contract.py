@@ -23,6 +23,7 @@ from pound_solve.laws import functions
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Numbers,
     Rule,
@@ -330,7 +331,7 @@ def forgetful() -> Callable[[Numbers, int, Numbers], Numbers]:
     [
         (contract.trying_changes_nothing, {"branch": forgetful()}, "asking changed the law"),
         (contract.force_is_continuous, {"branch": jumps}, "the force jumps"),
-        (contract.force_is_continuous, {"leave": elsewhere}, "the force jumps"),
+        (contract.force_is_continuous, {"transition": elsewhere}, "the force jumps"),
         (contract.branches_begin_clear_of_their_exits, {"branch": backward}, "an exit is above zero"),
         (contract.tangent_is_the_slope_of_the_force, {"curve": too_stiff}, "the tangent"),
         (contract.work_is_the_area_below_the_force, {"curve": idle}, "the work"),
@@ -358,7 +359,12 @@ def test_the_contract_tells_a_rule_that_gives_energy() -> None:
         f = m[0] + (1.0 if at == 0 else 2.0) * p[0] * (d - m[1])
         return 1 - at, internal_variables(f, d)
 
-    law = Law(Rule(("up", "down"), lambda p: (0, internal_variables()), branch, transition), (K,))
+    law = Law(
+        Rule(
+            BranchKind.ELASTIC.named("up", "down"), lambda p: (0, internal_variables()), branch, transition
+        ),
+        (K,),
+    )
     with pytest.raises(AssertionError, match="gives energy"):
         contract.closed_loops_dissipate(law, REACH)
 
@@ -367,6 +373,14 @@ def test_a_rule_that_cycles_is_told() -> None:
     def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
         return linear(p[0], 0.0, above(0.5 * REACH))
 
-    law = Law(Rule(("one", "other"), bilinear.start, branch, lambda p, at, m, w, d, v: (1 - at, m)), (K,))
+    law = Law(
+        Rule(
+            BranchKind.ELASTIC.named("one", "other"),
+            bilinear.start,
+            branch,
+            lambda p, at, m, w, d, v: (1 - at, m),
+        ),
+        (K,),
+    )
     with pytest.raises(AssertionError, match="without moving"):
         Walk(law).move(REACH)

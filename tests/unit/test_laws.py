@@ -24,6 +24,7 @@ from pound_solve.laws.automaton import (
     NEVER,
     PARAMETERS,
     REVERSAL_DOWN,
+    BranchKind,
     EventFunction,
     Law,
     NoProgressError,
@@ -67,7 +68,9 @@ def stair_leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -
     return STAIR, internal_variables(d - p[1] / p[0])
 
 
-STEPS = Law(Rule(("stair", "flat"), stair_start, stair_branch, stair_leave), (100.0, 5.0))
+STEPS = Law(
+    Rule(BranchKind.ELASTIC.named("stair", "flat"), stair_start, stair_branch, stair_leave), (100.0, 5.0)
+)
 
 
 def test_numbers_have_fixed_lengths() -> None:
@@ -137,7 +140,7 @@ def test_a_law_that_never_settles_is_stopped() -> None:
     def stay(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
         return at, m
 
-    law = Law(Rule(("here",), stair_start, restless, stay), (1.0,))
+    law = Law(Rule(BranchKind.ELASTIC.named("here"), stair_start, restless, stay), (1.0,))
     with pytest.raises(NoProgressError):
         drive(law, law.start(), 0.0, 1.0)
 

@@ -216,9 +216,9 @@ class ExactTrial:
 def figures(system: ReducedSystem, peaks: Peaks, replay: Replay) -> tuple[Array, Array]:
     """Peaks that are compared between runs, and what their differences are measured against."""
     laws = system.structure.laws
-    contact = [i for i, s in enumerate(laws) if s.is_contact]
+    contact = [i for i, s in enumerate(laws) if s.role.collides]
     force = np.array([max((c.peak for c in peaks.collisions if c.law == i), default=0.0) for i in contact])
-    springs = [e for e, s in zip(peaks.deformation, laws) if not s.is_contact]
+    springs = [e for e, s in zip(peaks.deformation, laws) if not s.role.collides]
     swings: list[Extreme] = peaks.monitored or springs
     values = [(e.high, e.low) for e in swings]
     size = np.repeat([max(abs(e.high), abs(e.low)) for e in swings], 2)

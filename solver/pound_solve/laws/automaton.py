@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import NamedTuple
 
 PARAMETERS, MEMORY, EVENTS = 20, 16, 3  #: numbers in a law's parameters and memory, exits of a branch
@@ -75,14 +76,44 @@ def on_spring(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.5 * f * f / p[0]
 
 
+class BranchKind(IntEnum):
+    """What a branch means to those who count yields and collisions."""
+
+    ELASTIC = 0  #: below yield: loading, unloading or reloading; every branch of a smooth rule
+    YIELDING = 1  #: on the yield line: to enter it from another kind is a yield event
+    SLIPPING = 2  #: friction at its limit
+    VISCOUS = 3  #: the rate alone makes the force
+    OPEN = 4  #: without force: a contact that is open, a spring that is slack or has failed
+    PRESSED = 5  #: a contact that is closed: to enter it is a collision
+    RELEASED = 6  #: a contact without force and with overlap left: pressed again, the collision goes on
+    HELD = 7  #: a rigid contact that is closed: the deformation stays, by whatever force that takes
+
+    @property
+    def closed(self) -> bool:
+        """Whether a contact on such a branch is closed."""
+        return self in (BranchKind.PRESSED, BranchKind.HELD)
+
+    def named(self, *names: str) -> tuple[BranchType, ...]:
+        """Return branches of this kind."""
+        return tuple(BranchType(name, self) for name in names)
+
+
+class BranchType(NamedTuple):
+    """A branch of a rule: its name, as reports show it, and its kind."""
+
+    name: str
+    kind: BranchKind
+
+
 class Rule(NamedTuple):
     """A kind of law as functions of its parameters ``p``, present branch ``at`` and memory ``m``.
 
     Attributes
     ----------
-    branches : tuple of str
-        Their names; ``at`` counts them from 0.  Names that begin with "yielding" count as yield,
-        those of a contact that begin with "pressed" as touch.
+    branches : tuple of BranchType
+        Names and kinds; ``at`` counts them from 0.  A rigid contact has one branch of the kind HELD, on
+        which the deformation stays at ``p[2]``; the exits of that branch are functions of the force instead
+        of the deformation, and its entry is an impact with the restitution ``p[1]``.
     start : callable
         ``start(p) -> (at, m)``: virgin, at zero deformation.
     branch : callable
@@ -96,13 +127,9 @@ class Rule(NamedTuple):
     curve : callable or None
         ``curve(p, at, m, d0, d, v) -> (force, d force/d d, d force/d v, work since d0)`` where branches are
         not linear; `d0` is the deformation at their entry.
-    held : int
-        Branch of a rigid contact on which the deformation stays at ``p[2]``, by whatever force that takes
-        (-1: none has it).  The exits of that branch are functions of this force instead of the deformation;
-        its entry is an impact with the restitution ``p[1]``.
     """
 
-    branches: tuple[str, ...]
+    branches: tuple[BranchType, ...]
     start: Callable[[Numbers], tuple[int, Numbers]]
     branch: Callable[[Numbers, int, Numbers], Numbers]
     transition: Callable[[Numbers, int, Numbers, int, float, float], tuple[int, Numbers]]
@@ -110,7 +137,11 @@ class Rule(NamedTuple):
     curve: (
         Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]] | None
     ) = None
-    held: int = -1
+
+    @property
+    def rigid(self) -> bool:
+        """Whether it is a rigid contact."""
+        return any(b.kind is BranchKind.HELD for b in self.branches)
 
 
 class EventFunction(NamedTuple):
@@ -125,11 +156,16 @@ class Branch(NamedTuple):
     """One linear piece: ``f = stiffness * d + damping * v + force0`` until an exit is reached."""
 
     name: str
+    kind: BranchKind
     stiffness: float
     damping: float
     force0: float
     exits: tuple[EventFunction, ...]
-    held: bool = False  #: by a rigid contact, see `Rule.held`
+
+    @property
+    def held(self) -> bool:
+        """Whether a rigid contact holds the deformation."""
+        return self.kind is BranchKind.HELD
 
     def force(self, d: float, v: float) -> float:
         """Force at deformation `d` and rate `v`."""
@@ -158,7 +194,7 @@ class Law:
     @property
     def rigid(self) -> bool:
         """Whether it is a rigid contact."""
-        return self.rule.held >= 0
+        return self.rule.rigid
 
     def start(self) -> State:
         """Return the virgin state at zero deformation."""
@@ -172,7 +208,7 @@ class Law:
         exits = [EventFunction(*flat[i : i + 3]) for i in range(0, 3 * EVENTS, 3)]
         while exits and exits[-1] == NEVER:
             exits.pop()
-        return Branch(self.rule.branches[state[0]], k, c, f0, tuple(exits), state[0] == self.rule.held)
+        return Branch(*self.rule.branches[state[0]], k, c, f0, tuple(exits))
 
     def force(self, state: State, d: float, v: float = 0.0) -> tuple[float, float, float]:
         """Force at deformation `d` and rate `v`, and its derivatives by them."""

@@ -127,7 +127,7 @@ class Exact:
             )
         self.tracker = ResponseTracker(system, len(monitored.names))
         self.t, self.u, self.v = float(start.times[0]), start.u.copy(), start.v.copy()
-        contact = np.array([s.is_contact for s in self.laws], bool)
+        contact = np.array([s.role.contact_energy for s in self.laws], bool)
         self.deferred = DeferredWork(start.works.copy(), system.constant, contact)
         # what waits for the sink: samples whose works are not known yet, and motions between them
         self.held_back: list[tuple[Any, ...]] = []
@@ -459,7 +459,7 @@ class Exact:
         entry = np.array([found.input, found.damping, 0.0])
         for law, loss in found.laws:
             self.tracker.peaks.dashpot_losses[law] += loss
-            entry[2 if self.laws[law].is_contact else 1] += loss
+            entry[2 if self.laws[law].role.contact_energy else 1] += loss
         self.deferred.put(entry)
 
     def _switch(self, law: int, event_index: int, d: float, v: float) -> None:
@@ -479,11 +479,11 @@ class Exact:
         self._form()
 
     def _leave(self, law: int, event_index: int, d: float, v: float) -> None:
-        before = self.branches[law].name
+        before = self.branches[law].kind
         self.states[law] = self.laws[law].law.transition(self.states[law], event_index, d, v)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
         force = self.laws[law].force(self.states[law], d, 0.0 if self.light[law] else v)
-        self.tracker.switched(law, before, after.name, self.t, d, v, force)
+        self.tracker.switched(law, before, after.kind, self.t, d, v, force)
         self.tracker.peaks.force[law].take(force, self.t)
 
     def _inputs(self) -> Array:

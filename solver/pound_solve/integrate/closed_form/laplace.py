@@ -316,12 +316,12 @@ class Laplace:
         return None if found is None else (found[0], *pairs[found[1]])
 
     def _switch(self, law: int, exit_index: int, d: float, v: float) -> None:
-        before = self.branches[law].name
+        before = self.branches[law].kind
         self.states[law] = self.laws[law].law.transition(self.states[law], exit_index, d, v)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
         force = self.laws[law].force(self.states[law], d, 0.0 if self.light[law] else v)
         self.events += 1
-        self.tracker.switched(law, before, after.name, self.t, d, v, force)
+        self.tracker.switched(law, before, after.kind, self.t, d, v, force)
         self.tracker.peaks.force[law].take(force, self.t)
         if self.same_instant > 50 + 4 * len(self.laws):
             s = self.laws[law]
@@ -355,7 +355,7 @@ class Laplace:
         for law, branch in enumerate(self.branches):
             loss = float(branch.damping * rate[law] ** 2 @ weight)
             self.tracker.peaks.dashpot_losses[law] += loss
-            if self.laws[law].is_contact:
+            if self.laws[law].role.contact_energy:
                 lost += loss
             else:
                 damping += loss

@@ -208,7 +208,7 @@ class Subsystems:
         system, n = self.system, self.system.size
         linked = (system.stiffness != 0) | (system.damping != 0) | (system.mass != 0)
         for s, row in zip(system.structure.laws, system.law_rows):
-            if not s.is_contact:
+            if not s.role.collides:
                 at = np.flatnonzero(row)
                 linked[np.ix_(at, at)] = True
         labels = np.arange(n)
@@ -231,7 +231,7 @@ class Subsystems:
         system = self.system
         labels = self._base.copy()
         for i, (s, b) in enumerate(zip(system.structure.laws, branches)):
-            if s.is_contact and (b.stiffness or b.damping or b.held):
+            if s.role.collides and (b.stiffness or b.damping or b.held):
                 parts = np.unique(labels[system.law_rows[i] != 0])
                 if len(parts):
                     labels[np.isin(labels, parts)] = parts[0]

@@ -113,7 +113,7 @@ class Taylor(Stepper):
         if why == state.CHATTER:
             worst = int(self.count[state.WORST])
             s, at = self.laws[worst], self.w.i[worst, state.AT]
-            told = (int(self.count[expansion.SAME]), s.element, s.rule, s.law.rule.branches[at])
+            told = (int(self.count[expansion.SAME]), s.element, s.rule, s.law.rule.branches[at].name)
             return self.stop("A503", CHATTER.format(*told, STEPPED))
         return super()._trouble(why)
 
@@ -136,7 +136,7 @@ def rate(system: ReducedSystem) -> float:
 
     By the row sums of ``M^-1/2 A M^-1/2``, which bound its eigenvalues (Gershgorin).
     """
-    stiffest = [0.0 if s.is_contact else s.facts.get("k", s.k0) for s in system.structure.laws]
+    stiffest = [0.0 if s.role.collides else s.facts.get("k", s.k0) for s in system.structure.laws]
     root = 1.0 / np.sqrt(diagonal(system.mass))
     omega2, decay = (
         float((root * (abs(a) @ root)).max(initial=0.0))

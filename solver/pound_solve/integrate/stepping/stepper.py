@@ -46,13 +46,13 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.stepping import kernel
 from pound_solve.laws import functions
-from pound_solve.laws.automaton import MEMORY, PARAMETERS
+from pound_solve.laws.automaton import MEMORY, PARAMETERS, BranchKind
 from pound_solve.laws.hysteresis import bilinear
 from pound_solve.numerics import jit, ldl
 from pound_solve.numerics.matrices import Matrix, at, by_rows, dense, entries, is_diagonal
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Index
-from pound_solve.structure.elements.base import LawSpring
+from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
 COMMON = (
@@ -255,11 +255,11 @@ class Stepper:
             f=np.zeros((count, 27)),
             i=np.zeros((count, 8), np.int64),
             saved=np.zeros((count, 5 + MEMORY)),
-            leans=np.flatnonzero([bool(s.normal) for s in laws]).astype(np.int64),
+            leans=np.flatnonzero([s.role is Role.FRICTION for s in laws]).astype(np.int64),
             corotational=self._turning(position if stiff else {}),
         )
         for i, (law, state) in enumerate(zip(laws, start.states)):
-            w.i[i, :4] = self.rules.index(law.law.rule), law.law.curved, law.is_contact, state[0]
+            w.i[i, :4] = self.rules.index(law.law.rule), law.law.curved, law.role.collides, state[0]
             w.f[i, [arrays.D0, arrays.WORK, arrays.BETA]] = state[1], state[2], law.beta
             w.f[i, [arrays.LD, arrays.LV]] = d[i], v[i]
             w.f[i, arrays.SECANT], w.memory[i, : len(state[3])] = law.secant, state[3]
@@ -303,10 +303,9 @@ class Stepper:
 
     def _leans_on(self, law: LawSpring) -> tuple[int, int]:
         """Law that this one leans on, and a bit for each branch where that one is pressed; -1 if none."""
-        for j, other in enumerate(self.laws if law.normal else ()):
-            if (other.element, other.component) == (law.element, law.normal):
-                pressed = enumerate(x.startswith("pressed") for x in other.law.rule.branches)
-                return j, sum(yes << n for n, yes in pressed)
+        for j, other in enumerate(self.laws if law.role is Role.FRICTION else ()):
+            if (other.element, other.component) == (law.element, law.normal_component):
+                return j, sum(b.kind.closed << n for n, b in enumerate(other.law.rule.branches))
         return -1, 0
 
     def _turning(self, position: Mapping[tuple[int, int], int]) -> arrays.Turning:
@@ -361,15 +360,16 @@ class Stepper:
     def _begin(self, advance: jit.Function) -> None:
         """Take the first sample, before a kernel advances."""
         m, w, x, z, system = self.matrices, self.w, self.x, self.z, self.system
-        rubs = next((s for s in self.laws if s.normal), None)
+        rubs = next((s for s in self.laws if s.role is Role.FRICTION), None)
         if rubs is not None and not self.scheme.locate:
             raise self.stop("A505", f"friction (element {rubs.element}) needs steps with EVENTS=LOCATED")
         t0 = float(self.times[0])
         for i, s in enumerate(self.laws):
-            if s.is_contact and s.law.rule.branches[w.i[i, arrays.AT]].startswith("pressed"):
+            kind = s.law.rule.branches[w.i[i, arrays.AT]].kind
+            if s.role.collides and kind.closed:
                 d, v = w.f[i, [arrays.LD, arrays.LV]].tolist()
                 force = law_kernels.law_force(w, self.tables, i, d, v)
-                self.tracker.switched(i, "open", "pressed", t0, d, v, force)
+                self.tracker.switched(i, BranchKind.OPEN, kind, t0, d, v, force)
                 w.f[i, arrays.PEAK] = force
         x.q[arrays.P] = self._force(t0)
         x.inputs[:2] = system.excitation.value(t0), system.excitation.value(t0, 1)
@@ -421,10 +421,10 @@ class Stepper:
         back = np.argsort(self.order)
         for row in z.log[: count[arrays.LOGGED]].tolist():
             law, before, after = (int(x) for x in row[:3])
-            names = laws[law].law.rule.branches
+            branches = laws[law].law.rule.branches
             if law in self.tracker.open:
                 self._count(self.tracker.open[law], row[7:])
-            self.tracker.switched(law, names[before], names[after], *row[3:7])
+            self.tracker.switched(law, branches[before].kind, branches[after].kind, *row[3:7])
         shown, kept = count[arrays.SHOWN], count[arrays.KEPT]
         if shown:
             seen = np.sort(np.concatenate([[self.seen], z.when[:shown], z.works[:kept, 0]]))
@@ -462,7 +462,7 @@ class Stepper:
         if worst >= 0:
             s = self.laws[worst]
             place = f"element {s.element} ({s.rule})"
-            last = f"the last in {place} to {s.law.rule.branches[self.w.i[worst, arrays.AT]]!r}"
+            last = f"the last in {place} to {s.law.rule.branches[self.w.i[worst, arrays.AT]].name!r}"
         if why == arrays.CHATTER:
             told = f"laws change branch again and again at one instant, {last}"
         elif why == arrays.CROWD:
@@ -530,7 +530,7 @@ class Stepper:
         rises = [
             max(abs(f.high), abs(f.low)) / (slope * self.dt)
             for s, f, slope in zip(self.laws, peaks.force, steepest)
-            if not s.is_contact and slope > 0.0
+            if not s.role.viscous and slope > 0.0
         ]
         count = min(rises, default=np.inf)
         if count >= 1.0:

@@ -39,6 +39,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Numbers,
     Rule,
@@ -95,7 +96,16 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.5 * (k2 * corner * corner + (k2 * corner + f) * (overlap - corner))
 
 
-RULE = Rule(("open", "pressed", "pressed, soft", "pressed, back"), start, branch, transition, recoverable)
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.PRESSED.named("pressed", "pressed, soft", "pressed, back"),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+)
 
 
 def restitution(k1: float, k2: float, dy: float, overlap: float) -> float:

@@ -24,7 +24,16 @@ dry friction.
 
 from __future__ import annotations
 
-from pound_solve.laws.automaton import PUSH, PUSH_RATE, Law, Numbers, Rule, internal_variables, linear
+from pound_solve.laws.automaton import (
+    PUSH,
+    PUSH_RATE,
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    internal_variables,
+    linear,
+)
 from pound_solve.laws.mirror import side
 
 OPEN, PLUS, MINUS, STICKING = 0, 1, 2, 3
@@ -70,7 +79,17 @@ def curve(
     return k * d + f0, k, 0.0, (0.5 * k * (d + d0) + f0) * (d - d0)
 
 
-RULE = Rule(("open", "slipping +", "slipping -", "sticking"), start, branch, transition, curve=curve)
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.SLIPPING.named("slipping +", "slipping -"),
+        *BranchKind.ELASTIC.named("sticking"),
+    ),
+    start,
+    branch,
+    transition,
+    curve=curve,
+)
 
 
 def build(kt: float, mu: float, mud: float) -> Law:

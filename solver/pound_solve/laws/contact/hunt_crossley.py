@@ -26,7 +26,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    internal_variables,
+    linear,
+)
 from pound_solve.laws.contact import constants, restitution
 from pound_solve.laws.contact.kelvin_voigt import OPEN, PRESSED, Built, start
 from pound_solve.laws.contact.power import (
@@ -75,7 +84,17 @@ def curve(
     return force, n * spring / x + slope, c, work
 
 
-RULE = Rule(("open", "pressed"), start, branch, transition, recoverable, curve)
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.PRESSED.named("pressed"),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+    curve,
+)
 
 
 def law(k: float, n: float, gap: float, d: float, mass: float) -> Law:

@@ -19,7 +19,16 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    internal_variables,
+    linear,
+)
 from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.constants import dashpot, linear_fields
 
@@ -54,7 +63,17 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.5 * p[0] * (d - p[2]) ** 2 if at == PRESSED else 0.0
 
 
-RULE = Rule(("open", "pressed", "released"), start, branch, transition, recoverable)
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.PRESSED.named("pressed"),
+        *BranchKind.RELEASED.named("released"),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+)
 
 
 class Built(NamedTuple):

@@ -17,13 +17,26 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import REVERSAL_DOWN, REVERSAL_UP, Law, Numbers, Rule, above, below, linear
+from pound_solve.laws.automaton import (
+    REVERSAL_DOWN,
+    REVERSAL_UP,
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.constants import dashpot, linear_fields
 from pound_solve.laws.contact.kelvin_voigt import Built, start
 
 OPEN, APPROACH, PARTING = 0, 1, 2
-BRANCHES = ("open", "pressed", "pressed, parting")
+BRANCHES = (
+    *BranchKind.OPEN.named("open"),
+    *BranchKind.PRESSED.named("pressed", "pressed, parting"),
+)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:

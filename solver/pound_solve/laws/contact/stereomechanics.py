@@ -22,7 +22,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    internal_variables,
+    linear,
+)
 from pound_solve.laws.contact.kelvin_voigt import Built
 
 OPEN, PRESSED = 0, 1
@@ -48,7 +57,16 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.0
 
 
-RULE = Rule(("open", "pressed"), start, branch, transition, recoverable, held=PRESSED)
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.HELD.named("pressed"),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+)
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:

@@ -25,6 +25,7 @@ from typing import Any
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
+    BranchKind,
     Law,
     Numbers,
     Rule,
@@ -95,7 +96,16 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 PIECES = tuple(f"pressed, piece {i}" for i in range(1, MOST + 1))
-RULE = Rule(("open", *PIECES, "pressed, unloading"), start, branch, transition, recoverable)
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.PRESSED.named(*PIECES, "pressed, unloading"),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+)
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:

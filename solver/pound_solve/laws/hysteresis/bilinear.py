@@ -23,6 +23,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Numbers,
     Rule,
@@ -58,7 +59,15 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     return ELASTIC, internal_variables(d - (plus if at == YIELDING_PLUS else minus) / k)
 
 
-RULE = Rule(("elastic", "yielding +", "yielding -"), start, branch, transition)
+RULE = Rule(
+    (
+        *BranchKind.ELASTIC.named("elastic"),
+        *BranchKind.YIELDING.named("yielding +", "yielding -"),
+    ),
+    start,
+    branch,
+    transition,
+)
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:

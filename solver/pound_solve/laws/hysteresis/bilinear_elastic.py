@@ -15,7 +15,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    internal_variables,
+    linear,
+)
 
 STIFF, SOFT_PLUS, SOFT_MINUS = 0, 1, 2
 
@@ -51,7 +60,9 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.5 * limit * limit / k + 0.5 * (limit + f) * (d - limit / k)
 
 
-RULE = Rule(("stiff", "soft +", "soft -"), start, branch, transition, recoverable)
+RULE = Rule(
+    (*BranchKind.ELASTIC.named("stiff", "soft +", "soft -"),), start, branch, transition, recoverable
+)
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:

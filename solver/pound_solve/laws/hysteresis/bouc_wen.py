@@ -41,6 +41,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Numbers,
     Rule,
@@ -232,7 +233,9 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return k * (0.5 * r * (d - end) * (d + end) + (1.0 - r) * (before - done))
 
 
-RULE = Rule(("loading", "unloading"), start, branch, transition, recoverable, curve)
+RULE = Rule(
+    (*BranchKind.ELASTIC.named("loading", "unloading"),), start, branch, transition, recoverable, curve
+)
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:

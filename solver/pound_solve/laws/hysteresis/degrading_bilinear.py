@@ -22,7 +22,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    internal_variables,
+    linear,
+)
 from pound_solve.laws.hysteresis.backbone import (
     ALFA,
     ELASTIC,
@@ -73,7 +82,10 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 RULE = Rule(
-    ("elastic", "yielding +", "yielding -", "yielding weaker +", "yielding weaker -"),
+    (
+        *BranchKind.ELASTIC.named("elastic"),
+        *BranchKind.YIELDING.named("yielding +", "yielding -", "yielding weaker +", "yielding weaker -"),
+    ),
     start,
     branch,
     transition,

@@ -24,7 +24,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    internal_variables,
+    linear,
+)
 from pound_solve.laws.mirror import (
     inward,
     need_both_sides,
@@ -88,7 +97,12 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 RULE = Rule(
-    ("elastic", "yielding +", "yielding -", "inside +", "inside -", "yielding back +", "yielding back -"),
+    (
+        *BranchKind.ELASTIC.named("elastic"),
+        *BranchKind.YIELDING.named("yielding +", "yielding -"),
+        *BranchKind.ELASTIC.named("inside +", "inside -"),
+        *BranchKind.YIELDING.named("yielding back +", "yielding back -"),
+    ),
     start,
     branch,
     transition,

@@ -18,7 +18,15 @@ Memory: the largest ductilities; the point where the motion turned last, or wher
 
 from __future__ import annotations
 
-from pound_solve.laws.automaton import Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Numbers,
+    Rule,
+    above,
+    below,
+    internal_variables,
+    linear,
+)
 from pound_solve.laws.hysteresis.backbone import (
     ELASTIC,
     backbone,
@@ -106,15 +114,9 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 RULE = Rule(
     (
-        "elastic",
-        "yielding +",
-        "yielding -",
-        "yielding weaker +",
-        "yielding weaker -",
-        "unloading +",
-        "unloading -",
-        "reloading +",
-        "reloading -",
+        *BranchKind.ELASTIC.named("elastic"),
+        *BranchKind.YIELDING.named("yielding +", "yielding -", "yielding weaker +", "yielding weaker -"),
+        *BranchKind.ELASTIC.named("unloading +", "unloading -", "reloading +", "reloading -"),
     ),
     start,
     branch,

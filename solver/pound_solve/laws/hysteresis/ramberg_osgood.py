@@ -34,7 +34,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, internal_variables, linear
+from pound_solve.laws.automaton import (
+    NEVER,
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    internal_variables,
+    linear,
+)
 from pound_solve.laws.mirror import need_both_sides, outward, turns_inward
 
 LOADING, UNLOADING = 0, 1
@@ -180,7 +188,9 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return back * fy / k
 
 
-RULE = Rule(("loading", "unloading"), start, branch, transition, recoverable, curve)
+RULE = Rule(
+    (*BranchKind.ELASTIC.named("loading", "unloading"),), start, branch, transition, recoverable, curve
+)
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:

@@ -25,6 +25,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Numbers,
     Rule,
@@ -115,7 +116,11 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 RULE = Rule(
-    ("slack", "elastic +", "elastic -", "yielding +", "yielding -", "yielding back +", "yielding back -"),
+    (
+        *BranchKind.OPEN.named("slack"),
+        *BranchKind.ELASTIC.named("elastic +", "elastic -"),
+        *BranchKind.YIELDING.named("yielding +", "yielding -", "yielding back +", "yielding back -"),
+    ),
     start,
     branch,
     transition,

@@ -28,6 +28,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Numbers,
     Rule,
@@ -75,7 +76,10 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 RULE = Rule(
-    ("elastic", "yielding +", "yielding -", "yielding + again", "yielding - again"),
+    (
+        *BranchKind.ELASTIC.named("elastic"),
+        *BranchKind.YIELDING.named("yielding +", "yielding -", "yielding + again", "yielding - again"),
+    ),
     start,
     branch,
     transition,

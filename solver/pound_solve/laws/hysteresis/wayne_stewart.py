@@ -39,7 +39,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    internal_variables,
+    linear,
+)
 from pound_solve.laws.mirror import inward, need_both_sides, outward, pair, side, turns_inward
 
 SLACK, FAILED, UNLOADING = 0, 1, 2
@@ -204,19 +213,15 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 RULE = Rule(
     (
-        "slack",
-        "failed",
-        "unloading",
-        "elastic +",
-        "elastic -",
-        "yielding +",
-        "yielding -",
-        "yielding + beyond the ultimate force",
-        "yielding - beyond the ultimate force",
-        "pinched +",
-        "pinched -",
-        "reloading +",
-        "reloading -",
+        *BranchKind.OPEN.named("slack", "failed"),
+        *BranchKind.ELASTIC.named("unloading", "elastic +", "elastic -"),
+        *BranchKind.YIELDING.named(
+            "yielding +",
+            "yielding -",
+            "yielding + beyond the ultimate force",
+            "yielding - beyond the ultimate force",
+        ),
+        *BranchKind.ELASTIC.named("pinched +", "pinched -", "reloading +", "reloading -"),
     ),
     start,
     branch,
