@@ -13,7 +13,6 @@ from pound_solve.laws.automaton import (
     BranchKind,
     Law,
     drive,
-    internal_variables,
 )
 from pound_solve.laws.contact import kelvin_voigt
 from pound_solve.laws.hysteresis import bilinear, slackness
@@ -97,7 +96,7 @@ def test_a_pressed_contact_without_tension_only_pushes(
     k: float, c: float, gap: float, d: float, v: float
 ) -> None:
     law = Law(kelvin_voigt.RULE, (k, c, gap))
-    branch = law.branch((kelvin_voigt.PRESSED, 0.0, 0.0, internal_variables()))
+    branch = law.branch((kelvin_voigt.PRESSED, 0.0, 0.0, ()))
     held = all(e.d_factor * d + e.v_factor * v + e.constant <= 0.0 for e in branch.exits)
     size = k * (abs(d) + abs(gap)) + c * abs(v)
     assert not held or branch.force(d, v) >= -1e-15 * size

@@ -21,7 +21,6 @@ from pound_solve.laws.automaton import (
     Law,
     Rule,
     drive,
-    internal_variables,
     linear,
 )
 from pound_solve.laws.hysteresis import bilinear, slackness
@@ -710,10 +709,12 @@ def bend(k, d):
 
 CURVED = Rule(
     BranchKind.ELASTIC.named("loading", "unloading"),
-    lambda p: (0, internal_variables()),
+    lambda p: (0, (0.0, 0.0)),
     lambda p, at, m: linear(p[0], 0.0, REVERSAL_DOWN if at == 0 else REVERSAL_UP),
-    lambda p, at, m, way, d, v: (1 - at, internal_variables(d, bend(p[0], d))),
+    lambda p, at, m, way, d, v: (1 - at, (d, bend(p[0], d))),
     curve=lambda p, at, m, d0, d, v: (bend(p[0], d), p[0] / np.cosh(d) ** 2, 0.0, 0.0),
+    parameters=1,
+    variables=2,
 )
 
 

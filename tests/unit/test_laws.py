@@ -8,6 +8,7 @@ The contract of hysteresis rules is in test_hysteresis_contract.py.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import product
 from typing import Any
 
@@ -18,11 +19,10 @@ from paths import Walk, turning_points
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.assess.law_test import specimen
 from pound_solve.catalog import specs
+from pound_solve.laws import functions
 from pound_solve.laws.automaton import (
     EVENTS,
-    MEMORY,
     NEVER,
-    PARAMETERS,
     REVERSAL_DOWN,
     BranchKind,
     EventFunction,
@@ -34,7 +34,6 @@ from pound_solve.laws.automaton import (
     below,
     consistent,
     drive,
-    internal_variables,
     linear,
 )
 from pound_solve.laws.contact import bilinear_impact, table
@@ -51,7 +50,7 @@ STAIR, FLAT = 0, 1
 
 
 def stair_start(p: Numbers) -> tuple[int, Numbers]:
-    return STAIR, internal_variables(0.0)
+    return STAIR, (0.0,)
 
 
 def stair_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -64,27 +63,38 @@ def stair_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def stair_leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     if at == STAIR:
-        return (FLAT, m) if way == 0 else (STAIR, internal_variables(d))
-    return STAIR, internal_variables(d - p[1] / p[0])
+        return (FLAT, m) if way == 0 else (STAIR, (d,))
+    return STAIR, (d - p[1] / p[0],)
 
 
 STEPS = Law(
-    Rule(BranchKind.ELASTIC.named("stair", "flat"), stair_start, stair_branch, stair_leave), (100.0, 5.0)
+    Rule(
+        BranchKind.ELASTIC.named("stair", "flat"),
+        stair_start,
+        stair_branch,
+        stair_leave,
+        parameters=3,
+        variables=1,
+    ),
+    (100.0, 5.0),
 )
 
 
-def test_numbers_have_fixed_lengths() -> None:
-    assert len(STEPS.p) == PARAMETERS
-    assert STEPS.p[:3] == (100.0, 5.0, 0.0)
-    assert internal_variables(*range(MEMORY)) == tuple(range(MEMORY))
-    assert len(internal_variables()) == MEMORY
+def test_numbers_have_the_lengths_that_the_rule_says() -> None:
+    assert STEPS.p == (100.0, 5.0, 0.0)  # what is left out is zero
+    with pytest.raises(ValueError, match="a rule of 3 parameters was given 4"):
+        Law(STEPS.rule, (1.0, 2.0, 3.0, 4.0))
+    with pytest.raises(ValueError, match="a rule of 2 internal variables starts with 1"):
+        Law(replace(STEPS.rule, variables=2), (100.0, 5.0)).start()
+    with pytest.raises(ValueError, match="a rule has 3 parameters and 99 internal variables: the longest"):
+        functions.tables([replace(STEPS.rule, variables=99)])
     flat = linear(1.0, 2.0, c=3.0)
     assert flat == (1.0, 3.0, 2.0, *NEVER * EVENTS)
 
 
 def test_branch_with_its_exits() -> None:
     state = STEPS.start()
-    assert state == (STAIR, 0.0, 0.0, internal_variables())
+    assert state == (STAIR, 0.0, 0.0, (0.0,))
     branch = STEPS.branch(state)
     assert (branch.name, branch.stiffness, branch.damping, branch.force0) == ("stair", 100.0, 0.0, 0.0)
     # exits that are not there are not told
@@ -95,24 +105,24 @@ def test_branch_with_its_exits() -> None:
 
 def test_work_goes_on_over_branches() -> None:
     flat = STEPS.transition(STEPS.start(), 0, 0.05)
-    assert flat == (FLAT, 0.05, pytest.approx(0.125), internal_variables())  # 1/2 * 5 * 0.05
+    assert flat == (FLAT, 0.05, pytest.approx(0.125), (0.0,))  # 1/2 * 5 * 0.05
     assert STEPS.work(flat, 0.08) == pytest.approx(0.125 + 5.0 * 0.03)
     assert STEPS.stored(flat, 0.08) == pytest.approx(0.125)
     assert STEPS.dissipated(flat, 0.08) == pytest.approx(0.15)
     back = STEPS.transition(flat, 0, 0.08)
-    assert back == (STAIR, 0.08, pytest.approx(0.275), internal_variables(pytest.approx(0.03)))
+    assert back == (STAIR, 0.08, pytest.approx(0.275), (pytest.approx(0.03),))
     assert STEPS.work(back, 0.03) == pytest.approx(0.275 - 0.125)
     assert STEPS.dissipated(back, 0.03) == pytest.approx(0.15)
 
 
 def test_rounding_is_no_loss_and_a_loss_is_no_rounding() -> None:
     """Only what is below the rounding of the deformation is taken for nothing."""
-    state = (STAIR, 0.04, 0.5 * 100.0 * 0.04**2, internal_variables())
+    state = (STAIR, 0.04, 0.5 * 100.0 * 0.04**2, (0.0,))
     assert STEPS.dissipated(state, 0.04) == 0.0
     off = 0.9e-14 * 100.0 * 0.04**2
-    assert STEPS.dissipated((STAIR, 0.04, state[2] + off, internal_variables()), 0.04) == 0.0
+    assert STEPS.dissipated((STAIR, 0.04, state[2] + off, (0.0,)), 0.04) == 0.0
     off = 1.2e-14 * 100.0 * 0.04**2
-    assert STEPS.dissipated((STAIR, 0.04, state[2] + off, internal_variables()), 0.04) > 0.0
+    assert STEPS.dissipated((STAIR, 0.04, state[2] + off, (0.0,)), 0.04) > 0.0
 
 
 def test_follow_takes_the_exits_on_its_way() -> None:
@@ -140,7 +150,10 @@ def test_a_law_that_never_settles_is_stopped() -> None:
     def stay(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
         return at, m
 
-    law = Law(Rule(BranchKind.ELASTIC.named("here"), stair_start, restless, stay), (1.0,))
+    law = Law(
+        Rule(BranchKind.ELASTIC.named("here"), stair_start, restless, stay, parameters=1, variables=1),
+        (1.0,),
+    )
     with pytest.raises(NoProgressError):
         drive(law, law.start(), 0.0, 1.0)
 

@@ -22,7 +22,6 @@ from pound_solve.laws.automaton import (
     Rule,
     above,
     drive,
-    internal_variables,
     linear,
 )
 from pound_solve.structure.assembly import assemble
@@ -321,10 +320,12 @@ def bell(p, at, m, d0, d, v):
 
 BELL = Rule(
     BranchKind.ELASTIC.named("curved"),
-    lambda p: (0, internal_variables()),
+    lambda p: (0, ()),
     lambda p, at, m: linear(p[0], 0.0),
-    lambda *_: (0, internal_variables()),
+    lambda *_: (0, ()),
     curve=bell,
+    parameters=2,
+    variables=0,
 )  # fmt: skip
 
 
@@ -349,9 +350,11 @@ def test_a_curve_that_softens():
 
 BRITTLE = Rule(
     BranchKind.ELASTIC.named("whole", "broken"),
-    lambda p: (0, internal_variables()),
+    lambda p: (0, ()),
     lambda p, at, m: linear(p[0], 0.0, above(p[1])) if at == 0 else linear(0.0, 0.0),
     lambda p, at, m, way, d, v: (1, m),
+    parameters=2,
+    variables=0,
 )
 
 

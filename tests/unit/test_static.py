@@ -20,7 +20,6 @@ from pound_solve.laws.automaton import (
     BranchKind,
     Law,
     Rule,
-    internal_variables,
     linear,
 )
 from pound_solve.laws.contact.kelvin_voigt import PRESSED
@@ -430,10 +429,12 @@ def saturating(p, at, m, d0, d, v):
 
 SATURATING = Rule(
     BranchKind.ELASTIC.named("loading", "unloading"),
-    lambda p: (0, internal_variables()),
+    lambda p: (0, (0.0, 0.0)),
     lambda p, at, m: linear(p[0], 0.0, REVERSAL_DOWN if at == 0 else REVERSAL_UP),
-    lambda p, at, m, way, d, v: (1 - at, internal_variables(saturating(p, at, m, m[1], d, 0.0)[0], d)),
+    lambda p, at, m, way, d, v: (1 - at, (saturating(p, at, m, m[1], d, 0.0)[0], d)),
     curve=saturating,
+    parameters=2,
+    variables=2,
 )
 
 

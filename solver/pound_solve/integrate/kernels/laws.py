@@ -32,25 +32,11 @@ from pound_solve.integrate.kernels.state import (
     Product,
 )
 from pound_solve.laws.automaton import PUSH, PUSH_RATE
-from pound_solve.laws.functions import Tables
+from pound_solve.laws.functions import PARAMETERS, VARIABLES, Tables, row
 from pound_solve.numerics.ldl import Place
 from pound_solve.numerics.types import Array, Index
 
-
-def parameters(p: Array, i: int) -> tuple[float, ...]:
-    """Row of parameters as a tuple."""
-    return (
-        p[i, 0], p[i, 1], p[i, 2], p[i, 3], p[i, 4], p[i, 5], p[i, 6], p[i, 7], p[i, 8], p[i, 9],
-        p[i, 10], p[i, 11], p[i, 12], p[i, 13], p[i, 14], p[i, 15], p[i, 16], p[i, 17], p[i, 18], p[i, 19],
-    )  # fmt: skip
-
-
-def memory(m: Array, i: int) -> tuple[float, ...]:
-    """Row of a memory as a tuple."""
-    return (
-        m[i, 0], m[i, 1], m[i, 2], m[i, 3], m[i, 4], m[i, 5], m[i, 6], m[i, 7],
-        m[i, 8], m[i, 9], m[i, 10], m[i, 11], m[i, 12], m[i, 13], m[i, 14], m[i, 15],
-    )  # fmt: skip
+parameters, memory = row(PARAMETERS), row(VARIABLES)  #: rows of `Laws.p` and `Laws.memory` as tuples
 
 
 def motions(coefs: Array, s: float, out: Array, at: int) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from pound_solve.laws.automaton import MEMORY
+from pound_solve.laws.functions import VARIABLES
 from pound_solve.numerics.ldl import Pattern, Place
 from pound_solve.numerics.types import Array, Flags, Index
 
@@ -30,7 +30,8 @@ WHOLE, PIECE, MASS, LIGHT = range(4)  #: rows of `Motion.l`, and of its pivots
 # columns of `Laws.f`: the linear piece, exits; entry of the state; motion; dashpot; what a contact counts
 K, C, F0, EXIT, D0, WORK = 0, 1, 2, 3, 12, 13
 LD, LV, LD1, LV1, MOST_D, MOST_V, BETA, DASHPOT, PEAK, T_PEAK, IMPULSE, SECANT, HELD = range(14, 27)
-TURN, STIFFNESS = MEMORY, MEMORY + 1  #: columns of `Laws.memory` beside the rule's own (see `SecantLaw`)
+# columns of `Laws.memory` beside the rule's own (see `SecantLaw`)
+TURN, STIFFNESS = VARIABLES, VARIABLES + 1
 # columns of `Laws.i`; the last two: the law that this one leans on, or -1, and a bit for each branch of
 # that one where it is pressed
 CODE, CURVED, CONTACT, AT, N_EXITS, SAVED, NORMAL, PRESSED = range(8)
@@ -184,10 +185,10 @@ class Laws(NamedTuple):
         Where each law's ``b b^T`` adds to A: pointers, positions in its pattern, products.
     supports : ndarray, shape (n_laws, n_moved)
     p : ndarray, shape (n_laws, PARAMETERS)
-    memory : ndarray, shape (n_laws, MEMORY + 2)
+    memory : ndarray, shape (n_laws, VARIABLES + 2)
     f, i : ndarray, shapes (n_laws, 27), (n_laws, 8)
         Columns as above.
-    saved : ndarray, shape (n_laws, 5 + MEMORY)
+    saved : ndarray, shape (n_laws, 5 + VARIABLES)
         State at the start of a step that is not cut at events.
     leans : ndarray, shape (n_leaning,)
         The laws that lean on another, which comes before them.

@@ -46,7 +46,7 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.stepping import kernel
 from pound_solve.laws import functions
-from pound_solve.laws.automaton import MEMORY, PARAMETERS, BranchKind
+from pound_solve.laws.automaton import BranchKind, State
 from pound_solve.laws.hysteresis import bilinear
 from pound_solve.numerics import jit, ldl
 from pound_solve.numerics.matrices import Matrix, at, by_rows, dense, entries, is_diagonal
@@ -250,11 +250,11 @@ class Stepper:
                 np.array([x for p in pairs for _, x in p], float),
             ),
             supports=np.ascontiguousarray(dense(s.law_rows[:, nf:])),
-            p=np.array([x.law.p for x in laws]).reshape(count, PARAMETERS),
-            memory=np.zeros((count, MEMORY + 2)),
+            p=np.zeros((count, functions.PARAMETERS)),
+            memory=np.zeros((count, functions.VARIABLES + 2)),
             f=np.zeros((count, 27)),
             i=np.zeros((count, 8), np.int64),
-            saved=np.zeros((count, 5 + MEMORY)),
+            saved=np.zeros((count, 5 + functions.VARIABLES)),
             leans=np.flatnonzero([s.role is Role.FRICTION for s in laws]).astype(np.int64),
             corotational=self._turning(position if stiff else {}),
         )
@@ -262,7 +262,10 @@ class Stepper:
             w.i[i, :4] = self.rules.index(law.law.rule), law.law.curved, law.role.collides, state[0]
             w.f[i, [arrays.D0, arrays.WORK, arrays.BETA]] = state[1], state[2], law.beta
             w.f[i, [arrays.LD, arrays.LV]] = d[i], v[i]
-            w.f[i, arrays.SECANT], w.memory[i, : len(state[3])] = law.secant, state[3]
+            ruled = law.law.rule.variables  # of a secant law two more follow
+            w.p[i, : len(law.law.p)], w.memory[i, :ruled] = law.law.p, state[3][:ruled]
+            w.f[i, arrays.SECANT] = law.secant
+            w.memory[i, arrays.TURN : arrays.TURN + len(state[3]) - ruled] = state[3][ruled:]
             w.f[i, [arrays.MOST_D, arrays.MOST_V]] = abs(d[i]), abs(v[i])
             w.i[i, [arrays.NORMAL, arrays.PRESSED]] = self._leans_on(law)
         self.x = x = arrays.Motion(
@@ -485,10 +488,17 @@ class Stepper:
             found[rest + n :],
         )
         peaks.dashpot_losses = self.w.f[:, arrays.DASHPOT].tolist()
-        f, i = self.w.f, self.w.i
-        states = zip(i[:, arrays.AT].tolist(), f[:, arrays.D0].tolist(), f[:, arrays.WORK].tolist(),
-                     map(tuple, self.w.memory.tolist()))  # fmt: skip
-        return Outcome(peaks, self._figures(), tuple(states), self._checks(peaks), self.exact)
+        states = tuple(self._state(i) for i in range(n))
+        return Outcome(peaks, self._figures(), states, self._checks(peaks), self.exact)
+
+    def _state(self, i: int) -> State:
+        """State of law `i`."""
+        w, spring = self.w, self.laws[i]
+        memory = w.memory[i, : spring.law.rule.variables].tolist()
+        if spring.secant:
+            memory += w.memory[i, [arrays.TURN, arrays.STIFFNESS]].tolist()
+        d0, work = w.f[i, [arrays.D0, arrays.WORK]].tolist()
+        return int(w.i[i, arrays.AT]), d0, work, tuple(memory)
 
     def _figures(self) -> dict[str, Any]:
         """What the report tells of the run."""

@@ -26,7 +26,6 @@ from pound_solve.laws.automaton import (
     Rule,
     above,
     below,
-    internal_variables,
     linear,
 )
 from pound_solve.laws.contact import restitution
@@ -37,7 +36,7 @@ OPEN, PRESSED, RELEASED = 0, 1, 2
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (PRESSED if p[2] < 0.0 else OPEN), internal_variables()
+    return (PRESSED if p[2] < 0.0 else OPEN), ()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -73,6 +72,8 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
+    parameters=4,
+    variables=0,
 )
 
 

@@ -61,7 +61,15 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.0 if at == OPEN else 0.5 * p[0] * (d - p[2]) ** 2
 
 
-RULE = Rule(BRANCHES, start, branch, transition, recoverable)
+RULE = Rule(
+    BRANCHES,
+    start,
+    branch,
+    transition,
+    recoverable,
+    parameters=3,
+    variables=0,
+)
 
 
 def published(e: float) -> float:

@@ -27,8 +27,8 @@ from pound_solve.laws.automaton import (
     Rule,
 )
 from pound_solve.laws.contact import constants, restitution
-from pound_solve.laws.contact.hunt_crossley import branch, recoverable, transition
-from pound_solve.laws.contact.kelvin_voigt import OPEN, TENSION, Built, start
+from pound_solve.laws.contact.hunt_crossley import branch, recoverable, start, transition
+from pound_solve.laws.contact.kelvin_voigt import OPEN, TENSION, Built
 from pound_solve.laws.contact.power import (
     drag,
     drag_slope,
@@ -67,6 +67,8 @@ RULE = Rule(
     transition,
     recoverable,
     curve,
+    parameters=6,
+    variables=1,
 )
 
 

@@ -29,7 +29,6 @@ from pound_solve.laws.automaton import (
     Rule,
     above,
     below,
-    internal_variables,
     linear,
 )
 from pound_solve.laws.contact.kelvin_voigt import Built
@@ -39,7 +38,7 @@ OPEN, PRESSED = 0, 1
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open."""
-    return OPEN, internal_variables()
+    return OPEN, ()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -66,6 +65,8 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
+    parameters=3,
+    variables=0,
 )
 
 

@@ -31,7 +31,6 @@ from pound_solve.laws.automaton import (
     Rule,
     above,
     below,
-    internal_variables,
     linear,
 )
 from pound_solve.laws.contact.kelvin_voigt import Built
@@ -48,7 +47,7 @@ def point(p: Numbers, i: int) -> tuple[float, float]:
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (1 if p[1] < 0.0 else OPEN), internal_variables()
+    return (1 if p[1] < 0.0 else OPEN), (0.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -78,7 +77,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     d0, f0 = point(p, at - 1)
     d1, f1 = point(p, at)
     force = f0 + (f1 - f0) / (d1 - d0) * (d - gap - d0)
-    return UNLOADING, internal_variables(max(d - gap - force / ku, m[0]), d - gap, float(at))
+    return UNLOADING, (max(d - gap - force / ku, m[0]), d - gap, float(at))
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -105,6 +104,8 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
+    parameters=POINTS + 2 * MOST,
+    variables=3,
 )
 
 

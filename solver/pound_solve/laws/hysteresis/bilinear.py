@@ -27,7 +27,6 @@ from pound_solve.laws.automaton import (
     Law,
     Numbers,
     Rule,
-    internal_variables,
     linear,
 )
 
@@ -36,7 +35,7 @@ ELASTIC, YIELDING_PLUS, YIELDING_MINUS = 0, 1, 2
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, internal_variables()
+    return ELASTIC, (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -56,7 +55,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     k, plus, minus = p[:3]
     if at == ELASTIC:
         return (YIELDING_PLUS if event == 0 else YIELDING_MINUS), m
-    return ELASTIC, internal_variables(d - (plus if at == YIELDING_PLUS else minus) / k)
+    return ELASTIC, (d - (plus if at == YIELDING_PLUS else minus) / k,)
 
 
 RULE = Rule(
@@ -67,6 +66,8 @@ RULE = Rule(
     start,
     branch,
     transition,
+    parameters=4,
+    variables=1,
 )
 
 

@@ -22,7 +22,6 @@ from pound_solve.laws.automaton import (
     Rule,
     above,
     below,
-    internal_variables,
     linear,
 )
 
@@ -31,7 +30,7 @@ STIFF, SOFT_PLUS, SOFT_MINUS = 0, 1, 2
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: stiff."""
-    return STIFF, internal_variables()
+    return STIFF, ()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -61,7 +60,13 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 RULE = Rule(
-    (*BranchKind.ELASTIC.named("stiff", "soft +", "soft -"),), start, branch, transition, recoverable
+    BranchKind.ELASTIC.named("stiff", "soft +", "soft -"),
+    start,
+    branch,
+    transition,
+    recoverable,
+    parameters=4,
+    variables=0,
 )
 
 

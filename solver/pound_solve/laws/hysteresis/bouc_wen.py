@@ -45,8 +45,8 @@ from pound_solve.laws.automaton import (
     Law,
     Numbers,
     Rule,
-    internal_variables,
     linear,
+    rate_independent,
 )
 from pound_solve.laws.mirror import need_both_sides
 
@@ -56,7 +56,7 @@ SATURATED = 40.0  #: -log(1 - y^n) from which on y is 1 to the last digit
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: z = 0."""
-    return LOADING, internal_variables()
+    return LOADING, (0.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -211,7 +211,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     """Turn."""
     s = 1.0 if at == LOADING else -1.0
     x, done = position(p, -s, -along(p, s, m[0] + s * (d - m[1]))[0])
-    return (UNLOADING if at == LOADING else LOADING), internal_variables(x, d, done)
+    return (UNLOADING if at == LOADING else LOADING), (x, d, done)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -234,7 +234,15 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 RULE = Rule(
-    (*BranchKind.ELASTIC.named("loading", "unloading"),), start, branch, transition, recoverable, curve
+    BranchKind.ELASTIC.named("loading", "unloading"),
+    start,
+    branch,
+    transition,
+    recoverable,
+    curve,
+    rate_independent,
+    parameters=9,
+    variables=3,
 )
 
 

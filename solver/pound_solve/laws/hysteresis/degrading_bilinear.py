@@ -29,7 +29,6 @@ from pound_solve.laws.automaton import (
     Rule,
     above,
     below,
-    internal_variables,
     linear,
 )
 from pound_solve.laws.hysteresis.backbone import (
@@ -51,7 +50,7 @@ from pound_solve.laws.mirror import side
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, internal_variables(1.0, 1.0)
+    return ELASTIC, (1.0, 1.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -90,6 +89,8 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
+    parameters=9,
+    variables=4,
 )
 
 

@@ -179,6 +179,8 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
+    parameters=16,
+    variables=16,
 )
 
 

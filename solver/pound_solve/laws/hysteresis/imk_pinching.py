@@ -281,6 +281,8 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
+    parameters=18,
+    variables=16,
 )
 
 MODES = "basic strength, post-capping strength, unloading stiffness, accelerated reloading"

@@ -25,7 +25,6 @@ from pound_solve.laws.automaton import (
     Rule,
     above,
     below,
-    internal_variables,
     linear,
 )
 from pound_solve.laws.hysteresis.backbone import (
@@ -48,7 +47,7 @@ SECANT = 5
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, internal_variables(1.0, 1.0)
+    return ELASTIC, (1.0, 1.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -88,6 +87,8 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
+    parameters=9,
+    variables=4,
 )
 
 

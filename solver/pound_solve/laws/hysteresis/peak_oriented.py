@@ -24,7 +24,6 @@ from pound_solve.laws.automaton import (
     Rule,
     above,
     below,
-    internal_variables,
     linear,
 )
 from pound_solve.laws.hysteresis.backbone import (
@@ -49,7 +48,7 @@ BETA, MIRRORED = 9, 10
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, internal_variables(1.0, 1.0)
+    return ELASTIC, (1.0, 1.0, 0.0, 0.0)
 
 
 def aim(p: Numbers, m: Numbers, s: float) -> tuple[float, float]:
@@ -88,19 +87,17 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         plus, minus, d, f = turn(p, at, m, d)[:4]
         if p[MIRRORED] != 0.0:
             plus = minus = max(plus, minus)
-        return pair(UNLOADING, s), internal_variables(plus, minus, d, f)
+        return pair(UNLOADING, s), (plus, minus, d, f)
     plus, minus, d0, f0 = m[:4]
     if at < RELOADING:
         if event == 1:
-            return pair(RELOADING, -s), internal_variables(
-                plus, minus, d0 - f0 / unloading(p, reached(m, s))
-            )
+            return pair(RELOADING, -s), (plus, minus, d0 - f0 / unloading(p, reached(m, s)), 0.0)
         # a turn on the backbone too: the line from there ends where it begins
         return pair(RELOADING, s), m
     k, end = aim(p, m, s)
     if event == 1:
         return enter(p, m, s, end)
-    return pair(UNLOADING, s), internal_variables(plus, minus, d, f0 + k * (d - d0))
+    return pair(UNLOADING, s), (plus, minus, d, f0 + k * (d - d0))
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -122,4 +119,6 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
+    parameters=11,
+    variables=4,
 )

@@ -31,7 +31,6 @@ from pound_solve.laws.automaton import (
     Rule,
     above,
     below,
-    internal_variables,
     linear,
 )
 
@@ -41,8 +40,8 @@ SLACK, ELASTIC_PLUS, ELASTIC_MINUS, YIELDING_PLUS, YIELDING_MINUS, BACK_PLUS, BA
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: in the slack, or on a side that has none (or less than none, a prestress)."""
     if p[3] <= 0.0:
-        return ELASTIC_PLUS, internal_variables()
-    return (ELASTIC_MINUS if p[4] >= 0.0 else SLACK), internal_variables()
+        return ELASTIC_PLUS, (0.0, 0.0)
+    return (ELASTIC_MINUS if p[4] >= 0.0 else SLACK), (0.0, 0.0)
 
 
 def line(p: Numbers, at: int) -> tuple[float, float, float]:
@@ -105,11 +104,11 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     slope = p[5] * k
     now = d - gap - ((1.0 - p[5]) * fy + slope * (d - gap)) / k
     if grow == 0.0:
-        m = internal_variables(now, now)
+        m = (now, now)
     elif side > 0.0:
-        m = internal_variables(now, m[1])
+        m = (now, m[1])
     else:
-        m = internal_variables(m[0], now)
+        m = (m[0], now)
     if event == 1:
         return SLACK, m
     return (ELASTIC_PLUS if side > 0.0 else ELASTIC_MINUS), m
@@ -124,6 +123,8 @@ RULE = Rule(
     start,
     branch,
     transition,
+    parameters=7,
+    variables=2,
 )
 
 
