@@ -124,6 +124,16 @@ def law_force(w: Laws, f: Tables, i: int, d: float, v: float) -> float:
     return w.f[i, K] * d + w.f[i, C] * v + w.f[i, F0]
 
 
+def drag(w: Laws, f: Tables, i: int, d: float, v: float) -> float:
+    """Force whose work at the rate `v` law `i` dissipates, by its dashpot and those that follow it."""
+    if not w.i[i, CURVED]:
+        return w.f[i, C] * v
+    if v == 0.0:
+        return 0.0
+    own = f.power[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), d, v)
+    return own / v + follows(w, i, w.f[i, K]) * v
+
+
 def transition(w: Laws, f: Tables, i: int, way: int, d: float, v: float) -> None:
     """Change the branch of law `i` at deformation `d` and rate `v`."""
     done = law_work(w, f, i, d)

@@ -32,9 +32,9 @@ K, C, F0, EXIT, D0, WORK = 0, 1, 2, 3, 12, 13
 LD, LV, LD1, LV1, MOST_D, MOST_V, BETA, DASHPOT, PEAK, T_PEAK, IMPULSE, SECANT, HELD = range(14, 27)
 # columns of `Laws.memory` beside the rule's own (see `SecantLaw`)
 TURN, STIFFNESS = VARIABLES, VARIABLES + 1
-# columns of `Laws.i`; the last two: the law that this one leans on, or -1, and a bit for each branch of
-# that one where it is pressed
-CODE, CURVED, CONTACT, AT, N_EXITS, SAVED, NORMAL, PRESSED = range(8)
+# columns of `Laws.i`; the last three: the law that this one leans on, or -1, a bit for each branch of that
+# one where it is pressed, and whether damping is part of the force that is reported
+CODE, CURVED, CONTACT, AT, N_EXITS, SAVED, NORMAL, PRESSED, VISCOUS = range(9)
 # columns of `Turning.s`: quantities and forces at the start and the end of a step, quantities at the end
 # but for the acceleration there, forces at no quantities of the line that stands for the chord
 S0, S1, G0, G1, AHEAD, REST = range(0, 36, 6)
@@ -186,7 +186,7 @@ class Laws(NamedTuple):
     supports : ndarray, shape (n_laws, n_moved)
     p : ndarray, shape (n_laws, PARAMETERS)
     memory : ndarray, shape (n_laws, VARIABLES + 2)
-    f, i : ndarray, shapes (n_laws, 27), (n_laws, 8)
+    f, i : ndarray, shapes (n_laws, 27), (n_laws, 9)
         Columns as above.
     saved : ndarray, shape (n_laws, 5 + VARIABLES)
         State at the start of a step that is not cut at events.

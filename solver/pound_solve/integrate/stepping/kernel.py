@@ -37,6 +37,7 @@ from pound_solve.integrate.kernels.laws import (
     along,
     bend,
     carry,
+    drag,
     follows,
     grip,
     law_force,
@@ -125,6 +126,7 @@ from pound_solve.integrate.kernels.state import (
     UPDATES,
     V1,
     VALUE,
+    VISCOUS,
     WHOLE,
     WORST,
     A,
@@ -342,7 +344,7 @@ def note(m: Matrices, w: Laws, x: Motion, t: float, since: float) -> None:
             law = i - rows - laws
             value = w.f[law, K] * w.f[law, LD] + w.f[law, F0]
             slope = w.f[law, K] * w.f[law, LV]
-            if w.i[law, CONTACT] and w.f[law, C] != 0.0:  # damping is no part of a spring's force
+            if w.i[law, VISCOUS] and w.f[law, C] != 0.0:  # damping is no part of a spring's force
                 value += w.f[law, C] * w.f[law, LV]
                 slope += w.f[law, C] * along(w.rows, law, x.q, A)
                 if light(m, w, law):  # its acceleration is a jump of its velocity over a step, or a part
@@ -446,20 +448,16 @@ def accept(
     x.works[1] += loss * h / 3.0
     x.works[3] += abs(x.works[0] - before)
     for i in range(len(w.i)):
-        k, c, f0 = w.f[i, K], w.f[i, C], w.f[i, F0]
         v0, v1 = w.f[i, LV], w.f[i, LV1]
-        drag0, drag1 = c * v0, c * v1
-        force0, force1 = k * w.f[i, LD] + f0 + drag0, k * w.f[i, LD1] + f0 + drag1
-        if w.i[i, CONTACT] and w.i[i, CURVED]:  # its damping is what the rate adds to the force
-            force0, force1 = law_force(w, f, i, w.f[i, LD], v0), law_force(w, f, i, w.f[i, LD1], v1)
-            drag0 = force0 - law_force(w, f, i, w.f[i, LD], 0.0)
-            drag1 = force1 - law_force(w, f, i, w.f[i, LD1], 0.0)
+        drag0, drag1 = drag(w, f, i, w.f[i, LD], v0), drag(w, f, i, w.f[i, LD1], v1)
         if drag0 != 0.0 or drag1 != 0.0:
             lost = h / 6.0 * (drag0 * (2.0 * v0 + v1) + drag1 * (v0 + 2.0 * v1))
             w.f[i, DASHPOT] += lost
             x.works[2 if w.i[i, CONTACT] else 1] += lost
         if w.i[i, CONTACT]:
-            w.f[i, IMPULSE] += 0.5 * h * (force0 + force1)
+            w.f[i, IMPULSE] += (
+                0.5 * h * (law_force(w, f, i, w.f[i, LD], v0) + law_force(w, f, i, w.f[i, LD1], v1))
+            )
         w.f[i, LD], w.f[i, LV] = w.f[i, LD1], w.f[i, LV1]
         w.f[i, MOST_D] = max(w.f[i, MOST_D], abs(w.f[i, LD]))
         w.f[i, MOST_V] = max(w.f[i, MOST_V], abs(w.f[i, LV]))
@@ -691,7 +689,7 @@ def sample(w: Laws, x: Motion, z: Samples, f: Tables, count: Index, t: float) ->
     for i in range(len(w.i)):
         d = w.f[i, LD]
         still = law_force(w, f, i, d, 0.0)
-        z.laws[at, 0, i] = law_force(w, f, i, d, w.f[i, LV]) if w.i[i, CONTACT] else still
+        z.laws[at, 0, i] = law_force(w, f, i, d, w.f[i, LV]) if w.i[i, VISCOUS] else still
         held = f.recoverable[w.i[i, CODE]](parameters(w.p, i), w.i[i, AT], memory(w.memory, i), d, still)
         lost = law_work(w, f, i, d) - held
         size = max(abs(d), abs(w.f[i, D0]))
