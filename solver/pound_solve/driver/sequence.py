@@ -466,6 +466,8 @@ class Course:
             if x.role.collides:
                 continue
             d, f, loss = peaks.deformation[i], peaks.force[i], recorder.losses[i]
+            if x.role.viscous:
+                loss += peaks.dashpot_losses[i]
             rows.append(
                 (
                     x.element,

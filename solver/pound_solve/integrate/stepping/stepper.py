@@ -253,7 +253,7 @@ class Stepper:
             p=np.zeros((count, functions.PARAMETERS)),
             memory=np.zeros((count, functions.VARIABLES + 2)),
             f=np.zeros((count, 27)),
-            i=np.zeros((count, 8), np.int64),
+            i=np.zeros((count, 9), np.int64),
             saved=np.zeros((count, 5 + functions.VARIABLES)),
             leans=np.flatnonzero([s.role is Role.FRICTION for s in laws]).astype(np.int64),
             corotational=self._turning(position if stiff else {}),
@@ -268,6 +268,7 @@ class Stepper:
             w.memory[i, arrays.TURN : arrays.TURN + len(state[3]) - ruled] = state[3][ruled:]
             w.f[i, [arrays.MOST_D, arrays.MOST_V]] = abs(d[i]), abs(v[i])
             w.i[i, [arrays.NORMAL, arrays.PRESSED]] = self._leans_on(law)
+            w.i[i, arrays.VISCOUS] = law.role.viscous
         self.x = x = arrays.Motion(
             np.zeros((19, n)),
             np.zeros((4, len(pattern.li))),
@@ -363,9 +364,10 @@ class Stepper:
     def _begin(self, advance: jit.Function) -> None:
         """Take the first sample, before a kernel advances."""
         m, w, x, z, system = self.matrices, self.w, self.x, self.z, self.system
-        rubs = next((s for s in self.laws if s.role is Role.FRICTION), None)
-        if rubs is not None and not self.scheme.locate:
-            raise self.stop("A505", f"friction (element {rubs.element}) needs steps with EVENTS=LOCATED")
+        turns = next((s for s in self.laws if s.role in (Role.FRICTION, Role.DAMPER)), None)
+        if turns is not None and not self.scheme.locate:
+            what = "friction" if turns.role is Role.FRICTION else "a fluid damper"
+            raise self.stop("A505", f"{what} (element {turns.element}) needs steps with EVENTS=LOCATED")
         t0 = float(self.times[0])
         for i, s in enumerate(self.laws):
             kind = s.law.rule.branches[w.i[i, arrays.AT]].kind
