@@ -11,7 +11,12 @@ from itertools import pairwise
 import numpy as np
 
 from paths import Walk, pieces, turning_points
-from pound_solve.laws.automaton import Law, State, drive
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    State,
+    drive,
+)
 
 SEEDS = (0, 1, 2)
 
@@ -121,7 +126,7 @@ def taken_off(law: Law, state: State, d: float, reach: float) -> tuple[float, bo
                 else:
                     outside = middle
             high = inside
-        plain = plain and not law.rule.branches[state[0]].startswith("yielding")
+        plain = plain and law.rule.branches[state[0]].kind is not BranchKind.YIELDING
         walk.move(high + 1e-14 * reach * away)
     return -walk.work, plain
 

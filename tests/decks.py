@@ -105,7 +105,7 @@ def solve(model: Model, self_weight: bool = True) -> Solved:
     for spring, law_state, row in zip(s.laws, state.states, s.law_rows):
         name = (
             "contact"
-            if spring.is_contact
+            if spring.role.collides
             else f"{'moment' if spring.unit == 'F*L' else 'force'} {spring.component}"
         )
         force[spring.element, name] = spring.law.branch(law_state).force(float(row @ state.u), 0.0)

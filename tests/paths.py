@@ -73,7 +73,7 @@ class Walk:
     @property
     def names(self) -> set[str]:
         """Branches that it has been on."""
-        return {self.law.rule.branches[state[0]] for state, _, _ in self.visits}
+        return {self.law.rule.branches[state[0]].name for state, _, _ in self.visits}
 
     def move(self, *goals: float) -> Walk:
         """Go to each of `goals` in turn."""

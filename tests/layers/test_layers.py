@@ -32,7 +32,7 @@ ROOMS = (
 #: folders within a room, likewise; what a room holds beside them may import all of them
 WITHIN = {
     "loading": ("records", "motions", "forces"),
-    "laws": ("automaton", "functions", "mirror", "contact", "hysteresis"),
+    "laws": ("automaton", "functions", "mirror", "contact", "damper", "hysteresis"),
     "integrate": (
         "protocol",
         "costs",
@@ -174,6 +174,10 @@ def test_no_module_keeps_mutable_state():
                 assert not changed & set(names), path
 
 
-def test_no_function_evaluates_text():
+def test_no_function_evaluates_text_but_the_adapters_of_the_rules():
+    """`laws.functions` writes code of its own, from whole numbers: numba needs the length of a tuple
+    there.
+    """
     for path in modules():
-        assert not calls(path) & {"eval", "exec"}, path
+        if place(path) != "laws/functions.py":
+            assert not calls(path) & {"eval", "exec"}, path

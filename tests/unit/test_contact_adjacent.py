@@ -40,7 +40,7 @@ STRUT = 2e8 * 0.01 / 5.0 * 0.6**2  # inclined: times the squared cosine
 
 def facts(hit="3 5", choice="", law="LINEAR", slab="", five=""):
     structure = structure_of(ROW.format(hit=hit, choice=choice, law=law, slab=slab, five=five))
-    return next(s.facts for s in structure.laws if s.is_contact)
+    return next(s.facts for s in structure.laws if s.role.collides)
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_both_sides_of_a_node_count():
     """Node 2 is met by the slab alone, node 3 here by two slabs."""
     text = ROW.format(hit="5 3", choice="ADJACENT=STIFFER", law="LINEAR", slab="", five="")
     text = text.replace(" 9 HIT", " 6 SLAB 3 8\n 9 HIT").replace("NODES\n", "NODES\n 8 9 3\n")
-    found = next(s.facts for s in structure_of(text).laws if s.is_contact)
+    found = next(s.facts for s in structure_of(text).laws if s.role.collides)
     assert found["k"] == pytest.approx(3e7 * 0.2 * (1 / 4 + 1 / 5), rel=1e-12)
     assert found["note"].endswith("K of elements 2, 6, the stiffer")
 
@@ -122,7 +122,7 @@ def test_distributed_diaphragms_of_the_paper(tmp_path, n):
     own.write_text(text)
     model, found, _ = read_deck(str(own), catalog(), {"n": str(n)})
     assert model is not None and not found
-    contacts = [s for s in assemble(model).laws if s.is_contact]
+    contacts = [s for s in assemble(model).laws if s.role.collides]
     assert [s.facts["k"] for s in contacts] == pytest.approx([752520.0 * n] * 2, rel=1e-12)
     assert [s.facts["note"].split("; ")[1] for s in contacts] == [
         "K of element 3001, the softer",

@@ -9,7 +9,6 @@ from scipy.integrate import solve_ivp
 
 import pound_solve
 from decks import structure_of
-from pound_solve.laws.automaton import internal_variables
 from pound_solve.laws.contact import friction
 from pound_solve.structure.assembly import AssemblyError
 
@@ -301,7 +300,7 @@ def test_without_mu_there_is_none():
     assert [s.component for s in structure_of(CARD.format("")).laws] == ["contact"]
     contact, rubs = structure_of(CARD.format("MU=0.5 KT=3")).laws
     assert contact.facts["note"] == "elastic; friction 0.5, 0.5 while it slips"
-    assert (rubs.normal, rubs.dofs, rubs.row) == ("contact", ((1, 1),), (1.0,))
+    assert (rubs.normal_component, rubs.dofs, rubs.row) == ("contact", ((1, 1),), (1.0,))
 
 
 @pytest.mark.parametrize(
@@ -316,24 +315,24 @@ def test_half_said(items, words):
 def test_the_rule_walked_by_hand():
     """KT 100, coefficients 0.5 and 0.4 under a force of 20: limits 10 and 8."""
     p = friction.build(100.0, 0.5, 0.4).p
-    at, m = friction.RULE.transition(p, friction.OPEN, internal_variables(o=20.0), 0, 3.0, 1.0)
-    assert (at, m[0]) == (friction.STICKING, 3.0)  # the spring starts where it touched
+    at, m = friction.RULE.transition(p, friction.OPEN, (20.0, 0.0, 0.0), 0, 3.0, 1.0)
+    assert (at, m[friction.ANCHOR]) == (friction.STICKING, 3.0)  # the spring starts where it touched
     k, _, f0, *exits = friction.RULE.branch(p, at, m)
     assert (k, k * 3.1 + f0) == (100.0, pytest.approx(10.0))
     assert exits[0] * 3.1 + exits[2] == pytest.approx(0.0) == exits[3] * 2.9 + exits[5]
     at, m = friction.RULE.transition(p, at, m, 0, 3.1, 1.0)
     assert at == friction.PLUS and friction.RULE.branch(p, at, m)[2] == pytest.approx(8.0)
     # the limit grows at 0.4 * 50 a second, the spring could follow it at 0.2: what is slower sticks
-    m = (*m[:-1], 50.0)
+    m = (m[0], 50.0, m[2])
     exit_ = friction.RULE.branch(p, at, m)[3:6]
     assert exit_[1] * 0.3 + exit_[2] < 0.0 < exit_[1] * 0.1 + exit_[2]
     at, m = friction.RULE.transition(p, at, m, 0, 4.0, 0.1)
-    assert at == friction.STICKING and 100.0 * (4.0 - m[0]) == pytest.approx(8.0)  # no jump
+    assert at == friction.STICKING and 100.0 * (4.0 - m[friction.ANCHOR]) == pytest.approx(8.0)  # no jump
     assert friction.RULE.transition(p, at, m, friction.RELEASED, 4.0, 0.1) == (
         friction.OPEN,
-        internal_variables(),
+        (0.0, 0.0, 0.0),
     )
     # touched without force: what slides faster than the limit grows slips at once
-    touch = internal_variables(q=50.0)
+    touch = (0.0, 50.0, 0.0)
     for v, wanted in ((0.26, friction.PLUS), (-0.26, friction.MINUS), (0.24, friction.STICKING)):
         assert friction.RULE.transition(p, friction.OPEN, touch, 0, 0.0, v)[0] == wanted

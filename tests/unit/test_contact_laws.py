@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from pound_solve.catalog import catalog
-from pound_solve.laws.automaton import Law, State, internal_variables
+from pound_solve.laws.automaton import Law, State
 from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.kelvin_voigt import OPEN, PRESSED, RELEASED, RULE, Built
 
@@ -47,7 +47,7 @@ BASE: dict[str, Any] = {
 
 def state(at: int, d0: float = 0.0, work: float = 0.0) -> State:
     """State on a branch entered at `d0`, after that work."""
-    return at, d0, work, internal_variables()
+    return at, d0, work, ()
 
 
 def kelvin_voigt(mass: float = 2.0, **values: Any) -> Built:

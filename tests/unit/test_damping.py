@@ -17,10 +17,10 @@ from pound_solve.analyses import modal
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Rule,
     drive,
-    internal_variables,
     linear,
 )
 from pound_solve.laws.hysteresis import bilinear, slackness
@@ -708,11 +708,13 @@ def bend(k, d):
 
 
 CURVED = Rule(
-    ("loading", "unloading"),
-    lambda p: (0, internal_variables()),
+    BranchKind.ELASTIC.named("loading", "unloading"),
+    lambda p: (0, (0.0, 0.0)),
     lambda p, at, m: linear(p[0], 0.0, REVERSAL_DOWN if at == 0 else REVERSAL_UP),
-    lambda p, at, m, way, d, v: (1 - at, internal_variables(d, bend(p[0], d))),
+    lambda p, at, m, way, d, v: (1 - at, (d, bend(p[0], d))),
     curve=lambda p, at, m, d0, d, v: (bend(p[0], d), p[0] / np.cosh(d) ** 2, 0.0, 0.0),
+    parameters=1,
+    variables=2,
 )
 
 

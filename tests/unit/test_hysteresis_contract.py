@@ -6,6 +6,7 @@ A new rule is held to it as soon as its file declares a SPEC; SAMPLES says with 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from itertools import count
 from typing import Any
 
@@ -23,12 +24,12 @@ from pound_solve.laws import functions
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Numbers,
     Rule,
     above,
     drive,
-    internal_variables,
     linear,
     on_spring,
 )
@@ -250,26 +251,29 @@ def test_a_long_history(law: Law, sample: dict[str, Any]) -> None:
 @pytest.mark.parametrize("name", sorted(set(SAMPLES) & set(RULES)))
 def test_compiled_functions_give_the_same_numbers(name: str) -> None:
     laws = [p.values[0] for p in UNEQUAL if p.id.startswith(f"{name} ")]
-    branch, transition, recoverable, curve = (f[0] for f in functions.tables([laws[0].rule]))
+    branch, transition, recoverable, curve, power = (f[0] for f in functions.tables([laws[0].rule]))
     for law in laws:
-        rule, p = law.rule, law.p
+        rule = law.rule
+        p = law.p + (0.0,) * (functions.PARAMETERS - rule.parameters)
+        rest = (0.0,) * (functions.VARIABLES - rule.variables)
         walk = Walk(law).move(*turning_points(3, REACH))
         for n, (state, _, d) in enumerate(walk.visits):
-            at, d0, m = state[0], state[1], state[3]
-            assert branch(p, at, m) == pytest.approx(rule.branch(p, at, m), rel=1e-13, abs=1e-13)
+            at, d0, own = state[0], state[1], state[3]
+            m = own + rest
+            assert branch(p, at, m) == pytest.approx(rule.branch(law.p, at, own), rel=1e-13, abs=1e-13)
             f = law.force(state, d)[0]
-            assert recoverable(p, at, m, d, f) == pytest.approx(rule.recoverable(p, at, m, d, f), rel=1e-13)
+            expected = rule.recoverable(law.p, at, own, d, f)
+            assert recoverable(p, at, m, d, f) == pytest.approx(expected, rel=1e-13)
+            assert power(p, at, m, d, 1.0) == law.power(state, d, 1.0) == 0.0
             if rule.curve is not None:
-                expected = rule.curve(p, at, m, d0, d, 0.0)
+                expected = rule.curve(law.p, at, own, d0, d, 0.0)
                 assert curve(p, at, m, d0, d, 0.0) == pytest.approx(expected, rel=1e-12, abs=1e-13)
             if n + 1 < len(walk.visits) and walk.visits[n + 1][0] is not state:
                 for way in range(len(law.branch(state).exits)):
                     there, memory = transition(p, at, m, way, d, 0.0)
-                    expected = rule.transition(p, at, m, way, d, 0.0)
-                    assert (there, memory) == (
-                        expected[0],
-                        pytest.approx(expected[1], rel=1e-12, abs=1e-13),
-                    )
+                    to, now = rule.transition(law.p, at, own, way, d, 0.0)
+                    assert there == to
+                    assert memory == pytest.approx(now + rest, rel=1e-12, abs=1e-13)
 
 
 # ---------------------------------------------------------------------- the contract can fail
@@ -295,7 +299,7 @@ def idle(p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float) -> tupl
 def elsewhere(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     """Unloads along a line that does not pass through the point where the motion turned."""
     there, memory = bilinear.transition(p, at, m, way, d, v)
-    return there, internal_variables(0.5 * memory[0]) if at != bilinear.ELASTIC else memory
+    return there, (0.5 * memory[0],) if at != bilinear.ELASTIC else memory
 
 
 def backward(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -330,7 +334,7 @@ def forgetful() -> Callable[[Numbers, int, Numbers], Numbers]:
     [
         (contract.trying_changes_nothing, {"branch": forgetful()}, "asking changed the law"),
         (contract.force_is_continuous, {"branch": jumps}, "the force jumps"),
-        (contract.force_is_continuous, {"leave": elsewhere}, "the force jumps"),
+        (contract.force_is_continuous, {"transition": elsewhere}, "the force jumps"),
         (contract.branches_begin_clear_of_their_exits, {"branch": backward}, "an exit is above zero"),
         (contract.tangent_is_the_slope_of_the_force, {"curve": too_stiff}, "the tangent"),
         (contract.work_is_the_area_below_the_force, {"curve": idle}, "the work"),
@@ -344,7 +348,7 @@ def test_the_contract_tells_a_wrong_rule(
     numbers = (K, PLUS, MINUS, 0.3)
     clause(Law(bilinear.RULE, numbers), REACH)
     with pytest.raises(AssertionError, match=says):
-        clause(Law(bilinear.RULE._replace(**wrong), numbers), REACH)
+        clause(Law(replace(bilinear.RULE, **wrong), numbers), REACH)
 
 
 def test_the_contract_tells_a_rule_that_gives_energy() -> None:
@@ -356,9 +360,19 @@ def test_the_contract_tells_a_rule_that_gives_energy() -> None:
 
     def transition(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
         f = m[0] + (1.0 if at == 0 else 2.0) * p[0] * (d - m[1])
-        return 1 - at, internal_variables(f, d)
+        return 1 - at, (f, d)
 
-    law = Law(Rule(("up", "down"), lambda p: (0, internal_variables()), branch, transition), (K,))
+    law = Law(
+        Rule(
+            BranchKind.ELASTIC.named("up", "down"),
+            lambda p: (0, (0.0, 0.0)),
+            branch,
+            transition,
+            parameters=1,
+            variables=2,
+        ),
+        (K,),
+    )
     with pytest.raises(AssertionError, match="gives energy"):
         contract.closed_loops_dissipate(law, REACH)
 
@@ -367,6 +381,16 @@ def test_a_rule_that_cycles_is_told() -> None:
     def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
         return linear(p[0], 0.0, above(0.5 * REACH))
 
-    law = Law(Rule(("one", "other"), bilinear.start, branch, lambda p, at, m, w, d, v: (1 - at, m)), (K,))
+    law = Law(
+        Rule(
+            BranchKind.ELASTIC.named("one", "other"),
+            bilinear.start,
+            branch,
+            lambda p, at, m, w, d, v: (1 - at, m),
+            parameters=1,
+            variables=1,
+        ),
+        (K,),
+    )
     with pytest.raises(AssertionError, match="without moving"):
         Walk(law).move(REACH)

@@ -8,7 +8,10 @@ The contract of hysteresis rules is in test_hysteresis_contract.py.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from importlib import import_module
 from itertools import product
+from pkgutil import walk_packages
 from typing import Any
 
 import numpy as np
@@ -16,14 +19,15 @@ import pytest
 
 from paths import Walk, turning_points
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve import laws
 from pound_solve.assess.law_test import specimen
 from pound_solve.catalog import specs
+from pound_solve.laws import functions
 from pound_solve.laws.automaton import (
     EVENTS,
-    MEMORY,
     NEVER,
-    PARAMETERS,
     REVERSAL_DOWN,
+    BranchKind,
     EventFunction,
     Law,
     NoProgressError,
@@ -33,7 +37,6 @@ from pound_solve.laws.automaton import (
     below,
     consistent,
     drive,
-    internal_variables,
     linear,
 )
 from pound_solve.laws.contact import bilinear_impact, table
@@ -50,7 +53,7 @@ STAIR, FLAT = 0, 1
 
 
 def stair_start(p: Numbers) -> tuple[int, Numbers]:
-    return STAIR, internal_variables(0.0)
+    return STAIR, (0.0,)
 
 
 def stair_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -63,25 +66,38 @@ def stair_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def stair_leave(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
     if at == STAIR:
-        return (FLAT, m) if way == 0 else (STAIR, internal_variables(d))
-    return STAIR, internal_variables(d - p[1] / p[0])
+        return (FLAT, m) if way == 0 else (STAIR, (d,))
+    return STAIR, (d - p[1] / p[0],)
 
 
-STEPS = Law(Rule(("stair", "flat"), stair_start, stair_branch, stair_leave), (100.0, 5.0))
+STEPS = Law(
+    Rule(
+        BranchKind.ELASTIC.named("stair", "flat"),
+        stair_start,
+        stair_branch,
+        stair_leave,
+        parameters=3,
+        variables=1,
+    ),
+    (100.0, 5.0),
+)
 
 
-def test_numbers_have_fixed_lengths() -> None:
-    assert len(STEPS.p) == PARAMETERS
-    assert STEPS.p[:3] == (100.0, 5.0, 0.0)
-    assert internal_variables(*range(MEMORY)) == tuple(range(MEMORY))
-    assert len(internal_variables()) == MEMORY
+def test_numbers_have_the_lengths_that_the_rule_says() -> None:
+    assert STEPS.p == (100.0, 5.0, 0.0)  # what is left out is zero
+    with pytest.raises(ValueError, match="a rule of 3 parameters was given 4"):
+        Law(STEPS.rule, (1.0, 2.0, 3.0, 4.0))
+    with pytest.raises(ValueError, match="a rule of 2 internal variables starts with 1"):
+        Law(replace(STEPS.rule, variables=2), (100.0, 5.0)).start()
+    with pytest.raises(ValueError, match="a rule has 3 parameters and 99 internal variables: the kernels"):
+        functions.tables([replace(STEPS.rule, variables=99)])
     flat = linear(1.0, 2.0, c=3.0)
     assert flat == (1.0, 3.0, 2.0, *NEVER * EVENTS)
 
 
 def test_branch_with_its_exits() -> None:
     state = STEPS.start()
-    assert state == (STAIR, 0.0, 0.0, internal_variables())
+    assert state == (STAIR, 0.0, 0.0, (0.0,))
     branch = STEPS.branch(state)
     assert (branch.name, branch.stiffness, branch.damping, branch.force0) == ("stair", 100.0, 0.0, 0.0)
     # exits that are not there are not told
@@ -92,24 +108,24 @@ def test_branch_with_its_exits() -> None:
 
 def test_work_goes_on_over_branches() -> None:
     flat = STEPS.transition(STEPS.start(), 0, 0.05)
-    assert flat == (FLAT, 0.05, pytest.approx(0.125), internal_variables())  # 1/2 * 5 * 0.05
+    assert flat == (FLAT, 0.05, pytest.approx(0.125), (0.0,))  # 1/2 * 5 * 0.05
     assert STEPS.work(flat, 0.08) == pytest.approx(0.125 + 5.0 * 0.03)
     assert STEPS.stored(flat, 0.08) == pytest.approx(0.125)
     assert STEPS.dissipated(flat, 0.08) == pytest.approx(0.15)
     back = STEPS.transition(flat, 0, 0.08)
-    assert back == (STAIR, 0.08, pytest.approx(0.275), internal_variables(pytest.approx(0.03)))
+    assert back == (STAIR, 0.08, pytest.approx(0.275), (pytest.approx(0.03),))
     assert STEPS.work(back, 0.03) == pytest.approx(0.275 - 0.125)
     assert STEPS.dissipated(back, 0.03) == pytest.approx(0.15)
 
 
 def test_rounding_is_no_loss_and_a_loss_is_no_rounding() -> None:
     """Only what is below the rounding of the deformation is taken for nothing."""
-    state = (STAIR, 0.04, 0.5 * 100.0 * 0.04**2, internal_variables())
+    state = (STAIR, 0.04, 0.5 * 100.0 * 0.04**2, (0.0,))
     assert STEPS.dissipated(state, 0.04) == 0.0
     off = 0.9e-14 * 100.0 * 0.04**2
-    assert STEPS.dissipated((STAIR, 0.04, state[2] + off, internal_variables()), 0.04) == 0.0
+    assert STEPS.dissipated((STAIR, 0.04, state[2] + off, (0.0,)), 0.04) == 0.0
     off = 1.2e-14 * 100.0 * 0.04**2
-    assert STEPS.dissipated((STAIR, 0.04, state[2] + off, internal_variables()), 0.04) > 0.0
+    assert STEPS.dissipated((STAIR, 0.04, state[2] + off, (0.0,)), 0.04) > 0.0
 
 
 def test_follow_takes_the_exits_on_its_way() -> None:
@@ -137,7 +153,10 @@ def test_a_law_that_never_settles_is_stopped() -> None:
     def stay(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> tuple[int, Numbers]:
         return at, m
 
-    law = Law(Rule(("here",), stair_start, restless, stay), (1.0,))
+    law = Law(
+        Rule(BranchKind.ELASTIC.named("here"), stair_start, restless, stay, parameters=1, variables=1),
+        (1.0,),
+    )
     with pytest.raises(NoProgressError):
         drive(law, law.start(), 0.0, 1.0)
 
@@ -273,3 +292,14 @@ def test_contact_pushes_and_forgets(law: Law, gap: float, k: float) -> None:
             assert law.stored(walk.state, goal) == pytest.approx(energy, abs=1e-9)
             assert law.work(walk.state, goal) == pytest.approx(begin + walk.work, abs=1e-12)
             assert law.dissipated(walk.state, goal) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_kernels_have_room_for_the_longest_rule_and_no_more():
+    """`laws.functions` holds both lengths as constants; every rule of the catalog is looked at."""
+    found = []
+    for module in walk_packages(laws.__path__, f"{laws.__name__}."):
+        rule = getattr(import_module(module.name), "RULE", None)
+        found += [] if rule is None else [(rule.parameters, rule.variables)]
+    longest = tuple(max(lengths) for lengths in zip(*found))
+    assert len(found) > 20
+    assert longest == (functions.PARAMETERS, functions.VARIABLES), "set them in laws/functions.py"

@@ -16,7 +16,14 @@ from pound_solve import run
 from pound_solve.analyses import pushover, static
 from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.catalog import catalog
-from pound_solve.laws.automaton import Law, Rule, above, drive, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Rule,
+    above,
+    drive,
+    linear,
+)
 from pound_solve.structure.assembly import assemble
 
 
@@ -312,11 +319,13 @@ def bell(p, at, m, d0, d, v):
 
 
 BELL = Rule(
-    ("curved",),
-    lambda p: (0, internal_variables()),
+    BranchKind.ELASTIC.named("curved"),
+    lambda p: (0, ()),
     lambda p, at, m: linear(p[0], 0.0),
-    lambda *_: (0, internal_variables()),
+    lambda *_: (0, ()),
     curve=bell,
+    parameters=2,
+    variables=0,
 )  # fmt: skip
 
 
@@ -340,10 +349,12 @@ def test_a_curve_that_softens():
 
 
 BRITTLE = Rule(
-    ("whole", "broken"),
-    lambda p: (0, internal_variables()),
+    BranchKind.ELASTIC.named("whole", "broken"),
+    lambda p: (0, ()),
     lambda p, at, m: linear(p[0], 0.0, above(p[1])) if at == 0 else linear(0.0, 0.0),
     lambda p, at, m, way, d, v: (1, m),
+    parameters=2,
+    variables=0,
 )
 
 

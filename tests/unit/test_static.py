@@ -14,7 +14,14 @@ from decks import solved, structure_of
 from pound_solve.analyses import static
 from pound_solve.analyses.equilibrium import SupportReactions
 from pound_solve.analyses.path_following import InstabilityError
-from pound_solve.laws.automaton import REVERSAL_DOWN, REVERSAL_UP, Law, Rule, internal_variables, linear
+from pound_solve.laws.automaton import (
+    REVERSAL_DOWN,
+    REVERSAL_UP,
+    BranchKind,
+    Law,
+    Rule,
+    linear,
+)
 from pound_solve.laws.contact.kelvin_voigt import PRESSED
 
 
@@ -421,11 +428,13 @@ def saturating(p, at, m, d0, d, v):
 
 
 SATURATING = Rule(
-    ("loading", "unloading"),
-    lambda p: (0, internal_variables()),
+    BranchKind.ELASTIC.named("loading", "unloading"),
+    lambda p: (0, (0.0, 0.0)),
     lambda p, at, m: linear(p[0], 0.0, REVERSAL_DOWN if at == 0 else REVERSAL_UP),
-    lambda p, at, m, way, d, v: (1 - at, internal_variables(saturating(p, at, m, m[1], d, 0.0)[0], d)),
+    lambda p, at, m, way, d, v: (1 - at, (saturating(p, at, m, m[1], d, 0.0)[0], d)),
     curve=saturating,
+    parameters=2,
+    variables=2,
 )
 
 

@@ -106,7 +106,7 @@ def _lead_massless(system: ReducedSystem, u: Array, pushed: Array) -> None:
     """
     laws = system.structure.laws
     idle = massless(system.mass) & (pushed == 0.0) & ~used_rows(system.damping)
-    damped = [i for i, s in enumerate(laws) if s.beta != 0.0 or s.is_contact]
+    damped = [i for i, s in enumerate(laws) if s.beta != 0.0 or s.role.viscous]
     idle &= ~used_columns(system.law_rows[damped])
     if idle.any() and pushed.any():
         k = system.stiffness + weighted(system.law_rows, [s.k0 for s in laws])
@@ -314,8 +314,8 @@ class HistoryRecorder:
         elements = model.output["MEMBERS"]
         self.outputs = [o for o in structure.outputs if elements is None or o.element in elements]
         self.envelopes = Envelopes(system, self.nodes, self.outputs)
-        self.springs = [i for i, s in enumerate(structure.laws) if not s.is_contact]
-        self.contacts = [i for i, s in enumerate(structure.laws) if s.is_contact]
+        self.springs = [i for i, s in enumerate(structure.laws) if not s.role.collides]
+        self.contacts = [i for i, s in enumerate(structure.laws) if s.role.collides]
         self.first_energy = np.zeros(len(ENERGIES)) if first_energy is None else first_energy
         self.last_energy = np.zeros(len(ENERGIES))
         self._fresh = first_energy is None

@@ -415,7 +415,7 @@ def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
     if loose.any():
         first = int(np.flatnonzero(loose)[0])
         own = dense(structure.law_rows[:, [first]]).ravel()
-        touched = any(s.is_contact and x != 0.0 for s, x in zip(structure.laws, own))
+        touched = any(s.role.collides and x != 0.0 for s, x in zip(structure.laws, own))
         hint = ": only an open contact could; HISTORY FROM=REST lets it come down" if touched else ""
         raise InstabilityError(f"{name_of(structure, first)} is loaded, but nothing holds it{hint}")
     at, u = np.flatnonzero(held), np.zeros(len(load))

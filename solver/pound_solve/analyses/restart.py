@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import zip_longest
 
 import numpy as np
 
 from pound_solve.integrate.protocol import Extreme, Outcome, Peaks, Start
-from pound_solve.laws.automaton import MEMORY, State
+from pound_solve.laws.automaton import State
 from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import Structure
 from pound_solve.structure.dofs import label
@@ -58,10 +59,10 @@ class Saved:
             "first": self.first,
             "branch": np.array([s[0] for s in self.states], float),
             "entry": np.array([s[1:3] for s in self.states], float).reshape(-1, 2),
-            # a law that knows its secant stiffness has two numbers more than the others
-            "memory": np.array([(*s[3], 0.0, 0.0)[: MEMORY + 2] for s in self.states]).reshape(
-                -1, MEMORY + 2
-            ),
+            # of as many numbers as the longest
+            "memory": np.array(list(zip_longest(*(s[3] for s in self.states), fillvalue=0.0)), float)
+            .reshape(-1, len(self.states))
+            .T.copy(),
             "degrees of freedom": np.array(structure.dofs.free, float).reshape(-1, 2),
         }
 

@@ -151,7 +151,7 @@ def protocol(spring: LawSpring) -> list[float]:
     LoopError
         The spring has no yield deformation on one of its sides.
     """
-    if spring.is_contact:
+    if spring.role.collides:
         return [spring.facts["gap"] + x for x in CLOSURES]
     plus, minus = spring.yields or (0.0, 0.0)
     if plus == 0.0 or minus == 0.0:
@@ -241,5 +241,5 @@ def table(points: Sequence[Point]) -> str:
 def picture(spec: Spec) -> str:
     """SVG of a law's loop with its `sample`, for the manual."""
     spring, items = specimen(spec)
-    found = trace(spring.law, protocol(spring), float(spring.is_contact))
+    found = trace(spring.law, protocol(spring), float(spring.role.viscous))
     return svg(found.curve, f"{spec.name} {items}", *AXES[spec.family])

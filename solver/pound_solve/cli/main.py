@@ -488,7 +488,7 @@ def _loop(args: argparse.Namespace) -> int:
         spec = law_test.law_of(f"{args.law} {args.items.pop(0)}" if family else args.law)
         spring, items = law_test.specimen(spec, args.items)
         path = _turning_points(args) or law_test.protocol(spring)
-        rate = float(spring.is_contact) if args.rate is None else args.rate
+        rate = float(spring.role.viscous) if args.rate is None else args.rate
         found = law_test.trace(spring.law, path, rate)
     except law_test.LawTestError as err:
         return _complain(str(err), 2)

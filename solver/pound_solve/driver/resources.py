@@ -38,8 +38,8 @@ def arrays(structure: Structure, system: ReducedSystem | None, layout: Layout) -
     layout : mapping
         Its stored histories, see `results.Writer.start_history`.
     """
-    contact = [i for i, s in enumerate(structure.laws) if s.is_contact]
-    spring = [i for i, s in enumerate(structure.laws) if not s.is_contact]
+    contact = [i for i, s in enumerate(structure.laws) if s.role.collides]
+    spring = [i for i, s in enumerate(structure.laws) if not s.role.collides]
     s = structure
     out = [
         ("structure", "stiffness, mass, damping", *size(s.stiffness, s.mass, s.damping)),

@@ -186,7 +186,7 @@ def _inclined(structure: Structure) -> list[Diagnostic]:
     """Contacts along an inclined line between their nodes: seldom meant between floors."""
     out = []
     for spring in structure.laws:
-        if not spring.is_contact:
+        if not spring.role.collides:
             continue
         element = structure.model.elements[spring.element]
         angle = spring.facts["angle"]
@@ -202,7 +202,7 @@ def _inclined(structure: Structure) -> list[Diagnostic]:
 def _pressed(structure: Structure) -> list[Diagnostic]:
     """Contacts that are closed at rest: some programs write the gap with a minus sign."""
     elements, props = structure.model.elements, structure.model.props
-    used = dict.fromkeys(elements[s.element].prop for s in structure.laws if s.is_contact)
+    used = dict.fromkeys(elements[s.element].prop for s in structure.laws if s.role.collides)
     hint = "a distance is positive; leave it if the bodies are pressed on purpose"
     return [
         Diagnostic(

@@ -25,6 +25,7 @@ from pound_solve.results.file import Layout, Writer
 from pound_solve.structure import reduction
 from pound_solve.structure.assembly import Structure
 from pound_solve.structure.diaphragms import diaphragm_collisions
+from pound_solve.structure.elements.base import Role
 
 #: told the time reached, the time to reach, and what keeps the run waiting there, if anything
 Progress = Callable[[float, float, str], None]
@@ -187,7 +188,7 @@ class Course:
         ]
         for x, law_state, d in zip(s.laws, state.states, (s.law_rows @ full).tolist()):
             kind = "moment" if x.unit == "F*L" else "force"
-            quantity = "contact force" if x.is_contact else f"{kind} {x.component}"
+            quantity = "contact force" if x.role.collides else f"{kind} {x.component}"
             forces.append((x.element, quantity, x.force(law_state, d, 0.0), units.text(x.unit)))
         elements, what, values, unit = zip(*forces) if forces else ((), (), (), ())
         told = zip(elements, what, zeroed(np.array(values), unit).tolist(), unit)
@@ -411,7 +412,7 @@ class Course:
         )
         contact_rows = []
         for i, x in enumerate(s.laws):
-            if not x.is_contact:
+            if not x.role.collides:
                 continue
             d = peaks.deformation[i]
             own = [c for c in peaks.collisions if c.law == i]
@@ -462,9 +463,11 @@ class Course:
         m, s, units, peaks = self.model, self.structure, self.model.units, outcome.peaks
         rows, plastic, damaged = [], [], []
         for i, x in enumerate(s.laws):
-            if x.is_contact:
+            if x.role.collides:
                 continue
             d, f, loss = peaks.deformation[i], peaks.force[i], recorder.losses[i]
+            if x.role.viscous:
+                loss += peaks.dashpot_losses[i]
             rows.append(
                 (
                     x.element,
@@ -481,7 +484,7 @@ class Course:
                     loss,
                 )
             )
-            if loss and not x.normal:  # friction has no residual deformation of its own
+            if loss and x.role is Role.SPRING:  # friction has no residual deformation of its own
                 last, unit = recorder.deformations[i], rows[-1][6]
                 left = damage.residual(x.law, outcome.states[i], last) if ended else np.nan
                 path = damage.plastic_path(loss, x.k0, x.yields)

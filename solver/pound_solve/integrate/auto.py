@@ -204,9 +204,9 @@ class ExactTrial:
 def figures(system: ReducedSystem, peaks: Peaks, replay: Replay) -> tuple[Array, Array]:
     """Return the peaks that are compared between runs, and the scales of their differences."""
     laws = system.structure.laws
-    contacts = [i for i, s in enumerate(laws) if s.is_contact]
+    contacts = [i for i, s in enumerate(laws) if s.role.collides]
     force = np.array([max((c.peak for c in peaks.collisions if c.law == i), default=0.0) for i in contacts])
-    springs = [e for e, s in zip(peaks.deformation, laws) if not s.is_contact]
+    springs = [e for e, s in zip(peaks.deformation, laws) if not s.role.collides]
     extremes: list[Extreme] = peaks.monitored or springs
     values = np.array([(e.high, e.low) for e in extremes]).reshape(-1, 2)
     size = np.repeat(np.abs(values).max(axis=1), 2)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
-from pound_solve.laws.automaton import Branch, State
+from pound_solve.laws.automaton import Branch, BranchKind, State
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.elements.base import LawSpring
@@ -153,7 +153,7 @@ def law_values(system: ReducedSystem, t: Array, u: Array, v: Array, states: Sequ
     begin, before = np.array([s[1:3] for s in states]).T[:, :, None]
     still = k * d + f0
     done = before + (0.5 * k * (d + begin) + f0) * (d - begin)
-    force = still + c * rate * np.array([[s.is_contact] for s in system.structure.laws])
+    force = still + c * rate * np.array([[s.role.viscous] for s in system.structure.laws])
     for i, s in enumerate(system.structure.laws):
         if s.law.curved:
             own = d[i].tolist()
@@ -294,7 +294,7 @@ def rounding_check(
     for s, d, f in zip(laws, peaks.deformation, peaks.force):
         force = max(abs(f.high), abs(f.low))
         off = still * s.law.p[0] * max(abs(d.high), abs(d.low))
-        if not s.is_contact and off > worst * force > 0.0:
+        if not s.role.collides and off > worst * force > 0.0:
             worst, place = off / force, s.element
     if place is None:
         return []
@@ -343,20 +343,27 @@ class ResponseTracker:
         d = system.law_rows @ u + system.law_inputs @ ex.value(t)
         rate = system.law_rows @ v + system.law_inputs @ ex.value(t, 1)
         for i, (s, b) in enumerate(zip(self.laws, branches)):
-            if s.is_contact and b.name.startswith("pressed"):
+            if s.role.collides and b.kind.closed:
                 x, y = float(d[i]), float(rate[i])
-                self.switched(i, "open", "pressed", t, x, y, b.force(x, y))
+                self.switched(i, BranchKind.OPEN, b.kind, t, x, y, b.force(x, y))
 
     def switched(
-        self, law: int, before: str, after: str, t: float, d: float, v: float, force_after: float
+        self,
+        law: int,
+        before: BranchKind,
+        after: BranchKind,
+        t: float,
+        d: float,
+        v: float,
+        force_after: float,
     ) -> None:
-        """Note that a law went from branch `before` to `after` at deformation `d`, rate `v`."""
-        if not self.laws[law].is_contact:
-            if after.startswith("yielding") and not before.startswith("yielding"):
+        """Note that a law went from a branch of a kind to one of another at deformation `d`, rate `v`."""
+        if not self.laws[law].role.collides:
+            if after is BranchKind.YIELDING and before is not BranchKind.YIELDING:
                 self.peaks.yields[law] += 1
             return
-        was, now = before.startswith("pressed"), after.startswith("pressed")
-        ended = self._last_ended(law) if before == "released" and now else None
+        was, now = before.closed, after.closed
+        ended = self._last_ended(law) if before is BranchKind.RELEASED and now else None
         if ended is not None:
             # the bodies never parted: the collision goes on
             again = self.peaks.collisions.pop(ended)
@@ -449,7 +456,7 @@ def energies(
         mass, stiffness = system.structure.mass, system.structure.stiffness
         u = system.expanded(u.T, system.excitation.values(t).T).T
         v = system.expanded(v.T, system.excitation.values(t, 1).T, 1).T
-    contact = np.array([s.is_contact for s in system.structure.laws], bool)
+    contact = np.array([s.role.contact_energy for s in system.structure.laws], bool)
     out = np.zeros((len(t), len(ENERGIES)))
     out[:, 0], out[:, 3], out[:, 5] = works.T
     out[:, 1] = 0.5 * (v * (v @ mass)).sum(axis=1)

@@ -13,11 +13,12 @@ the very same source.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from enum import IntEnum
 from typing import NamedTuple
 
-PARAMETERS, MEMORY, EVENTS = 20, 16, 3  #: numbers in a law's parameters and memory, exits of a branch
-PUSH, PUSH_RATE = MEMORY - 2, MEMORY - 1  #: where a law that leans on another finds its force and its rate
+EVENTS = 3  #: most exits of a branch
+PUSH, PUSH_RATE = 0, 1  #: where the memory of a law that leans on another has that one's force and its rate
 
 Numbers = tuple[float, ...]
 State = tuple[int, float, float, Numbers]  #: branch; deformation and work at its entry; memory
@@ -48,41 +49,67 @@ def linear(
     return (k, c, f0, *first, *second, *third)
 
 
-def internal_variables(
-    a: float = 0.0,
-    b: float = 0.0,
-    c: float = 0.0,
-    d: float = 0.0,
-    e: float = 0.0,
-    f: float = 0.0,
-    g: float = 0.0,
-    h: float = 0.0,
-    i: float = 0.0,
-    j: float = 0.0,
-    k: float = 0.0,
-    l: float = 0.0,  # noqa: E741
-    m: float = 0.0,
-    n: float = 0.0,
-    o: float = 0.0,
-    q: float = 0.0,
-) -> Numbers:
-    """Return a memory of `MEMORY` numbers."""
-    return (a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, q)
-
-
 def on_spring(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Recoverable energy of a law that unloads with its initial stiffness ``p[0]``."""
     return 0.5 * f * f / p[0]
 
 
-class Rule(NamedTuple):
+def rate_independent(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
+    """Power of a rule whose force does not depend on the rate: it dissipates none by it."""
+    return 0.0
+
+
+def rate_power(
+    curve: Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]],
+    p: Numbers,
+    at: int,
+    m: Numbers,
+    d: float,
+    v: float,
+) -> float:
+    """Power of the part of a curve's force that is not there without the rate."""
+    return (curve(p, at, m, d, d, v)[0] - curve(p, at, m, d, d, 0.0)[0]) * v
+
+
+class BranchKind(IntEnum):
+    """What a branch means to those who count yields and collisions."""
+
+    ELASTIC = 0  #: below yield: loading, unloading or reloading; every branch of a smooth rule
+    YIELDING = 1  #: on the yield line: to enter it from another kind is a yield event
+    SLIPPING = 2  #: friction at its limit
+    VISCOUS = 3  #: the rate alone makes the force
+    OPEN = 4  #: without force: a contact that is open, a spring that is slack or has failed
+    PRESSED = 5  #: a contact that is closed: to enter it is a collision
+    RELEASED = 6  #: a contact without force and with overlap left: pressed again, the collision goes on
+    HELD = 7  #: a rigid contact that is closed: the deformation stays, by whatever force that takes
+
+    @property
+    def closed(self) -> bool:
+        """Whether a contact on such a branch is closed."""
+        return self in (BranchKind.PRESSED, BranchKind.HELD)
+
+    def named(self, *names: str) -> tuple[BranchType, ...]:
+        """Return branches of this kind."""
+        return tuple(BranchType(name, self) for name in names)
+
+
+class BranchType(NamedTuple):
+    """A branch of a rule: its name, as reports show it, and its kind."""
+
+    name: str
+    kind: BranchKind
+
+
+@dataclass(frozen=True)
+class Rule:
     """A kind of law as functions of its parameters ``p``, present branch ``at`` and memory ``m``.
 
     Attributes
     ----------
-    branches : tuple of str
-        Their names; ``at`` counts them from 0.  Names that begin with "yielding" count as yield,
-        those of a contact that begin with "pressed" as touch.
+    branches : tuple of BranchType
+        Names and kinds; ``at`` counts them from 0.  A rigid contact has one branch of the kind HELD, on
+        which the deformation stays at ``p[2]``; the exits of that branch are functions of the force instead
+        of the deformation, and its entry is an impact with the restitution ``p[1]``.
     start : callable
         ``start(p) -> (at, m)``: virgin, at zero deformation.
     branch : callable
@@ -96,13 +123,15 @@ class Rule(NamedTuple):
     curve : callable or None
         ``curve(p, at, m, d0, d, v) -> (force, d force/d d, d force/d v, work since d0)`` where branches are
         not linear; `d0` is the deformation at their entry.
-    held : int
-        Branch of a rigid contact on which the deformation stays at ``p[2]``, by whatever force that takes
-        (-1: none has it).  The exits of that branch are functions of this force instead of the deformation;
-        its entry is an impact with the restitution ``p[1]``.
+    power : callable or None
+        ``power(p, at, m, d, v) -> power`` that a rule with a `curve` dissipates by the rate `v`.  None:
+        that of the part of the force that is not there without the rate, see `rate_power`.  A linear
+        branch dissipates ``c v^2``.
+    parameters, variables : int
+        How many numbers ``p`` and ``m`` have.
     """
 
-    branches: tuple[str, ...]
+    branches: tuple[BranchType, ...]
     start: Callable[[Numbers], tuple[int, Numbers]]
     branch: Callable[[Numbers, int, Numbers], Numbers]
     transition: Callable[[Numbers, int, Numbers, int, float, float], tuple[int, Numbers]]
@@ -110,7 +139,14 @@ class Rule(NamedTuple):
     curve: (
         Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]] | None
     ) = None
-    held: int = -1
+    power: Callable[[Numbers, int, Numbers, float, float], float] | None = None
+    parameters: int = field(kw_only=True)
+    variables: int = field(kw_only=True)
+
+    @property
+    def rigid(self) -> bool:
+        """Whether it is a rigid contact."""
+        return any(b.kind is BranchKind.HELD for b in self.branches)
 
 
 class EventFunction(NamedTuple):
@@ -125,11 +161,16 @@ class Branch(NamedTuple):
     """One linear piece: ``f = stiffness * d + damping * v + force0`` until an exit is reached."""
 
     name: str
+    kind: BranchKind
     stiffness: float
     damping: float
     force0: float
     exits: tuple[EventFunction, ...]
-    held: bool = False  #: by a rigid contact, see `Rule.held`
+
+    @property
+    def held(self) -> bool:
+        """Whether a rigid contact holds the deformation."""
+        return self.kind is BranchKind.HELD
 
     def force(self, d: float, v: float) -> float:
         """Force at deformation `d` and rate `v`."""
@@ -145,10 +186,13 @@ class Law:
     """
 
     rule: Rule
-    p: Numbers  #: the first is the (initial) stiffness
+    p: Numbers  #: the first is the (initial) stiffness; those left out at the end are zero
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "p", tuple(map(float, self.p)) + (0.0,) * (PARAMETERS - len(self.p)))
+        missing = self.rule.parameters - len(self.p)
+        if missing < 0:
+            raise ValueError(f"a rule of {self.rule.parameters} parameters was given {len(self.p)}")
+        object.__setattr__(self, "p", tuple(map(float, self.p)) + (0.0,) * missing)
 
     @property
     def curved(self) -> bool:
@@ -158,11 +202,13 @@ class Law:
     @property
     def rigid(self) -> bool:
         """Whether it is a rigid contact."""
-        return self.rule.held >= 0
+        return self.rule.rigid
 
     def start(self) -> State:
         """Return the virgin state at zero deformation."""
         at, m = self.rule.start(self.p)
+        if len(m) != self.rule.variables:
+            raise ValueError(f"a rule of {self.rule.variables} internal variables starts with {len(m)}")
         state = (at, 0.0, 0.0, m)
         return (at, 0.0, self.stored(state, 0.0), m)
 
@@ -172,7 +218,7 @@ class Law:
         exits = [EventFunction(*flat[i : i + 3]) for i in range(0, 3 * EVENTS, 3)]
         while exits and exits[-1] == NEVER:
             exits.pop()
-        return Branch(self.rule.branches[state[0]], k, c, f0, tuple(exits), state[0] == self.rule.held)
+        return Branch(*self.rule.branches[state[0]], k, c, f0, tuple(exits))
 
     def force(self, state: State, d: float, v: float = 0.0) -> tuple[float, float, float]:
         """Force at deformation `d` and rate `v`, and its derivatives by them."""
@@ -180,6 +226,15 @@ class Law:
             return self.rule.curve(self.p, state[0], state[3], state[1], d, v)[:3]
         k, c, f0 = self.rule.branch(self.p, state[0], state[3])[:3]
         return k * d + c * v + f0, k, c
+
+    def power(self, state: State, d: float, v: float) -> float:
+        """Power [F L/T] that the law dissipates by the rate `v` at deformation `d`."""
+        at, _, _, m = state
+        if self.rule.curve is None:
+            return self.rule.branch(self.p, at, m)[1] * v * v
+        if self.rule.power is None:
+            return rate_power(self.rule.curve, self.p, at, m, d, v)
+        return self.rule.power(self.p, at, m, d, v)
 
     def work(self, state: State, d: float) -> float:
         """Work done on the law so far [F L], dashpots apart, at deformation `d`."""

@@ -18,6 +18,11 @@ def pair(first: int, s: float) -> int:
     return first if s > 0.0 else first + 1
 
 
+def both_sides(*names: str) -> tuple[str, ...]:
+    """Names of pairs of branches: of each the positive side's, then the negative side's."""
+    return tuple(f"{name} {sign}" for name in names for sign in "+-")
+
+
 def outward(s: float, d: float) -> tuple[float, float, float]:
     """Exit where the mirrored deformation rises above `d`."""
     return (s, 0.0, -d)

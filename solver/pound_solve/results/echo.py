@@ -173,7 +173,7 @@ def contact_laws(structure: Structure) -> Rows:
     model = structure.model
     out = []
     for s in structure.laws:
-        if s.is_contact:
+        if s.role.collides:
             f = s.facts
             name = contact_name(model, s.element)
             k = f"{f['k']:.7g} {model.units.text(f['k_unit'])}"
@@ -232,7 +232,7 @@ def size(structure: Structure) -> Rows:
     fixed = sum(len(n.fixed) for n in nodes) - moved
     slaved = sum(len(set(n.slaved) - set(n.fixed)) for n in nodes)
     internal = sum(d >= 3 for _, d in structure.dofs.free)
-    contacts = sum(x.is_contact for x in structure.laws)
+    contacts = sum(x.role.collides for x in structure.laws)
     counts = {
         "nodes": len(nodes),
         "elements": len(structure.model.elements),

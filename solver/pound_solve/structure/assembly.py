@@ -25,6 +25,7 @@ from pound_solve.structure.elements.base import (
     LawSpring,
     Output,
     Parts,
+    Role,
 )
 
 
@@ -476,11 +477,7 @@ def _add_damping(
         if group.dashpots is not None:
             labels, beta, by_secant = group.dashpots
             for i, s in enumerate(structure.laws):
-                if (
-                    not s.is_contact
-                    and not s.normal
-                    and (labels is None or model.elements[s.element].prop in labels)
-                ):
+                if s.role is Role.SPRING and (labels is None or model.elements[s.element].prop in labels):
                     betas[int(by_secant), i] += beta
         structure.damping_texts.append((card, group.text))
     structure.initial_damping = structure.damping

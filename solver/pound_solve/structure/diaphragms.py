@@ -89,7 +89,9 @@ def diaphragm_collisions(structure: Structure) -> dict[int, DiaphragmCollision]:
             members.setdefault(e.i, []).append(e.id)
             members.setdefault(e.j, []).append(e.id)
     return {
-        i: _diaphragm_collision(structure, members, s) for i, s in enumerate(structure.laws) if s.is_contact
+        i: _diaphragm_collision(structure, members, s)
+        for i, s in enumerate(structure.laws)
+        if s.role.collides
     }
 
 

@@ -581,7 +581,7 @@ def _no_leap(structure: Structure, pushes: Array, live: Flags) -> None:
         return
     leap = least_squares(structure.initial_stiffness[np.ix_(z, z)], pushes, 1e-12)
     for spring, (at, row) in zip(structure.laws, by_rows(structure.law_rows[:, z])):
-        if not spring.is_contact and np.any(
+        if not spring.role.viscous and np.any(
             np.abs(row @ leap[at]) > 1e-9 * np.abs(row).max(initial=0.0) * np.abs(leap).max()
         ):
             where = int(z[int(np.argmax(np.abs(pushes).max(axis=1)))])

@@ -68,11 +68,11 @@ class EventDrivenRun(ABC):
 
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
         """Let a law leave its branch at deformation `d` and rate `v`."""
-        before = self.branches[law].name
+        before = self.branches[law].kind
         self.states[law] = self.laws[law].law.transition(self.states[law], event_index, d, v)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
         force = self.laws[law].force(self.states[law], d, 0.0 if self._massless_laws[law] else v)
-        self.tracker.switched(law, before, after.name, self.t, d, v, force)
+        self.tracker.switched(law, before, after.kind, self.t, d, v, force)
         self.tracker.peaks.force[law].take(force, self.t)
 
     def count_change(self, elapsed: float, rounding: float) -> None:

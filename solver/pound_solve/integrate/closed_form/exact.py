@@ -92,7 +92,7 @@ class Exact(EventDrivenRun):
                     f"{parts} parts", "solved apart", "each on its own while no closed contact joins them"
                 )
             )
-        contact = np.array([s.is_contact for s in self.laws], bool)
+        contact = np.array([s.role.contact_energy for s in self.laws], bool)
         self.work = DeferredWork(start.works.copy(), system.constant, contact)
         self.rigid = RigidInstants(self, self.subsystems, self.work)
         self.samples = DeferredSamples(system, self.subsystems.rigid, recorder)
@@ -285,7 +285,7 @@ class Exact(EventDrivenRun):
         entry = np.array([found.input, found.damping, 0.0])
         for law, loss in found.laws:
             self.tracker.peaks.dashpot_losses[law] += loss
-            entry[2 if self.laws[law].is_contact else 1] += loss
+            entry[2 if self.laws[law].role.contact_energy else 1] += loss
         self.work.add(entry)
 
     def outcome(self) -> Outcome:  # noqa: D102

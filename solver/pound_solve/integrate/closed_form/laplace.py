@@ -182,7 +182,7 @@ class Laplace(EventDrivenRun):
         for law, branch in enumerate(self.branches):
             loss = float(branch.damping * rate[law] ** 2 @ weight)
             self.tracker.peaks.dashpot_losses[law] += loss
-            if self.laws[law].is_contact:
+            if self.laws[law].role.contact_energy:
                 lost += loss
             else:
                 damping += loss

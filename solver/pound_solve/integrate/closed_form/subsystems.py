@@ -111,7 +111,7 @@ class Subsystems:
         system, n = self.system, self.system.size
         linked = (system.stiffness != 0) | (system.damping != 0) | (system.mass != 0)
         for s, row in zip(system.structure.laws, system.law_rows):
-            if not s.is_contact:
+            if not s.role.collides:
                 at = np.flatnonzero(row)
                 linked[np.ix_(at, at)] = True
         labels = np.arange(n)
@@ -126,7 +126,7 @@ class Subsystems:
         """`_labels_with_contacts_open` with the parts joined that closed contacts connect."""
         labels = self._open_labels.copy()
         for s, b, row in zip(self.system.structure.laws, branches, self.system.law_rows):
-            if s.is_contact and (b.stiffness or b.damping or b.held):
+            if s.role.collides and (b.stiffness or b.damping or b.held):
                 parts = np.unique(labels[row != 0])
                 if len(parts):
                     labels[np.isin(labels, parts)] = parts[0]

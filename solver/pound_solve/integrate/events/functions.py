@@ -167,10 +167,10 @@ def monitored_functions(
     factors = [(1.0, 0.0, 0.0)] * len(rows)
     kept: list[Peak] = [*peaks.deformation, *peaks.monitored]
     for i, (spring, b) in enumerate(zip(tracker.laws, branches)):
-        if spring.is_contact and i not in running:
+        if spring.role.collides and i not in running:
             continue
         rows.append(reaction_row[i] if b.held else i)
         # a spring's force is without damping
-        factors.append((1.0 if b.held else b.stiffness, b.damping * spring.is_contact, b.force0))
+        factors.append((1.0 if b.held else b.stiffness, b.damping * spring.role.viscous, b.force0))
         kept.append(tracker.running(i) if i in running else peaks.force[i])
     return RowFunctions(rows, factors), kept

@@ -10,12 +10,13 @@ import numpy as np
 from pound_solve.integrate.kernels import state
 from pound_solve.integrate.kernels.state import Product, Rows, Scheme
 from pound_solve.integrate.protocol import MonitoredOutputs, Start
-from pound_solve.laws.automaton import EVENTS, MEMORY, PARAMETERS, Rule
+from pound_solve.laws.automaton import EVENTS, Rule
+from pound_solve.laws.functions import PARAMETERS, VARIABLES
 from pound_solve.numerics import ldl
 from pound_solve.numerics.matrices import Matrix, at, by_rows, dense, entries, is_diagonal
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags, Index
-from pound_solve.structure.elements.base import LawSpring
+from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
 #: samples and transitions kept between two visits of Python, which cost 2 ms each
@@ -183,10 +184,9 @@ def normal_of(laws: Sequence[LawSpring], law: LawSpring) -> tuple[int, int]:
     """The law whose force is the normal force of another, and a bit for each branch where it is pressed;
     -1 if none.
     """
-    for j, other in enumerate(laws if law.normal else ()):
-        if (other.element, other.component) == (law.element, law.normal):
-            pressed = enumerate(x.startswith("pressed") for x in other.law.rule.branches)
-            return j, sum(yes << n for n, yes in pressed)
+    for j, other in enumerate(laws if law.role is Role.FRICTION else ()):
+        if (other.element, other.component) == (law.element, law.normal_component):
+            return j, sum(b.kind.closed << n for n, b in enumerate(other.law.rule.branches))
     return -1, 0
 
 
@@ -201,9 +201,12 @@ def law_arrays(
     rows = sparse_rows(system.law_rows[:, own.order])
     pointers, places, values = places_in_pattern(rows, own)
     normal = np.array([normal_of(laws, s) for s in laws], np.int64).reshape(count, 2).T
-    internal = np.zeros((count, MEMORY + 2))
-    for i, (_, _, _, variables) in enumerate(start.states):
-        internal[i, : len(variables)] = variables
+    numbers, internal = np.zeros((count, PARAMETERS)), np.zeros((count, VARIABLES + 2))
+    for i, (s, (_, _, _, variables)) in enumerate(zip(laws, start.states)):
+        numbers[i, : len(s.law.p)], ruled = s.law.p, s.law.rule.variables
+        internal[i, :ruled] = variables[:ruled]
+        if s.secant:
+            internal[i, -2:] = variables[ruled:]
     branch, entry, work = (np.array([s[k] for s in start.states]) for k in range(3))
 
     def integers(values: Iterable[int]) -> Index:
@@ -221,13 +224,14 @@ def law_arrays(
         supports=np.ascontiguousarray(dense(system.structure.law_rows[:, system.structure.n_free :])),
         rule=integers(rules.index(s.law.rule) for s in laws),
         curved=integers(s.law.curved for s in laws),
-        contact=integers(s.is_contact for s in laws),
-        coupled=np.flatnonzero([bool(s.normal) for s in laws]).astype(np.int64),
+        contact=integers(s.role.collides for s in laws),
+        viscous=integers(s.role.viscous for s in laws),
+        coupled=np.flatnonzero([s.role is Role.FRICTION for s in laws]).astype(np.int64),
         normal=np.ascontiguousarray(normal[0]),
         pressed_branches=np.ascontiguousarray(normal[1]),
         tangent_damping=np.array([s.beta for s in laws], float),
         secant_damping=np.array([s.secant for s in laws], float),
-        parameters=np.array([s.law.p for s in laws]).reshape(count, PARAMETERS),
+        parameters=numbers,
         internal=internal,
         branch=branch.astype(np.int64),
         entry_deformation=entry.astype(float),

@@ -29,6 +29,7 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.protocol import RUNAWAY as GROWS
 from pound_solve.laws import functions
+from pound_solve.laws.automaton import BranchKind, State
 from pound_solve.laws.hysteresis import bilinear
 from pound_solve.numerics import jit
 from pound_solve.structure.reduction import ReducedSystem
@@ -113,10 +114,11 @@ class KernelEngine(ABC):
         """Note the contacts that are closed at the start, before a kernel advances."""
         laws, t = self.laws, float(self.times[0])
         for i, s in enumerate(self.springs):
-            if s.is_contact and s.law.rule.branches[laws.branch[i]].startswith("pressed"):
+            kind = s.law.rule.branches[laws.branch[i]].kind
+            if s.role.collides and kind.closed:
                 d, v = float(laws.now.deformation[i]), float(laws.now.rate[i])
                 force = law_kernels.law_force(laws, self.rules, i, d, v)
-                self.tracker.switched(i, "open", "pressed", t, d, v, force)
+                self.tracker.switched(i, BranchKind.OPEN, kind, t, d, v, force)
                 laws.peak_force[i] = force
         for i in laws.coupled.tolist():
             law_kernels.couple(laws, self.rules, self.step.now.acceleration, i)
@@ -146,10 +148,10 @@ class KernelEngine(ABC):
     def _fetch_transitions(self) -> None:
         for row in self.buffers.log[: self.state.logged].tolist():
             law, before, after = (int(x) for x in row[:3])
-            names = self.springs[law].law.rule.branches
+            branches = self.springs[law].law.rule.branches
             if law in self.tracker.open:
                 self._count(self.tracker.open[law], row[7:])
-            self.tracker.switched(law, names[before], names[after], *row[3:7])
+            self.tracker.switched(law, branches[before].kind, branches[after].kind, *row[3:7])
 
     def _fetch_shown(self) -> None:
         buffers, shown = self.buffers, self.state.shown
@@ -196,7 +198,7 @@ class KernelEngine(ABC):
         if fault >= 0:
             s = self.springs[fault]
             place = f"element {s.element} ({s.rule})"
-            last = f"the last in {place} to {s.law.rule.branches[self.laws.branch[fault]]!r}"
+            last = f"the last in {place} to {s.law.rule.branches[self.laws.branch[fault]].name!r}"
         if why == CHATTER:
             text = f"laws change branch again and again at one instant, {last}"
         elif why == CROWD:
@@ -223,13 +225,17 @@ class KernelEngine(ABC):
             found[rest + n :],
         )
         out.dashpot_losses = laws.dashpot_loss.tolist()
-        states = zip(
-            laws.branch.tolist(),
-            laws.entry_deformation.tolist(),
-            laws.entry_work.tolist(),
-            map(tuple, laws.internal.tolist()),
-        )
-        return Outcome(out, self.figures(), tuple(states), self.checks(out), self.exact)
+        states = tuple(self._state(i) for i in range(n))
+        return Outcome(out, self.figures(), states, self.checks(out), self.exact)
+
+    def _state(self, i: int) -> State:
+        """State of law `i`."""
+        laws, spring = self.laws, self.springs[i]
+        variables = laws.internal[i, : spring.law.rule.variables].tolist()
+        if spring.secant:
+            variables += laws.internal[i, -2:].tolist()
+        entry = float(laws.entry_deformation[i]), float(laws.entry_work[i])
+        return int(laws.branch[i]), *entry, tuple(variables)
 
     def stop(self, code: str, why: str) -> Stop:
         """The exception that ends the run here."""

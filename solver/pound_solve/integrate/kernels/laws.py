@@ -7,24 +7,10 @@ import numpy as np
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import STIFFNESS, TURN, Laws
 from pound_solve.laws.automaton import PUSH, PUSH_RATE
-from pound_solve.laws.functions import Tables
+from pound_solve.laws.functions import PARAMETERS, VARIABLES, Tables, row
 from pound_solve.numerics.types import Array
 
-
-def parameters(p: Array, i: int) -> tuple[float, ...]:
-    """Row of parameters as a tuple."""
-    return (
-        p[i, 0], p[i, 1], p[i, 2], p[i, 3], p[i, 4], p[i, 5], p[i, 6], p[i, 7], p[i, 8], p[i, 9],
-        p[i, 10], p[i, 11], p[i, 12], p[i, 13], p[i, 14], p[i, 15], p[i, 16], p[i, 17], p[i, 18], p[i, 19],
-    )  # fmt: skip
-
-
-def internal(m: Array, i: int) -> tuple[float, ...]:
-    """Row of internal variables as a tuple."""
-    return (
-        m[i, 0], m[i, 1], m[i, 2], m[i, 3], m[i, 4], m[i, 5], m[i, 6], m[i, 7],
-        m[i, 8], m[i, 9], m[i, 10], m[i, 11], m[i, 12], m[i, 13], m[i, 14], m[i, 15],
-    )  # fmt: skip
+parameters, internal = row(PARAMETERS), row(VARIABLES)  #: rows of arrays as tuples
 
 
 def curve(laws: Laws, rules: Tables, i: int, d: float, v: float) -> tuple[float, float, float, float]:
@@ -82,6 +68,18 @@ def law_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
         c = curve(laws, rules, i, d, v)
         return c[0] + proportional_damping(laws, i, c[1]) * v
     return linear_force(laws, i, d, v)
+
+
+def drag(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
+    """Force whose work at the rate `v` law `i` dissipates, by its own rate and by proportional dashpots."""
+    if not laws.curved[i]:
+        return laws.damping[i] * v
+    if v == 0.0:
+        return 0.0
+    power = rules.power[laws.rule[i]](
+        parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i), d, v
+    )
+    return power / v + proportional_damping(laws, i, laws.stiffness[i]) * v
 
 
 def transition(laws: Laws, rules: Tables, i: int, event: int, d: float, v: float) -> None:
@@ -160,18 +158,18 @@ def linearise_laws(laws: Laws, rules: Tables) -> None:
 def save_state(laws: Laws, i: int) -> None:
     """Save the state of law `i`."""
     laws.saved[i] = 1
-    row = laws.saved_state[i]
-    row[0], row[1], row[2] = laws.branch[i], laws.entry_deformation[i], laws.entry_work[i]
+    saved = laws.saved_state[i]
+    saved[0], saved[1], saved[2] = laws.branch[i], laws.entry_deformation[i], laws.entry_work[i]
     for j in range(laws.internal.shape[1]):
-        row[3 + j] = laws.internal[i, j]
+        saved[3 + j] = laws.internal[i, j]
 
 
 def restore_state(laws: Laws, rules: Tables, i: int) -> None:
     """Restore the saved state of law `i`."""
-    row = laws.saved_state[i]
-    laws.branch[i], laws.entry_deformation[i], laws.entry_work[i] = int(row[0]), row[1], row[2]
+    saved = laws.saved_state[i]
+    laws.branch[i], laws.entry_deformation[i], laws.entry_work[i] = int(saved[0]), saved[1], saved[2]
     for j in range(laws.internal.shape[1]):
-        laws.internal[i, j] = row[3 + j]
+        laws.internal[i, j] = saved[3 + j]
     enter_branch(laws, rules, i)
 
 

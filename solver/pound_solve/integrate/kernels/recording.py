@@ -44,7 +44,7 @@ def tracked(linear: LinearSystem, laws: Laws, step: Step, i: int) -> tuple[float
     law = i - outputs - n_laws
     d, v = laws.now.deformation[law], laws.now.rate[law]
     value, slope = laws.stiffness[law] * d + laws.offset[law], laws.stiffness[law] * v
-    if laws.contact[law] and laws.damping[law] != 0.0:  # damping is no part of a spring's force
+    if laws.viscous[law] and laws.damping[law] != 0.0:  # damping is no part of a spring's force
         value += laws.damping[law] * v
         slope += laws.damping[law] * along(laws.rows, law, now.acceleration)
         if touches_massless(
@@ -98,7 +98,7 @@ def store_sample(
     for i in range(len(laws.rule)):
         d = laws.now.deformation[i]
         still = law_force(laws, rules, i, d, 0.0)
-        buffers.force[at, i] = law_force(laws, rules, i, d, laws.now.rate[i]) if laws.contact[i] else still
+        buffers.force[at, i] = law_force(laws, rules, i, d, laws.now.rate[i]) if laws.viscous[i] else still
         held = rules.recoverable[laws.rule[i]](
             parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i), d, still
         )

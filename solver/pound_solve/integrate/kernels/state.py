@@ -256,8 +256,9 @@ class Laws(NamedTuple):
     supports : ndarray, shape (n_laws, n_moved)
     rule : ndarray of int
         Number of the rule in the tables of functions.
-    curved, contact : ndarray of int
-        Whether the law is curved; whether it is a contact.
+    curved, contact, viscous : ndarray of int
+        Whether the law is curved; whether it is a contact; whether damping is part of the force that is
+        reported.
     coupled : ndarray, shape (n_coupled,)
         Laws whose strength is a share of the force of another, which comes before them.
     normal : ndarray of int
@@ -267,7 +268,7 @@ class Laws(NamedTuple):
     tangent_damping, secant_damping : ndarray
         Dashpot as a multiple of the tangent, and of the secant stiffness [T].
     parameters : ndarray, shape (n_laws, PARAMETERS)
-    internal : ndarray, shape (n_laws, INTERNAL + 2)
+    internal : ndarray, shape (n_laws, VARIABLES + 2)
         Internal variables; the last two serve the secant stiffness.
     branch : ndarray of int
     entry_deformation, entry_work : ndarray
@@ -287,7 +288,7 @@ class Laws(NamedTuple):
         Of the collision that is under way.
     saved : ndarray of int
         Whether the state is saved.
-    saved_state : ndarray, shape (n_laws, 3 + INTERNAL + 2)
+    saved_state : ndarray, shape (n_laws, 3 + VARIABLES + 2)
         State at the start of a step that is not cut at events.
     members : Corotational
     """
@@ -301,6 +302,7 @@ class Laws(NamedTuple):
     rule: Index
     curved: Index
     contact: Index
+    viscous: Index
     coupled: Index
     normal: Index
     pressed_branches: Index

@@ -115,7 +115,7 @@ class Taylor(KernelEngine):
         if why == CHATTER:
             fault = int(self.state.fault)
             s, at = self.springs[fault], self.laws.branch[fault]
-            what = (int(self.state.same_instant), s.element, s.rule, s.law.rule.branches[at])
+            what = (int(self.state.same_instant), s.element, s.rule, s.law.rule.branches[at].name)
             return self.stop("A503", CHANGES.format(*what, STEPPED))
         return super().trouble(why)
 
@@ -140,7 +140,7 @@ def rate(system: ReducedSystem) -> float:
 
     By the row sums of ``M^-1/2 A M^-1/2``, which bound its eigenvalues (Gershgorin).
     """
-    stiffest = [0.0 if s.is_contact else s.facts.get("k", s.k0) for s in system.structure.laws]
+    stiffest = [0.0 if s.role.collides else s.facts.get("k", s.k0) for s in system.structure.laws]
     root = 1.0 / np.sqrt(diagonal(system.mass))
     omega2, decay = (
         float((root * (abs(a) @ root)).max(initial=0.0))

@@ -33,7 +33,7 @@ def limit(system: ReducedSystem, u: Array) -> float:
     is not known before it is pressed: it is left out.
     """
     stiffest = [
-        0.0 if s.is_contact and s.law.curved else s.facts.get("k", s.k0) for s in system.structure.laws
+        0.0 if s.role.collides and s.law.curved else s.facts.get("k", s.k0) for s in system.structure.laws
     ]
     k = system.stiffness + system.corotational.stiffness(u) + weighted(system.law_rows, stiffest)
     omega = modes.fastest(k, system.mass)

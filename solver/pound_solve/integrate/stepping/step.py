@@ -32,6 +32,7 @@ from pound_solve.integrate.kernels.corotational import (
 from pound_solve.integrate.kernels.laws import (
     add_slip_work,
     curve,
+    drag,
     law_force,
     linear_force,
     linearise_laws,
@@ -289,15 +290,9 @@ def add_external_work(linear: LinearSystem, laws: Laws, step: Step, h: float, en
 def accept_laws(laws: Laws, rules: Tables, h: float, energy: Energy) -> None:
     """Add up the losses in the laws' dashpots and the contacts' impulses; take over the end of the step."""
     for i in range(len(laws.rule)):
-        k, c, f0 = laws.stiffness[i], laws.damping[i], laws.offset[i]
         d0, d1 = laws.now.deformation[i], laws.trial.deformation[i]
         v0, v1 = laws.now.rate[i], laws.trial.rate[i]
-        drag0, drag1 = c * v0, c * v1
-        force0, force1 = k * d0 + f0 + drag0, k * d1 + f0 + drag1
-        if laws.contact[i] and laws.curved[i]:  # its damping is what the rate adds to the force
-            force0, force1 = law_force(laws, rules, i, d0, v0), law_force(laws, rules, i, d1, v1)
-            drag0 = force0 - law_force(laws, rules, i, d0, 0.0)
-            drag1 = force1 - law_force(laws, rules, i, d1, 0.0)
+        drag0, drag1 = drag(laws, rules, i, d0, v0), drag(laws, rules, i, d1, v1)
         if drag0 != 0.0 or drag1 != 0.0:
             lost = h / 6.0 * (drag0 * (2.0 * v0 + v1) + drag1 * (v0 + 2.0 * v1))
             laws.dashpot_loss[i] += lost
@@ -306,6 +301,7 @@ def accept_laws(laws: Laws, rules: Tables, h: float, energy: Energy) -> None:
             else:
                 energy.damping += lost
         if laws.contact[i]:
+            force0, force1 = law_force(laws, rules, i, d0, v0), law_force(laws, rules, i, d1, v1)
             laws.impulse[i] += 0.5 * h * (force0 + force1)
         laws.now.deformation[i], laws.now.rate[i] = d1, v1
         laws.largest_deformation[i] = max(laws.largest_deformation[i], abs(d1))

@@ -35,6 +35,7 @@ from pound_solve.integrate.protocol import (
     rounding_check,
 )
 from pound_solve.integrate.stepping import kernel
+from pound_solve.structure.elements.base import Role
 from pound_solve.structure.reduction import ReducedSystem
 
 COMMON = (
@@ -88,9 +89,10 @@ class Stepper(KernelEngine):
 
     def integrate(self) -> None:
         """Integrate in equal steps from one goal to the next."""
-        rubs = next((s for s in self.springs if s.normal), None)
-        if rubs is not None and not self.scheme.locate:
-            raise self.stop("A505", f"friction (element {rubs.element}) needs steps with EVENTS=LOCATED")
+        turns = next((s for s in self.springs if s.role in (Role.FRICTION, Role.DAMPER)), None)
+        if turns is not None and not self.scheme.locate:
+            what = "friction" if turns.role is Role.FRICTION else "a fluid damper"
+            raise self.stop("A505", f"{what} (element {turns.element}) needs steps with EVENTS=LOCATED")
         self.begin(kernel.advance)
         ends, is_output = goals(self.system, self.times)
         lengths = np.diff(ends, prepend=float(self.times[0]))
@@ -147,7 +149,7 @@ class Stepper(KernelEngine):
         rises = [
             max(abs(f.high), abs(f.low)) / (slope * self.dt)
             for s, f, slope in zip(self.springs, peaks.force, steepest)
-            if not s.is_contact and slope > 0.0
+            if not s.role.viscous and slope > 0.0
         ]
         count = min(rises, default=np.inf)
         if count >= 1.0:

@@ -39,12 +39,12 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Numbers,
     Rule,
     above,
     below,
-    internal_variables,
     linear,
 )
 from pound_solve.laws.contact.kelvin_voigt import Built
@@ -54,7 +54,7 @@ OPEN, STIFF, SOFT, BACK = 0, 1, 2, 3
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (STIFF if p[3] < 0.0 else OPEN), internal_variables()
+    return (STIFF if p[3] < 0.0 else OPEN), (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -73,16 +73,14 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     """Touch, slide, turn, or part."""
     dy, overlap = p[2], d - p[3]
     if at == OPEN:
-        return STIFF, internal_variables()
+        return STIFF, (0.0,)
     if at == SOFT:
-        return STIFF, internal_variables(max(overlap - dy, 0.0))
+        return STIFF, (max(overlap - dy, 0.0),)
     if at == BACK:
-        return (
-            (STIFF, internal_variables(max(overlap, 0.0))) if event == 0 else (OPEN, internal_variables())
-        )
+        return (STIFF, (max(overlap, 0.0),)) if event == 0 else (OPEN, (0.0,))
     if event == 0:
         return SOFT, m
-    return (BACK, m) if m[0] > 0.0 else (OPEN, internal_variables())
+    return (BACK, m) if m[0] > 0.0 else (OPEN, (0.0,))
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -95,7 +93,18 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.5 * (k2 * corner * corner + (k2 * corner + f) * (overlap - corner))
 
 
-RULE = Rule(("open", "pressed", "pressed, soft", "pressed, back"), start, branch, transition, recoverable)
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.PRESSED.named("pressed", "pressed, soft", "pressed, back"),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+    parameters=4,
+    variables=1,
+)
 
 
 def restitution(k1: float, k2: float, dy: float, overlap: float) -> float:

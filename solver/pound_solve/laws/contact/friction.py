@@ -24,25 +24,35 @@ dry friction.
 
 from __future__ import annotations
 
-from pound_solve.laws.automaton import PUSH, PUSH_RATE, Law, Numbers, Rule, internal_variables, linear
+from pound_solve.laws.automaton import (
+    PUSH,
+    PUSH_RATE,
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    linear,
+    rate_independent,
+)
 from pound_solve.laws.mirror import side
 
 OPEN, PLUS, MINUS, STICKING = 0, 1, 2, 3
 RELEASED = 2  #: way to leave when the contact opens
+ANCHOR = 2  #: where the memory holds the place at which the spring has no force
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open: whether the contact is closed will be told."""
-    return OPEN, internal_variables()
+    return OPEN, (0.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """The memory: where the spring has no force, and the contact's force and its rate."""
+    """The memory: the contact's force and its rate, and where the spring has no force."""
     kt, mu, mud = p[:3]
     if at == OPEN:
         return linear(0.0, 0.0)
     if at == STICKING:
-        pull, limit = kt * m[0], mu * m[PUSH]
+        pull, limit = kt * m[ANCHOR], mu * m[PUSH]
         return linear(kt, -pull, (kt, 0.0, -pull - limit), (-kt, 0.0, pull - limit))
     return linear(0.0, side(at) * mud * m[PUSH], (0.0, -side(at), mud * m[PUSH_RATE] / kt))
 
@@ -51,7 +61,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     """Touch, slip, stick, or let go."""
     kt, mu, mud = p[:3]
     if at != OPEN and event == RELEASED:
-        return OPEN, internal_variables()
+        return OPEN, (0.0, 0.0, 0.0)
     if at == STICKING:
         return (PLUS if event == 0 else MINUS), m
     after, anchor = STICKING, d
@@ -59,7 +69,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         anchor = d - side(at) * mud * m[PUSH] / kt
     elif m[PUSH] == 0.0 and kt * abs(v) > mu * m[PUSH_RATE]:
         after = PLUS if v > 0.0 else MINUS
-    return after, internal_variables(anchor, o=m[PUSH], q=m[PUSH_RATE])
+    return after, (m[PUSH], m[PUSH_RATE], anchor)
 
 
 def curve(
@@ -70,7 +80,20 @@ def curve(
     return k * d + f0, k, 0.0, (0.5 * k * (d + d0) + f0) * (d - d0)
 
 
-RULE = Rule(("open", "slipping +", "slipping -", "sticking"), start, branch, transition, curve=curve)
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.SLIPPING.named("slipping +", "slipping -"),
+        *BranchKind.ELASTIC.named("sticking"),
+    ),
+    start,
+    branch,
+    transition,
+    curve=curve,
+    power=rate_independent,
+    parameters=3,
+    variables=3,
+)
 
 
 def build(kt: float, mu: float, mud: float) -> Law:

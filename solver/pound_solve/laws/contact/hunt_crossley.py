@@ -26,9 +26,17 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 from pound_solve.laws.contact import constants, restitution
-from pound_solve.laws.contact.kelvin_voigt import OPEN, PRESSED, Built, start
+from pound_solve.laws.contact.kelvin_voigt import OPEN, PRESSED, Built
 from pound_solve.laws.contact.power import (
     drag,
     drag_slope,
@@ -39,6 +47,11 @@ from pound_solve.laws.contact.power import (
 )
 
 
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Open, or pressed where the gap is negative; the memory: the speed of the approach."""
+    return (PRESSED if p[2] < 0.0 else OPEN), (0.0,)
+
+
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure, overlap = closure - gap."""
     return linear(0.0, 0.0, above(p[2]) if at == OPEN else below(p[2]))
@@ -46,7 +59,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, and remember the speed, or part."""
-    return (PRESSED, internal_variables(max(v, 0.0))) if at == OPEN else (OPEN, internal_variables())
+    return (PRESSED, (max(v, 0.0),)) if at == OPEN else (OPEN, (0.0,))
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -75,7 +88,19 @@ def curve(
     return force, n * spring / x + slope, c, work
 
 
-RULE = Rule(("open", "pressed"), start, branch, transition, recoverable, curve)
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.PRESSED.named("pressed"),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+    curve,
+    parameters=6,
+    variables=1,
+)
 
 
 def law(k: float, n: float, gap: float, d: float, mass: float) -> Law:

@@ -64,7 +64,16 @@ def curve(
     return spring + c * v, stiffness + drag_slope(k, n, mass, x, v, c), c, work
 
 
-RULE = Rule(BRANCHES, start, branch, transition, recoverable, curve)
+RULE = Rule(
+    BRANCHES,
+    start,
+    branch,
+    transition,
+    recoverable,
+    curve,
+    parameters=5,
+    variables=0,
+)
 
 
 def published(e: float) -> float:

@@ -19,7 +19,15 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.constants import dashpot, linear_fields
 
@@ -28,7 +36,7 @@ OPEN, PRESSED, RELEASED = 0, 1, 2
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (PRESSED if p[2] < 0.0 else OPEN), internal_variables()
+    return (PRESSED if p[2] < 0.0 else OPEN), ()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -54,7 +62,19 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.5 * p[0] * (d - p[2]) ** 2 if at == PRESSED else 0.0
 
 
-RULE = Rule(("open", "pressed", "released"), start, branch, transition, recoverable)
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.PRESSED.named("pressed"),
+        *BranchKind.RELEASED.named("released"),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+    parameters=4,
+    variables=0,
+)
 
 
 class Built(NamedTuple):

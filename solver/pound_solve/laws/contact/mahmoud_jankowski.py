@@ -17,13 +17,26 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import REVERSAL_DOWN, REVERSAL_UP, Law, Numbers, Rule, above, below, linear
+from pound_solve.laws.automaton import (
+    REVERSAL_DOWN,
+    REVERSAL_UP,
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.constants import dashpot, linear_fields
 from pound_solve.laws.contact.kelvin_voigt import Built, start
 
 OPEN, APPROACH, PARTING = 0, 1, 2
-BRANCHES = ("open", "pressed", "pressed, parting")
+BRANCHES = (
+    *BranchKind.OPEN.named("open"),
+    *BranchKind.PRESSED.named("pressed", "pressed, parting"),
+)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -48,7 +61,15 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.0 if at == OPEN else 0.5 * p[0] * (d - p[2]) ** 2
 
 
-RULE = Rule(BRANCHES, start, branch, transition, recoverable)
+RULE = Rule(
+    BRANCHES,
+    start,
+    branch,
+    transition,
+    recoverable,
+    parameters=3,
+    variables=0,
+)
 
 
 def published(e: float) -> float:

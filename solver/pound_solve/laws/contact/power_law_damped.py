@@ -20,10 +20,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+)
 from pound_solve.laws.contact import constants, restitution
-from pound_solve.laws.contact.hunt_crossley import branch, recoverable, transition
-from pound_solve.laws.contact.kelvin_voigt import OPEN, TENSION, Built, start
+from pound_solve.laws.contact.hunt_crossley import branch, recoverable, start, transition
+from pound_solve.laws.contact.kelvin_voigt import OPEN, TENSION, Built
 from pound_solve.laws.contact.power import (
     drag,
     drag_slope,
@@ -52,7 +57,19 @@ def curve(
     return force, max(n * spring / x + drag_slope(k, n, mass, x, v, c), 0.0), c, work
 
 
-RULE = Rule(("open", "pressed"), start, branch, transition, recoverable, curve)
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.PRESSED.named("pressed"),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+    curve,
+    parameters=6,
+    variables=1,
+)
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:

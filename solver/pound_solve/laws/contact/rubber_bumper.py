@@ -25,21 +25,26 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, internal_variables
+from pound_solve.laws.automaton import Law, Numbers, Rule
 from pound_solve.laws.contact import constants, restitution
 from pound_solve.laws.contact.jankowski import branch
-from pound_solve.laws.contact.kelvin_voigt import Built, start
+from pound_solve.laws.contact.kelvin_voigt import Built
 from pound_solve.laws.contact.mahmoud_jankowski import APPROACH, BRANCHES, OPEN, PARTING
 from pound_solve.laws.contact.power import power_fields, spring_energy, spring_force, stiffness_unit
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Open, or pressed where the gap is negative; the memory: the speed of the approach."""
+    return (APPROACH if p[2] < 0.0 else OPEN), (0.0,)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, and remember the speed; turn, or part."""
     if at == OPEN:
-        return APPROACH, internal_variables(max(v, 0.0))
+        return APPROACH, (max(v, 0.0),)
     if at == PARTING and event == 1:
         return APPROACH, m
-    return (PARTING, m) if at == APPROACH and event == 0 else (OPEN, internal_variables())
+    return (PARTING, m) if at == APPROACH and event == 0 else (OPEN, (0.0,))
 
 
 def spring(p: Numbers, x: float) -> tuple[float, float, float]:
@@ -80,7 +85,16 @@ def curve(
     return force + c * v, stiffness + slope * v, c, work
 
 
-RULE = Rule(BRANCHES, start, branch, transition, recoverable, curve)
+RULE = Rule(
+    BRANCHES,
+    start,
+    branch,
+    transition,
+    recoverable,
+    curve,
+    parameters=7,
+    variables=1,
+)
 
 
 def published(e: float) -> float:

@@ -22,7 +22,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 from pound_solve.laws.contact.kelvin_voigt import Built
 
 OPEN, PRESSED = 0, 1
@@ -30,7 +38,7 @@ OPEN, PRESSED = 0, 1
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open."""
-    return OPEN, internal_variables()
+    return OPEN, ()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -48,7 +56,18 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.0
 
 
-RULE = Rule(("open", "pressed"), start, branch, transition, recoverable, held=PRESSED)
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.HELD.named("pressed"),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+    parameters=3,
+    variables=0,
+)
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:

@@ -25,12 +25,12 @@ from typing import Any
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
+    BranchKind,
     Law,
     Numbers,
     Rule,
     above,
     below,
-    internal_variables,
     linear,
 )
 from pound_solve.laws.contact.kelvin_voigt import Built
@@ -47,7 +47,7 @@ def point(p: Numbers, i: int) -> tuple[float, float]:
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (1 if p[1] < 0.0 else OPEN), internal_variables()
+    return (1 if p[1] < 0.0 else OPEN), (0.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -77,7 +77,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     d0, f0 = point(p, at - 1)
     d1, f1 = point(p, at)
     force = f0 + (f1 - f0) / (d1 - d0) * (d - gap - d0)
-    return UNLOADING, internal_variables(max(d - gap - force / ku, m[0]), d - gap, float(at))
+    return UNLOADING, (max(d - gap - force / ku, m[0]), d - gap, float(at))
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -95,7 +95,18 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 PIECES = tuple(f"pressed, piece {i}" for i in range(1, MOST + 1))
-RULE = Rule(("open", *PIECES, "pressed, unloading"), start, branch, transition, recoverable)
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.PRESSED.named(*PIECES, "pressed, unloading"),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+    parameters=POINTS + 2 * MOST,
+    variables=3,
+)
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:

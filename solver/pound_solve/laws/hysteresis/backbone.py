@@ -32,7 +32,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind
-from pound_solve.laws.automaton import Numbers, internal_variables, linear
+from pound_solve.laws.automaton import Numbers, linear
 from pound_solve.laws.mirror import need_both_sides, outward, pair, side, turns_inward
 
 # branches of the positive side; those of the negative side are one more
@@ -143,7 +143,7 @@ def grown(m: Numbers, s: float, x: float) -> tuple[float, float]:
 def enter(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
     """State on the backbone of side `s`, met at ductility `x`."""
     plus, minus = grown(m, s, x)
-    m = internal_variables(plus, minus)
+    m = (plus, minus, 0.0, 0.0)
     falls = p[5] <= x < p[6] and worst(p, m, s) <= x
     return pair(WEAKENING if falls else YIELDING, s), m
 
@@ -183,7 +183,7 @@ def turn(p: Numbers, at: int, m: Numbers, d: float) -> Numbers:
     slope, f0, _ = yield_line(p, at, m)
     x = s * d * p[0] / yield_force(p, s)
     plus, minus = grown(m, s, x)
-    return internal_variables(plus, minus, d, slope * d + s * f0)
+    return (plus, minus, d, slope * d + s * f0)
 
 
 def meets(p: Numbers, m: Numbers, s: float, slope: float, d: float, f: float) -> float:

@@ -23,10 +23,10 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Numbers,
     Rule,
-    internal_variables,
     linear,
 )
 
@@ -35,7 +35,7 @@ ELASTIC, YIELDING_PLUS, YIELDING_MINUS = 0, 1, 2
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, internal_variables()
+    return ELASTIC, (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -55,10 +55,20 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     k, plus, minus = p[:3]
     if at == ELASTIC:
         return (YIELDING_PLUS if event == 0 else YIELDING_MINUS), m
-    return ELASTIC, internal_variables(d - (plus if at == YIELDING_PLUS else minus) / k)
+    return ELASTIC, (d - (plus if at == YIELDING_PLUS else minus) / k,)
 
 
-RULE = Rule(("elastic", "yielding +", "yielding -"), start, branch, transition)
+RULE = Rule(
+    (
+        *BranchKind.ELASTIC.named("elastic"),
+        *BranchKind.YIELDING.named("yielding +", "yielding -"),
+    ),
+    start,
+    branch,
+    transition,
+    parameters=4,
+    variables=1,
+)
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:

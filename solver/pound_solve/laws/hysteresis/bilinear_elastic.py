@@ -15,14 +15,22 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 
 STIFF, SOFT_PLUS, SOFT_MINUS = 0, 1, 2
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: stiff."""
-    return STIFF, internal_variables()
+    return STIFF, ()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -51,7 +59,15 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.5 * limit * limit / k + 0.5 * (limit + f) * (d - limit / k)
 
 
-RULE = Rule(("stiff", "soft +", "soft -"), start, branch, transition, recoverable)
+RULE = Rule(
+    BranchKind.ELASTIC.named("stiff", "soft +", "soft -"),
+    start,
+    branch,
+    transition,
+    recoverable,
+    parameters=4,
+    variables=0,
+)
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:

@@ -41,11 +41,12 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Numbers,
     Rule,
-    internal_variables,
     linear,
+    rate_independent,
 )
 from pound_solve.laws.mirror import need_both_sides
 
@@ -55,7 +56,7 @@ SATURATED = 40.0  #: -log(1 - y^n) from which on y is 1 to the last digit
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: z = 0."""
-    return LOADING, internal_variables()
+    return LOADING, (0.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -210,7 +211,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     """Turn."""
     s = 1.0 if at == LOADING else -1.0
     x, done = position(p, -s, -along(p, s, m[0] + s * (d - m[1]))[0])
-    return (UNLOADING if at == LOADING else LOADING), internal_variables(x, d, done)
+    return (UNLOADING if at == LOADING else LOADING), (x, d, done)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -232,7 +233,17 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return k * (0.5 * r * (d - end) * (d + end) + (1.0 - r) * (before - done))
 
 
-RULE = Rule(("loading", "unloading"), start, branch, transition, recoverable, curve)
+RULE = Rule(
+    BranchKind.ELASTIC.named("loading", "unloading"),
+    start,
+    branch,
+    transition,
+    recoverable,
+    curve,
+    rate_independent,
+    parameters=9,
+    variables=3,
+)
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:

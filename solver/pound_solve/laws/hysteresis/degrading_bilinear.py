@@ -22,7 +22,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 from pound_solve.laws.hysteresis.backbone import (
     ALFA,
     ELASTIC,
@@ -42,7 +50,7 @@ from pound_solve.laws.mirror import side
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, internal_variables(1.0, 1.0)
+    return ELASTIC, (1.0, 1.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -73,11 +81,16 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 RULE = Rule(
-    ("elastic", "yielding +", "yielding -", "yielding weaker +", "yielding weaker -"),
+    (
+        *BranchKind.ELASTIC.named("elastic"),
+        *BranchKind.YIELDING.named("yielding +", "yielding -", "yielding weaker +", "yielding weaker -"),
+    ),
     start,
     branch,
     transition,
     recoverable,
+    parameters=9,
+    variables=4,
 )
 
 

@@ -24,7 +24,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 from pound_solve.laws.mirror import (
     inward,
     need_both_sides,
@@ -39,7 +47,7 @@ ELASTIC, YIELDING_PLUS, YIELDING_MINUS, INSIDE_PLUS, INSIDE_MINUS, BACK_PLUS, BA
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, internal_variables()
+    return ELASTIC, (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -62,16 +70,16 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     """Yield, unload from a line where the motion turns, reach a line, or be elastic again."""
     k, plus, minus, r, beta = p[:5]
     if at == ELASTIC:
-        return (YIELDING_PLUS if event == 0 else YIELDING_MINUS), internal_variables()
+        return (YIELDING_PLUS if event == 0 else YIELDING_MINUS), (0.0,)
     s = side(at)
     fy = s * (plus if s > 0.0 else minus)
     if at <= YIELDING_MINUS:
-        return at + 2, internal_variables((1.0 - r) * (s * d - fy / k))
+        return at + 2, ((1.0 - r) * (s * d - fy / k),)
     if at <= INSIDE_MINUS:
         return (at - 2 if event == 0 else at + 2), m
     if event == 1:
-        return ELASTIC, internal_variables()
-    return at - 2, internal_variables((1.0 - r) * (s * d - (1.0 - beta) * fy / k))
+        return ELASTIC, (0.0,)
+    return at - 2, ((1.0 - r) * (s * d - (1.0 - beta) * fy / k),)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -88,11 +96,18 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 RULE = Rule(
-    ("elastic", "yielding +", "yielding -", "inside +", "inside -", "yielding back +", "yielding back -"),
+    (
+        *BranchKind.ELASTIC.named("elastic"),
+        *BranchKind.YIELDING.named("yielding +", "yielding -"),
+        *BranchKind.ELASTIC.named("inside +", "inside -"),
+        *BranchKind.YIELDING.named("yielding back +", "yielding back -"),
+    ),
     start,
     branch,
     transition,
     recoverable,
+    parameters=5,
+    variables=1,
 )
 
 

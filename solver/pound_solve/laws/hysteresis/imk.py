@@ -41,11 +41,16 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind
-from pound_solve.laws.automaton import Numbers
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Numbers,
+)
 from pound_solve.laws.mirror import need_both_sides
 
 FAILED = 0
-BRANCHES = ("failed",)  #: the rules' own come in pairs after it: positive side, negative side
+BRANCHES = BranchKind.OPEN.named(
+    "failed"
+)  #: the rules' own come in pairs after it: positive side, negative side
 
 # Memory: five numbers of each side, mirrored (the first two are F_y and F_ref), then the unloading
 # stiffness now and at the start of the excursion, where it started, the energy of the finished excursions,

@@ -19,7 +19,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, linear
+from pound_solve.laws.automaton import (
+    NEVER,
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    linear,
+)
 from pound_solve.laws.hysteresis.imk import (
     BRANCHES,
     FAILED,
@@ -40,7 +47,7 @@ from pound_solve.laws.hysteresis.imk import (
     ultimate,
     virgin,
 )
-from pound_solve.laws.mirror import inward, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import both_sides, inward, outward, pair, side, turns_inward
 
 ELASTIC, LEAST, HARDENING, LIMITED, FALLING, RESIDUAL = 1, 3, 5, 7, 9, 11
 FAR = 1e300
@@ -155,23 +162,25 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 RULE = Rule(
-    BRANCHES
-    + tuple(
-        f"{name} {sign}"
-        for name in (
-            "elastic",
-            "yielding at the residual strength",
-            "yielding",
-            "yielding at the strength limit",
-            "yielding beyond the cap",
-            "yielding at the residual strength",
-        )
-        for sign in "+-"
+    (
+        *BRANCHES,
+        *BranchKind.ELASTIC.named(*both_sides("elastic")),
+        *BranchKind.YIELDING.named(
+            *both_sides(
+                "yielding at the residual strength",
+                "yielding",
+                "yielding at the strength limit",
+                "yielding beyond the cap",
+                "yielding at the residual strength",
+            )
+        ),
     ),
     start,
     branch,
     transition,
     recoverable,
+    parameters=16,
+    variables=16,
 )
 
 

@@ -36,7 +36,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, linear
+from pound_solve.laws.automaton import (
+    NEVER,
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    linear,
+)
 from pound_solve.laws.hysteresis.imk import (
     BRANCHES,
     FAILED,
@@ -57,7 +64,7 @@ from pound_solve.laws.hysteresis.imk import (
     ultimate,
     virgin,
 )
-from pound_solve.laws.mirror import inward, outward, pair, side, turns_inward
+from pound_solve.laws.mirror import both_sides, inward, outward, pair, side, turns_inward
 
 ELASTIC, HARDENING, FALLING, RESIDUAL, UNLOADING = 1, 3, 5, 7, 9
 #: reloading, by the points between which it goes
@@ -251,29 +258,31 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 RULE = Rule(
-    BRANCHES
-    + tuple(
-        f"{name} {sign}"
-        for name in (
-            "elastic",
-            "yielding",
-            "yielding beyond the cap",
-            "yielding at the residual strength",
-            "unloading",
-            "reloading to the break point",
-            "reloading to the local peak",
-            "reloading to the peak",
-            "reloading to the local peak",
-            "reloading to the peak",
-            "reloading to the break point",
-            "reloading to the peak",
-        )
-        for sign in "+-"
+    (
+        *BRANCHES,
+        *BranchKind.ELASTIC.named(*both_sides("elastic")),
+        *BranchKind.YIELDING.named(
+            *both_sides("yielding", "yielding beyond the cap", "yielding at the residual strength")
+        ),
+        *BranchKind.ELASTIC.named(
+            *both_sides(
+                "unloading",
+                "reloading to the break point",
+                "reloading to the local peak",
+                "reloading to the peak",
+                "reloading to the local peak",
+                "reloading to the peak",
+                "reloading to the break point",
+                "reloading to the peak",
+            )
+        ),
     ),
     start,
     branch,
     transition,
     recoverable,
+    parameters=18,
+    variables=16,
 )
 
 MODES = "basic strength, post-capping strength, unloading stiffness, accelerated reloading"

@@ -18,7 +18,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 from pound_solve.laws.hysteresis.backbone import (
     ELASTIC,
     LOSS,
@@ -39,7 +47,7 @@ SECANT = 5
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, internal_variables(1.0, 1.0)
+    return ELASTIC, (1.0, 1.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -71,18 +79,16 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 RULE = Rule(
     (
-        "elastic",
-        "yielding +",
-        "yielding -",
-        "yielding weaker +",
-        "yielding weaker -",
-        "secant +",
-        "secant -",
+        *BranchKind.ELASTIC.named("elastic"),
+        *BranchKind.YIELDING.named("yielding +", "yielding -", "yielding weaker +", "yielding weaker -"),
+        *BranchKind.ELASTIC.named("secant +", "secant -"),
     ),
     start,
     branch,
     transition,
     recoverable,
+    parameters=9,
+    variables=4,
 )
 
 

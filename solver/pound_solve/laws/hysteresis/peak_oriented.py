@@ -18,7 +18,14 @@ Memory: the largest ductilities; the point where the motion turned last, or wher
 
 from __future__ import annotations
 
-from pound_solve.laws.automaton import Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Numbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 from pound_solve.laws.hysteresis.backbone import (
     ELASTIC,
     backbone,
@@ -41,7 +48,7 @@ BETA, MIRRORED = 9, 10
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, internal_variables(1.0, 1.0)
+    return ELASTIC, (1.0, 1.0, 0.0, 0.0)
 
 
 def aim(p: Numbers, m: Numbers, s: float) -> tuple[float, float]:
@@ -80,19 +87,17 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         plus, minus, d, f = turn(p, at, m, d)[:4]
         if p[MIRRORED] != 0.0:
             plus = minus = max(plus, minus)
-        return pair(UNLOADING, s), internal_variables(plus, minus, d, f)
+        return pair(UNLOADING, s), (plus, minus, d, f)
     plus, minus, d0, f0 = m[:4]
     if at < RELOADING:
         if event == 1:
-            return pair(RELOADING, -s), internal_variables(
-                plus, minus, d0 - f0 / unloading(p, reached(m, s))
-            )
+            return pair(RELOADING, -s), (plus, minus, d0 - f0 / unloading(p, reached(m, s)), 0.0)
         # a turn on the backbone too: the line from there ends where it begins
         return pair(RELOADING, s), m
     k, end = aim(p, m, s)
     if event == 1:
         return enter(p, m, s, end)
-    return pair(UNLOADING, s), internal_variables(plus, minus, d, f0 + k * (d - d0))
+    return pair(UNLOADING, s), (plus, minus, d, f0 + k * (d - d0))
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -106,18 +111,14 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 RULE = Rule(
     (
-        "elastic",
-        "yielding +",
-        "yielding -",
-        "yielding weaker +",
-        "yielding weaker -",
-        "unloading +",
-        "unloading -",
-        "reloading +",
-        "reloading -",
+        *BranchKind.ELASTIC.named("elastic"),
+        *BranchKind.YIELDING.named("yielding +", "yielding -", "yielding weaker +", "yielding weaker -"),
+        *BranchKind.ELASTIC.named("unloading +", "unloading -", "reloading +", "reloading -"),
     ),
     start,
     branch,
     transition,
     recoverable,
+    parameters=11,
+    variables=4,
 )

@@ -34,16 +34,25 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import NEVER, Law, Numbers, Rule, internal_variables, linear
+from pound_solve.laws.automaton import (
+    NEVER,
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    linear,
+    rate_independent,
+)
 from pound_solve.laws.mirror import need_both_sides, outward, turns_inward
 
 LOADING, UNLOADING = 0, 1
 DEPTH = 7.0  #: reversals remembered
+VIRGIN = (0.0,) * 16  #: memory without a reversal
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: on the skeleton."""
-    return LOADING, internal_variables()
+    return LOADING, VIRGIN
 
 
 def strain(p: Numbers, w: float) -> float:
@@ -146,10 +155,10 @@ def close(m: Numbers) -> Numbers:
     if beside_forgotten(m):
         d0, f0 = bound(m)
         if m[0] == 2.0:
-            return internal_variables(2.0, 0.0, d0, f0, m[4], m[5])
-        return internal_variables(1.0, 0.0, d0, f0)
+            return (2.0, 0.0, d0, f0, m[4], m[5], *VIRGIN[6:])
+        return (1.0, 0.0, d0, f0, *VIRGIN[4:])
     if m[0] <= 2.0:
-        return internal_variables()
+        return VIRGIN
     return (m[0] - 2.0, m[1], *m[6:16], 0.0, 0.0, 0.0, 0.0)
 
 
@@ -180,7 +189,17 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return back * fy / k
 
 
-RULE = Rule(("loading", "unloading"), start, branch, transition, recoverable, curve)
+RULE = Rule(
+    BranchKind.ELASTIC.named("loading", "unloading"),
+    start,
+    branch,
+    transition,
+    recoverable,
+    curve,
+    rate_independent,
+    parameters=5,
+    variables=16,
+)
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:

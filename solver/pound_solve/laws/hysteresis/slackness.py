@@ -25,12 +25,12 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Numbers,
     Rule,
     above,
     below,
-    internal_variables,
     linear,
 )
 
@@ -40,8 +40,8 @@ SLACK, ELASTIC_PLUS, ELASTIC_MINUS, YIELDING_PLUS, YIELDING_MINUS, BACK_PLUS, BA
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: in the slack, or on a side that has none (or less than none, a prestress)."""
     if p[3] <= 0.0:
-        return ELASTIC_PLUS, internal_variables()
-    return (ELASTIC_MINUS if p[4] >= 0.0 else SLACK), internal_variables()
+        return ELASTIC_PLUS, (0.0, 0.0)
+    return (ELASTIC_MINUS if p[4] >= 0.0 else SLACK), (0.0, 0.0)
 
 
 def line(p: Numbers, at: int) -> tuple[float, float, float]:
@@ -104,21 +104,27 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     slope = p[5] * k
     now = d - gap - ((1.0 - p[5]) * fy + slope * (d - gap)) / k
     if grow == 0.0:
-        m = internal_variables(now, now)
+        m = (now, now)
     elif side > 0.0:
-        m = internal_variables(now, m[1])
+        m = (now, m[1])
     else:
-        m = internal_variables(m[0], now)
+        m = (m[0], now)
     if event == 1:
         return SLACK, m
     return (ELASTIC_PLUS if side > 0.0 else ELASTIC_MINUS), m
 
 
 RULE = Rule(
-    ("slack", "elastic +", "elastic -", "yielding +", "yielding -", "yielding back +", "yielding back -"),
+    (
+        *BranchKind.OPEN.named("slack"),
+        *BranchKind.ELASTIC.named("elastic +", "elastic -"),
+        *BranchKind.YIELDING.named("yielding +", "yielding -", "yielding back +", "yielding back -"),
+    ),
     start,
     branch,
     transition,
+    parameters=7,
+    variables=2,
 )
 
 

@@ -28,12 +28,12 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
+    BranchKind,
     Law,
     Numbers,
     Rule,
     above,
     below,
-    internal_variables,
     linear,
 )
 
@@ -42,7 +42,7 @@ ELASTIC, FIRST_PLUS, FIRST_MINUS, SECOND_PLUS, SECOND_MINUS = range(5)
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, internal_variables()
+    return ELASTIC, (0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -66,19 +66,24 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     if at == ELASTIC:
         return (FIRST_PLUS if event == 0 else FIRST_MINUS), m
     if at == FIRST_PLUS:
-        return (ELASTIC, internal_variables(d - d1_plus, m[1])) if event == 0 else (SECOND_PLUS, m)
+        return (ELASTIC, (d - d1_plus, m[1])) if event == 0 else (SECOND_PLUS, m)
     if at == FIRST_MINUS:
-        return (ELASTIC, internal_variables(d - d1_minus, m[1])) if event == 0 else (SECOND_MINUS, m)
+        return (ELASTIC, (d - d1_minus, m[1])) if event == 0 else (SECOND_MINUS, m)
     if at == SECOND_PLUS:
-        return ELASTIC, internal_variables(d - d1_plus, d - d2_plus)
-    return ELASTIC, internal_variables(d - d1_minus, d - d2_minus)
+        return ELASTIC, (d - d1_plus, d - d2_plus)
+    return ELASTIC, (d - d1_minus, d - d2_minus)
 
 
 RULE = Rule(
-    ("elastic", "yielding +", "yielding -", "yielding + again", "yielding - again"),
+    (
+        *BranchKind.ELASTIC.named("elastic"),
+        *BranchKind.YIELDING.named("yielding +", "yielding -", "yielding + again", "yielding - again"),
+    ),
     start,
     branch,
     transition,
+    parameters=7,
+    variables=2,
 )
 
 

@@ -39,7 +39,15 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule, above, below, internal_variables, linear
+from pound_solve.laws.automaton import (
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 from pound_solve.laws.mirror import inward, need_both_sides, outward, pair, side, turns_inward
 
 SLACK, FAILED, UNLOADING = 0, 1, 2
@@ -51,7 +59,7 @@ Line = tuple[float, float]  #: slope and force at zero deformation
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: in the slack."""
-    return SLACK, internal_variables()
+    return SLACK, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def backbone(p: Numbers, s: float) -> tuple[float, float, float, Line, Line]:
@@ -152,8 +160,8 @@ def unload(p: Numbers, at: int, m: Numbers, s: float, d: float, f: float) -> tup
     foot = d - f / unloading(p)
     other, end = upper_end(p, -s, m, -s * foot)
     if s > 0.0:
-        return UNLOADING, internal_variables(m[0], m[1], foot, float(at), d, other, -end)
-    return UNLOADING, internal_variables(m[0], m[1], foot, other, end, float(at), d)
+        return UNLOADING, (m[0], m[1], foot, float(at), d, other, -end)
+    return UNLOADING, (m[0], m[1], foot, other, end, float(at), d)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
@@ -169,9 +177,9 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         if event == 0:
             most = s * d - backbone(p, s)[0]
             if s > 0.0:
-                m = internal_variables(max(most, m[0]), m[1])
+                m = (max(most, m[0]), m[1], 0.0, 0.0, 0.0, 0.0, 0.0)
             else:
-                m = internal_variables(m[0], max(most, m[1]))
+                m = (m[0], max(most, m[1]), 0.0, 0.0, 0.0, 0.0, 0.0)
         elif at < BEYOND:
             return pair(BEYOND, s), m
         else:
@@ -204,24 +212,22 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 RULE = Rule(
     (
-        "slack",
-        "failed",
-        "unloading",
-        "elastic +",
-        "elastic -",
-        "yielding +",
-        "yielding -",
-        "yielding + beyond the ultimate force",
-        "yielding - beyond the ultimate force",
-        "pinched +",
-        "pinched -",
-        "reloading +",
-        "reloading -",
+        *BranchKind.OPEN.named("slack", "failed"),
+        *BranchKind.ELASTIC.named("unloading", "elastic +", "elastic -"),
+        *BranchKind.YIELDING.named(
+            "yielding +",
+            "yielding -",
+            "yielding + beyond the ultimate force",
+            "yielding - beyond the ultimate force",
+        ),
+        *BranchKind.ELASTIC.named("pinched +", "pinched -", "reloading +", "reloading -"),
     ),
     start,
     branch,
     transition,
     recoverable,
+    parameters=14,
+    variables=7,
 )
 
 

@@ -13,8 +13,8 @@ from pound_solve.laws.automaton import Law, State
 
 
 class SecantLaw(Law):
-    """A law whose memory has two numbers more, which its rule does not look at: the deformation of the
-    farthest turn, and the secant stiffness.
+    """A law whose memory ends with two numbers more, which its rule does not look at: the deformation of
+    the farthest turn, and the secant stiffness.
     """
 
     def start(self) -> State:

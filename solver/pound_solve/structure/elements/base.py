@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from enum import Enum, auto
 from typing import Any
 
 import numpy as np
@@ -25,20 +26,48 @@ class ElementMatrix:
     matrix: Array
 
 
+class Role(Enum):
+    """What a component is to the structure."""
+
+    SPRING = auto()  #: a spring or hinge with a hysteresis rule; damping models may add a dashpot to it
+    CONTACT = auto()
+    FRICTION = auto()  #: slides at a share of the force of another component of its element
+    DAMPER = auto()  #: resists the rate alone
+
+    @property
+    def collides(self) -> bool:
+        """Whether its closures are collisions; it joins its nodes only while it is closed."""
+        return self is Role.CONTACT
+
+    @property
+    def viscous(self) -> bool:
+        """Whether its law resists the rate, too, as part of the force that is reported; dashpots that a
+        damping model adds to a spring are no part of the spring's force.
+        """
+        return self in (Role.CONTACT, Role.DAMPER)
+
+    @property
+    def contact_energy(self) -> bool:
+        """Whether its losses count as lost in contacts: else those by slip are hysteretic, and those in
+        dashpots belong to damping.
+        """
+        return self is Role.CONTACT
+
+
 @dataclass(frozen=True)
 class LawSpring:
-    """A component whose force follows a piecewise-linear law.
+    """A component whose force follows a law with memory.
 
     The deformation is ``sum(row * u[DOFs])``; the force acts back on the DOFs along `row`.
 
     Attributes
     ----------
     component : str
-        Its name within the element: ``X``, ``Y``, ``R``, ``hinge I``, ... or ``contact``.
+        Its name within the element: ``X``, ``Y``, ``R``, ``hinge I``, ``contact``, ...
     rule : str
         Name of the law's Spec.
     k0 : float
-        Initial stiffness for modes and damping [F/L] or [F L]; 0 for a contact.
+        Initial stiffness for modes and damping [F/L] or [F L]; 0 unless it is a spring.
     unit : str
         Dimension of the force, ``F`` or ``F*L``.
     beta : float
@@ -47,9 +76,9 @@ class LawSpring:
         Dashpot as a multiple of the secant stiffness [T]; not zero with a `SecantLaw` only.
     yields : tuple of float or None
         Deformations at first yield, positive and negative, for ductilities.
-    normal : str
-        Component of the same element whose force this one's law leans on (see `contact.friction`); or
-        empty.
+    role : Role
+    normal_component : str
+        Of friction: the component of the same element whose force presses the faces together.
     facts : mapping
         For a contact: what the report says of it (xi, e_asked, e_given, note, reduced_mass, k, c, gap).
     """
@@ -66,12 +95,8 @@ class LawSpring:
     unit: str = "F"
     beta: float = 0.0
     secant: float = 0.0
-    normal: str = ""
-
-    @property
-    def is_contact(self) -> bool:
-        """Whether the component is a contact."""
-        return self.component == "contact"
+    role: Role = Role.SPRING
+    normal_component: str = ""
 
     def branch(self, state: State) -> Branch:
         """Linear piece that the law is on, the dashpots of `beta` and `secant` included."""
@@ -82,8 +107,8 @@ class LawSpring:
         return own._replace(damping=own.damping + self.beta * max(own.stiffness, 0.0) + follows)
 
     def force(self, state: State, d: float, v: float) -> float:
-        """Force at deformation `d` and rate `v`; damping counts in a contact's force, not in a spring's."""
-        return self.law.force(state, d, v if self.is_contact else 0.0)[0]
+        """Force that is reported at deformation `d` and rate `v`."""
+        return self.law.force(state, d, v if self.role.viscous else 0.0)[0]
 
 
 @dataclass(frozen=True)

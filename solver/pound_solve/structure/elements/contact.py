@@ -19,7 +19,7 @@ import math
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.structure.dofs import Dof
 from pound_solve.structure.elements import base
-from pound_solve.structure.elements.base import ElementContext, ElementError, LawSpring, Parts, axes
+from pound_solve.structure.elements.base import ElementContext, ElementError, LawSpring, Parts, Role, axes
 
 
 def direction(context: ElementContext) -> tuple[float, float]:
@@ -78,7 +78,16 @@ def rubbing(
     except ValueError as err:
         raise ElementError(str(err), "MUD") from None
     row, facts = across(ends, (-ny, nx)), {"k": card["KT"]}
-    spring = LawSpring(context.element.id, "friction", "COULOMB", *row, law, facts=facts, normal="contact")
+    spring = LawSpring(
+        context.element.id,
+        "friction",
+        "COULOMB",
+        *row,
+        law,
+        facts=facts,
+        role=Role.FRICTION,
+        normal_component="contact",
+    )
     return [spring], f"; friction {card['MU']:g}, {mud:g} while it slips"
 
 
@@ -135,6 +144,7 @@ def build(context: ElementContext) -> Parts:
         *across(ends, (nx, ny)),
         built.law,
         facts=facts,
+        role=Role.CONTACT,
     )
     return Parts(laws=[spring, *rubbed])
 

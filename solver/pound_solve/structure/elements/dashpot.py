@@ -1,26 +1,57 @@
-"""DASHPOT: linear viscous components x, y and rotation; geometry as in SPRING."""
+r"""DASHPOT: viscous components x, y and rotation; geometry as in SPRING.
+
+A linear one without play and limit is part of the structure's damping matrix.  Any other is a fluid damper
+(:mod:`pound_solve.laws.damper.fluid`), :math:`f = C\,\mathrm{sgn}(v)\,|v|^\alpha`.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.structure.elements.base import ElementContext, ElementMatrix, Output, Parts
+from pound_solve.structure.elements.base import (
+    ElementContext,
+    ElementError,
+    ElementMatrix,
+    LawSpring,
+    Output,
+    Parts,
+    Role,
+    signed,
+)
 from pound_solve.structure.elements.spring import components
+
+LIMITS, PLAYS = {"X": "FX", "Y": "FY", "R": "MR"}, {"X": "GAPX", "Y": "GAPY", "R": "GAPR"}
 
 
 def build(context: ElementContext) -> Parts:
     """Build the components that have a dashpot."""
-    parts = Parts()
+    card, parts = context.prop, Parts()
     for name, dofs, row in components(context):
-        c = context.prop["C" + name]
+        c, unit = card["C" + name], "F*L" if name == "R" else "F"
+        limit, play = card[LIMITS[name]], card[PLAYS[name]]
         if c == 0.0:
+            for item in (LIMITS[name], PLAYS[name]):
+                if card[item] is not None:
+                    raise ElementError(f"{item} has no effect without C{name}", item)
             continue
-        r = np.array(row)
-        parts.damping.append(ElementMatrix(dofs, c * np.outer(r, r)))
-        unit, kind = ("F*L", "moment") if name == "R" else ("F", "force")
-        parts.outputs.append(
-            Output(context.element.id, f"{kind} {name}", unit, dofs, np.zeros(len(row)), c * r)
+        if card["ALPHA"] == 1.0 and limit is None and play is None:
+            r = np.array(row)
+            parts.damping.append(ElementMatrix(dofs, c * np.outer(r, r)))
+            kind = "moment" if name == "R" else "force"
+            parts.outputs.append(
+                Output(context.element.id, f"{kind} {name}", unit, dofs, np.zeros(len(row)), c * r)
+            )
+            continue
+        from pound_solve.laws.damper import fluid  # a deck without one does not load it
+
+        limits = None if limit is None else signed(limit, LIMITS[name])
+        if limits is not None and 0.0 in limits:
+            raise ElementError(f"{LIMITS[name]}, the largest force, is not 0", LIMITS[name])
+        ends = (0.0, 0.0) if play is None else signed(play, PLAYS[name])
+        law = fluid.build(c, card["ALPHA"], limits, ends)
+        parts.laws.append(
+            LawSpring(context.element.id, name, "FLUID", dofs, row, law, unit=unit, role=Role.DAMPER)
         )
     return parts
 
@@ -28,12 +59,43 @@ def build(context: ElementContext) -> Parts:
 SPEC = Spec(
     "element",
     "DASHPOT",
-    "linear dashpot with components x, y and rotation",
+    "dashpot or fluid damper with components x, y and rotation",
     (
-        Field("CX", Kind.REAL, "F*T/L", default=0.0, lo=0, doc="dashpot along local x"),
-        Field("CY", Kind.REAL, "F*T/L", default=0.0, lo=0, doc="dashpot along local y"),
-        Field("CR", Kind.REAL, "F*L*T", default=0.0, lo=0, doc="rotational dashpot"),
+        Field("CX", Kind.REAL, "F*(T/L)^ALPHA", default=0.0, lo=0, doc="dashpot along local x"),
+        Field("CY", Kind.REAL, "F*(T/L)^ALPHA", default=0.0, lo=0, doc="dashpot along local y"),
+        Field("CR", Kind.REAL, "F*L*T^ALPHA", default=0.0, lo=0, doc="rotational dashpot"),
         Field("ANGLE", Kind.REAL, "deg", default=0.0, doc="angle of local x from global x, anticlockwise"),
+        Field(
+            "ALPHA",
+            Kind.REAL,
+            "-",
+            default=1.0,
+            above=0,
+            doc="exponent of the rate in the force; 1: linear",
+        ),
+        Field(
+            "FX",
+            Kind.REAL,
+            "F",
+            default=None,
+            count=(1, 2),
+            doc="largest force along x, positive and (signed) negative; one value: the same both ways; "
+            "left out: none",
+        ),
+        Field("FY", Kind.REAL, "F", default=None, count=(1, 2), doc="largest force along y"),
+        Field("MR", Kind.REAL, "F*L", default=None, count=(1, 2), doc="largest moment"),
+        Field(
+            "GAPX",
+            Kind.REAL,
+            "L",
+            default=None,
+            count=(1, 2),
+            doc="play along x, positive and (signed) negative end; one value: the same both ways; "
+            "no force inside it, beyond it the damper resists the motion outwards and back",
+        ),
+        Field("GAPY", Kind.REAL, "L", default=None, count=(1, 2), doc="play along y"),
+        Field("GAPR", Kind.REAL, "rad", default=None, count=(1, 2), doc="play of the rotation"),
     ),
+    reference="Constantinou & Symans 1992",
     impl=build,
 )

@@ -1,0 +1,1 @@
+"""Laws of dampers, one law a file."""

@@ -1,0 +1,148 @@
+r"""Fluid viscous damper: a force that is a power of the rate.
+
+.. math:: f = C\,\mathrm{sgn}(v)\,|v|^\alpha, \qquad |f| \le F, \qquad
+          f = 0 \ \text{while}\ g^- < d < g^+
+
+The force limit :math:`F` is that of a relief valve.  The play :math:`g` is a part of the stroke where a
+bypass is open: beyond it the damper resists the motion both ways, outwards and back.
+
+The force has a corner where the motion turns, where the relief valve opens and at the ends of the play:
+each is a change of branch.  For :math:`\alpha < 1` the slope at :math:`v = 0` is infinite.  There the force
+runs along a straight line from the rate `CORE` on the side that it moves to through zero, on the other side
+until the branch changes at the rate `CORE` there.  So it is concave ahead of the motion and straight behind
+it, and Newton's iteration comes to its root from anywhere.
+
+References
+----------
+Constantinou MC, Symans MD (1992), Experimental and analytical investigation of seismic response of
+structures with supplemental fluid viscous dampers, Report NCEER-92-0032, State University of New York at
+Buffalo; Soong TT, Constantinou MC (eds) (1994), Passive and Active Structural Vibration Control in Civil
+Engineering, Springer (the energy of a cycle).
+"""
+
+from __future__ import annotations
+
+import math
+
+from pound_solve.laws.automaton import (
+    NEVER,
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
+from pound_solve.laws.mirror import inward, pair, side
+
+PLAY, MOVING, LIMITED = 0, 1, 3  #: branches of an extending damper; those of a shortening one are one more
+CORE = 1e-12  #: rate up to which the force is straight, as a share of the rate one, at which it is C
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """In the play, or without one; the memory: the side of the play."""
+    return (PLAY if p[7] > p[8] else MOVING), (0.0,)
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Until the motion turns, the limit is reached or left, or the play begins or ends."""
+    if at == PLAY:
+        return linear(0.0, 0.0, above(p[7]), below(p[8]))
+    s = side(at)
+    fast = p[5] if s > 0.0 else p[6]
+    play = inward(m[0], p[7] if m[0] > 0.0 else -p[8]) if m[0] != 0.0 else NEVER
+    if at >= LIMITED:
+        return linear(0.0, s * (p[3] if s > 0.0 else p[4]), (0.0, -s, fast), play)
+    return linear(0.0, 0.0, (0.0, -s, -CORE), (0.0, s, -fast) if fast < math.inf else NEVER, play)
+
+
+def engaged(p: Numbers, v: float) -> int:
+    """Branch of a damper that moves at the rate `v`."""
+    s = 1.0 if v >= 0.0 else -1.0
+    return pair(LIMITED if s * v > (p[5] if s > 0.0 else p[6]) else MOVING, s)
+
+
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Come to the end of the play or into it, turn, reach the limit or leave it."""
+    if at == PLAY:
+        return engaged(p, v), (1.0 if event == 0 else -1.0,)
+    s = side(at)
+    if event == (1 if at >= LIMITED else 2):
+        return PLAY, m
+    if at >= LIMITED:
+        return pair(MOVING, s), m
+    return (pair(MOVING, -s) if event == 0 else pair(LIMITED, s)), m
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Nothing: all is dissipated."""
+    return 0.0
+
+
+def curve(
+    p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
+) -> tuple[float, float, float, float]:
+    """Force and its slope; `p` holds 0 (no stiffness), C, alpha, then of both directions the limits, the
+    rates where they are reached, and the ends of the play.
+    """
+    if at == PLAY:
+        return 0.0, 0.0, 0.0, 0.0
+    s = side(at)
+    if at >= LIMITED:
+        return s * (p[3] if s > 0.0 else p[4]), 0.0, 0.0, 0.0
+    c, alpha = p[1], p[2]
+    if alpha < 1.0 and s * v < CORE:
+        slope = c * CORE ** (alpha - 1.0)
+        return slope * v, 0.0, slope, 0.0
+    if v == 0.0:
+        return 0.0, 0.0, (c if alpha == 1.0 else 0.0), 0.0
+    secant = c * abs(v) ** (alpha - 1.0)
+    return secant * v, 0.0, alpha * secant, 0.0
+
+
+def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
+    """All that it takes."""
+    return curve(p, at, m, d, d, v)[0] * v
+
+
+RULE = Rule(
+    (
+        *BranchKind.OPEN.named("in the play"),
+        *BranchKind.VISCOUS.named(
+            "extending", "shortening", "extending at the limit", "shortening at the limit"
+        ),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+    curve,
+    power,
+    parameters=9,
+    variables=1,
+)
+
+
+def build(
+    c: float, alpha: float, limit: tuple[float, float] | None = None, play: tuple[float, float] = (0.0, 0.0)
+) -> Law:
+    """Law of a damper.
+
+    Parameters
+    ----------
+    c : float
+        Force at the rate one [F (T/L)^alpha].
+    alpha : float
+        Exponent, above 0.
+    limit : tuple of float or None
+        Largest forces, positive and negative [F].
+    play : tuple of float
+        Ends of the play, positive and negative [L].
+    """
+    if limit is None:
+        limits = rates = (math.inf, math.inf)
+    else:
+        limits = (limit[0], -limit[1])
+        rates = ((limits[0] / c) ** (1.0 / alpha), (limits[1] / c) ** (1.0 / alpha))
+    return Law(RULE, (0.0, c, alpha, *limits, *rates, *play))
