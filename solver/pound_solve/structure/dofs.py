@@ -31,6 +31,12 @@ def label(dof: Dof) -> str:
     return f"node {owner} {NAMES[d]}" if d < 3 else f"element {owner} {INTERNAL[d - 3]}"
 
 
+def labels(dofs: Sequence[Dof], most: int = 6) -> str:
+    """The first few of several DOFs in words, and how many more there are."""
+    text = ", ".join(label(f).removeprefix("node ") for f in dofs[:most])
+    return text + (f", and {len(dofs) - most} more" if len(dofs) > most else "")
+
+
 @dataclass(frozen=True)
 class DofMap:
     """Numbering of the DOFs.

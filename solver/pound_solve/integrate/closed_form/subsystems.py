@@ -24,6 +24,7 @@ from pound_solve.integrate.closed_form.propagator import (
 from pound_solve.integrate.closed_form.rigid_contact import Rigid
 from pound_solve.integrate.closed_form.work_integrals import WorkIntegrals
 from pound_solve.laws.automaton import Branch
+from pound_solve.numerics.graph import components
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
@@ -204,20 +205,14 @@ class Subsystems:
         return max((b.decomposition.propagator.fastest for b in self.active), default=0.0)
 
     def _parts_with_contacts_open(self) -> Index:
-        """Label the unknowns by what hangs together, shape (n,)."""
-        system, n = self.system, self.system.size
-        linked = (system.stiffness != 0) | (system.damping != 0) | (system.mass != 0)
-        for s, row in zip(system.structure.laws, system.law_rows):
-            if not s.is_contact:
-                at = np.flatnonzero(row)
-                linked[np.ix_(at, at)] = True
-        labels = np.arange(n)
-        while True:
-            # every unknown takes the lowest label among its neighbours until nothing changes
-            lowest = np.minimum(np.where(linked, labels[None, :], n).min(axis=1, initial=n), labels)
-            if (lowest == labels).all():
-                return labels
-            labels = lowest
+        """Component of each unknown with all contacts open, shape (n,)."""
+        system = self.system
+        laws = zip(system.structure.laws, system.law_rows)
+        return components(
+            system.size,
+            (system.stiffness, system.damping, system.mass),
+            [np.flatnonzero(row) for spring, row in laws if not spring.is_contact],
+        )
 
     def form(self, branches: Sequence[Branch], u: Array, v: Array, spend: Callable[[float], None]) -> None:
         """Form the blocks that the branches ask for at displacement `u`, velocity `v`;
