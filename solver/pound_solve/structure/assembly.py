@@ -159,7 +159,7 @@ class Structure:
         if not self.corotational:
             return np.array(linear)
         at, share = self.corotational.shares([(o.element, o.quantity) for o in self.outputs])
-        found = self.corotational.envelopes(self.corotational.quantities(u)[None])[0]
+        found = self.corotational.actions(self.corotational.quantities(u)[None])[0]
         return np.array(linear) + (share * found[at, 1:]).sum(axis=1)
 
     def influence(self) -> Array:

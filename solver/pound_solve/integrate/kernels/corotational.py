@@ -20,8 +20,7 @@ from pound_solve.integrate.kernels.state import (
     U,
 )
 from pound_solve.numerics.types import Array
-from pound_solve.structure.corotational import KNN, KTT, LENGTH, push
-from pound_solve.structure.corotational import bend as bend_chord
+from pound_solve.structure.corotational import KNN, KTT, LENGTH, quantity_forces, quantity_stiffness
 
 
 def locate(b: Turning, q: Array, row: int, s: Array, to: int) -> None:
@@ -76,7 +75,7 @@ def turn_start(w: Laws, x: Motion, s: Array) -> None:
     b = w.corotational
     locate(b, x.q, U, s, S0)
     for c in range(len(b.p)):
-        push(b.p, c, b.s, S0, b.s, G0)
+        quantity_forces(b.p, c, b.s, S0, b.s, G0)
 
 
 def aim(w: Laws, x: Motion, s: Array) -> None:
@@ -84,7 +83,7 @@ def aim(w: Laws, x: Motion, s: Array) -> None:
     b = w.corotational
     locate(b, x.q, U1, s, AHEAD)
     for c in range(len(b.p)):
-        push(b.p, c, b.s, AHEAD, b.s, REST)
+        quantity_forces(b.p, c, b.s, AHEAD, b.s, REST)
         straight_force(b, c, c, AHEAD, REST, -1.0)
 
 
@@ -100,7 +99,7 @@ def miss(w: Laws, x: Motion, bk: float) -> float:
             for y in range(b.at[c], b.at[c + 1]):
                 total += b.rows[y, j] * x.q[A1, b.unknown[y]]
             b.s[c, S1 + j] = b.s[c, AHEAD + j] + bk * total
-        push(b.p, c, b.s, S1, b.s, G1)
+        quantity_forces(b.p, c, b.s, S1, b.s, G1)
         size = max(size, chord_force(b, c))
     for c in range(len(b.p)):
         length, knn = b.p[c, LENGTH], b.p[c, KNN]
@@ -130,4 +129,4 @@ def chord_force(b: Turning, c: int) -> float:
 def linearise(b: Turning, s: int) -> None:
     """Take the chords' tangents at the quantities in columns `s` for the factor to come."""
     for c in range(len(b.p)):
-        bend_chord(b.p, c, b.s, s, b.h, c)
+        quantity_stiffness(b.p, c, b.s, s, b.h, c)

@@ -148,8 +148,7 @@ from pound_solve.laws.functions import Tables
 from pound_solve.numerics.jit import flat, loose
 from pound_solve.numerics.ldl import factor, solve, update
 from pound_solve.numerics.types import Array, Flags, Index
-from pound_solve.structure.corotational import KIND, LENGTH, STRING
-from pound_solve.structure.corotational import bend as bend_chord
+from pound_solve.structure.corotational import KIND, LENGTH, STRING, quantity_stiffness
 
 
 def refactor(m: Matrices, w: Laws, x: Motion, scheme: Scheme, h: float, at: int) -> int:
@@ -521,7 +520,7 @@ def loosen(m: Matrices, w: Laws, x: Motion, s: int) -> float:
     b = w.corotational
     for c in range(len(b.p) * m.shifts):
         present = len(b.p) + c
-        bend_chord(b.p, c, b.s, s, b.h, present)
+        quantity_stiffness(b.p, c, b.s, s, b.h, present)
         stiffen(m, b, x, c, present, 1.0, True)
     if factor(m.pattern, x.ax, x.l, LIGHT, x.q, D + LIGHT, W) >= 0:
         for i in range(x.q.shape[1]):  # what nothing holds goes on as it did

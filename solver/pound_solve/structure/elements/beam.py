@@ -32,7 +32,7 @@ import numpy as np
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind
 from pound_solve.numerics.types import Array
-from pound_solve.structure.corotational import STRING, TURNING, CorotationalMember
+from pound_solve.structure.corotational import COROTATIONAL, STRING, CorotationalMember
 from pound_solve.structure.dofs import Dof
 from pound_solve.structure.elements.base import (
     ElementContext,
@@ -347,7 +347,7 @@ def _turning(
     # a pinned end does not turn with the member
     lean = {2: 0.0, 5: 1.0}[pins[0]] if len(pins) == 1 else 0.5
     n0, t0 = d.T @ held[ends]
-    parameters = (TURNING, length, p["END1"], p["END2"], lean, k[0, 0], k[0, 1], k[1, 1], n0, t0)
+    parameters = (COROTATIONAL, length, p["END1"], p["END2"], lean, k[0, 0], k[0, 1], k[1, 1], n0, t0)
     axial, at_i, at_j = (np.append(row, 0.0) for row in own)
     shear = (at_i + at_j) / length + (0.0, 0.0, 1.0)
     adds = {"axial I": axial, "axial J": axial, "moment I": at_i, "moment J": at_j}
