@@ -59,7 +59,7 @@ def test_the_page_names_methods_and_scenes_of_stops_and_no_file():
         ("EXACT", stability.STOPPED, refused),
         ("EXACT", stability.FAULT, "KeyError: 1"),
     ]
-    said = stability.page([stability.Row(case, m, end, math.nan, says, 0.0) for m, end, says in ends])
+    said = stability.page([stability.JudgedRun(case, m, end, math.nan, says, 0.0) for m, end, says in ends])
     scene = f"{case.scene}, {case.variant}"
     assert f"| 2 | CENTRAL, HHT | A502 at t = 0 s: the step 1 is above the limit 0.3 | {scene} |" in said
     assert f"| 1 | EXACT | P330: element 3 (POUND): needs mass | {scene} |" in said

@@ -237,7 +237,7 @@ class CorotationalMembers:
         return gathered((n, n), np.concatenate(i), np.concatenate(j), np.concatenate(x))
 
     def actions(self, s: Array) -> Array:
-        """`member_actions` at the quantities `s`, shapes (n_times, n_members, 6) and (n_times, n_members, 4)."""
+        """`member_actions` at the quantities `s`, shape (n_times, n_members, 6)."""
         out = np.zeros((*s.shape[:2], 4))
         with jit.compiling():
             jit.compiled(member_actions)(self.p, np.ascontiguousarray(s), out)
