@@ -7,9 +7,9 @@ The pattern has forces along one direction,
 
 (UNIFORM, TRIANGULAR with the height above the lowest support, MODE with the mode whose effective mass
 along the direction is largest), so that the load factor is the base shear that they cause; or it has the
-FORCES of the card, or it is the LOADS once more.  The path is followed event to event (see `path_following`), by the
-displacement of the control node, which gets past the largest base shear, or by the load factor, which ends
-there.
+FORCES of the card, or it is the LOADS once more.  The path is followed from event to event
+(see `path_following`), by the displacement of the control node, which passes the largest base shear, or by
+the load factor, which ends there.
 
 With ADAPTIVE=YES the pattern is that of the present mode: after every change of a law and at every station
 :math:`dp = d\lambda\, p(\phi)` with :math:`\phi` of the tangent stiffness; the forces that act already stay

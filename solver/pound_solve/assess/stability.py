@@ -39,7 +39,9 @@ from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 
-from pound_solve.assess.stress_scenes import KICK, METHOD, STEP, Case, cases, every, one
+from pound_solve.assess.scenes import cases
+from pound_solve.assess.scenes.case import METHOD, STEP, Case, every
+from pound_solve.assess.scenes.linear import KICK, one
 from pound_solve.assess.study import RESIDUAL
 from pound_solve.catalog import catalog
 from pound_solve.driver import run

@@ -11,7 +11,7 @@ from pound_solve.cli import common
 from pound_solve.cli.progress import WIDTH, Progress, StatusLine
 
 if TYPE_CHECKING:
-    from pound_solve.assess.stress_scenes import Case
+    from pound_solve.assess.scenes.case import Case
     from pound_solve.assess.study import Plan
 
 SUMMARY = "error against time of every method on this deck, and advice"
@@ -127,7 +127,7 @@ def _plan(args: argparse.Namespace) -> Plan:
 
 def _stability(args: argparse.Namespace) -> int:
     """Run the stability matrix and print its page; the status is 1 where a run failed by a fault."""
-    from pound_solve.assess import stability, stress_scenes
+    from pound_solve.assess import scenes, stability
 
     families = (args.family,) if args.family else stability.FAMILIES
     law = (args.law or "").upper()
@@ -135,7 +135,7 @@ def _stability(args: argparse.Namespace) -> int:
     def chosen(case: Case) -> bool:
         return law in ("", case.law) and not (args.quick and case.heavy)
 
-    runs = sum(map(chosen, stress_scenes.cases(families))) * len(stability.methods())
+    runs = sum(map(chosen, scenes.cases(families))) * len(stability.methods())
     if not runs:
         near = f"--family {args.family} has" if args.family else "there are"
         text = f"{near} no scenes with the law {args.law}: see pound-solve list"
