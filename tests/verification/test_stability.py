@@ -11,9 +11,7 @@ import pytest
 import pound_solve
 from pound_solve.assess import scenes, stability
 from pound_solve.assess.scenes import case as scene_case
-from pound_solve.assess.scenes import contact as contact_scenes
-from pound_solve.assess.scenes import hysteresis as hysteresis_scenes
-from pound_solve.assess.scenes import linear as linear_scenes
+from pound_solve.assess.scenes import contact, hysteresis, linear
 from pound_solve.catalog import catalog
 from pound_solve.cli.main import main
 from pound_solve.integrate import auto
@@ -45,8 +43,8 @@ def test_the_matrix_has_no_fault(family):
 
 
 def test_study_prints_the_matrix(monkeypatch, capsys):
-    few = [c for c in linear_scenes.linear() if c.scene == "rigid-body modes"]
-    monkeypatch.setattr(scenes, "linear", lambda: iter(few))
+    few = [c for c in linear.linear_scenes() if c.scene == "rigid-body modes"]
+    monkeypatch.setattr(scenes, "linear_scenes", lambda: iter(few))
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     assert main(["study", "--stability", "--family", "linear", "--quick"]) == 0
     said, progress = capsys.readouterr()
@@ -56,7 +54,7 @@ def test_study_prints_the_matrix(monkeypatch, capsys):
 
 
 def test_the_page_names_methods_and_scenes_of_stops_and_no_file():
-    case = next(linear_scenes.linear())
+    case = next(linear.linear_scenes())
     refused = "/tmp/x/case.inp:11:56: error P330: element 3 (POUND): needs mass\n  the line\n  hint: y"
     ends = [
         ("CENTRAL", stability.STOPPED, "A502 at t = 0 s: the step 1 is above the limit 0.3"),
@@ -171,7 +169,7 @@ def test_a_contact_that_other_digits_of_the_masses_undo_is_not_judged():
 
 
 def test_masses_are_nudged_by_their_share():
-    deck = stability.nudged(linear_scenes.one(""), 1e-3)
+    deck = stability.nudged(linear.one(""), 1e-3)
     assert "\nGRAVITY 0.999000999" in deck and stability.nudged("NODES\n", 1e-3) == "NODES\n"
 
 
@@ -191,7 +189,7 @@ def test_a_clear_stop_has_number_time_and_cause(message, clear):
 def test_exact_refuses_a_curved_law(tmp_path):
     rule = catalog().family("hysteresis")["BOUC_WEN"]
     deck = tmp_path / "curved.inp"
-    deck.write_text(hysteresis_scenes.storeys(scene_case.items(rule)).replace(scene_case.METHOD, "EXACT"))
+    deck.write_text(hysteresis.storeys(scene_case.items(rule)).replace(scene_case.METHOD, "EXACT"))
     results = pound_solve.run(deck)
     assert results.status == "stopped"
     assert results.message.startswith("A505 at t = 0 s: ")
@@ -205,7 +203,7 @@ def test_a_spike_leaves_its_impulse_whatever_the_alphas(tmp_path, method):
     The spike has two steps; HHT (alpha -0.1, gamma 0.6) gets a tenth of its peak one step late, of which
     0.4 falls behind its end: 4 % of the impulse.
     """
-    (case,) = (c for c in linear_scenes.linear() if c.variant == "a spike")
+    (case,) = (c for c in linear.linear_scenes() if c.variant == "a spike")
     row = stability.judge(stability.Runner(0.0), case, method)
     assert row.error == pytest.approx(0.04, abs=0.002) if method == "HHT" else row.error < 0.01, row.says
 
@@ -214,9 +212,7 @@ def test_steps_that_do_not_resolve_the_motion_are_told(tmp_path):
     """Newmark keeps the energy of free vibration whatever the step; the report must tell all the same."""
     for dt, verdict in ((0.01, "good"), (0.2, "look")):
         deck = tmp_path / "one.inp"
-        text = linear_scenes.one(linear_scenes.KICK, every=0.2).replace(
-            scene_case.METHOD, f"NEWMARK DT={dt}"
-        )
+        text = linear.one(linear.KICK, every=0.2).replace(scene_case.METHOD, f"NEWMARK DT={dt}")
         deck.write_text(text)
         checks = {c["check"]: c for c in pound_solve.run(deck).table("checks")}
         found = checks["steps in a period of the motion, about"]
@@ -232,7 +228,7 @@ def test_auto_says_how_good_it_is_rather_than_its_steps(tmp_path, monkeypatch):
     spec = catalog().family("contact")["KELVIN_VOIGT"]
     k = 1e3 * scene_case.STOREY
     law = scene_case.items(spec, K=k)
-    deck.write_text(contact_scenes.pair(law, end=0.2).replace(scene_case.METHOD, "AUTO TOL=0.01"))
+    deck.write_text(contact.pair(law, end=0.2).replace(scene_case.METHOD, "AUTO TOL=0.01"))
     checks = pound_solve.run(deck).table("checks")["check"].tolist()
     assert any("estimated error" in c for c in checks) and not any("steps in" in c for c in checks)
 
@@ -243,7 +239,7 @@ OMEGA = scene_case.OMEGA
 def drifted(folder, method, periods, dt=0.0):
     """Phase, in radians ahead of the exact one, and energy over that at the start, less 1, at the end."""
     deck = folder / "long.inp"
-    text = linear_scenes.one(linear_scenes.KICK, end=float(periods), every=float(periods))
+    text = linear.one(linear.KICK, end=float(periods), every=float(periods))
     deck.write_text(text.replace(scene_case.METHOD, f"{method} DT={dt!r}" if dt else method))
     results = pound_solve.run(deck)
     u, v = results.history("node/u")[-1, 0, 0], results.history("node/v")[-1, 0, 0]
@@ -289,7 +285,7 @@ def test_a_thousand_seconds_of_record(tmp_path):
         "speed": 0.0,
         "k2": 2 * scene_case.STOREY,
     }
-    text = contact_scenes.pair(law, damping=scene_case.damped(0.05), **given)
+    text = contact.pair(law, damping=scene_case.damped(0.05), **given)
     deck = tmp_path / "long.inp"
     found = []
     for method in ("EXACT", "NEWMARK DT=0.002"):
@@ -316,7 +312,7 @@ def test_the_same_deck_gives_the_same_bits_on_any_number_of_cores(tmp_path):
     n = 60
     k = 100 * scene_case.STOREY
     law = scene_case.items(catalog().family("contact")["KELVIN_VOIGT"], K=k)
-    text = contact_scenes.CROWD.format(n=n, law=law, k=k, end=0.1)
+    text = contact.CROWD.format(n=n, law=law, k=k, end=0.1)
     chain = text.replace(scene_case.METHOD, "EXACT").replace(
         f"STOREY 1 TO {n}\n", f"STOREY 1 TO {n}\n 901 TO 959 STOREY 1 TO 59 2 TO 60\n"
     )

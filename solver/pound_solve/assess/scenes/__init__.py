@@ -7,17 +7,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pound_solve.assess.scenes.case import Case
-from pound_solve.assess.scenes.contact import contacts
-from pound_solve.assess.scenes.hysteresis import springs
-from pound_solve.assess.scenes.linear import linear
+from pound_solve.assess.scenes.contact import contact_scenes
+from pound_solve.assess.scenes.hysteresis import hysteresis_scenes
+from pound_solve.assess.scenes.linear import linear_scenes
 from pound_solve.catalog import catalog
 
 
 def cases(families: tuple[str, ...] = ("linear", "contact", "hysteresis")) -> Iterator[Case]:
     """All cases of some families."""
     if "linear" in families:
-        yield from linear()
-    for family, scenes in (("contact", contacts), ("hysteresis", springs)):
+        yield from linear_scenes()
+    for family, scenes in (("contact", contact_scenes), ("hysteresis", hysteresis_scenes)):
         if family in families:
             for spec in catalog().family(family).values():
                 if spec.impl is not None:

@@ -159,7 +159,7 @@ def last_speed(t: Array, u: Array) -> Array:
     return np.asarray((u[-1] - u[-2]) / (t[-1] - t[-2]))
 
 
-def contacts(spec: Spec) -> Iterator[Case]:
+def contact_scenes(spec: Spec) -> Iterator[Case]:
     """Scenes with one contact law."""
     own = _Contacts(spec)
     yield from own.stiffness()

@@ -49,7 +49,7 @@ def top(t: Array, u: Array) -> Array:
     return u[:, -1:]
 
 
-def springs(spec: Spec) -> Iterator[Case]:
+def hysteresis_scenes(spec: Spec) -> Iterator[Case]:
     """Scenes with one hysteresis rule."""
     own = _Springs(spec)
     yield from own.strength_and_stiffness()

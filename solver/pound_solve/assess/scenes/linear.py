@@ -94,7 +94,7 @@ OUTPUT
 """
 
 
-def linear() -> Iterator[Case]:
+def linear_scenes() -> Iterator[Case]:
     """Linear scenes, whose motion is known."""
     yield from _one_storey()
     yield from _several_masses()

@@ -66,6 +66,7 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
     """Run the methods on a deck, write the study's results file and report, and print the report."""
     from pound_deck.diagnostics import render
     from pound_solve.assess import study
+    from pound_solve.assess.advice import NOISY, StudyError
     from pound_solve.driver import run
     from pound_solve.report.text import render as report
     from pound_solve.results.file import ResultsError
@@ -86,14 +87,14 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
     except run.DeckError as err:
         print(err, file=sys.stderr)
         return common.MISTAKES
-    except study.StudyError as err:
+    except StudyError as err:
         line.clear()
         return common.complain(str(err), common.MISTAKES)
     except ResultsError as err:
         return common.complain(str(err))
     if ready.warnings:
         print(render(ready.warnings, ready.files), file=sys.stderr)
-    if found.noise > study.NOISY:
+    if found.noise > NOISY:
         common.complain(f"warning: {study.noisy(found)}")
     with results:
         text = report(results)
@@ -107,7 +108,8 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
 
 def _plan(args: argparse.Namespace) -> Plan:
     """Plan of the study; items without an option keep their defaults."""
-    from pound_solve.assess.study import Plan, StudyError
+    from pound_solve.assess.advice import StudyError
+    from pound_solve.assess.study import Plan
 
     given: dict[str, Any] = {
         name: getattr(args, name) for name in ("repeat", "longest") if getattr(args, name) is not None

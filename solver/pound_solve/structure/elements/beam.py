@@ -7,8 +7,8 @@ loads, lumped or consistent mass.
 Local axes: x from I to J, y to its left; matrices and interpolation are those of `beam_matrices`.
 
 A member that yields has hinges at the ends of the flexible length.  The beam between them then has
-separate end DOFs, which the hinges connect to the nodes; the flexibility of hinges with a length is taken off
-the beam, so that the elastic member is the same with and without them.
+separate end DOFs, which the hinges connect to the nodes.  The flexibility of hinges with a length is taken
+off the beam, so that the elastic member is the same with and without them.
 
 References
 ----------
