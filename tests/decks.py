@@ -17,6 +17,7 @@ from pound_solve.loading.motions.wave import fronts
 from pound_solve.numerics.types import Array
 from pound_solve.structure import reduction
 from pound_solve.structure.assembly import Structure, assemble
+from pound_solve.structure.condensation import condense
 from pound_solve.structure.dofs import Dof
 
 
@@ -53,7 +54,7 @@ def scene_of(text: str, params: Mapping[str, object] | None = None) -> reduction
     fixed = [(n.id, d) for n in model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed]
     structure = assemble(model, reduction.moved_supports(motions, fixed))
     u0, v0 = history.initial(structure)
-    return reduction.condense(
+    return condense(
         reduction.build(structure, motions, end, static.solve(structure).u + u0, v0, forces)
     ).system
 

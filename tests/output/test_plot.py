@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import pound_solve
-from pound_solve.cli.main import PICTURES, main
+from pound_solve.cli.main import main
+from pound_solve.cli.verbs.plot import PICTURES
 
 pytest.importorskip("matplotlib")
 

@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from pound_solve import run
-from pound_solve.cli.main import _Progress, main
+from pound_solve.cli.main import main
+from pound_solve.cli.progress import Progress
 from pound_solve.driver.run import DeckError
 from pound_solve.report.deck_reference import vocabulary
 from pound_solve.results.file import Results
@@ -248,7 +249,7 @@ def test_what_keeps_a_run_waiting_is_told_on_a_terminal_only(monkeypatch, termin
     stream = io.StringIO()
     stream.isatty = lambda: terminal
     monkeypatch.setattr(sys, "stderr", stream)
-    progress = _Progress(quiet)
+    progress = Progress(quiet)
     progress(0.0, 5.0, "compiling the kernels")
     progress(0.1, 5.0, "")  # too soon after the last
     progress.end()

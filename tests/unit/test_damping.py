@@ -444,7 +444,7 @@ def test_each_building_has_its_own_ratios(kind):
 
 
 def test_half_a_building_has_no_modes():
-    with pytest.raises(AssemblyError, match="node 3 ux hangs together with these nodes"):
+    with pytest.raises(AssemblyError, match="node 3 ux is connected to these nodes"):
         structure_of(PAIR.format(card="MODAL XI=0.02 NODES=1,2"))
     with pytest.raises(AssemblyError, match="none of these nodes can move"):
         frame(" MODAL XI=0.02 NODES=1,4")

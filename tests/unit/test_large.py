@@ -91,7 +91,7 @@ def test_forces_are_the_gradient_of_the_potential_and_the_tangent_that_of_the_fo
         u *= 0.3
 
     def potential(x):
-        return float(c.envelopes(c.quantities(x)[None])[0, 0, 0])
+        return float(c.actions(c.quantities(x)[None])[0, 0, 0])
 
     steps = 1e-5 * np.eye(len(u))
     slope = np.array([potential(u + e) - potential(u - e) for e in steps]) / 2e-5

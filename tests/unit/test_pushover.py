@@ -27,7 +27,7 @@ from pound_solve.laws.automaton import (
 from pound_solve.structure.assembly import assemble
 
 
-def pushed(text: str, card: str, swap=lambda s: s) -> pushover.Pushed:
+def pushed(text: str, card: str, swap=lambda s: s) -> pushover.PushoverResult:
     """Pushover of a deck by a card."""
     s = swap(assemble(model_of(f"{text}\nANALYSIS\n STATIC\n PUSHOVER {card}\n")))
     state = static.solve(s)
@@ -36,12 +36,12 @@ def pushed(text: str, card: str, swap=lambda s: s) -> pushover.Pushed:
     return pushover.push(s.stressed(state.axial), state, own)
 
 
-def ladder(p: pushover.Pushed) -> list[tuple[float, float]]:
+def ladder(p: pushover.PushoverResult) -> list[tuple[float, float]]:
     """Displacements and base shears of the events."""
     return [(x.displacement, x.shear) for x, _ in p.ladder]
 
 
-def at(p: pushover.Pushed, displacement: float) -> float:
+def at(p: pushover.PushoverResult, displacement: float) -> float:
     """Base shear at a displacement, interpolated on the curve."""
     d, v = zip(*((x.displacement, x.shear) for x in p.curve))
     return float(np.interp(displacement, d, v))

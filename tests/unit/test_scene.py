@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from decks import scene_of
-from pound_solve.structure.reduction import ReductionError
+from pound_solve.structure.reduction_checks import ReductionError
 
 TAIL = """
 EQUAKE

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pound_solve.assess import study
-from pound_solve.assess.study import Plan, Reference, StudyError, Trial
+from pound_solve.assess import advice, study
+from pound_solve.assess.advice import Reference, StudyError, Trial
+from pound_solve.assess.study import Plan
 from pound_solve.cli.main import main
 from pound_solve.driver import run
 from pound_solve.results.file import Results
@@ -72,11 +73,11 @@ def test_an_error_is_the_largest_difference_over_the_largest_extreme_of_its_kind
         ("member", "kN*m"): np.array([4.4]),
         ("contact", ""): np.array([0.0]),
     }
-    assert study.errors(found, true) == pytest.approx(
+    assert advice.errors(found, true) == pytest.approx(
         {"drift": 0.05, "member": 0.1, "contact": math.nan}, rel=1e-12, nan_ok=True
     )
     found["contact", ""] += 3.0  # a collision that the reference does not have
-    assert study.errors(found, true)["contact"] == math.inf
+    assert advice.errors(found, true)["contact"] == math.inf
 
 
 def test_extrapolation_finds_the_limit_of_what_shrinks_with_the_square_of_the_step():
@@ -84,38 +85,38 @@ def test_extrapolation_finds_the_limit_of_what_shrinks_with_the_square_of_the_st
         values = np.array([2.0 + 3.0 / n**2 + cubic / n**3, -1.0 + 1.0 / n**2])
         return Trial("NEWMARK", f"DT={1 / n}", steps=n, peaks={("drift", ""): values})
 
-    found = study.extrapolated("NEWMARK", [rung(10), rung(20), rung(45)])
+    found = advice.extrapolated("NEWMARK", [rung(10), rung(20), rung(45)])
     assert found.peaks["drift", ""] == pytest.approx([2.0, -1.0], abs=1e-14)
     assert found.doubt < 1e-14
     # where higher powers take part, the limit is off by less than the estimate
-    rough = study.extrapolated("NEWMARK", [rung(n, 20.0) for n in (10, 20, 40)])
-    off = study.errors(rough.peaks, {("drift", ""): np.array([2.0, -1.0])})["drift"]
+    rough = advice.extrapolated("NEWMARK", [rung(n, 20.0) for n in (10, 20, 40)])
+    off = advice.errors(rough.peaks, {("drift", ""): np.array([2.0, -1.0])})["drift"]
     assert 0.1 * rough.doubt < off < rough.doubt
 
 
 def test_a_reference_needs_three_runs():
     rungs = [trial(10, 0.1), trial(20, 0.0, stopped="A503 no equilibrium"), trial(40, 0.1)]
     with pytest.raises(StudyError, match="A503"):
-        study.extrapolated("NEWMARK", rungs)
+        advice.extrapolated("NEWMARK", rungs)
 
 
 def test_the_order_is_that_between_two_rungs_by_the_steps_they_took():
-    assert study.order(trial(10, 0.09), trial(30, 0.01)) == pytest.approx(2.0)
-    assert math.isnan(study.order(trial(10, 0.0), trial(20, 0.01)))
-    assert math.isnan(study.order(trial(10, 0.1), trial(10, 0.01)))
+    assert advice.order(trial(10, 0.09), trial(30, 0.01)) == pytest.approx(2.0)
+    assert math.isnan(advice.order(trial(10, 0.0), trial(20, 0.01)))
+    assert math.isnan(advice.order(trial(10, 0.1), trial(10, 0.01)))
 
 
 def test_advice_does_not_trust_an_error_that_happens_to_be_small():
     smooth = [trial(10 * 2**k, 0.01 / 4**k) for k in range(4)]
-    assert study.allowed(smooth, EXACTLY) == pytest.approx([study.MARGIN * t.error for t in smooth])
+    assert advice.allowed(smooth, EXACTLY) == pytest.approx([advice.MARGIN * t.error for t in smooth])
     lucky = [smooth[0], replace(smooth[1], errors={**NONE, "drift": 1e-9}), *smooth[2:]]
     # its neighbours say what it would have been without luck
-    assert study.allowed(lucky, EXACTLY)[1] == pytest.approx(study.MARGIN * smooth[1].error)
+    assert advice.allowed(lucky, EXACTLY)[1] == pytest.approx(advice.MARGIN * smooth[1].error)
     # finer steps that do worse spoil all coarser ones
     bad = [*smooth, trial(10 * 2**4, 0.5)]
-    assert min(study.allowed(bad, EXACTLY)) >= study.MARGIN * 0.5
+    assert min(advice.allowed(bad, EXACTLY)) >= advice.MARGIN * 0.5
     doubtful = replace(EXACTLY, error={**NONE, "drift": 1e-3})
-    assert study.allowed(smooth, doubtful)[3] > 1e-3
+    assert advice.allowed(smooth, doubtful)[3] > 1e-3
 
 
 def test_advice_takes_the_least_time_that_meets_the_target():
@@ -126,15 +127,15 @@ def test_advice_takes_the_least_time_that_meets_the_target():
         trial(400, 6e-5, 0.9),
         trial(100, 0.0, math.nan, "CENTRAL", "A502 too long a step"),
     ]
-    one, tenth, fine = study.advise(trials, EXACTLY)
+    one, tenth, fine = advice.advise(trials, EXACTLY)
     assert (one.trial, tenth.trial, fine.trial) == (trials[1], trials[0], trials[0])
     assert str(one).startswith("1 %: NEWMARK DT=0.01") and str(fine).startswith("1e-6: EXACT")
-    assert study.advise(trials[1:], EXACTLY)[2].trial is None
+    assert advice.advise(trials[1:], EXACTLY)[2].trial is None
     # a fifth of the time more is no reason to take the larger error
     alike = [trial(0, 0.0, 0.12, "EXACT"), *trials[1:]]
-    assert study.advise(alike, EXACTLY)[0].trial == alike[0]
+    assert advice.advise(alike, EXACTLY)[0].trial == alike[0]
     apart = [trial(0, 0.0, 0.13, "EXACT"), *trials[1:]]
-    assert study.advise(apart, EXACTLY)[0].trial == apart[1]
+    assert advice.advise(apart, EXACTLY)[0].trial == apart[1]
 
 
 def test_no_step_is_named_where_no_contact_closed(tmp_path):
@@ -149,12 +150,12 @@ def test_no_step_is_named_where_no_contact_closed(tmp_path):
 def test_errors_fall_with_the_order_of_the_methods_and_both_references_agree(two, studied):
     for method in ("NEWMARK", "CENTRAL"):
         rungs = [t for t in studied.trials if t.method == method]
-        orders = [study.order(a, b) for a, b in zip(rungs[-3:], rungs[-2:])]
+        orders = [advice.order(a, b) for a, b in zip(rungs[-3:], rungs[-2:])]
         assert orders == pytest.approx([2.0, 2.0], abs=0.05)
         assert len({t.collisions for t in rungs}) == 1
     assert studied.trials[0].error < 1e-13  # EXACT: no finer grid changes it
     alone, _ = study.run(two, replace(LADDER, methods=("NEWMARK",)))
-    own = study.errors(alone.reference.peaks, studied.reference.peaks)
+    own = advice.errors(alone.reference.peaks, studied.reference.peaks)
     assert max(own.values()) < alone.reference.doubt < 1e-4
     # the rungs that made the reference are not judged by it
     assert [t.setting for t in alone.trials] == [t.setting for t in studied.trials[1:6]]
@@ -162,7 +163,7 @@ def test_errors_fall_with_the_order_of_the_methods_and_both_references_agree(two
 
 @pytest.mark.parametrize("motion", OTHERS)
 def test_the_step_that_the_advice_names_meets_its_error_under_another_motion(tmp_path, studied, motion):
-    sure = list(zip(studied.trials, study.allowed(studied.trials, studied.reference)))
+    sure = list(zip(studied.trials, advice.allowed(studied.trials, studied.reference)))
     # the longest step of each method that the rule lets pass, whether it is the fastest here or not
     advised = {
         (method, target): next(t.setting for t, error in sure if t.method == method and error <= target)

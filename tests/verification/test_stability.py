@@ -9,7 +9,10 @@ import numpy as np
 import pytest
 
 import pound_solve
-from pound_solve.assess import stability, stress_scenes
+from pound_solve.assess import scenes, stability
+from pound_solve.assess.scenes import case as scene_case
+from pound_solve.assess.scenes import contact, hysteresis, linear
+from pound_solve.catalog import catalog
 from pound_solve.cli.main import main
 from pound_solve.integrate import auto
 
@@ -40,8 +43,8 @@ def test_the_matrix_has_no_fault(family):
 
 
 def test_study_prints_the_matrix(monkeypatch, capsys):
-    few = [c for c in stress_scenes.linear() if c.scene == "rigid-body modes"]
-    monkeypatch.setattr(stress_scenes, "linear", lambda: iter(few))
+    few = [c for c in linear.linear_scenes() if c.scene == "rigid-body modes"]
+    monkeypatch.setattr(scenes, "linear_scenes", lambda: iter(few))
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     assert main(["study", "--stability", "--family", "linear", "--quick"]) == 0
     said, progress = capsys.readouterr()
@@ -51,7 +54,7 @@ def test_study_prints_the_matrix(monkeypatch, capsys):
 
 
 def test_the_page_names_methods_and_scenes_of_stops_and_no_file():
-    case = next(stress_scenes.linear())
+    case = next(linear.linear_scenes())
     refused = "/tmp/x/case.inp:11:56: error P330: element 3 (POUND): needs mass\n  the line\n  hint: y"
     ends = [
         ("CENTRAL", stability.STOPPED, "A502 at t = 0 s: the step 1 is above the limit 0.3"),
@@ -59,7 +62,7 @@ def test_the_page_names_methods_and_scenes_of_stops_and_no_file():
         ("EXACT", stability.STOPPED, refused),
         ("EXACT", stability.FAULT, "KeyError: 1"),
     ]
-    said = stability.page([stability.Row(case, m, end, math.nan, says, 0.0) for m, end, says in ends])
+    said = stability.page([stability.JudgedRun(case, m, end, math.nan, says, 0.0) for m, end, says in ends])
     scene = f"{case.scene}, {case.variant}"
     assert f"| 2 | CENTRAL, HHT | A502 at t = 0 s: the step 1 is above the limit 0.3 | {scene} |" in said
     assert f"| 1 | EXACT | P330: element 3 (POUND): needs mass | {scene} |" in said
@@ -96,9 +99,7 @@ def judged(case, **given):
 
 
 def test_the_judge_tells_right_from_wrong():
-    case = stress_scenes.Case(
-        "linear", "", "", "", "", within=0.1, right=lambda t: np.array([[0.0], [1.0]])
-    )
+    case = scene_case.Case("linear", "", "", "", "", within=0.1, right=lambda t: np.array([[0.0], [1.0]]))
     ends = np.array([[0.0], [1.05]]), np.array([[0.0], [1.2]])
     assert judged(case, u=ends[0]) == stability.RIGHT
     assert judged(case, u=ends[1]) == stability.FAULT
@@ -115,7 +116,7 @@ RIGHT_RUN = stability.NOTHING._replace(
 
 def compared(method, off=RIGHT_RUN, nudged=RIGHT_RUN):
     """How a made-up run is judged against a reference that `nudged` stands for with other masses."""
-    case = stress_scenes.Case("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
+    case = scene_case.Case("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
 
     def run(case, deck, method):
         return (RIGHT_RUN if deck == case.deck else nudged) if "REFINE" in method else off
@@ -154,7 +155,7 @@ def test_nothing_is_judged_beyond_what_other_digits_of_the_masses_change():
 
 def test_a_contact_that_other_digits_of_the_masses_undo_is_not_judged():
     grazed = RIGHT_RUN._replace(blows=np.array([2.0, 1.0]))
-    case = stress_scenes.Case("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
+    case = scene_case.Case("contact", "", "", "", "GRAVITY 1\nMETHOD=@METHOD", within=0.1)
 
     def run(other):
         def found(case, deck, method):
@@ -168,7 +169,7 @@ def test_a_contact_that_other_digits_of_the_masses_undo_is_not_judged():
 
 
 def test_masses_are_nudged_by_their_share():
-    deck = stability.nudged(stress_scenes.one(""), 1e-3)
+    deck = stability.nudged(linear.one(""), 1e-3)
     assert "\nGRAVITY 0.999000999" in deck and stability.nudged("NODES\n", 1e-3) == "NODES\n"
 
 
@@ -186,9 +187,9 @@ def test_a_clear_stop_has_number_time_and_cause(message, clear):
 
 
 def test_exact_refuses_a_curved_law(tmp_path):
-    rule = stress_scenes.catalog().family("hysteresis")["BOUC_WEN"]
+    rule = catalog().family("hysteresis")["BOUC_WEN"]
     deck = tmp_path / "curved.inp"
-    deck.write_text(stress_scenes.storeys(stress_scenes.items(rule)).replace(stress_scenes.METHOD, "EXACT"))
+    deck.write_text(hysteresis.storeys(scene_case.items(rule)).replace(scene_case.METHOD, "EXACT"))
     results = pound_solve.run(deck)
     assert results.status == "stopped"
     assert results.message.startswith("A505 at t = 0 s: ")
@@ -202,7 +203,7 @@ def test_a_spike_leaves_its_impulse_whatever_the_alphas(tmp_path, method):
     The spike has two steps; HHT (alpha -0.1, gamma 0.6) gets a tenth of its peak one step late, of which
     0.4 falls behind its end: 4 % of the impulse.
     """
-    (case,) = (c for c in stress_scenes.linear() if c.variant == "a spike")
+    (case,) = (c for c in linear.linear_scenes() if c.variant == "a spike")
     row = stability.judge(stability.Runner(0.0), case, method)
     assert row.error == pytest.approx(0.04, abs=0.002) if method == "HHT" else row.error < 0.01, row.says
 
@@ -211,14 +212,12 @@ def test_steps_that_do_not_resolve_the_motion_are_told(tmp_path):
     """Newmark keeps the energy of free vibration whatever the step; the report must tell all the same."""
     for dt, verdict in ((0.01, "good"), (0.2, "look")):
         deck = tmp_path / "one.inp"
-        text = stress_scenes.one(stress_scenes.KICK, every=0.2).replace(
-            stress_scenes.METHOD, f"NEWMARK DT={dt}"
-        )
+        text = linear.one(linear.KICK, every=0.2).replace(scene_case.METHOD, f"NEWMARK DT={dt}")
         deck.write_text(text)
         checks = {c["check"]: c for c in pound_solve.run(deck).table("checks")}
         found = checks["steps in a period of the motion, about"]
         # the method's own period is longer: omega' = 2/h atan(omega h/2)
-        own = 2 * math.pi / (2 / dt * math.atan(stress_scenes.OMEGA * dt / 2)) / dt
+        own = 2 * math.pi / (2 / dt * math.atan(scene_case.OMEGA * dt / 2)) / dt
         assert found["verdict"].startswith(verdict)
         assert float(found["value"]) == pytest.approx(own, rel=0.35)
 
@@ -226,22 +225,22 @@ def test_steps_that_do_not_resolve_the_motion_are_told(tmp_path):
 def test_auto_says_how_good_it_is_rather_than_its_steps(tmp_path, monkeypatch):
     monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
     deck = tmp_path / "pair.inp"
-    spec = stress_scenes.catalog().family("contact")["KELVIN_VOIGT"]
-    k = 1e3 * stress_scenes.STOREY
-    law = stress_scenes.items(spec, K=k)
-    deck.write_text(stress_scenes.pair(law, end=0.2).replace(stress_scenes.METHOD, "AUTO TOL=0.01"))
+    spec = catalog().family("contact")["KELVIN_VOIGT"]
+    k = 1e3 * scene_case.STOREY
+    law = scene_case.items(spec, K=k)
+    deck.write_text(contact.pair(law, end=0.2).replace(scene_case.METHOD, "AUTO TOL=0.01"))
     checks = pound_solve.run(deck).table("checks")["check"].tolist()
     assert any("estimated error" in c for c in checks) and not any("steps in" in c for c in checks)
 
 
-OMEGA = stress_scenes.OMEGA
+OMEGA = scene_case.OMEGA
 
 
 def drifted(folder, method, periods, dt=0.0):
     """Phase, in radians ahead of the exact one, and energy over that at the start, less 1, at the end."""
     deck = folder / "long.inp"
-    text = stress_scenes.one(stress_scenes.KICK, end=float(periods), every=float(periods))
-    deck.write_text(text.replace(stress_scenes.METHOD, f"{method} DT={dt!r}" if dt else method))
+    text = linear.one(linear.KICK, end=float(periods), every=float(periods))
+    deck.write_text(text.replace(scene_case.METHOD, f"{method} DT={dt!r}" if dt else method))
     results = pound_solve.run(deck)
     u, v = results.history("node/u")[-1, 0, 0], results.history("node/v")[-1, 0, 0]
     energy = results.history("energy")
@@ -274,23 +273,23 @@ def test_phase_and_energy_over_many_periods(tmp_path, periods):
 @pytest.mark.slow
 def test_a_thousand_seconds_of_record(tmp_path):
     """EXACT balances the energy of a long record that yields and pounds; steps come to the same drifts."""
-    spec = stress_scenes.catalog().family("contact")["KELVIN_VOIGT"]
-    k = 100 * stress_scenes.STOREY
+    spec = catalog().family("contact")["KELVIN_VOIGT"]
+    k = 100 * scene_case.STOREY
     quake = "EQUAKE\n SYNTHETIC PGA=10 SEED=7 DT=0.02 DURATION=1000\n"
-    law = stress_scenes.items(spec, K=k)
+    law = scene_case.items(spec, K=k)
     given = {
         "motion": quake,
         "gap": 0.02,
         "end": 1000.0,
         "every": 1.0,
         "speed": 0.0,
-        "k2": 2 * stress_scenes.STOREY,
+        "k2": 2 * scene_case.STOREY,
     }
-    text = stress_scenes.pair(law, damping=stress_scenes.damped(0.05), **given)
+    text = contact.pair(law, damping=scene_case.damped(0.05), **given)
     deck = tmp_path / "long.inp"
     found = []
     for method in ("EXACT", "NEWMARK DT=0.002"):
-        deck.write_text(text.replace(stress_scenes.METHOD, method))
+        deck.write_text(text.replace(scene_case.METHOD, method))
         found.append(pound_solve.run(deck, out=tmp_path / method[:5]))
     checks = found[0].table("checks")
     assert float(checks["value"][0]) < 1e-9 and found[0].table("contact_summary")["closures"][0] > 20
@@ -299,9 +298,9 @@ def test_a_thousand_seconds_of_record(tmp_path):
 
 
 BITS = """import hashlib, sys
-from pound_solve.cli import main
+from pound_solve.cli.main import main
 assert main([sys.argv[1], "-o", sys.argv[2], "--quiet"]) == 0
-from pound_solve.results import Results
+from pound_solve.results.file import Results
 with Results.open(sys.argv[2] + "/row.h5") as r:
     print(*(hashlib.sha256(r.history(k).tobytes()).hexdigest() for k in sorted(r.histories)))
 """
@@ -311,10 +310,10 @@ def test_the_same_deck_gives_the_same_bits_on_any_number_of_cores(tmp_path):
     """The command line takes one thread of linear algebra, unless it is told otherwise."""
     deck = tmp_path / "row.inp"
     n = 60
-    k = 100 * stress_scenes.STOREY
-    law = stress_scenes.items(stress_scenes.catalog().family("contact")["KELVIN_VOIGT"], K=k)
-    text = stress_scenes.CROWD.format(n=n, law=law, k=k, end=0.1)
-    chain = text.replace(stress_scenes.METHOD, "EXACT").replace(
+    k = 100 * scene_case.STOREY
+    law = scene_case.items(catalog().family("contact")["KELVIN_VOIGT"], K=k)
+    text = contact.CROWD.format(n=n, law=law, k=k, end=0.1)
+    chain = text.replace(scene_case.METHOD, "EXACT").replace(
         f"STOREY 1 TO {n}\n", f"STOREY 1 TO {n}\n 901 TO 959 STOREY 1 TO 59 2 TO 60\n"
     )
     deck.write_text(chain)

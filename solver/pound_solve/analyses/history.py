@@ -264,7 +264,7 @@ class Envelopes:
             out += self.of_v @ v + self.out_rate @ s[1]
         if self.system.corotational:
             at, share = self.shares
-            seen = self.system.corotational.envelopes(self.system.quantities(u.T, s[0].T))[:, at, 1:]
+            seen = self.system.corotational.actions(self.system.quantities(u.T, s[0].T))[:, at, 1:]
             out += (share * seen).sum(axis=2).T
         for q, values in node.items():
             self.node[q].take(values, t, self.moving)

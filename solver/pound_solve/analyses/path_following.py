@@ -79,7 +79,7 @@ class Change(NamedTuple):
     after: str
 
 
-class Path:
+class EquilibriumPath:
     """A point on an equilibrium path, and how to go on.
 
     Parameters

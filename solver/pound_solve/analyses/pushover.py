@@ -7,9 +7,9 @@ The pattern has forces along one direction,
 
 (UNIFORM, TRIANGULAR with the height above the lowest support, MODE with the mode whose effective mass
 along the direction is largest), so that the load factor is the base shear that they cause; or it has the
-FORCES of the card, or it is the LOADS once more.  The path is followed event to event (see `path`), by the
-displacement of the control node, which gets past the largest base shear, or by the load factor, which ends
-there.
+FORCES of the card, or it is the LOADS once more.  The path is followed from event to event
+(see `path_following`), by the displacement of the control node, which passes the largest base shear, or by
+the load factor, which ends there.
 
 With ADAPTIVE=YES the pattern is that of the present mode: after every change of a law and at every station
 :math:`dp = d\lambda\, p(\phi)` with :math:`\phi` of the tangent stiffness; the forces that act already stay
@@ -35,7 +35,7 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.analyses.equilibrium import SupportReactions
-from pound_solve.analyses.path_following import Change, InstabilityError, Mark, Path, PathEvent
+from pound_solve.analyses.path_following import Change, EquilibriumPath, InstabilityError, Mark, PathEvent
 from pound_solve.analyses.static import StaticState
 from pound_solve.numerics import modes
 from pound_solve.numerics.types import Array
@@ -45,7 +45,7 @@ SOUGHT = 12  #: slowest modes of a large structure among which the pattern is ch
 
 
 @dataclass(frozen=True)
-class Point:
+class CapacityPoint:
     """A point of the capacity curve: control displacement [L], base shear [F], load factor, changes."""
 
     displacement: float
@@ -55,32 +55,39 @@ class Point:
 
 
 @dataclass
-class Pushed:
+class PushoverResult:
     """What a pushover found.
 
     Attributes
     ----------
-    curve : list of Point
+    curve : list of CapacityPoint
         At the start, at the stations, and where laws changed.
-    ladder : list of (Point, Change)
+    ladder : list of (CapacityPoint, Change)
         Every change of a law.
     first, last : ndarray, shape (n_free,)
         Pattern at the start and at the end [F] or [-].
     end : str
         Why it ended.
-    failed : Unstable or None
-        Set where it ended before what was asked for.
+    failed : InstabilityError or None
+        Set where it ended before the end requested.
     unbalanced : float
         Largest force out of balance at the end, as a share of the largest that acts.
     """
 
-    curve: list[Point] = field(default_factory=list)
-    ladder: list[tuple[Point, Change]] = field(default_factory=list)
+    curve: list[CapacityPoint] = field(default_factory=list)
+    ladder: list[tuple[CapacityPoint, Change]] = field(default_factory=list)
     first: Array = field(default_factory=lambda: np.zeros(0))
     last: Array = field(default_factory=lambda: np.zeros(0))
     end: str = ""
     failed: InstabilityError | None = None
     unbalanced: float = 0.0
+
+    def add(self, point: CapacityPoint) -> None:
+        """Add a point to the curve; it replaces the last one at the same displacement and factor."""
+        last = self.curve[-1:]
+        if last and (last[0].displacement, last[0].factor) == (point.displacement, point.factor):
+            self.curve.pop()
+        self.curve.append(point)
 
 
 def mistakes(structure: Structure) -> list[Diagnostic]:
@@ -94,40 +101,47 @@ def mistakes(structure: Structure) -> list[Diagnostic]:
 
 def _wrong(structure: Structure, card: Card) -> tuple[str, str, str] | None:
     """Message, item of the card and hint."""
-    pattern, nodes, forces = card["PATTERN"], card["NODES"], card["FORCES"] or ()
-    wants = "TARGET" if card["CONTROL"] == "DISPLACEMENT" else "TARGET or FACTOR"
-    if card["TARGET"] is None and (card["FACTOR"] is None or wants == "TARGET"):
-        return f"PUSHOVER has no end: it needs {wants}", "CONTROL", "add TARGET=displacement"
+    if wrong := _wrong_control(structure, card) or _wrong_items(card):
+        return wrong
+    pattern = LoadPattern(structure, card)
+    if not (pattern.mass if pattern.by_mode else pattern.forces.any()):
+        hint = "the nodes that are pushed need forces, loads or WEIGHTS, and must be able to move so"
+        return f"PATTERN={card['PATTERN']} has no force along {card['DIRECTION']}", "PATTERN", hint
+    return None
+
+
+def _wrong_control(structure: Structure, card: Card) -> tuple[str, str, str] | None:
+    """What is wrong with the end of the pushover or with its control node."""
+    by_displacement = card["CONTROL"] == "DISPLACEMENT"
+    if card["TARGET"] is None and (card["FACTOR"] is None or by_displacement):
+        needs = "TARGET" if by_displacement else "TARGET or FACTOR"
+        return f"PUSHOVER has no end: it needs {needs}", "CONTROL", "add TARGET=displacement"
     if card["FACTOR"] == 0.0:
         return "FACTOR is zero", "FACTOR", "give the load factor to go to, with its sign"
     if not _control(structure, card).any():
         message = f"the control node {card['NODE']} cannot move along {card['DIRECTION']}"
         return message, "NODE", "name a node that is not fixed so"
+    return None
+
+
+def _wrong_items(card: Card) -> tuple[str, str, str] | None:
+    """What is wrong with the items that belong to one pattern only."""
+    pattern, nodes, forces = card["PATTERN"], card["NODES"], card["FORCES"] or ()
     if pattern == "FORCES" and (not forces or len(nodes or ()) != len(forces)):
         hint = "PATTERN=FORCES takes one force for each node: NODES=3,5 FORCES=10,20"
         return f"{len(nodes or ())} NODES, but {len(forces)} FORCES", "FORCES", hint
     if pattern != "FORCES" and forces:
-        return (
-            f"FORCES do not go with PATTERN={pattern}",
-            "FORCES",
-            "write PATTERN=FORCES, or leave them out",
-        )
+        hint = "write PATTERN=FORCES, or leave them out"
+        return f"FORCES do not go with PATTERN={pattern}", "FORCES", hint
     if pattern == "LOADS" and nodes is not None:
-        return (
-            "NODES do not go with PATTERN=LOADS",
-            "NODES",
-            "the loads stand where they are: leave NODES out",
-        )
+        hint = "the loads stand where they are: leave NODES out"
+        return "NODES do not go with PATTERN=LOADS", "NODES", hint
     if card["ADAPTIVE"] == "YES" and pattern != "MODE":
         return f"PATTERN={pattern} cannot adapt", "ADAPTIVE", "ADAPTIVE=YES goes with PATTERN=MODE"
-    made = Pattern(structure, card)
-    if not (made.mass if made.by_mode else made.forces.any()):
-        hint = "the nodes that are pushed need forces, loads or WEIGHTS, and must be able to move so"
-        return f"PATTERN={pattern} has no force along {card['DIRECTION']}", "PATTERN", hint
     return None
 
 
-def push(structure: Structure, state: StaticState, card: Card) -> Pushed:
+def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult:
     """Push a structure from its static state.
 
     Parameters
@@ -140,58 +154,36 @@ def push(structure: Structure, state: StaticState, card: Card) -> Pushed:
 
     Raises
     ------
-    Unstable
-        Nothing could be done.
+    InstabilityError
+        The path has no first step.
     """
-    n, d = structure.n_free, "XY".index(card["DIRECTION"])
+    n, by_load = structure.n_free, card["CONTROL"] == "FORCE"
     control = _control(structure, card)
-    target, factor, by_load = card["TARGET"], card["FACTOR"], card["CONTROL"] == "FORCE"
     start = float(control @ state.u)
-    if target == start:
-        raise InstabilityError(f"the control node stands at its target {target:g} already", "A505")
-    pattern = Pattern(structure, card)
-    path = Path(
+    if card["TARGET"] == start:
+        raise InstabilityError(f"the control node stands at its target {start:g} already", "A505")
+    pattern = LoadPattern(structure, card)
+    path = EquilibriumPath(
         structure, state.u, state.states, structure.loads[:n], np.zeros(n), None if by_load else control
     )
     path.load = pattern.follow(path)
     if not path.load.any():
         raise InstabilityError("no mode of the static state moves the nodes that are pushed", "A505")
-    if not by_load:
-        path.sign = math.copysign(1.0, target - start)
-    elif factor is not None:
-        path.sign = math.copysign(1.0, factor)
-    else:  # the load grows or falls, whichever goes to the target
-        du = path.rates(path.u, 0.0)[0]
-        path.sign = math.copysign(1.0, (target - start) * float(control @ du))
-    ground = SupportReactions(structure, state.axial)
-    out = Pushed(first=path.load)
+    path.sign = _sense(path, card, control, start)
+    reactions = SupportReactions(structure, state.axial)
 
-    def here() -> Point:
-        shear = ground.shear(path.u, path.states, d, card["BASE"])
-        return Point(float(control @ path.u), shear, path.factor, path.changes)
+    def here() -> CapacityPoint:
+        shear = reactions.shear(path.u, path.states, "XY".index(card["DIRECTION"]), card["BASE"])
+        return CapacityPoint(float(control @ path.u), shear, path.factor, path.changes)
 
-    nothing = np.zeros(n)
-    ends: list[tuple[Mark, str]] = []
-    if target is not None:
-        way = math.copysign(1.0, target - start)
-        ends.append((Mark(way * control, 0.0, way * target), "the target displacement is reached"))
-    if factor is not None:
-        up = math.copysign(1.0, factor)
-        ends.append((Mark(nothing, up, up * factor), "the load factor is reached"))
-
-    def note(point: Point) -> None:
-        last = out.curve[-1:]
-        if last and (last[0].displacement, last[0].factor) == (point.displacement, point.factor):
-            out.curve.pop()
-        out.curve.append(point)
-
-    note(here())
+    ends, out = _ends(card, control, start), PushoverResult(first=path.load)
+    # the stations divide the way to the first of the ends
+    (row, share, value), _ = ends[0]
+    begin = float(row @ state.u)
+    out.add(here())
     station = 1
     while not out.end:
-        # stations divide the way of whatever ends the pushover first on its list
         part = station / card["STEPS"]
-        (row, share, value), _ = ends[0]
-        begin = float(row @ state.u)
         at_station = Mark(row, share, begin + part * (value - begin))
         try:
             hit = path.step([*(m for m, _ in ends), at_station])
@@ -201,12 +193,13 @@ def push(structure: Structure, state: StaticState, card: Card) -> Pushed:
                 point = replace(point, changes=path.changes)
                 out.ladder.append((point, change))
         except InstabilityError as err:
-            # by force that is the result: no more can be carried; by displacement the way goes on somewhere
+            # under load control that is the result: no more can be carried; under displacement control the
+            # path continues somewhere
             out.end, out.failed = str(err), None if by_load and err.code == "A501" else err
-            note(here())
+            out.add(here())
             out.ladder = _once(out.ladder)
             break
-        note(point)
+        out.add(point)
         if isinstance(hit, int):
             if hit < len(ends):
                 out.end = ends[hit][1]
@@ -218,15 +211,38 @@ def push(structure: Structure, state: StaticState, card: Card) -> Pushed:
     return out
 
 
-def _once(ladder: list[tuple[Point, Change]]) -> list[tuple[Point, Change]]:
-    """The ladder without what was done again and again in one place."""
-    found: dict[tuple[float, float, Change], tuple[Point, Change]] = {}
+def _sense(path: EquilibriumPath, card: Card, control: Array, start: float) -> float:
+    """Sign of the increments: of the displacement, or of the load factor that leads to the end."""
+    target, factor = card["TARGET"], card["FACTOR"]
+    if card["CONTROL"] != "FORCE":
+        return math.copysign(1.0, target - start)
+    if factor is not None:
+        return math.copysign(1.0, factor)
+    du = path.rates(path.u, 0.0)[0]
+    return math.copysign(1.0, (target - start) * float(control @ du))
+
+
+def _ends(card: Card, control: Array, start: float) -> list[tuple[Mark, str]]:
+    """What ends the pushover, and how the report calls that."""
+    out: list[tuple[Mark, str]] = []
+    if (target := card["TARGET"]) is not None:
+        sense = math.copysign(1.0, target - start)
+        out.append((Mark(sense * control, 0.0, sense * target), "the target displacement is reached"))
+    if (factor := card["FACTOR"]) is not None:
+        up = math.copysign(1.0, factor)
+        out.append((Mark(np.zeros(len(control)), up, up * factor), "the load factor is reached"))
+    return out
+
+
+def _once(ladder: list[tuple[CapacityPoint, Change]]) -> list[tuple[CapacityPoint, Change]]:
+    """The ladder without changes that repeat at one point."""
+    found: dict[tuple[float, float, Change], tuple[CapacityPoint, Change]] = {}
     for point, change in ladder:
         found.setdefault((point.displacement, point.factor, change), (point, change))
     return list(found.values())
 
 
-def tables(structure: Structure, card: Card, pushed: Pushed) -> dict[str, list[tuple[Any, ...]]]:
+def tables(structure: Structure, card: Card, pushed: PushoverResult) -> dict[str, list[tuple[Any, ...]]]:
     """Rows of the tables ``pushover``, ``push_pattern``, ``capacity_curve`` and ``push_events``."""
     units, free = structure.model.units, structure.dofs.free
     length, force = units.text("L"), units.text("F")
@@ -267,7 +283,7 @@ def tables(structure: Structure, card: Card, pushed: Pushed) -> dict[str, list[t
     }
 
 
-def _clean(displacement: float, curve: list[Point]) -> float:
+def _clean(displacement: float, curve: list[CapacityPoint]) -> float:
     """Zero for what is rounding beside the largest displacement."""
     return displacement if abs(displacement) > 1e-13 * max(abs(p.displacement) for p in curve) else 0.0
 
@@ -278,7 +294,7 @@ def _control(structure: Structure, card: Card) -> Array:
     return structure.dofs.row([at], [1.0])[: structure.n_free]
 
 
-class Pattern:
+class LoadPattern:
     """The forces per load factor.
 
     Parameters
@@ -328,7 +344,7 @@ class Pattern:
         total = float(p.sum())
         return p / total if abs(total) > 1e-12 * np.abs(p).sum() else 0.0 * p
 
-    def follow(self, path: Path) -> Array:
+    def follow(self, path: EquilibriumPath) -> Array:
         """Forces at the present point."""
         if self.by_mode:
             try:

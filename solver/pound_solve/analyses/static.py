@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.analyses.path_following import InstabilityError, Mark, Path, PathEvent
+from pound_solve.analyses.path_following import EquilibriumPath, InstabilityError, Mark, PathEvent
 from pound_solve.laws.automaton import State
 from pound_solve.numerics.matrices import Factor, Matrix, scaled, used_rows
 from pound_solve.numerics.modes import scaling
@@ -105,7 +105,7 @@ def loaded(structure: Structure) -> StaticState:
     lead = np.array([-b.force0 / b.stiffness if b.force0 else 0.0 for b in starts])
     if not load.any() and not lead.any():
         return rest
-    path = Path(structure, rest.u, rest.states, 0.0 * load, load, lead=lead)
+    path = EquilibriumPath(structure, rest.u, rest.states, 0.0 * load, load, lead=lead)
     whole = Mark(0.0 * load, 1.0, 1.0)
     while (hit := path.step([whole])) != 0:
         if isinstance(hit, PathEvent):
@@ -116,7 +116,7 @@ def loaded(structure: Structure) -> StaticState:
 def tangent(structure: Structure, state: StaticState) -> Matrix:
     """Tangent stiffness of the unknowns in that state, shape (n_free, n_free)."""
     nothing = np.zeros(structure.n_free)
-    return Path(structure, state.u, state.states, nothing, nothing).tangent()
+    return EquilibriumPath(structure, state.u, state.states, nothing, nothing).tangent()
 
 
 def after(structure: Structure, state: StaticState) -> Structure:

@@ -39,7 +39,9 @@ from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 
-from pound_solve.assess.stress_scenes import KICK, METHOD, STEP, Case, cases, every, one
+from pound_solve.assess.scenes import cases
+from pound_solve.assess.scenes.case import METHOD, STEP, Case, every
+from pound_solve.assess.scenes.linear import KICK, one
 from pound_solve.assess.study import RESIDUAL
 from pound_solve.catalog import catalog
 from pound_solve.driver import run
@@ -92,7 +94,7 @@ NOTHING: Final = Found(
 
 
 @dataclass(frozen=True)
-class Row:
+class JudgedRun:
     """One case solved by one method.
 
     Attributes
@@ -273,12 +275,12 @@ def nudged(deck: str, share: float) -> str:
     return re.sub(r"(?m)^GRAVITY (\S+)", lambda g: f"GRAVITY {float(g[1]) / (1.0 + share)!r}", deck)
 
 
-def judge(run: Runner, case: Case, method: str) -> Row:
+def judge(run: Runner, case: Case, method: str) -> JudgedRun:
     """Solve a case by a method and judge what comes."""
     found = run(case, case.deck, written(method, case.step))
 
-    def row(end: str, says: str, error: float = np.nan) -> Row:
-        return Row(case, method, end, error, says, found.seconds)
+    def row(end: str, says: str, error: float = np.nan) -> JudgedRun:
+        return JudgedRun(case, method, end, error, says, found.seconds)
 
     if found.wrong:
         return row(FAULT, found.wrong)
@@ -376,7 +378,7 @@ def matrix(
     families: tuple[str, ...] = FAMILIES,
     chosen: Callable[[Case], bool] = lambda case: True,
     limit: float = LIMIT,
-) -> Iterator[Row]:
+) -> Iterator[JudgedRun]:
     """Solve all cases by all methods.
 
     Parameters
@@ -394,7 +396,7 @@ def matrix(
     for _ in range(count):
         runners.put(Runner(limit))
 
-    def solved(case: Case) -> list[Row]:
+    def solved(case: Case) -> list[JudgedRun]:
         run = runners.get()
         run.kept.clear()
         try:
@@ -414,10 +416,10 @@ def matrix(
 ENDS: Final = (RIGHT, TOLD, STOPPED, FAULT)
 
 
-def table(rows: Sequence[Row]) -> str:
+def table(rows: Sequence[JudgedRun]) -> str:
     """Counts of how cases end, scene by method, as Markdown."""
     names = methods()
-    by: dict[tuple[str, str], list[Row]] = defaultdict(list)
+    by: dict[tuple[str, str], list[JudgedRun]] = defaultdict(list)
     for row in rows:
         by[row.case.family, row.case.scene].append(row)
     out = []
@@ -438,11 +440,11 @@ def table(rows: Sequence[Row]) -> str:
     return "\n".join([*out, told])
 
 
-def stops(rows: Sequence[Row]) -> str:
+def stops(rows: Sequence[JudgedRun]) -> str:
     """The stops by kind, with their count, methods and an example; then what is known in part, and all
     faults.
     """
-    kinds: dict[str, list[tuple[str, Row]]] = defaultdict(list)
+    kinds: dict[str, list[tuple[str, JudgedRun]]] = defaultdict(list)
     for row in rows:
         if row.end == STOPPED:
             text = REFUSED_AT.sub("", row.says.split("\n")[0])
@@ -459,11 +461,11 @@ def stops(rows: Sequence[Row]) -> str:
     return "\n".join(out)
 
 
-def _scene(row: Row) -> str:
+def _scene(row: JudgedRun) -> str:
     return ", ".join(x for x in (row.case.scene, row.case.variant, row.case.law) if x)
 
 
-def page(rows: Sequence[Row]) -> str:
+def page(rows: Sequence[JudgedRun]) -> str:
     """Both, for the terminal and the manual."""
     cells = "; ".join(f"{end}: {MEANS[end]}" for end in ENDS)
     return f"{table(rows)}\n\nThe cells count {' / '.join(ENDS)}. {cells}.\n\n{stops(rows)}"

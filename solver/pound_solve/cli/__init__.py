@@ -1,1 +1,1 @@
-"""The command line."""
+"""The command line: `main` reads it, and every module of `verbs` is one verb."""

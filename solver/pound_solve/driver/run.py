@@ -31,7 +31,7 @@ from pound_solve.results.file import Results, ResultsError, Writer
 from pound_solve.structure import reduction
 from pound_solve.structure.assembly import AssemblyError, Structure, assemble
 
-DONE, STOPPED, MISTAKES = 0, 1, 2  #: exit statuses; 3 (files) is the command line's own
+DONE, STOPPED = 0, 1  #: exit statuses; the others are the command line's own
 
 
 class DeckError(Exception):

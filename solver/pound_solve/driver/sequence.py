@@ -26,6 +26,7 @@ from pound_solve.structure import reduction
 from pound_solve.structure.assembly import Structure
 from pound_solve.structure.diaphragms import diaphragm_collisions
 from pound_solve.structure.elements.base import Role
+from pound_solve.structure.reduction_checks import ReductionError
 
 #: told the time reached, the time to reach, and what keeps the run waiting there, if anything
 Progress = Callable[[float, float, str], None]
@@ -125,7 +126,7 @@ class Course:
             return f"{err.code} {doing}: {err}"
         except np.linalg.LinAlgError as err:
             return f"A501 the structure is a mechanism ({err})"
-        except (reduction.ReductionError, restart.RestartError) as err:
+        except (ReductionError, restart.RestartError) as err:
             return f"A505 {err}"
         except Stop as err:
             return f"{err.code} at t = {err.t:.9g} {self.model.units.time}: {err}"

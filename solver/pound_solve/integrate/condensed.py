@@ -8,7 +8,8 @@ import numpy as np
 
 from pound_solve.integrate.protocol import LawValues, MonitoredOutputs, Recorder, Start, Stop
 from pound_solve.numerics.types import Array, Flags
-from pound_solve.structure.reduction import Condensed, ReducedSystem, condense
+from pound_solve.structure.condensation import Condensed, condense
+from pound_solve.structure.reduction import ReducedSystem
 
 MAX_UNKNOWNS = 4000  #: of one run: a full matrix of as many takes 128 MB
 

@@ -449,7 +449,7 @@ def energies(
     """
     mass, stiffness, turning = system.mass, system.stiffness, np.zeros(len(t))
     if system.corotational:
-        turning = system.corotational.envelopes(system.quantities(u, system.excitation.values(t)))[
+        turning = system.corotational.actions(system.quantities(u, system.excitation.values(t)))[
             :, :, 0
         ].sum(axis=1)
     if system.total:  # moved supports have mass and stretch elements too

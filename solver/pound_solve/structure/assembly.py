@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
@@ -14,9 +14,8 @@ from pound_solve.numerics import modes
 from pound_solve.numerics.matrices import Matrix, entries, gathered, least_squares, weighted
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import CorotationalMembers
-from pound_solve.structure.damping.base import DampingContext, DampingError
-from pound_solve.structure.damping.secant import SecantLaw
-from pound_solve.structure.dofs import DIRECTIONS, Dof, DofMap, label, number
+from pound_solve.structure.damping.assembly import add_damping
+from pound_solve.structure.dofs import Dof, DofMap, number
 from pound_solve.structure.elements.base import (
     ElementContext,
     ElementError,
@@ -25,8 +24,8 @@ from pound_solve.structure.elements.base import (
     LawSpring,
     Output,
     Parts,
-    Role,
 )
+from pound_solve.structure.mass import MassBlock, ground_inertia, mass_along, nodal_mass, weights
 
 
 @dataclass
@@ -129,7 +128,7 @@ class Structure:
             blocks.append(ElementMatrix(g.dofs, force * g.matrix))
             for quantity, row in g.forces.items():
                 rows[g.element, quantity] = force * row
-        matrix = _sum(self.dofs, blocks)
+        matrix = self.dofs.assembled((b.dofs, b.matrix) for b in blocks)
         outputs = tuple(
             replace(o, u_row=o.u_row + rows.get((o.element, o.quantity), 0.0)) for o in self.outputs
         )
@@ -160,7 +159,7 @@ class Structure:
         if not self.corotational:
             return np.array(linear)
         at, share = self.corotational.shares([(o.element, o.quantity) for o in self.outputs])
-        found = self.corotational.envelopes(self.corotational.quantities(u)[None])[0]
+        found = self.corotational.actions(self.corotational.quantities(u)[None])[0]
         return np.array(linear) + (share * found[at, 1:]).sum(axis=1)
 
     def influence(self) -> Array:
@@ -206,131 +205,133 @@ def assemble(model: Model, moved: Collection[Dof] = (), self_weight: bool = True
     AssemblyError
         An element or a damping group cannot be built; every mistake is listed.
     """
-    problems: list[Diagnostic] = []
-    # the mass of the nodes comes first: contacts need it
-    mass_terms: list[tuple[frozenset[int], tuple[Dof, ...], Array]] = []
-    for card in model.weights:
-        wy = card["WX"] if card["WY"] is None else card["WY"]
-        diagonal = np.array([card["WX"], wy, card["WR"]]) / model.gravity
-        for node in card["NODES"]:
-            mass_terms.append((frozenset([node]), tuple((node, d) for d in range(3)), np.diag(diagonal)))
-
-    loads_of: dict[int, list[Card]] = {}
-    for card in model.member_loads:
-        for e in card["ELEMENTS"]:
-            loads_of.setdefault(e, []).append(card)
-    nodal_mass: dict[Dof, float] = {}
-
-    parts: dict[int, Parts] = {}
-    contacts_last = sorted(
-        model.elements.values(), key=lambda e: model.props[e.prop].spec.name == "CONTACT"
-    )
-    masses_known = False
-    refused: dict[tuple[str, str, str], list[Element]] = {}
-    for element in contacts_last:
-        prop = model.props[element.prop]
-        if prop.spec.name == "CONTACT" and not masses_known:
-            _add_diagonals(mass_terms, model, nodal_mass)
-            masses_known = True
-        context = ElementContext(
-            element,
-            prop,
-            model.nodes[element.i],
-            None if element.j is None else model.nodes[element.j],
-            model.gravity,
-            model.mass == "CONSISTENT",
-            tuple(loads_of.pop(element.id, ())),
-            self_weight,
-            model.geometry,
-            partial(mass_along, model, nodal_mass),
-            partial(stiffness_along, model, parts),
-        )
-        if context.member_loads and prop.spec.name not in ("FRAME", "BEAM_COLUMN"):
-            wrong = f"element {element.id} is a {prop.spec.name}"
-            message = f"{wrong}: only FRAME and BEAM_COLUMN take member loads"
-            problems.append(Diagnostic("P331", message, context.member_loads[0].span))
-        try:
-            parts[element.id] = prop.spec.impl(context)
-        except ElementError as err:
-            refused.setdefault((prop.label, str(err), err.item), []).append(element)
-            continue
-        nodes = frozenset(k for k in (element.i, element.j) if k is not None)
-        mass_terms += [(nodes, b.dofs, b.matrix) for b in parts[element.id].mass]
-    if not masses_known:
-        _add_diagonals(mass_terms, model, nodal_mass)
-    problems += [_refusal(model, *why, elements) for why, elements in refused.items()]
-    if problems:
-        raise AssemblyError(problems)
+    elements = _Elements(model, self_weight)
+    elements.build()
+    if elements.problems:
+        raise AssemblyError(elements.problems)
+    parts, mass = elements.parts, elements.mass
     ordered = [parts[e] for e in model.elements]
     dofs = number(model.nodes, moved, [f for p in ordered for f in p.internal()])
-    n = dofs.size
-
     laws = tuple(s for p in ordered for s in p.laws)
-    rows = dofs.rows([(s.dofs, s.row) for s in laws])
-    k_linear = _sum(dofs, (b for p in ordered for b in p.stiffness))
-    c = _sum(dofs, (b for p in ordered for b in p.damping))
-    loads, released = np.zeros(n), np.zeros(n)
-    for p in ordered:
-        for at, vector in p.loads:
-            dofs.add(loads, at, vector)
-    for card in model.loads:
-        for node in card["NODES"]:
-            at, push = tuple((node, d) for d in range(3)), (card["FX"], card["FY"], card["MZ"])
-            dofs.add(loads, at, push)
-            if card["HELD"] == "NO":
-                dofs.add(released, at, push)
-    mass = _sum(dofs, (ElementMatrix(at, matrix) for _, at, matrix in mass_terms))
-    ground = np.zeros((3, n))
-    for _, at, matrix in mass_terms:
-        for d in range(3):
-            dofs.add(ground[d], at, matrix @ [_ridden(model, f, d) for f in at])
-    k0 = k_linear + weighted(rows, [s.k0 for s in laws])
+    law_rows = dofs.rows([(s.dofs, s.row) for s in laws])
+    stiffness = dofs.assembled((b.dofs, b.matrix) for p in ordered for b in p.stiffness)
+    dashpots = dofs.assembled((b.dofs, b.matrix) for p in ordered for b in p.damping)
+    loads, released = _loads(model, dofs, ordered)
     corotational = [c for p in ordered for c in p.corotational]
-
     structure = Structure(
-        model,
-        dofs,
-        k_linear,
-        k0,
-        mass,
-        c,
-        c,
-        loads,
-        released,
-        ground,
-        laws,
-        rows,
-        tuple(o for p in ordered for o in p.outputs),
-        tuple(g for p in ordered for g in p.geometric),
-        CorotationalMembers(
+        model=model,
+        dofs=dofs,
+        stiffness=stiffness,
+        initial_stiffness=stiffness + weighted(law_rows, [s.k0 for s in laws]),
+        mass=dofs.assembled((b.dofs, b.matrix) for b in mass),
+        damping=dashpots,
+        initial_damping=dashpots,
+        loads=loads,
+        released=released,
+        ground=ground_inertia(model, dofs, mass),
+        laws=laws,
+        law_rows=law_rows,
+        outputs=tuple(o for p in ordered for o in p.outputs),
+        geometric=tuple(g for p in ordered for g in p.geometric),
+        corotational=CorotationalMembers(
             corotational, dofs.rows([(c.dofs, row) for c in corotational for row in c.rows])
         ),
-        nodal_mass,
-        self_weight,
-        parts,
+        nodal_mass=elements.nodal_mass,
+        self_weight=self_weight,
+        parts=parts,
     )
-    _add_damping(structure, mass_terms, parts, problems)
-    if problems:
+    if problems := add_damping(structure, mass):
         raise AssemblyError(problems)
     return structure
 
 
-def mass_along(
-    model: Model, nodal_mass: Mapping[Dof, float], node: int, normal: tuple[float, float]
-) -> float:
-    """Mass of a node felt along an oblique direction, 1/m = sum n_d^2 / m_d over directions that can move;
-    infinite where none can [F T^2/L].
+def _loads(model: Model, dofs: DofMap, parts: Sequence[Parts]) -> tuple[Array, Array]:
+    """Static loads of elements and LOADS, and those among them that a history releases, shape (n,) each."""
+    loads, released = np.zeros(dofs.size), np.zeros(dofs.size)
+    for p in parts:
+        for at, vector in p.loads:
+            dofs.add(loads, at, vector)
+    for card in model.loads:
+        for node in card["NODES"]:
+            at, load = tuple((node, d) for d in range(3)), (card["FX"], card["FY"], card["MZ"])
+            dofs.add(loads, at, load)
+            if card["HELD"] == "NO":
+                dofs.add(released, at, load)
+    return loads, released
+
+
+class _Elements:
+    """The elements of a model, built one after the other; contacts last, because they need the mass of the
+    nodes.
+
+    Attributes
+    ----------
+    parts : dict of int to Parts
+        By the number of the element.
+    mass : list of MassBlock
+        Of nodes and elements.
+    nodal_mass : dict of Dof to float
+    problems : list of Diagnostic
     """
-    inverse = 0.0
-    for d, component in enumerate(normal):
-        own = model.nodes[node]
-        at = (own.slaved.get(DIRECTIONS[d], node), d)
-        if component == 0.0 or DIRECTIONS[d] in own.fixed or DIRECTIONS[d] in model.nodes[at[0]].fixed:
-            continue
-        if nodal_mass.get(at, 0.0) == 0.0:
-            return 0.0
-        inverse += component**2 / nodal_mass[at]
-    return np.inf if inverse == 0.0 else 1.0 / inverse
+
+    def __init__(self, model: Model, self_weight: bool) -> None:
+        self.model, self.self_weight = model, self_weight
+        self.parts: dict[int, Parts] = {}
+        self.mass = weights(model)
+        self.nodal_mass: dict[Dof, float] = {}
+        self.problems: list[Diagnostic] = []
+        self._refused: dict[tuple[str, str, str], list[Element]] = {}
+        self._loads: dict[int, list[Card]] = {}
+        for card in model.member_loads:
+            for e in card["ELEMENTS"]:
+                self._loads.setdefault(e, []).append(card)
+
+    def build(self) -> None:
+        """Build all elements."""
+        contacts = []
+        for element in self.model.elements.values():
+            if self._kind(element) == "CONTACT":
+                contacts.append(element)
+            else:
+                self._build(element)
+        self.nodal_mass = nodal_mass(self.model, self.mass)
+        for element in contacts:
+            self._build(element)
+        self.problems += [_refusal(self.model, *why, elements) for why, elements in self._refused.items()]
+
+    def _kind(self, element: Element) -> str:
+        return self.model.props[element.prop].spec.name
+
+    def _context(self, element: Element) -> ElementContext:
+        model = self.model
+        return ElementContext(
+            element=element,
+            prop=model.props[element.prop],
+            i=model.nodes[element.i],
+            j=None if element.j is None else model.nodes[element.j],
+            gravity=model.gravity,
+            consistent=model.mass == "CONSISTENT",
+            member_loads=tuple(self._loads.get(element.id, ())),
+            self_weight=self.self_weight,
+            geometry=model.geometry,
+            mass_along=partial(mass_along, model, self.nodal_mass),
+            stiffness_along=partial(stiffness_along, model, self.parts),
+        )
+
+    def _build(self, element: Element) -> None:
+        context, kind = self._context(element), self._kind(element)
+        if context.member_loads and kind not in ("FRAME", "BEAM_COLUMN"):
+            message = f"element {element.id} is a {kind}: only FRAME and BEAM_COLUMN take member loads"
+            self.problems.append(Diagnostic("P331", message, context.member_loads[0].span))
+        try:
+            own = context.prop.spec.impl(context)
+        except ElementError as err:
+            why = (context.prop.label, str(err), err.item)
+            self._refused.setdefault(why, []).append(element)
+            return
+        self.parts[element.id] = own
+        nodes = frozenset(k for k in (element.i, element.j) if k is not None)
+        self.mass += [MassBlock(nodes, b.dofs, b.matrix) for b in own.mass]
 
 
 def stiffness_along(
@@ -357,147 +358,3 @@ def stiffness_along(
         if k > 1e-12 * np.abs(initial.matrix).max():  # a column's cosine may be rounding
             out[name] = k
     return out
-
-
-def _ridden(model: Model, dof: Dof, d: int) -> float:
-    """Motion of a DOF that rides on the ground, which moves by one along `d`
-    (2: turns about the origin).
-    """
-    owner, own = dof
-    if own > 2:  # what is inside an element turns against its nodes
-        return 0.0
-    if d < 2:
-        return float(own == d)
-    node = model.nodes[owner]
-    return (-node.y, node.x, 1.0)[own]
-
-
-def _add_diagonals(
-    terms: list[tuple[frozenset[int], tuple[Dof, ...], Array]], model: Model, out: dict[Dof, float]
-) -> None:
-    for _, at, matrix in terms:
-        for a, dof in enumerate(at):
-            # a consistent matrix is summed along the row of its own direction:
-            # the node's share of rigid motion
-            same = [b for b, other in enumerate(at) if other[1] == dof[1]] if dof[1] < 2 else [a]
-            out[dof] = out.get(dof, 0.0) + float(matrix[a, same].sum())
-    # what follows a master is felt at the master
-    for node in model.nodes.values():
-        for letter, master in node.slaved.items():
-            d = DIRECTIONS.index(letter)
-            out[master, d] = out.get((master, d), 0.0) + out.get((node.id, d), 0.0)
-
-
-def _sum(dofs: DofMap, blocks: Iterable[ElementMatrix]) -> Matrix:
-    """Sum of small matrices at their DOFs, through slaving, shape (n, n)."""
-    rows, columns, values = [], [], []
-    for block in blocks:
-        terms = [dofs.terms[f] for f in block.dofs]
-        for own, line in zip(terms, block.matrix.tolist()):
-            for other, value in zip(terms, line):
-                if value != 0.0:
-                    for i, fi in own:
-                        for j, fj in other:
-                            rows.append(i)
-                            columns.append(j)
-                            values.append(value * fi * fj)
-    return gathered((dofs.size, dofs.size), rows, columns, values)
-
-
-def _add_damping(
-    structure: Structure,
-    mass_terms: list[tuple[frozenset[int], tuple[Dof, ...], Array]],
-    parts: dict[int, Parts],
-    problems: list[Diagnostic],
-) -> None:
-    model, dofs, n = structure.model, structure.dofs, structure.n_free
-
-    def mass_of(nodes: Collection[int] | None) -> Matrix:
-        if nodes is None:
-            return structure.mass
-        blocks, chosen = list[ElementMatrix](), frozenset(nodes)
-        for where, at, matrix in mass_terms:
-            inside = np.array([f[1] < 3 and f[0] in chosen for f in at])
-            if not matrix[np.ix_(inside, ~inside)].any():  # lumped: each node takes its own
-                blocks.append(ElementMatrix(at, np.where(inside[:, None] & inside, matrix, 0.0)))
-            else:  # a consistent matrix is shared evenly by the nodes that can move
-                loose = {k for k in where if len(set(model.nodes[k].fixed)) < 3}
-                blocks.append(ElementMatrix(at, matrix * (len(loose & chosen) / max(len(loose), 1))))
-        return _sum(dofs, blocks)
-
-    def stiffness_of(labels: Collection[str] | None, laws: bool) -> Matrix:
-        chosen = [parts[e.id] for e in model.elements.values() if labels is None or e.prop in labels]
-        return _sum(dofs, (b for p in chosen for b in ([p.initial()] if laws else p.stiffness)))
-
-    def modes_of(nodes: Collection[int] | None, count: int | None) -> modes.Modes:
-        if nodes is None:
-            return structure.vibration(count)
-        k, m = structure.initial_stiffness[:n, :n], structure.mass[:n, :n]
-        named = np.zeros(n, bool)
-        named[[i for k in nodes for d in range(3) for i, _ in dofs.terms[k, d] if i < n]] = True
-        if not named.any():
-            raise DampingError("none of these nodes can move", "NODES")
-        linked, inside = abs(k) + abs(m), named
-        while (more := inside | (linked @ inside > 0.0)).sum() > inside.sum():
-            inside = more
-        strange = [f for f, x in zip(dofs.free, inside & ~named) if x and f[1] < 3]
-        if strange:
-            raise DampingError(
-                f"{label(strange[0])} hangs together with these nodes: only a whole building has modes",
-                "NODES",
-            )
-        at = np.flatnonzero(inside)
-        own = modes.solve(k[np.ix_(at, at)], m[np.ix_(at, at)], count)
-        shapes = np.zeros((n, len(own.omega)))
-        shapes[inside] = own.shapes
-        return modes.Modes(own.omega, shapes)
-
-    betas = np.zeros((2, len(structure.laws)))  # tangent, secant
-    for card in model.damping:
-        try:
-            group = card.spec.impl(card, DampingContext(mass_of, stiffness_of, modes_of))
-        except DampingError as err:
-            problems.append(Diagnostic("P332", str(err), card.place(err.item)))
-            continue
-        except np.linalg.LinAlgError:
-            problems.append(
-                Diagnostic(
-                    "P332",
-                    "the modes that this damping needs cannot be computed: the structure is a mechanism",
-                    card.span,
-                )
-            )
-            continue
-        if group.relative is not None:
-            structure.damping = structure.damping + structure.framed(group.relative)
-            if len(dofs.moved):
-                structure.damping = structure.damping + _against(structure, group.relative[:n, :n])
-        if group.between is not None:
-            structure.damping = structure.damping + group.between
-        if group.dashpots is not None:
-            labels, beta, by_secant = group.dashpots
-            for i, s in enumerate(structure.laws):
-                if s.role is Role.SPRING and (labels is None or model.elements[s.element].prop in labels):
-                    betas[int(by_secant), i] += beta
-        structure.damping_texts.append((card, group.text))
-    structure.initial_damping = structure.damping
-    if betas.any():
-        follow = betas.sum(axis=0) * [s.k0 for s in structure.laws]
-        structure.initial_damping = structure.damping + weighted(structure.law_rows, follow)
-        structure.laws = tuple(
-            replace(s, beta=beta, secant=secant, law=SecantLaw(s.law.rule, s.law.p) if secant else s.law)
-            for s, beta, secant in zip(structure.laws, *betas.tolist())
-        )
-
-
-def _against(structure: Structure, c: Matrix) -> Matrix:
-    """What a damping of the unknowns adds at moved supports, if it acts on the motion relative to the
-    quasi-static one, shape (n, n).
-    """
-    n, follow = structure.n_free, structure.influence()
-    pull = c @ follow
-    out = []
-    for corner, i, j in ((-pull, 0, n), (-pull.T, n, 0), (follow.T @ pull, n, n)):
-        rows, columns, values = entries(np.asarray(corner))
-        out.append((rows + i, columns + j, values))
-    return gathered(structure.stiffness.shape, *(np.concatenate(part) for part in zip(*out)))

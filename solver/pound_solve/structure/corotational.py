@@ -1,28 +1,28 @@
-r"""Chords: what a member on its displaced line adds to its linear stiffness.
+r"""Corotational geometry: what the displaced chord of a member adds to its linear stiffness.
 
 The chord of a member runs from the one end of its flexible length to the other.  Linear theory makes the
-deformations of the beam :math:`e = (\text{elongation}, \theta_I, \theta_J)`, rotations against the chord,
-linear in the displacements, :math:`e = Bu`.  With the true length and turn of the chord they are
+deformations of the beam :math:`e = (\text{elongation}, \theta_I, \theta_J)`, the rotations relative to the
+chord, linear in the displacements, :math:`e = Bu`.  With the true length and rotation of the chord they are
 
 .. math:: e = B u + D z, \qquad z = (\eta, \rho), \qquad
           \eta = \ell - L - x, \qquad \rho = \alpha - \psi
 
-(the corotational member, Crisfield 1991): the length :math:`\ell` and turn :math:`\alpha` less what linear
-theory makes of them.  Rotations in the plane add, so hinges and joints stay linear; and z follows from
+(the corotational member, Crisfield 1991): the length :math:`\ell` and rotation :math:`\alpha` less their
+values in linear theory.  Rotations in the plane add, so hinges and joints stay linear; and z follows from
 four numbers alone, the displacements x along and y across that J has beyond I and the rotations of both
-nodes (which turn the rigid end blocks).  With the linear beam :math:`k` the member's energy is its linear
+nodes (which rotate the rigid end blocks).  With the linear beam :math:`k` the member's energy is its linear
 part and the *potential*
 
 .. math:: V = (n + n_0)\,\eta + (t + t_0)\,\rho + \tfrac12 z^T k_z z, \qquad
           \begin{pmatrix} n \\ t \end{pmatrix} = D^T k B u, \qquad k_z = D^T k D
 
 with the linear axial force n and the sum of the end moments -t, and what initial forces add.  V depends on
-the six *quantities* :math:`s = (n, t, x, y, r_I, r_J)`, linear in u; its gradient are the forces on them,
-its Hessian their stiffness.
+the six *quantities* :math:`s = (n, t, x, y, r_I, r_J)`, linear in u; its gradient is the forces on
+them, its Hessian their stiffness.
 
-The other kind of chord is the string of P-Delta with the present axial force: :math:`(n + n_0)\,y/L`
-across the member and nothing else.  These forces have no potential: the way y^2/2L that the axial force
-goes is left out.
+The other kind is the string of P-Delta with the present axial force: :math:`(n + n_0)\,y/L` across the
+member and nothing else.  These forces have no potential, because the shortening y^2/2L of the chord, along
+which the axial force would do work, is left out.
 
 References
 ----------
@@ -43,14 +43,14 @@ from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.dofs import Dof
 
 QUANTITIES = 6
-#: columns of the parameters; KNN, KNT, KTT are k_z, LEAN the share of I's rotation in the member's own
-KIND, LENGTH, END1, END2, LEAN, KNN, KNT, KTT, N0, T0 = range(10)
-STRING, TURNING = 0.0, 1.0  #: kinds
+#: columns of the parameters; KNN, KNT, KTT are k_z, SHARE_I the weight of I's rotation in the member's
+KIND, LENGTH, END1, END2, SHARE_I, KNN, KNT, KTT, N0, T0 = range(10)
+STRING, COROTATIONAL = 0.0, 1.0  #: kinds
 
 
 @dataclass(frozen=True)
 class CorotationalMember:
-    """The chord of one member.
+    """Chord and parameters of one member.
 
     Attributes
     ----------
@@ -59,8 +59,8 @@ class CorotationalMember:
     p : tuple of float
         Parameters, columns as above.
     forces : mapping of str to ndarray, shape (3,)
-        What :math:`\\eta`, :math:`\\rho` and the shear of the chord's lengthening add to the member's
-        outputs, by their quantity.
+        Share of :math:`\\eta`, :math:`\\rho` and the shear from the chord's change of length in the
+        member's outputs, by quantity.
     """
 
     element: int
@@ -70,34 +70,35 @@ class CorotationalMember:
     forces: Mapping[str, Array] = field(default_factory=dict)
 
 
-def line(p: Array, c: int, s: Array, at: int) -> tuple[float, float, float, float, float]:
-    """Length, cosine and sine of the turn, eta and rho of chord `c`, whose quantities stand in row `c` of
-    `s` from column `at` on.
+def chord_geometry(p: Array, c: int, s: Array, at: int) -> tuple[float, float, float, float, float]:
+    """Length, cosine and sine of the rotation, eta and rho of the chord of member `c`, whose quantities are
+    in row `c` of `s` from column `at` on.
     """
     length, end1, end2 = p[c, LENGTH], p[c, END1], p[c, END2]
     x, y, ri, rj = s[c, at + 2], s[c, at + 3], s[c, at + 4], s[c, at + 5]
-    shrunk = 2.0 * (end1 * math.sin(0.5 * ri) ** 2 + end2 * math.sin(0.5 * rj) ** 2)  # blocks that turn
+    shrunk = 2.0 * (end1 * math.sin(0.5 * ri) ** 2 + end2 * math.sin(0.5 * rj) ** 2)  # rotated end blocks
     flat = length + x
     dx, dy = flat + shrunk, y - end1 * math.sin(ri) - end2 * math.sin(rj)
     now = math.sqrt(dx * dx + dy * dy)
-    if flat > 0.0:  # without the difference of two lengths
+    if flat > 0.0:  # avoids the difference of two lengths
         eta = (shrunk * (dx + flat) + dy * dy) / (now + flat)
     else:
         eta = now - flat
     turn = math.atan2(dy, dx)
-    mean = p[c, LEAN] * ri + (1.0 - p[c, LEAN]) * rj
-    turn += 2.0 * math.pi * math.floor((mean - turn) / (2.0 * math.pi) + 0.5)  # as often as the ends
+    mean = p[c, SHARE_I] * ri + (1.0 - p[c, SHARE_I]) * rj
+    # atan2 counts no full turns: add as many as the ends have made
+    turn += 2.0 * math.pi * math.floor((mean - turn) / (2.0 * math.pi) + 0.5)
     return now, dx / now, dy / now, eta, turn - (y - end1 * ri - end2 * rj) / length
 
 
-def push(p: Array, c: int, s: Array, at: int, out: Array, to: int) -> None:
-    """Forces on the quantities of chord `c`, into row `c` of `out` from column `to` on."""
+def quantity_forces(p: Array, c: int, s: Array, at: int, out: Array, to: int) -> None:
+    """Forces on the quantities of member `c`, into row `c` of `out` from column `to` on."""
     if p[c, KIND] == STRING:
         for j in range(6):
             out[c, to + j] = 0.0
         out[c, to + 3] = (s[c, at] + p[c, N0]) * s[c, at + 3] / p[c, LENGTH]
         return
-    now, co, si, eta, rho = line(p, c, s, at)
+    now, co, si, eta, rho = chord_geometry(p, c, s, at)
     length, end1, end2 = p[c, LENGTH], p[c, END1], p[c, END2]
     n = s[c, at] + p[c, N0] + p[c, KNN] * eta + p[c, KNT] * rho
     t = s[c, at + 1] + p[c, T0] + p[c, KNT] * eta + p[c, KTT] * rho
@@ -112,17 +113,17 @@ def push(p: Array, c: int, s: Array, at: int, out: Array, to: int) -> None:
     out[c, to + 5] = end2 * (n * (co * tj - si * cj) - over * (si * tj + co * cj) + t / length)
 
 
-def bend(p: Array, c: int, s: Array, at: int, h: Array, to: int) -> None:
-    """Stiffness of the quantities of chord `c`, 6 x 6, into row `to` of `h`.
+def quantity_stiffness(p: Array, c: int, s: Array, at: int, h: Array, to: int) -> None:
+    """Stiffness of the quantities of member `c`, 6 x 6, into row `to` of `h`.
 
-    Of a string without the part that is not symmetric, how its force changes with n.
+    That of a string is without its unsymmetric part, the change of its force with n.
     """
     for j in range(36):
         h[to, j] = 0.0
     if p[c, KIND] == STRING:
         h[to, 21] = (s[c, at] + p[c, N0]) / p[c, LENGTH]
         return
-    now, co, si, eta, rho = line(p, c, s, at)
+    now, co, si, eta, rho = chord_geometry(p, c, s, at)
     length, end1, end2 = p[c, LENGTH], p[c, END1], p[c, END2]
     knn, knt, ktt = p[c, KNN], p[c, KNT], p[c, KTT]
     n = s[c, at] + p[c, N0] + knn * eta + knt * rho
@@ -151,14 +152,14 @@ def bend(p: Array, c: int, s: Array, at: int, h: Array, to: int) -> None:
     h[to, 35] += end2 * (n * (co * cj + si * tj) + t / now * (co * tj - si * cj))
 
 
-def envelopes(p: Array, s: Array, out: Array) -> None:
-    """Potential, eta, rho and the shear of the lengthening of all chords at several instants.
+def member_actions(p: Array, s: Array, out: Array) -> None:
+    """Potential, eta, rho and shear from the chord's change of length of all members at several instants.
 
     Parameters
     ----------
-    p : ndarray, shape (n_chords, 10)
-    s : ndarray, shape (n_times, n_chords, 6)
-    out : ndarray, shape (n_times, n_chords, 4)
+    p : ndarray, shape (n_members, 10)
+    s : ndarray, shape (n_times, n_members, 6)
+    out : ndarray, shape (n_times, n_members, 4)
     """
     for i in range(s.shape[0]):
         for c in range(s.shape[1]):
@@ -167,7 +168,7 @@ def envelopes(p: Array, s: Array, out: Array) -> None:
                 out[i, c, 0] = 0.5 * n * s[i, c, 3] * s[i, c, 3] / p[c, LENGTH]
                 out[i, c, 1] = out[i, c, 2] = out[i, c, 3] = 0.0
                 continue
-            now, _, _, eta, rho = line(p, c, s[i], 0)
+            now, _, _, eta, rho = chord_geometry(p, c, s[i], 0)
             dn, dt = p[c, KNN] * eta + p[c, KNT] * rho, p[c, KNT] * eta + p[c, KTT] * rho
             out[i, c, 0] = (n + 0.5 * dn) * eta + (t + 0.5 * dt) * rho
             out[i, c, 1], out[i, c, 2] = eta, rho
@@ -175,17 +176,17 @@ def envelopes(p: Array, s: Array, out: Array) -> None:
 
 
 class CorotationalMembers:
-    """The chords of a structure.
+    """The members of a structure with corotational geometry or a P-Delta string.
 
     Parameters
     ----------
-    own : sequence of Chord
-    rows : Matrix, shape (6 n_chords, n)
+    own : sequence of CorotationalMember
+    rows : Matrix, shape (6 n_members, n)
         Their quantities over the columns of the displacements, six rows for each.
 
     Attributes
     ----------
-    p : ndarray, shape (n_chords, 10)
+    p : ndarray, shape (n_members, 10)
     """
 
     def __init__(self, own: Sequence[CorotationalMember], rows: Matrix) -> None:
@@ -200,11 +201,11 @@ class CorotationalMembers:
         return CorotationalMembers(self.own, self.rows[:, columns])
 
     def quantities(self, u: Array) -> Array:
-        """The six quantities of every chord at displacements `u`, shape (n_chords, 6)."""
+        """The six quantities of every member at displacements `u`, shape (n_members, 6)."""
         return np.asarray(self.rows @ u, float).reshape(-1, QUANTITIES)
 
     def touched(self) -> list[tuple[Index, Array]]:
-        """Columns that each chord touches, ascending, and its six quantities over them, (6, n_touched)."""
+        """Columns that each member touches, ascending, and its six quantities over them, (6, n_touched)."""
         rows, out = by_rows(self.rows), []
         for c in range(len(self)):
             six = rows[QUANTITIES * c : QUANTITIES * (c + 1)]
@@ -220,30 +221,30 @@ class CorotationalMembers:
         out = np.zeros((len(self), QUANTITIES))
         s = self.quantities(u)
         for c in range(len(self)):
-            push(self.p, c, s, 0, out, 0)
+            quantity_forces(self.p, c, s, 0, out, 0)
         return np.asarray(out.ravel() @ self.rows, float)
 
     def stiffness(self, u: Array) -> Matrix:
-        """Their tangent, shape (n, n); see `bend`."""
+        """Tangent stiffness beyond the linear one, shape (n, n); see `quantity_stiffness`."""
         s, h = self.quantities(u), np.zeros((len(self), QUANTITIES**2))
         i, j, x = [np.zeros(0, int)], [np.zeros(0, int)], [np.zeros(0)]
         for c, (at, own) in enumerate(self.touched()):
-            bend(self.p, c, s, 0, h, c)
+            quantity_stiffness(self.p, c, s, 0, h, c)
             i.append(np.repeat(at, len(at)))
             j.append(np.tile(at, len(at)))
             x.append((own.T @ h[c].reshape(QUANTITIES, QUANTITIES) @ own).ravel())
         n = self.rows.shape[1]
         return gathered((n, n), np.concatenate(i), np.concatenate(j), np.concatenate(x))
 
-    def envelopes(self, s: Array) -> Array:
-        """`envelopes` at the quantities `s`, shape (n_times, n_chords, 6) to (n_times, n_chords, 4)."""
+    def actions(self, s: Array) -> Array:
+        """`member_actions` at the quantities `s`, shape (n_times, n_members, 6)."""
         out = np.zeros((*s.shape[:2], 4))
         with jit.compiling():
-            jit.compiled(envelopes)(self.p, np.ascontiguousarray(s), out)
+            jit.compiled(member_actions)(self.p, np.ascontiguousarray(s), out)
         return out
 
     def shares(self, outputs: Sequence[tuple[int, str]]) -> tuple[Index, Array]:
-        """Chord and share of its eta, rho and shear in each of some (element, quantity),
+        """Member and share of its eta, rho and shear in each of some (element, quantity),
         shapes (n,) and (n, 3).
         """
         place = {c.element: i for i, c in enumerate(self.own)}

@@ -8,7 +8,7 @@ Columns of every assembled matrix are the unknowns first, then the prescribed DO
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +29,12 @@ def label(dof: Dof) -> str:
     """DOF in words."""
     owner, d = dof
     return f"node {owner} {NAMES[d]}" if d < 3 else f"element {owner} {INTERNAL[d - 3]}"
+
+
+def labels(dofs: Sequence[Dof], most: int = 6) -> str:
+    """The first few of several DOFs in words, and how many more there are."""
+    text = ", ".join(label(f).removeprefix("node ") for f in dofs[:most])
+    return text + (f", and {len(dofs) - most} more" if len(dofs) > most else "")
 
 
 @dataclass(frozen=True)
@@ -75,6 +81,21 @@ class DofMap:
             for column, factor in self.terms[dof]
         ]
         return gathered((len(sums), self.size), *np.array(terms).reshape(-1, 3).T)
+
+    def assembled(self, blocks: Iterable[tuple[Sequence[Dof], Array]]) -> Matrix:
+        """Sum of small matrices, each at its DOFs, shape (size, size)."""
+        rows, columns, values = [], [], []
+        for dofs, matrix in blocks:
+            terms = [self.terms[f] for f in dofs]
+            for own, line in zip(terms, matrix.tolist()):
+                for other, value in zip(terms, line):
+                    if value != 0.0:
+                        for i, fi in own:
+                            for j, fj in other:
+                                rows.append(i)
+                                columns.append(j)
+                                values.append(value * fi * fj)
+        return gathered((self.size, self.size), rows, columns, values)
 
     def matrix(self, dofs: Collection[Dof]) -> Matrix:
         """Rows of several DOFs, shape (len(DOFs), size)."""

@@ -20,6 +20,7 @@ from pound_solve.integrate.closed_form.modal_propagator import ModalPropagator
 from pound_solve.integrate.closed_form.rigid_contact import RigidContacts
 from pound_solve.integrate.events.functions import RowSet
 from pound_solve.laws.automaton import Branch
+from pound_solve.numerics.graph import components
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
@@ -107,20 +108,14 @@ class Subsystems:
         return max((b.decomposition.propagator.spectral_radius for b in self.present), default=0.0)
 
     def _labels_with_contacts_open(self) -> Index:
-        """Label of every unknown, the same within each connected part, shape (n,)."""
-        system, n = self.system, self.system.size
-        linked = (system.stiffness != 0) | (system.damping != 0) | (system.mass != 0)
-        for s, row in zip(system.structure.laws, system.law_rows):
-            if not s.role.collides:
-                at = np.flatnonzero(row)
-                linked[np.ix_(at, at)] = True
-        labels = np.arange(n)
-        while True:
-            # every unknown takes the lowest label among its neighbours until nothing changes
-            lowest = np.minimum(np.where(linked, labels[None, :], n).min(axis=1, initial=n), labels)
-            if (lowest == labels).all():
-                return labels
-            labels = lowest
+        """Component of each unknown with all contacts open, shape (n,)."""
+        system = self.system
+        laws = zip(system.structure.laws, system.law_rows)
+        return components(
+            system.size,
+            (system.stiffness, system.damping, system.mass),
+            [np.flatnonzero(row) for spring, row in laws if not spring.role.collides],
+        )
 
     def _labels(self, branches: Sequence[Branch]) -> Index:
         """`_labels_with_contacts_open` with the parts joined that closed contacts connect."""

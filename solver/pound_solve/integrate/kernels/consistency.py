@@ -22,7 +22,7 @@ from pound_solve.integrate.kernels.products import along, multiply
 from pound_solve.integrate.kernels.state import MASS, MASSLESS, Laws, LinearSystem, Step
 from pound_solve.numerics.ldl import factor, solve
 from pound_solve.numerics.types import Array
-from pound_solve.structure.corotational import bend
+from pound_solve.structure.corotational import quantity_stiffness
 
 NEAR = 1e-6  #: share of its largest value within which an event is accepted where it cannot be met better
 DELAY = 1e-8  #: share of the longest C / K among massless unknowns that e is
@@ -83,7 +83,7 @@ def factorise_massless(linear: LinearSystem, laws: Laws, step: Step, quantities:
                 step.matrix[at] += change * laws.pair_values[q]
     members = laws.members
     for c in range(len(members.parameters) * linear.massless_vary):
-        bend(members.parameters, c, quantities, 0, members.present, c)
+        quantity_stiffness(members.parameters, c, quantities, 0, members.present, c)
         add_tangent(linear, members, step, c, members.present, 1.0, True)
     if factor(linear.pattern, step.matrix, step.factors[MASSLESS], step.pivots[MASSLESS], step.row) >= 0:
         for i in range(len(step.row)):  # what nothing holds goes on as it did

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pound_solve.integrate.kernels.state import Corotational, Laws, LinearSystem, MemberState, Step
 from pound_solve.numerics.types import Array
-from pound_solve.structure.corotational import KNN, KTT, LENGTH, bend, push
+from pound_solve.structure.corotational import KNN, KTT, LENGTH, quantity_forces, quantity_stiffness
 
 CLEAR = 1e-12  #: share of the largest force that the members' forces are found to
 ROUNDING = 1e-15  #: share of a member's axial stiffness that its forces are rounded to
@@ -67,7 +67,7 @@ def form_members(laws: Laws, step: Step) -> None:
     members = laws.members
     form_quantities(members, step.now.displacement, step.now.inputs, members.now.quantities)
     for c in range(len(members.parameters)):
-        push(members.parameters, c, members.now.quantities, 0, members.now.forces, 0)
+        quantity_forces(members.parameters, c, members.now.quantities, 0, members.now.forces, 0)
 
 
 def predict_members(laws: Laws, step: Step) -> None:
@@ -75,7 +75,7 @@ def predict_members(laws: Laws, step: Step) -> None:
     members = laws.members
     form_quantities(members, step.trial.displacement, step.trial.inputs, members.predicted)
     for c in range(len(members.parameters)):
-        push(members.parameters, c, members.predicted, 0, members.at_zero, 0)
+        quantity_forces(members.parameters, c, members.predicted, 0, members.at_zero, 0)
         add_tangent_force(members.tangent, c, members.predicted, members.at_zero, -1.0)
 
 
@@ -110,7 +110,7 @@ def correct_members(laws: Laws, step: Step, beta_h2: float) -> float:
             for y in range(members.pointers[c], members.pointers[c + 1]):
                 total += members.rows[y, j] * step.trial.acceleration[members.unknown[y]]
             trial.quantities[c, j] = members.predicted[c, j] + beta_h2 * total
-        push(p, c, trial.quantities, 0, trial.forces, 0)
+        quantity_forces(p, c, trial.quantities, 0, trial.forces, 0)
         size = max(size, force_size(trial, c, p[c, LENGTH]))
     for c in range(len(p)):
         length, knn = p[c, LENGTH], p[c, KNN]
@@ -143,4 +143,4 @@ def force_size(state: MemberState, c: int, length: float) -> float:
 def take_tangents(members: Corotational, quantities: Array) -> None:
     """Take the members' tangents at some quantities for the factor to come."""
     for c in range(len(members.parameters)):
-        bend(members.parameters, c, quantities, 0, members.tangent, c)
+        quantity_stiffness(members.parameters, c, quantities, 0, members.tangent, c)

@@ -23,7 +23,7 @@ _UNITS: Final = ("G", "M/S2", "CM/S2", "GAL", "MM/S2", "DECK")
 _PER_METRE: Final = {"M/S2": 1.0, "CM/S2": 100.0, "GAL": 100.0, "MM/S2": 1000.0}
 
 
-class Samples(NamedTuple):
+class RecordSamples(NamedTuple):
     """What a card takes out of a record's file.
 
     Attributes
@@ -48,7 +48,7 @@ class Samples(NamedTuple):
         return lines if lines.start <= 0 else lines.slice(0.0, lines.end)
 
 
-def samples(card_values: Mapping[str, Any], context: LoadingContext) -> Samples:
+def samples(card_values: Mapping[str, Any], context: LoadingContext) -> RecordSamples:
     """Read the record that a card names.
 
     Parameters
@@ -70,7 +70,7 @@ def samples(card_values: Mapping[str, Any], context: LoadingContext) -> Samples:
         t, values = _window(raw.t, raw.values, start, duration)
     except RecordError as error:
         raise error.within(path.name) from None
-    return Samples(t * float(card_values.get("TSCALE", 1.0)), values, raw, path, digest)
+    return RecordSamples(t * float(card_values.get("TSCALE", 1.0)), values, raw, path, digest)
 
 
 def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:

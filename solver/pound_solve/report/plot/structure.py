@@ -18,7 +18,7 @@ WALL = 0.035  #: half the length of a wall, and about its distance, as a share o
 HATCHES = 6
 
 
-class Structure:
+class DrawnStructure:
     """Nodes and elements of a results file, for drawing."""
 
     def __init__(self, results: Results) -> None:
@@ -65,7 +65,7 @@ class Structure:
 
 def frame(results: Results) -> Any:
     """Nodes with numbers, supports, masses, members and contacts."""
-    s = Structure(results)
+    s = DrawnStructure(results)
     figure = style.figure(*s.shape(), title=results.title)
     axes = figure.add_subplot()
     s.frame(axes)
@@ -113,7 +113,7 @@ def _wall(axes: Any, node: Array, angle: float, half: float) -> Array:
 
 def modes(results: Results) -> Any:
     """Mode shapes beside each other."""
-    s, shapes = Structure(results), results.table("mode_shapes")
+    s, shapes = DrawnStructure(results), results.table("mode_shapes")
     periods = {int(m["mode"]): float(m["period"]) for m in results.table("modes")}
     numbers = list(dict.fromkeys(int(n) for n in shapes["mode"]))[:MOST_MODES]
     width, height = s.shape()
@@ -132,7 +132,7 @@ def modes(results: Results) -> Any:
 
 def deformed(results: Results) -> Any:
     """The structure when its displacements are largest, magnified."""
-    s, u = Structure(results), results.history("node/u")[:, :, :2]
+    s, u = DrawnStructure(results), results.history("node/u")[:, :, :2]
     numbers = [int(n) for n in results.attributes("node/u")["nodes"]]
     size = np.abs(u).max(axis=(1, 2))
     at = int(np.argmax(size))
@@ -189,7 +189,7 @@ def _drifts(axes: Any, results: Results) -> None:
 
 def _columns(results: Results) -> list[Array]:
     """Heights, smallest and largest displacements X of the nodes above each other, shape (3, n) each."""
-    place, table = Structure(results).place, results.table("node_envelope")
+    place, table = DrawnStructure(results).place, results.table("node_envelope")
     own = table[(table["direction"] == "X") & (table["quantity"] == "displacement")]
     lines: dict[float, list[tuple[float, float, float]]] = {}
     for row in own:

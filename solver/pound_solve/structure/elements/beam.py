@@ -4,18 +4,11 @@ Axial and bending stiffness, shear deformation by :math:`\phi = 12EI/(G A_s L^2)
 pinned and flexible joints (condensed inside the member), initial forces, self weight, uniform and point
 loads, lumped or consistent mass.
 
-Local axes: x from I to J, y to its left.  Interpolation over the flexible length with :math:`\xi = x/L`:
+Local axes: x from I to J, y to its left; matrices and interpolation are those of `beam_matrices`.
 
-.. math::
-    N_1 &= \frac{1 - 3\xi^2 + 2\xi^3 + \phi(1-\xi)}{1+\phi}, &
-    N_2 &= \frac{L(\xi - 2\xi^2 + \xi^3 + \tfrac{\phi}{2}(\xi - \xi^2))}{1+\phi}
-
-(mirrored at J), which solves the unloaded Timoshenko beam, so nodal results are exact for end loads and
-consistent loads alike.
-
-A member that yields has hinges at the ends of the flexible length.  The beam between them then hangs on
-DOFs of its own, which the hinges join to the nodes; hinges with a length take their flexibility off the
-beam, so that the elastic member is the same with and without them.
+A member that yields has hinges at the ends of the flexible length.  The beam between them then has
+separate end DOFs, which the hinges connect to the nodes.  The flexibility of hinges with a length is taken
+off the beam, so that the elastic member is the same with and without them.
 
 References
 ----------
@@ -32,7 +25,7 @@ import numpy as np
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind
 from pound_solve.numerics.types import Array
-from pound_solve.structure.corotational import STRING, TURNING, CorotationalMember
+from pound_solve.structure.corotational import COROTATIONAL, STRING, CorotationalMember
 from pound_solve.structure.dofs import Dof
 from pound_solve.structure.elements.base import (
     ElementContext,
@@ -43,10 +36,17 @@ from pound_solve.structure.elements.base import (
     Parts,
     direction,
 )
-
-# Gauss points and weights on (0, 1): four points integrate the products of cubics exactly
-_GAUSS_X, _GAUSS_W = (a for a in np.polynomial.legendre.leggauss(4))
-_GAUSS_X, _GAUSS_W = 0.5 * (_GAUSS_X + 1.0), 0.5 * _GAUSS_W
+from pound_solve.structure.elements.beam_matrices import (
+    GAUSS_W,
+    GAUSS_X,
+    block_mass,
+    end_blocks,
+    shapes,
+    slopes,
+    soften,
+    spare,
+    stiffness,
+)
 
 INSIDE = {2: 3, 5: 4, 0: 5, 3: 6}  #: number of the element's own DOF behind a hinge, by local DOF
 
@@ -75,100 +75,6 @@ def pair(values: tuple[float, ...]) -> tuple[float, float]:
     return values[0], values[-1]
 
 
-def shapes(xi: float, length: float, phi: float) -> Array:
-    """Interpolation of axial and transverse displacement, shape (2, 6), at `xi` in [0, 1]."""
-    d = 1.0 + phi
-    n = np.zeros((2, 6))
-    n[0, 0], n[0, 3] = 1.0 - xi, xi
-    n[1, 1] = (1 - 3 * xi**2 + 2 * xi**3 + phi * (1 - xi)) / d
-    n[1, 2] = length * (xi - 2 * xi**2 + xi**3 + phi / 2 * (xi - xi**2)) / d
-    n[1, 4] = (3 * xi**2 - 2 * xi**3 + phi * xi) / d
-    n[1, 5] = length * (-(xi**2) + xi**3 - phi / 2 * (xi - xi**2)) / d
-    return n
-
-
-def slopes(xi: float, length: float, phi: float) -> Array:
-    """Derivative of the transverse displacement along the member, shape (6,)."""
-    a, b = (6 * xi * (xi - 1) - phi) / length, 1 - 4 * xi + 3 * xi**2
-    half = phi / 2 * (1 - 2 * xi)
-    out = np.array([0.0, a, b + half, 0.0, -a, 3 * xi**2 - 2 * xi - half])
-    return out / (1.0 + phi)
-
-
-def stiffness(ea: float, ei: float, length: float, phi: float) -> Array:
-    """Local stiffness of the flexible part, shape (6, 6), [F/L, F, F L]."""
-    k = np.zeros((6, 6))
-    k[0, 0] = k[3, 3] = ea / length
-    k[0, 3] = k[3, 0] = -ea / length
-    a, b = 12 * ei / length**3 / (1 + phi), 6 * ei / length**2 / (1 + phi)
-    c, d = (4 + phi) * ei / length / (1 + phi), (2 - phi) * ei / length / (1 + phi)
-    k[np.ix_([1, 2, 4, 5], [1, 2, 4, 5])] = [[a, b, -a, b], [b, c, -b, d], [-a, -b, a, -b], [b, d, -b, c]]
-    return k
-
-
-def end_blocks(at_i: float, at_j: float) -> Array:
-    """Local displacements of the flexible ends from those of the nodes, shape (6, 6)."""
-    t = np.eye(6)
-    t[1, 2], t[4, 5] = at_i, -at_j
-    return t
-
-
-def soften(k: Array, pins: list[int], soft: Array) -> tuple[Array, Array, Array]:
-    """Put pins and flexibilities between the beam's ends and what holds them.
-
-    With loads f on the beam its ends x follow the held displacements u by
-    ``u - x = soft (k x - f)``, and a pinned end by ``0 = k x - f``.
-
-    Parameters
-    ----------
-    k : ndarray, shape (6, 6)
-        Local stiffness of the beam.
-    pins : list of int
-        Local DOFs that are not held.
-    soft : ndarray, shape (6, 6)
-        Flexibility of the joints [L/F, 1/F, 1/(F L)]; negative where the beam is stiffened.
-
-    Returns
-    -------
-    forces, shape, flexibility : ndarray, shape (6, 6)
-        End forces and x for unit u, and x for unit f.
-    """
-    if not pins and not soft.any():
-        return k.copy(), np.eye(6), np.zeros((6, 6))
-    held, b = np.ones(6), soft.copy()
-    if pins and k[np.ix_(pins, pins)].any():  # an axial bar has no bending stiffness to condense
-        held[pins] = 0.0
-        b[pins] = 0.0
-        b[pins, pins] = 1.0
-    whole = np.diag(held) + b @ k
-    shape, flexibility = (np.asarray(np.linalg.solve(whole, x), float) for x in (np.diag(held), b))
-    forces = k @ shape
-    # no rounding may pass for a stiffness: it would hide a mechanism
-    forces[pins] = 0.0
-    if len(pins) == 2:
-        forces[[1, 4]] = 0.0
-    return forces, shape, flexibility
-
-
-def spare(k: Array, length: float, ea: float, joints: Array, taken: Array, pins: list[int]) -> float:
-    """How many times the flexibility `taken` off the ends would leave a beam without any."""
-    own = np.zeros((3, 3))
-    own[0, 0] = length / ea
-    own[1:, 1:] = np.linalg.inv(k[np.ix_([2, 5], [2, 5])])
-    chord = np.array([0.0, 1.0, 0.0, 0.0, -1.0, 0.0]) / length
-    natural = np.array([[-1, 0, 0, 1, 0, 0], np.eye(6)[2] + chord, np.eye(6)[5] + chord])
-    free = [0] + [n for n, d in ((1, 2), (2, 5)) if d not in pins]
-    at = np.ix_(free, free)
-    own, less = (own + natural @ joints @ natural.T)[at], (natural @ taken @ natural.T)[at]
-    return float(1.0 / np.linalg.eigvals(np.linalg.solve(own, less)).real.max())
-
-
-def block_mass(m: float, length: float, sign: float) -> Array:
-    """Mass of a rigid end block on (axial, transverse, rotation) of its node, shape (3, 3)."""
-    s = sign * m * length**2 / 2
-    return np.array([[m * length, 0, 0], [0, m * length, s], [0, s, m * length**3 / 3]])
-
-
 def pinned(p: Card) -> list[int]:
     """Local rotations that are pinned."""
     return {"NONE": [], "I": [2], "J": [5], "BOTH": [2, 5]}[p["PIN"] if p["I"] > 0.0 else "BOTH"]
@@ -179,7 +85,7 @@ def build(context: ElementContext, hinged: tuple[int, ...] = (), taken: Array | 
 
     Parameters
     ----------
-    context : Site
+    context : ElementContext
         With a property card that has the fields `FIELDS`.
     hinged : tuple of int
         Local DOFs (0, 3 stretch, 2, 5 bend) that a hinge holds.
@@ -191,6 +97,47 @@ def build(context: ElementContext, hinged: tuple[int, ...] = (), taken: Array | 
     ElementError
         No length or, by the hinges, no flexibility is left; the item is ``LP``.
     """
+    line = _line(context)
+    beam = _flexible_part(context.prop, line.length, taken)
+    dofs, outer, inner = _kinematics(context, line, hinged)
+    opening = np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0])[:, None] * (inner - outer)
+    parts = Parts(stiffness=[ElementMatrix(dofs, inner.T @ beam.forces @ inner)])
+    m = context.prop["WGT"] / context.gravity
+    if m > 0.0:
+        # with closed hinges: the internal DOFs of a member have no mass
+        mass = _mass(context, m, line.length, beam.phi, beam.closed @ outer[:, :6], line.at_nodes)
+        parts.mass.append(ElementMatrix(dofs[:6], mass))
+    equivalent, nodal = _loads(context, line.length, beam.phi, line.rotation[:2, :2])
+    load = (beam.shape @ inner).T @ equivalent
+    load[:6] += nodal
+    if load.any():
+        parts.loads.append((dofs, load))
+    rows, constant = beam.forces @ inner, beam.end_forces(equivalent)
+    parts.outputs += _outputs(context, dofs, rows, constant)
+    _add_geometry(parts, context, line, beam, dofs, inner, rows, constant)
+    return Member(parts, dofs, opening)
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Axis of a member.
+
+    Attributes
+    ----------
+    full, length : float
+        Between the nodes, and of the flexible part [L].
+    rotation, at_nodes : ndarray, shape (3, 3) and (6, 6)
+        Global to local displacements of one node and of both.
+    """
+
+    full: float
+    length: float
+    rotation: Array
+    at_nodes: Array
+
+
+def _line(context: ElementContext) -> _Line:
+    """Axis of the member between its nodes."""
     p = context.prop
     if context.j is None:
         raise ElementError(f"a {p.spec.name} member needs two nodes")
@@ -201,96 +148,137 @@ def build(context: ElementContext, hinged: tuple[int, ...] = (), taken: Array | 
         raise ElementError(f"no flexible length is left: {full:g} less the end blocks", "END1")
     c, s = direction(dx, dy)
     rotation = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
-    ei = p["E"] * p["I"]
-    phi = 0.0
+    at_nodes = np.zeros((6, 6))
+    at_nodes[:3, :3] = at_nodes[3:, 3:] = rotation
+    return _Line(full, length, rotation, at_nodes)
+
+
+@dataclass(frozen=True)
+class _FlexiblePart:
+    """The beam between the end blocks, in local axes; see `soften`.
+
+    Attributes
+    ----------
+    phi : float
+        Shear parameter [-].
+    k : ndarray, shape (6, 6)
+        Stiffness without pins and joints.
+    pins : list of int
+    forces, shape, flexibility : ndarray, shape (6, 6)
+        With pins and joints, less what the hinges take.
+    closed : ndarray, shape (6, 6)
+        `shape` with closed hinges.
+    """
+
+    phi: float
+    k: Array
+    pins: list[int]
+    forces: Array
+    shape: Array
+    flexibility: Array
+    closed: Array
+
+    def end_forces(self, load: Array) -> Array:
+        """Forces on the ends of the beam by loads that are equivalent to `load`, the nodes at rest, shape
+        (6,).
+        """
+        out: Array = self.k @ (self.flexibility @ load) - load
+        out[self.pins] = 0.0
+        return out
+
+
+def _flexible_part(p: Card, length: float, taken: Array | None) -> _FlexiblePart:
+    """The beam of a property card, less the flexibility `taken` by its hinges."""
+    ea, ei, phi = p["E"] * p["A"], p["E"] * p["I"], 0.0
     if p["AS"] > 0.0 and ei > 0.0:
         if p["G"] is None:
             raise ElementError("AS (shear deformation) needs G", "AS")
         phi = 12 * ei / (p["G"] * p["AS"] * length**2)
-    k, pins = stiffness(p["E"] * p["A"], ei, length, phi), pinned(p)
+    k, pins = stiffness(ea, ei, length, phi), pinned(p)
     joints = np.diag([0.0, 0.0, pair(p["FJ"])[0], 0.0, 0.0, pair(p["FJ"])[1]])
-    soft = joints
-    if taken is not None:
-        times = spare(k, length, p["E"] * p["A"], joints, taken, pins)
-        if times <= 1.0:
-            most = ",".join(f"{times * lp:.4g}" for lp in p["LP"])
-            raise ElementError(
-                f"the hinge lengths leave no beam between them: of the flexible length {length:g} "
-                f"they can have less than LP={most}",
-                "LP",
-            )
-        soft = joints - taken
-    forces, shape, flexibility = soften(k, pins, soft)
-    if ei == 0.0:  # an axial bar stays straight: it hands its loads and mass on as a beam on two pins does
+    if taken is not None and (times := spare(k, length, ea, joints, taken, pins)) <= 1.0:
+        most = ",".join(f"{times * lp:.4g}" for lp in p["LP"])
+        raise ElementError(
+            f"the hinge lengths leave no beam between them: of the flexible length {length:g} "
+            f"they can have less than LP={most}",
+            "LP",
+        )
+    forces, shape, flexibility = soften(k, pins, joints if taken is None else joints - taken)
+    if ei == 0.0:  # an axial bar stays straight: its loads and mass are shared as on two pins
         _, shape, _ = soften(stiffness(0.0, 1.0, length, 0.0), pins, joints)
+    closed = shape if taken is None else soften(k, pins, joints)[1]
+    return _FlexiblePart(phi, k, pins, forces, shape, flexibility, closed)
 
-    # local displacements of the flexible ends: as the nodes move them, and of the beam behind the hinges
-    at_nodes = np.zeros((6, 6))
-    at_nodes[:3, :3] = at_nodes[3:, 3:] = rotation
+
+def _kinematics(
+    context: ElementContext, line: _Line, hinged: tuple[int, ...]
+) -> tuple[tuple[Dof, ...], Array, Array]:
+    """DOFs of the member, and from them the local displacements of the flexible ends, shape (6, n_dofs):
+    as the nodes move them, and of the beam behind the hinges.
+    """
+    assert context.j is not None
     own = tuple((context.element.id, INSIDE[d]) for d in hinged)
     dofs = tuple((n.id, d) for n in (context.i, context.j) for d in range(3)) + own
-    to_ends = end_blocks(p["END1"], p["END2"]) @ at_nodes
+    to_ends = end_blocks(context.prop["END1"], context.prop["END2"]) @ line.at_nodes
     outer = np.hstack([to_ends, np.zeros((6, len(own)))])
     inner = outer.copy()
     for n, d in enumerate(hinged):
         inner[d] = 0.0
         inner[d, 6 + n] = 1.0
-    opening = np.array([1.0, 1.0, 1.0, -1.0, -1.0, -1.0])[:, None] * (inner - outer)
+    return dofs, outer, inner
 
-    parts = Parts(stiffness=[ElementMatrix(dofs, inner.T @ forces @ inner)])
-    m = p["WGT"] / context.gravity
-    if m > 0.0:
-        # closed hinges: a member's own DOFs have no mass
-        _, rigid, _ = soften(k, pins, joints) if taken is not None else (None, shape, None)
-        mass = _mass(context, m, length, phi, rigid @ to_ends, at_nodes)
-        parts.mass.append(ElementMatrix(dofs[:6], mass))
-    equivalent, nodal = _loads(context, length, phi, rotation[:2, :2])
-    whole = (shape @ inner).T @ equivalent
-    whole[:6] += nodal
-    if whole.any():
-        parts.loads.append((dofs, whole))
 
-    # end forces of the beam: k (shape u + flexibility f) - f
-    force_rows = forces @ inner
-    constant = k @ (flexibility @ equivalent) - equivalent
-    constant[pins] = 0.0
+def _outputs(context: ElementContext, dofs: tuple[Dof, ...], rows: Array, constant: Array) -> list[Output]:
+    """End forces: ``rows u + constant``, local, tension positive at both ends."""
+    bar = context.prop["E"] * context.prop["I"] == 0.0
+    out = []
     for name, unit, row, sign in (
-        ("axial I", "F", 0, -1.0),  # tension is positive at both ends
+        ("axial I", "F", 0, -1.0),
         ("axial J", "F", 3, 1.0),
         ("shear I", "F", 1, 1.0),
         ("moment I", "F*L", 2, 1.0),
         ("shear J", "F", 4, 1.0),
         ("moment J", "F*L", 5, 1.0),
     ):
-        if row not in (0, 3) and ei == 0.0:
-            continue
-        u_row, c0 = sign * force_rows[row], sign * float(constant[row])
-        parts.outputs.append(Output(context.element.id, name, unit, dofs, u_row, None, c0))
-    axial = 0.5 * (force_rows[3] - force_rows[0])
-    mean = 0.5 * float(constant[3] - constant[0])
-    if context.geometry in ("PDELTA_VARYING", "LARGE"):
+        if row in (0, 3) or not bar:
+            u_row, c0 = sign * rows[row], sign * float(constant[row])
+            out.append(Output(context.element.id, name, unit, dofs, u_row, None, c0))
+    return out
+
+
+def _add_geometry(
+    parts: Parts,
+    context: ElementContext,
+    line: _Line,
+    beam: _FlexiblePart,
+    dofs: tuple[Dof, ...],
+    inner: Array,
+    rows: Array,
+    constant: Array,
+) -> None:
+    """Add what GEOMETRY calls for: a geometric stiffness, a P-Delta string or corotational geometry."""
+    geometry, number, p = context.geometry, context.element.id, context.prop
+    axial, mean = 0.5 * (rows[3] - rows[0]), 0.5 * float(constant[3] - constant[0])
+    if geometry in ("PDELTA_VARYING", "LARGE"):
         quantities = np.zeros((6, len(dofs)))
-        quantities[0], quantities[1] = axial, -force_rows[2] - force_rows[5]
-        quantities[2:4, :6] = at_nodes[3:5] - at_nodes[:2]
+        quantities[0], quantities[1] = axial, -rows[2] - rows[5]
+        quantities[2:4, :6] = line.at_nodes[3:5] - line.at_nodes[:2]
         quantities[4, 2] = quantities[5, 5] = 1.0
-        if context.geometry == "LARGE":
-            initial = _initial(p, length)
-            held = initial - k @ (flexibility @ initial)
-            held[pins] = 0.0
-            chord = _turning(p, length, forces, held)
+        if geometry == "LARGE":
+            held = -beam.end_forces(_initial(p, line.length))
+            chord = _corotational(p, line.length, beam.forces, held)
         else:
-            chord = (STRING, full, 0.0, 0.0, 0.5, float(forces[3, 3]), 0.0, 0.0, mean, 0.0), {}
-        parts.corotational.append(CorotationalMember(context.element.id, dofs, quantities, *chord))
-    elif context.geometry != "SMALL":
-        rows: dict[str, Array] = {}
-        if context.geometry == "PDELTA":
-            across = np.zeros(len(dofs))
-            across[:6] = (at_nodes[4] - at_nodes[1]) / full
-            matrix = full * np.outer(across, across)
-        else:
-            matrix, rows = _bowed(p, length, phi, shape, inner, at_nodes)
-        parts.geometric.append(Geometric(context.element.id, dofs, matrix, axial, mean, rows))
-    return Member(parts, dofs, opening)
+            k_axial = float(beam.forces[3, 3])
+            chord = (STRING, line.full, 0.0, 0.0, 0.5, k_axial, 0.0, 0.0, mean, 0.0), {}
+        parts.corotational.append(CorotationalMember(number, dofs, quantities, *chord))
+    elif geometry == "PDELTA":
+        across = np.zeros(len(dofs))
+        across[:6] = (line.at_nodes[4] - line.at_nodes[1]) / line.full
+        matrix = line.full * np.outer(across, across)
+        parts.geometric.append(Geometric(number, dofs, matrix, axial, mean, {}))
+    elif geometry == "PDELTA_MEMBER":
+        matrix, own = _bowed(p, line.length, beam.phi, beam.shape, inner, line.at_nodes)
+        parts.geometric.append(Geometric(number, dofs, matrix, axial, mean, own))
 
 
 def _loads(context: ElementContext, length: float, phi: float, turn: Array) -> tuple[Array, Array]:
@@ -307,7 +295,7 @@ def _loads(context: ElementContext, length: float, phi: float, turn: Array) -> t
         if card["PX"] or card["PY"]:
             points.append((card["AT"], np.array([card["PX"], card["PY"]])))
     equivalent, nodal = np.zeros(6), np.zeros(6)
-    for xi, w in zip(_GAUSS_X, _GAUSS_W) if uniform.any() else ():
+    for xi, w in zip(GAUSS_X, GAUSS_W) if uniform.any() else ():
         equivalent += w * length * shapes(xi, length, phi).T @ (turn @ uniform)
     for at, force in points:
         equivalent += shapes(at, length, phi).T @ (turn @ force)
@@ -326,11 +314,10 @@ def _initial(p: Card, length: float) -> Array:
     return np.array([-p["N0"], shear, at_i, p["N0"], -shear, at_j])
 
 
-def _turning(
+def _corotational(
     p: Card, length: float, forces: Array, held: Array
 ) -> tuple[tuple[float, ...], dict[str, Array]]:
-    """Parameters of a chord that turns and lengthens (see `corotational`), and what it adds to the end
-    forces.
+    """Parameters of corotational geometry (see `corotational`), and what it adds to the end forces.
 
     Parameters
     ----------
@@ -344,10 +331,10 @@ def _turning(
     own = forces[np.ix_(ends, ends)] @ d  # axial force and end moments for unit eta and rho
     k = d.T @ own
     pins = pinned(p)
-    # a pinned end does not turn with the member
-    lean = {2: 0.0, 5: 1.0}[pins[0]] if len(pins) == 1 else 0.5
+    # a pinned end does not rotate with the member
+    share_i = {2: 0.0, 5: 1.0}[pins[0]] if len(pins) == 1 else 0.5
     n0, t0 = d.T @ held[ends]
-    parameters = (TURNING, length, p["END1"], p["END2"], lean, k[0, 0], k[0, 1], k[1, 1], n0, t0)
+    parameters = (COROTATIONAL, length, p["END1"], p["END2"], share_i, k[0, 0], k[0, 1], k[1, 1], n0, t0)
     axial, at_i, at_j = (np.append(row, 0.0) for row in own)
     shear = (at_i + at_j) / length + (0.0, 0.0, 1.0)
     adds = {"axial I": axial, "axial J": axial, "moment I": at_i, "moment J": at_j}
@@ -361,7 +348,7 @@ def _bowed(
     and what that adds to the end forces beyond the turning of the chord.
     """
     flexible = np.zeros((6, 6))
-    for xi, w in zip(_GAUSS_X, _GAUSS_W):
+    for xi, w in zip(GAUSS_X, GAUSS_W):
         slope = slopes(xi, length, phi)
         flexible += w * length * np.outer(slope, slope)
     at_ends = shape.T @ flexible @ shape @ inner
@@ -389,7 +376,7 @@ def _mass(
         ends = (half + m * p["END1"], half + m * p["END2"])
         return np.diag([ends[0], ends[0], 0.0, ends[1], ends[1], 0.0])
     flexible = np.zeros((6, 6))
-    for xi, w in zip(_GAUSS_X, _GAUSS_W):
+    for xi, w in zip(GAUSS_X, GAUSS_W):
         n = shapes(xi, length, phi)
         flexible += w * m * length * n.T @ n
     blocks = np.zeros((6, 6))

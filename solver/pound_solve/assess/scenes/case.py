@@ -1,0 +1,104 @@
+"""One stress scene, and what the families of scenes share.
+
+Laws are taken from the catalog with their own sample items, so a new one is covered without a change here.
+Masses are weights (GRAVITY 1); the storey of unit mass has a period of 1.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+from pound_deck.schema import Spec
+from pound_solve.numerics.types import Array
+
+OMEGA: Final = 2.0 * math.pi
+STOREY: Final = OMEGA**2  #: stiffness of the storey of unit mass
+METHOD: Final = "@METHOD"  #: where the method's name and items go in a deck
+STEP: Final = 1e-3
+SPIKE: Final = "EQUAKE\n TABLE POINTS=0.01,0,0.010001,1E6,0.010002,0\n"
+JUMP: Final = "EQUAKE\n TABLE POINTS=0.1,0,0.1,5,3,5\n"
+ZEROS: Final = "EQUAKE\n TABLE POINTS=0,0,10,0\n"
+
+
+def every(t: Array, u: Array) -> Array:
+    """All displacements."""
+    return u
+
+
+@dataclass(frozen=True)
+class Case:
+    """One deck of the matrix.
+
+    Attributes
+    ----------
+    family : str
+        ``contact``, ``hysteresis`` or ``linear``.
+    scene, variant, law : str
+        Row of the table; what is extreme; the law in it.
+    deck : str
+        Text with `METHOD` in place of the method.
+    step : float
+        DT of the methods that take steps [T].
+    within : float
+        Error of those allowed, as a share of the largest displacement.
+    right : callable or None
+        Displacements ux of the nodes of OUTPUT at some times, shape (n_times, n_nodes), in closed form; or
+        what `compared` makes of them.
+    compared : callable
+        What is compared with the right one: of times and displacements, shape (n_times, n_nodes).
+    like : tuple of str and float
+        Deck whose displacements times the factor are the right ones; empty: the deck itself.
+    files : mapping of str to str
+        Files beside the deck.
+    heavy : bool
+        Left out of a quick run.
+    """
+
+    family: str
+    scene: str
+    variant: str
+    law: str
+    deck: str
+    step: float = STEP
+    within: float = 0.02
+    right: Callable[[Array], Array] | None = None
+    compared: Callable[[Array, Array], Array] = every
+    like: tuple[str, float] = ("", 1.0)
+    files: Mapping[str, str] = field(default_factory=dict)
+    heavy: bool = False
+
+
+def powers(unit: str, n: float) -> tuple[float, float]:
+    """Powers of force and length in a unit of both, as F/L^1.5; N stands for `n`."""
+    found = re.fullmatch(r"(F)?(?:(/?)L(?:\^([0-9.]+|N))?)?", unit)
+    if not found or not unit:
+        return 0.0, 0.0
+    size = (n if found[3] == "N" else float(found[3] or 1.0)) if "L" in unit else 0.0
+    return float(unit[0] == "F"), -size if found[2] else size
+
+
+def items(spec: Spec, length: float = 1.0, force: float = 1.0, **given: float) -> str:
+    """A law's sample items, and a stiffness K of 1 if it has one, as if the units of length and force
+    were `length` and `force`; items given that it has replace its own.
+    """
+    own = dict(word.split("=", 1) for word in spec.sample.split())
+    if spec.field("K") is not None:
+        own["K"] = "1"
+    exponent = spec.field("N")
+    n = float(own.get("N", exponent.default)) if exponent is not None else 1.0
+    for name, value in own.items():
+        item = spec.field(name)
+        f, x = powers(item.unit if item is not None else "", n)
+        if f or x:
+            own[name] = ",".join(repr(float(v) * force**f * length**x) for v in value.split(","))
+    own |= {name: repr(value) for name, value in given.items() if spec.field(name) is not None}
+    return " ".join([spec.name, *(f"{name}={value}" for name, value in own.items())])
+
+
+def damped(share: float) -> str:
+    """Section DAMPING: `share` of critical at the storey's own period."""
+    return f"DAMPING\n RAYLEIGH ALPHA={2.0 * share * OMEGA!r} BETA=0\n"

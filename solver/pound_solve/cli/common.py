@@ -1,0 +1,86 @@
+"""What several verbs share: exit statuses, messages, the arguments of a deck, lists of numbers."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pound_solve.driver.run import Request
+
+DONE, STOPPED, MISTAKES, FILES = range(4)  #: exit statuses
+FORMATS = ("svg", "png", "pdf")  #: of pictures by matplotlib
+
+
+def complain(text: str, status: int = FILES) -> int:
+    """Print a line on the error stream and return the exit status."""
+    print(f"pound-solve: {text}", file=sys.stderr)
+    return status
+
+
+def add_deck(parser: argparse.ArgumentParser, nargs: str | None = None) -> None:
+    """Add the deck, its parameters and the folders of records."""
+    parser.add_argument("deck", nargs=nargs, help="input deck")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="replace a PARAM of the deck"
+    )
+    parser.add_argument(
+        "--records", action="append", default=[], type=Path, metavar="DIR", help="folder with records"
+    )
+
+
+def add_method(parser: argparse.ArgumentParser) -> None:
+    """Add the options that replace items of the HISTORY card."""
+    parser.add_argument("--method", help="replace METHOD of HISTORY")
+    parser.add_argument("--dt", type=float, help="replace DT of HISTORY")
+    parser.add_argument("--tol", type=float, help="replace TOL of HISTORY")
+
+
+def request(args: argparse.Namespace) -> Request:
+    """Request of a run from the arguments of `add_deck`, `add_method` and the verb.
+
+    Raises
+    ------
+    SystemExit
+        The deck is a results file, or a --set is not NAME=VALUE.
+    """
+    from pound_solve.driver.run import Request
+    from pound_solve.results.file import is_hdf5
+
+    if is_hdf5(args.deck):
+        text = f"{args.deck} is a results file, not a deck: report, export, plot and separation read it"
+        raise SystemExit(complain(text, MISTAKES))
+    params = {}
+    for item in args.set:
+        name, equals, value = item.partition("=")
+        if not equals or not name.strip():
+            raise SystemExit(complain(f"--set {item}: write NAME=VALUE", MISTAKES))
+        params[name.strip()] = value.strip()
+    given = vars(args)
+    own = {name: given[name] for name in ("method", "dt", "tol", "explain") if name in given}
+    return Request(args.deck, params, given.get("out"), tuple(args.records), **own)
+
+
+def picture(word: str) -> Path:
+    """File of a picture by matplotlib, whose ending names the format."""
+    path = Path(word)
+    if path.suffix.removeprefix(".") not in FORMATS:
+        raise argparse.ArgumentTypeError(f"{word}: a picture ends in .{', .'.join(FORMATS)}")
+    return path
+
+
+def numbers(words: Sequence[str], takes: str, error: type[Exception]) -> list[float]:
+    """Finite numbers; raise `error`, which says what the option `takes`, at the first word that is none."""
+    out = []
+    for word in words:
+        try:
+            out.append(float(word))
+        except ValueError:
+            raise error(f"{word[:60]} is no number: {takes}") from None
+        if not math.isfinite(out[-1]):
+            raise error(f"{word[:60]} is no finite number")
+    return out

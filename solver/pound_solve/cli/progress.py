@@ -1,0 +1,67 @@
+"""The progress of a run: one line on a terminal, rewritten in place."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import threading
+import time
+
+WIDTH = 69  #: characters of the line
+INTERVAL = 0.1  #: least time between two lines [s]
+
+
+class StatusLine:
+    """A line on the error stream that is rewritten in place; silent unless that is a terminal."""
+
+    def __init__(self, quiet: bool = False) -> None:
+        self.live = sys.stderr.isatty() and not quiet
+
+    def show(self, text: str) -> None:
+        """Replace the line."""
+        if self.live:
+            print(f"\r {text:{WIDTH}}", end="", file=sys.stderr, flush=True)
+
+    def clear(self) -> None:
+        """Blank the line and return to its start."""
+        if self.live:
+            print("\r" + " " * (WIDTH + 1) + "\r", end="", file=sys.stderr, flush=True)
+
+
+class Progress:
+    """Progress of an analysis, at most ten lines a second, and its interruption.
+
+    A library that catches every exception also catches the `KeyboardInterrupt` raised within one of its
+    calls; `interrupted` records it, and the next call raises it again.
+    """
+
+    def __init__(self, quiet: bool) -> None:
+        self.line = StatusLine(quiet)
+        self.began = self.shown = time.monotonic()
+        self.interrupted = False
+        # Python permits signal handlers in the main thread only
+        self.main = threading.current_thread() is threading.main_thread()
+        if self.main:
+            self.before = signal.signal(signal.SIGINT, self._interrupt)
+
+    def _interrupt(self, *_: object) -> None:
+        self.interrupted = True
+        raise KeyboardInterrupt
+
+    def __call__(self, t: float, end: float, doing: str) -> None:
+        """Show the time `t` of `end` and an estimate of the time to go, or what the run is `doing`."""
+        if self.interrupted:
+            self.interrupted = False
+            raise KeyboardInterrupt
+        now = time.monotonic()
+        if now - self.shown < INTERVAL and not doing:
+            return
+        self.shown = now
+        left = (now - self.began) * (end / t - 1.0) if t > 0 else 0.0
+        self.line.show(doing or f"t = {t:10.4f} of {end:g}   {100 * t / end:5.1f} %   {left:6.0f} s to go")
+
+    def end(self) -> None:
+        """Clear the line and restore the signal handler."""
+        if self.main:
+            signal.signal(signal.SIGINT, self.before)
+        self.line.clear()

@@ -1,0 +1,30 @@
+"""``pound-solve list``: list the sections, families and members that a deck may use, and their items."""
+
+from __future__ import annotations
+
+import argparse
+
+from pound_solve.cli import common
+
+SUMMARY = "list what a deck may use"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument(
+        "family",
+        nargs="?",
+        help="section, element, hysteresis, contact, damping, motion, force, record, analysis or method",
+    )
+    parser.add_argument("name", nargs="?", help="one member: its items")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Print the list."""
+    from pound_solve.report.deck_reference import listing
+
+    try:
+        print(listing(args.family, args.name))
+    except KeyError as err:
+        return common.complain(str(err.args[0]), common.MISTAKES)
+    return common.DONE

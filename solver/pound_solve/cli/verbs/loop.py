@@ -1,0 +1,71 @@
+"""``pound-solve loop``: drive one hysteresis rule or contact law along a path of deformation."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from pound_solve.cli import common
+
+SUMMARY = "drive a hysteresis rule or contact law along a path; print and draw its loop"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("law", help="name of the rule or law")
+    parser.add_argument("items", nargs="*", metavar="NAME=VALUE", help="items of its card, as in a deck")
+    parser.add_argument("--path", metavar="D,D,...", help="turning points of the deformation")
+    parser.add_argument("--file", type=Path, help="file of turning points, any number a line")
+    parser.add_argument(
+        "--rate",
+        type=float,
+        metavar="V",
+        help="speed of the deformation (default: infinitely slow; of a contact 1)",
+    )
+    parser.add_argument(
+        "--png", type=common.picture, metavar="FILE", help="draw with matplotlib into a file"
+    )
+    parser.add_argument("--svg", type=Path, metavar="FILE", help="draw into an SVG file")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Print the corners of the loop and its text plot; draw it into the files given."""
+    from pound_solve.assess import law_test
+    from pound_solve.report import text_plot
+
+    try:
+        family = args.law.lower() in law_test.AXES and bool(args.items)
+        spec = law_test.law_of(f"{args.law} {args.items.pop(0)}" if family else args.law)
+        spring, items = law_test.specimen(spec, args.items)
+        path = _turning_points(args) or law_test.protocol(spring)
+        rate = float(spring.role.viscous) if args.rate is None else args.rate
+        found = law_test.trace(spring.law, path, rate)
+    except law_test.LawTestError as err:
+        return common.complain(str(err), common.MISTAKES)
+    texts = (f"{spec.name} {items}", *law_test.AXES[spec.family])
+    print(f"{texts[0]}\n\n{law_test.table(found.corners)}\n\n{text_plot.letters(found.curve)}")
+    if args.svg:
+        args.svg.write_text(text_plot.svg(found.curve, *texts), encoding="utf-8", newline="\n")
+    if args.png:
+        from pound_solve.report import plot
+
+        try:
+            plot.loop(found.curve, *texts, args.png)
+        except ImportError:
+            text = '--png needs matplotlib: pip install "pound-solve[plot]"; --svg needs nothing'
+            return common.complain(text, common.MISTAKES)
+    return common.DONE
+
+
+def _turning_points(args: argparse.Namespace) -> list[float]:
+    """Numbers of --path or --file; empty where neither is given."""
+    from pound_solve.assess.law_test import LawTestError
+
+    if args.path and args.file:
+        raise LawTestError("give --path or --file, not both")
+    text = args.file.read_text(encoding="utf-8") if args.file else args.path or ""
+    words = [w for line in text.splitlines() for w in line.split("#")[0].replace(",", " ").split()]
+    out = common.numbers(words, "--path and --file take deformations", LawTestError)
+    if (args.path is not None or args.file) and not out:
+        raise LawTestError("--path and --file take one deformation at least")
+    return out

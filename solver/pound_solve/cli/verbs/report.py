@@ -1,0 +1,29 @@
+"""``pound-solve report``: print the report of a results file."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from pound_solve.cli import common
+
+SUMMARY = "print the report of a results file"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("results", help="results file (.h5)")
+    parser.add_argument("--all", action="store_true", help="print long tables in full")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Print the report."""
+    from pound_solve.report.text import render
+    from pound_solve.results.file import Results, ResultsError
+
+    try:
+        with Results.open(args.results) as results:
+            sys.stdout.write(render(results, limit=0 if args.all else None))
+    except ResultsError as err:
+        return common.complain(str(err))
+    return common.DONE

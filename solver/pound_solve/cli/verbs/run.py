@@ -1,0 +1,71 @@
+"""``pound-solve run``: run the analyses of a deck and write its results file and report."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pound_solve.cli import common
+from pound_solve.cli.progress import Progress
+
+if TYPE_CHECKING:
+    from pound_solve.results.file import Results
+
+SUMMARY = "run a deck (the verb may be left out)"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    common.add_deck(parser)
+    common.add_method(parser)
+    parser.add_argument(
+        "-o", "--out", type=Path, metavar="DIR", help="folder of report and results (default: the deck's)"
+    )
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    parser.add_argument(
+        "--explain", action="store_true", help="list what the run imported, compiled, stored and left out"
+    )
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Run the deck; print warnings, failed checks and the paths of the files."""
+    from pound_deck.diagnostics import render
+    from pound_solve.driver import run
+    from pound_solve.report.text import render as report
+    from pound_solve.results.file import ResultsError
+
+    request, progress = common.request(args), Progress(args.quiet)
+    try:
+        status, results, ready = run.execute(request, progress)
+    except run.DeckError as err:
+        print(err, file=sys.stderr)
+        return common.MISTAKES
+    except ResultsError as err:
+        return common.complain(str(err))
+    except Exception:
+        if progress.interrupted:  # a library caught the interrupt and failed later
+            raise KeyboardInterrupt from None
+        raise
+    progress.end()
+    if ready.warnings and not args.quiet:
+        print(render(ready.warnings, ready.files), file=sys.stderr)
+    with results:
+        if not args.quiet:
+            _warn_of_checks(results)
+        if status == common.STOPPED:
+            common.complain(f"stopped: {results.message}")
+        if args.explain:
+            print(report(results, only=("scene", "size", "arrays", "imports")))
+        if not args.quiet:
+            print(f"{request.path('.rpt')}\n{request.path('.h5')}")
+    return status
+
+
+def _warn_of_checks(results: Results) -> None:
+    """Print the checks whose verdict calls for a look at the results."""
+    if "checks" in results.tables:
+        for check, value, verdict in results.table("checks"):
+            if verdict.startswith("look"):
+                common.complain(f"warning: {check}: {value}; {verdict}")

@@ -1,0 +1,152 @@
+"""``pound-solve study``: compare the methods on one deck, or run the stability matrix."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pound_solve.cli import common
+from pound_solve.cli.progress import WIDTH, Progress, StatusLine
+
+if TYPE_CHECKING:
+    from pound_solve.assess.scenes.case import Case
+    from pound_solve.assess.study import Plan
+
+SUMMARY = "error against time of every method on this deck, and advice"
+#: options that only one of the two forms has
+OF_A_DECK = ("set", "records", "methods", "steps", "tols", "repeat", "longest", "picture", "out")
+OF_THE_MATRIX = ("family", "law", "quick")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    common.add_deck(parser, nargs="?")
+    parser.add_argument("--methods", metavar="M,M,...", help="methods (default: all)")
+    parser.add_argument(
+        "--steps",
+        metavar="DT,DT,...",
+        help="time steps (default: halves of the record's until it suffices)",
+    )
+    parser.add_argument("--tols", metavar="TOL,TOL,...", help="tolerances of AUTO")
+    parser.add_argument("--repeat", type=int, metavar="N", help="timed runs of each (default 3)")
+    parser.add_argument("--longest", type=float, metavar="S", help="seconds a run may take (default 5)")
+    text = f"draw error against time into a file, ending in {', '.join(common.FORMATS)}"
+    parser.add_argument("--picture", type=common.picture, metavar="FILE", help=text)
+    parser.add_argument(
+        "-o", "--out", type=Path, metavar="DIR", help="folder of the study (default: the deck's)"
+    )
+    matrix = parser.add_argument_group("the stability matrix")
+    text = "instead of a deck: stiff and extreme scenes with every law by every method, and how they end"
+    matrix.add_argument("--stability", action="store_true", help=text)
+    matrix.add_argument("--family", choices=("linear", "contact", "hysteresis"), help="these scenes only")
+    matrix.add_argument("--law", help="scenes with this law only")
+    matrix.add_argument("--quick", action="store_true", help="leave out the heavy scenes")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Run the study of a deck or the stability matrix."""
+    if args.stability and args.deck:
+        text = f"--stability has scenes of its own: leave out {args.deck}"
+        return common.complain(text, common.MISTAKES)
+    for name in OF_A_DECK if args.stability else OF_THE_MATRIX:
+        if getattr(args, name):
+            own = "a study of a deck" if args.stability else "--stability"
+            return common.complain(f"--{name} belongs to {own}", common.MISTAKES)
+    if args.stability:
+        return _stability(args)
+    if not args.deck:
+        text = "study takes a deck, or --stability for the scenes of the stability matrix"
+        return common.complain(text, common.MISTAKES)
+    return _study_of_a_deck(args)
+
+
+def _study_of_a_deck(args: argparse.Namespace) -> int:
+    """Run the methods on a deck, write the study's results file and report, and print the report."""
+    from pound_deck.diagnostics import render
+    from pound_solve.assess import study
+    from pound_solve.assess.advice import NOISY, StudyError
+    from pound_solve.driver import run
+    from pound_solve.report.text import render as report
+    from pound_solve.results.file import ResultsError
+
+    request, line = common.request(args), StatusLine()
+    if args.picture:
+        from pound_solve.report import plot
+
+        try:
+            plot.ready(args.picture.parent)
+        except ImportError:
+            text = '--picture needs matplotlib: pip install "pound-solve[plot]"'
+            return common.complain(text, common.MISTAKES)
+    try:
+        found, ready = study.run(request, _plan(args), line.show)
+        line.clear()
+        results = study.write(found, ready, request.path(".study.h5"))
+    except run.DeckError as err:
+        print(err, file=sys.stderr)
+        return common.MISTAKES
+    except StudyError as err:
+        line.clear()
+        return common.complain(str(err), common.MISTAKES)
+    except ResultsError as err:
+        return common.complain(str(err))
+    if ready.warnings:
+        print(render(ready.warnings, ready.files), file=sys.stderr)
+    if found.noise > NOISY:
+        common.complain(f"warning: {study.noisy(found)}")
+    with results:
+        text = report(results)
+        request.path(".study.rpt").write_text(text, encoding="ascii", newline="\n")
+        print(text)
+        print(f"{found.sentence}\n{request.path('.study.rpt')}\n{request.path('.study.h5')}")
+        if args.picture:
+            plot.draw_into(results, "study", args.picture)
+    return common.DONE
+
+
+def _plan(args: argparse.Namespace) -> Plan:
+    """Plan of the study; items without an option keep their defaults."""
+    from pound_solve.assess.advice import StudyError
+    from pound_solve.assess.study import Plan
+
+    given: dict[str, Any] = {
+        name: getattr(args, name) for name in ("repeat", "longest") if getattr(args, name) is not None
+    }
+    if args.methods:
+        given["methods"] = tuple(word.strip().upper() for word in args.methods.split(","))
+    for name in ("steps", "tols"):
+        words = getattr(args, name)
+        if words:
+            values = common.numbers(words.replace(",", " ").split(), f"--{name} takes numbers", StudyError)
+            given[name] = tuple(sorted(values, reverse=True))
+    plan = Plan(**given)
+    if plan.repeat < 1 or not plan.longest > 0 or any(x <= 0 for x in (*plan.steps, *plan.tols)):
+        raise StudyError("--repeat, --longest, --steps and --tols must be above zero")
+    return plan
+
+
+def _stability(args: argparse.Namespace) -> int:
+    """Run the stability matrix and print its page; the status is 1 where a run failed by a fault."""
+    from pound_solve.assess import scenes, stability
+
+    families = (args.family,) if args.family else stability.FAMILIES
+    law = (args.law or "").upper()
+
+    def chosen(case: Case) -> bool:
+        return law in ("", case.law) and not (args.quick and case.heavy)
+
+    runs = sum(map(chosen, scenes.cases(families))) * len(stability.methods())
+    if not runs:
+        near = f"--family {args.family} has" if args.family else "there are"
+        text = f"{near} no scenes with the law {args.law}: see pound-solve list"
+        return common.complain(text, common.MISTAKES)
+    progress, rows = Progress(quiet=False), []
+    for row in stability.matrix(families, chosen):
+        rows.append(row)
+        doing = f"{len(rows)} of {runs}: {row.case.scene} {row.case.law}"
+        progress(len(rows), runs, doing[:WIDTH])
+    progress.end()
+    print(stability.page(rows))
+    return int(any(row.end == stability.FAULT for row in rows))

@@ -1,0 +1,92 @@
+"""The inputs of an analysis: all motions and histories of forces on common intervals of time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pound_solve.loading.motions.base import Piecewise
+from pound_solve.numerics import polynomial
+from pound_solve.numerics.types import Array, Flags, Index
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """The inputs as polynomials of time on common intervals.
+
+    Attributes
+    ----------
+    breaks : ndarray, shape (n_pieces + 1,) [T]
+    coefs : ndarray, shape (n_pieces, degree + 1, n_inputs)
+        Ascending powers of the time since the start of the interval.
+    """
+
+    breaks: Array
+    coefs: Array
+
+    @classmethod
+    def of(cls, inputs: Sequence[Piecewise], breaks: Array) -> Excitation:
+        """Inputs on `breaks`, which contain all their own."""
+        degree = max((s.degree for s in inputs), default=0)
+        coefs = np.zeros((len(breaks) - 1, degree + 1, len(inputs)))
+        for j, s in enumerate(inputs):
+            coefs[:, : s.degree + 1, j] = s.on(breaks).coefs.T
+        return cls(breaks, coefs)
+
+    @property
+    def degree(self) -> int:
+        """Highest power."""
+        return self.coefs.shape[1] - 1
+
+    @property
+    def active(self) -> Flags:
+        """Which inputs are ever different from zero, shape (n_inputs,)."""
+        return np.asarray(np.abs(self.coefs).max(axis=(0, 1), initial=0.0) > 0)
+
+    def piece(self, t: float) -> int:
+        """Index of the interval that begins at or before `t`."""
+        return min(max(int(np.searchsorted(self.breaks, t, side="right")) - 1, 0), len(self.coefs) - 1)
+
+    def pieces(self, t: Array) -> Index:
+        """`piece` at several times, shape (n_times,)."""
+        return np.clip(np.searchsorted(self.breaks, t, side="right") - 1, 0, len(self.coefs) - 1)
+
+    def pieces_after(self, t: Array) -> Index:
+        """Indices of the intervals just after some times, shape (n_times,): a time that rounding has put
+        before a break belongs to the interval that begins there.
+        """
+        return self.pieces(t + 1e-13 * np.maximum(1.0, t))
+
+    def local(self, piece: int, t: float) -> Array:
+        """Coefficients about `t`, shape (degree + 1, n_inputs)."""
+        return polynomial.shift(self.coefs[piece], t - float(self.breaks[piece]))
+
+    def about(self, t: Array) -> Array:
+        """Coefficients about each of several times, each in the interval just after it,
+        shape (n_times, degree + 1, n_inputs).
+        """
+        i = self.pieces_after(t)
+        own, since = self.coefs[i], t - self.breaks[i]
+        if not since.any():
+            return own
+        return np.asarray(polynomial.shift(own.swapaxes(0, 1), since[:, None]).swapaxes(0, 1))
+
+    def jumps(self) -> Flags:
+        """Which inputs jump, from zero at t = 0 or between two intervals."""
+        powers = np.diff(self.breaks)[:, None] ** np.arange(self.degree + 1)
+        ends = np.einsum("pk,pkj->pj", powers, self.coefs)
+        before = np.concatenate([np.zeros((1, ends.shape[1])), ends[:-1]])
+        largest = np.abs(self.coefs[:, 0]).max(axis=0, initial=0.0)
+        return np.abs(self.coefs[:, 0] - before).max(axis=0, initial=0.0) > 1e-9 * largest
+
+    def value(self, t: float, order: int = 0) -> Array:
+        """Value of the inputs (or of their derivative of that order) at `t`, shape (n_inputs,)."""
+        i = self.piece(t)
+        return polynomial.value(self.coefs[i], t - float(self.breaks[i]), order)
+
+    def values(self, t: Array, order: int = 0) -> Array:
+        """`value` at several times, shape (n_times, n_inputs)."""
+        i = self.pieces(t)
+        return polynomial.values(self.coefs[i], t - self.breaks[i], order)

@@ -1,0 +1,161 @@
+"""Static condensation: massless DOFs on linear elements follow the others.
+
+Few unknowns are left, but with full matrices, which suits the methods in closed form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pound_solve.numerics.matrices import dense
+from pound_solve.numerics.modes import massless
+from pound_solve.numerics.types import Array, Flags, Index
+from pound_solve.structure.dofs import Dof, labels
+from pound_solve.structure.reduction import Decision, ReducedSystem
+
+
+@dataclass(frozen=True)
+class Condensed:
+    """A reduced system without the massless DOFs that follow the others, and the way back.
+
+    Attributes
+    ----------
+    system : ReducedSystem
+    keep : ndarray, shape (n_left,)
+        Which unknowns are left.
+    expand, follow, constant : ndarray, shapes (n, n_left), (n, n_inputs), (n,)
+        All unknowns: ``expand u + follow s + constant``.
+    loads : ndarray, shape (n, n_inputs + 1)
+        FORCES, and held loads in the last column, on the condensed DOFs.
+    """
+
+    system: ReducedSystem
+    keep: Index
+    expand: Array
+    follow: Array
+    constant: Array
+    loads: Array
+
+    def put_in(self, t: Array) -> Array:
+        """Work of the loads on condensed DOFs by the part of their displacements that is proportional to
+        the loads, counted from zero loads [F L], at some times.
+        """
+        s = np.vstack([self.system.excitation.values(t).T, np.ones(len(t))])
+        own = np.column_stack([self.follow, self.constant]) @ s
+        return np.asarray(0.5 * (own * (self.loads @ s)).sum(axis=0))
+
+    def all(self, u: Array, s: Array, order: int = 0) -> Array:
+        """All unknowns from those that are left and the inputs `s`, shape (n,); `order` 1: velocities,
+        2: accelerations.  Columns are instants where there are several.
+        """
+        out = self.expand @ u + self.follow @ s
+        return (out.T + self.constant).T if order == 0 else out
+
+
+def condense(system: ReducedSystem) -> Condensed:
+    """Condense massless DOFs on linear elements.
+
+    They follow the others exactly if their damping is proportional to their stiffness
+    (C_ca + C_cc G = 0) or absent, and if no dashpot resists the loads on them.
+    """
+    structure, at = system.structure, system.columns
+    system = replace(
+        system,
+        mass=dense(system.mass),
+        damping=dense(system.damping),
+        stiffness=dense(system.stiffness),
+        law_rows=dense(system.law_rows),
+        expand=dense(system.expand),
+    )
+    to_supports, c_to_supports = (
+        dense(a[at, structure.n_free :]) for a in (structure.stiffness, structure.damping)
+    )
+    applied = system.force_inputs[at]
+    light = massless(system.mass) & ~np.any(system.law_rows != 0.0, axis=0)
+    slave = _condensable(
+        np.hstack([system.stiffness, to_supports]),
+        np.hstack([system.damping, c_to_supports]),
+        np.column_stack([applied, structure.released[at]]),
+        light,
+    )
+    system.decisions.extend(_decisions(system.dofs, slave, light & ~slave))
+    keep, s = np.flatnonzero(~slave), np.flatnonzero(slave)
+    n, n_inputs = system.inputs.shape
+    expand, constant, follow = np.eye(n)[:, keep], np.zeros(n), np.zeros((n, n_inputs))
+    if len(s):
+        inverse = np.linalg.inv(system.stiffness[np.ix_(s, s)])
+        expand[s] = -inverse @ system.stiffness[np.ix_(s, keep)]
+        constant[s] = inverse @ system.constant[s]
+        follow[s] = inverse @ (applied[s] - to_supports[s] @ system.support_inputs)
+    loads = np.zeros((n, n_inputs + 1))
+    loads[s] = np.column_stack([applied[s], system.constant[s]])
+    inner = replace(
+        system,
+        dofs=tuple(system.dofs[i] for i in keep),
+        mass=expand.T @ system.mass @ expand,
+        damping=expand.T @ system.damping @ expand,
+        stiffness=expand.T @ system.stiffness @ expand,
+        inputs=expand.T @ system.inputs,
+        constant=expand.T @ system.constant,
+        law_rows=system.law_rows @ expand,
+        expand=system.expand @ expand,
+        expand_constant=system.expand @ constant,
+        expand_inputs=system.expand @ follow,
+    )
+    return Condensed(inner, keep, expand, follow, constant, loads)
+
+
+def _decisions(dofs: Sequence[Dof], condensed: Flags, kept: Flags) -> list[Decision]:
+    """Lines of the report on the massless DOFs."""
+    out = []
+    if condensed.any():
+        subject = f"{int(condensed.sum())} massless degrees of freedom"
+        out.append(Decision(subject, "condensed", "they follow the others statically, no error is made"))
+    if kept.any():
+        subject = f"{int(kept.sum())} massless degrees of freedom"
+        why = "dashpots move them: " + labels([f for f, own in zip(dofs, kept) if own])
+        out.append(Decision(subject, "kept", why))
+    return out
+
+
+def _condensable(k: Array, c: Array, applied: Array, light: Flags) -> Flags:
+    """Which massless DOFs follow the others exactly; those that do not are removed until the rest do.
+
+    Parameters
+    ----------
+    k, c : ndarray, shape (n, n + n_moved)
+        The columns beyond the unknowns are those of moved supports.
+    applied : ndarray, shape (n, n_forces)
+        Forces that change in time.
+    light : ndarray of bool, shape (n,)
+        The candidates.
+    """
+    none, candidates = np.zeros_like(light), light
+    while candidates.any():
+        s = np.flatnonzero(candidates)
+        values = np.linalg.eigvalsh(k[np.ix_(s, s)])
+        if values[0] <= 1e-13 * max(values[-1], 0.0):
+            # a mechanism among them, or one that only dashpots resist: the integrator keeps it and can
+            # name it
+            undamped = candidates & ~np.any(c != 0.0, axis=1)
+            if (undamped == candidates).all():
+                return none
+            candidates = undamped
+            continue
+        # prescribed DOFs are among the others that they follow
+        rest = np.concatenate([np.flatnonzero(~candidates), np.arange(len(light), k.shape[1])])
+        g = -np.linalg.solve(k[np.ix_(s, s)], k[np.ix_(s, rest)])
+        misfit = np.abs(c[np.ix_(s, rest)] + c[np.ix_(s, s)] @ g).max(axis=1, initial=0.0)
+        # a dashpot delays the displacements under the applied forces
+        static = np.linalg.solve(k[np.ix_(s, s)], applied[s])
+        static /= np.maximum(np.abs(static).max(axis=0, initial=0.0), 1e-300)
+        lag = np.abs(c[np.ix_(s, s)] @ static).max(axis=1, initial=0.0)
+        bad = np.maximum(misfit, lag) > 1e-11 * max(np.abs(c[s]).max(initial=0.0), 1e-300)
+        if not bad.any():
+            return candidates
+        candidates = candidates.copy()
+        candidates[s[bad]] = False
+    return none

@@ -1,0 +1,178 @@
+"""The damping of a structure: the groups of all cards of DAMPING, summed."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Card
+from pound_solve.numerics import modes
+from pound_solve.numerics.graph import components
+from pound_solve.numerics.matrices import Matrix, entries, gathered, weighted
+from pound_solve.numerics.types import Array
+from pound_solve.structure.damping.base import DampingContext, DampingError, Dashpots, Group
+from pound_solve.structure.damping.secant import SecantLaw
+from pound_solve.structure.dofs import label
+from pound_solve.structure.elements.base import Role
+from pound_solve.structure.mass import MassBlock
+
+if TYPE_CHECKING:
+    from pound_solve.structure.assembly import Structure
+
+MECHANISM = "the modes that this damping needs cannot be computed: the structure is a mechanism"
+
+
+def add_damping(structure: Structure, mass: Sequence[MassBlock]) -> list[Diagnostic]:
+    """Add the damping of the DAMPING cards to the matrices and laws of an assembled structure.
+
+    Parameters
+    ----------
+    structure : Structure
+        Its dashpots are assembled; its damping matrices, laws and damping texts are extended.
+    mass : sequence of MassBlock
+
+    Returns
+    -------
+    list of Diagnostic
+        The cards that are at fault.
+    """
+    sources, problems = _Sources(structure, mass), list[Diagnostic]()
+    context = DampingContext(sources.mass, sources.stiffness, sources.modes)
+    betas = np.zeros((2, len(structure.laws)))  # of the tangent and of the secant stiffness
+    for card in structure.model.damping:
+        group = _group(card, context, problems)
+        if group is None:
+            continue
+        for matrix in _matrices(structure, group):
+            structure.damping = structure.damping + matrix
+        if group.dashpots is not None:
+            betas[int(group.dashpots.secant)] += _multiples(structure, group.dashpots)
+        structure.damping_texts.append((card, group.text))
+    structure.initial_damping = structure.damping
+    if betas.any():
+        initial = betas.sum(axis=0) * [s.k0 for s in structure.laws]
+        structure.initial_damping = structure.damping + weighted(structure.law_rows, initial)
+        structure.laws = tuple(
+            replace(s, beta=beta, secant=secant, law=SecantLaw(s.law.rule, s.law.p) if secant else s.law)
+            for s, beta, secant in zip(structure.laws, *betas.tolist())
+        )
+    return problems
+
+
+def _group(card: Card, context: DampingContext, problems: list[Diagnostic]) -> Group | None:
+    """Damping of one card; None where it is at fault."""
+    try:
+        group: Group = card.spec.impl(card, context)
+    except DampingError as err:
+        problems.append(Diagnostic("P332", str(err), card.place(err.item)))
+    except np.linalg.LinAlgError:
+        problems.append(Diagnostic("P332", MECHANISM, card.span))
+    else:
+        return group
+    return None
+
+
+def _matrices(structure: Structure, group: Group) -> list[Matrix]:
+    """Damping matrices of a group over all columns; its dashpots beside laws are not among them."""
+    out = []
+    if group.relative is not None:
+        n = structure.n_free
+        out.append(structure.framed(group.relative))
+        if len(structure.dofs.moved):
+            out.append(_at_supports(structure, group.relative[:n, :n]))
+    if group.between is not None:
+        out.append(group.between)
+    return out
+
+
+def _multiples(structure: Structure, dashpots: Dashpots) -> Array:
+    """Multiple of the stiffness [T] that the dashpot beside every law gets, shape (n_laws,)."""
+    model = structure.model
+    return np.array(
+        [
+            dashpots.beta
+            if s.role is Role.SPRING
+            and (dashpots.props is None or model.elements[s.element].prop in dashpots.props)
+            else 0.0
+            for s in structure.laws
+        ]
+    )
+
+
+def _at_supports(structure: Structure, c: Matrix) -> Matrix:
+    """What a damping of the unknowns adds at moved supports, if it acts on the motion relative to the
+    quasi-static one, shape (n, n).
+    """
+    n, influence = structure.n_free, structure.influence()
+    pull = c @ influence
+    out = []
+    for corner, i, j in ((-pull, 0, n), (-pull.T, n, 0), (influence.T @ pull, n, n)):
+        rows, columns, values = entries(np.asarray(corner))
+        out.append((rows + i, columns + j, values))
+    return gathered(structure.stiffness.shape, *(np.concatenate(part) for part in zip(*out)))
+
+
+@dataclass(frozen=True)
+class _Sources:
+    """Matrices and modes of a structure or of a part of it, for `DampingContext`."""
+
+    structure: Structure
+    blocks: Sequence[MassBlock]
+
+    def mass(self, nodes: Collection[int] | None) -> Matrix:
+        """Mass matrix of the masses at some nodes (None: of all)."""
+        if nodes is None:
+            return self.structure.mass
+        chosen, terms = frozenset(nodes), []
+        for where, at, matrix in self.blocks:
+            inside = np.array([f[1] < 3 and f[0] in chosen for f in at])
+            if not matrix[np.ix_(inside, ~inside)].any():  # lumped: each node has its own
+                terms.append((at, np.where(inside[:, None] & inside, matrix, 0.0)))
+            else:  # a consistent matrix is shared evenly by the nodes that can move
+                loose = {k for k in where if len(set(self.structure.model.nodes[k].fixed)) < 3}
+                terms.append((at, matrix * (len(loose & chosen) / max(len(loose), 1))))
+        return self.structure.dofs.assembled(terms)
+
+    def stiffness(self, labels: Collection[str] | None, laws: bool) -> Matrix:
+        """Initial stiffness of the elements of some property sets (None: of all), with or without that of
+        hysteretic laws.
+        """
+        structure = self.structure
+        elements = structure.model.elements.values()
+        chosen = [structure.parts[e.id] for e in elements if labels is None or e.prop in labels]
+        blocks = (b for p in chosen for b in ([p.initial()] if laws else p.stiffness))
+        return structure.dofs.assembled((b.dofs, b.matrix) for b in blocks)
+
+    def modes(self, nodes: Collection[int] | None, count: int | None) -> modes.Modes:
+        """The `count` slowest modes (None: all) of the structure, or of the building of these nodes.
+
+        Raises
+        ------
+        DampingError
+            The nodes cannot move, or are not all of a building.
+        """
+        structure, n = self.structure, self.structure.n_free
+        if nodes is None:
+            return structure.vibration(count)
+        k, m = structure.initial_stiffness[:n, :n], structure.mass[:n, :n]
+        terms = structure.dofs.terms
+        named = np.zeros(n, bool)
+        named[[i for node in nodes for d in range(3) for i, _ in terms[node, d] if i < n]] = True
+        if not named.any():
+            raise DampingError("none of these nodes can move", "NODES")
+        component = components(n, (k, m))
+        inside = np.isin(component, component[named])
+        others = [f for f, x in zip(structure.dofs.free, inside & ~named) if x and f[1] < 3]
+        if others:
+            raise DampingError(
+                f"{label(others[0])} is connected to these nodes: only a whole building has modes", "NODES"
+            )
+        at = np.flatnonzero(inside)
+        own = modes.solve(k[np.ix_(at, at)], m[np.ix_(at, at)], count)
+        shapes = np.zeros((n, len(own.omega)))
+        shapes[inside] = own.shapes
+        return modes.Modes(own.omega, shapes)
