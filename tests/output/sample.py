@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from pound_deck.model import Units
-from pound_solve.results.file import Writer
+from pound_solve.results import Writer
 from pound_solve.results.schema import ENERGIES
 
 NAN = float("nan")

@@ -10,7 +10,7 @@ import pytest
 
 from output import sample
 from pound_solve.report.export import export_csv
-from pound_solve.results.file import Results
+from pound_solve.results import Results
 from pound_solve.results.schema import TABLES
 
 

@@ -12,7 +12,7 @@ import pytest
 from output import sample
 from pound_solve.driver.sequence import zeroed
 from pound_solve.report.text import WIDTH, render
-from pound_solve.results.file import Results, Writer
+from pound_solve.results import Results, Writer
 from pound_solve.results.schema import SECTIONS, TABLES
 
 

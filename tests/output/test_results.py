@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from output import sample
-from pound_solve.results.file import BLOCK, Results, ResultsError, Writer
+from pound_solve.results import BLOCK, Results, ResultsError, Writer
 from pound_solve.results.schema import HISTORIES, TABLES
 
 
@@ -279,6 +279,6 @@ def test_a_newer_minor_version_is_read(tmp_path: Path) -> None:
 
 
 def test_a_file_in_use_is_named_so(tmp_path: Path, writer: Writer) -> None:
-    code = f"from pound_solve.results.file import Results; Results.open({str(tmp_path / 'out.h5')!r})"
+    code = f"from pound_solve.results import Results; Results.open({str(tmp_path / 'out.h5')!r})"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=_ENVIRONMENT)
     assert "in use by another program" in run.stderr

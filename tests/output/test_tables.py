@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from pound_solve.results.file import Results
+from pound_solve.results import Results
 from pound_solve.results.schema import FORMATS, HISTORIES, SECTIONS, TABLES, results_page
 
 PAGE = Path(__file__).parents[2] / "manual" / "results.md"

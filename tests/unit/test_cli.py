@@ -15,7 +15,7 @@ from pound_solve import run
 from pound_solve.cli.main import _Progress, main
 from pound_solve.driver.run import DeckError
 from pound_solve.report.deck_reference import vocabulary
-from pound_solve.results.file import Results
+from pound_solve.results import Results
 from pound_solve.results.schema import SECTIONS
 
 DECK = """TITLE  A mass between two walls

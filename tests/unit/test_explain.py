@@ -9,7 +9,7 @@ import pytest
 
 from pound_solve.catalog import FAMILIES, specs
 from pound_solve.driver import resources
-from pound_solve.results.file import Results
+from pound_solve.results import Results
 
 FRAME = """UNITS  kN m s
 NODES

@@ -15,7 +15,7 @@ from scipy.linalg import solve_continuous_lyapunov
 from pound_solve import run
 from pound_solve.cli.main import main
 from pound_solve.report.separation import SeparationError, correlation, double_difference, rows, text
-from pound_solve.results.file import Results
+from pound_solve.results import Results
 
 WALLS = """
 GRAVITY 1

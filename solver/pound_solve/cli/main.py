@@ -193,7 +193,7 @@ def _complain(text: str, status: int = 3) -> int:
 
 def _request(args: argparse.Namespace) -> object:
     from pound_solve.driver.run import Request
-    from pound_solve.results.file import is_hdf5
+    from pound_solve.results import is_hdf5
 
     if is_hdf5(args.deck):
         text = f"{args.deck} is a results file, not a deck: report, export, plot and separation read it"
@@ -213,7 +213,7 @@ def _request(args: argparse.Namespace) -> object:
 def _run(args: argparse.Namespace) -> int:
     from pound_deck.diagnostics import render
     from pound_solve.driver import run
-    from pound_solve.results.file import ResultsError
+    from pound_solve.results import ResultsError
 
     request = _request(args)
     assert isinstance(request, run.Request)
@@ -331,7 +331,7 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
     from pound_solve.assess import study
     from pound_solve.driver import run
     from pound_solve.report.text import render
-    from pound_solve.results.file import ResultsError
+    from pound_solve.results import ResultsError
 
     request = _request(args)
     assert isinstance(request, run.Request)
@@ -363,8 +363,8 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
         return _complain(str(err))
     if ready.warnings:
         print(told(ready.warnings, ready.files), file=sys.stderr)
-    if found.noise > study.NOISY:
-        print(f"pound-solve: warning: {study.noisy(found)}", file=sys.stderr)
+    if found.warning:
+        print(f"pound-solve: warning: {found.warning}", file=sys.stderr)
     with results:
         text = render(results)
         request.path(".study.rpt").write_text(text, encoding="ascii", newline="\n")
@@ -395,7 +395,7 @@ def _plan(args: argparse.Namespace) -> Any:
 
 def _report(args: argparse.Namespace) -> int:
     from pound_solve.report.text import render
-    from pound_solve.results.file import Results, ResultsError
+    from pound_solve.results import Results, ResultsError
 
     try:
         with Results.open(args.results) as results:
@@ -407,7 +407,7 @@ def _report(args: argparse.Namespace) -> int:
 
 def _export(args: argparse.Namespace) -> int:
     from pound_solve.report.export import export_csv
-    from pound_solve.results.file import Results, ResultsError
+    from pound_solve.results import Results, ResultsError
 
     folder = args.out or Path(args.results).with_suffix("")
     try:
@@ -421,7 +421,7 @@ def _export(args: argparse.Namespace) -> int:
 
 def _plot(args: argparse.Namespace) -> int:
     from pound_solve.report import plot
-    from pound_solve.results.file import Results, ResultsError
+    from pound_solve.results import Results, ResultsError
 
     unknown = [name for name in args.pictures if name not in PICTURES]
     if unknown:
@@ -459,7 +459,7 @@ def _two(word: str) -> tuple[float, float]:
 
 def _separation(args: argparse.Namespace) -> int:
     from pound_solve.report import separation
-    from pound_solve.results.file import Results, ResultsError
+    from pound_solve.results import Results, ResultsError
 
     try:
         with Results.open(args.results) as results:

@@ -17,14 +17,16 @@ from typing import Any, Final
 from numpy.typing import NDArray
 from tabulate import tabulate
 
-from pound_solve.results.file import Results
-from pound_solve.results.schema import SECTIONS, TABLES, Column, Table
+from pound_solve.results import Results
+from pound_solve.results.contents import SECTIONS, TABLES
+from pound_solve.results.schema import Column, Table
 
 WIDTH: Final = 132  #: columns of the report
 _INDENT: Final = "  "
 _GAP: Final = 2  #: blanks that tabulate leaves between columns
 _NARROWEST: Final = 16  #: texts are not wrapped to less; a table that is still too wide is split instead
-_DIGITS: Final = {"num": 7, "short": 5}
+_DIGITS: Final = {"given": 10, "num": 5, "short": 4}  #: significant, by format
+_WHOLE: Final = 7  #: digits before the point from which on a number takes an exponent
 _DUST: Final = 1e-300  #: what is smaller prints as zero
 
 #: Signs that do not decompose into ASCII, and what stands for them; Greek letters go by their names.
@@ -241,7 +243,7 @@ def _format(column: Column, values: list[Any]) -> list[str]:
     if column.fmt == "time":
         shown = _times(real)
     elif column.fmt == "percent":
-        shown = _fixed(real, 2, 4)
+        shown = _fixed(real, 2, 3)
     else:
         shown = _numbers(real, _DIGITS[column.fmt])
     numbers = iter(shown)
@@ -265,8 +267,8 @@ def _numbers(values: list[float], digits: int) -> list[str]:
     shapes = [(len(m.replace(".", "").rstrip("0")), int(e)) for m, e in parts] or [(1, 0)]
     highest, spread = max(e for _, e in shapes), max(e for _, e in shapes) - min(e for _, e in shapes)
     exact = max(1, *(n - 1 - e for n, e in shapes))  # decimals that show every value to its last digit
-    room = max(1, digits - 1 - highest)  # decimals that show the largest value to its last digit
-    if -3 <= highest < digits and (spread <= 3 or exact <= room or highest + exact < digits + 3):
+    room = max(0, digits - 1 - highest)  # decimals that show the largest value to its last digit
+    if -3 <= highest < _WHOLE and (spread <= 3 or exact <= room or highest + exact < _WHOLE + 1):
         decimals = min(exact, room) if spread <= 3 else exact
         return [_unsigned_zero(f"{v:.{decimals}f}") for v in values]
     mantissa = max(1, *(n - 1 for n, _ in shapes))
