@@ -61,7 +61,7 @@ class Column:
         Dimensions, see the module's head.
     fmt : str
         One of `FORMATS`: ``time`` shows up to six decimals, ``given`` all the digits that the deck gives
-        (ten at most), ``num`` five significant digits, ``short`` four, ``percent`` two or three decimals.
+        (ten at most), ``num`` five significant digits, ``short`` four, ``percent`` two decimals.
     doc : str
         What the column holds, for the manual.
     zero : str
