@@ -47,7 +47,7 @@ WITHIN = {
 #: who may import a library, as paths below the two packages
 ONLY_IN = {
     "lark": {"cards.py"},
-    "h5py": {"results/file.py"},
+    "h5py": {"results/reader.py", "results/writer.py"},
     "tabulate": {"report/text.py"},
     "matplotlib": {"report/plot/style.py"},
     "numba": {"numerics/jit.py"},

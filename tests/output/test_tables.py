@@ -6,7 +6,9 @@ import re
 from pathlib import Path
 
 from pound_solve.results import Results
-from pound_solve.results.schema import FORMATS, HISTORIES, SECTIONS, TABLES, results_page
+from pound_solve.results.contents import HISTORIES, SECTIONS, TABLES
+from pound_solve.results.page import results_page
+from pound_solve.results.schema import FORMATS
 
 PAGE = Path(__file__).parents[2] / "manual" / "results.md"
 

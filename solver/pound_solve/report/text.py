@@ -249,8 +249,9 @@ def _format(column: Column, values: list[Any]) -> list[str]:
     elif column.fmt == "percent":
         shown = [_unsigned_zero(f"{v:.2f}") for v in real]
     else:
-        dust = 0.0 if column.fmt == "given" else _DUST * max(map(abs, real), default=0.0)
-        shown = _numbers([v if abs(v) > max(dust, _TINY) else 0.0 for v in real], _DIGITS[column.fmt])
+        given = column.fmt == "given"
+        dust = _TINY if given else max(_TINY, _DUST * max(map(abs, real), default=0.0))
+        shown = _numbers([v if abs(v) > dust else 0.0 for v in real], _DIGITS[column.fmt], given)
     numbers = iter(shown)
     return [next(numbers) if math.isfinite(v) else "-" if math.isnan(v) else str(v) for v in values]
 
@@ -261,8 +262,11 @@ def _times(values: list[float]) -> list[str]:
     return [_unsigned_zero(f"{v:.{max(needed, 3)}f}") for v in values]
 
 
-def _numbers(values: list[float], digits: int) -> list[str]:
-    """Values to a number of significant digits: fixed where that reads well, else with exponents."""
+def _numbers(values: list[float], digits: int, every: bool = False) -> list[str]:
+    """Values to a number of significant digits: fixed where that reads well, else with exponents.
+
+    The largest value decides on the decimals of all that are alike, unless `every` digit must show.
+    """
     # of all values but zeros: significant digits without trailing zeros, exponent
     parts = [f"{abs(v):.{digits - 1}E}".split("E") for v in values if v]
     shapes = [(len(m.replace(".", "").rstrip("0")), int(e)) for m, e in parts] or [(1, 0)]
@@ -270,7 +274,7 @@ def _numbers(values: list[float], digits: int) -> list[str]:
     exact = max(1, *(n - 1 - e for n, e in shapes))  # decimals that show every value to its last digit
     room = max(0, digits - 1 - highest)  # decimals that show the largest value to its last digit
     if -3 <= highest < _WHOLE and (spread <= 3 or exact <= room or highest + exact <= max(_WHOLE, digits)):
-        decimals = min(exact, room) if spread <= 3 else exact
+        decimals = exact if every or spread > 3 else min(exact, room)
         return [_unsigned_zero(f"{v:.{decimals}f}") for v in values]
     mantissa = max(1, *(n - 1 for n, _ in shapes))
     return [f"{v:.{mantissa}E}" if v else "0" for v in values]

@@ -185,7 +185,7 @@ class Writer:
         for name, own in layout.items():
             if name == "time" or name not in HISTORIES:
                 raise ValueError(f"no history {name!r} in HISTORIES")
-            self._create(name, own)
+            self._create(name, HistoryLayout(*own))
         self._file.flush()
 
     def _create(self, name: str, layout: HistoryLayout) -> None:
