@@ -68,7 +68,7 @@ class Pushed:
         Pattern at the start and at the end [F] or [-].
     end : str
         Why it ended.
-    failed : Unstable or None
+    failed : InstabilityError or None
         Set where it ended before what was asked for.
     unbalanced : float
         Largest force out of balance at the end, as a share of the largest that acts.
@@ -147,83 +147,109 @@ def push(structure: Structure, state: StaticState, card: Card) -> Pushed:
 
     Raises
     ------
-    Unstable
+    InstabilityError
         Nothing could be done.
     """
-    n, d = structure.n_free, "XY".index(card["DIRECTION"])
-    control = _control(structure, card)
-    target, factor, by_load = card["TARGET"], card["FACTOR"], card["CONTROL"] == "FORCE"
-    start = float(control @ state.u)
-    if target == start:
-        raise InstabilityError(f"the control node stands at its target {target:g} already", "A505")
-    pattern = Pattern(structure, card)
-    path = Path(
-        structure, state.u, state.states, structure.loads[:n], np.zeros(n), None if by_load else control
-    )
-    path.load = pattern.follow(path)
-    if not path.load.any():
-        raise InstabilityError("no mode of the static state moves the nodes that are pushed", "A505")
-    if not by_load:
-        path.sign = math.copysign(1.0, target - start)
-    elif factor is not None:
-        path.sign = math.copysign(1.0, factor)
-    else:  # the load grows or falls, whichever goes to the target
-        du = path.rates(path.u, 0.0)[0]
-        path.sign = math.copysign(1.0, (target - start) * float(control @ du))
-    ground = SupportReactions(structure, state.axial)
-    out = Pushed(card, first=path.load)
+    return _Pushover(structure, state, card).follow()
 
-    def here() -> Point:
-        shear = ground.shear(path.u, path.states, d, card["BASE"])
-        return Point(float(control @ path.u), shear, path.factor, path.changes)
 
-    nothing = np.zeros(n)
-    ends: list[tuple[Mark, str]] = []
-    if target is not None:
-        way = math.copysign(1.0, target - start)
-        ends.append((Mark(way * control, 0.0, way * target), "the target displacement is reached"))
-    if factor is not None:
-        up = math.copysign(1.0, factor)
-        ends.append((Mark(nothing, up, up * factor), "the load factor is reached"))
+class _Pushover:
+    """One pushover while it goes on; see `push`."""
 
-    def note(point: Point) -> None:
-        last = out.curve[-1:]
+    def __init__(self, structure: Structure, state: StaticState, card: Card) -> None:
+        n = structure.n_free
+        self.card, self.direction = card, "XY".index(card["DIRECTION"])
+        self.control = _control(structure, card)
+        self.by_load = card["CONTROL"] == "FORCE"
+        self.u0, start = state.u, float(self.control @ state.u)
+        if card["TARGET"] == start:
+            raise InstabilityError(f"the control node stands at its target {start:g} already", "A505")
+        self.pattern = Pattern(structure, card)
+        controlled = None if self.by_load else self.control
+        self.path = Path(structure, state.u, state.states, structure.loads[:n], np.zeros(n), controlled)
+        self.path.load = self.pattern.follow(self.path)
+        if not self.path.load.any():
+            raise InstabilityError("no mode of the static state moves the nodes that are pushed", "A505")
+        self.path.sign = self._sign(start)
+        self.ends = self._ends(start)
+        self.ground = SupportReactions(structure, state.axial)
+        self.found = Pushed(card, first=self.path.load)
+
+    def _sign(self, start: float) -> float:
+        """Direction in which the control displacement or the load factor goes."""
+        target, factor = self.card["TARGET"], self.card["FACTOR"]
+        if not self.by_load:
+            return math.copysign(1.0, target - start)
+        if factor is not None:
+            return math.copysign(1.0, factor)
+        du = self.path.rates(self.path.u, 0.0)[0]  # the load grows or falls, whichever goes to the target
+        return math.copysign(1.0, (target - start) * float(self.control @ du))
+
+    def _ends(self, start: float) -> list[tuple[Mark, str]]:
+        """Where the pushover may end, and how the report says it."""
+        target, factor, out = self.card["TARGET"], self.card["FACTOR"], list[tuple[Mark, str]]()
+        if target is not None:
+            way = math.copysign(1.0, target - start)
+            mark = Mark(way * self.control, 0.0, way * target)
+            out.append((mark, "the target displacement is reached"))
+        if factor is not None:
+            up = math.copysign(1.0, factor)
+            out.append((Mark(np.zeros_like(self.control), up, up * factor), "the load factor is reached"))
+        return out
+
+    def _station(self, number: int) -> Mark:
+        """The next station: they divide the way to the first of the ends."""
+        (row, share, value), _ = self.ends[0]
+        begin = float(row @ self.u0)
+        return Mark(row, share, begin + number / self.card["STEPS"] * (value - begin))
+
+    def _here(self) -> Point:
+        path = self.path
+        shear = self.ground.shear(path.u, path.states, self.direction, self.card["BASE"])
+        return Point(float(self.control @ path.u), shear, path.factor, path.changes)
+
+    def _note(self, point: Point) -> None:
+        """Add a point to the curve; it replaces one in the same place."""
+        last = self.found.curve[-1:]
         if last and (last[0].displacement, last[0].factor) == (point.displacement, point.factor):
-            out.curve.pop()
-        out.curve.append(point)
+            self.found.curve.pop()
+        self.found.curve.append(point)
 
-    note(here())
-    station = 1
-    while not out.end:
-        # stations divide the way of whatever ends the pushover first on its list
-        part = station / card["STEPS"]
-        (row, share, value), _ = ends[0]
-        begin = float(row @ state.u)
-        at_station = Mark(row, share, begin + part * (value - begin))
-        try:
-            hit = path.step([*(m for m, _ in ends), at_station])
-            point = here()
-            if isinstance(hit, PathEvent):
-                change = path.transition(hit)
-                point = replace(point, changes=path.changes)
-                out.ladder.append((point, change))
-        except InstabilityError as err:
-            # by force that is the result: no more can be carried; by displacement the way goes on somewhere
-            out.end, out.failed = str(err), None if by_load and err.code == "A501" else err
-            note(here())
-            out.ladder = _once(out.ladder)
-            break
-        note(point)
-        if isinstance(hit, int):
-            if hit < len(ends):
-                out.end = ends[hit][1]
-            else:
-                station += 1
-        if card["ADAPTIVE"] == "YES":
-            path.load = pattern.follow(path)
-    out.curve = [replace(p, displacement=_clean(p.displacement, out.curve)) for p in out.curve]
-    out.last, out.unbalanced = path.load, path.unbalanced()
-    return out
+    def _step(self, station: Mark) -> int | PathEvent | None:
+        """Go on to an end (its number), to the station (the number after those) or to an event."""
+        hit = self.path.step([*(mark for mark, _ in self.ends), station])
+        point = self._here()
+        if isinstance(hit, PathEvent):
+            change = self.path.transition(hit)
+            point = replace(point, changes=self.path.changes)
+            self.found.ladder.append((point, change))
+        self._note(point)
+        return hit
+
+    def follow(self) -> Pushed:
+        """Push until an end is reached or nothing more can be carried."""
+        out, station = self.found, 1
+        self._note(self._here())
+        while not out.end:
+            try:
+                hit = self._step(self._station(station))
+            except InstabilityError as err:
+                # by force that is the result: no more can be carried; by displacement the way goes on
+                # somewhere
+                out.end, out.failed = str(err), None if self.by_load and err.code == "A501" else err
+                self._note(self._here())
+                out.ladder = _once(out.ladder)
+                break
+            if isinstance(hit, int):
+                if hit < len(self.ends):
+                    out.end = self.ends[hit][1]
+                else:
+                    station += 1
+            if self.card["ADAPTIVE"] == "YES":
+                self.path.load = self.pattern.follow(self.path)
+        out.curve = [replace(p, displacement=_clean(p.displacement, out.curve)) for p in out.curve]
+        out.last, out.unbalanced = self.path.load, self.path.unbalanced()
+        return out
 
 
 def _once(ladder: list[tuple[Point, Change]]) -> list[tuple[Point, Change]]:
