@@ -27,7 +27,7 @@ def rows(run: RunRecord) -> list[Row]:
 TABLE = Table(
     name="storeys",
     title="Twice the height",
-    place=15,
+    place=25,
     stages=(Stage.INPUT,),
     columns=(NODE, Column("height", "height", "L", "num", doc="twice the ordinate")),
     rows=rows,
