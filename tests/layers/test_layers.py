@@ -43,6 +43,22 @@ WITHIN = {
         "closed_form",
         "auto",
     ),
+    "results": (
+        "schema",
+        "form",
+        "words",
+        "columns",
+        "study_record",
+        "record",
+        "remarks",
+        "histories",
+        "tables",
+        "contents",
+        "writer",
+        "reader",
+        "page",
+    ),
+    "driver": ("request", "overrides", "loading", "preflight", "prepare", "sequence", "run"),
 }
 #: who may import a library, as paths below the two packages
 ONLY_IN = {

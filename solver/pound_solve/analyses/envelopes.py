@@ -106,13 +106,13 @@ class Envelopes:
         self.seen, self.apart = self.seen + other.seen, max(self.apart, other.apart)
 
     def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
-        """Count in instants between the samples (see `integrate.base.HistoryRecorder`)."""
+        """Count in instants between the samples (see `integrate.protocol.Recorder`)."""
         self._count(t, u, v, a, [self.system.excitation.values(t, order).T for order in range(3)])
         self.seen, self.apart = self.seen + len(t), max(self.apart, apart)
 
     def stationary(self, t: Array, u: Array) -> None:
         """Count in displacements that turn between those instants (see
-        `integrate.base.HistoryRecorder`).
+        `integrate.protocol.Recorder`).
         """
         self.node["u"].take(self._on_nodes(u, self.system.excitation.values(t).T, "u"), t, self.moving)
 

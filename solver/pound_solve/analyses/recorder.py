@@ -138,7 +138,9 @@ class EnergyBalance:
 
 
 class HistoryRecorder:
-    """Takes the method's samples, hands them out in blocks and keeps envelopes (`integrate.Recorder`).
+    """Takes the samples of a method, hands them out in blocks and keeps envelopes.
+
+    It is an `integrate.protocol.EnvelopeRecorder`.
 
     Parameters
     ----------
@@ -181,12 +183,12 @@ class HistoryRecorder:
         self._most = min(BLOCK, max(HELD // items.widest, 1))
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take some samples (see `integrate.base.HistoryRecorder`)."""
+        """Take some samples (see `integrate.protocol.Recorder`)."""
         self.keep(t, u, v, a, laws, works)
         self._progress(self.reached, "")
 
     def keep(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
-        """Take some samples whose progress was told before (see `integrate.base.EnvelopeRecorder`)."""
+        """Take some samples whose progress was told before (see `integrate.protocol.EnvelopeRecorder`)."""
         new = t > self.reached  # but not the start of a part, where another ended
         if not new.any():
             return
@@ -198,20 +200,20 @@ class HistoryRecorder:
             self.flush()
 
     def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
-        """Widen the envelopes only (see `integrate.base.HistoryRecorder`)."""
+        """Widen the envelopes only (see `integrate.protocol.Recorder`)."""
         self.envelopes.between(t, u, v, a, apart)
 
     def stationary(self, t: Array, u: Array) -> None:
-        """Widen the envelopes of displacements only (see `integrate.base.HistoryRecorder`)."""
+        """Widen the envelopes of displacements only (see `integrate.protocol.Recorder`)."""
         self.envelopes.stationary(t, u)
 
     @property
     def shown(self) -> Flags:
-        """Which unknowns `between` looks at (see `integrate.base.HistoryRecorder`)."""
+        """Which unknowns `between` looks at (see `integrate.protocol.Recorder`)."""
         return self.envelopes.shown
 
     def trial(self, t: float, doing: str = "") -> None:
-        """Tell the progress of a run whose samples may not count (see `integrate.base.HistoryRecorder`)."""
+        """Tell the progress of a run whose samples may not count (see `integrate.protocol.Recorder`)."""
         self._progress(t, doing)
 
     @property

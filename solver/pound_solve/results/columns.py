@@ -8,7 +8,7 @@ NODE = Column("node", fmt="int", doc="node number")
 ELEMENT = Column("element", fmt="int", doc="element number")
 ITEM = Column("item", doc="what the value is")
 VALUE = Column("value", doc="value with its unit, as text")
-DEFAULT = Column("default", " ", doc="`*` where the deck leaves the item to its default")
+DEFAULT = Column("default", " ", doc="`*` for a default value")
 UNIT = Column("unit", doc="unit of the numbers in this row")
 CONTACT = Column("contact", doc="number or name of the contact element")
 

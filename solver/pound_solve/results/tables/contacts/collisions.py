@@ -54,7 +54,7 @@ TABLE = Table(
     columns=(
         CONTACT,
         time_column("t_start", "closes", "time of closing"),
-        time_column("t_end", "opens", "time of opening; NaN when still closed at the end"),
+        time_column("t_end", "opens", "time of opening; NaN if still closed at the end"),
         Column(
             "approach_velocity", "approach\nvelocity", "L/T", "short", doc="relative velocity at closing"
         ),
@@ -78,7 +78,7 @@ TABLE = Table(
                 "impulse over the duration, or over the shorter time that the predicted "
                 "force would take for the predicted impulse (where contact lasts up to "
                 "twice as long as predicted): of a coarse mesh it may exceed the peak; "
-                "NaN when still closed at the end"
+                "NaN if still closed at the end"
             ),
         ),
         Column(

@@ -25,7 +25,7 @@ TABLE = Table(
     columns=(
         Column("check", doc="what was checked"),
         Column("value", doc="what was found"),
-        Column("verdict", doc="whether that is good enough"),
+        Column("verdict", doc="`good`, or what to look at"),
     ),
     rows=rows,
     sample=(

@@ -57,7 +57,7 @@ TABLE = Table(
     stages=(Stage.EXPLAIN,),
     columns=(
         Column("part", doc="package of the program, or library"),
-        Column("modules", fmt="int", doc="number of its modules that are imported, or of kernels"),
+        Column("modules", fmt="int", doc="number of imported modules, or of kernels"),
         Column("which", doc="names of the program's own modules"),
     ),
     rows=rows,

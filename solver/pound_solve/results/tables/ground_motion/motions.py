@@ -46,9 +46,7 @@ TABLE = Table(
         ),
         Column("supports", doc="supports that it moves"),
         Column("format", doc="format of the record"),
-        Column(
-            "points", fmt="int", doc="number of points read, 0 for a motion that is no record", zero="-"
-        ),
+        Column("points", fmt="int", doc="number of points read, 0 for a motion without a record", zero="-"),
         Column("dt", "step", "T", "given", doc="time step of the record"),
         Column("scale", "scale", "-", "given", doc="factor on the record"),
         Column("pga", "peak\naccel.", "L/T^2", "short", doc="largest absolute acceleration, scaled"),

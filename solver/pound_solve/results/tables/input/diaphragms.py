@@ -37,7 +37,7 @@ TABLE = Table(
     stages=(Stage.INPUT,),
     columns=(
         CONTACT,
-        Column("side", doc="`I` or `J`: which node of the contact the diaphragm stands behind"),
+        Column("side", doc="`I` or `J`: node of the contact that the diaphragm is behind"),
         Column("mass", "mass m", "F*T^2/L", "short", doc="total mass; infinite for a wall"),
         Column("stiffness", "stiffness\nkD", "F/L", "short", doc="axial stiffness; NaN for a rigid one"),
         Column("impedance", "impedance\nZ", "F*T/L", "short", doc="sqrt(kD m); NaN for a rigid one"),
@@ -58,8 +58,20 @@ TABLE = Table(
                 "twice the approach velocity, of an elastic collision"
             ),
         ),
-        Column("alpha_paper", "alpha\npaper", "-", "short", doc="of distributed masses, Cole et al. 2011"),
-        Column("alpha_exact", "alpha\nexact", "-", "short", doc="of distributed masses, exact"),
+        Column(
+            "alpha_paper",
+            "alpha\npaper",
+            "-",
+            "short",
+            doc="influence coefficient of distributed masses, Cole et al. 2011",
+        ),
+        Column(
+            "alpha_exact",
+            "alpha\nexact",
+            "-",
+            "short",
+            doc="influence coefficient of distributed masses, exact",
+        ),
     ),
     rows=rows,
     remark=remark,

@@ -30,8 +30,10 @@ TABLE = Table(
     columns=(
         Column("element", fmt="int", doc="element number, 0 for the whole structure", zero="all"),
         Column("component", "comp.", doc="as in the spring envelopes"),
-        Column("ultimate", "ultimate\nductility", "-", "short", doc="on the governing side"),
-        Column("ductility", "ductility", "-", "short", doc="largest on that side"),
+        Column(
+            "ultimate", "ultimate\nductility", "-", "short", doc="ultimate ductility on the governing side"
+        ),
+        Column("ductility", "ductility", "-", "short", doc="largest deformation over yield on that side"),
         Column("by_deformation", "by\ndeform.", "-", "short", doc="largest over ultimate deformation"),
         Column(
             "by_energy",

@@ -29,7 +29,7 @@ TABLE = Table(
     stages=(Stage.SAMPLES,),
     columns=(
         ELEMENT,
-        Column("quantity", doc="name of the force"),
+        Column("quantity", doc="name of the force or moment"),
         UNIT,
         *extreme_columns(""),
     ),

@@ -18,7 +18,13 @@ TABLE = Table(
     stages=(Stage.PUSHOVER,),
     columns=(
         Column("displacement", "control\ndispl.", "L", "num", doc="displacement of the control node"),
-        Column("base_shear", "base\nshear", "F", "num", doc="force on the ground"),
+        Column(
+            "base_shear",
+            "base\nshear",
+            "F",
+            "num",
+            doc="force on the ground along the direction of the pushover",
+        ),
         Column("factor", "load\nfactor", "-", "num", doc="factor on the pattern"),
         Column("events", fmt="int", doc="changes of springs, hinges and contacts so far"),
     ),

@@ -34,7 +34,13 @@ TABLE = Table(
     columns=(
         Column("event", fmt="int", doc="number"),
         Column("displacement", "control\ndispl.", "L", "num", doc="displacement of the control node"),
-        Column("base_shear", "base\nshear", "F", "num", doc="force on the ground"),
+        Column(
+            "base_shear",
+            "base\nshear",
+            "F",
+            "num",
+            doc="force on the ground along the direction of the pushover",
+        ),
         Column("factor", "load\nfactor", "-", "num", doc="factor on the pattern"),
         ELEMENT,
         Column("component", "comp.", doc="spring, hinge or contact of the element"),

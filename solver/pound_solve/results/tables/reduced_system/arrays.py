@@ -73,8 +73,8 @@ TABLE = Table(
     columns=(
         Column("part", doc="what the arrays belong to"),
         Column("what", doc="what they hold"),
-        Column("numbers", fmt="int", doc="numbers in them; of sparse matrices those that are stored"),
-        Column("bytes", fmt="int", doc="memory, indices of sparse matrices included"),
+        Column("numbers", fmt="int", doc="numbers in the arrays; for sparse matrices, stored numbers"),
+        Column("bytes", fmt="int", doc="memory, including indices of sparse matrices"),
     ),
     rows=rows,
     remark=remark,

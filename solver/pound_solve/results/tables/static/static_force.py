@@ -26,7 +26,7 @@ TABLE = Table(
     stages=(Stage.STATIC,),
     columns=(
         ELEMENT,
-        Column("quantity", doc="name of the force"),
+        Column("quantity", doc="name of the force or moment"),
         Column("value", fmt="num", doc="force or moment"),
         UNIT,
     ),
