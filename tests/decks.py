@@ -10,7 +10,7 @@ import numpy as np
 from pound_deck.diagnostics import has_errors, render
 from pound_deck.model import Model
 from pound_deck.reader import read_text
-from pound_solve.analyses import history, static
+from pound_solve.analyses import history_start, static
 from pound_solve.catalog import catalog
 from pound_solve.loading.motions.base import LoadingContext
 from pound_solve.loading.motions.wave import fronts
@@ -53,7 +53,7 @@ def scene_of(text: str, params: Mapping[str, object] | None = None) -> reduction
     forces = [c.spec.impl(c.values, context) for c in model.forces]
     fixed = [(n.id, d) for n in model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed]
     structure = assemble(model, reduction.moved_supports(motions, fixed))
-    u0, v0 = history.initial(structure)
+    u0, v0 = history_start.initial(structure)
     return condense(
         reduction.build(structure, motions, end, static.solve(structure).u + u0, v0, forces)
     ).system

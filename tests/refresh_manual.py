@@ -8,7 +8,7 @@ from pound_deck.diagnostics import messages_page
 from pound_solve.assess.law_test import AXES, has_loop, picture
 from pound_solve.catalog import specs
 from pound_solve.report.deck_reference import deck_page
-from pound_solve.results.schema import results_page
+from pound_solve.results.page import results_page
 from verification import cases
 
 MANUAL = Path(__file__).parents[1] / "manual"
@@ -30,7 +30,7 @@ if __name__ == "__main__":
     write("messages.md", messages_page())
     write("deck-reference.md", deck_page())
     page = (MANUAL / "results.md").read_text(encoding="utf-8")
-    mark = "<!-- made by pound_solve.results.schema.results_page"
+    mark = "<!-- made by pound_solve.results.page.results_page"
     head, line = page.split(mark)[0], mark + page.split(mark)[1].split("\n")[0]
     write("results.md", f"{head}{line}\n\n{results_page()}")
     cases.PAGE.write_text(

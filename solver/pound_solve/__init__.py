@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from pound_solve.results.file import Results
+    from pound_solve.results import Results
 
 
 def run(

@@ -10,7 +10,7 @@ import pytest
 
 from pound_solve.driver.run import Prepared, Request, execute
 from pound_solve.numerics import jit
-from pound_solve.results.file import Results
+from pound_solve.results import Results
 
 Run = Callable[..., tuple[int, Results, Prepared]]
 

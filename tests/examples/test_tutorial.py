@@ -20,7 +20,7 @@ from typing import Any
 import pytest
 
 from pound_solve.cli.main import main
-from pound_solve.results.schema import SECTIONS, TABLES
+from pound_solve.results.contents import SECTIONS, TABLES
 
 MANUAL = Path(__file__).parents[2] / "manual"
 EXAMPLE = Path(__file__).parents[2] / "examples" / "01_two_oscillators"

@@ -44,11 +44,27 @@ WITHIN = {
         "closed_form",
         "auto",
     ),
+    "results": (
+        "schema",
+        "form",
+        "words",
+        "columns",
+        "study_record",
+        "record",
+        "remarks",
+        "histories",
+        "tables",
+        "contents",
+        "writer",
+        "reader",
+        "page",
+    ),
+    "driver": ("request", "overrides", "loading", "preflight", "prepare", "sequence", "run"),
 }
 #: who may import a library, as paths below the two packages
 ONLY_IN = {
     "lark": {"cards.py"},
-    "h5py": {"results/file.py"},
+    "h5py": {"results/reader.py", "results/writer.py"},
     "tabulate": {"report/text.py"},
     "matplotlib": {"report/plot/style.py"},
     "numba": {"numerics/jit.py"},

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from output import sample
-from pound_solve.results.file import Results, Writer
+from pound_solve.results import Results, Writer
 
 
 @pytest.fixture(scope="session")

@@ -10,8 +10,8 @@ import pytest
 
 from output import sample
 from pound_solve.report.export import export_csv
-from pound_solve.results.file import Results
-from pound_solve.results.schema import TABLES
+from pound_solve.results import Results
+from pound_solve.results.contents import TABLES
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def test_one_file_for_each(done: Results, files: dict[str, list[list[str]]]) -> 
 
 def test_heads(files: dict[str, list[list[str]]]) -> None:
     assert files["loads.csv"][0] == ["node", "fx [kN]", "fy [kN]", "mz [kN*m]"]
-    assert files["history_node_v.csv"][0][:4] == ["time [s]", "1 ux [m/s]", "1 uy [m/s]", "1 rz [rad/s]"]
+    assert files["history_node_v.csv"][0][:4] == ["time [s]", "1 X [m/s]", "1 Y [m/s]", "1 R [rad/s]"]
     assert files["history_energy.csv"][0][1] == "input [kN*m]"
 
 

@@ -18,7 +18,7 @@ pytest.importorskip("matplotlib")
 from output import sample
 from pound_solve.report import plot
 from pound_solve.report.plot import course, structure, style
-from pound_solve.results.file import Results, Writer
+from pound_solve.results import Results, Writer
 
 ROOT = Path(__file__).parents[2]
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from pound_solve.results.file import Results
-from pound_solve.results.schema import FORMATS, HISTORIES, SECTIONS, TABLES, results_page
+from pound_solve.results import Results, tables
+from pound_solve.results.contents import HISTORIES, SECTIONS, TABLES
+from pound_solve.results.page import results_page
+from pound_solve.results.schema import FORMATS, Stage
 
 PAGE = Path(__file__).parents[2] / "manual" / "results.md"
 
@@ -17,6 +19,13 @@ def test_every_table_stands_in_one_section() -> None:
     # what differs between two runs of a deck comes last
     assert SECTIONS[-2] == ("Run figures", ("run_figures", "imports"))
     assert SECTIONS[-1][0] == "Error against time"
+
+
+def test_a_table_is_a_module_of_its_name() -> None:
+    folder = Path(tables.__file__).parent
+    assert {path.stem for path in folder.glob("*/*.py")} - {"__init__"} == TABLES.keys()
+    assert all(set(table.stages) <= set(Stage) and table.stages for table in TABLES.values())
+    assert len({history.place for history in HISTORIES.values()}) == len(HISTORIES)
 
 
 def test_columns_are_sound() -> None:

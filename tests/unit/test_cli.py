@@ -16,8 +16,8 @@ from pound_solve.cli.main import main
 from pound_solve.cli.progress import Progress
 from pound_solve.driver.run import DeckError
 from pound_solve.report.deck_reference import vocabulary
-from pound_solve.results.file import Results
-from pound_solve.results.schema import SECTIONS
+from pound_solve.results import Results
+from pound_solve.results.contents import SECTIONS
 
 DECK = """TITLE  A mass between two walls
 UNITS  kN m s
@@ -151,7 +151,7 @@ def test_a_history_that_a_method_refuses_leaves_no_tables(deck, method):
     assert main([str(deck)]) == 1
     with Results.open(deck.with_suffix(".h5")) as results:
         present = {heading: set(names) & set(results.tables) for heading, names in SECTIONS}
-    assert present["Free vibration"] and present["Scene and problem size"]
+    assert present["Free vibration"] and present["Reduced system and problem size"]
     for heading in ("Envelopes of the time history", "Members and springs", "Contacts and collisions"):
         assert not present[heading]
     assert not present["Energy and checks"]

@@ -80,7 +80,7 @@ def test_rayleigh_at_two_modes(xi, mass):
     a, b = 2 * xi * w[0] * w[2] / (w[0] + w[2]), 2 * xi / (w[0] + w[2])
     assert ratio == pytest.approx(a / (2 * w) + b * w / 2, rel=1e-7)
     assert np.abs(c - np.diag(np.diag(c))).max() < 1e-9 * np.abs(c).max()
-    assert [r[4] for r in modal.rows(s, 3)] == pytest.approx(100 * ratio[:3], rel=1e-12)
+    assert [r[4] for r in modal.natural_modes(s, 3)] == pytest.approx(100 * ratio[:3], rel=1e-12)
 
 
 def test_rayleigh_at_two_frequencies_of_a_single_mass():
@@ -345,7 +345,7 @@ def test_the_ratios_asked_are_those_of_the_complex_modes(card, law, wanted):
     omega, ratio = complex_ratios(s)
     assert omega == pytest.approx(W, rel=1e-10)  # classical damping leaves |lambda| at omega
     assert ratio == pytest.approx(np.array(wanted), rel=1e-9)
-    assert [r[4] for r in modal.rows(s, 6)] == pytest.approx(100 * ratio, rel=1e-9)
+    assert [r[4] for r in modal.natural_modes(s, 6)] == pytest.approx(100 * ratio, rel=1e-9)
 
 
 def test_the_report_says_what_ratios_the_modes_get():

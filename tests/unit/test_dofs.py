@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,7 +11,7 @@ from hypothesis import strategies as st
 
 from decks import model_of, solved, structure_of
 from pound_deck.model import Node, Span
-from pound_solve.results import echo
+from pound_solve.results.tables.reduced_system import size
 from pound_solve.structure.dofs import number
 
 SPAN = Span("test", 1, 1, 2)
@@ -143,7 +145,8 @@ PROPS
  COLUMN FRAME E=2E8 A=0.01 I=1E-4
  BEAM   FRAME E=2E8 A=0.01 I=1E-4 RULE=BILINEAR LP=0.2,0.2 MI=100 MJ=100
 """
-    counts = {item: int(value) for item, value in echo.size(structure_of(deck, moved=[(1, 0)]))}
+    structure = structure_of(deck, moved=[(1, 0)])
+    counts = {item: int(value) for item, value in size.rows(SimpleNamespace(structure=structure))}
     assert counts == {
         "nodes": 4,
         "elements": 3,

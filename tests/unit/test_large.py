@@ -17,7 +17,7 @@ from decks import structure_of
 from pound_solve import run
 from pound_solve.analyses import static
 from pound_solve.analyses.equilibrium import SupportReactions
-from pound_solve.results.file import Results
+from pound_solve.results import Results
 
 KINDS = ("LARGE", "PDELTA_VARYING")
 

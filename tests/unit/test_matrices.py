@@ -154,13 +154,13 @@ ANALYSIS
 
 def test_a_whole_static_analysis_is_the_same(monkeypatch):
     plain = solved(PORTAL)
-    table = modal.rows(static.after(plain.structure, plain.state), 2)
+    table = modal.natural_modes(static.after(plain.structure, plain.state), 2)
     monkeypatch.setattr(matrices, "MOST_DENSE", 0)
     s = assemble(model_of(PORTAL))
     state = static.solve(s)
     assert state.u == pytest.approx(plain.state.u, rel=1e-11, abs=1e-15)
     assert state.buckling == pytest.approx(plain.state.buckling, rel=1e-9)
-    own = modal.rows(static.after(s.stressed(state.axial), state), 2)
+    own = modal.natural_modes(static.after(s.stressed(state.axial), state), 2)
     assert np.array(own) == pytest.approx(np.array(table), rel=1e-9, abs=1e-9)
 
 

@@ -40,7 +40,7 @@ def test_two_storeys():
     assert s.free_vibration.omega**2 == pytest.approx(wanted, rel=1e-13)
     unit = 1 / math.sqrt(m * (1 + PHI**2))
     assert pytest.approx(unit * np.array([[1, PHI], [PHI, -1]]), rel=1e-13) == s.free_vibration.shapes.T
-    rows = modal.rows(s, None)
+    rows = modal.natural_modes(s, None)
     # gamma = sum m phi for mass-normalised shapes
     gammas = [m * unit * (1 + PHI), m * unit * (PHI - 1)]
     assert [r[5] for r in rows] == pytest.approx(gammas, rel=1e-12)
@@ -57,7 +57,7 @@ def test_uniform_shear_building(n):
         2 * math.sqrt(1000.0) * math.sin((2 * j - 1) * math.pi / (4 * n + 2)) for j in range(1, n + 1)
     ]
     assert s.free_vibration.omega == pytest.approx(wanted, rel=1e-12)
-    rows = modal.rows(s, 100)
+    rows = modal.natural_modes(s, 100)
     assert len(rows) == n
     assert sum(r[6] for r in rows) == pytest.approx(n, rel=1e-12)
     assert sum(r[7] for r in rows) == pytest.approx(100, rel=1e-12)
@@ -93,7 +93,7 @@ def test_shapes_are_orthonormal_and_participation_is_complete(mass):
     size = len(v.omega)
     assert v.shapes.T @ m @ v.shapes == pytest.approx(np.eye(size), abs=1e-12)
     assert v.shapes.T @ k @ v.shapes == pytest.approx(np.diag(v.omega**2), abs=1e-11 * v.omega[-1] ** 2)
-    rows = modal.rows(s, 100)
+    rows = modal.natural_modes(s, 100)
     for d in range(2):
         # independent of modes: g' M^-1 g over the DOFs with mass
         heavy = np.any(m != 0, axis=1)
@@ -157,7 +157,7 @@ PROPS
     assert np.abs(s.stiffness @ v.shapes[:, :3]).max() < 1e-10 * np.abs(s.stiffness).max()
     exact = 4.730040744862704**2 / length**2 * math.sqrt(2e4)
     assert v.omega[3] == pytest.approx(exact, rel=3e-6 if mass == "CONSISTENT" else 1e-2)
-    rows = modal.rows(s, 3)
+    rows = modal.natural_modes(s, 3)
     assert sum(r[6] for r in rows) == pytest.approx(
         length, rel=1e-10
     )  # a unit motion is rigid: all the mass
@@ -167,7 +167,7 @@ PROPS
 def test_a_mass_held_by_nothing_has_no_mode():
     s = structure_of(shear_building(2, extra="").replace("2 TO 3 0 3 TO 6 FIX=YR", "2 TO 3 0 3 TO 6 FIX=R"))
     assert len(s.free_vibration.omega) == 2  # the floors' uy are held by nothing
-    rows = modal.rows(s, None)
+    rows = modal.natural_modes(s, None)
     assert all(r[9] == 0 and r[10] == 0 for r in rows)
 
 

@@ -13,7 +13,7 @@ from pound_solve.assess.advice import Reference, StudyError, Trial
 from pound_solve.assess.study import Plan
 from pound_solve.cli.main import main
 from pound_solve.driver import run
-from pound_solve.results.file import Results
+from pound_solve.results import Results
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TWO = (

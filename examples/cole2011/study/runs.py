@@ -99,7 +99,7 @@ def solve(job: Job) -> Run:
             return gather(job, results)
 
 
-def gather(job: Job, results: pound_solve.results.file.Results) -> Run:
+def gather(job: Job, results: pound_solve.results.Results) -> Run:
     """Keep what the study needs of a results file."""
     drifts = {row["name"]: row for row in results.table("drift_envelope")}
     rows = {place: drifts.get(place, drifts.get(place.rsplit(" ", 1)[0])) for place in PLACES}

@@ -15,10 +15,16 @@ Chopra AK (2012), Dynamics of Structures, 4th edn, sections 13.1 and 13.2.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import NamedTuple
+
 import numpy as np
 
+from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve.analyses import static
 from pound_solve.numerics.modes import moving_mass
+from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import Structure
 
 SPEC = Spec(
@@ -46,46 +52,104 @@ SPEC = Spec(
 )
 
 
-def rows(structure: Structure, wanted: int | None) -> list[tuple[float, ...]]:
-    """Rows of the table ``modes``.
+class Mode(NamedTuple):
+    """One natural mode.
+
+    Attributes
+    ----------
+    number : int
+        1 for the lowest frequency.
+    omega, frequency, period : float
+        [rad/T], [1/T], [T]
+    damping : float
+        Share of critical damping [%]; NaN for a motion without stiffness.
+    gamma_x, gamma_y : float
+        Participation factors for unit modal mass.
+    mass_x, mass_y : float
+        Effective masses [F T^2/L].
+    share_x, share_y : float
+        Effective masses over the mass that the direction can move [%].
+    """
+
+    number: int
+    omega: float
+    frequency: float
+    period: float
+    damping: float
+    gamma_x: float
+    mass_x: float
+    share_x: float
+    gamma_y: float
+    mass_y: float
+    share_y: float
+
+
+@dataclass(frozen=True)
+class ModalResult:
+    """What a modal analysis found.
+
+    Attributes
+    ----------
+    modes : list of Mode
+    shapes : ndarray, shape (n_modes, n_nodes, 3), or None
+        With a largest component of 1; None where they are not asked for.
+    loaded : bool
+        Whether the stiffness is the tangent one of the static state.
+    """
+
+    modes: list[Mode]
+    shapes: Array | None
+    loaded: bool
+
+
+def run(structure: Structure, state: static.StaticState, card: Card) -> ModalResult:
+    """Natural modes, as a card of `SPEC` asks for them."""
+    loaded = card["AFTER"] == "STATIC"
+    if loaded:
+        structure = static.after(structure, state)
+    found = natural_modes(structure, card["MODES"])
+    shapes = mode_shapes(structure, len(found)) if card["SHAPES"] == "YES" else None
+    return ModalResult(found, shapes, loaded)
+
+
+def natural_modes(structure: Structure, wanted: int | None) -> list[Mode]:
+    """The lowest modes of a structure.
 
     Parameters
     ----------
     structure : Structure
     wanted : int or None
-        Number of modes.
+        Number of modes at most; None: 12.
     """
     n, sought = structure.n_free, 12 if wanted is None else wanted
-    modes = structure.vibration(sought)
-    count = min(len(modes.omega), sought)
-    out: list[tuple[float, ...]] = []
+    vibration = structure.vibration(sought)
     total = moving_mass(
         structure.initial_stiffness[:n, :n], structure.mass[:n, :n], structure.ground[:, :n]
     )
     c = structure.initial_damping[:n, :n]
-    for i in range(count):
-        w, shape = float(modes.omega[i]), modes.shapes[:, i]
+    out = []
+    for i in range(min(len(vibration.omega), sought)):
+        w, shape = float(vibration.omega[i]), vibration.shapes[:, i]
         damping = float(shape @ c @ shape) / (2 * w) if w > 0 else float("nan")
-        row = [i + 1, w, w / (2 * np.pi), 2 * np.pi / w if w > 0 else float("inf"), 100 * damping]
+        row = [w, w / (2 * np.pi), 2 * np.pi / w if w > 0 else float("inf"), 100 * damping]
         for d in range(2):
             gamma = float(shape @ structure.ground[d, :n])
             gamma = 0.0 if gamma**2 < 1e-20 * total[d] else gamma  # rounding of a mode that takes no part
             row += [gamma, gamma**2, 100 * gamma**2 / float(total[d]) if total[d] > 0 else 0.0]
-        out.append(tuple(row))
+        out.append(Mode(i + 1, *row))
     return out
 
 
-def shape_rows(structure: Structure, count: int) -> list[tuple[float, ...]]:
-    """Rows of the table ``mode_shapes``: every node, largest component 1."""
+def mode_shapes(structure: Structure, count: int) -> Array:
+    """Shapes of the lowest modes at every node, shape (count, n_nodes, 3), largest component 1."""
     shapes = structure.vibration(count).shapes
-    nodes = list(structure.model.nodes)
-    every = structure.dofs.matrix([(node, d) for node in nodes for d in range(3)])
+    every = structure.dofs.matrix([(node, d) for node in structure.model.nodes for d in range(3)])
     pad = len(structure.dofs.moved)
-    out: list[tuple[float, ...]] = []
+    out = np.zeros((count, len(structure.model.nodes), 3))
     for i in range(count):
         full = np.concatenate([shapes[:, i], np.zeros(pad)])
         scale = np.abs(shapes[:, i]).max()
         x = every @ full / scale
         x[np.abs(x) < 1e-12] = 0.0  # rounding
-        out += [(i + 1, node, *three) for node, three in zip(nodes, x.reshape(-1, 3).tolist())]
+        out[i] = x.reshape(-1, 3)
     return out

@@ -27,14 +27,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.analyses.equilibrium import SupportReactions
+from pound_solve.analyses.equilibrium import ROUNDING, SupportReactions
 from pound_solve.analyses.path_following import Change, EquilibriumPath, InstabilityError, Mark, PathEvent
 from pound_solve.analyses.static import StaticState
 from pound_solve.numerics import modes
@@ -60,6 +59,7 @@ class PushoverResult:
 
     Attributes
     ----------
+    card : Card
     curve : list of CapacityPoint
         At the start, at the stations, and where laws changed.
     ladder : list of (CapacityPoint, Change)
@@ -74,6 +74,7 @@ class PushoverResult:
         Largest force out of balance at the end, as a share of the largest that acts.
     """
 
+    card: Card
     curve: list[CapacityPoint] = field(default_factory=list)
     ladder: list[tuple[CapacityPoint, Change]] = field(default_factory=list)
     first: Array = field(default_factory=lambda: np.zeros(0))
@@ -81,6 +82,12 @@ class PushoverResult:
     end: str = ""
     failed: InstabilityError | None = None
     unbalanced: float = 0.0
+
+    @property
+    def check(self) -> tuple[str, str, str]:
+        """Self-check: whether all forces balance."""
+        good = "good" if self.unbalanced < ROUNDING else "look: forces do not balance"
+        return "pushover, force out of balance over the largest", f"{self.unbalanced:.2e}", good
 
     def add(self, point: CapacityPoint) -> None:
         """Add a point to the curve; it replaces the last one at the same displacement and factor."""
@@ -176,7 +183,7 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
         shear = reactions.shear(path.u, path.states, "XY".index(card["DIRECTION"]), card["BASE"])
         return CapacityPoint(float(control @ path.u), shear, path.factor, path.changes)
 
-    ends, out = _ends(card, control, start), PushoverResult(first=path.load)
+    ends, out = _ends(card, control, start), PushoverResult(card, first=path.load)
     # the stations divide the way to the first of the ends
     (row, share, value), _ = ends[0]
     begin = float(row @ state.u)
@@ -207,6 +214,7 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
                 station += 1
         if card["ADAPTIVE"] == "YES":
             path.load = pattern.follow(path)
+    out.curve = [replace(p, displacement=_clean(p.displacement, out.curve)) for p in out.curve]
     out.last, out.unbalanced = path.load, path.unbalanced()
     return out
 
@@ -240,47 +248,6 @@ def _once(ladder: list[tuple[CapacityPoint, Change]]) -> list[tuple[CapacityPoin
     for point, change in ladder:
         found.setdefault((point.displacement, point.factor, change), (point, change))
     return list(found.values())
-
-
-def tables(structure: Structure, card: Card, pushed: PushoverResult) -> dict[str, list[tuple[Any, ...]]]:
-    """Rows of the tables ``pushover``, ``push_pattern``, ``capacity_curve`` and ``push_events``."""
-    units, free = structure.model.units, structure.dofs.free
-    length, force = units.text("L"), units.text("F")
-    curve = [replace(p, displacement=_clean(p.displacement, pushed.curve)) for p in pushed.curve]
-    top, end = max(curve, key=lambda x: abs(x.shear)), curve[-1]
-    own = card["PATTERN"] + (", adaptive" if card["ADAPTIVE"] == "YES" else "")
-    return {
-        "pushover": [
-            ("pattern", f"{own}, along {card['DIRECTION']}"),
-            ("control", f"{card['CONTROL'].lower()}, node {card['NODE']}"),
-            ("end", pushed.end),
-            (
-                "displacement and base shear at the end",
-                f"{end.displacement:.7g} {length}, {end.shear:.7g} {force}",
-            ),
-            ("largest base shear", f"{top.shear:.7g} {force} at {top.displacement:.7g} {length}"),
-            ("changes of springs, hinges and contacts", str(end.changes)),
-        ],
-        "push_pattern": [
-            (owner, "XYR"[d], float(a), float(b))
-            for (owner, d), a, b in zip(free, pushed.first, pushed.last)
-            if d < 3 and (a or b)
-        ],
-        "capacity_curve": [(p.displacement, p.shear, p.factor, p.changes) for p in curve],
-        "push_events": [
-            (
-                p.changes,
-                p.displacement,
-                p.shear,
-                p.factor,
-                structure.laws[c.law].element,
-                structure.laws[c.law].component,
-                c.before,
-                c.after,
-            )
-            for p, c in pushed.ladder
-        ],
-    }
 
 
 def _clean(displacement: float, curve: list[CapacityPoint]) -> float:

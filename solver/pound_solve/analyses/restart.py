@@ -63,7 +63,7 @@ class Saved:
             "memory": np.array(list(zip_longest(*(s[3] for s in self.states), fillvalue=0.0)), float)
             .reshape(-1, len(self.states))
             .T.copy(),
-            "degrees of freedom": np.array(structure.dofs.free, float).reshape(-1, 2),
+            "freedoms": np.array(structure.dofs.free, float).reshape(-1, 2),
         }
 
 
@@ -76,8 +76,8 @@ def load(arrays: Mapping[str, Array], structure: Structure) -> Saved:
         It is not that of this structure.
     """
     own = np.array(structure.dofs.free, float).reshape(-1, 2)
-    if arrays["degrees of freedom"].shape != own.shape or np.any(arrays["degrees of freedom"] != own):
-        strange = set(map(tuple, own.tolist())) ^ set(map(tuple, arrays["degrees of freedom"].tolist()))
+    if arrays["freedoms"].shape != own.shape or np.any(arrays["freedoms"] != own):
+        strange = set(map(tuple, own.tolist())) ^ set(map(tuple, arrays["freedoms"].tolist()))
         names = ", ".join(sorted(label((int(a), int(b))) for a, b in strange)[:4]) or "their order"
         raise RestartError(f"the saved state is of a structure with other unknowns: {names}")
     if len(arrays["branch"]) != len(structure.laws):

@@ -39,14 +39,14 @@ from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
 
+from pound_solve.analyses.history import RESIDUAL
 from pound_solve.assess.scenes import cases
 from pound_solve.assess.scenes.case import METHOD, STEP, Case, every
 from pound_solve.assess.scenes.linear import KICK, one
-from pound_solve.assess.study import RESIDUAL
 from pound_solve.catalog import catalog
 from pound_solve.driver import run
 from pound_solve.numerics.types import Array
-from pound_solve.results.file import Results
+from pound_solve.results import Results
 
 STEPLESS: Final = ("EXACT", "TAYLOR")  #: methods without an error but rounding
 EXACT_WITHIN, AUTO_WITHIN = 1e-6, 2e-3  #: errors allowed, as shares of the largest value

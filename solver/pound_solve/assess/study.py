@@ -18,8 +18,8 @@ from typing import Final
 import numpy as np
 
 from pound_solve import __version__
+from pound_solve.analyses.history import RESIDUAL, ROWS
 from pound_solve.assess.advice import (
-    KINDS,
     MARGIN,
     NOISY,
     TARGETS,
@@ -35,15 +35,15 @@ from pound_solve.assess.advice import (
 )
 from pound_solve.catalog import catalog
 from pound_solve.driver import run as driver
-from pound_solve.driver.sequence import ROWS
-from pound_solve.results.file import Results, Writer
+from pound_solve.driver.overrides import with_method
+from pound_solve.results import Results, Writer
+from pound_solve.results.schema import Stage
 
 Tell = Callable[[str], None]
 
 HALVINGS: Final = 16  #: of the first step, at most
 SHORT: Final = 0.01  #: a spread is not looked at below this time [s]
 TOO_LONG: Final = "takes longer than --longest"
-RESIDUAL: Final = "largest energy residual over the largest energy"  #: row of the table `checks`
 
 
 class TooLong(Exception):
@@ -100,6 +100,26 @@ class Study:
     def noise(self) -> float:
         """Largest spread of the repeats that are long enough to tell; 0 where none is."""
         return max((t.spread for t in self.trials if t.time > SHORT), default=0.0)
+
+    @property
+    def warning(self) -> str:
+        """Warning that the times are not to be trusted; empty if they are."""
+        if self.noise <= NOISY:
+            return ""
+        return (
+            f"Repeats of one run differ by up to {100 * self.noise:.0f} %: the machine does other work, "
+            "go by the steps rather than by the times."
+        )
+
+    @property
+    def orders(self) -> list[float]:
+        """Observed order of each trial against the one before; NaN where there is none."""
+        out, before = [], None
+        for t in self.trials:
+            along = before is not None and before.method == t.method
+            out.append(order(before, t) if before is not None and along else math.nan)
+            before = None if t.stopped else t
+        return out
 
 
 def run(
@@ -245,7 +265,7 @@ class _Bench:
         """Run one method with one setting, as often as asked; the first run of a method is not timed,
         because it imports and compiles.
         """
-        cards = tuple(driver.with_method(c, self.methods[method], given) for c in self.ready.model.analyses)
+        cards = tuple(with_method(c, self.methods[method], given) for c in self.ready.model.analyses)
         ready = replace(self.ready, model=replace(self.ready.model, analyses=cards))
         setting = " ".join(f"{k}={v:.12g}" for k, v in given.items())
         cold = timed and method not in self.warm
@@ -328,44 +348,12 @@ def peaks(results: Results) -> Peaks:
 
 
 def write(study: Study, ready: driver.Prepared, path: Path) -> Results:
-    """Write a study as a results file of the tables ``study`` and ``study_advice``, and open it."""
-    rows, before = [], None
-    for t in study.trials:
-        p = order(before, t) if before is not None and before.method == t.method else math.nan
-        found = [t.errors.get(kind, math.nan) for kind in KINDS]
-        rows.append(
-            (t.method, t.setting, t.time, t.steps, t.events, *found, p, t.collisions, t.residual)
-        )  # fmt: skip
-        before = None if t.stopped else t
+    """Write a study as a results file, and open it."""
     model = ready.model
-    note = f"The reference is {study.reference.how}"
-    told = [
-        f"{study.reference.error[k]:.1e} ({k})" for k in KINDS if math.isfinite(study.reference.error[k])
-    ]
-    note += f"; its own errors are about {', '.join(told)}." if told else "."
-    note += " Times are of the history alone, in a process that has loaded what it needs."
-    if study.noise > NOISY:
-        note += f" {noisy(study)}"
     path.parent.mkdir(parents=True, exist_ok=True)
     with Writer(path, title=model.title, units=model.units, program_version=__version__) as writer:
         for name, text in model.files.items():
             writer.text(Path(name).name, text)
-        writer.table("study", rows, note)
-        writer.table("study_stops", [(t.method, t.setting, t.stopped) for t in study.trials if t.stopped])
-        advice = [
-            (a.target, a.trial.method, a.trial.setting, a.trial.time, a.trial.error, a.sure)
-            if a.trial
-            else (a.target, "", "", *[math.nan] * 3)
-            for a in study.advice
-        ]
-        writer.table("study_advice", advice, study.sentence)
+        writer.tables(Stage.STUDY, study)
         writer.finish("done")
     return Results.open(path)
-
-
-def noisy(study: Study) -> str:
-    """Warning that the times are not to be trusted."""
-    return (
-        f"Repeats of one run differ by up to {100 * study.noise:.0f} %: the machine does other work, "
-        "go by the steps rather than by the times."
-    )

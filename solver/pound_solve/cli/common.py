@@ -49,7 +49,7 @@ def request(args: argparse.Namespace) -> Request:
         The deck is a results file, or a --set is not NAME=VALUE.
     """
     from pound_solve.driver.run import Request
-    from pound_solve.results.file import is_hdf5
+    from pound_solve.results import is_hdf5
 
     if is_hdf5(args.deck):
         text = f"{args.deck} is a results file, not a deck: report, export, plot and separation read it"

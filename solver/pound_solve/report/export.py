@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from pound_solve.results.file import Results
+from pound_solve.results import Results
 
 _BLOCK: Final = 4096  #: rows that are turned into Python numbers at a time
 

@@ -4,76 +4,40 @@ r"""How far apart two buildings should stand: rules on the peak displacements of
 
 * ABS: :math:`u_1 + u_2`
 * SRSS: :math:`\sqrt{u_1^2 + u_2^2}`
-* DDC, the double difference combination (Jeng, Kasai and Maison 1992, Earthquake Spectra 8: 201-223):
-  :math:`\sqrt{u_1^2 + u_2^2 - 2\rho u_1 u_2}`, where :math:`\rho` is the correlation of two oscillators of
-  periods :math:`T_1, T_2` and damping ratios :math:`\xi_1, \xi_2` under white noise,
-
-.. math:: \rho = \frac{8\sqrt{\xi_1\xi_2}\,(\xi_1 + \chi\xi_2)\,\chi^{3/2}}
-          {(1-\chi^2)^2 + 4\xi_1\xi_2\chi(1+\chi^2) + 4(\xi_1^2+\xi_2^2)\chi^2},\qquad \chi = T_1/T_2
-
-(the coefficient of the complete quadratic combination, Der Kiureghian 1981, Earthquake Engng Struct.
-Dyn. 9: 419-435).
+* DDC, the double difference combination, see `theory.separation`
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from pound_solve.report.text import block
-from pound_solve.results.file import Results
-from pound_solve.results.schema import Column, Table
+from pound_solve.results import Results
+from pound_solve.results.columns import CONTACT
+from pound_solve.results.schema import Column, Row, Table
 from pound_solve.structure.elements.base import axes
+from pound_solve.theory.separation import correlation, double_difference
 
 TAKES_PART = 0.1  #: component of a mode, largest 1, from which it is taken for a building's own
 NAN: Final = math.nan
 FREE, MET = "free: nothing met", "pounding: something met"
 UNKNOWN = "; no DDC without periods and damping: MODAL SHAPES=YES, or --periods and --damping"
 
-TABLE: Final = Table(
-    "separation",
-    "Separation of the buildings",
-    (
-        Column("contact", doc="number or name of the contact element"),
-        Column("u1", "peak\nnode I", "L", "short", "largest absolute displacement along the contact"),
-        Column("u2", "peak\nnode J", "L", "short", "the same; 0 for a wall"),
-        Column("t1", "period\nI", "T", "short", "period of the building of node I"),
-        Column("t2", "period\nJ", "T", "short", "period of the building of node J"),
-        Column("xi1", "damping\nI", "%", "percent", "damping of that mode"),
-        Column("xi2", "damping\nJ", "%", "percent", "damping of that mode"),
-        Column("abs", "ABS", "L", "num", "sum of the peaks"),
-        Column("srss", "SRSS", "L", "num", "root of the sum of their squares"),
-        Column("ddc", "DDC", "L", "num", "double difference combination"),
-        Column("needed", "gap\nneeded", "L", "num", "largest closure of this run, if nothing met"),
-        Column("gap", "gap of\nthe deck", "L", "num", "gap of the contact"),
-        Column("note", "run", doc="whether the buildings moved freely, and what is not known"),
-    ),
-    note="Peaks are absolute displacements from the node envelopes of this run. The gap needed is its "
-    "largest closure, if nothing met in it; else run the deck with gaps that stay open. The period of a "
-    "building is that of the longest mode in which the node has a tenth of the largest component, or "
-    "--periods.",
-)
-
 
 class SeparationError(Exception):
     """A results file that does not hold what the rules need."""
 
 
-def correlation(t1: float, t2: float, xi1: float, xi2: float) -> float:
-    """Correlation of two oscillators under white noise, from periods [T] and damping ratios [-]."""
-    chi = t1 / t2
-    top = 8.0 * math.sqrt(xi1 * xi2) * (xi1 + chi * xi2) * chi**1.5
-    cross = 4.0 * xi1 * xi2 * chi * (1.0 + chi**2) + 4.0 * (xi1**2 + xi2**2) * chi**2
-    below = (1.0 - chi**2) ** 2 + cross
-    return top / below if below > 0.0 else 1.0  # both undamped and of one period: they move alike
+class SeparationRecord(NamedTuple):
+    """What the rows are made from, see `text`."""
 
-
-def double_difference(u1: float, u2: float, rho: float) -> float:
-    """Relative peak displacement of two correlated peaks [L]."""
-    return math.sqrt(max(u1**2 + u2**2 - 2.0 * rho * u1 * u2, 0.0))
+    results: Results
+    periods: Sequence[float] = ()
+    damping: Sequence[float] = ()
 
 
 def text(results: Results, periods: Sequence[float] = (), damping: Sequence[float] = ()) -> str:
@@ -92,17 +56,14 @@ def text(results: Results, periods: Sequence[float] = (), damping: Sequence[floa
     SeparationError
         There is no contact or no history in the file.
     """
-    found = rows(results, periods, damping)
-    names = [c.name for c in TABLE.columns]
+    found = rows(SeparationRecord(results, periods, damping))
     kinds = [(c.name, "O" if c.is_text else "f8") for c in TABLE.columns]
-    assert all(len(row) == len(names) for row in found)
     return "\n".join(line.rstrip() for line in block(results, TABLE, np.array(found, dtype=kinds)))
 
 
-def rows(
-    results: Results, periods: Sequence[float] = (), damping: Sequence[float] = ()
-) -> list[tuple[Any, ...]]:
-    """Rows of `TABLE`; see `text`."""
+def rows(record: SeparationRecord) -> list[Row]:
+    """One row for each contact; see `text`."""
+    results, periods, damping = record
     if math.isnan(results.last_time):
         why = f": {results.message}" if results.message else ""
         raise SeparationError(f"{results.path} holds no history{why}")
@@ -161,3 +122,35 @@ def _mode(results: Results, node: int, way: tuple[float, float]) -> tuple[float,
         return NAN, NAN
     longest = chosen[np.argmax(chosen["period"])]
     return float(longest["period"]), float(longest["damping"])
+
+
+TABLE = Table(
+    name="separation",
+    title="Separation of the buildings",
+    place=0,
+    stages=(),  # it is printed, not stored
+    columns=(
+        CONTACT,
+        Column("u1", "peak\nnode I", "L", "short", doc="largest absolute displacement along the contact"),
+        Column("u2", "peak\nnode J", "L", "short", doc="the same; 0 for a wall"),
+        Column("t1", "period\nI", "T", "short", doc="period of the building of node I"),
+        Column("t2", "period\nJ", "T", "short", doc="period of the building of node J"),
+        Column("xi1", "damping\nI", "%", "percent", doc="damping of that mode"),
+        Column("xi2", "damping\nJ", "%", "percent", doc="damping of that mode"),
+        Column("abs", "ABS", "L", "num", doc="sum of the peaks"),
+        Column("srss", "SRSS", "L", "num", doc="root of the sum of their squares"),
+        Column("ddc", "DDC", "L", "num", doc="double difference combination"),
+        Column("needed", "gap\nneeded", "L", "num", doc="largest closure of this run, if nothing met"),
+        Column("gap", "gap of\nthe deck", "L", "num", doc="gap of the contact"),
+        Column("note", "run", doc="whether the buildings moved freely, and what is not known"),
+    ),
+    rows=rows,
+    note="Peaks are absolute displacements from the node envelopes of this run. The gap needed is its "
+    "largest closure, if nothing met in it; else run the deck with gaps that stay open. The period of a "
+    "building is that of the longest mode in which the node has a tenth of the largest component, or "
+    "--periods.",
+    sample=(
+        ("floor 1", 0.1213, 0.0911, 0.873, 0.555, 5.0, 5.31, 0.2124, 0.1517, 0.1488, 0.1402, 0.3, FREE),
+        ("901", 0.0312, 0.0, 0.873, NAN, 5.0, NAN, 0.0312, 0.0312, 0.0312, NAN, 0.008, MET),
+    ),
+)

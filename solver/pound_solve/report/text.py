@@ -17,15 +17,21 @@ from typing import Any, Final
 from numpy.typing import NDArray
 from tabulate import tabulate
 
-from pound_solve.results.file import Results
-from pound_solve.results.schema import SECTIONS, TABLES, Column, Table
+from pound_solve.results import Results
+from pound_solve.results.contents import SECTIONS, TABLES
+from pound_solve.results.schema import Column, Table
 
 WIDTH: Final = 132  #: columns of the report
 _INDENT: Final = "  "
 _GAP: Final = 2  #: blanks that tabulate leaves between columns
 _NARROWEST: Final = 16  #: texts are not wrapped to less; a table that is still too wide is split instead
-_DIGITS: Final = {"num": 7, "short": 5}
-_DUST: Final = 1e-300  #: what is smaller prints as zero
+_DIGITS: Final = {"given": 10, "num": 5, "short": 4}  #: significant, by format
+_WHOLE: Final = 7  #: digits before the point from which on a number takes an exponent
+_DUST: Final = (
+    1e-12  #: share of the largest value of a block of a column below which rounding prints as zero
+)
+
+_TINY: Final = 1e-300  #: prints as zero in any case
 
 #: Signs that do not decompose into ASCII, and what stands for them; Greek letters go by their names.
 _PAIRS: Final = """
@@ -63,7 +69,7 @@ def render(results: Results, *, limit: int | None = None, only: Collection[str] 
         if blocks:
             lines += [f"{number}  {heading.upper()}", "=" * WIDTH, ""]
             if number == 1:
-                lines += [_INDENT + "A * marks what the deck leaves to its default.", ""]
+                lines += [_INDENT + "A * marks a default value.", ""]
             lines += [line for block in blocks for line in block]
     return "\n".join(line.rstrip() for line in lines).rstrip() + "\n"
 
@@ -84,16 +90,16 @@ def _warning(results: Results) -> Iterator[str]:
     """Framed warning above the report of an analysis that did not finish."""
     if results.status == "done":
         return
-    head = "THE ANALYSIS DID NOT COME TO ITS END"
+    head = "THE ANALYSIS DID NOT COMPLETE"
     if results.status == "stopped":
         why = results.message or "No reason was recorded."
     else:
-        why = "The program was killed, or it is still running; nothing is recorded of where and why."
+        why = "The program was killed or is still running; no place and no reason are recorded."
     if math.isnan(results.last_time):
-        scope = "There is no time history; only what stands below was computed."
+        scope = "There is no time history; only what is printed below was computed."
     else:
         when = f"{_times([results.last_time])[0]} {results.units.time}"
-        scope = f"The last sample of the time history is that at {when}: what is taken from it ends there."
+        scope = f"The last sample of the time history is that at {when}: results taken from it end there."
     inner = WIDTH - 8
     yield "*" * WIDTH
     for text in (head, "", why, "", scope):
@@ -237,37 +243,38 @@ def _format(column: Column, values: list[Any]) -> list[str]:
         return [plain[v] for v in values]
     if column.fmt == "int":
         return [column.zero if column.zero and not v else str(v) for v in values]
-    real = [0.0 if abs(v) < _DUST else v for v in values if math.isfinite(v)]
+    real = [v for v in values if math.isfinite(v)]
     if column.fmt == "time":
         shown = _times(real)
     elif column.fmt == "percent":
-        shown = _fixed(real, 2, 4)
+        shown = [_unsigned_zero(f"{v:.2f}") for v in real]
     else:
-        shown = _numbers(real, _DIGITS[column.fmt])
+        given = column.fmt == "given"
+        dust = _TINY if given else max(_TINY, _DUST * max(map(abs, real), default=0.0))
+        shown = _numbers([v if abs(v) > dust else 0.0 for v in real], _DIGITS[column.fmt], given)
     numbers = iter(shown)
     return [next(numbers) if math.isfinite(v) else "-" if math.isnan(v) else str(v) for v in values]
 
 
 def _times(values: list[float]) -> list[str]:
-    return _fixed(values, 3, 6)
+    """Times with as many decimals, from three to six, as any of them needs."""
+    needed = max((len(f"{v:.6f}".rstrip("0").partition(".")[2]) for v in values), default=0)
+    return [_unsigned_zero(f"{v:.{max(needed, 3)}f}") for v in values]
 
 
-def _fixed(values: list[float], least: int, most: int) -> list[str]:
-    """Values with as many decimals, between two limits, as any of them needs."""
-    needed = max((len(f"{v:.{most}f}".rstrip("0").partition(".")[2]) for v in values), default=0)
-    return [_unsigned_zero(f"{v:.{max(needed, least)}f}") for v in values]
+def _numbers(values: list[float], digits: int, every: bool = False) -> list[str]:
+    """Values to a number of significant digits: fixed where that reads well, else with exponents.
 
-
-def _numbers(values: list[float], digits: int) -> list[str]:
-    """Values to a number of significant digits: fixed where that reads well, else with exponents."""
+    The largest value decides on the decimals of all that are alike, unless `every` digit must show.
+    """
     # of all values but zeros: significant digits without trailing zeros, exponent
     parts = [f"{abs(v):.{digits - 1}E}".split("E") for v in values if v]
     shapes = [(len(m.replace(".", "").rstrip("0")), int(e)) for m, e in parts] or [(1, 0)]
     highest, spread = max(e for _, e in shapes), max(e for _, e in shapes) - min(e for _, e in shapes)
     exact = max(1, *(n - 1 - e for n, e in shapes))  # decimals that show every value to its last digit
-    room = max(1, digits - 1 - highest)  # decimals that show the largest value to its last digit
-    if -3 <= highest < digits and (spread <= 3 or exact <= room or highest + exact < digits + 3):
-        decimals = min(exact, room) if spread <= 3 else exact
+    room = max(0, digits - 1 - highest)  # decimals that show the largest value to its last digit
+    if -3 <= highest < _WHOLE and (spread <= 3 or exact <= room or highest + exact <= max(_WHOLE, digits)):
+        decimals = exact if every or spread > 3 else min(exact, room)
         return [_unsigned_zero(f"{v:.{decimals}f}") for v in values]
     mantissa = max(1, *(n - 1 for n, _ in shapes))
     return [f"{v:.{mantissa}E}" if v else "0" for v in values]

@@ -1,1 +1,7 @@
-"""The results file: its schema, its writer, its reader."""
+"""Results files: what they hold, their writer and their reader."""
+
+from pound_solve.results.form import ResultsError
+from pound_solve.results.reader import Results, is_hdf5
+from pound_solve.results.writer import Writer
+
+__all__ = ("Results", "ResultsError", "Writer", "is_hdf5")

@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Write the CSV files and print their paths."""
     from pound_solve.report.export import export_csv
-    from pound_solve.results.file import Results, ResultsError
+    from pound_solve.results import Results, ResultsError
 
     folder = args.out or Path(args.results).with_suffix("")
     try:

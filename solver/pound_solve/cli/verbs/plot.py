@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Draw the pictures, print their paths and name those left out."""
     from pound_solve.report import plot
-    from pound_solve.results.file import Results, ResultsError
+    from pound_solve.results import Results, ResultsError
 
     unknown = [name for name in args.pictures if name not in PICTURES]
     if unknown:

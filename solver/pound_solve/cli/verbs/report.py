@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Print the report."""
     from pound_solve.report.text import render
-    from pound_solve.results.file import Results, ResultsError
+    from pound_solve.results import Results, ResultsError
 
     try:
         with Results.open(args.results) as results:

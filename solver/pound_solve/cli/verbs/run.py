@@ -11,7 +11,7 @@ from pound_solve.cli import common
 from pound_solve.cli.progress import Progress
 
 if TYPE_CHECKING:
-    from pound_solve.results.file import Results
+    from pound_solve.results import Results
 
 SUMMARY = "run a deck (the verb may be left out)"
 
@@ -34,7 +34,7 @@ def execute(args: argparse.Namespace) -> int:
     from pound_deck.diagnostics import render
     from pound_solve.driver import run
     from pound_solve.report.text import render as report
-    from pound_solve.results.file import ResultsError
+    from pound_solve.results import ResultsError
 
     request, progress = common.request(args), Progress(args.quiet)
     try:

@@ -39,7 +39,7 @@ def _two(word: str) -> tuple[float, float]:
 def execute(args: argparse.Namespace) -> int:
     """Print the separations."""
     from pound_solve.report import separation
-    from pound_solve.results.file import Results, ResultsError
+    from pound_solve.results import Results, ResultsError
 
     try:
         with Results.open(args.results) as results:

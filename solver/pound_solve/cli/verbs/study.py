@@ -66,10 +66,10 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
     """Run the methods on a deck, write the study's results file and report, and print the report."""
     from pound_deck.diagnostics import render
     from pound_solve.assess import study
-    from pound_solve.assess.advice import NOISY, StudyError
+    from pound_solve.assess.advice import StudyError
     from pound_solve.driver import run
     from pound_solve.report.text import render as report
-    from pound_solve.results.file import ResultsError
+    from pound_solve.results import ResultsError
 
     request, line = common.request(args), StatusLine()
     if args.picture:
@@ -94,8 +94,8 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
         return common.complain(str(err))
     if ready.warnings:
         print(render(ready.warnings, ready.files), file=sys.stderr)
-    if found.noise > NOISY:
-        common.complain(f"warning: {study.noisy(found)}")
+    if found.warning:
+        common.complain(f"warning: {found.warning}")
     with results:
         text = report(results)
         request.path(".study.rpt").write_text(text, encoding="ascii", newline="\n")

@@ -11,8 +11,8 @@ from pound_solve.report.plot import course, structure, style
 from pound_solve.report.plot.loop import loop
 from pound_solve.report.plot.study import study
 from pound_solve.report.plot.style import Nothing, ready
-from pound_solve.results.file import Results
-from pound_solve.results.schema import TABLES
+from pound_solve.results import Results
+from pound_solve.results.contents import TABLES
 
 __all__ = ("PICTURES", "Nothing", "draw", "draw_into", "loop", "possible", "ready")
 

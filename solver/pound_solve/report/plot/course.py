@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from pound_solve.report.plot import style
-from pound_solve.results.file import Results
-from pound_solve.results.schema import ENERGIES
+from pound_solve.results import Results
+from pound_solve.results.histories.energy import ENERGIES
 
 MOST_LOOPS = 16
 

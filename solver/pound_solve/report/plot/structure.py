@@ -8,7 +8,7 @@ import numpy as np
 
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import style
-from pound_solve.results.file import Results
+from pound_solve.results import Results
 from pound_solve.structure.elements.base import axes as own_axes
 
 MOST_NUMBERS = 60  #: nodes up to which their numbers are written

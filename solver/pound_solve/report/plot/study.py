@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from pound_solve.report.plot import style
-from pound_solve.results.file import Results
+from pound_solve.results import Results
 
 MARKS = "os^Dvx"
 ROOM = 0.05  #: left beside the curves, as a share of a decade

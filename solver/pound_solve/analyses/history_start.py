@@ -1,0 +1,70 @@
+"""The state that a history starts from: the static one, and what INITIAL adds to it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pound_solve.integrate.protocol import Start
+from pound_solve.laws.automaton import State, consistent, drive
+from pound_solve.numerics.matrices import least_squares, used_columns, used_rows, weighted
+from pound_solve.numerics.modes import massless
+from pound_solve.numerics.types import Array
+from pound_solve.structure.assembly import Structure
+from pound_solve.structure.reduction import ReducedSystem
+
+
+def initial(structure: Structure) -> tuple[Array, Array]:
+    """Displacement and velocity of the unknowns from the INITIAL cards, shape (n_free,) each."""
+    n = structure.n_free
+    column = {f: i for i, f in enumerate(structure.dofs.free)}
+    u, v = np.zeros(n), np.zeros(n)
+    for card in structure.model.initial:
+        for node in card["NODES"]:
+            for d, letter in enumerate("XYR"):
+                i = column.get((node, d))
+                if i is not None:
+                    u[i] += card["U" + letter]
+                    v[i] += card["V" + letter]
+    return u, v
+
+
+def begin(
+    structure: Structure,
+    system: ReducedSystem,
+    u: Array,
+    v: Array,
+    states: Sequence[State],
+    u_static: Array,
+    times: Array,
+) -> Start:
+    """State at t = 0: the static one, plus INITIAL, the laws led along from the one to the other."""
+    keep = system.columns
+    u0, v0 = u[keep], v[keep]
+    _lead_massless(system, u0, u0 - u_static[keep])
+    before = structure.law_rows[:, : structure.n_free] @ u_static
+    after = system.law_rows @ u0 + system.law_inputs @ system.excitation.value(0.0)
+    rates = system.law_rows @ v0 + system.law_inputs @ system.excitation.value(0.0, 1)
+    led = tuple(
+        consistent(s.law, drive(s.law, x, d0, d1) if d0 != d1 else x, d1, rate)
+        for s, x, d0, d1, rate in zip(
+            structure.laws, states, before.tolist(), after.tolist(), rates.tolist()
+        )
+    )
+    return Start(u0, v0, led, times)
+
+
+def _lead_massless(system: ReducedSystem, u: Array, pushed: Array) -> None:
+    """Let massless undamped unknowns that INITIAL leaves alone follow those that it pushes,
+    on the stiffness at rest: nothing could hold them back.
+    """
+    laws = system.structure.laws
+    idle = massless(system.mass) & (pushed == 0.0) & ~used_rows(system.damping)
+    damped = [i for i, s in enumerate(laws) if s.beta != 0.0 or s.role.viscous]
+    idle &= ~used_columns(system.law_rows[damped])
+    if idle.any() and pushed.any():
+        k = system.stiffness + weighted(system.law_rows, [s.k0 for s in laws])
+        own, others = np.flatnonzero(idle), np.flatnonzero(~idle)
+        away = k[np.ix_(own, others)] @ pushed[others]
+        u[own] -= least_squares(k[np.ix_(own, own)], away)

@@ -1,0 +1,240 @@
+"""The recorder of a history: takes the samples of a method, hands them out in blocks, keeps envelopes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+
+from pound_solve.analyses.envelopes import Envelopes
+from pound_solve.integrate.protocol import ENERGIES, LawValues, MonitoredOutputs, energies
+from pound_solve.numerics.types import Array, Flags
+from pound_solve.structure.elements.base import Output
+from pound_solve.structure.reduction import ReducedSystem
+
+BLOCK, HELD = 256, 2**20  #: samples kept before they are written, and numbers of one kind in them, at most
+
+
+@dataclass(frozen=True)
+class RecordedItems:
+    """What a history records, by OUTPUT of the deck.
+
+    Attributes
+    ----------
+    system : ReducedSystem
+    drifts : MonitoredOutputs
+    nodes : tuple of int
+        Numbers of the nodes.
+    outputs : tuple of Output
+        Forces of the members.
+    springs, contacts : tuple of int
+        Places among the laws of the structure.
+    """
+
+    system: ReducedSystem
+    drifts: MonitoredOutputs
+    nodes: tuple[int, ...]
+    outputs: tuple[Output, ...]
+    springs: tuple[int, ...]
+    contacts: tuple[int, ...]
+
+    @classmethod
+    def of(cls, system: ReducedSystem, drifts: MonitoredOutputs) -> Self:
+        """Choose what the deck asks for."""
+        structure = system.structure
+        nodes, elements = (structure.model.output[item] for item in ("NODES", "MEMBERS"))
+        return cls(
+            system,
+            drifts,
+            tuple(structure.model.nodes) if nodes is None else tuple(dict.fromkeys(nodes)),
+            tuple(o for o in structure.outputs if elements is None or o.element in elements),
+            tuple(i for i, s in enumerate(structure.laws) if not s.role.collides),
+            tuple(i for i, s in enumerate(structure.laws) if s.role.collides),
+        )
+
+    @property
+    def widest(self) -> int:
+        """Number of values of the widest kind at one instant."""
+        structure = self.system.structure
+        return max(structure.dofs.size, 3 * len(self.nodes), len(self.outputs), len(structure.laws), 1)
+
+
+@dataclass(frozen=True)
+class SampleBlock:
+    """Some samples of a history.
+
+    Attributes
+    ----------
+    items : RecordedItems
+    t : ndarray, shape (n_times,)
+        [T]
+    u : ndarray, shape (n, n_times)
+        Displacements of the unknowns of the reduced system [L], [rad].
+    inputs : ndarray, shape (n_inputs, n_times)
+        Inputs of the reduced system: motions of the ground and histories of forces.
+    force, deformation : ndarray, shape (n_laws, n_times)
+        Of all springs and contacts [F], [F L]; [L], [rad].
+    nodes : mapping of str to ndarray, shape (3 n_nodes, n_times)
+        Displacements "u", velocities "v" and accelerations "a" of the recorded nodes.
+    members : ndarray, shape (n_outputs, n_times)
+        Forces of the recorded members [F], [F L].
+    energy : ndarray, shape (n_times, 7)
+        `ENERGIES` and the residual [F L].
+    """
+
+    items: RecordedItems
+    t: Array
+    u: Array
+    inputs: Array
+    force: Array
+    deformation: Array
+    nodes: Mapping[str, Array]
+    members: Array
+    energy: Array
+
+
+class EnergyBalance:
+    """Energies of a history against those at its start, and how far they are out of balance.
+
+    Parameters
+    ----------
+    first : ndarray, shape (6,), or None
+        `ENERGIES` at the start; None: those of the first sample [F L].
+
+    Attributes
+    ----------
+    first, last : ndarray, shape (6,)
+        At the start, and at the last sample.
+    residual : float
+        Input less what it became, at the last sample.
+    largest, largest_residual : float
+        Largest absolute energy and residual of all samples.
+    """
+
+    def __init__(self, first: Array | None = None) -> None:
+        self._fresh = first is None
+        self.first = np.zeros(len(ENERGIES)) if first is None else first
+        self.last = np.zeros(len(ENERGIES))
+        self.residual = self.largest = self.largest_residual = 0.0
+
+    def take(self, energy: Array) -> Array:
+        """Count in energies, shape (n_times, 6); return the residuals, shape (n_times,)."""
+        if self._fresh:
+            self.first, self._fresh = energy[0], False
+        change = energy - self.first
+        residual: Array = 2.0 * change[:, 0] - change.sum(axis=1)
+        self.last, self.residual = energy[-1], float(residual[-1])
+        self.largest = max(self.largest, float(np.abs(energy).max()))
+        self.largest_residual = max(self.largest_residual, float(np.abs(residual).max()))
+        return residual
+
+    @property
+    def changes(self) -> list[float]:
+        """Changes of `ENERGIES` and of the residual since the start; the input counts from zero [F L]."""
+        stored = self.first * (np.arange(len(ENERGIES)) > 0)
+        return [*(self.last - stored).tolist(), self.residual]
+
+
+class HistoryRecorder:
+    """Takes the samples of a method, hands them out in blocks and keeps envelopes.
+
+    It is an `integrate.protocol.EnvelopeRecorder`.
+
+    Parameters
+    ----------
+    items : RecordedItems
+    append : callable
+        Takes a `SampleBlock`.
+    progress : callable
+        Told the time of every sample, or what keeps the run waiting there.
+    first_energy : ndarray, shape (6,), or None
+        Energies at the start of the history, if this run takes it up later; None: of the first sample.
+
+    Attributes
+    ----------
+    energy : EnergyBalance
+    losses : list of float
+        Energy lost by slip and release in every law, dashpots apart [F L].
+    deformations : list of float
+        Of every law at the last sample [L], [rad].
+    reached : float
+        Time of the last sample; negative before the first [T].
+    last : tuple of ndarray
+        Displacements, velocities and work integrals at the last sample.
+    """
+
+    def __init__(
+        self,
+        items: RecordedItems,
+        append: Callable[[SampleBlock], None],
+        progress: Callable[[float, str], None],
+        first_energy: Array | None = None,
+    ) -> None:
+        self.items, self._append, self._progress = items, append, progress
+        self.envelopes = Envelopes(items.system, items.nodes, items.outputs)
+        self.energy = EnergyBalance(first_energy)
+        self.losses = [0.0] * len(items.system.structure.laws)
+        self.deformations = [0.0] * len(items.system.structure.laws)
+        self.reached = -1.0
+        self.last: tuple[Array, Array, Array] = (np.zeros(0), np.zeros(0), np.zeros(3))
+        self._blocks: list[tuple[Any, ...]] = []
+        self._most = min(BLOCK, max(HELD // items.widest, 1))
+
+    def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take some samples (see `integrate.protocol.Recorder`)."""
+        self.keep(t, u, v, a, laws, works)
+        self._progress(self.reached, "")
+
+    def keep(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take some samples whose progress was told before (see `integrate.protocol.EnvelopeRecorder`)."""
+        new = t > self.reached  # but not the start of a part, where another ended
+        if not new.any():
+            return
+        block = (t, u, v, a, *laws, works)
+        self._blocks.append(block if new.all() else tuple(x[..., new] for x in block))
+        self.last = u[:, -1], v[:, -1], works[:, -1]
+        self.reached = float(t[-1])
+        if sum(len(x[0]) for x in self._blocks) >= self._most:
+            self.flush()
+
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+        """Widen the envelopes only (see `integrate.protocol.Recorder`)."""
+        self.envelopes.between(t, u, v, a, apart)
+
+    def stationary(self, t: Array, u: Array) -> None:
+        """Widen the envelopes of displacements only (see `integrate.protocol.Recorder`)."""
+        self.envelopes.stationary(t, u)
+
+    @property
+    def shown(self) -> Flags:
+        """Which unknowns `between` looks at (see `integrate.protocol.Recorder`)."""
+        return self.envelopes.shown
+
+    def trial(self, t: float, doing: str = "") -> None:
+        """Tell the progress of a run whose samples may not count (see `integrate.protocol.Recorder`)."""
+        self._progress(t, doing)
+
+    @property
+    def started(self) -> bool:
+        """Whether there was a sample: a method may refuse the reduced system at once."""
+        return self.reached >= 0.0
+
+    def flush(self) -> None:
+        """Hand out the samples that are held."""
+        if not self._blocks:
+            return
+        system = self.items.system
+        t, u, v, a, force, stored, lost, works = (
+            np.concatenate(parts, axis=-1) for parts in zip(*self._blocks)
+        )
+        self._blocks = []
+        inputs = [system.excitation.values(t, order).T for order in range(3)]
+        d = system.law_rows @ u + system.law_inputs @ inputs[0]
+        energy = energies(system, t, u.T, v.T, stored.T, lost.T, works.T)
+        residual = self.energy.take(energy)
+        self.losses, self.deformations = lost[:, -1].tolist(), d[:, -1].tolist()
+        nodes, members = self.envelopes.take(t, u, v, a, inputs)
+        whole = np.column_stack([energy, residual])
+        self._append(SampleBlock(self.items, t, u, inputs[0], force, d, nodes, members, whole))

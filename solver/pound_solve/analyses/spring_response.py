@@ -1,0 +1,100 @@
+"""What a history has done to every spring and hinge: its peaks, plastic deformation and damage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from pound_solve.analyses import damage
+from pound_solve.analyses.recorder import HistoryRecorder
+from pound_solve.integrate.protocol import Extreme, Outcome
+from pound_solve.structure.assembly import Structure
+from pound_solve.structure.elements.base import LawSpring, Role
+
+
+class PlasticDeformation(NamedTuple):
+    """Deformations [L] or [rad] of a spring that has lost energy.
+
+    Attributes
+    ----------
+    last : float
+        At the end.
+    residual : float
+        Left when the force is taken off; NaN for a run that stopped.
+    path : float
+        Plastic work over the yield force.
+    path_ratio : float
+        Path over the deformation at yield [-].
+    """
+
+    last: float
+    residual: float
+    path: float
+    path_ratio: float
+
+
+@dataclass(frozen=True)
+class SpringResponse:
+    """Response of one spring or hinge.
+
+    Attributes
+    ----------
+    spring : LawSpring
+    force, deformation : Extreme
+        [F] or [F L]; [L] or [rad].
+    yields : int
+        Number of times that it started to yield.
+    ductility : float
+        Largest absolute deformation over yield; NaN for none.
+    loss : float
+        Energy lost in hysteresis [F L].
+    plastic : PlasticDeformation or None
+        None where no energy was lost, and for friction, which has no residual deformation.
+    damage : Damage or None
+        None where the deck gives no ultimate ductility.
+    """
+
+    spring: LawSpring
+    force: Extreme
+    deformation: Extreme
+    yields: int
+    ductility: float
+    loss: float
+    plastic: PlasticDeformation | None
+    damage: damage.Damage | None
+
+    @property
+    def deformation_unit(self) -> str:
+        """Dimension of the deformation."""
+        return "rad" if self.spring.unit == "F*L" else "L"
+
+
+def spring_responses(
+    structure: Structure, recorder: HistoryRecorder, outcome: Outcome, ended: bool
+) -> list[SpringResponse]:
+    """Response of all springs and hinges; `ended` tells that the history came to its end."""
+    return [_response(structure, recorder, outcome, ended, i) for i in recorder.items.springs]
+
+
+def _response(
+    structure: Structure, recorder: HistoryRecorder, outcome: Outcome, ended: bool, i: int
+) -> SpringResponse:
+    spring, peaks, loss = structure.laws[i], outcome.peaks, recorder.losses[i]
+    d = peaks.deformation[i]
+    plastic = None
+    if spring.role.viscous:
+        loss += peaks.dashpot_losses[i]
+    if loss and spring.role is Role.SPRING:  # friction has no residual deformation of its own
+        last = recorder.deformations[i]
+        left = damage.residual(spring.law, outcome.states[i], last) if ended else np.nan
+        plastic = PlasticDeformation(last, left, *damage.plastic_path(loss, spring.k0, spring.yields))
+    card = structure.model.props[structure.model.elements[spring.element].prop]
+    ultimate = card.values.get("DUCTU")
+    index = None
+    if ultimate is not None and spring.yields is not None:
+        sides = (ultimate[0], ultimate[-1])
+        index = damage.park_ang((d.high, d.low), loss, spring.k0, spring.yields, sides, card["PA_BETA"])
+    ductility = damage.ductility((d.high, d.low), spring.yields)
+    return SpringResponse(spring, peaks.force[i], d, peaks.yields[i], ductility, loss, plastic, index)

@@ -1,0 +1,84 @@
+"""Ground motions and forces in time of a deck, and the state that a history goes on from."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Card, Model
+from pound_solve.driver.request import Request
+from pound_solve.loading.forces.base import Force
+from pound_solve.loading.motions.base import METRE, LoadingContext, Motion
+from pound_solve.loading.motions.wave import fronts
+from pound_solve.loading.records.base import RecordError
+from pound_solve.numerics.types import Array
+from pound_solve.results import Results, ResultsError
+
+
+def context(model: Model, request: Request) -> LoadingContext:
+    """What motions and forces need to know: units, search path, length of the analysis."""
+    folders = [Path(request.deck).parent, *request.records]
+    folders += [Path(p) for p in os.environ.get("POUND_RECORDS", "").split(os.pathsep) if p]
+    duration = max((c["T"] for c in model.analyses if c.spec.name == "HISTORY"), default=0.0)
+    return LoadingContext(
+        model.gravity, METRE.get(model.units.length.lower(), 1.0), tuple(folders), duration
+    )
+
+
+def motions(model: Model, surroundings: LoadingContext, found: list[Diagnostic]) -> list[Motion]:
+    """Ground motions of all EQUAKE cards, a wave as one for each place."""
+    out: list[Motion] = []
+    place = {node.id: node.x for node in model.nodes.values()}
+    apart = [card for card in model.equake if card["SUPPORTS"] is not None]
+    whole = [card for card in model.equake if card["SUPPORTS"] is None]
+    if apart and whole:
+        message = "some motions have SUPPORTS and this one has not: give SUPPORTS to all or to none"
+        found.append(Diagnostic("R405", message, whole[0].span))
+    for card in model.equake:
+        motion: Motion | None = _built(card, surroundings, found)
+        if motion is None:
+            continue
+        found += [
+            Diagnostic("R404", w, card.span, severity="warning") for w in motion.info.get("warnings", ())
+        ]
+        ways = {"XYR"[d] for d in motion.directions}
+        for node in motion.supports or ():
+            if not ways & set(model.nodes[node].fixed):
+                message = f"node {node} is not fixed along {motion.direction}: a support that moves must be"
+                found.append(Diagnostic("R405", message, card.place("SUPPORTS")))
+        out += fronts(motion, place)
+    return out
+
+
+def forces(model: Model, surroundings: LoadingContext, found: list[Diagnostic]) -> list[Force]:
+    """Forces in time of all FORCES cards."""
+    return [force for card in model.forces if (force := _built(card, surroundings, found)) is not None]
+
+
+def _built(card: Card, surroundings: LoadingContext, found: list[Diagnostic]) -> Any:
+    """What a card of EQUAKE or FORCES makes; None where it has a mistake."""
+    try:
+        return card.spec.impl(card.values, surroundings)
+    except RecordError as err:
+        found.append(Diagnostic(err.code, err.message, card.place(err.item), hint=err.hint))
+        return None
+
+
+def saved_state(model: Model, request: Request, found: list[Diagnostic]) -> dict[str, Array]:
+    """State of the results file that a history goes on from; read before the file may be written anew."""
+    for card in model.analyses:
+        if card.spec.name != "HISTORY" or not card["RESTART"]:
+            continue
+        path = Path(request.deck).parent / card["RESTART"]
+        try:
+            with Results.open(path) as results:
+                state = results.restart()
+        except ResultsError as err:
+            found.append(Diagnostic("R406", str(err), card.place("RESTART")))
+            return {}
+        if not state:
+            found.append(Diagnostic("R406", f"{path} holds no state to go on from", card.place("RESTART")))
+        return state
+    return {}

@@ -1,0 +1,69 @@
+"""What the command line replaces in the deck: METHOD, DT and TOL of every HISTORY.
+
+``--set`` replaces PARAMs when the deck is read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Card, Model, Span
+from pound_deck.schema import REQUIRED, Spec
+from pound_solve.catalog import catalog
+from pound_solve.driver.request import Request
+
+
+def overridden(model: Model, request: Request, found: list[Diagnostic]) -> Model:
+    """The model with ``--method``, ``--dt``, ``--tol`` in its HISTORY cards; mistakes go into `found`."""
+    given = {"DT": request.dt, "TOL": request.tol}
+    if request.method is None and set(given.values()) == {None}:
+        return model
+    asked = {item: value for item, value in given.items() if value is not None}
+    cards = []
+    for card in model.analyses:
+        if card.spec.name == "HISTORY":
+            changed = _changed(card, request.method, asked, found)
+            if changed is None:
+                return model
+            card = changed
+        cards.append(card)
+    return replace(model, analyses=tuple(cards))
+
+
+def _changed(
+    card: Card, name: str | None, asked: Mapping[str, float], found: list[Diagnostic]
+) -> Card | None:
+    """HISTORY card with the method and the items that are asked for; None where it has a mistake."""
+    methods = catalog().family("method")
+    method = methods.get((name or card["METHOD"]).upper())
+    if method is None:
+        message = f"--method {name}: known methods are {', '.join(methods)}"
+        found.append(Diagnostic("P210", message, None))
+        return None
+    for item in asked:
+        if item not in {f.name for f in method.fields}:
+            message = f"--{item.lower()}: {method.name} has no item {item}"
+            found.append(Diagnostic("P211", message, None, severity="warning"))
+    card = with_method(card, method, asked)
+    missing = [f.name for f in method.fields if card.values[f.name] is REQUIRED]
+    if missing:
+        message = f"--method {method.name} needs {', '.join(missing)}: give --dt"
+        found.append(Diagnostic("P213", message, None))
+        return None
+    return card
+
+
+def with_method(card: Card, method: Spec, given: Mapping[str, Any]) -> Card:
+    """HISTORY card with another method: the card's own items where the method has them, else the defaults,
+    and what is given.
+    """
+    own = {f.name: card.values.get(f.name, f.default) for f in method.fields}
+    # an item of the deck's own method that was left out there may be one that this method must have
+    own |= {f.name: f.default for f in method.fields if own[f.name] is None}
+    own |= {item: value for item, value in given.items() if item in own}
+    spans = dict(card.spans) | {k: Span("--method/--dt", 1, 1, 2) for k in ("METHOD", *given)}
+    values = {**card.values, **own, "METHOD": method.name}
+    return replace(card, values=values, laws={"METHOD": (method,)}, spans=spans)

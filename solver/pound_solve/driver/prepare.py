@@ -1,0 +1,91 @@
+"""From the deck to the assembled structure: all mistakes that can be told before anything is computed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from pound_deck.diagnostics import Diagnostic, has_errors, render
+from pound_deck.model import Model
+from pound_deck.reader import read_deck
+from pound_solve.catalog import catalog
+from pound_solve.driver import loading
+from pound_solve.driver.overrides import overridden
+from pound_solve.driver.preflight import preflight
+from pound_solve.driver.request import Request
+from pound_solve.loading.forces.base import Force
+from pound_solve.loading.motions.base import Motion
+from pound_solve.numerics.types import Array
+from pound_solve.structure.assembly import AssemblyError, Structure, assemble
+from pound_solve.structure.reduction import moved_supports
+
+
+class DeckError(Exception):
+    """The deck has mistakes; `diagnostics` are all of them and `files` the texts they point into."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
+        super().__init__(render(diagnostics, files))
+        self.diagnostics, self.files = tuple(diagnostics), dict(files)
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A deck that is read and checked, its motions, its forces in time and its assembled structure."""
+
+    model: Model
+    motions: tuple[Motion, ...]
+    forces: tuple[Force, ...]
+    structure: Structure
+    warnings: tuple[Diagnostic, ...]
+    files: Mapping[str, str]
+    saved: Mapping[str, Array] = field(default_factory=dict)
+
+
+def prepare(request: Request) -> Prepared:
+    """Read a deck, its records, and assemble the structure.
+
+    Raises
+    ------
+    DeckError
+        The deck, a record or the structure has mistakes: all that can be told at once.
+    OSError
+        The deck cannot be read.
+    """
+    model, diagnostics, files = read_deck(request.deck, catalog(), request.params)
+    if model is None or has_errors(diagnostics):
+        raise DeckError(diagnostics, files)
+    found = list(diagnostics)
+    model = overridden(model, request, found)
+    context = loading.context(model, request)
+    motions = loading.motions(model, context, found)
+    forces = loading.forces(model, context, found)
+    structure = None
+    try:
+        structure = _assembled(model, motions)
+        found += preflight(structure)
+    except AssemblyError as err:
+        found += err.diagnostics
+    saved = loading.saved_state(model, request, found)
+    if has_errors(found) or structure is None:
+        raise DeckError(found, files)
+    return Prepared(model, tuple(motions), tuple(forces), structure, tuple(found), files, saved)
+
+
+def _assembled(model: Model, motions: Sequence[Motion]) -> Structure:
+    """The structure with the loads that STATIC asks for."""
+    fixed = [(n.id, d) for n in model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed]
+    statics = [c for c in model.analyses if c.spec.name == "STATIC"]
+    if any(c["GRAVITY"] == "YES" for c in statics):
+        model = _weighed(model)
+    self_weight = all(c["SELF_WEIGHT"] == "YES" for c in statics)
+    return assemble(model, moved_supports(motions, fixed), self_weight)
+
+
+def _weighed(model: Model) -> Model:
+    """The model with its nodal weights as loads (STATIC GRAVITY=YES)."""
+    extra = []
+    for card in model.weights:
+        wy = card["WX"] if card["WY"] is None else card["WY"]
+        load = {"NODES": card["NODES"], "FX": 0.0, "FY": -wy, "MZ": 0.0, "HELD": "YES"}
+        extra.append(replace(card, values=load))
+    return replace(model, loads=(*model.loads, *extra))

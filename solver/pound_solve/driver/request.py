@@ -1,0 +1,42 @@
+"""What the user asks of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+
+@dataclass(frozen=True)
+class Request:
+    """What the user asks of a run.
+
+    Attributes
+    ----------
+    deck : str
+        Path of the deck.
+    params : mapping of str to str
+        PARAM values that replace the deck's.
+    out : Path or None
+        Folder of report and results; None for the deck's.
+    records : tuple of Path
+        Folders where records are looked for, after the deck's own.
+    method, dt, tol : str or None, float or None
+        Replace METHOD, DT and TOL of every HISTORY.
+    explain : bool
+        Put what the run imports, compiles and holds into the results.
+    """
+
+    deck: str
+    params: Mapping[str, str] = field(default_factory=dict)
+    out: Path | None = None
+    records: tuple[Path, ...] = ()
+    method: str | None = None
+    dt: float | None = None
+    tol: float | None = None
+    explain: bool = False
+
+    def path(self, suffix: str) -> Path:
+        """Path of an output file."""
+        deck = Path(self.deck)
+        return (self.out or deck.parent) / (deck.stem + suffix)

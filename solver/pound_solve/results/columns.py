@@ -1,0 +1,28 @@
+"""Columns that many tables share."""
+
+from __future__ import annotations
+
+from pound_solve.results.schema import Column
+
+NODE = Column("node", fmt="int", doc="node number")
+ELEMENT = Column("element", fmt="int", doc="element number")
+ITEM = Column("item", doc="what the value is")
+VALUE = Column("value", doc="value with its unit, as text")
+DEFAULT = Column("default", " ", doc="`*` for a default value")
+UNIT = Column("unit", doc="unit of the numbers in this row")
+CONTACT = Column("contact", doc="number or name of the contact element")
+
+
+def time_column(name: str, head: str, doc: str) -> Column:
+    """Column of instants."""
+    return Column(name, head, "T", "time", doc)
+
+
+def extreme_columns(unit: str) -> tuple[Column, ...]:
+    """Largest and smallest value with their times."""
+    return (
+        Column("max", "max", unit, "num", "largest value"),
+        time_column("t_max", "at time", "time of the largest value"),
+        Column("min", "min", unit, "num", "smallest value"),
+        time_column("t_min", "at time", "time of the smallest value"),
+    )

@@ -1,0 +1,64 @@
+"""All tables, sections and histories: found in the modules of `tables` and `histories`, none is listed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from pkgutil import walk_packages
+from types import MappingProxyType, ModuleType
+from typing import TYPE_CHECKING, Any, Final
+
+from pound_solve.results import histories, tables
+from pound_solve.results.schema import History, Layout, Section, Stage, Table
+
+if TYPE_CHECKING:
+    from pound_solve.analyses.recorder import RecordedItems, SampleBlock
+    from pound_solve.numerics.types import Array
+
+
+def _modules(package: ModuleType) -> Iterator[ModuleType]:
+    """Every module of a package and of the packages in it, by name."""
+    for found in sorted(walk_packages(package.__path__, f"{package.__name__}."), key=lambda m: m.name):
+        yield import_module(found.name)
+
+
+def _found(kind: type) -> list[tuple[ModuleType, Any]]:
+    """Objects of a kind that stand at the top of a module, with the first module that holds each."""
+    out = {
+        id(x): (module, x)
+        for module in reversed(_ALL)
+        for x in vars(module).values()
+        if isinstance(x, kind)
+    }
+    return sorted(out.values(), key=lambda pair: pair[1].place)
+
+
+_ALL: Final = (*_modules(tables), *_modules(histories))
+_PARTS: Final[tuple[tuple[Section, tuple[Table[Any], ...]], ...]] = tuple(
+    (section, tuple(t for module, t in _found(Table) if module.__package__ == folder.__name__))
+    for folder, section in _found(Section)
+)
+
+#: Sections of the report: heading, names of the tables.  The number of a section is its place here.
+SECTIONS: Final = tuple((section.heading, tuple(t.name for t in own)) for section, own in _PARTS)
+
+#: Every table by name, in the order of the report.
+TABLES: Final[Mapping[str, Table[Any]]] = MappingProxyType({t.name: t for _, own in _PARTS for t in own})
+
+#: Every history by its path below ``/history``, ``time`` first.
+HISTORIES: Final[Mapping[str, History]] = MappingProxyType({h.name: h for _, h in _found(History)})
+
+
+def tables_at(stage: Stage) -> Iterator[Table[Any]]:
+    """Tables that are written at a stage."""
+    return (table for table in TABLES.values() if stage in table.stages)
+
+
+def layout_of(items: RecordedItems) -> Layout:
+    """Layout of all histories but ``time``, of what is recorded."""
+    return {name: h.layout(items) for name, h in HISTORIES.items() if name != "time"}
+
+
+def values_of(block: SampleBlock) -> dict[str, Array]:
+    """Rows of all histories, from a block of samples."""
+    return {name: h.values(block) for name, h in HISTORIES.items()}

@@ -1,0 +1,65 @@
+"""``/history/ground`` and ``/history/force``: what drives the structure."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pound_solve.results.schema import History, HistoryLayout
+
+if TYPE_CHECKING:
+    from pound_solve.analyses.recorder import RecordedItems, SampleBlock
+    from pound_solve.numerics.types import Array
+
+
+def ground_layout(items: RecordedItems) -> HistoryLayout:
+    """One column for each motion."""
+    motions = items.system.motions
+    return HistoryLayout(
+        (len(motions),),
+        {
+            "labels": [f"{i + 1} {m.direction}" for i, m in enumerate(motions)],
+            "unit": ["rad/T^2" if m.direction == "R" else "L/T^2" for m in motions],
+        },
+    )
+
+
+def ground(block: SampleBlock) -> Array:
+    """Accelerations, shape (n_times, n_motions)."""
+    motions = block.items.system.motions
+    rows = [[float(m.acceleration.value(t)) for m in motions] for t in block.t]
+    return np.array(rows).reshape(len(block.t), -1)
+
+
+def force_layout(items: RecordedItems) -> HistoryLayout:
+    """One column for each card of FORCES."""
+    forces = items.system.forces
+    return HistoryLayout(
+        (len(forces),), {"labels": [f"{i + 1} {f.info['kind']}" for i, f in enumerate(forces)]}
+    )
+
+
+def forces(block: SampleBlock) -> Array:
+    """Histories of the forces, the last of the inputs, shape (n_times, n_forces)."""
+    return block.inputs[len(block.inputs) - len(block.items.system.forces) :].T
+
+
+GROUND = History(
+    name="ground",
+    place=100,
+    row="motions",
+    doc="ground accelerations, scaled",
+    layout=ground_layout,
+    values=ground,
+    sample=HistoryLayout((1,), {"labels": ["elcentro"], "unit": "L/T^2"}),
+)
+FORCE = History(
+    name="force",
+    place=110,
+    row="forces",
+    doc="histories of FORCES, in the order of the deck",
+    layout=force_layout,
+    values=forces,
+    sample=HistoryLayout((1,), {"labels": ["1 SINE"]}),
+)

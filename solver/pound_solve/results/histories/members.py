@@ -1,0 +1,41 @@
+"""``/history/member``: forces of the members."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from pound_solve.results.schema import History, HistoryLayout
+
+if TYPE_CHECKING:
+    from pound_solve.analyses.recorder import RecordedItems
+
+
+def layout(items: RecordedItems) -> HistoryLayout:
+    """One column for each force."""
+    outputs = items.outputs
+    return HistoryLayout(
+        (len(outputs),),
+        {
+            "element": [o.element for o in outputs],
+            "quantity": [o.quantity for o in outputs],
+            "unit": [o.unit for o in outputs],
+        },
+    )
+
+
+FORCE = History(
+    name="member/force",
+    place=40,
+    row="quantities",
+    doc="forces and moments of the members",
+    layout=layout,
+    values=lambda block: block.members.T,
+    sample=HistoryLayout(
+        (3,),
+        {
+            "element": [101, 101, 102],
+            "quantity": ["axial", "moment I", "axial"],
+            "unit": ["F", "F*L", "F"],
+        },
+    ),
+)

@@ -1,0 +1,200 @@
+"""The reader of results files: tables and histories are read when asked for.
+
+All that a reader needs stands in the file; `pound_solve.results.contents` lists what may stand there.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Self
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_deck.model import Units
+from pound_solve.numerics.types import Array
+from pound_solve.results.contents import HISTORIES, TABLES
+from pound_solve.results.form import FILETYPE, FORMAT_VERSION, ResultsError, escape, reason, unescape
+
+
+class Results:
+    """Read a results file; histories and tables are read when asked for.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+
+    Raises
+    ------
+    ResultsError
+        There is no such file, or it is not a results file that this version reads.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+        if not self.path.is_file():
+            raise ResultsError(f"{path}: no such file")
+        try:
+            self._file = h5py.File(path, "r")
+        except OSError as err:
+            raise ResultsError(f"{path}: {reason(err)}") from err
+        try:
+            self._check_head()
+        except ResultsError:
+            self.close()
+            raise
+        except (KeyError, ValueError, TypeError, OSError) as err:
+            self.close()
+            raise ResultsError(f"{path}: damaged results file: {err}") from err
+
+    def _check_head(self) -> None:
+        attrs = self._file.attrs
+        if _plain(attrs.get("filetype")) != FILETYPE:
+            raise ResultsError(f"{self.path}: an HDF5 file, but not one of pound-solve results")
+        major, minor = (int(v) for v in attrs["format_version"])
+        if major > FORMAT_VERSION[0]:
+            raise ResultsError(
+                f"{self.path}: format {major}.{minor}, this version reads up to {FORMAT_VERSION[0]}.x; "
+                f"written by pound-solve {_plain(attrs['program_version'])}"
+            )
+        self.program_version: str = _plain(attrs["program_version"])
+        self.title: str = _plain(attrs["title"])
+        force, length, time = (_plain(u) for u in attrs["units"])
+        self.units = Units(force, length, time, given=True)
+        self.status: str = _plain(attrs["status"])  #: ``done``, ``stopped`` or ``running``
+        self.message: str = _plain(attrs["message"])  #: where and why the analysis stopped, else empty
+        self._datasets: dict[str, h5py.Dataset] = {}
+        self._file["history"].visititems(self._collect)
+        # A kill amid a flush may leave histories of different lengths: what all of them have, holds.
+        self._length = min((len(d) for d in self._datasets.values()), default=0)
+
+    def _collect(self, name: str, item: h5py.Dataset | h5py.Group) -> None:
+        if isinstance(item, h5py.Dataset):
+            self._datasets[name] = item
+
+    @classmethod
+    def open(cls, path: str | Path) -> Self:
+        """Open a results file, see the class."""
+        return cls(path)
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """Names of the tables in the file, in the order of the report."""
+        stored = self._file["tables"]
+        return (*(n for n in TABLES if n in stored), *(n for n in stored if n not in TABLES))
+
+    @property
+    def histories(self) -> tuple[str, ...]:
+        """Names of the histories in the file, ``time`` first."""
+        known = [n for n in HISTORIES if n in self._datasets]
+        return (*known, *(n for n in self._datasets if n not in HISTORIES))
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """Names of the texts below ``/input``."""
+        return tuple(unescape(key) for key in self._file["input"])
+
+    @property
+    def time(self) -> Array:
+        """Time axis of the histories, shape (nt,), [T]; empty where no history was computed."""
+        return self.history("time") if "time" in self._datasets else np.empty(0)
+
+    @property
+    def last_time(self) -> float:
+        """Last instant of the histories [T]; NaN where there is none."""
+        return float(self._datasets["time"][self._length - 1]) if self._length else float("nan")
+
+    def text(self, name: str) -> str:
+        """Text below ``/input``; KeyError where there is none of that name."""
+        dataset = _find(self._file["input"], escape(name), "text", name, self.texts)
+        return str(dataset.asstr()[()])
+
+    def holds(self, name: str) -> bool:
+        """Whether the history of that name has an instant, or else the table of that name a row."""
+        if name in self._datasets:
+            return self._length > 0
+        return name in self.tables and len(self._table(name)) > 0
+
+    def table(self, name: str) -> NDArray[Any]:
+        """Table as structured array, texts as str; KeyError where the file has none of that name."""
+        stored = self._table(name)[()]
+        fields = [stored.dtype[f] for f in stored.dtype.names]
+        plain = [(f, "O" if t.kind == "O" else t) for f, t in zip(stored.dtype.names, fields)]
+        out = np.empty(len(stored), dtype=plain)
+        for field, kind in zip(stored.dtype.names, fields):
+            column = stored[field]
+            out[field] = [_plain(v) for v in column] if kind.kind == "O" else column
+        return out
+
+    def table_units(self, name: str) -> dict[str, str]:
+        """Unit of every column of a table, in the deck's units."""
+        attrs = self._table(name).attrs
+        return {_plain(c): _plain(u) for c, u in zip(attrs["columns"], attrs["units"])}
+
+    def note(self, name: str) -> str:
+        """Remark of this run on a table, or an empty text."""
+        return _plain(self._table(name).attrs["note"])
+
+    def history(self, name: str) -> Array:
+        """History, shape (nt, \\*row); KeyError where the file has none of that name."""
+        out: Array = self._dataset(name)[: self._length]
+        return out
+
+    def labels(self, name: str) -> tuple[str, ...]:
+        """Label of every number of a history's row, row by row (``100 ux`` for node histories)."""
+        attrs = self._dataset(name).attrs
+        labels = tuple(_plain(v) for v in attrs["labels"])
+        if "nodes" not in attrs:
+            return labels
+        return tuple(f"{node} {label}" for node in attrs["nodes"] for label in labels)
+
+    def history_units(self, name: str) -> tuple[str, ...]:
+        """Unit of every number of a history's row, in the deck's units; in the order of `labels`."""
+        attrs = self._dataset(name).attrs
+        return tuple(_plain(v) for v in attrs["unit"]) * (len(attrs["nodes"]) if "nodes" in attrs else 1)
+
+    def attributes(self, name: str) -> dict[str, list[Any]]:
+        """All attributes of a history (``nodes``, ``element``, ``quantity``, ...), each as a list."""
+        attrs = self._dataset(name).attrs
+        return {key: [_plain(v) for v in np.atleast_1d(attrs[key])] for key in attrs}
+
+    def restart(self) -> dict[str, Array]:
+        """State that a later run can be taken up from; empty where the file has none."""
+        group = self._file.get("restart", {})
+        return {name: np.asarray(group[name], float) for name in group}
+
+    def _table(self, name: str) -> h5py.Dataset:
+        return _find(self._file["tables"], name, "table", name, self.tables)
+
+    def _dataset(self, name: str) -> h5py.Dataset:
+        return _find(self._datasets, name, "history", name, self.histories)
+
+
+def is_hdf5(path: str | Path) -> bool:
+    """Whether there is a file of the format of results, ours or not."""
+    return bool(h5py.is_hdf5(path))
+
+
+def _plain(value: Any) -> Any:
+    """Python's own str or number for what h5py gives."""
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "replace")
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _find(group: Any, key: str, kind: str, name: str, existing: tuple[str, ...]) -> h5py.Dataset:
+    if key not in group:
+        raise KeyError(f"no {kind} {name!r} in this file; it has: {', '.join(existing) or 'none'}")
+    return group[key]

@@ -1,0 +1,68 @@
+"""The record of a run: what it has computed so far, from which all tables are made."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeAlias
+
+from pound_solve.results.schema import Layout
+
+if TYPE_CHECKING:
+    from pound_deck.model import Model
+    from pound_solve.analyses.history import HistoryResult
+    from pound_solve.analyses.modal import ModalResult
+    from pound_solve.analyses.pushover import PushoverResult
+    from pound_solve.analyses.recorder import RecordedItems
+    from pound_solve.analyses.static_response import StaticResponse
+    from pound_solve.loading.forces.base import Force
+    from pound_solve.loading.motions.base import Motion
+    from pound_solve.structure.assembly import Structure
+    from pound_solve.structure.diaphragms import DiaphragmCollision
+
+Check: TypeAlias = tuple[str, str, str]  #: what was checked, what was found, whether that is good enough
+
+
+@dataclass
+class RunRecord:
+    """What a run has so far.
+
+    Attributes
+    ----------
+    model : Model
+    motions : sequence of Motion
+    forces : sequence of Force
+    structure : Structure
+        After the static analysis with the stiffness that its axial forces give.
+    overridden : frozenset of str
+        Lower-case names of PARAMs that the command line set.
+    began : float
+        Reading of `time.perf_counter` when the run began.
+    diaphragm_collisions : mapping
+        What meets in every contact, by the number of its law.
+    static, modal, pushover, history
+        Results of the analyses; each is set when its analysis is over.
+    recorded, layout
+        What the history records, and its layout in the file; set when it starts.
+    checks : list of Check
+        Of all analyses.
+    solve_seconds, cpu_seconds : float
+        Time that the methods of all histories took [s].
+    """
+
+    model: Model
+    motions: Sequence[Motion]
+    forces: Sequence[Force]
+    structure: Structure
+    overridden: frozenset[str]
+    began: float
+    diaphragm_collisions: Mapping[int, DiaphragmCollision]
+    static: StaticResponse = field(init=False)
+    modal: ModalResult = field(init=False)
+    pushover: PushoverResult = field(init=False)
+    history: HistoryResult = field(init=False)
+    recorded: RecordedItems | None = None
+    layout: Layout = field(default_factory=dict)
+    checks: list[Check] = field(default_factory=list)
+    solve_seconds: float = 0.0
+    cpu_seconds: float = 0.0

@@ -1,0 +1,36 @@
+"""Remarks that several tables make."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from pound_solve.results.record import RunRecord
+
+SIGNS: Final = (
+    "End forces act on the member along its own axes; axial tension and contact compression are positive, "
+    "moments of hinges where the member sags."
+)
+
+
+def how_found(run: RunRecord) -> str:
+    """Tell whether the peaks that the method tracks are exact."""
+    if run.history.returned.exact:
+        return "Peaks are exact."
+    return "Peaks are those of the steps, interpolated between them."
+
+
+def how_sampled(run: RunRecord) -> str:
+    """Tell at which instants envelopes are taken; a sentence, and a blank."""
+    history, time = run.history, run.model.units.time
+    envelopes, outcome = history.recorder.envelopes, history.outcome
+    if not envelopes.seen:
+        return (
+            f"Taken at the output times, every {history.every:.6g} {time}: peaks between them are missed, "
+            "a smaller OUTPUT EVERY finds them. "
+        )
+    turns = outcome is not None and outcome.turns
+    peaks = "peaks of displacements are among them, other peaks" if turns else "peaks"
+    return (
+        f"Taken at {envelopes.seen} instants, at most {envelopes.apart:.3g} {time} apart, and at the "
+        f"output times; {peaks} between them are not included. "
+    )

@@ -1,0 +1,177 @@
+"""Table ``collisions``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from pound_solve.results.columns import CONTACT, time_column
+from pound_solve.results.record import RunRecord
+from pound_solve.results.schema import Column, Row, Stage, Table
+from pound_solve.results.words import contact_name
+
+
+def rows(run: RunRecord) -> Iterator[Row]:
+    """One row for each closure of a contact, by time."""
+    for c in sorted(run.history.returned.peaks.collisions, key=lambda c: (c.t_start, c.law)):
+        theory, duration = run.diaphragm_collisions[c.law], c.t_end - c.t_start
+        predicted = theory.predicted(c.approach, duration)
+        yield (
+            contact_name(run.model, run.structure.laws[c.law].element),
+            c.t_start,
+            c.t_end,
+            c.approach,
+            c.separation,
+            c.separation / c.approach if c.approach > 0 else math.nan,
+            c.peak,
+            c.t_peak,
+            c.impulse,
+            theory.plateau(c.impulse, duration),
+            predicted,
+            100.0 * (predicted / c.peak - 1.0) if c.peak > 0.0 else math.nan,
+        )
+
+
+def remark(run: RunRecord) -> str | None:
+    """Explain the predicted force where there is one."""
+    if not any(x.pair for x in run.diaphragm_collisions.values()):
+        return None
+    return (
+        "The prediction considers the diaphragms only (section 1), no other forces and no ringing: the "
+        "peak of a mesh of lumped masses exceeds a constant force by 14 % or more. It assumes a contact "
+        "much stiffer than the diaphragms, and is omitted where they touch for more than twice the "
+        "predicted time: softer contacts stay below it. The plateau is the impulse over the time of "
+        "contact, or over the shorter time that the predicted force would need for it; of a coarse mesh it "
+        "may exceed the peak."
+    )
+
+
+TABLE = Table(
+    name="collisions",
+    title="Collisions",
+    place=20,
+    stages=(Stage.PEAKS,),
+    columns=(
+        CONTACT,
+        time_column("t_start", "closes", "time of closing"),
+        time_column("t_end", "opens", "time of opening; NaN if still closed at the end"),
+        Column(
+            "approach_velocity", "approach\nvelocity", "L/T", "short", doc="relative velocity at closing"
+        ),
+        Column(
+            "separation_velocity",
+            "separation\nvelocity",
+            "L/T",
+            "short",
+            doc="relative velocity at opening",
+        ),
+        Column("restitution", "restitution", "-", "short", doc="separation over approach velocity"),
+        Column("peak_force", "peak\nforce", "F", "num", doc="largest compression"),
+        time_column("t_peak", "at time", "time of the largest compression"),
+        Column("impulse", "impulse", "F*T", "short", doc="integral of the force over time"),
+        Column(
+            "plateau_force",
+            "plateau\nforce",
+            "F",
+            "short",
+            doc=(
+                "impulse over the duration, or over the shorter time that the predicted "
+                "force would take for the predicted impulse (where contact lasts up to "
+                "twice as long as predicted): of a coarse mesh it may exceed the peak; "
+                "NaN if still closed at the end"
+            ),
+        ),
+        Column(
+            "predicted_force",
+            "predicted\nforce",
+            "F",
+            "short",
+            doc=(
+                "first force of the diaphragms at this approach velocity, Eq 11 of Cole "
+                "et al. 2011; NaN where contact lasts more than twice as long as "
+                "predicted"
+            ),
+        ),
+        Column("force_error", "error", "%", "percent", doc="predicted over peak force, less one"),
+    ),
+    rows=rows,
+    remark=remark,
+    note=(
+        "Both velocities are positive if the bodies approach before and separate after the "
+        "collision. The restitution is that of the law only if nothing else acts on the "
+        "bodies during the collision."
+    ),
+    limit=100,
+    sample=(
+        (
+            "902",
+            2.0,
+            2.0061,
+            0.757324,
+            0.492261,
+            0.65,
+            13786.9,
+            2.00237,
+            50.9688,
+            12117.2,
+            math.nan,
+            math.nan,
+        ),
+        (
+            "901",
+            2.05037,
+            2.05647,
+            0.818368,
+            0.531939,
+            0.65,
+            14898.2,
+            2.05274,
+            55.0771,
+            13093.9,
+            12537.7,
+            -15.84,
+        ),
+        (
+            "901",
+            2.10074,
+            2.10684,
+            0.127008,
+            0.0825552,
+            0.65,
+            2312.15,
+            2.10311,
+            8.54779,
+            2032.13,
+            1945.81,
+            -15.84,
+        ),
+        (
+            "902",
+            2.3526,
+            2.3587,
+            0.890422,
+            0.578775,
+            0.65,
+            16209.9,
+            2.35497,
+            59.9265,
+            14246.8,
+            math.nan,
+            math.nan,
+        ),
+        (
+            "902",
+            7.99418,
+            math.nan,
+            0.52255,
+            0.339658,
+            0.65,
+            9512.88,
+            7.99656,
+            35.1682,
+            8360.8,
+            math.nan,
+            math.nan,
+        ),
+    ),
+)

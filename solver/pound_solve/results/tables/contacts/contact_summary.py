@@ -1,0 +1,67 @@
+"""Table ``contact_summary``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from pound_solve.results.columns import CONTACT, time_column
+from pound_solve.results.record import RunRecord
+from pound_solve.results.remarks import how_found
+from pound_solve.results.schema import Column, Row, Stage, Table
+from pound_solve.results.words import contact_name
+
+
+def rows(run: RunRecord) -> Iterator[Row]:
+    """One row for each contact."""
+    structure, recorder = run.structure, run.history.recorder
+    peaks = run.history.returned.peaks
+    for i in run.history.items.contacts:
+        law, closure = structure.laws[i], peaks.deformation[i]
+        gap = law.facts["gap"]
+        own = [c for c in peaks.collisions if c.law == i]
+        best = max(own, key=lambda c: (c.peak == c.peak, c.peak), default=None)  # NaN: an impact
+        ends = [c.t_end if math.isfinite(c.t_end) else recorder.reached for c in own]
+        yield (
+            contact_name(run.model, law.element),
+            len(own),
+            best.peak if best else 0.0,
+            best.t_peak if best else math.nan,
+            max(closure.high - gap, 0.0),
+            sum(c.impulse for c in own),
+            recorder.losses[i] + peaks.dashpot_losses[i],
+            gap - closure.high,
+            sum(end - c.t_start for c, end in zip(own, ends)),
+        )
+
+
+def remark(run: RunRecord) -> str:
+    """Tell whether peaks are exact."""
+    return how_found(run) + " A closure that has not ended counts."
+
+
+TABLE = Table(
+    name="contact_summary",
+    title="Contact summary",
+    place=10,
+    stages=(Stage.PEAKS,),
+    columns=(
+        CONTACT,
+        Column("closures", fmt="int", doc="number of collisions"),
+        Column("peak_force", "peak\nforce", "F", "num", doc="largest compression"),
+        time_column("t_peak", "at time", "time of the largest compression"),
+        Column("peak_penetration", "peak\npenetration", "L", "short", doc="largest overlap"),
+        Column("impulse", "impulse", "F*T", "short", doc="integral of the force over time"),
+        Column("energy_lost", "energy\nlost", "F*L", "short", doc="energy dissipated in the contact"),
+        Column("min_gap", "smallest\ngap", "L", "short", doc="smallest gap, negative while in contact"),
+        Column("time_closed", "time\nclosed", "T", "short", doc="sum of the durations of all collisions"),
+    ),
+    rows=rows,
+    remark=remark,
+    note="Compression is positive.",
+    sample=(
+        ("901", 14, 18204.7, 4.21348, 0.0012096, 151.203, 3.2214, -0.0012096, 0.0731),
+        ("902", 2, 9101.2, 5.1182, 0.00071, 71.2, 0.81, -0.00071, 0.0091),
+        ("903", 0, 0.0, math.nan, 0.0, 0.0, 0.0, 0.00213, 0.0),
+    ),
+)

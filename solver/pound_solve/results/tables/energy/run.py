@@ -1,0 +1,32 @@
+"""Table ``run``."""
+
+from __future__ import annotations
+
+from pound_solve.results.columns import ITEM, VALUE
+from pound_solve.results.record import RunRecord
+from pound_solve.results.schema import Row, Stage, Table
+
+
+def rows(run: RunRecord) -> list[Row]:
+    """Number of unknowns, and the figures of the method."""
+    figures = run.history.returned.figures
+    return [("unknowns", str(run.history.system.size)), *((k, str(v)) for k, v in figures.items())]
+
+
+TABLE = Table(
+    name="run",
+    title="Run log",
+    place=30,
+    stages=(Stage.PEAKS,),
+    columns=(
+        ITEM,
+        VALUE,
+    ),
+    rows=rows,
+    sample=(
+        ("method", "exact steps between events"),
+        ("steps", "5000"),
+        ("events", "31"),
+        ("regimes", "4"),
+    ),
+)

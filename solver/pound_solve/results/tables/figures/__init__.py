@@ -1,0 +1,5 @@
+"""Section 'Run figures' of the report."""
+
+from pound_solve.results.schema import Section
+
+SECTION = Section("Run figures", 110)

@@ -1,0 +1,35 @@
+"""Table ``damping``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pound_solve.results.record import RunRecord
+from pound_solve.results.schema import Column, Row, Stage, Table
+from pound_solve.results.words import text_of
+
+
+def rows(run: RunRecord) -> Iterator[Row]:
+    """One row for each card."""
+    for card, text in run.structure.damping_texts:
+        where = [
+            f"{f.name.lower()} {text_of(card[f.name])}"
+            for f in card.spec.fields
+            if f.name in ("NODES", "PROPS") and card[f.name]
+        ]
+        yield "; ".join(where) or "all", card.spec.name, text
+
+
+TABLE = Table(
+    name="damping",
+    title="Damping",
+    place=80,
+    stages=(Stage.INPUT,),
+    columns=(
+        Column("group", doc="part of the structure"),
+        Column("kind", doc="damping model"),
+        Column("description", doc="coefficients, and what they multiply"),
+    ),
+    rows=rows,
+    sample=(("all", "RAYLEIGH", "alpha 0.52360 1/s on the mass, beta 0.0014 s on the initial stiffness"),),
+)

@@ -1,0 +1,38 @@
+"""Table ``masses``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pound_solve.results.columns import NODE
+from pound_solve.results.record import RunRecord
+from pound_solve.results.schema import Column, Row, Stage, Table
+
+
+def rows(run: RunRecord) -> Iterator[Row]:
+    """Nodes with mass, the members' shares included."""
+    mass = run.structure.nodal_mass
+    for node in run.structure.model.nodes:
+        own = [mass.get((node, d), 0.0) for d in range(3)]
+        if any(own):
+            yield node, *own
+
+
+TABLE = Table(
+    name="masses",
+    title="Lumped masses",
+    place=50,
+    stages=(Stage.INPUT,),
+    columns=(
+        NODE,
+        Column("mx", "X", "F*T^2/L", "num", doc="mass in X"),
+        Column("my", "Y", "F*T^2/L", "num", doc="mass in Y"),
+        Column("mr", "R", "F*L*T^2", "num", doc="rotational inertia"),
+    ),
+    rows=rows,
+    sample=(
+        (100, 81.577, 81.577, 0.0),
+        (101, 8.15773, 8.15773, 0.0),
+        (300, 163.155, 163.155, 1.25),
+    ),
+)

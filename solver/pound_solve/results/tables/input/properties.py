@@ -1,0 +1,50 @@
+"""Table ``properties``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pound_deck.schema import Kind
+from pound_solve.results.columns import DEFAULT, ITEM
+from pound_solve.results.record import RunRecord
+from pound_solve.results.schema import Column, Row, Stage, Table
+from pound_solve.results.words import fields_of, text_of
+
+
+def rows(run: RunRecord) -> Iterator[Row]:
+    """Every item of every set; items that are left out and have no default are not shown."""
+    for label, card in run.model.props.items():
+        for f in fields_of(card):
+            given = f.name in card.spans
+            if card[f.name] is None and not given:
+                continue
+            counts = f.kind in (Kind.REAL, Kind.INT) and f.unit != "-"
+            unit = run.model.units.text(f.unit) if counts else ""
+            yield label, card.spec.name, f.name, text_of(card[f.name]), unit, "" if given else "*"
+
+
+TABLE = Table(
+    name="properties",
+    title="Property sets",
+    place=40,
+    stages=(Stage.INPUT,),
+    columns=(
+        Column("property", doc="property set"),
+        Column("kind", doc="kind of element, rule or law that the item belongs to"),
+        ITEM,
+        Column("value", doc="value in the deck's units"),
+        Column("unit", doc="unit of the value"),
+        DEFAULT,
+    ),
+    rows=rows,
+    group="property",
+    sample=(
+        ("COL1", "SPRING", "KX", "210000", "kN/m", ""),
+        ("COL1", "SPRING", "ANGLE", "0", "deg", "*"),
+        ("COL1", "ELASTO_PLASTIC", "FX", "1200", "kN", ""),
+        ("SLAB1", "FRAME", "E", "2.5084E+07", "kN/m^2", ""),
+        ("SLAB1", "FRAME", "A", "1.5", "m^2", ""),
+        ("POUND", "HERTZDAMP", "K", "15050400", "kN/m^1.5", ""),
+        ("POUND", "HERTZDAMP", "E", "0.65", "-", ""),
+    ),
+)

@@ -1,0 +1,44 @@
+"""Table ``member_envelope``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pound_solve.results.columns import ELEMENT, UNIT, extreme_columns
+from pound_solve.results.record import RunRecord
+from pound_solve.results.remarks import SIGNS, how_sampled
+from pound_solve.results.schema import Column, Row, Stage, Table
+
+
+def rows(run: RunRecord) -> Iterator[Row]:
+    """One row for each force of each recorded member."""
+    found = run.history.recorder.envelopes.output.rows()
+    for o, extremes in zip(run.history.items.outputs, found):
+        yield o.element, o.quantity, run.model.units.text(o.unit), *extremes
+
+
+def remark(run: RunRecord) -> str:
+    """Tell what the envelopes are taken from, and state the sign convention."""
+    return how_sampled(run) + SIGNS
+
+
+TABLE = Table(
+    name="member_envelope",
+    title="Member envelopes",
+    place=10,
+    stages=(Stage.SAMPLES,),
+    columns=(
+        ELEMENT,
+        Column("quantity", doc="name of the force or moment"),
+        UNIT,
+        *extreme_columns(""),
+    ),
+    rows=rows,
+    remark=remark,
+    sample=(
+        (101, "axial", "kN", 542.393, 6.458, -556.958, 4.866),
+        (101, "shear I", "kN", 292.373, 2.408, -53.7663, 1.178),
+        (101, "moment I", "kN*m", 671.988, 2.948, -422.91, 5.17),
+        (102, "axial", "kN", 69.3292, 3.85, -206.171, 8.436),
+    ),
+)

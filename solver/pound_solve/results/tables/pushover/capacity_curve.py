@@ -1,0 +1,40 @@
+"""Table ``capacity_curve``."""
+
+from __future__ import annotations
+
+from pound_solve.results.record import RunRecord
+from pound_solve.results.schema import Column, Row, Stage, Table
+
+
+def rows(run: RunRecord) -> list[Row]:
+    """The start, the stations, and the points at which springs, hinges and contacts changed."""
+    return [(p.displacement, p.shear, p.factor, p.changes) for p in run.pushover.curve]
+
+
+TABLE = Table(
+    name="capacity_curve",
+    title="Capacity curve",
+    place=30,
+    stages=(Stage.PUSHOVER,),
+    columns=(
+        Column("displacement", "control\ndispl.", "L", "num", doc="displacement of the control node"),
+        Column(
+            "base_shear",
+            "base\nshear",
+            "F",
+            "num",
+            doc="force on the ground along the direction of the pushover",
+        ),
+        Column("factor", "load\nfactor", "-", "num", doc="factor on the pattern"),
+        Column("events", fmt="int", doc="changes of springs, hinges and contacts so far"),
+    ),
+    rows=rows,
+    note="Displacements and base shears include those of the static state.",
+    limit=500,
+    sample=(
+        (0.0, 0.0, 0.0, 0),
+        (0.01, 281.818, 310.0, 0),
+        (0.02, 516.667, 620.0, 0),
+        (0.03, 715.385, 930.0, 1),
+    ),
+)

@@ -1,0 +1,38 @@
+"""Table ``push_pattern``."""
+
+from __future__ import annotations
+
+from pound_solve.results.columns import NODE
+from pound_solve.results.record import RunRecord
+from pound_solve.results.schema import Column, Row, Stage, Table
+
+
+def rows(run: RunRecord) -> list[Row]:
+    """One row for each degree of freedom that is pushed."""
+    free = run.structure.dofs.free
+    return [
+        (owner, "XYR"[d], float(a), float(b))
+        for (owner, d), a, b in zip(free, run.pushover.first, run.pushover.last)
+        if d < 3 and (a or b)
+    ]
+
+
+TABLE = Table(
+    name="push_pattern",
+    title="Pattern of the pushing forces",
+    place=20,
+    stages=(Stage.PUSHOVER,),
+    columns=(
+        NODE,
+        Column("direction", "dir.", doc="`X`, `Y` or `R`"),
+        Column("first", "at the start", fmt="num", doc="force or moment for a load factor of one"),
+        Column("last", "at the end", fmt="num", doc="force or moment for a load factor of one"),
+    ),
+    rows=rows,
+    note=("For a load factor of one. Forces on slaved degrees of freedom stand at their masters."),
+    sample=(
+        (100, "X", 0.365826, -0.25072),
+        (101, "X", 0.43958, -0.535894),
+        (102, "X", 0.457234, -0.0100317),
+    ),
+)

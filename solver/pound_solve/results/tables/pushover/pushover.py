@@ -1,0 +1,38 @@
+"""Table ``pushover``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pound_solve.results.columns import ITEM, VALUE
+from pound_solve.results.record import RunRecord
+from pound_solve.results.schema import Row, Stage, Table
+
+
+def rows(run: RunRecord) -> Iterator[Row]:
+    """What was pushed, why it ended, and the capacity."""
+    pushed, units = run.pushover, run.model.units
+    card, length, force = pushed.card, units.text("L"), units.text("F")
+    top, end = max(pushed.curve, key=lambda p: abs(p.shear)), pushed.curve[-1]
+    adaptive = ", adaptive" if card["ADAPTIVE"] == "YES" else ""
+    yield "pattern", f"{card['PATTERN']}{adaptive}, along {card['DIRECTION']}"
+    yield "control", f"{card['CONTROL'].lower()}, node {card['NODE']}"
+    yield "end", pushed.end
+    at_end = f"{end.displacement:.5g} {length}, {end.shear:.5g} {force}"
+    yield "displacement and base shear at the end", at_end
+    yield "largest base shear", f"{top.shear:.5g} {force} at {top.displacement:.5g} {length}"
+    yield "changes of springs, hinges and contacts", str(end.changes)
+
+
+TABLE = Table(
+    name="pushover",
+    title="Pushover",
+    place=10,
+    stages=(Stage.PUSHOVER,),
+    columns=(
+        ITEM,
+        VALUE,
+    ),
+    rows=rows,
+    sample=(("end", "the target displacement is reached"),),
+)

@@ -1,0 +1,58 @@
+"""Table ``scene``."""
+
+from __future__ import annotations
+
+from pound_solve.results.record import RunRecord
+from pound_solve.results.schema import Column, Row, Stage, Table
+
+
+def rows(run: RunRecord) -> list[Row] | None:
+    """Decisions of the reduction; after MODAL a row only if there are no modes."""
+    if run.recorded is None:
+        if run.modal.modes:
+            return None
+        return [("free vibration", "no modes", "no degree of freedom that has mass has stiffness too")]
+    system = run.recorded.system
+    out = [(d.subject, d.decision, d.why) for d in system.decisions]
+    if system.total and any(e.j is None for e in run.model.elements.values()):
+        why = "SUPPORTS moves the listed nodes only"
+        out.append(("elements with one node", "end at a fixed point", why))
+    if system.total:
+        out.append(("displacements", "total displacements", "supports move relative to each other"))
+    else:
+        out.append(("displacements", "relative to the ground", "one motion for the whole base"))
+    return out
+
+
+TABLE = Table(
+    name="scene",
+    title="What this analysis needs",
+    place=10,
+    stages=(
+        Stage.MODAL,
+        Stage.HISTORY,
+    ),
+    columns=(
+        Column("subject", doc="part of the analysis"),
+        Column("decision", doc="what is done or omitted"),
+        Column("why", doc="reason"),
+    ),
+    rows=rows,
+    sample=(
+        (
+            "directions",
+            "X only",
+            "all loads, motions and contacts act in X; Y and R are held or follow statics",
+        ),
+        (
+            "integrator",
+            "exact steps between events",
+            (
+                "between two events the structure is linear: the matrix exponential gives the "
+                "state at any time, so that closing and opening of contacts are found as roots "
+                "and not as steps"
+            ),
+        ),
+        ("left out", "geometric stiffness", "P-DELTA is not asked for"),
+    ),
+)

@@ -1,0 +1,5 @@
+"""Section 'Error against time' of the report."""
+
+from pound_solve.results.schema import Section
+
+SECTION = Section("Error against time", 120)

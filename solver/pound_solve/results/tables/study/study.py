@@ -1,0 +1,86 @@
+"""Table ``study``."""
+
+from __future__ import annotations
+
+import math
+
+from pound_solve.results.schema import Column, Row, Stage, Table
+from pound_solve.results.study_record import Study
+
+
+def rows(study: Study) -> list[Row]:
+    """One row for each trial."""
+    return [
+        (
+            t.method,
+            t.setting,
+            t.time,
+            t.steps,
+            t.events,
+            *(t.errors.get(kind, math.nan) for kind in ("drift", "member", "contact")),
+            order,
+            t.collisions,
+            t.residual,
+        )
+        for t, order in zip(study.trials, study.orders)
+    ]
+
+
+def remark(study: Study) -> str:
+    """Tell what the errors are measured against, and whether the times can be trusted."""
+    own = ", ".join(f"{e:.1e} ({kind})" for kind, e in study.reference.error.items() if math.isfinite(e))
+    errors = f"; its own errors are about {own}." if own else "."
+    times = " Times are of the history alone, in a process that has loaded what it needs."
+    return f"The reference is {study.reference.how}{errors}{times} {study.warning}".rstrip()
+
+
+TABLE = Table(
+    name="study",
+    title="Error and time of every run",
+    place=10,
+    stages=(Stage.STUDY,),
+    columns=(
+        Column("method", doc="method of HISTORY"),
+        Column("setting", doc="its step or tolerance as a deck has it"),
+        Column("seconds", "time to\nsolve [s]", fmt="short", doc="median time of the repeated runs"),
+        Column("steps", fmt="int", doc="steps taken", zero="-"),
+        Column("events", fmt="int", doc="changes of springs and contacts that were located"),
+        Column(
+            "drift",
+            "drifts",
+            "-",
+            "short",
+            doc="error of the drifts, or of displacements if there are none",
+        ),
+        Column("member", "member\nforces", "-", "short", doc="error of forces of members and springs"),
+        Column("contact", "contact\nforces", "-", "short", doc="error of the peak contact forces"),
+        Column(
+            "order",
+            "order",
+            "-",
+            "short",
+            doc="order of convergence of the largest of the three errors, against the row above",
+        ),
+        Column("collisions", "colli-\nsions", fmt="int", doc="number of collisions"),
+        Column(
+            "residual",
+            "energy\nresidual",
+            "-",
+            "short",
+            doc="largest energy residual over the largest energy",
+        ),
+    ),
+    rows=rows,
+    remark=remark,
+    note=(
+        "An error is the largest difference of an extreme from that of the reference, over "
+        "the largest extreme of that kind."
+    ),
+    group="method",
+    sample=(
+        ("EXACT", "", 0.05312, 0, 24, 0.0, 1.1e-15, 3e-16, math.nan, 8, 1.03e-15),
+        ("NEWMARK", "DT=0.005", 0.0305, 1120, 24, 0.014454, 0.017786, 0.025733, math.nan, 8, 0.0188),
+        ("NEWMARK", "DT=0.0025", 0.0417, 2080, 24, 0.004533, 0.0051073, 0.0069075, 2.1245, 8, 0.00526),
+        ("CENTRAL", "DT=0.005", math.nan, 0, 0, math.nan, math.nan, math.nan, math.nan, 0, math.nan),
+    ),
+)

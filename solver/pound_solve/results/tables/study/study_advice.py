@@ -1,0 +1,46 @@
+"""Table ``study_advice``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from pound_solve.results.schema import Column, Row, Stage, Table
+from pound_solve.results.study_record import Study
+
+
+def rows(study: Study) -> Iterator[Row]:
+    """One row for each target."""
+    for a in study.advice:
+        if a.trial is None:
+            yield a.target, "", "", *[math.nan] * 3
+        else:
+            yield a.target, a.trial.method, a.trial.setting, a.trial.time, a.trial.error, a.sure
+
+
+def remark(study: Study) -> str:
+    """Give the advice in one sentence."""
+    return study.sentence
+
+
+TABLE = Table(
+    name="study_advice",
+    title="Least time for an error",
+    place=30,
+    stages=(Stage.STUDY,),
+    columns=(
+        Column("target", "largest\nerror", "-", "short", doc="error that must be met"),
+        Column("method", doc="method of HISTORY; empty where no run is sure to meet it"),
+        Column("setting", doc="its step or tolerance"),
+        Column("seconds", "time to\nsolve [s]", fmt="short", doc="time of that run"),
+        Column("error", "error\nfound", "-", "short", doc="largest error of that run"),
+        Column("sure", "error\nallowed for", "-", "short", doc="that error with a safety margin"),
+    ),
+    rows=rows,
+    remark=remark,
+    sample=(
+        (0.01, "NEWMARK", "DT=0.0025", 0.0417, 0.0069, 0.0099),
+        (0.001, "EXACT", "", 0.05312, 1.1e-15, 3.3e-15),
+        (1e-06, "", "", math.nan, math.nan, math.nan),
+    ),
+)

@@ -1,0 +1,26 @@
+"""Table ``study_stops``."""
+
+from __future__ import annotations
+
+from pound_solve.results.schema import Column, Row, Stage, Table
+from pound_solve.results.study_record import Study
+
+
+def rows(study: Study) -> list[Row]:
+    """One row for each trial that stopped early."""
+    return [(t.method, t.setting, t.stopped) for t in study.trials if t.stopped]
+
+
+TABLE = Table(
+    name="study_stops",
+    title="Runs that stopped early",
+    place=20,
+    stages=(Stage.STUDY,),
+    columns=(
+        Column("method", doc="method of HISTORY"),
+        Column("setting", doc="its step or tolerance"),
+        Column("why", doc="reason"),
+    ),
+    rows=rows,
+    sample=(("CENTRAL", "DT=0.005", "A502 at t = 0 s: above the stability limit 0.004684"),),
+)

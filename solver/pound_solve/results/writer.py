@@ -1,0 +1,290 @@
+"""The writer of results files: HDF5, written in blocks while the solver runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from numbers import Integral, Real
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Final, Self
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.results.contents import HISTORIES, TABLES, tables_at
+from pound_solve.results.form import (
+    FILETYPE,
+    FORMAT_VERSION,
+    STATUSES,
+    ResultsError,
+    escape,
+    reason,
+    storable,
+)
+from pound_solve.results.schema import Column, HistoryLayout, Layout, Stage
+
+if TYPE_CHECKING:
+    from pound_deck.model import Units
+    from pound_solve.results.record import RunRecord
+    from pound_solve.results.study_record import Study
+
+#: rows of a chunk, and numbers in it, at most (one row in any case); a block of as many steps costs little
+#: to write, and little is lost by a kill
+BLOCK, WIDEST = 256, 2**17
+
+_TEXT: Final = h5py.string_dtype()
+_DTYPES: Final = {"int": np.dtype("i8"), "text": _TEXT}
+
+
+class Writer:
+    """Write a results file while the analysis goes on.
+
+    The file is flushed after every call: a killed run leaves all but its last block.  Leaving the context
+    with an exception finishes the file as ``stopped``; otherwise the caller must call :meth:`finish` first.
+
+    Parameters
+    ----------
+    path : str or Path
+        File to write; an old one is replaced.
+    title : str
+        Title of the deck.
+    units : Units
+        Names of the deck's units.
+    program_version : str
+        Version of the program that computes.
+
+    Raises
+    ------
+    ResultsError
+        The file cannot be created.
+    """
+
+    def __init__(self, path: str | Path, *, title: str, units: Units, program_version: str) -> None:
+        try:
+            # Format 1.8 holds attributes above 64 kB (labels of large models); later formats mark a file as
+            # open for writing, and a killed run would then leave one that no program opens.
+            Path(path).unlink(missing_ok=True)  # a reader that still holds the old file keeps it
+            self._file = h5py.File(path, "w", libver=("v108", "v108"))
+        except OSError as err:
+            raise ResultsError(f"{path}: cannot be written: {reason(err)}") from err
+        self._units = units
+        self._history: dict[str, h5py.Dataset] = {}
+        self._layout: dict[str, tuple[int, ...]] = {}
+        self._file.attrs.update(
+            {
+                "filetype": FILETYPE,
+                "format_version": np.array(FORMAT_VERSION),
+                "program_version": program_version,
+                "title": storable(title),
+                "units": [units.force, units.length, units.time],
+                "status": "running",
+                "message": "",
+            }
+        )
+        for group in ("input", "tables", "history"):
+            self._file.create_group(group)
+        self._file.flush()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if not self._file:
+            return
+        if kind is not None and self._file.attrs["status"] == "running":
+            self.finish("stopped", f"{kind.__name__}: {error}")
+        self.close()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def text(self, name: str, text: str) -> None:
+        """Store a text below ``/input``, as the deck by its file name; it replaces one of that name."""
+        key = escape(name)
+        group = self._file["input"]
+        if key in group:
+            del group[key]
+        group.create_dataset(key, data=storable(text), dtype=_TEXT)
+        self._file.flush()
+
+    def table(self, name: str, rows: Iterable[Sequence[Any]], note: str | None = None) -> None:
+        """Store a table; it replaces one of that name.
+
+        Parameters
+        ----------
+        name : str
+            One of `TABLES`.
+        rows : iterable of sequences
+            One value a column, in the order of the columns; units as in `TABLES`, percentages as percent.
+        note : str, optional
+            Remark on this run's table, printed below it after the table's general note.
+
+        Raises
+        ------
+        ValueError
+            The table is not in `TABLES`, or a row has another number of values than the table has columns.
+        TypeError
+            A value is not of its column's type.
+        """
+        if name not in TABLES:
+            raise ValueError(f"no table {name!r} in TABLES")
+        columns = TABLES[name].columns
+        dtype = np.dtype([(c.name, _DTYPES.get(c.fmt, np.dtype("f8"))) for c in columns])
+        records = list(rows)
+        for number, row in enumerate(records):
+            if len(row) != len(columns):
+                raise ValueError(
+                    f"table {name!r}, row {number}: {len(row)} values for {len(columns)} columns"
+                )
+        data = np.empty(len(records), dtype)
+        for column, values in zip(columns, zip(*records)):
+            data[column.name] = _checked(name, column, values)
+        group = self._file["tables"]
+        if name in group:
+            del group[name]
+        dataset = group.create_dataset(name, data=data)
+        dataset.attrs["title"] = TABLES[name].title
+        dataset.attrs["note"] = storable(note or "")
+        dataset.attrs["columns"] = [c.name for c in columns]
+        dataset.attrs["units"] = [self._units.text(c.unit) for c in columns]
+        self._file.flush()
+
+    def tables(self, stage: Stage, record: RunRecord | Study) -> None:
+        """Store all tables of a stage that have something to tell.
+
+        Parameters
+        ----------
+        stage : Stage
+        record : RunRecord or Study
+            What the rows are made from.
+        """
+        for table in tables_at(stage):
+            rows = table.rows(record)
+            if rows is not None:
+                self.table(table.name, rows, table.remark(record))
+
+    def start_history(self, layout: Layout) -> None:
+        """Create the histories' datasets.
+
+        Parameters
+        ----------
+        layout : mapping
+            For each name of `HISTORIES` but ``time`` its `HistoryLayout`.
+
+        Raises
+        ------
+        ValueError
+            A name is not in `HISTORIES`, labels are missing, or their number is not that of the columns.
+        """
+        if self._layout:
+            raise ValueError("the histories are started already")
+        self._create("time", HistoryLayout((), {"unit": "T"}))
+        for name, own in layout.items():
+            if name == "time" or name not in HISTORIES:
+                raise ValueError(f"no history {name!r} in HISTORIES")
+            self._create(name, HistoryLayout(*own))
+        self._file.flush()
+
+    def _create(self, name: str, layout: HistoryLayout) -> None:
+        shape = tuple(layout.shape)
+        self._layout[name] = shape
+        if 0 in shape:
+            return
+        attributes = _complete(name, layout)
+        attributes["unit"] = [self._units.text(u) for u in attributes["unit"]]
+        dataset = self._file["history"].create_dataset(
+            name,
+            shape=(0, *shape),
+            maxshape=(None, *shape),
+            chunks=(min(BLOCK, max(WIDEST // math.prod(shape), 1)), *shape),
+            dtype="f8",
+        )
+        for key, value in attributes.items():
+            items = np.asarray(value)
+            if items.dtype.kind in "iuf":
+                dataset.attrs[key] = items
+            else:
+                texts = np.array([storable(str(v)) for v in np.atleast_1d(items)], dtype=object)
+                dataset.attrs.create(key, texts, dtype=_TEXT)
+        self._history[name] = dataset
+
+    def append(self, block: Mapping[str, NDArray[Any]]) -> None:
+        """Append a block of instants to all histories.
+
+        Parameters
+        ----------
+        block : mapping of str to ndarray, shape (n, \\*row)
+            ``time`` and every history of the layout; the same n in all.
+
+        Raises
+        ------
+        ValueError
+            A history is missing or unknown, or a shape is wrong.
+        """
+        if block.keys() != self._layout.keys():
+            odd = sorted(block.keys() ^ self._layout.keys())
+            raise ValueError(f"histories that are missing or were never started: {', '.join(odd)}")
+        n = len(block["time"])
+        arrays = {name: np.asarray(values, dtype=float) for name, values in block.items()}
+        for name, values in arrays.items():
+            if values.shape != (n, *self._layout[name]):
+                raise ValueError(f"history {name!r}: shape {values.shape}, not {(n, *self._layout[name])}")
+        for name, dataset in self._history.items():
+            dataset.resize(len(dataset) + n, axis=0)
+            dataset[len(dataset) - n :] = arrays[name]
+        self._file.flush()
+
+    def restart(self, state: Mapping[str, NDArray[Any]]) -> None:
+        """Store the state that a later run can be taken up from; it replaces an earlier one."""
+        if "restart" in self._file:
+            del self._file["restart"]
+        group = self._file.create_group("restart")
+        for name, values in state.items():
+            group.create_dataset(name, data=np.asarray(values, float))
+        self._file.flush()
+
+    def finish(self, status: str, message: str = "") -> None:
+        """Say how the analysis ended: ``done``, or ``stopped`` with a message that says where and why."""
+        if status not in STATUSES:
+            raise ValueError(f"status {status!r} is none of {', '.join(STATUSES)}")
+        self._file.attrs["status"] = status
+        self._file.attrs["message"] = storable(message)
+        self._file.flush()
+
+
+def _complete(name: str, layout: HistoryLayout) -> dict[str, Any]:
+    """Attributes of a history with its labels, and one unit for each column; ValueError where they are not
+    as many as the columns.
+    """
+    shape, out = layout.shape, dict(layout.attributes)
+    width = shape[-1] if shape else 1
+    if "labels" not in out and {"element", "quantity"} <= out.keys():
+        out["labels"] = [f"{e} {q}" for e, q in zip(out["element"], out["quantity"])]
+    labels = out.setdefault("labels", [name] if not shape else None)
+    if labels is None or len(labels) != width:
+        raise ValueError(f"history {name!r}: {width} labels are needed")
+    if len(shape) == 2 and len(out.get("nodes", ())) != shape[0]:
+        raise ValueError(f"history {name!r}: {shape[0]} node numbers are needed")
+    unit = out.get("unit", "")
+    out["unit"] = [unit] * width if isinstance(unit, str) else list(unit)
+    if len(out["unit"]) != width:
+        raise ValueError(f"history {name!r}: one unit or {width} are needed")
+    return out
+
+
+def _checked(table: str, column: Column, values: Sequence[Any]) -> Sequence[Any]:
+    """The values of one column, ready to store."""
+    kind: type = {"text": str, "int": Integral}.get(column.fmt, Real)
+    wrong = {own for own in set(map(type, values)) if not issubclass(own, kind) or issubclass(own, bool)}
+    for number, value in enumerate(values if wrong else ()):
+        if type(value) in wrong:
+            name = kind.__name__.lower()
+            raise TypeError(
+                f"table {table!r}, row {number}, column {column.name!r}: {value!r} is not {name}"
+            )
+    return list(map(storable, values)) if kind is str else values
