@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import zip_longest
 
 import numpy as np
 
@@ -51,6 +50,7 @@ class Saved:
 
     def arrays(self, structure: Structure) -> dict[str, Array]:
         """The state as arrays for a file, with what it belongs to."""
+        longest = max((len(s[3]) for s in self.states), default=0)
         return {
             "time": np.array([self.t]),
             "u": self.u,
@@ -59,10 +59,9 @@ class Saved:
             "first": self.first,
             "branch": np.array([s[0] for s in self.states], float),
             "entry": np.array([s[1:3] for s in self.states], float).reshape(-1, 2),
-            # of as many numbers as the longest
-            "memory": np.array(list(zip_longest(*(s[3] for s in self.states), fillvalue=0.0)), float)
-            .reshape(-1, len(self.states))
-            .T.copy(),
+            "memory": np.array(
+                [(*s[3], *[0.0] * (longest - len(s[3]))) for s in self.states], float
+            ).reshape(len(self.states), longest),
             "freedoms": np.array(structure.dofs.free, float).reshape(-1, 2),
         }
 

@@ -8,10 +8,13 @@ is given the first of them.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
+from types import FunctionType
 from typing import Any, NamedTuple
 
 from pound_solve.laws.automaton import EVENTS, Numbers, Rule, rate_independent, rate_power
 from pound_solve.numerics.jit import Function, compiled, numba
+from pound_solve.numerics.types import Array
 
 ROOM = 8  #: rules that the tables have room for, or a multiple of it
 #: lengths of the parameters and of the internal variables in the kernels: those of the longest rule of the
@@ -36,24 +39,94 @@ def straight(
     return 0.0, 0.0, 0.0, 0.0
 
 
-def written(name: str, source: str, **scope: Function) -> Function:
-    """Function from source that was put together, which calls those of `scope`.
+def missing(*_: Any) -> Any:
+    """Stand in for a function until `bound` gives another one."""
+    raise NotImplementedError
 
-    numba needs the length of a tuple to stand in the source.
-    """
-    space: dict[str, Any] = {"__name__": __name__, **scope}
-    exec(compile(source, __file__, "exec"), space)
-    (function,) = (space[x] for x in space if x not in scope and not x.startswith("__"))
-    function.__qualname__ = name  # compiled code is kept under it
-    return function
+
+def bound(template: Function, name: str, **values: Any) -> Function:
+    """Copy of a function with other values of some globals, which compiled code takes for constants."""
+    copy = FunctionType(template.__code__, {**template.__globals__, **values}, template.__name__)
+    copy.__qualname__ = f"{template.__name__}-{name}"  # compiled code is kept under it
+    return copy
+
+
+# ---------------------------------------------------------------------- rows of arrays as tuples
+
+first = second = missing  # given to every copy of the functions below
+half = 0
+
+
+def one(a: Array, i: int, j: int) -> Numbers:
+    """Number `j` in row `i` of an array."""
+    return (a[i, j],)
+
+
+def both(a: Array, i: int, j: int) -> Numbers:
+    """Numbers in row `i` of an array, from `j` on."""
+    return first(a, i, j) + second(a, i, j + half)
+
+
+@cache
+def from_place(length: int) -> Function:
+    """Function ``numbers(a, i, j)``: so many numbers in row `i` of an array, from `j` on, as a tuple."""
+    if length == 1:
+        return one
+    left = length // 2
+    values = {"first": from_place(left), "second": from_place(length - left), "half": left}
+    return bound(both, str(length), **values)
+
+
+def start_of_row(a: Array, i: int) -> Numbers:
+    """First numbers in row `i` of an array."""
+    return first(a, i, 0)
 
 
 def row(length: int) -> Function:
-    """Function ``row(a, i)`` that returns the first `length` numbers in row `i` of an array as a tuple."""
-    numbers = "".join(f"a[i, {j}], " for j in range(length))
-    return written(f"row_{length}", f"def row(a, i):\n    return ({numbers})\n")
+    """Function ``numbers(a, i)``: the first numbers in row `i` of an array, as a tuple of that length."""
+    return bound(start_of_row, str(length), first=from_place(length))
 
 
+# ---------------------------------------------------------------------- functions of rules
+
+own = missing  # given to every copy of the functions below, with its lengths
+parameters = variables = 0
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Branch of a rule, see `Rule`."""
+    return own(p[:parameters], at, m[:variables])
+
+
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Transition of a rule."""
+    to, now = own(p[:parameters], at, m[:variables], event, d, v)
+    return to, now + m[variables:]
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Recoverable energy of a rule."""
+    return own(p[:parameters], at, m[:variables], d, f)
+
+
+def curve(
+    p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
+) -> tuple[float, float, float, float]:
+    """Curve of a rule."""
+    return own(p[:parameters], at, m[:variables], d0, d, v)
+
+
+def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
+    """Power that a rule states itself."""
+    return own(p[:parameters], at, m[:variables], d, v)
+
+
+def power_by_rate(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
+    """Power that follows from the curve of a rule."""
+    return rate_power(own, p[:parameters], at, m[:variables], d, v)
+
+
+@cache
 def functions(rule: Rule) -> tuple[Function, ...]:
     """Functions of a rule in the order of `Tables`, each for the lengths `PARAMETERS` and `VARIABLES`.
 
@@ -67,37 +140,23 @@ def functions(rule: Rule) -> tuple[Function, ...]:
             f"a rule has {rule.parameters} parameters and {rule.variables} internal variables: the kernels "
             f"have room for {PARAMETERS} and {VARIABLES}, see PARAMETERS and VARIABLES in {__name__}"
         )
-    p, m, rest = f"p[:{rule.parameters}]", f"m[:{rule.variables}]", f"m[{rule.variables}:]"
+    lengths = {"parameters": rule.parameters, "variables": rule.variables}
 
-    def adapted(own: Function, given: str, body: str) -> Function:
-        name = f"{own.__module__}.{own.__qualname__}-{own.__code__.co_firstlineno}"
-        return written(
-            f"{name}-{rule.parameters}-{rule.variables}", f"def adapted(p, at, m{given}):\n{body}", own=own
-        )
+    def adapted(template: Function, function: Function) -> Function:
+        code = function.__code__
+        name = f"{function.__module__}.{function.__qualname__}-{code.co_firstlineno}"
+        return bound(template, f"{name}-{rule.parameters}-{rule.variables}", own=function, **lengths)
 
-    curve, power = straight, rate_independent
-    if rule.curve is not None:
-        curve = adapted(rule.curve, ", d0, d, v", f"    return own({p}, at, {m}, d0, d, v)\n")
-        if rule.power is not None:
-            power = adapted(rule.power, ", d, v", f"    return own({p}, at, {m}, d, v)\n")
-        else:
-            body = f"    return rate_power(own, {p}, at, {m}, d, v)\n"
-            power = written(
-                f"power-{curve.__qualname__}",
-                f"def adapted(p, at, m, d, v):\n{body}",
-                own=rule.curve,
-                rate_power=rate_power,
-            )
     return (
-        adapted(rule.branch, "", f"    return own({p}, at, {m})\n"),
-        adapted(
-            rule.transition,
-            ", event, d, v",
-            f"    to, now = own({p}, at, {m}, event, d, v)\n    return to, now + {rest}\n",
-        ),
-        adapted(rule.recoverable, ", d, f", f"    return own({p}, at, {m}, d, f)\n"),
-        curve,
-        power,
+        adapted(branch, rule.branch),
+        adapted(transition, rule.transition),
+        adapted(recoverable, rule.recoverable),
+        straight if rule.curve is None else adapted(curve, rule.curve),
+        rate_independent
+        if rule.curve is None
+        else adapted(power_by_rate, rule.curve)
+        if rule.power is None
+        else adapted(power, rule.power),
     )
 
 
@@ -107,10 +166,10 @@ def tables(rules: Sequence[Rule]) -> Tables:
     The last rule fills the tables up to a length that hardly a deck exceeds: numba compiles the kernels
     anew for every length.
     """
-    found = numba()
+    fast = numba()
     signatures = [None] * len(Tables._fields)
-    if found is not None:
-        t = found.types
+    if fast is not None:
+        t = fast.types
         f8, i8 = t.float64, t.int64
         p, m = t.UniTuple(f8, PARAMETERS), t.UniTuple(f8, VARIABLES)
         signatures = [
@@ -120,6 +179,6 @@ def tables(rules: Sequence[Rule]) -> Tables:
             t.UniTuple(f8, 4)(p, i8, m, f8, f8, f8),
             f8(p, i8, m, f8, f8),
         ]
-    own = [functions(r) for r in rules]
-    own += own[-1:] * (-len(own) % ROOM)
-    return Tables(*(tuple(compiled(f, s) for f in column) for column, s in zip(zip(*own), signatures)))
+    found = [functions(r) for r in rules]
+    found += found[-1:] * (-len(found) % ROOM)
+    return Tables(*(tuple(compiled(f, s) for f in column) for column, s in zip(zip(*found), signatures)))
