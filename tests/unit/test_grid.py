@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pound_solve.integrate.events import grid
-from pound_solve.integrate.protocol import Extreme
+from pound_solve.integrate.tracker import Extreme
 from pound_solve.numerics.types import Array
 
 waves = st.lists(

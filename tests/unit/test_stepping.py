@@ -12,8 +12,9 @@ import pound_solve
 from pound_solve.integrate import auto, condensed
 from pound_solve.integrate.events import within_step
 from pound_solve.integrate.kernels import allocation, products
-from pound_solve.integrate.protocol import Outcome, Peaks, Start, Stop
+from pound_solve.integrate.protocol import Outcome, Start, Stop
 from pound_solve.integrate.stepping import kernel, locating
+from pound_solve.integrate.tracker import Peaks
 from pound_solve.laws import functions
 from pound_solve.laws.hysteresis import bilinear, imk_bilinear
 from pound_solve.numerics import jit, ldl

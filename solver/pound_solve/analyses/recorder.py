@@ -9,7 +9,8 @@ from typing import Any, Self
 import numpy as np
 
 from pound_solve.analyses.envelopes import Envelopes
-from pound_solve.integrate.protocol import ENERGIES, LawValues, MonitoredOutputs, energies
+from pound_solve.integrate.energy import ENERGIES, energies
+from pound_solve.integrate.protocol import LawValues, MonitoredOutputs
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.elements.base import Output
 from pound_solve.structure.reduction import ReducedSystem

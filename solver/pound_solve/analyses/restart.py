@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pound_solve.integrate.protocol import Extreme, Outcome, Peaks, Start
+from pound_solve.integrate.protocol import Outcome, Start
+from pound_solve.integrate.tracker import Extreme, Peaks
 from pound_solve.laws.automaton import State
 from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import Structure

@@ -9,7 +9,8 @@ import numpy as np
 
 from pound_solve.analyses import damage
 from pound_solve.analyses.recorder import HistoryRecorder
-from pound_solve.integrate.protocol import Extreme, Outcome
+from pound_solve.integrate.protocol import Outcome
+from pound_solve.integrate.tracker import Extreme
 from pound_solve.structure.assembly import Structure
 from pound_solve.structure.elements.base import LawSpring, Role
 

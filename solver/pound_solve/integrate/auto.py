@@ -35,11 +35,9 @@ from pound_solve.integrate.closed_form import exact
 from pound_solve.integrate.protocol import (
     INTERRUPTED,
     EnvelopeRecorder,
-    Extreme,
     LawValues,
     MonitoredOutputs,
     Outcome,
-    Peaks,
     Start,
     Stop,
     goals,
@@ -49,6 +47,7 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.series import taylor
 from pound_solve.integrate.stepping import newmark
+from pound_solve.integrate.tracker import Extreme, Peaks
 from pound_solve.numerics import jit
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags

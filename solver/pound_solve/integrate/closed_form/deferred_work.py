@@ -10,6 +10,7 @@ import numpy as np
 
 from pound_solve.integrate.closed_form.decomposition import Part
 from pound_solve.integrate.closed_form.dense_output import DenseOutput
+from pound_solve.integrate.energy import EnergyAccumulator
 from pound_solve.numerics.types import Array, Flags
 
 
@@ -18,8 +19,8 @@ class DeferredWork:
 
     Parameters
     ----------
-    works : ndarray, shape (3,)
-        At the start.
+    accumulator : EnergyAccumulator
+        Takes the works when they are evaluated.
     constant : ndarray, shape (n,)
         Constant loads on the unknowns.
     contact : ndarray of bool, shape (n_laws,)
@@ -29,13 +30,11 @@ class DeferredWork:
     ----------
     entries : int
         Number of entries since the last `restart`.
-    gross_input : float
-        Sum of all \\|input\\| up to there.
     """
 
-    def __init__(self, works: Array, constant: Array, contact: Flags) -> None:
-        self.works, self.constant, self.contact = works, constant, contact
-        self.entries, self.gross_input = 0, 0.0
+    def __init__(self, accumulator: EnergyAccumulator, constant: Array, contact: Flags) -> None:
+        self.accumulator, self.constant, self.contact = accumulator, constant, contact
+        self.entries = 0
         self._known: list[tuple[int, Array]] = []
         self._deferred: dict[int, tuple[Part, list[tuple[Any, ...]]]] = {}
 
@@ -60,7 +59,7 @@ class DeferredWork:
         the laws' dashpots over all entries, by law.
         """
         new = np.zeros((self.entries + 1, 3))
-        new[0] = self.works
+        new[0] = self.accumulator.array()
         for entry, work in self._known:
             new[entry + 1] += work
         losses: dict[int, float] = {}
@@ -78,7 +77,7 @@ class DeferredWork:
 
     def restart(self, works: Array) -> None:
         """Start anew from the last of the `evaluated` works."""
-        self.gross_input += float(np.abs(np.diff(works[:, 0])).sum())
-        self.works, self.entries = works[-1], 0
+        self.accumulator.advance(works)
+        self.entries = 0
         self._known.clear()
         self._deferred.clear()

@@ -8,6 +8,7 @@ from abc import ABC, abstractmethod
 
 import numpy as np
 
+from pound_solve.integrate.energy import EnergyAccumulator
 from pound_solve.integrate.events.functions import RowSet
 from pound_solve.integrate.protocol import (
     CHATTER,
@@ -15,18 +16,16 @@ from pound_solve.integrate.protocol import (
     MonitoredOutputs,
     Outcome,
     Recorder,
-    ResponseTracker,
     Start,
     Stop,
-    energy_at_start,
     light,
 )
+from pound_solve.integrate.tracker import ResponseTracker
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import ReducedSystem
 
 CHANGES, CHANGES_PER_LAW = 50, 4  #: of branch at one instant, at most, and more for each law
-GROWTH = 10.0  #: kinetic energy over the energy put in above which the motion grows without bound
 
 
 class EventDrivenRun(ABC):
@@ -43,8 +42,8 @@ class EventDrivenRun(ABC):
         Deformations of the laws, then the drifts.
     largest : ndarray, shape (2, n_rows)
         Largest magnitudes of the rows and their rates so far: the scale of the event functions.
-    initial_energy : float
-        Kinetic and recoverable energy at the start.
+    tracker : ResponseTracker
+    energy : EnergyAccumulator
     """
 
     def __init__(
@@ -60,9 +59,9 @@ class EventDrivenRun(ABC):
             np.concatenate([np.zeros(len(self.laws)), monitored.constants]),
         )
         self.largest = np.zeros((2, len(self.rows.rows)))
-        self.tracker = ResponseTracker(system, len(monitored.names))
+        self.tracker = ResponseTracker(self.laws, len(monitored.names))
+        self.energy = EnergyAccumulator(system, start)
         self.t, self.u, self.v = float(start.times[0]), start.u.copy(), start.v.copy()
-        self.initial_energy = energy_at_start(system, start)
         self.events = self.changes_at_instant = 0
         self._massless_laws = light(system)
 
@@ -73,7 +72,7 @@ class EventDrivenRun(ABC):
         after = self.branches[law] = self.laws[law].branch(self.states[law])
         force = self.laws[law].force(self.states[law], d, 0.0 if self._massless_laws[law] else v)
         self.tracker.switched(law, before, after.kind, self.t, d, v, force)
-        self.tracker.peaks.force[law].take(force, self.t)
+        self.tracker.force(law).take(force, self.t)
 
     def count_change(self, elapsed: float, rounding: float) -> None:
         """Count changes of branch at one instant: an event after a share `rounding` of the time is one."""
@@ -87,10 +86,10 @@ class EventDrivenRun(ABC):
             why = CHATTER.format(count, s.element, s.rule, self.branches[law].name, remedy)
             raise self.stop("A503", why)
 
-    def stop_growth(self, v: Array, gross_input: float, hint: str = "") -> None:
+    def stop_growth(self, v: Array, hint: str = "") -> None:
         """Stop where the kinetic energy at velocity `v` is far above the energy put in."""
         kinetic = 0.5 * float(v @ self.system.mass @ v)
-        if not kinetic <= GROWTH * (self.initial_energy + gross_input) + 1e-300:
+        if self.energy.runs_away(kinetic):
             raise self.stop("A504", RUNAWAY.format(kinetic) + hint)
 
     def count_magnitudes(self, value: Array, rate: Array) -> None:
@@ -102,7 +101,7 @@ class EventDrivenRun(ABC):
     def count_collision_peaks(self) -> None:
         """Count the peak forces of the present collisions into those of their contacts."""
         for law, collision in self.tracker.open.items():
-            self.tracker.peaks.force[law].take(collision.peak, collision.t_peak)
+            self.tracker.force(law).take(collision.peak, collision.t_peak)
 
     @abstractmethod
     def run(self) -> Outcome:

@@ -93,7 +93,7 @@ class Exact(EventDrivenRun):
                 )
             )
         contact = np.array([s.role.contact_energy for s in self.laws], bool)
-        self.work = DeferredWork(start.works.copy(), system.constant, contact)
+        self.work = DeferredWork(self.energy, system.constant, contact)
         self.rigid = RigidInstants(self, self.subsystems, self.work)
         self.samples = DeferredSamples(system, self.subsystems.rigid, recorder)
         self.envelopes = EnvelopeSamples(self.subsystems, self.u, recorder)
@@ -245,7 +245,7 @@ class Exact(EventDrivenRun):
         if self.work.entries > MAX_DEFERRED or cursor + count == len(self.goals):
             self._release()
             _, v, _ = dense.motions_at_ends(np.array([count - 1]))
-            self.stop_growth(v[:, 0], self.work.gross_input)
+            self.stop_growth(v[:, 0])
 
     def _release(self) -> None:
         """Evaluate the works, and pass the samples that waited for them to the recorder.
@@ -256,7 +256,7 @@ class Exact(EventDrivenRun):
         self.envelopes.release()
         self.samples.release(works)
         for law, loss in losses.items():
-            self.tracker.peaks.dashpot_losses[law] += loss
+            self.energy.dashpot_losses[law] += loss
         self.samples.clear()
         self.work.restart(works)
 
@@ -284,7 +284,7 @@ class Exact(EventDrivenRun):
         )
         entry = np.array([found.input, found.damping, 0.0])
         for law, loss in found.laws:
-            self.tracker.peaks.dashpot_losses[law] += loss
+            self.energy.dashpot_losses[law] += loss
             entry[2 if self.laws[law].role.contact_energy else 1] += loss
         self.work.add(entry)
 
@@ -313,7 +313,7 @@ class Exact(EventDrivenRun):
         ]
         if any(isinstance(x, SeriesPropagator) for x in propagators):
             checks.append(("defective modes, integrated by the exponential series", "present", "good"))
-        peaks = self.tracker.close()
+        peaks = self.tracker.close(self.energy.dashpot_losses)
         checks += rounding_check(self.laws, peaks)
         return Outcome(peaks, figures, tuple(self.states), checks, exact=True, turns=True)
 

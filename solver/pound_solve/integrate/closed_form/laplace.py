@@ -27,6 +27,7 @@ from pound_solve.integrate.closed_form.hermite import SampledMotion, SampledRows
 from pound_solve.integrate.closed_form.laplace_transform import DynamicStiffness, LaplaceTransform
 from pound_solve.integrate.closed_form.state_space import Mechanism
 from pound_solve.integrate.condensed import condensed
+from pound_solve.integrate.energy import law_values
 from pound_solve.integrate.events import grid
 from pound_solve.integrate.events.functions import EventFunctions, monitored_functions
 from pound_solve.integrate.protocol import (
@@ -36,7 +37,6 @@ from pound_solve.integrate.protocol import (
     Recorder,
     Start,
     Stop,
-    law_values,
     not_linear,
     refuse_rigid,
     rounding_check,
@@ -63,7 +63,6 @@ class Laplace(EventDrivenRun):
         super().__init__(system, start, monitored, recorder)
         self.dt, self.points = options["DT"], 2 * (options["POINTS"] // 2)
         self.transform = LaplaceTransform(system, self.dt, self.points)
-        self.works, self.gross_input = start.works.copy(), 0.0
         self.with_mass = np.flatnonzero(~massless(system.mass))
         self.transforms = 0
         self._stiffnesses: dict[tuple[float, ...], DynamicStiffness] = {}
@@ -133,8 +132,8 @@ class Laplace(EventDrivenRun):
         event = None if found is None or found.event.time >= span else found.event
         tau = span if event is None else event.time
         if first:
-            self._sample(self.t, motion.u[:, 0], motion.v[:, 0], motion.a[:, 0], self.works)
-        done = self._samples(motion, tau)
+            self._sample(self.t, motion.u[:, 0], motion.v[:, 0], motion.a[:, 0], self.energy.array())
+        self._samples(motion, tau)
         ends = rows.all_at(self.dt, tau)
         self._count_peaks(rows.until(tau, ends))
         self.u, self.v = motion.at(tau)
@@ -145,25 +144,22 @@ class Laplace(EventDrivenRun):
             d, rate = float(ends[0][event.law]), float(ends[1][event.law])
             self.transition(event.law, event.event_index, d, rate)
             self.stop_chatter(event.law, "EXACT")
-        self.gross_input += abs(float(self.works[0] - done[0]))
         hint = f" as samples {self.dt:g} apart see it: is DT too long for the excitation?"
-        self.stop_growth(self.v, self.gross_input + abs(float(self.works[0])), hint)
+        self.stop_growth(self.v, hint)
 
-    def _samples(self, motion: SampledMotion, tau: float) -> Array:
-        """Add the work up to the local time `tau` and sample the output times on the way; return the works
-        at the last of these.
-        """
+    def _samples(self, motion: SampledMotion, tau: float) -> None:
+        """Add the work up to the local time `tau` and sample the output times on the way."""
         chosen = self.times[(self.times > self.t) & (self.times <= self.t + tau * (1 + 1e-13))]
-        done, at = self.works, 0.0
+        works, at = [self.energy.array()], 0.0
         for goal in chosen.tolist():
-            done = done + self._work(at, goal - self.t, motion)
+            works.append(works[-1] + self._work(at, goal - self.t, motion))
             at = goal - self.t
             u, v = motion.at(at)
             s = self.system.excitation.value(goal)
             a = self._accelerations(u[:, None], v[:, None], s[:, None])[:, 0]
-            self._sample(goal, u, v, a, done)
-        self.works = done + self._work(at, tau, motion)
-        return done
+            self._sample(goal, u, v, a, works[-1])
+        works.append(works[-1] + self._work(at, tau, motion))
+        self.energy.advance(np.array(works))
 
     def _work(self, begin: float, end: float, motion: SampledMotion) -> Array:
         """Work put in and lost in dashpots between two local times, shape (3,), by Simpson's rule
@@ -181,7 +177,7 @@ class Laplace(EventDrivenRun):
         damping, lost = float((v * (system.damping @ v)).sum(axis=0) @ weight), 0.0
         for law, branch in enumerate(self.branches):
             loss = float(branch.damping * rate[law] ** 2 @ weight)
-            self.tracker.peaks.dashpot_losses[law] += loss
+            self.energy.dashpot_losses[law] += loss
             if self.laws[law].role.contact_energy:
                 lost += loss
             else:
@@ -212,7 +208,7 @@ class Laplace(EventDrivenRun):
             "transforms": self.transforms,
             "combinations of stiffnesses": len(self._stiffnesses),
         }
-        peaks = self.tracker.close()
+        peaks = self.tracker.close(self.energy.dashpot_losses)
         checks = rounding_check(self.laws, peaks, STILL)
         return Outcome(peaks, figures, tuple(self.states), checks)
 

@@ -67,7 +67,7 @@ class RigidInstants:
         self.work.add(np.array([float(impulse @ (x.inputs @ s[1])), 0.0, lost.sum()]))
         stays = touching & (after >= -ROUNDING * fastest)
         for i, law in enumerate(x.laws):
-            run.tracker.peaks.dashpot_losses[law] += float(lost[i])
+            run.energy.dashpot_losses[law] += float(lost[i])
             if not held[i] and (stays[i] or impulse[i] > 0.0):
                 run.transition(law, 0, float(d[i]), float(rates[i]))
             if law in run.tracker.open:

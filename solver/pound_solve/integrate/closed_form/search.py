@@ -20,7 +20,8 @@ from pound_solve.integrate.closed_form.dense_output import DenseOutput
 from pound_solve.integrate.closed_form.grid_samples import GridSamples
 from pound_solve.integrate.events import grid
 from pound_solve.integrate.events.functions import EventFunctions, RowFunctions
-from pound_solve.integrate.protocol import STILL, Peak
+from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.tracker import Peak
 from pound_solve.numerics.types import Array, Flags
 
 MAX_STEPS = 64  #: of the fine grid in one cell

@@ -9,7 +9,7 @@ import numpy as np
 
 from pound_solve.integrate.events import grid
 from pound_solve.integrate.events.protocol import LocatedEvent
-from pound_solve.integrate.protocol import Peak, ResponseTracker
+from pound_solve.integrate.tracker import Peak, ResponseTracker
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.types import Array
 
@@ -162,15 +162,15 @@ def monitored_functions(
     """Return deformations, drifts, and the forces of springs and of closed contacts, and their peaks:
     forces of contacts belong to the present collision.
     """
-    peaks, running = tracker.peaks, tracker.open
-    rows = list(range(len(branches) + len(peaks.monitored)))
+    rows = list(range(len(branches) + tracker.n_monitored))
     factors = [(1.0, 0.0, 0.0)] * len(rows)
-    kept: list[Peak] = [*peaks.deformation, *peaks.monitored]
+    kept: list[Peak] = [tracker.deformation(i) for i in range(len(branches))]
+    kept += [tracker.monitored(i) for i in range(tracker.n_monitored)]
     for i, (spring, b) in enumerate(zip(tracker.laws, branches)):
-        if spring.role.collides and i not in running:
+        if spring.role.collides and i not in tracker.open:
             continue
         rows.append(reaction_row[i] if b.held else i)
         # a spring's force is without damping
         factors.append((1.0 if b.held else b.stiffness, b.damping * spring.role.viscous, b.force0))
-        kept.append(tracker.running(i) if i in running else peaks.force[i])
+        kept.append(tracker.collision_force(i) if i in tracker.open else tracker.force(i))
     return RowFunctions(rows, factors), kept

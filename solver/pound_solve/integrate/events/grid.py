@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pound_solve.integrate.protocol import STILL, Peak
+from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.tracker import Peak
 from pound_solve.numerics.cubic import cubic_peak
 from pound_solve.numerics.types import Array, Flags
 

@@ -10,11 +10,13 @@ import numpy as np
 from pound_solve.integrate.kernels import state
 from pound_solve.integrate.kernels.state import Product, Rows, Scheme
 from pound_solve.integrate.protocol import MonitoredOutputs, Start
+from pound_solve.integrate.tracker import Extremes
 from pound_solve.laws.automaton import EVENTS, Rule
 from pound_solve.laws.functions import PARAMETERS, VARIABLES
 from pound_solve.numerics import ldl
 from pound_solve.numerics.matrices import Matrix, at, by_rows, dense, entries, is_diagonal
 from pound_solve.numerics.modes import massless
+from pound_solve.numerics.record import record
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
@@ -191,9 +193,12 @@ def normal_of(laws: Sequence[LawSpring], law: LawSpring) -> tuple[int, int]:
 
 
 def law_arrays(
-    system: ReducedSystem, start: Start, own: Layout, scheme: Scheme, rules: Sequence[Rule]
-) -> state.Laws:
-    """The laws in the state of a start; their branches are not entered yet."""
+    system: ReducedSystem, start: Start, own: Layout, scheme: Scheme, rules: Sequence[Rule],
+    dashpot_losses: Array,
+) -> state.Laws:  # fmt: skip
+    """The laws in the state of a start, with the losses of an accumulator; their branches are not entered
+    yet.
+    """
     laws, count = system.structure.laws, len(system.structure.laws)
     t, value = float(start.times[0]), system.excitation.value
     d = np.asarray(system.law_rows @ start.u + system.law_inputs @ value(t), float)
@@ -246,7 +251,7 @@ def law_arrays(
         largest_deformation=np.abs(d),
         largest_rate=np.abs(v),
         friction_force=zeros(),
-        dashpot_loss=zeros(),
+        dashpot_loss=dashpot_losses,
         peak_force=zeros(),
         peak_time=zeros(),
         impulse=zeros(),
@@ -299,16 +304,11 @@ def member_arrays(system: ReducedSystem, own: Layout, scheme: Scheme) -> state.C
 
 
 def step_arrays(
-    system: ReducedSystem,
-    monitored: MonitoredOutputs,
-    start: Start,
-    own: Layout,
-    linear: state.LinearSystem,
+    system: ReducedSystem, start: Start, own: Layout, linear: state.LinearSystem, extremes: Extremes
 ) -> state.Step:
-    """The motion of a start, and the factor of the mass."""
+    """The motion of a start, the factor of the mass, and the extremes of a tracker."""
     n, o, t = system.size, own.order, float(start.times[0])
     inputs = system.inputs.shape[1]
-    tracked = len(monitored.names) + 2 * len(system.structure.laws)
     value = system.excitation.value
 
     def motion() -> state.Motion:
@@ -324,13 +324,12 @@ def step_arrays(
         matrix=np.zeros(len(own.column)),
         factors=np.zeros((4, len(own.pattern.li))),
         pivots=np.zeros((4, n)),
-        peaks=state.Peaks(*np.zeros((7, tracked))),
+        extremes=extremes,
     )
     out.now.displacement[:], out.now.velocity[:] = start.u[o], start.v[o]
     out.now.damping_force[:] = system.damping[np.ix_(o, o)] @ start.v[o]
     out.now.load[:] = system.inputs[o] @ value(t) + linear.constant
     out.now.inputs[:], out.now.input_rates[:] = value(t), value(t, 1)
-    out.peaks.high[:], out.peaks.low[:] = -np.inf, np.inf
     diagonal = own.pattern.ai == own.column
     mass = np.where(diagonal & ~linear.has_mass[own.column], 1.0, linear.on_pattern[0])
     if linear.diagonal:
@@ -362,17 +361,10 @@ def buffers(n: int, n_laws: int, which: Index) -> state.Buffers:
     )
 
 
-def run_record(t: float, energy_at_start: float) -> state.Run:
+def run_record(t: float, initial_energy: float) -> state.Run:
     """Counters and clocks at the start of a run."""
-    out: state.Run = state.record(state.Run)
-    out.time, out.factor_length, out.energy_at_start = t, -1.0, energy_at_start
+    out: state.Run = record(state.Run)
+    out.time, out.factor_length, out.initial_energy = t, -1.0, initial_energy
     out.longest_part = np.inf
     out.fault = -1
-    return out
-
-
-def energy_record(works: Array) -> state.Energy:
-    """Works at the start of a run, shape (3,)."""
-    out: state.Energy = state.record(state.Energy)
-    out.input, out.damping, out.contact = works.tolist()
     return out

@@ -9,25 +9,22 @@ from typing import Any
 
 import numpy as np
 
+from pound_solve.integrate.energy import EnergyAccumulator
 from pound_solve.integrate.kernels import allocation, corotational
 from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.state import CHATTER, CROWD, DONE, FULL, PIVOT, RUNAWAY, Scheme
 from pound_solve.integrate.protocol import (
     INTERRUPTED,
-    Collision,
-    Extreme,
     LawValues,
     MonitoredOutputs,
     Outcome,
-    Peaks,
     Recorder,
-    ResponseTracker,
     Start,
     Stop,
-    energy_at_start,
     not_linear,
 )
 from pound_solve.integrate.protocol import RUNAWAY as GROWS
+from pound_solve.integrate.tracker import Peaks, ResponseTracker
 from pound_solve.laws import functions
 from pound_solve.laws.automaton import BranchKind, State
 from pound_solve.laws.hysteresis import bilinear
@@ -63,18 +60,19 @@ class KernelEngine(ABC):
     ) -> None:
         self.system, self.recorder, self.scheme, self.dt, self.name = system, recorder, scheme, dt, name
         self.springs, self.times = system.structure.laws, start.times
-        self.tracker = ResponseTracker(system, len(monitored.names))
+        self.tracker = ResponseTracker(self.springs, len(monitored.names))
+        self.accumulator = EnergyAccumulator(system, start)
         rules = list(dict.fromkeys(s.law.rule for s in self.springs))
         self.rules = functions.tables(rules or [bilinear.RULE])  # never empty, which compiles to nothing
         own = allocation.layout(system, scheme)
         self.order = own.order
         self.linear = allocation.linear_system(system, monitored, own, scheme, dt)
-        self.laws = allocation.law_arrays(system, start, own, scheme, rules)
-        self.step = allocation.step_arrays(system, monitored, start, own, self.linear)
+        losses = self.accumulator.dashpot_losses
+        self.laws = allocation.law_arrays(system, start, own, scheme, rules, losses)
+        self.step = allocation.step_arrays(system, start, own, self.linear, self.tracker.extremes)
         which = own.place[np.flatnonzero(recorder.shown)]
         self.buffers = allocation.buffers(system.size, len(self.springs), which)
-        self.energy = allocation.energy_record(start.works)
-        self.state = allocation.run_record(float(self.times[0]), energy_at_start(system, start))
+        self.state = allocation.run_record(float(self.times[0]), self.accumulator.initial)
         for i in range(len(self.springs)):
             law_kernels.enter_branch(self.laws, self.rules, i)
         law_kernels.linearise_laws(self.laws, self.rules)
@@ -131,7 +129,7 @@ class KernelEngine(ABC):
         own = self.linear, self.laws, self.step, self.buffers, self.rules
         while True:
             with np.errstate(all="ignore"), jit.compiling():  # a runaway is reported in words
-                why = compiled(*own, *given, self.energy, self.state)
+                why = compiled(*own, *given, self.accumulator.works, self.state)
             self.fetch()
             if why == DONE:
                 return
@@ -150,7 +148,7 @@ class KernelEngine(ABC):
             law, before, after = (int(x) for x in row[:3])
             branches = self.springs[law].law.rule.branches
             if law in self.tracker.open:
-                self._count(self.tracker.open[law], row[7:])
+                self.tracker.open[law].count(*row[7:])
             self.tracker.switched(law, branches[before].kind, branches[after].kind, *row[3:7])
 
     def _fetch_shown(self) -> None:
@@ -175,14 +173,6 @@ class KernelEngine(ABC):
         values = LawValues(*(x[:kept].T.copy() for x in (buffers.force, buffers.stored, buffers.lost)))
         self.recorder.sample(buffers.time[:kept].copy(), u, v, a, values, buffers.works[:kept].T.copy())
 
-    @staticmethod
-    def _count(collision: Collision, running: list[float]) -> None:
-        """Count what a contact went through on one branch into its collision."""
-        peak, t_peak, impulse = running
-        collision.impulse += impulse
-        if peak > collision.peak:
-            collision.peak, collision.t_peak = peak, t_peak
-
     def trouble(self, why: int) -> Stop:
         """What a kernel came back for, in words."""
         fault = int(self.state.fault)
@@ -190,7 +180,7 @@ class KernelEngine(ABC):
             fastest = int(self.order[np.argmax(np.abs(self.step.now.velocity))])
             name = self.system.name(fastest)
             cause = f", fastest at {name}: the structure collapses, or DT={self.dt:g} is too long"
-            return self.stop("A504", GROWS.format(self.state.energy_at_start) + cause)
+            return self.stop("A504", GROWS.format(self.state.initial_energy) + cause)
         if why == PIVOT:
             name = self.system.name(int(self.order[fault]))
             return self.stop("A501", f"{name} has no mass and nothing holds it")
@@ -211,22 +201,13 @@ class KernelEngine(ABC):
 
     def outcome(self) -> Outcome:
         """What the run gathered."""
-        laws, peaks, n = self.laws, self.step.peaks, len(self.springs)
+        laws = self.laws
         for law, collision in self.tracker.open.items():
             running = laws.peak_force[law], laws.peak_time[law], laws.impulse[law]
-            self._count(collision, [float(x) for x in running])
-        out = self.tracker.close()
-        four = zip(*(x.tolist() for x in (peaks.high, peaks.t_high, peaks.low, peaks.t_low)))
-        found = [Extreme(*e) for e in four]
-        rest = len(found) - 2 * n
-        out.monitored, out.deformation, out.force = (
-            found[:rest],
-            found[rest : rest + n],
-            found[rest + n :],
-        )
-        out.dashpot_losses = laws.dashpot_loss.tolist()
-        states = tuple(self._state(i) for i in range(n))
-        return Outcome(out, self.figures(), states, self.checks(out), self.exact)
+            collision.count(*(float(x) for x in running))
+        peaks = self.tracker.close(self.accumulator.dashpot_losses)
+        states = tuple(self._state(i) for i in range(len(self.springs)))
+        return Outcome(peaks, self.figures(), states, self.checks(peaks), self.exact)
 
     def _state(self, i: int) -> State:
         """State of law `i`."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from pound_solve.integrate.energy import Works
 from pound_solve.integrate.kernels.consistency import make_consistent, touches_massless
 from pound_solve.integrate.kernels.laws import internal, law_force, law_work, parameters
 from pound_solve.integrate.kernels.products import along
-from pound_solve.integrate.kernels.state import Buffers, Energy, Laws, LinearSystem, Run, Step
+from pound_solve.integrate.kernels.state import Buffers, Laws, LinearSystem, Run, Step
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.cubic import cubic_peak
 
@@ -20,17 +21,17 @@ def next_pause(step: Step, run: Run) -> int:
 
 def count_extreme(laws: Laws, step: Step, law: int, i: int, value: float, t: float) -> None:
     """Count a value into peak `i`; `law` is not negative for the force of a law."""
-    peaks = step.peaks
-    if value > peaks.high[i]:
-        peaks.high[i], peaks.t_high[i] = value, t
-    if value < peaks.low[i]:
-        peaks.low[i], peaks.t_low[i] = value, t
+    extremes = step.extremes
+    if value > extremes.high[i]:
+        extremes.high[i], extremes.t_high[i] = value, t
+    if value < extremes.low[i]:
+        extremes.low[i], extremes.t_low[i] = value, t
     if law >= 0 and laws.contact[law] and value > laws.peak_force[law]:
         laws.peak_force[law], laws.peak_time[law] = value, t
 
 
 def tracked(linear: LinearSystem, laws: Laws, step: Step, i: int) -> tuple[float, float]:
-    """Value and slope of tracked quantity `i` at the start of the coming step (see `state.Peaks`)."""
+    """Value and slope of tracked quantity `i` at the start of the coming step (see `tracker.Extremes`)."""
     now, outputs, n_laws = step.now, len(linear.monitored_constants), len(laws.rule)
     if i < outputs:
         value = along(linear.monitored, i, now.displacement) + linear.monitored_constants[i]
@@ -58,18 +59,18 @@ def track(linear: LinearSystem, laws: Laws, step: Step, t: float, since: float) 
     """Count the motion at the start of the coming step into the peaks, and stationary points on the same
     branches since the last count, `since` ago.
     """
-    peaks, forces = step.peaks, len(linear.monitored_constants) + len(laws.rule)
+    extremes, forces = step.extremes, len(linear.monitored_constants) + len(laws.rule)
     for i in range(forces + len(laws.rule)):
         value, slope = tracked(linear, laws, step, i)
         count_extreme(laws, step, i - forces, i, value, t)
-        if since > 0.0 and peaks.slope[i] * slope < 0.0:
-            sign = 1.0 if peaks.slope[i] > 0.0 else -1.0
+        if since > 0.0 and extremes.slope[i] * slope < 0.0:
+            sign = 1.0 if extremes.slope[i] > 0.0 else -1.0
             place, top = cubic_peak(
-                sign * peaks.value[i], sign * value, sign * peaks.slope[i], sign * slope, since
+                sign * extremes.value[i], sign * value, sign * extremes.slope[i], sign * slope, since
             )
             count_extreme(laws, step, i - forces, i, sign * top, t - since + place)
-        peaks.value[i], peaks.slope[i] = value, slope
-        peaks.steepest[i] = max(peaks.steepest[i], abs(slope))
+        extremes.value[i], extremes.slope[i] = value, slope
+        extremes.steepest[i] = max(extremes.steepest[i], abs(slope))
 
 
 def log_transition(
@@ -86,7 +87,7 @@ def log_transition(
 
 
 def store_sample(
-    laws: Laws, step: Step, buffers: Buffers, rules: Tables, energy: Energy, run: Run, t: float
+    laws: Laws, step: Step, buffers: Buffers, rules: Tables, works: Works, run: Run, t: float
 ) -> None:
     """Keep the motion, the laws' forces and energies, and the works."""
     at, now = run.kept, step.now
@@ -106,18 +107,18 @@ def store_sample(
         size = max(abs(d), abs(laws.entry_deformation[i]))
         buffers.stored[at, i] = held
         buffers.lost[at, i] = lost if abs(lost) > 1e-14 * laws.parameters[i, 0] * size * size else 0.0
-    works = buffers.works[at]
-    works[0], works[1], works[2] = energy.input, energy.damping, energy.contact
+    kept = buffers.works[at]
+    kept[0], kept[1], kept[2] = works.input, works.damping, works.contact
     run.kept += 1
 
 
 def take_first_sample(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, energy: Energy, run: Run
+    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, works: Works, run: Run
 ) -> None:
     """Make the start consistent and keep it as the first sample."""
     make_consistent(linear, laws, step)
     track(linear, laws, step, run.time, 0.0)
-    store_sample(laws, step, buffers, rules, energy, run, run.time)
+    store_sample(laws, step, buffers, rules, works, run, run.time)
     run.started = 1
 
 

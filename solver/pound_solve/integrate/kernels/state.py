@@ -6,10 +6,9 @@ Every array has a name and one place where it is allocated (`allocation`).  An i
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol, get_type_hints
+from typing import NamedTuple, Protocol
 
-import numpy as np
-
+from pound_solve.integrate.tracker import Extremes
 from pound_solve.numerics.ldl import Pattern, Place
 from pound_solve.numerics.types import Array, Flags, Index
 
@@ -44,25 +43,9 @@ class Run(Protocol):
     fault: int  #: law or unknown at fault, -1 for none
     time: float
     factor_length: float  #: step that the factor at hand is for
-    energy_at_start: float
+    initial_energy: float  #: kinetic and recoverable
     longest_part: float  #: that a step may take at once for now
     last_event: float  #: time of the last transition
-
-
-class Energy(Protocol):
-    r"""Works since the start [F L]: a numpy record."""
-
-    input: float
-    damping: float  #: lost in the dashpots of the structure, of springs and of dampers
-    contact: float  #: lost in the dashpots of contacts
-    gross_input: float  #: sum of all \|input\|
-
-
-def record(kind: type) -> Any:
-    """A numpy record with the fields of a protocol, all zero; kernels change it in place."""
-    numbers = {int: np.int64, float: np.float64}
-    fields = [(name, numbers[own]) for name, own in get_type_hints(kind).items()]
-    return np.zeros(1, np.dtype(fields, align=True)).view(np.recarray)[0]
 
 
 class Product(NamedTuple):
@@ -355,29 +338,6 @@ class Motion(NamedTuple):
     input_rates: Array
 
 
-class Peaks(NamedTuple):
-    """Extremes of the tracked quantities: monitored outputs, deformations and forces of the laws, in this
-    order; shape (n_monitored + 2 n_laws,) each.
-
-    Attributes
-    ----------
-    high, t_high, low, t_low : ndarray
-        Largest and smallest value so far and their times.
-    value, slope : ndarray
-        At the last instant that was tracked.
-    steepest : ndarray
-        Largest magnitude of the slope so far.
-    """
-
-    high: Array
-    t_high: Array
-    low: Array
-    t_low: Array
-    value: Array
-    slope: Array
-    steepest: Array
-
-
 class Step(NamedTuple):
     """A step from one instant to the next, and scratch space.
 
@@ -398,7 +358,7 @@ class Step(NamedTuple):
     factors : ndarray, shape (4, n_entries of L)
         Rows `WHOLE`, `PART`, `MASS` (ones for massless unknowns), `MASSLESS` (ones for the others).
     pivots : ndarray, shape (4, n)
-    peaks : Peaks
+    extremes : Extremes
     """
 
     now: Motion
@@ -410,7 +370,7 @@ class Step(NamedTuple):
     matrix: Array
     factors: Array
     pivots: Array
-    peaks: Peaks
+    extremes: Extremes
 
 
 class Buffers(NamedTuple):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pound_solve.integrate.energy import Works, runs_away
 from pound_solve.integrate.kernels.consistency import make_consistent
 from pound_solve.integrate.kernels.laws import linear_force, transition
 from pound_solve.integrate.kernels.products import evaluate_inputs, form_load, multiply
@@ -19,7 +20,6 @@ from pound_solve.integrate.kernels.state import (
     FULL,
     RUNAWAY,
     Buffers,
-    Energy,
     Laws,
     LinearSystem,
     Motion,
@@ -58,7 +58,7 @@ def add_law_losses(
     h: float,
     weight: float,
     moved: bool,
-    energy: Energy,
+    works: Works,
 ) -> None:
     """Add up the losses in the laws' dashpots and the contacts' impulses at one Gauss point."""
     for i in range(len(laws.rule)):
@@ -70,16 +70,16 @@ def add_law_losses(
             lost = weight * drag * v * v
             laws.dashpot_loss[i] += lost
             if laws.contact[i]:
-                energy.contact += lost
+                works.contact += lost
                 laws.impulse[i] += weight * (laws.stiffness[i] * d + drag * v + laws.offset[i])
             else:
-                energy.damping += lost
+                works.damping += lost
 
 
 @flat
 def add_works(
     linear: LinearSystem, laws: Laws, step: Step, series: Series, coefs: Array, begin: float, terms: int,
-    carried: int, h: float, end: float, energy: Energy,
+    carried: int, h: float, end: float, works: Works,
 ) -> None:  # fmt: skip
     """Add up the works over the step to `end`, by Gauss's rule."""
     moved, trial = len(linear.support_damping) > 0, step.trial
@@ -89,22 +89,22 @@ def add_works(
         weight, s = series.gauss[rule, 0, g] * end * h, series.gauss[rule, 1, g] * end
         evaluate(series, terms, s, h, 1, trial.velocity)
         multiply(linear.damping, trial.velocity, step.product)
-        energy.damping += weight * dot(trial.velocity, step.product)
+        works.damping += weight * dot(trial.velocity, step.product)
         evaluate_inputs(coefs, begin + s * h, trial.inputs, trial.input_rates)
-        add_law_losses(laws, series, terms, s, h, weight, moved, energy)
+        add_law_losses(laws, series, terms, s, h, weight, moved, works)
         if moved:
             evaluate(series, terms, s, h, 0, trial.displacement)
             evaluate(series, terms, s, h, 2, trial.acceleration)
             given, lost = support_power(linear, laws, trial, laws.trial, laws.members.trial)
             put += weight * given
-            energy.damping += weight * lost
+            works.damping += weight * lost
             for i in range(len(trial.velocity)):
                 put += weight * load_on_nodes(linear, trial.inputs, i) * trial.velocity[i]
         else:
             form_load(linear, trial.inputs, trial.load)
             put += weight * dot(trial.load, trial.velocity)
-    energy.input += put
-    energy.gross_input += abs(put)
+    works.input += put
+    works.gross_input += abs(put)
 
 
 def accept(laws: Laws, now: Motion, series: Series, terms: int, h: float, end: float) -> None:
@@ -188,7 +188,7 @@ def step_length(lengths: Lengths, t: float, left: float) -> float:
 
 def stride(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
-    lengths: Lengths, coefs: Array, begin: float, goal: float, pause: int, energy: Energy,
+    lengths: Lengths, coefs: Array, begin: float, goal: float, pause: int, works: Works,
     run: Run,
 ) -> int:  # fmt: skip
     """Take steps on one piece of the excitation up to a goal, or until Python must look at it.
@@ -222,7 +222,7 @@ def stride(
         track_laws(laws, step, series, terms, h, at, t, first)
         if at > 0.0:
             store_looks(step.trial, buffers, series, terms, h, at, run, t)
-            add_works(linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, at, energy)
+            add_works(linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, at, works)
             accept(laws, step.now, series, terms, h, at)
         run.steps += 1
         if law < 0:
@@ -240,14 +240,14 @@ def stride(
 def march(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
     lengths: Lengths, coefs: Array, breaks: Array, goals: Array, outputs: Flags, pieces: Index,
-    energy: Energy, run: Run,
+    works: Works, run: Run,
 ) -> int:  # fmt: skip
     """Integrate to the last goal, or until Python must look at something (see
     `stepping.kernel.advance`).
     """
     pause, now = next_pause(step, run), step.now
     if run.started == 0:
-        take_first_sample(linear, laws, step, buffers, rules, energy, run)
+        take_first_sample(linear, laws, step, buffers, rules, works, run)
     while run.goal < len(goals):
         goal = run.goal
         begin, piece = breaks[pieces[goal]], coefs[pieces[goal]]
@@ -263,15 +263,15 @@ def march(
             begin,
             goals[goal],
             pause,
-            energy,
+            works,
             run,
         )
         if why != DONE:
             return why
         multiply(linear.mass, now.velocity, step.product)
         kinetic = 0.5 * dot(now.velocity, step.product)
-        if not kinetic <= 10.0 * (run.energy_at_start + energy.gross_input) + 1e-300:
-            run.energy_at_start = kinetic
+        if runs_away(kinetic, run.initial_energy, works.gross_input):
+            run.initial_energy = kinetic
             return RUNAWAY
         run.goal += 1
         if outputs[goal]:
@@ -279,7 +279,7 @@ def march(
             form_load(linear, now.inputs, now.load)
             multiply(linear.damping, now.velocity, now.damping_force)
             make_consistent(linear, laws, step)
-            store_sample(laws, step, buffers, rules, energy, run, run.time)
+            store_sample(laws, step, buffers, rules, works, run, run.time)
             if run.kept == len(buffers.time):
                 return FULL
     return DONE

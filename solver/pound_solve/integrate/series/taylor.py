@@ -30,14 +30,13 @@ from pound_solve.integrate.condensed import condensed
 from pound_solve.integrate.events import polynomial_roots
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import PAUSE
-from pound_solve.integrate.kernels.state import CHATTER, RUNAWAY, Scheme, record
+from pound_solve.integrate.kernels.state import CHATTER, RUNAWAY, Scheme
 from pound_solve.integrate.protocol import CHATTER as CHANGES
 from pound_solve.integrate.protocol import RUNAWAY as GROWS
 from pound_solve.integrate.protocol import (
     STEPPED,
     MonitoredOutputs,
     Outcome,
-    Peaks,
     Recorder,
     Start,
     Stop,
@@ -47,8 +46,10 @@ from pound_solve.integrate.protocol import (
     rounding_check,
 )
 from pound_solve.integrate.series import expansion, march
+from pound_solve.integrate.tracker import Peaks
 from pound_solve.numerics.matrices import diagonal, weighted
 from pound_solve.numerics.modes import massless
+from pound_solve.numerics.record import record
 from pound_solve.structure.reduction import ReducedSystem
 
 MOST_STEPS = 5_000_000  #: that a run may come to
@@ -111,7 +112,7 @@ class Taylor(KernelEngine):
         if why == march.SHORT:
             return self.stop("A502", "the fastest mode asks for steps too short to tell the times apart")
         if why == RUNAWAY:
-            return self.stop("A504", GROWS.format(self.state.energy_at_start))
+            return self.stop("A504", GROWS.format(self.state.initial_energy))
         if why == CHATTER:
             fault = int(self.state.fault)
             s, at = self.springs[fault], self.laws.branch[fault]

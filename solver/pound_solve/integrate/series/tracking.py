@@ -45,21 +45,21 @@ def count_crest(
     laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t: float, i: int, law: int
 ) -> None:
     """Count the polynomial at work into peak `i`; `law` is not negative for the force of a law."""
-    peaks, p = step.peaks, series.polynomial
-    known = peaks.high[i]
+    extremes, p = step.extremes, series.polynomial
+    known = extremes.high[i]
     contact = law >= 0 and laws.contact[law]
     if contact:
         known = min(known, laws.peak_force[law])
     high, place = highest(p, terms, end, known)
-    if high > peaks.high[i]:
-        peaks.high[i], peaks.t_high[i] = high, t + h * place
+    if high > extremes.high[i]:
+        extremes.high[i], extremes.t_high[i] = high, t + h * place
     if contact and high > laws.peak_force[law]:
         laws.peak_force[law], laws.peak_time[law] = high, t + h * place
     for k in range(terms + 1):
         p[POLYNOMIAL, k] = -p[POLYNOMIAL, k]
-    high, place = highest(p, terms, end, -peaks.low[i])
+    high, place = highest(p, terms, end, -extremes.low[i])
     if place >= 0.0:
-        peaks.low[i], peaks.t_low[i] = -high, t + h * place
+        extremes.low[i], extremes.t_low[i] = -high, t + h * place
 
 
 def track_outputs(
@@ -82,21 +82,21 @@ def track_laws(
     laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t: float, first: int
 ) -> None:
     """Count deformations and forces of the laws up to `end` into the peaks, from peak `first` on."""
-    peaks, d, p = step.peaks, series.deformation, series.polynomial[POLYNOMIAL]
+    extremes, d, p = step.extremes, series.deformation, series.polynomial[POLYNOMIAL]
     for i in range(len(laws.rule)):
         begin, far = d[i, 0], size(d, i, terms)
-        if begin + far > peaks.high[first + i] or begin - far < peaks.low[first + i]:
+        if begin + far > extremes.high[first + i] or begin - far < extremes.low[first + i]:
             for k in range(terms + 1):
                 p[k] = d[i, k]
             count_crest(laws, step, series, terms, h, end, t, first + i, -1)
         own = first + len(laws.rule) + i
         stiffness, damping = laws.stiffness[i], laws.damping[i] if laws.contact[i] else 0.0
         far *= abs(stiffness)
-        high = peaks.high[own]
+        high = extremes.high[own]
         if laws.contact[i]:
             high = min(high, laws.peak_force[i])
         force = laws.offset[i] + stiffness * begin
-        if damping != 0.0 or force + far > high or force - far < peaks.low[own]:
+        if damping != 0.0 or force + far > high or force - far < extremes.low[own]:
             for k in range(terms + 1):
                 p[k] = stiffness * d[i, k]
             p[0] += laws.offset[i]

@@ -6,6 +6,7 @@ Everything here works on named arrays in the order of elimination (see `kernels.
 
 from __future__ import annotations
 
+from pound_solve.integrate.energy import Works, runs_away
 from pound_solve.integrate.events.within_step import first_event
 from pound_solve.integrate.kernels.consistency import make_consistent
 from pound_solve.integrate.kernels.laws import (
@@ -33,7 +34,6 @@ from pound_solve.integrate.kernels.state import (
     RUNAWAY,
     WHOLE,
     Buffers,
-    Energy,
     Laws,
     LinearSystem,
     Run,
@@ -103,7 +103,7 @@ def drive_laws(
 
 def step_through(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
-    coefs: Array, piece_start: float, energy: Energy, run: Run, length: float, tried: bool,
+    coefs: Array, piece_start: float, works: Works, run: Run, length: float, tried: bool,
 ) -> int:  # fmt: skip
     """Advance by `length` without a cut at events: Newton to the forces of the laws at its end, each driven
     along a straight path from its start; `tried` says that the first trial is made.
@@ -120,7 +120,7 @@ def step_through(
             continue
         if why == PIVOT:
             return PIVOT
-        accept(linear, laws, step, rules, scheme, length, WHOLE, energy, run)
+        accept(linear, laws, step, rules, scheme, length, WHOLE, works, run)
         run.time += length
         run.events += run.driven
         for i in range(len(laws.rule)):
@@ -150,7 +150,7 @@ def passes_event(laws: Laws, step: Step, scheme: Scheme, h: float) -> bool:
 @flat
 def plain_steps(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
-    coefs: Array, piece_start: float, energy: Energy, run: Run, h: float, last: int, each: int,
+    coefs: Array, piece_start: float, works: Works, run: Run, h: float, last: int, each: int,
 ) -> bool:  # fmt: skip
     """Take steps of length `h` up to step `last` while every law stays on its branch; keep the motion after
     each `each` of them.
@@ -166,7 +166,7 @@ def plain_steps(
             return False
         if passes_event(laws, step, scheme, h):
             return True
-        accept(linear, laws, step, rules, scheme, h, WHOLE, energy, run)
+        accept(linear, laws, step, rules, scheme, h, WHOLE, works, run)
         run.time += h
         track(linear, laws, step, run.time, h)
         run.step += 1
@@ -216,20 +216,20 @@ def renew_factor(linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, h
 
 def end_goal(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, sampled: bool,
-    energy: Energy, run: Run,
+    works: Works, run: Run,
 ) -> int:  # fmt: skip
     """Take a sample at a goal; RUNAWAY where the kinetic energy is far above what was put in."""
     kinetic, velocity = 0.0, step.now.velocity
     multiply(linear.mass, velocity, step.product)
     for i in range(len(velocity)):
         kinetic += 0.5 * velocity[i] * step.product[i]
-    if not kinetic <= 10.0 * (run.energy_at_start + energy.gross_input) + 1e-300:
-        run.energy_at_start = kinetic
+    if runs_away(kinetic, run.initial_energy, works.gross_input):
+        run.initial_energy = kinetic
         return RUNAWAY
     run.goal += 1
     run.step = 0
     if sampled:
-        store_sample(laws, step, buffers, rules, energy, run, run.time)
+        store_sample(laws, step, buffers, rules, works, run, run.time)
         run.since_shown = 0
         if run.kept == len(buffers.time):
             return FULL
@@ -239,7 +239,7 @@ def end_goal(
 def advance(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
     coefs: Array, breaks: Array, goals: Array, steps: Index, lengths: Array, outputs: Flags, shows: Index,
-    pieces: Index, energy: Energy, run: Run,
+    pieces: Index, works: Works, run: Run,
 ) -> int:  # fmt: skip
     """Integrate to the last goal, or until Python must look at something.
 
@@ -259,7 +259,7 @@ def advance(
     """
     room, pause = len(buffers.log) // 2, next_pause(step, run)
     if run.started == 0:
-        take_first_sample(linear, laws, step, buffers, rules, energy, run)
+        take_first_sample(linear, laws, step, buffers, rules, works, run)
     while run.goal < len(goals):
         goal = run.goal
         h, piece = lengths[goal], coefs[pieces[goal]]
@@ -273,7 +273,7 @@ def advance(
                 return why
             last = min(steps[goal] - 1, run.step + pause - run.steps)
             tried = plain_steps(
-                linear, laws, step, buffers, rules, scheme, piece, begin, energy, run, h, last, shows[goal]
+                linear, laws, step, buffers, rules, scheme, piece, begin, works, run, h, last, shows[goal]
             )
             if not tried and (run.step == last < steps[goal] - 1 or run.updates > REFRESH):
                 continue
@@ -281,12 +281,12 @@ def advance(
             why = NEWTON
             if not scheme.locate:
                 why = step_through(
-                    linear, laws, step, buffers, rules, scheme, piece, begin, energy, run, length, tried
+                    linear, laws, step, buffers, rules, scheme, piece, begin, works, run, length, tried
                 )
                 tried = False
             if why == NEWTON:  # cut at its events a step always has a solution
                 why = step_in_parts(
-                    linear, laws, step, buffers, rules, scheme, piece, begin, energy, run, length, h, tried
+                    linear, laws, step, buffers, rules, scheme, piece, begin, works, run, length, h, tried
                 )
             if why != DONE:
                 return why
@@ -295,7 +295,7 @@ def advance(
             if run.step < steps[goal] or not outputs[goal]:
                 store_motion(step, buffers, run, run.time, shows[goal])
         run.time = goals[goal]
-        why = end_goal(linear, laws, step, buffers, rules, outputs[goal], energy, run)
+        why = end_goal(linear, laws, step, buffers, rules, outputs[goal], works, run)
         if why != DONE:
             return why
     return DONE

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pound_solve.integrate.energy import Works
 from pound_solve.integrate.events.within_step import event_value, first_event, value_at_start
 from pound_solve.integrate.kernels.consistency import NEAR, make_consistent, touches_massless
 from pound_solve.integrate.kernels.laws import couple, linear_force, linearise_law, transition
@@ -21,7 +22,6 @@ from pound_solve.integrate.kernels.state import (
     PIVOT,
     WHOLE,
     Buffers,
-    Energy,
     Laws,
     LinearSystem,
     Run,
@@ -196,7 +196,7 @@ def factorise_part(
 
 def step_in_parts(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
-    coefs: Array, piece_start: float, energy: Energy, run: Run, length: float, h: float, tried: bool,
+    coefs: Array, piece_start: float, works: Works, run: Run, length: float, h: float, tried: bool,
 ) -> int:  # fmt: skip
     """Advance by `length`, in parts where events cut it; the factor at hand is for the step `h`,
     and `tried` says that the first trial is made.
@@ -240,7 +240,7 @@ def step_in_parts(
         else:
             run.longest_part *= 2.0
         if part > 0.0:
-            accept(linear, laws, step, rules, scheme, part, at, energy, run)
+            accept(linear, laws, step, rules, scheme, part, at, works, run)
             left -= part
             run.time = t + part
             track(linear, laws, step, run.time, part)

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pound_solve.integrate.energy import Works
 from pound_solve.integrate.kernels.consistency import correct_massless_rates
 from pound_solve.integrate.kernels.corotational import (
     add_tangent,
@@ -41,7 +42,7 @@ from pound_solve.integrate.kernels.laws import (
     update_friction_limits,
 )
 from pound_solve.integrate.kernels.products import along, copy, evaluate_inputs, form_load, multiply
-from pound_solve.integrate.kernels.state import WHOLE, Energy, Laws, LinearSystem, Run, Scheme, Step
+from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Run, Scheme, Step
 from pound_solve.integrate.kernels.work import (
     load_on_nodes,
     mean_damping_power,
@@ -258,12 +259,12 @@ def start_again(laws: Laws, rules: Tables) -> None:
     take_tangents(laws.members, laws.members.now.quantities)
 
 
-def add_external_work(linear: LinearSystem, laws: Laws, step: Step, h: float, energy: Energy) -> None:
+def add_external_work(linear: LinearSystem, laws: Laws, step: Step, h: float, works: Works) -> None:
     """Add up the work of loads and moved supports over the step, and the loss in dashpots of the
     structure.
     """
     now, trial = step.now, step.trial
-    before, work, loss = energy.input, 0.0, 0.0
+    before, work, loss = works.input, 0.0, 0.0
     loss += mean_damping_power(now, trial)
     if len(linear.support_damping) > 0:
         for i in range(len(now.velocity)):
@@ -281,13 +282,13 @@ def add_external_work(linear: LinearSystem, laws: Laws, step: Step, h: float, en
         if p[c, KIND] == STRING:  # what its axial force does on the way that a string leaves out
             s0, s1 = members.now.quantities, members.trial.quantities
             square = s0[c, 3] * s0[c, 3] + s1[c, 3] * s1[c, 3]
-            energy.input += 0.25 * square / p[c, LENGTH] * (s1[c, 0] - s0[c, 0])
-    energy.input += work * h / 6.0
-    energy.damping += loss * h / 3.0
-    energy.gross_input += abs(energy.input - before)
+            works.input += 0.25 * square / p[c, LENGTH] * (s1[c, 0] - s0[c, 0])
+    works.input += work * h / 6.0
+    works.damping += loss * h / 3.0
+    works.gross_input += abs(works.input - before)
 
 
-def accept_laws(laws: Laws, rules: Tables, h: float, energy: Energy) -> None:
+def accept_laws(laws: Laws, rules: Tables, h: float, works: Works) -> None:
     """Add up the losses in the laws' dashpots and the contacts' impulses; take over the end of the step."""
     for i in range(len(laws.rule)):
         d0, d1 = laws.now.deformation[i], laws.trial.deformation[i]
@@ -297,9 +298,9 @@ def accept_laws(laws: Laws, rules: Tables, h: float, energy: Energy) -> None:
             lost = h / 6.0 * (drag0 * (2.0 * v0 + v1) + drag1 * (v0 + 2.0 * v1))
             laws.dashpot_loss[i] += lost
             if laws.contact[i]:
-                energy.contact += lost
+                works.contact += lost
             else:
-                energy.damping += lost
+                works.damping += lost
         if laws.contact[i]:
             force0, force1 = law_force(laws, rules, i, d0, v0), law_force(laws, rules, i, d1, v1)
             laws.impulse[i] += 0.5 * h * (force0 + force1)
@@ -334,7 +335,7 @@ def update_residual(linear: LinearSystem, step: Step, scheme: Scheme) -> None:
 
 def accept(
     linear: LinearSystem, laws: Laws, step: Step, rules: Tables, scheme: Scheme, h: float, at: int,
-    energy: Energy, run: Run,
+    works: Works, run: Run,
 ) -> None:  # fmt: skip
     """Make the end of the step that was tried the start of the next; count it, if it is longer than the
     time in which a falling branch gives way.
@@ -357,11 +358,11 @@ def accept(
             )
     else:
         multiply(linear.damping, trial.velocity, trial.damping_force)
-    add_external_work(linear, laws, step, h, energy)
+    add_external_work(linear, laws, step, h, works)
     accept_members(laws)
     if len(laws.coupled) > 0:
         add_slip_work(laws, h)
-    accept_laws(laws, rules, h, energy)
+    accept_laws(laws, rules, h, works)
     if scheme.alpha_f != 0.0 or scheme.alpha_m != 0.0:
         update_residual(linear, step, scheme)
     copy(trial.displacement, now.displacement)

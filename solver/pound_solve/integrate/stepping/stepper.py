@@ -27,7 +27,6 @@ from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.state import Scheme
 from pound_solve.integrate.protocol import (
     MonitoredOutputs,
-    Peaks,
     Recorder,
     Start,
     goals,
@@ -35,6 +34,7 @@ from pound_solve.integrate.protocol import (
     rounding_check,
 )
 from pound_solve.integrate.stepping import kernel
+from pound_solve.integrate.tracker import Peaks
 from pound_solve.structure.elements.base import Role
 from pound_solve.structure.reduction import ReducedSystem
 
@@ -125,7 +125,7 @@ class Stepper(KernelEngine):
         ratio of velocities to accelerations.
         """
         speed, rush = self.speed.tolist()
-        moves = speed > QUIET * (self.state.energy_at_start + self.energy.gross_input)
+        moves = speed > QUIET * (self.accumulator.initial + self.accumulator.works.gross_input)
         out = []
         if moves and rush > 0.0:
             count = 2.0 * np.pi * (speed / rush) ** 0.5 / self.dt
@@ -145,7 +145,7 @@ class Stepper(KernelEngine):
 
     def _springs(self, peaks: Peaks) -> list[tuple[str, str, str]]:
         """Whether the steps follow the springs' forces."""
-        steepest = self.step.peaks.steepest[len(self.step.peaks.steepest) - len(self.springs) :].tolist()
+        steepest = self.tracker.extremes.steepest[self.tracker.n_monitored + len(self.springs) :].tolist()
         rises = [
             max(abs(f.high), abs(f.low)) / (slope * self.dt)
             for s, f, slope in zip(self.springs, peaks.force, steepest)

@@ -1,0 +1,147 @@
+"""The accumulator of energy: works and losses of a run, the same for every method, and the balance of
+energies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from pound_solve.integrate.protocol import LawValues, Start
+from pound_solve.laws.automaton import State
+from pound_solve.numerics.record import record
+from pound_solve.numerics.types import Array
+from pound_solve.structure.reduction import ReducedSystem
+
+ENERGIES = ("input", "kinetic", "strain", "damping", "hysteretic", "contact")
+GROWTH = 10.0  #: kinetic energy over all that was put in, above which the motion grows without bound
+
+
+class Works(Protocol):
+    r"""Works since the start [F L]: a numpy record, which kernels change in place."""
+
+    input: float
+    damping: float  #: lost in the dashpots of the structure, of springs and of dampers
+    contact: float  #: lost in the dashpots of contacts
+    gross_input: float  #: sum of all \|input\|
+
+
+def runs_away(kinetic: float, initial: float, gross_input: float) -> bool:
+    """Whether the kinetic energy is far above what was there at the start and what was put in since."""
+    return not kinetic <= GROWTH * (initial + gross_input) + 1e-300
+
+
+class EnergyAccumulator:
+    """Works of a run, and the losses in the dashpots of its laws.
+
+    Parameters
+    ----------
+    system : ReducedSystem
+    start : Start
+
+    Attributes
+    ----------
+    works : Works
+    initial : float
+        Kinetic and recoverable energy at the start [F L].
+    dashpot_losses : ndarray, shape (n_laws,)
+    """
+
+    def __init__(self, system: ReducedSystem, start: Start) -> None:
+        self.works: Works = record(Works)
+        self.works.input, self.works.damping, self.works.contact = start.works.tolist()
+        self.initial = energy_at_start(system, start)
+        self.dashpot_losses = np.zeros(len(system.structure.laws))
+
+    def array(self) -> Array:
+        """Input, loss in the structure's and in the contacts' dashpots so far, shape (3,) [F L]."""
+        return np.array([self.works.input, self.works.damping, self.works.contact])
+
+    def advance(self, works: Array) -> None:
+        """Go on to later works, shape (n_times, 3), the first of which are the present ones."""
+        self.works.gross_input += float(np.abs(np.diff(works[:, 0])).sum())
+        self.works.input, self.works.damping, self.works.contact = works[-1].tolist()
+
+    def runs_away(self, kinetic: float) -> bool:
+        """Whether the motion grows without bound."""
+        return runs_away(kinetic, self.initial, self.works.gross_input)
+
+
+def law_values(system: ReducedSystem, t: Array, u: Array, v: Array, states: Sequence[State]) -> LawValues:
+    """Forces and energies of all laws from their states, at times (n_times,) and motions (n, n_times)
+    between two changes of branch.
+    """
+    laws = [s.law for s in system.structure.laws]
+    if not laws:
+        return LawValues(*np.zeros((3, 0, len(t))))
+    d = system.law_rows @ u + system.law_inputs @ system.excitation.values(t).T
+    rate = system.law_rows @ v + system.law_inputs @ system.excitation.values(t, 1).T
+    # `Law.work` and `Law.dissipated` of all laws and times at once: a sample of some laws is a small thing
+    k, c, f0 = np.array([x.rule.branch(x.p, s[0], s[3])[:3] for x, s in zip(laws, states)]).T[:, :, None]
+    begin, before = np.array([s[1:3] for s in states]).T[:, :, None]
+    still = k * d + f0
+    done = before + (0.5 * k * (d + begin) + f0) * (d - begin)
+    force = still + c * rate * np.array([[s.role.viscous] for s in system.structure.laws])
+    for i, s in enumerate(system.structure.laws):
+        if s.law.curved:
+            own = d[i].tolist()
+            still[i] = [s.law.force(states[i], x)[0] for x in own]
+            done[i] = [s.law.work(states[i], x) for x in own]
+            force[i] = [s.force(states[i], x, y) for x, y in zip(own, rate[i].tolist())]
+    stored = np.array(
+        [
+            [x.rule.recoverable(x.p, s[0], s[3], y, f) for y, f in zip(*pair)]
+            for x, s, *pair in zip(laws, states, d.tolist(), still.tolist())
+        ]
+    )
+    size = np.array([[x.p[0]] for x in laws]) * np.maximum(np.abs(d), np.abs(begin)) ** 2
+    lost = done - stored
+    return LawValues(force, stored, np.where(np.abs(lost) > 1e-14 * size, lost, 0.0))
+
+
+def energies(
+    system: ReducedSystem, t: Array, u: Array, v: Array, stored: Array, lost: Array, works: Array
+) -> Array:
+    """Return all energies at some times.
+
+    Parameters
+    ----------
+    system : ReducedSystem
+    t : ndarray, shape (n_times,)
+    u, v : ndarray, shape (n_times, n)
+    stored, lost : ndarray, shape (n_times, n_laws)
+        What the laws hold and have lost.
+    works : ndarray, shape (n_times, 3)
+
+    Returns
+    -------
+    ndarray, shape (n_times, 6)
+        In the order of `ENERGIES` [F L].
+    """
+    mass, stiffness, turning = system.mass, system.stiffness, np.zeros(len(t))
+    if system.corotational:
+        turning = system.corotational.actions(system.quantities(u, system.excitation.values(t)))[
+            :, :, 0
+        ].sum(axis=1)
+    if system.total:  # moved supports have mass and stretch elements too
+        mass, stiffness = system.structure.mass, system.structure.stiffness
+        u = system.expanded(u.T, system.excitation.values(t).T).T
+        v = system.expanded(v.T, system.excitation.values(t, 1).T, 1).T
+    contact = np.array([s.role.contact_energy for s in system.structure.laws], bool)
+    out = np.zeros((len(t), len(ENERGIES)))
+    out[:, 0], out[:, 3], out[:, 5] = works.T
+    out[:, 1] = 0.5 * (v * (v @ mass)).sum(axis=1)
+    out[:, 2] = 0.5 * (u * (u @ stiffness)).sum(axis=1) + stored.sum(axis=1) + turning
+    out[:, 4] = lost[:, ~contact].sum(axis=1)
+    out[:, 5] += lost[:, contact].sum(axis=1)
+    return out
+
+
+def energy_at_start(system: ReducedSystem, start: Start) -> float:
+    """Kinetic and recoverable energy [F L]: with the work put in since, all that the motion can hold."""
+    t, u, v = start.times[:1], start.u, start.v
+    laws = law_values(system, t, u[:, None], v[:, None], start.states)
+    whole = energies(system, t, u[None], v[None], laws.stored.T, laws.lost.T, np.zeros((1, 3)))
+    return float(whole[0, 1] + whole[0, 2])
