@@ -255,9 +255,9 @@ def extended(tmp_path, monkeypatch):
     """The program with the example files in its family folders, and nothing else changed."""
     names = []
     for file, code in EXAMPLES.items():
-        family, module = file.removesuffix(".py").split("/")
-        package = importlib.import_module(f"pound_solve.{family}")
-        own = tmp_path / "families" / family
+        *folders, module = file.removesuffix(".py").split("/")
+        package = importlib.import_module(f"pound_solve.{'.'.join(folders)}")
+        own = tmp_path.joinpath("families", *folders)
         own.mkdir(parents=True)
         (own / f"{module}.py").write_text(code, "utf-8")
         monkeypatch.setattr(package, "__path__", [*package.__path__, str(own)])
