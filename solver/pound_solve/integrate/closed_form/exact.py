@@ -147,9 +147,11 @@ class Exact(EventDrivenRun):
         if not window.whole:
             self._check_progress(float(window.lengths[0]))
         dense = self._dense_output(window.lengths, window.starts)
-        coarse, fine = self.search.samples(dense, window.h, self.largest)
+        bounds = dense.derivative_bounds()
+        coarse = self.search.coarse(dense, bounds, window.h, self.largest)
         if not np.isfinite(coarse.value).all() or not np.isfinite(coarse.rate).all():
             raise self.stop("A504", "the motion grew beyond all numbers")
+        fine = self.search.fine(coarse, bounds, window.h, self.largest)
         self.window_count += 1
         self._charge_window(dense, window.h, coarse.t.size + fine.t.size)
         found = self.search.events.first_event(fine, self.largest, STILL)

@@ -44,13 +44,26 @@ class Search:
         self.events, self.monitored, self.peaks = events, monitored, peaks
         self.second_rates = events.by_rate or monitored.by_rate
 
-    def samples(self, dense: DenseOutput, h: float, largest: Array) -> tuple[GridSamples, GridSamples]:
-        """Sample a window in coarse cells, and at steps of `h` those that may hold an event or a peak."""
-        bounds = dense.derivative_bounds()
-        coarse = GridSamples.of_window(dense, self._cell_length(bounds, h, largest), self.second_rates)
-        if coarse.h <= h or not (np.isfinite(coarse.value).all() and np.isfinite(coarse.rate).all()):
-            return coarse, coarse
-        return coarse, coarse.refined(self._cells(coarse, bounds, largest), h, self.second_rates)
+    def coarse(self, dense: DenseOutput, bounds: Array, h: float, largest: Array) -> GridSamples:
+        """Sample a window in coarse cells.
+
+        Parameters
+        ----------
+        dense : DenseOutput
+        bounds : ndarray, shape (2, n_rows, n_intervals)
+            Of the rows' second derivatives and those of their rates.
+        h : float
+            Step of the fine grid [T].
+        largest : ndarray, shape (2, n_rows)
+            Largest magnitudes of rows and rates so far.
+        """
+        return GridSamples.of_window(dense, self._cell_length(bounds, h, largest), self.second_rates)
+
+    def fine(self, coarse: GridSamples, bounds: Array, h: float, largest: Array) -> GridSamples:
+        """Sample the cells that may hold an event or a peak at steps of `h`; parameters as of `coarse`."""
+        if coarse.h <= h:
+            return coarse
+        return coarse.refined(self._cells(coarse, bounds, largest), h, self.second_rates)
 
     def _cell_length(self, bounds: Array, h: float, largest: Array) -> float:
         """Length of the coarse cells: a multiple of `h`, over which little curvature is possible."""
