@@ -58,7 +58,7 @@ class Saved:
             "first": self.first,
             "branch": np.array([s[0] for s in self.states], float),
             "entry": np.array([s[1:3] for s in self.states], float).reshape(-1, 2),
-            # a law that knows its secant stiffness has two numbers more than the others
+            # a law with its secant stiffness has two internal variables more than the others
             "memory": np.array([(*s[3], 0.0, 0.0)[: MEMORY + 2] for s in self.states]).reshape(
                 -1, MEMORY + 2
             ),
