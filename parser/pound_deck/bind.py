@@ -122,7 +122,7 @@ class Binder:
             if item.name:
                 named, name = True, item.name
             elif named or k >= len(places):
-                if len(self.report) == before:  # the first that is out of place tells enough
+                if len(self.report) == before:  # one report is enough: the first that is out of place
                     self._out_of_place(spec, named, items[k - 1], item)
                 continue
             else:

@@ -1,4 +1,4 @@
-"""Outline -> Model: every section is bound, numbers and labels are told apart, defaults filled in."""
+"""Outline -> Model: every section is bound, numbers and labels are distinguished, defaults filled in."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _GEOMETRY: Final = Field(
     positional=True,
 )
 _LENGTHS: Final = {"M": 9.81, "MM": 9810.0, "CM": 981.0, "FT": 32.174, "IN": 386.09}
-_ALIKE: Final = 0.01  #: to which share a value of gravity is told from others
+_ALIKE: Final = 0.01  #: relative difference up to which two values of gravity count as equal
 _QUANTITIES: Final = ("force", "length", "time")  #: whose units UNITS names
 _TIMES: Final = ("S", "SEC")
 _FORCES: Final = ("N", "KN", "MN", "KIP", "KIPS", "LB", "LBF", "KGF", "TF")

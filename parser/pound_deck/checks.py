@@ -29,7 +29,7 @@ def run_checks(
     model : Model
         All that could be read.
     cards : iterable of Card
-        Every card of the deck; those of NODES and ELEMENTS know the places of single items.
+        Every card of the deck; those of NODES and ELEMENTS have the places of single items.
     broken : frozenset of str
         Sections that lost lines to mistakes; checks that count on them are left out.
     """
@@ -44,12 +44,12 @@ def _references(model: Model, cards: Iterable[Card], broken: frozenset[str]) -> 
         ("P306", "element", "ELEMENTS", model.elements),
         ("P307", "property set", "PROPS", model.props),
     )
-    told: set[Span] = set()  # the first miss of an item tells enough: a range may have a hundred
+    reported: set[Span] = set()  # one report for an item is enough: a range may miss a hundred
     for value, kind, span in _named(cards):
         code, what, section, known = tables[_TABLE[kind]]
-        if section not in broken and value not in known and span not in told:
-            told.add(span)
-            near = suggest(value, known) if isinstance(value, str) and len(told) <= _MOST_HINTS else ""
+        if section not in broken and value not in known and span not in reported:
+            reported.add(span)
+            near = suggest(value, known) if isinstance(value, str) and len(reported) <= _MOST_HINTS else ""
             ground = "leave J out for the ground" if value == 0 else ""
             hint = near or ground or f"define it under {section}"
             yield Diagnostic(code, f"there is no {what} {value}", span, hint)
@@ -112,10 +112,10 @@ def _unused_props(model: Model) -> Found:
 def _loose_nodes(model: Model) -> Found:
     tied = {n for e in model.elements.values() for n in (e.i, e.j)}
     tied |= {n for node in model.nodes.values() if node.slaved for n in (node.id, *node.slaved.values())}
-    told: set[Span] = set()
+    reported: set[Span] = set()
     for node in model.nodes.values():
-        if model.elements and node.id not in tied and node.span not in told:
-            told.add(node.span)
+        if model.elements and node.id not in tied and node.span not in reported:
+            reported.add(node.span)
             message = f"node {node.id} is connected to nothing"
             yield Diagnostic("P314", message, node.span, "join it by an element, or take it out", "warning")
 
@@ -137,7 +137,7 @@ def _something(model: Model) -> Found:
 def _analysis(model: Model) -> Found:
     if not model.analyses:
         hint = "write ANALYSIS and below it STATIC, MODAL 4 or HISTORY T=10"
-        yield Diagnostic("P316", "the deck asks for no analysis", _deck(model), hint)
+        yield Diagnostic("P316", "the deck requests no analysis", _deck(model), hint)
 
 
 def _deck(model: Model) -> Span:
@@ -169,7 +169,7 @@ def _initial(model: Model) -> Found:
                 hint = "give the initial motion to the master" if letter in node.slaved else "leave it out"
                 message = f"node {number} is {state} along {letter}: {given[0]} has no effect"
                 yield Diagnostic("P325", message, card.place(given[0]), hint)
-                break  # one node tells enough
+                break  # one node is enough
 
 
 def _excitation(model: Model) -> Found:
@@ -185,7 +185,7 @@ def _excitation(model: Model) -> Found:
 
 
 def _no_axial_force(model: Model) -> Found:
-    """P-Delta without anything that presses the columns: the weights are masses only, unless asked for."""
+    """P-Delta without a load that compresses the columns: weights are masses only, unless GRAVITY=YES."""
     static = [card for card in model.analyses if card.spec.name == "STATIC"]
     kinds = [model.props[e.prop] for e in model.elements.values() if e.prop in model.props]
     pressed = (

@@ -157,8 +157,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P105": (
         "INCLUDE file not readable",
-        "The included file is missing or may not be read. Its name counts from the folder of the "
-        "file that includes it.",
+        "The included file is missing or may not be read. Its name is relative to the folder of "
+        "the file that includes it.",
     ),
     "P106": ("INCLUDE loop", "A file includes itself, directly or through others. Take one INCLUDE out."),
     "P107": (
@@ -166,7 +166,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "INCLUDE goes more than 20 files deep, or stands more than 1000 times. Join some files.",
     ),
     "P108": ("INCLUDE without a file name", "INCLUDE takes one file name in quotes and nothing else."),
-    "P109": ("nothing after &", "A line ends in & but no line follows to go on with. Remove the &."),
+    "P109": ("nothing after &", "A line ends in &, but no continuation line follows. Remove the &."),
     "P110": (
         "line too long",
         "A line with its continuations exceeds 100 000 characters. Split it into several cards, or "
@@ -177,8 +177,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "The character has no meaning outside quotes. Minus signs and quotes pasted from a text "
         "processor are the usual cause.",
     ),
-    "P202": ("quote not closed", "A text starts with a quote that has no partner on the same line."),
-    "P203": ("brackets do not match", "A bracket has no partner in the same card."),
+    "P202": ("quote not closed", "A text starts with a quote that is not closed on the same line."),
+    "P203": ("brackets do not match", "A bracket is not closed, or not opened, in the same card."),
     "P204": ("brackets too deep", "Brackets are nested more than 50 deep. Use PARAM for the parts."),
     "P205": (
         "blank inside an expression",
@@ -191,41 +191,41 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P208": (
         "range not understood",
-        "A range is written first TO last, or first TO last BY step. TO and BY are no names.",
+        "A range is written first TO last, or first TO last BY step. TO and BY cannot be names.",
     ),
     "P209": (
         "not understood",
-        "The card does not go on like this. An item is a number, an expression, a word, a text, a "
+        "Unexpected item on this card. An item is a number, an expression, a word, a text, a "
         "list or NAME=value.",
     ),
     "P210": (
         "unknown word",
-        "The word is none of the choices that this place allows. The message lists them.",
+        "The word is not among the choices for this item. The message lists them.",
     ),
-    "P211": ("unknown item name", "The card takes no item of that name. The message lists what it takes."),
-    "P212": ("item given twice", "An item stands twice in one card, by name or by position. Remove one."),
+    "P211": ("unknown item name", "The card has no item of that name. The message lists its items."),
+    "P212": ("item given twice", "An item is given twice on one card, by name or by position. Remove one."),
     "P213": (
         "item missing",
         "The card needs an item that has no default. The message gives its meaning and unit.",
     ),
     "P214": (
         "too many items",
-        "The card has more items by position than it reads so. Write further items as NAME=value, "
-        "lists with commas.",
+        "The card has more items by position than it allows. Write further items as NAME=value, "
+        "and lists with commas.",
     ),
     "P215": (
         "item after a named one",
-        "Items by position stand before the named ones. Values of one item are joined by commas "
+        "Items by position come before the named ones. Values of one item are joined by commas "
         "without blanks: NODES=100,100+n.",
     ),
     "P216": (
         "wrong kind of value",
-        "The place holds another kind of value: a number, a whole number, a text or a word. A text "
-        "stands in quotes unless it is one word or one number.",
+        "The item takes another kind of value: a number, a whole number, a text or a word. A text "
+        "must be in quotes unless it is one word or one number.",
     ),
     "P217": (
         "value out of limits",
-        "The number lies outside what is possible for this item. The message gives the limits.",
+        "The number is outside the limits of this item. The message gives them.",
     ),
     "P218": (
         "wrong number of values",
@@ -234,14 +234,14 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P219": (
         "range not allowed",
         "The item takes no range, or the first item of the card is no range. Ranges generate nodes "
-        "and elements, and stand in lists of nodes and elements.",
+        "and elements, and are allowed in lists of nodes and elements.",
     ),
     "P220": (
         "range does not fit",
         "The range descends, misses its end, or cannot be stepped evenly along with the card's "
-        "first range. a TO b with b = a - 1 is no mistake but means none: it adds nothing to a list "
+        "first range. a TO b with b = a - 1 is valid and empty: it adds nothing to a list "
         "of nodes or elements, a card whose list is empty applies to nothing, and a line of NODES or "
-        "ELEMENTS that starts with it generates nothing. Anything lower is an error.",
+        "ELEMENTS that starts with it generates nothing. A lower b is an error.",
     ),
     "P221": (
         "too much generated",
@@ -249,7 +249,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P222": (
         "unknown name",
-        "The name is no PARAM of the deck. Define it with PARAM, or put a text in quotes.",
+        "The deck defines no PARAM of that name. Define it with PARAM, or put a text in quotes.",
     ),
     "P223": ("division by zero", "The expression divides by zero, or takes zero to a negative power."),
     "P224": ("number too large", "The number or the value of the expression is beyond 1.8e308."),
@@ -273,7 +273,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P230": ("PARAM name reserved", "Names of functions, PI, TO, BY, NAN and INF cannot be PARAM names."),
     "P231": (
         "PARAM not understood",
-        "Write PARAM name = value, one value each; several may stand on one line.",
+        "Write PARAM name = value, one value each; one line may define several.",
     ),
     "P232": (
         "--set of an unknown PARAM",
@@ -286,18 +286,18 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P234": (
         "line outside any section",
-        "The line stands before the first section. Write the section's name (NODES, ELEMENTS, ...) "
+        "The line comes before the first section. Write the section's name (NODES, ELEMENTS, ...) "
         "on a line above it.",
     ),
     "P235": (
         "unknown section",
-        "The word alone on its line is no section of a deck, and no line of the section above.",
+        "The word alone on its line is neither a section of a deck nor a line of the section above.",
     ),
     "P236": (
         "words after a section's name",
-        "A section's name stands alone on its line. Put column heads behind an exclamation mark.",
+        "A section's name must be alone on its line. Put column heads after an exclamation mark.",
     ),
-    "P237": ("card given twice", "TITLE, UNITS, GRAVITY, MASS and GEOMETRY stand once in a deck."),
+    "P237": ("card given twice", "TITLE, UNITS, GRAVITY, MASS and GEOMETRY are allowed once in a deck."),
     "P238": ("UNITS not understood", "Write UNITS force length time, for example UNITS kN m s."),
     "P239": (
         "file name without quotes",
@@ -316,7 +316,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P304": ("drift given twice", "Two lines under DRIFT have the same name."),
     "P305": (
         "unknown node",
-        "The node is not defined under NODES. To join an element to the ground leave J out.",
+        "The node is not defined under NODES. To connect an element to the ground leave J out.",
     ),
     "P306": ("unknown element", "The element is not defined under ELEMENTS."),
     "P307": ("unknown property set", "The label is not defined under PROPS."),
@@ -331,16 +331,16 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P311": (
         "fixed and slaved",
-        "A direction is both fixed and slaved. Take the letter out of FIX or SLAVED.",
+        "A direction is both fixed and slaved. Remove the letter from FIX or SLAVED.",
     ),
     "P312": (
         "member without length",
-        "Both ends of a FRAME, BEAM_COLUMN or TENDON stand at the same place.",
+        "Both ends of a FRAME, BEAM_COLUMN or TENDON are at the same point.",
     ),
     "P313": ("property set not used (warning)", "No element has this property set."),
-    "P314": ("loose node (warning)", "No element ends at the node, and no slaving ties it to another."),
+    "P314": ("loose node (warning)", "No element ends at the node, and it is not slaved to another."),
     "P315": ("nothing to analyse", "The deck has no nodes or no elements."),
-    "P316": ("no analysis", "The deck does not say what to do. Add a section ANALYSIS."),
+    "P316": ("no analysis", "The deck requests no analysis. Add a section ANALYSIS."),
     "P317": (
         "nothing moves the model (warning)",
         "A HISTORY has no EQUAKE, no FORCES, no INITIAL motion and no loads, so all results are zero.",
@@ -359,8 +359,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P321": ("element ends at one node", "Both ends of the element are the same node."),
     "P324": (
-        "analysis asked for twice",
-        "A deck holds one analysis of each kind. Run it again with other PARAM values "
+        "analysis given twice",
+        "A deck may contain one analysis of each kind. Run it again with other PARAM values "
         "(--set) for another one.",
     ),
     "P325": (
@@ -370,47 +370,47 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P329": (
         "node with two weights (warning)",
-        "All nodes of a line under WEIGHTS have a weight from another line, or a node stands twice in a "
-        "list. Weights of a node add up. Lines that overlap in part are taken as meant: no warning.",
+        "All nodes of a line under WEIGHTS have a weight from another line, or a node is twice in a "
+        "list. Weights of a node add up. Lines that overlap only in part give no warning.",
     ),
     "P330": (
         "element cannot be built",
         "The values of the element or of its property set contradict each other or its nodes. The "
-        "message says why; mend the property set, or the line under ELEMENTS that the hint names.",
+        "message states why; correct the property set, or the line under ELEMENTS that the hint names.",
     ),
     "P331": (
-        "loads on an element that is no member",
+        "loads on an element that is not a member",
         "MEMBER_LOADS act on FRAME and BEAM_COLUMN members only. Load the nodes of springs, dashpots and "
         "contacts under LOADS, or correct the element's number.",
     ),
     "P332": (
         "damping contradictory or not computable",
         "The options of the DAMPING line exclude each other, the modes they name do not exist, or a ratio "
-        "comes out negative. The message says which; the manual's page on damping has the ranges.",
+        "comes out negative. The message states which; the manual's page on damping has the ranges.",
     ),
     "P334": (
         "contact along an inclined line",
         "A contact without ANGLE acts along the line from I to J. Nodes at different heights make "
-        "that line inclined; floors that meet along x want ANGLE=0.",
+        "that line inclined; for floors that meet along x give ANGLE=0.",
     ),
     "P335": (
         "pushover not possible",
-        "The items of PUSHOVER exclude each other, its control node cannot move, or no force comes of its "
-        "pattern. It needs a TARGET (with CONTROL=FORCE a FACTOR will do), FORCES go with PATTERN=FORCES "
-        "and as many NODES, ADAPTIVE=YES with PATTERN=MODE; the other patterns need mass.",
+        "The items of PUSHOVER exclude each other, its control node cannot move, or its pattern has "
+        "no force. It needs a TARGET (with CONTROL=FORCE, a FACTOR is enough). FORCES belong to "
+        "PATTERN=FORCES with as many NODES, ADAPTIVE=YES to PATTERN=MODE; the other patterns need mass.",
     ),
     "P336": (
         "contact pressed at rest (warning)",
-        "GAP is below zero: the bodies overlap at rest and press each other. A distance is positive.",
+        "GAP is below zero: the bodies overlap at rest and are pressed together. A distance is positive.",
     ),
     "P337": (
-        "structure not tied to the ground (warning)",
+        "structure not connected to the ground (warning)",
         "EQUAKE shakes the base along a direction in which no fixed node, spring, dashpot or contact holds "
         "the structure, and neither INITIAL nor FORCES set it in motion. Fix its base in that direction.",
     ),
     "P340": (
         "P-Delta without axial forces (warning)",
-        "GEOMETRY asks for P-Delta, but no load presses the columns, so it does nothing. Weights are "
+        "GEOMETRY requests P-Delta, but no load compresses the columns, so it has no effect. Weights are "
         "masses; STATIC GRAVITY=YES makes them loads too.",
     ),
     "P341": (
@@ -419,12 +419,12 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P342": (
         "gravity of another unit of length (warning)",
-        "GRAVITY is as it would be with another unit of length than that of UNITS, such as 9.81 with mm. "
-        "All masses are weights over it. Correct one of the two.",
+        "GRAVITY has the value of another unit of length than that of UNITS, such as 9.81 with mm. "
+        "All masses are weights divided by it. Correct one of the two.",
     ),
     "P343": (
         "weight of a fixed node (warning)",
-        "The node is fixed, so its mass takes no part in any motion. A support that EQUAKE moves by itself "
+        "The node is fixed, so its mass takes no part in any motion. A support with a motion of its own "
         "(SUPPORTS) may have weight.",
     ),
     "P344": (
@@ -433,16 +433,16 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "R401": (
         "record not found",
-        "The record stands neither in the deck's folder nor in the record folders. Check its name, "
+        "The record is neither in the deck's folder nor in the record folders. Check its name, "
         "or add --records DIR.",
     ),
     "R402": (
         "record not readable",
-        "The file does not hold what its FORMAT says. Check the FORMAT and the place named in the message.",
+        "The file does not have the FORMAT given. Check the FORMAT and the place named in the message.",
     ),
     "R403": (
         "record count differs",
-        "The record holds another number of values than its head declares. The file may be cut short.",
+        "The number of values in the record differs from that in its header. The file may be truncated.",
     ),
     "R404": (
         "record value out of range",
@@ -451,13 +451,13 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "R405": (
         "motion or force incomplete or contradictory",
-        "The line of EQUAKE or FORCES needs an item that is not given, or its items exclude each other. "
-        "The message says which.",
+        "The line of EQUAKE or FORCES lacks an item, or its items exclude each other. "
+        "The message states which.",
     ),
     "R406": (
         "there is no saved state to restart from",
         "Name the .h5 file of a run of the same structure that ended or had a SAVE time; its path is "
-        "counted from the deck's folder.",
+        "relative to the deck's folder.",
     ),
     "A501": (
         "unstable structure",
@@ -471,16 +471,16 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "A503": (
         "no progress",
         "Too many events happen at one instant or within one step, or the step falls below its least "
-        "size. Take a shorter DT or METHOD=EXACT; check stiffness and restitution of the contacts. NEWMARK "
-        "with EVENTS=STEPPED and a short DT does not search for events and may go on.",
+        "size. Use a shorter DT or METHOD=EXACT; check stiffness and restitution of the contacts. NEWMARK "
+        "with EVENTS=STEPPED and a short DT does not search for events and may continue.",
     ),
     "A504": (
         "runaway or not a number",
         "Displacements grew without bound. Check DT, damping and strengths.",
     ),
     "A505": (
-        "method does not suit the scene",
-        "The chosen METHOD cannot treat this model. The message says why and which can.",
+        "method does not suit the model",
+        "The chosen METHOD cannot solve this model. The message states why, and which can.",
     ),
     "A506": ("interrupted", "The run was stopped by the user. Results up to that time are kept."),
     "A507": (

@@ -1,6 +1,6 @@
 """The Model: what a deck says, typed and checked, each part with the place where it stands.
 
-Nothing here knows numerics.  A :class:`Card` carries the bound values of one Spec; the few parts that every
+Nothing here is numerical.  A :class:`Card` carries the bound values of one Spec; the few parts that every
 later stage needs by name (nodes, elements) have fields of their own.
 """
 

@@ -105,7 +105,7 @@ def _params(
 ) -> dict[str, Value | None]:
     """Values of all PARAMs; `texts` holds the overrides by the name that their spans carry."""
     if texts:
-        own = resolve(outline.definitions, [], outline.lost)  # tells which PARAMs hold texts
+        own = resolve(outline.definitions, [], outline.lost)  # to find which PARAMs hold texts
         for source, text in texts.items():
             _override(source, text, own, outline, report)
     return resolve(outline.definitions, report, outline.lost)

@@ -128,7 +128,7 @@ class Source:
 
     def _load(self, name: str, here: Span) -> str:
         with open(name, "rb") as stream:
-            # one byte more than allowed tells a deck that is too large from one that just fits
+            # one byte more than allowed: distinguishes a deck that is too large from one that just fits
             return self.decode(name, stream.read(MAX_BYTES - self._bytes + 1), here)
 
     def decode(self, name: str, data: bytes, here: Span) -> str:

@@ -98,7 +98,7 @@ class Values:
             d = error.diagnostic
             if (
                 d and d.code == "P222" and part.lone_word not in FUNCTIONS
-            ):  # the place tells more than the name alone
+            ):  # the place says more than the name alone
                 known = suggest(part.lone_word, self.params) if part.lone_word else d.hint
                 message = f"{name} takes a number, and {d.message}"
                 raise mistake("P222", message, d.span or part.span, hints(known, meaning)) from None

@@ -6,7 +6,7 @@ With yield deformation :math:`d_y` and yield force :math:`F_y = k d_y` of a side
 
 .. math:: D = \frac{d_m}{d_u} + \beta\,\frac{E_h}{F_y d_u}
 
-Each side is taken by itself, with the whole of the energy; the larger index counts.  The index of the
+Each side is evaluated on its own, with the whole of the energy; the larger index counts.  The index of the
 structure is the mean of all, weighted by the energies: :math:`\sum E_i D_i / \sum E_i`.
 
 References

@@ -18,7 +18,7 @@ ROUNDING = 1e-9  #: share of the largest term below which a sum of forces is zer
 
 
 class SupportReactions:
-    """A structure with its supports let go, so that it shows what holds it.
+    """A structure with its supports released, for the reactions.
 
     Parameters
     ----------

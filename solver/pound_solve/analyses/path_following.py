@@ -136,7 +136,7 @@ class EquilibriumPath:
         self.corotational = structure.corotational.on(slice(n))
         self.curved = len(self.corotational) > 0 or any(s.law.curved for s in self.laws)
         self.branches = [s.law.branch(x) for s, x in zip(self.laws, self.states)]
-        self._lost = np.zeros(n)  # what laws have let go, not yet handed over
+        self._lost = np.zeros(n)  # forces that laws have released, not yet redistributed
         self._most = float(np.abs(applied).max(initial=0.0))
         self._longest = self._stride = np.inf
 
@@ -198,8 +198,8 @@ class EquilibriumPath:
         self.branches[i] = law.branch(self.states[i])
         if self.branches[i].held:
             raise InstabilityError(
-                f"the rigid contact {self.laws[i].element} ({self.laws[i].rule}) closes, and statics knows "
-                "no force for it: HISTORY FROM=REST lets it meet, or a LAW with a stiffness serves",
+                f"the rigid contact {self.laws[i].element} ({self.laws[i].rule}) closes, and statics "
+                "gives it no force: use HISTORY FROM=REST, or a LAW with a stiffness",
                 "A507",
             )
         let_go = held - law.force(self.states[i], d)[0]
@@ -231,12 +231,12 @@ class EquilibriumPath:
         return found
 
     def _hand_over(self) -> PathEvent | None:
-        """Let the others take what laws have let go, while the control stands still."""
+        """Redistribute the forces that laws have released, at fixed control."""
         if self.curved:
             self._lost = np.zeros(len(self.u))
             there = self._point(0.0, 0.0 * self.u, 0.0, ())
             if there is None:
-                raise InstabilityError("nothing takes the force that was let go", "A507")
+                raise InstabilityError("no equilibrium for the force that a law has released", "A507")
             self._move(*there[0])
             return None
         du, rise, best, found = self._ahead(())
@@ -435,7 +435,7 @@ def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
         worst = at[_largest(whole.slack @ along)]
         raise InstabilityError(
             f"the loaded structure is a mechanism, worst at {name_of(structure, int(worst))} "
-            "(or parts of it are so much stiffer than others that it cannot be told from one: END1, END2 "
+            "(or parts of it are so much stiffer than others that it looks like one: END1, END2 "
             "or SLAVED make parts rigid)"
         )
     # an unloaded mechanism (a free diaphragm) stays where it is

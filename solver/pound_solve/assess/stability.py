@@ -14,7 +14,7 @@ promises: its peaks by `AUTO_WITHIN`, its histories as those of steps.
 Some answers hang on the last digits of the deck: two motions of a chaotic scene part from each other,
 however close they begin, and a contact that just touches may as well just not.  Where something is off, the
 reference is therefore run again with all masses changed by a `NUDGE` of the error allowed.  What that alone
-changes by more than is allowed (a motion from some time on, a largest force) nobody knows: not judged.
+changes by more than is allowed (a motion from some time on, a largest force) is unknown: not judged.
 """
 
 from __future__ import annotations
@@ -296,7 +296,7 @@ def judge(run: Runner, case: Case, method: str) -> JudgedRun:
     else:
         told = reference(run, case)
         if told is None and case.like[0]:
-            return row(FAULT, "the deck that tells the right answer does not run")
+            return row(FAULT, "the deck that gives the right answer does not run")
         if told is None or len(told[0].t) != len(found.t):
             return row(TOLD if says else RIGHT, says or ALONE)
         right, by, doubt = told

@@ -39,7 +39,7 @@ from pound_solve.driver.overrides import with_method
 from pound_solve.results import Results, Writer
 from pound_solve.results.schema import Stage
 
-Tell = Callable[[str], None]
+Report = Callable[[str], None]
 
 HALVINGS: Final = 16  #: of the first step, at most
 SHORT: Final = 0.01  #: a spread is not looked at below this time [s]
@@ -98,7 +98,7 @@ class Study:
 
     @property
     def noise(self) -> float:
-        """Largest spread of the repeats that are long enough to tell; 0 where none is."""
+        """Largest spread of the repeats that are long enough to compare; 0 where none is."""
         return max((t.spread for t in self.trials if t.time > SHORT), default=0.0)
 
     @property
@@ -123,7 +123,7 @@ class Study:
 
 
 def run(
-    request: driver.Request, plan: Plan, tell: Tell = lambda text: None
+    request: driver.Request, plan: Plan, report: Report = lambda text: None
 ) -> tuple[Study, driver.Prepared]:
     """Run the study of a deck.
 
@@ -132,8 +132,8 @@ def run(
     request : Request
         Its method, dt and tol are not used.
     plan : Plan
-    tell : callable
-        Told what is run.
+    report : callable
+        Called with a line on what is run.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def run(
             raise StudyError(f"--methods {name}: known methods are {', '.join(known)}")
     model = replace(ready.model, analyses=tuple(cards))
     with tempfile.TemporaryDirectory(prefix="pound-study-") as folder:
-        bench = _Bench(request, replace(ready, model=model), plan, Path(folder) / "run.h5", tell)
+        bench = _Bench(request, replace(ready, model=model), plan, Path(folder) / "run.h5", report)
         trials, reference = bench.all()
     return Study(tuple(trials), reference, advise(trials, reference)), ready
 
@@ -161,9 +161,9 @@ class _Bench:
     """Runs the trials of one study."""
 
     def __init__(
-        self, request: driver.Request, ready: driver.Prepared, plan: Plan, path: Path, tell: Tell
+        self, request: driver.Request, ready: driver.Prepared, plan: Plan, path: Path, report: Report
     ) -> None:
-        self.request, self.ready, self.plan, self.path, self.tell = request, ready, plan, path, tell
+        self.request, self.ready, self.plan, self.path, self.report = request, ready, plan, path, report
         self.methods = catalog().family("method")
         self.warm: set[str] = set()
 
@@ -178,8 +178,8 @@ class _Bench:
             if not out["EXACT"][0].stopped:
                 own = errors(out["EXACT"][0].peaks, fine.peaks)
                 reference = Reference(fine.peaks, own, "EXACT with REFINE=2")
-        asks = {m: {f.name for f in self.methods[m].fields} for m in plan.methods}
-        stepping = [m for m in plan.methods if "DT" in asks[m]]
+        items = {m: {f.name for f in self.methods[m].fields} for m in plan.methods}
+        stepping = [m for m in plan.methods if "DT" in items[m]]
         if reference is None:
             reference = self._stepped(stepping, out)
         for method in plan.methods:
@@ -188,7 +188,7 @@ class _Bench:
                     out[method] = self._ladder(method, reference)
                 else:
                     out[method] = (
-                        self._tolerances(method) if "TOL" in asks[method] else [self.trial(method)]
+                        self._tolerances(method) if "TOL" in items[method] else [self.trial(method)]
                     )
         known = reference
         return [
@@ -221,9 +221,9 @@ class _Bench:
                 out.append(trial)
                 continue
             if out and trial.steps and trial.steps == out[-1].steps:
-                continue  # the record and the output times ask for more steps than DT
+                continue  # the record and the output times need more steps than DT
             if out and out[-1].stopped and trial.stopped:
-                out.pop()  # the finest of those that stop tells enough
+                out.pop()  # of those that stop the finest is enough
             out.append(trial)
             done = [t for t in out if not t.stopped]
             against = reference.peaks if reference else done[-2].peaks if len(done) > 1 else None
@@ -253,16 +253,16 @@ class _Bench:
     def first(self) -> float:
         """Longest step of a ladder [T]: that of the record, or of the output where it is shorter."""
         model = self.ready.model
-        told = [m.info.get("dt") for m in self.ready.motions] + [
+        steps = [m.info.get("dt") for m in self.ready.motions] + [
             f.info.get("dt") for f in self.ready.forces
         ]
-        found = [dt for dt in (*told, model.output["EVERY"]) if dt]
+        found = [dt for dt in (*steps, model.output["EVERY"]) if dt]
         return float(min(found, default=model.analyses[0]["T"] / ROWS))
 
     def trial(
         self, method: str, longest: float | None = None, *, timed: bool = True, **given: float
     ) -> Trial:
-        """Run one method with one setting, as often as asked; the first run of a method is not timed,
+        """Run one method with one setting, as often as planned; the first run of a method is not timed,
         because it imports and compiles.
         """
         cards = tuple(with_method(c, self.methods[method], given) for c in self.ready.model.analyses)
@@ -271,7 +271,7 @@ class _Bench:
         cold = timed and method not in self.warm
         out, seconds = Trial(method, setting), list[float]()
         for n in range(self.plan.repeat + cold if timed else 1):
-            self.tell(f"{method} {setting}, run {n + 1}")
+            self.report(f"{method} {setting}, run {n + 1}")
             # only what is compiled may take longer the first time
             limit = math.inf if cold and n == 0 and method != "EXACT" else longest or self.plan.longest
             try:

@@ -1,1 +1,1 @@
-"""Numerics that know nothing of structures."""
+"""Numerical methods, independent of structures."""

@@ -25,7 +25,7 @@ from pound_solve.numerics.types import Array, Flags
 
 MISSED = 8  #: how often modes that were passed over are looked for
 TINY = 1e-15  #: of a diagonal of ones: keeps pivots from being zero
-MORE = 4  #: modes beyond those asked for, to find a gap after them
+MORE = 4  #: modes beyond those requested, to find a gap after them
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ class Held:
             tiny = TINY * matrices.selection(n, np.arange(n))
             pivots, least = Factor(k + tiny, 0.0).pivots, 10 * TINY * max(n, 10)
         weak = np.flatnonzero((pivots < least) & (pivots > -1e-10))
-        if len(weak):  # to let go of what is held there is a motion that K does not resist
+        if len(weak):  # the motion when a hold is released is one that K does not resist
             self._factor = Factor(k + matrices.gathered(k.shape, weak, weak, np.ones(len(weak))))
             self.slack = np.linalg.qr(self._factor.solve(dense(matrices.selection(n, weak))))[0]
         assert self._factor is not None
@@ -140,7 +140,7 @@ def deficiency(k: Array) -> int:
     """How many independent motions K, scaled to a diagonal of ones,
     does not resist (mechanisms, rigid bodies).
 
-    Pivots, not eigenvalues, tell a mechanism from a slender mesh: those of a cantilever
+    Pivots, not eigenvalues, distinguish a mechanism from a slender mesh: those of a cantilever
     of n members fall as n^-3 (its eigenvalues as n^-4), those of a mechanism are rounding.
     Without pivoting rounding may grow as n^3.
     """
@@ -230,7 +230,7 @@ def _signed(shapes: Array) -> Array:
 
 
 def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
-    """The `count` slowest modes of sparse matrices; None where some cannot be told from others."""
+    """The `count` slowest modes of sparse matrices; None where some cannot be separated from others."""
     from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
 
     n, at = k.shape[0], np.flatnonzero(used_rows(k))
@@ -245,14 +245,14 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
     factor = Factor(k + shift * m)
     if factor.negative:
         raise np.linalg.LinAlgError("negative stiffness")
-    want, values, shapes = count, np.zeros(0), np.zeros((len(at), 0))
+    wanted, values, shapes = count, np.zeros(0), np.zeros((len(at), 0))
     for _ in range(MISSED):
         # those that are known are taken out, so that another of the same frequency shows
         def follow(push: Array, known: Array = shapes, own: Array = values) -> Array:
             x = factor.solve(push.ravel())
             return np.asarray(x - known @ ((known.T @ push.ravel()) / (own + shift)))
 
-        more = max(want + MORE - len(values), 1)
+        more = max(wanted + MORE - len(values), 1)
         start = follow(m @ _generic(len(at)))
         try:
             found, x = eigsh(
@@ -265,12 +265,12 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
         values, shapes = np.append(values, found), np.hstack([shapes, x])
         order = np.argsort(values, kind="stable")
         values, shapes = values[order], shapes[:, order]
-        # the widest gap after those that are asked for, and whether as many modes lie below it
-        gap = want - 1 + int(np.argmax(np.diff(values[want - 1 :] + shift) / (values[want:] + shift)))
+        # the widest gap after those requested, and whether as many modes lie below it
+        gap = wanted - 1 + int(np.argmax(np.diff(values[wanted - 1 :] + shift) / (values[wanted:] + shift)))
         below = Factor(k - 0.5 * (values[gap] + values[gap + 1]) * m, 0.0).negative
         if below == gap + 1:
             break
-        want = max(want, below)
+        wanted = max(wanted, below)
     else:
         return None
     values, shapes = np.maximum(values[:count], 0.0), shapes[:, :count]
@@ -318,7 +318,7 @@ def generalised(k: Array, m: Array) -> tuple[Array, Array]:
 
 
 def _eigen(k: Array, m: Array) -> tuple[Array, Array]:
-    """`generalised`, with rigid-body modes told from slow ones, and these sharpened."""
+    """`generalised`, with rigid-body modes separated from slow ones, and these refined."""
     values, shapes = generalised(k, m)
     size = scaling(k)
     scaled = size[:, None] * k * size

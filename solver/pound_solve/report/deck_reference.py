@@ -96,7 +96,7 @@ def _no_family(known: Catalog, word: str) -> str:
 
 
 def _ordered(known: Catalog) -> list[str]:
-    """Families in the order of the page, those it does not know last."""
+    """Families in the order of the page, unlisted ones last."""
     return [
         *(f for f in _FAMILIES if f in known.families()),
         *(f for f in known.families() if f not in _FAMILIES),

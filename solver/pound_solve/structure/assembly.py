@@ -31,7 +31,7 @@ from pound_solve.structure.mass import MassBlock, ground_inertia, mass_along, no
 @dataclass
 class Structure:
     """The assembled structure; arrays run over `DOFs` columns (unknowns, then prescribed),
-    matrices are plain or sparse (see `matrices`).
+    matrices are dense or sparse (see `matrices`).
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Structure:
     loads : ndarray, shape (n,)
         Static loads [F].
     released : ndarray, shape (n,)
-        Those among them that a history takes off where it starts.
+        Those among them that a history removes at its start.
     ground : ndarray, shape (3, n)
         ``M r`` for a unit acceleration of the ground along x and y and in a turn about the origin,
         supports included [F T^2/L], [F T^2].
@@ -59,8 +59,8 @@ class Structure:
         Quantities of the elements outside laws.
     geometric : tuple of Geometric
         Stiffness of the members from their axial forces; empty for small displacements.
-    corotational : Chords
-        Of the members whose forces follow their displaced line; over all columns.
+    corotational : CorotationalMembers
+        Members whose forces follow their displaced chord; over all columns.
     nodal_mass : mapping of Dof to float
         Diagonal mass by node and direction, weights and members.
     self_weight : bool
@@ -178,7 +178,7 @@ class AssemblyError(Exception):
 
 
 def _refusal(model: Model, label: str, message: str, item: str, elements: list[Element]) -> Diagnostic:
-    """What is wrong with the elements of one property set, told once."""
+    """What is wrong with the elements of one property set, reported once."""
     first, *others = elements
     more = f" and {len(others)} more" if others else ""
     return Diagnostic(

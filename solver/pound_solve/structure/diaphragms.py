@@ -107,7 +107,7 @@ def _diaphragm_collision(
     given = prop["DIAPHRAGMS"] is not None
     rigid = [n for n, d in zip("IJ", both) if math.isinf(d.stiffness) and not math.isinf(d.mass)]
     if rigid and not given:
-        # a mass at a column is no floor: what holds it matters, and the theory does not know it
+        # a mass at a column is no floor: its supports matter, which the theory leaves out
         who = " and ".join(rigid)
         what = f"no theory: {who} rigid, no member behind; DIAPHRAGMS under PROPS gives a stiffness"
         return DiaphragmCollision(both, None, math.nan, what)

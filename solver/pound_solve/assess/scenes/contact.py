@@ -210,10 +210,15 @@ class _Contacts:
         """Speeds after a free impact, and dashpots of any strength."""
         for e in (1.0, 0.5, 0.05) if self.spec.field("E") is not None else (1.0,):
             rebound = None if self.spec.name in OWN_LOSS else np.array([0.5 - 0.5 * e, 0.5 + 0.5 * e])
-            told = None if rebound is None else lambda t, v=rebound: v
+            right = None if rebound is None else lambda t, v=rebound: v
             deck = FREE.format(law=self.law(E=e))
             yield self.case(
-                "free impact, speeds after it", f"e {e:g}", deck, step=1e-4, right=told, compared=last_speed
+                "free impact, speeds after it",
+                f"e {e:g}",
+                deck,
+                step=1e-4,
+                right=right,
+                compared=last_speed,
             )
         for name, values in (("E", (1.0, 1e-3, 0.0)), ("XI", (0.0, 1.0, 10.0)), ("C", (0.0, 1e6))):
             if self.spec.field(name) is not None and (self.spec.sample == "E=0.5" or name == "E"):
@@ -245,11 +250,11 @@ class _Contacts:
 
     def friction(self) -> Iterator[Case]:
         """An oblique impact with friction."""
-        asked = re.search(r"\bE=(\S+)", self.plain)
-        lost, wall = 0.2 * (1.0 + (float(asked[1]) if asked else 1.0)), self.law(bodies=1)
+        restitution = re.search(r"\bE=(\S+)", self.plain)
+        lost, wall = 0.2 * (1.0 + (float(restitution[1]) if restitution else 1.0)), self.law(bodies=1)
         text = OBLIQUE.format(law=wall)
-        told = None if self.spec.name in OWN_LOSS else lambda t, v=1.0 - lost: np.array([v])
-        yield self.case("friction", "oblique impact", text, step=1e-4, right=told, compared=last_speed)
+        right = None if self.spec.name in OWN_LOSS else lambda t, v=1.0 - lost: np.array([v])
+        yield self.case("friction", "oblique impact", text, step=1e-4, right=right, compared=last_speed)
 
     def bouncing(self) -> Iterator[Case]:
         """A ball that comes to rest, and one that lies there."""

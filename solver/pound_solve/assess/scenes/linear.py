@@ -110,8 +110,8 @@ def _one_storey() -> Iterator[Case]:
     """One storey: damping, steps, stiffness, units."""
     for share in (0.0, 0.05, 1.0 - 1e-9, 1.0, 1.0 + 1e-9, 10.0, 1e3, 1e6):
         deck = one(damped(share) + KICK)
-        told = f"{share:.9g}"
-        yield _case("damping over critical", told, deck, right=swing(share), heavy=share > 1e5)
+        ratio = f"{share:.9g}"
+        yield _case("damping over critical", ratio, deck, right=swing(share), heavy=share > 1e5)
     for step in (1e-9, 1e-6, 1e-4, 0.01, 0.2, 1.0):
         end = 500 * step if step < 1e-5 else max(3.0, 3 * step)
         within = min(2.0 * (OMEGA * step) ** 2 * OMEGA * end / 12 + 1e-9, 0.05)

@@ -30,7 +30,7 @@ class Force:
     history : Piecewise, [-]
         Begins at t = 0; zero after its last break.
     info : mapping
-        What the report tells: ``kind`` and items of the kind's own.
+        What the report prints: ``kind`` and items of the kind's own.
     """
 
     nodes: tuple[int, ...]

@@ -71,7 +71,7 @@ _STRONG, _WEAK = 3.0, 0.001  # [g]
 
 @dataclass(frozen=True, slots=True)
 class LoadingContext:
-    """What a motion needs to know of its deck.
+    """What a motion needs from its deck.
 
     Attributes
     ----------
@@ -106,11 +106,11 @@ class Motion:
     velocity0, displacement0 : float, [L/T], [L]
         Of the ground at t = 0.
     info : mapping
-        What the report tells: ``kind name file format component npts dt unit scale start duration pga t_pga
+        For the report: ``kind name file format component npts dt unit scale start duration pga t_pga
         pgv pgd sha256 warnings`` and items of the kind's own.
     closed : pair of callables, or None
         Make velocity and displacement, where the kind has a closed form; they are not kept, because few
-        decks ask for them.
+        decks request them.
     about : tuple of two floats, [L]
     wave : float or None, [L/T]
         Speed of the wave that brings the motion to one support after the other; see `wave`.

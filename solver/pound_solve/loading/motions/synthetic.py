@@ -48,9 +48,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     if n < 3:
         raise RecordError("R405", f"DURATION={duration:g} is shorter than two steps DT={dt:g}")
     if duration / dt > MOST_SAMPLES:
-        raise RecordError(
-            "R405", f"DT={dt:g} asks for more than {MOST_SAMPLES} samples", "give a longer DT"
-        )
+        raise RecordError("R405", f"DT={dt:g} makes more than {MOST_SAMPLES} samples", "give a longer DT")
     wg, zg = float(card_values["WG"]), float(card_values["ZG"])
     wf = 0.1 * wg if card_values.get("WF") is None else float(card_values["WF"])
     zf = zg if card_values.get("ZF") is None else float(card_values["ZF"])

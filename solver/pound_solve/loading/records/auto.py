@@ -11,7 +11,7 @@ from pound_solve.loading.records.base import Format, RawRecord, RecordError, hea
 
 
 def sniff(head: str) -> bool:
-    """Never: AUTO asks the others."""
+    """Never: AUTO tries the others."""
     return False
 
 

@@ -47,7 +47,7 @@ def _counts(rows: list[str]) -> list[int]:
     try:
         return parse(rows)[1]
     except RecordError:
-        return [0] * len(rows)  # spoilt numbers: still this format, and reading it tells the line
+        return [0] * len(rows)  # damaged numbers: still this format, and reading it reports the line
 
 
 def read(text: str, options: Mapping[str, Any]) -> RawRecord:

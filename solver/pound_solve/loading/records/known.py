@@ -47,7 +47,7 @@ class Known:
 
     def locate(self) -> Path | None:
         """The file, or None when the package is not installed or does not hold it."""
-        # the spec tells the folder; importing the package would pull in its plotting library
+        # the spec names the folder; importing the package would pull in its plotting library
         spec = importlib.util.find_spec(self.package)
         for folder in (spec.submodule_search_locations or ()) if spec else ():
             if (path := Path(folder, self.path)).is_file():
@@ -151,7 +151,7 @@ def find(name: str, search_path: Sequence[Path] = ()) -> Path:
     Raises
     ------
     RecordError
-        R401, which tells where it was looked for and where the record may be had.
+        R401, which names the folders searched and a source of the record.
     """
     record = known(name)
     if record and (path := record.locate()):

@@ -1,4 +1,4 @@
-"""Pictures of a results file by matplotlib (extra `plot`), which `style` imports when asked."""
+"""Pictures of a results file by matplotlib (extra `plot`), which `style` imports on demand."""
 
 from __future__ import annotations
 

@@ -103,7 +103,7 @@ def frequencies(card: Card, omega: Callable[[], Array]) -> Array:
     ----------
     card : Card
     omega : callable
-        Gives those of the modes; asked only where MODES are given.
+        Returns those of the modes; called only where MODES are given.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-r"""A hysteretic law that knows its secant stiffness.
+r"""A hysteretic law with its secant stiffness among its internal variables.
 
 .. math:: k_s = \frac{f_t}{d_t}
 

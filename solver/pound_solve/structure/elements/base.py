@@ -1,4 +1,4 @@
-"""What an element hands to the assembler."""
+"""What an element returns to the assembly."""
 
 from __future__ import annotations
 
@@ -193,7 +193,7 @@ class Parts:
 
 @dataclass(frozen=True)
 class ElementContext:
-    """Where an element stands and what it may ask.
+    """What an element is built from.
 
     Attributes
     ----------
@@ -247,7 +247,7 @@ DAMAGE = (
         above=1,
         count=(1, 2),
         doc="ultimate ductility under monotonic loading, positive and negative side; one value: both; "
-        "asks for the damage index",
+        "requests the damage index",
     ),
     Field("PA_BETA", Kind.REAL, "-", default=0.05, lo=0, doc="weight of the energy in the damage index"),
 )

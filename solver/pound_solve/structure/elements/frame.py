@@ -8,7 +8,7 @@ the elastic member is exactly that of EI.  A slender beam can give up :math:`L_p
 :math:`L_p < L/6` at both.
 
 Moments and rotations of hinges are positive where the member sags: tension on the right of the way from
-I to J.  No hinge is made where none is asked for.
+I to J.  Only the hinges requested are made.
 
 References
 ----------
