@@ -152,57 +152,64 @@ class _Blanks(PostLex):
             yield token
 
 
-class _Postfix(Transformer):
-    """Puts tokens into postfix order: a list of (kind, token, number of values), extended in place.
+_Postfixed = list[tuple[str, Token, int]]  #: (kind, token, number of values)
+_Parts = list[tuple[_Postfixed, ...]]  #: of one formula an expression, of more a range
+
+
+class _Postfix(Transformer[Token, list[tuple[Token | None, _Parts]]]):
+    """Puts tokens into postfix order: lists that are extended in place.
 
     Brackets stay as steps of the kind ``mark``: they have a place, but no value.
     """
 
-    def number(self, children: list[Any]) -> list[Any]:
+    def number(self, children: list[Any]) -> _Postfixed:
         return [("number", children[0], 0)]
 
-    def word(self, children: list[Any]) -> list[Any]:
+    def word(self, children: list[Any]) -> _Postfixed:
         return [("word", children[0], 0)]
 
-    def text(self, children: list[Any]) -> list[Any]:
+    def text(self, children: list[Any]) -> _Postfixed:
         return [("text", children[0], 0)]
 
-    def bracket(self, children: list[Any]) -> list[Any]:
+    def bracket(self, children: list[Any]) -> _Postfixed:
+        steps: _Postfixed
         opening, steps, closing = children
         steps.append(("mark", opening, 0))
         steps.append(("mark", closing, 0))
         return steps
 
-    def unary(self, children: list[Any]) -> list[Any]:
+    def unary(self, children: list[Any]) -> _Postfixed:
+        steps: _Postfixed
         sign, steps = children
         steps.append(("operator", sign, 1))
         return steps
 
-    def binary(self, children: list[Any]) -> list[Any]:
+    def binary(self, children: list[Any]) -> _Postfixed:
+        left: _Postfixed
         left, sign, right = children
         left += right
         left.append(("operator", sign, 2))
         return left
 
-    def call(self, children: list[Any]) -> list[Any]:
+    def call(self, children: list[Any]) -> _Postfixed:
         name, *rest = children
         arguments = [c for c in rest if not isinstance(c, Token)]
         steps = [step for argument in arguments for step in argument]
         return [*steps, ("call", name, len(arguments)), ("mark", rest[-1], 0)]
 
-    def expression(self, children: list[Any]) -> tuple[Any, ...]:
+    def expression(self, children: list[Any]) -> tuple[_Postfixed, ...]:
         return (children[0],)
 
-    def range(self, children: list[Any]) -> tuple[Any, ...]:
+    def range(self, children: list[Any]) -> tuple[_Postfixed, ...]:
         return tuple(c[0] for c in children if isinstance(c, tuple))
 
-    def plain(self, children: list[Any]) -> tuple[Any, list[Any]]:
+    def plain(self, children: list[Any]) -> tuple[None, _Parts]:
         return None, [c for c in children if isinstance(c, tuple)]
 
-    def named(self, children: list[Any]) -> tuple[Any, list[Any]]:
+    def named(self, children: list[Any]) -> tuple[Token, _Parts]:
         return children[0], [c for c in children if isinstance(c, tuple)]
 
-    def start(self, children: list[Any]) -> list[Any]:
+    def start(self, children: list[Any]) -> list[tuple[Token | None, _Parts]]:
         return [c for c in children if c is not None]
 
 
@@ -220,10 +227,10 @@ _Shape = tuple[tuple[int | None, tuple[tuple[_Formula, ...], ...]], ...]
 
 
 def _shape(parsed: Any, tokens: list[Token]) -> _Shape:
-    """What the parser made of a card, with indices in place of its tokens."""
+    """What `_Postfix` made of a card (lark calls it a tree), with indices in place of its tokens."""
     index = {token.start_pos: k for k, token in enumerate(tokens)}
 
-    def formula(raw: list[tuple[str, Token, int]]) -> _Formula:
+    def formula(raw: _Postfixed) -> _Formula:
         steps = [(kind, index[token.start_pos], arity) for kind, token, arity in raw]
         places = [k for _, k, _ in steps]
         return _Formula(tuple(s for s in steps if s[0] != "mark"), min(places), max(places))

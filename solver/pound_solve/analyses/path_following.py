@@ -142,7 +142,8 @@ class EquilibriumPath:
 
     def deformations(self, u: Array, factor: float) -> Array:
         """Deformation of every law, shape (n_laws,)."""
-        return self.rows @ u + (1.0 - factor) * self.lead
+        d: Array = self.rows @ u + (1.0 - factor) * self.lead
+        return d
 
     def _terms(self, u: Array) -> Array:
         """Absolute terms that the deformations are made of; a share of them is rounding."""
@@ -490,7 +491,8 @@ def controlled(k: Matrix, push: Array, control: Array, force: Array, go: float) 
 def _root(k: Matrix) -> Array:
     """`scaling`, but what has next to no stiffness is left as it is."""
     root = scaling(k)
-    return np.minimum(root, 1e12 * root.min(initial=np.inf))
+    limited: Array = np.minimum(root, 1e12 * root.min(initial=np.inf))
+    return limited
 
 
 def name_of(structure: Structure, index: int) -> str:

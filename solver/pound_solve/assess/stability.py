@@ -35,7 +35,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from queue import SimpleQueue
-from typing import Any, Final, NamedTuple, cast
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -208,7 +208,8 @@ class Runner:
         wrong = f"no end within {self.limit:g} s"
         try:
             if line.poll(self.limit):
-                return cast(Found, line.recv())
+                found: Found = line.recv()
+                return found
         except (EOFError, ConnectionError):
             process.join()
             wrong = f"the process died: exit code {process.exitcode}"

@@ -23,6 +23,14 @@ PUSH, PUSH_RATE = 0, 1  #: where the memory of a law that leans on another has t
 Numbers = tuple[float, ...]
 State = tuple[int, float, float, Numbers]  #: branch; deformation and work at its entry; memory
 
+# the functions of a Rule, which explains them
+StartFunction = Callable[[Numbers], tuple[int, Numbers]]
+BranchFunction = Callable[[Numbers, int, Numbers], Numbers]
+TransitionFunction = Callable[[Numbers, int, Numbers, int, float, float], tuple[int, Numbers]]
+EnergyFunction = Callable[[Numbers, int, Numbers, float, float], float]
+CurveFunction = Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]]
+PowerFunction = Callable[[Numbers, int, Numbers, float, float], float]
+
 NEVER = (0.0, 0.0, -1.0)  #: the exit that is not there
 REVERSAL_DOWN, REVERSAL_UP = (0.0, -1.0, 0.0), (0.0, 1.0, 0.0)  #: exits where the rate changes its sign
 
@@ -59,14 +67,7 @@ def rate_independent(p: Numbers, at: int, m: Numbers, d: float, v: float) -> flo
     return 0.0
 
 
-def rate_power(
-    curve: Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]],
-    p: Numbers,
-    at: int,
-    m: Numbers,
-    d: float,
-    v: float,
-) -> float:
+def rate_power(curve: CurveFunction, p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
     """Power of the part of a curve's force that is not there without the rate."""
     return (curve(p, at, m, d, d, v)[0] - curve(p, at, m, d, d, 0.0)[0]) * v
 
@@ -132,14 +133,12 @@ class Rule:
     """
 
     branches: tuple[BranchType, ...]
-    start: Callable[[Numbers], tuple[int, Numbers]]
-    branch: Callable[[Numbers, int, Numbers], Numbers]
-    transition: Callable[[Numbers, int, Numbers, int, float, float], tuple[int, Numbers]]
-    recoverable: Callable[[Numbers, int, Numbers, float, float], float] = on_spring
-    curve: (
-        Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]] | None
-    ) = None
-    power: Callable[[Numbers, int, Numbers, float, float], float] | None = None
+    start: StartFunction
+    branch: BranchFunction
+    transition: TransitionFunction
+    recoverable: EnergyFunction = on_spring
+    curve: CurveFunction | None = None
+    power: PowerFunction | None = None
     parameters: int = field(kw_only=True)
     variables: int = field(kw_only=True)
 

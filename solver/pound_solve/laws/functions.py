@@ -7,14 +7,27 @@ is given the first of them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from types import FunctionType
 from typing import Any, NamedTuple
 
-from pound_solve.laws.automaton import EVENTS, Numbers, Rule, rate_independent, rate_power
+from pound_solve.laws.automaton import (
+    EVENTS,
+    BranchFunction,
+    CurveFunction,
+    EnergyFunction,
+    Numbers,
+    PowerFunction,
+    Rule,
+    TransitionFunction,
+    rate_independent,
+    rate_power,
+)
 from pound_solve.numerics.jit import Function, compiled, numba
 from pound_solve.numerics.types import Array
+
+RowPart = Callable[[Array, int, int], Numbers]  #: numbers in a row of an array, from a place on
 
 ROOM = 8  #: rules that the tables have room for, or a multiple of it
 #: lengths of the parameters and of the internal variables in the kernels: those of the longest rule of the
@@ -25,11 +38,11 @@ PARAMETERS, VARIABLES = 20, 16
 class Tables(NamedTuple):
     """The functions of several rules, one tuple a kind, in the order of the rules."""
 
-    branch: tuple[Function, ...]
-    transition: tuple[Function, ...]
-    recoverable: tuple[Function, ...]
-    curve: tuple[Function, ...]
-    power: tuple[Function, ...]
+    branch: tuple[BranchFunction, ...]
+    transition: tuple[TransitionFunction, ...]
+    recoverable: tuple[EnergyFunction, ...]
+    curve: tuple[CurveFunction, ...]
+    power: tuple[PowerFunction, ...]
 
 
 def straight(
@@ -53,7 +66,8 @@ def bound(template: Function, name: str, **values: Any) -> Function:
 
 # ---------------------------------------------------------------------- rows of arrays as tuples
 
-first = second = missing  # given to every copy of the functions below
+first: RowPart = missing  # given to every copy of the functions below
+second: RowPart = missing
 half = 0
 
 
@@ -68,7 +82,7 @@ def both(a: Array, i: int, j: int) -> Numbers:
 
 
 @cache
-def from_place(length: int) -> Function:
+def from_place(length: int) -> RowPart:
     """Function ``numbers(a, i, j)``: so many numbers in row `i` of an array, from `j` on, as a tuple."""
     if length == 1:
         return one
@@ -82,7 +96,7 @@ def start_of_row(a: Array, i: int) -> Numbers:
     return first(a, i, 0)
 
 
-def row(length: int) -> Function:
+def row(length: int) -> Callable[[Array, int], Numbers]:
     """Function ``numbers(a, i)``: the first numbers in row `i` of an array, as a tuple of that length."""
     return bound(start_of_row, str(length), first=from_place(length))
 
@@ -95,7 +109,8 @@ parameters = variables = 0
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Branch of a rule, see `Rule`."""
-    return own(p[:parameters], at, m[:variables])
+    piece: Numbers = own(p[:parameters], at, m[:variables])
+    return piece
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
@@ -106,19 +121,22 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Recoverable energy of a rule."""
-    return own(p[:parameters], at, m[:variables], d, f)
+    energy: float = own(p[:parameters], at, m[:variables], d, f)
+    return energy
 
 
 def curve(
     p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
 ) -> tuple[float, float, float, float]:
     """Curve of a rule."""
-    return own(p[:parameters], at, m[:variables], d0, d, v)
+    found: tuple[float, float, float, float] = own(p[:parameters], at, m[:variables], d0, d, v)
+    return found
 
 
 def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
     """Power that a rule states itself."""
-    return own(p[:parameters], at, m[:variables], d, v)
+    stated: float = own(p[:parameters], at, m[:variables], d, v)
+    return stated
 
 
 def power_by_rate(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:

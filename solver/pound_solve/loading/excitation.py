@@ -38,7 +38,8 @@ class Excitation:
     @property
     def degree(self) -> int:
         """Highest power."""
-        return self.coefs.shape[1] - 1
+        degree: int = self.coefs.shape[1] - 1
+        return degree
 
     @property
     def active(self) -> Flags:
@@ -79,7 +80,8 @@ class Excitation:
         ends = np.einsum("pk,pkj->pj", powers, self.coefs)
         before = np.concatenate([np.zeros((1, ends.shape[1])), ends[:-1]])
         largest = np.abs(self.coefs[:, 0]).max(axis=0, initial=0.0)
-        return np.abs(self.coefs[:, 0] - before).max(axis=0, initial=0.0) > 1e-9 * largest
+        jumps: Flags = np.abs(self.coefs[:, 0] - before).max(axis=0, initial=0.0) > 1e-9 * largest
+        return jumps
 
     def value(self, t: float, order: int = 0) -> Array:
         """Value of the inputs (or of their derivative of that order) at `t`, shape (n_inputs,)."""

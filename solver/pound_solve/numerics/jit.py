@@ -35,7 +35,9 @@ KERNELS = (
     "integrate/protocol.py",
     "integrate/[!c]*/*.py",  # all methods but the closed forms, which numpy serves
 )
-LOOSE = {"contract", "reassoc"}  #: what compiled code may do to the rounding of kernels marked so
+FLAT: set[Function] = set()  #: kernels marked by `flat`
+LOOSE: set[Function] = set()  #: kernels marked by `loose`
+FASTMATH = {"contract", "reassoc"}  #: what compiled code may do to the rounding of the latter
 
 
 def folder() -> Path:
@@ -76,13 +78,13 @@ def numba() -> Any:
 
 def flat(function: Function) -> Function:
     """Mark a kernel to be compiled in one piece with all that it calls: it calls them in every step."""
-    function.flat = True  # type: ignore[attr-defined]
+    FLAT.add(function)
     return function
 
 
 def loose(function: Function) -> Function:
     """Mark a kernel whose sums may be taken in another order, several terms at once."""
-    function.loose = True  # type: ignore[attr-defined]
+    LOOSE.add(function)
     return function
 
 
@@ -136,7 +138,7 @@ def compiled(
     found = numba()
     if found is None:
         return function
-    scope, flat = dict(function.__globals__), hasattr(function, "flat")
+    scope, flat = dict(function.__globals__), function in FLAT
     for used in {i.argval for i in dis.get_instructions(function) if i.opname == "LOAD_GLOBAL"}:
         value = scope.get(used)
         if isinstance(value, types.FunctionType) and value.__module__.startswith("pound_solve"):
@@ -150,7 +152,8 @@ def compiled(
     if inner:  # no Python calls it, so that it needs no door to it; kept by a name of its own
         twin.__qualname__ += "_inline" if inline else "_inner"
         how |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    if hasattr(function, "loose"):
-        how["fastmath"] = LOOSE
+    if function in LOOSE:
+        how["fastmath"] = FASTMATH
     with compiling():
-        return found.njit(*([] if signature is None else [signature]), **how)(twin)
+        out: Function = found.njit(*([] if signature is None else [signature]), **how)(twin)
+    return out

@@ -70,11 +70,12 @@ def order(n: int, i: Index, j: Index) -> Index:
     a = csc_array((np.ones(len(rows)), (rows, columns)), (n, n))
     a.data[:] = 1.0
     a.setdiag(n + 1.0)  # the values do not matter: no pivot is ever exchanged
-    how = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
-    found = splu(a, permc_spec="MMD_AT_PLUS_A", **how)
+    symmetric = {"SymmetricMode": True}
+    found = splu(a, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric)
     line = reverse_cuthill_mckee(a, symmetric_mode=True).astype(np.int64)
     line = np.stack([line, line[::-1]], axis=1).ravel()[:n]
-    if splu(a[line][:, line], permc_spec="NATURAL", **how).L.nnz <= found.L.nnz + SPARE * n:
+    banded = splu(a[line][:, line], permc_spec="NATURAL", diag_pivot_thresh=0.0, options=symmetric)
+    if banded.L.nnz <= found.L.nnz + SPARE * n:
         return line
     return np.argsort(found.perm_c).astype(np.int64)
 

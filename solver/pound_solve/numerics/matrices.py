@@ -86,7 +86,8 @@ def at(a: Matrix, rows: Index, columns: Index) -> Array:
 def used_rows(a: Matrix) -> Flags:
     """Which rows hold anything, shape (n_rows,)."""
     if isinstance(a, np.ndarray):
-        return np.any(a != 0.0, axis=1)
+        used: Flags = np.any(a != 0.0, axis=1)
+        return used
     out = np.zeros(a.shape[0], bool)
     out[entries(a)[0]] = True
     return out

@@ -102,4 +102,5 @@ def values(coefs: Array, t: Array, order: int = 0) -> Array:
     if order >= n:
         return np.zeros((len(t), coefs.shape[2]))
     weights = _falling(n, order) * t[:, None] ** np.arange(n - order)
-    return np.einsum("tk,tkn->tn", weights, coefs[:, order:])
+    values: Array = np.einsum("tk,tkn->tn", weights, coefs[:, order:])
+    return values

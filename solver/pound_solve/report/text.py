@@ -109,7 +109,7 @@ def _warning(results: Results) -> Iterator[str]:
     yield from ("", "")
 
 
-def _block(results: Results, table: Table, limit: int | None) -> list[str]:
+def _block(results: Results, table: Table[Any], limit: int | None) -> list[str]:
     """Lines of one table of the file with its notes; none when it has no rows."""
     rows = results.table(table.name)
     most = table.limit if limit is None or not table.limit else limit
@@ -119,7 +119,9 @@ def _block(results: Results, table: Table, limit: int | None) -> list[str]:
     return block(results, table, rows[:most] if most else rows, results.note(table.name), more)
 
 
-def block(results: Results, table: Table, rows: NDArray[Any], note: str = "", more: str = "") -> list[str]:
+def block(
+    results: Results, table: Table[Any], rows: NDArray[Any], note: str = "", more: str = ""
+) -> list[str]:
     """Lines of a table with its notes, in the units of `results`; none where there is nothing to show.
 
     Parameters
@@ -138,7 +140,7 @@ def block(results: Results, table: Table, rows: NDArray[Any], note: str = "", mo
     return lines
 
 
-def _body(results: Results, table: Table, rows: NDArray[Any]) -> list[str]:
+def _body(results: Results, table: Table[Any], rows: NDArray[Any]) -> list[str]:
     """Lines of heads and rows; none where no column has anything to show."""
     groups = _groups(table, rows)
     cells, heads, columns = {}, {}, []
@@ -162,7 +164,7 @@ def _body(results: Results, table: Table, rows: NDArray[Any]) -> list[str]:
     return lines[1:]
 
 
-def _groups(table: Table, rows: NDArray[Any]) -> list[list[int]]:
+def _groups(table: Table[Any], rows: NDArray[Any]) -> list[list[int]]:
     """Row numbers by value of the group column, in order of first appearance."""
     if not table.group:
         return [list(range(len(rows)))]

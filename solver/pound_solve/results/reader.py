@@ -5,6 +5,7 @@ All that a reader needs stands in the file; `pound_solve.results.contents` lists
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Self
 
@@ -145,7 +146,8 @@ class Results:
 
     def note(self, name: str) -> str:
         """Remark of this run on a table, or an empty text."""
-        return _plain(self._table(name).attrs["note"])
+        note: str = _plain(self._table(name).attrs["note"])
+        return note
 
     def history(self, name: str) -> Array:
         """History, shape (nt, \\*row); KeyError where the file has none of that name."""
@@ -194,7 +196,10 @@ def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _find(group: Any, key: str, kind: str, name: str, existing: tuple[str, ...]) -> h5py.Dataset:
+def _find(
+    group: Mapping[str, Any], key: str, kind: str, name: str, existing: tuple[str, ...]
+) -> h5py.Dataset:
     if key not in group:
         raise KeyError(f"no {kind} {name!r} in this file; it has: {', '.join(existing) or 'none'}")
-    return group[key]
+    dataset: h5py.Dataset = group[key]
+    return dataset

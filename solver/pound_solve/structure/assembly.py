@@ -160,7 +160,8 @@ class Structure:
             return np.array(linear)
         at, share = self.corotational.shares([(o.element, o.quantity) for o in self.outputs])
         found = self.corotational.actions(self.corotational.quantities(u)[None])[0]
-        return np.array(linear) + (share * found[at, 1:]).sum(axis=1)
+        forces: Array = np.array(linear) + (share * found[at, 1:]).sum(axis=1)
+        return forces
 
     def influence(self) -> Array:
         """Quasi-static motion of the unknowns for unit prescribed motions, shape (n_free, n_moved)."""

@@ -162,7 +162,8 @@ class Pair:
             return math.exp(-2.0 * two.mass / one.mass)
         whole, rest = divmod(self.duration / one.period if not self.paper_holds else 1.0, 1.0)
         rho = self.reflection
-        return rho**whole * (1.0 - rest * (1.0 - rho))
+        share: float = rho**whole * (1.0 - rest * (1.0 - rho))
+        return share
 
     @property
     def impulse(self) -> float:

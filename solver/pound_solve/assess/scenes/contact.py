@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import replace
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -184,9 +183,9 @@ class _Contacts:
         """The law with a stiffness that is a multiple of the storey's."""
         return contact(self.spec, ratio * STOREY, 1.0, bodies, **given)
 
-    def case(self, scene: str, variant: str, deck: str, **given: object) -> Case:
+    def case(self, scene: str, variant: str, deck: str, **given: Any) -> Case:
         """A case of this law."""
-        return replace(Case("contact", scene, variant, self.spec.name, deck), **given)  # type: ignore[arg-type]
+        return Case("contact", scene, variant, self.spec.name, deck, **given)
 
     def stiffness(self) -> Iterator[Case]:
         """Contacts from soft to rigid."""

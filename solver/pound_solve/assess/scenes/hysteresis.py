@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
-from typing import Final
+from typing import Any, Final
 
 from pound_deck.schema import Spec
 from pound_solve.assess.scenes.case import JUMP, SPIKE, STEP, STOREY, ZEROS, Case, damped, every, items
@@ -68,9 +67,9 @@ class _Springs:
         """The rule; lengths and forces of its sample items are shares of those at yield."""
         return items(self.spec, fy / k, fy, **given)
 
-    def case(self, scene: str, variant: str, deck: str, **given: object) -> Case:
+    def case(self, scene: str, variant: str, deck: str, **given: Any) -> Case:
         """A case of this rule."""
-        return replace(Case("hysteresis", scene, variant, self.spec.name, deck), **given)  # type: ignore[arg-type]
+        return Case("hysteresis", scene, variant, self.spec.name, deck, **given)
 
     def strength_and_stiffness(self) -> Iterator[Case]:
         """Springs without strength, without yield, soft and rigid."""

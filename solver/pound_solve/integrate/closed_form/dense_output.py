@@ -5,6 +5,7 @@ excitation is one polynomial.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -72,7 +73,8 @@ class DenseOutput:
         rate[:, :-1] = e[:, 1:] * np.arange(1, e.shape[1])[:, None]
         k = np.array([self.branches[i].stiffness for i in laws])
         c = np.array([self.branches[i].damping for i in laws])
-        return -(e * k + rate * c) @ system.law_rows[np.ix_(laws, subsystem.decomposition.unknowns)]
+        loads: Array = -(e * k + rate * c) @ system.law_rows[np.ix_(laws, subsystem.decomposition.unknowns)]
+        return loads
 
     @property
     def intervals(self) -> int:
@@ -265,5 +267,5 @@ def direct_response(u_p: Array, v_p: Array, loads: Array, t: Array) -> Array:
     shape (3, n_rows, *t.shape), with load polynomials of some intervals at times `t` of each.
     """
     force, slope, curvature = (polynomial.on(loads, t, order) for order in range(3))
-    u, v = (lambda x, rows=rows: np.tensordot(rows, x, 1) for rows in (u_p, v_p))
+    u, v = (partial(np.tensordot, rows, axes=1) for rows in (u_p, v_p))
     return np.stack([u(force), v(force) + u(slope), v(slope) + u(curvature)])

@@ -5,6 +5,7 @@ series between the points.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -151,7 +152,7 @@ class GridSamples:
         x, propagator = subsystem.decomposition.reactions, subsystem.decomposition.propagator
         assert x is not None
         force, slope, curvature = (polynomial.on(loads, self.local, order) for order in range(3))
-        by, by_rate = (lambda p, rows=rows: np.tensordot(rows, p, 1) for rows in (x.on_p, x.on_rate))
+        by, by_rate = (partial(np.tensordot, rows, axes=1) for rows in (x.on_p, x.on_rate))
         shape = self.local.shape
         self.value[x.place] = (real_rows(x.on_q) @ reals).reshape(-1, *shape) + by(force) + by_rate(slope)
         self.rate[x.place] = (

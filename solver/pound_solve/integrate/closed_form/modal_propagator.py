@@ -142,7 +142,7 @@ class ModalPropagator(Propagator):
 
     def integral(self, q: Complex, g: Complex, t: float) -> Complex:  # noqa: D102
         kernels = phi.duhamel(self.eigenvalues * t, len(g))
-        out = t * kernels[0] * q
+        out: Complex = t * kernels[0] * q
         for k in range(len(g)):
             out += g[k] * t ** (k + 2) * kernels[k + 1] / (k + 1)
         if len(self.rigid_u):
@@ -185,7 +185,7 @@ class ModalPropagator(Propagator):
 
     def at(self, q: Complex, g: Complex, t: float) -> Complex:  # noqa: D102
         e, table = self._single_response(t, len(g) - 1)
-        out = e * q + (table * g).sum(axis=0)
+        out: Complex = e * q + (table * g).sum(axis=0)
         if len(self.rigid_u):
             out = out[:, None, None]
             self._add_rigid_motion(out, q[:, None], g[None], np.array([t]))

@@ -45,7 +45,7 @@ def size(p: Array, row: int, terms: int) -> float:
 
 def value(p: Array, terms: int, s: float) -> float:
     """Value of the polynomial."""
-    total = p[POLYNOMIAL, terms]
+    total: float = p[POLYNOMIAL, terms]
     for k in range(terms - 1, -1, -1):
         total = total * s + p[POLYNOMIAL, k]
     return total
@@ -105,7 +105,7 @@ def bends(p: Array, terms: int, row: int, noise: float) -> tuple[float, int]:
 
 def highest_of(p: Array, terms: int, row: int) -> float:
     """Largest coefficient of a cell."""
-    most = p[row, 0]
+    most: float = p[row, 0]
     for j in range(1, terms + 1):
         most = max(most, p[row, j])
     return most

@@ -132,12 +132,13 @@ def correct_members(laws: Laws, step: Step, beta_h2: float) -> float:
 
 def force_size(state: MemberState, c: int, length: float) -> float:
     """Size of the forces of member `c` [F]."""
-    return max(
+    size: float = max(
         abs(state.quantities[c, 0]),
         abs(state.quantities[c, 1]) / length,
         abs(state.forces[c, 2]),
         abs(state.forces[c, 3]),
     )
+    return size
 
 
 def take_tangents(members: Corotational, quantities: Array) -> None:

@@ -15,7 +15,7 @@ parameters, internal = row(PARAMETERS), row(VARIABLES)  #: rows of arrays as tup
 
 def curve(laws: Laws, rules: Tables, i: int, d: float, v: float) -> tuple[float, float, float, float]:
     """Force of a curved law, its derivatives by `d` and `v`, and the work since the branch was entered."""
-    return rules.curve[laws.rule[i]](
+    found: tuple[float, float, float, float] = rules.curve[laws.rule[i]](
         parameters(laws.parameters, i),
         laws.branch[i],
         internal(laws.internal, i),
@@ -23,16 +23,19 @@ def curve(laws: Laws, rules: Tables, i: int, d: float, v: float) -> tuple[float,
         d,
         v,
     )
+    return found
 
 
 def linear_force(laws: Laws, i: int, d: float, v: float) -> float:
     """Force of law `i` on its linear branch or tangent."""
-    return laws.stiffness[i] * d + laws.damping[i] * v + laws.offset[i]
+    force: float = laws.stiffness[i] * d + laws.damping[i] * v + laws.offset[i]
+    return force
 
 
 def proportional_damping(laws: Laws, i: int, k: float) -> float:
     """Dashpot in proportion to the tangent stiffness `k` of law `i`, or to its secant stiffness."""
-    return laws.tangent_damping[i] * max(k, 0.0) + laws.secant_damping[i] * laws.internal[i, STIFFNESS]
+    c: float = laws.tangent_damping[i] * max(k, 0.0) + laws.secant_damping[i] * laws.internal[i, STIFFNESS]
+    return c
 
 
 def enter_branch(laws: Laws, rules: Tables, i: int) -> None:
@@ -56,10 +59,12 @@ def enter_branch(laws: Laws, rules: Tables, i: int) -> None:
 
 def law_work(laws: Laws, rules: Tables, i: int, d: float) -> float:
     """Work done on law `i` so far, dashpots apart."""
+    before: float = laws.entry_work[i]
     if laws.curved[i]:
-        return laws.entry_work[i] + curve(laws, rules, i, d, 0.0)[3]
+        return before + curve(laws, rules, i, d, 0.0)[3]
     mean = 0.5 * laws.stiffness[i] * (d + laws.entry_deformation[i]) + laws.offset[i]
-    return laws.entry_work[i] + mean * (d - laws.entry_deformation[i])
+    done: float = before + mean * (d - laws.entry_deformation[i])
+    return done
 
 
 def law_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
@@ -73,10 +78,11 @@ def law_force(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
 def drag(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
     """Force whose work at the rate `v` law `i` dissipates, by its own rate and by proportional dashpots."""
     if not laws.curved[i]:
-        return laws.damping[i] * v
+        dashpot: float = laws.damping[i] * v
+        return dashpot
     if v == 0.0:
         return 0.0
-    power = rules.power[laws.rule[i]](
+    power: float = rules.power[laws.rule[i]](
         parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i), d, v
     )
     return power / v + proportional_damping(laws, i, laws.stiffness[i]) * v
@@ -198,5 +204,6 @@ def event_place(laws: Laws, i: int, e: int, start: float, end: float, rate: floa
     if value >= 0.0 and (slope > 0.0 or (slope == 0.0 and value > 0.0)):
         return start
     if slope > 0.0 and a * end + c > 0.0:
-        return start - value / slope * sign
+        place: float = start - value / slope * sign
+        return place
     return np.nan

@@ -44,7 +44,7 @@ def support_power(
 
 def load_on_nodes(linear: LinearSystem, inputs: Array, i: int) -> float:
     """Force on unknown `i` by constant loads and FORCES."""
-    force = linear.constant[i]
+    force: float = linear.constant[i]
     for j in range(len(inputs)):
         force += linear.pushed[i, j] * inputs[j]
     return force

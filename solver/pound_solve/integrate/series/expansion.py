@@ -107,7 +107,8 @@ def expand_deformations(laws: Laws, series: Series, k: int, top: int) -> None:
 def energy_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> float:
     """Twice the kinetic energy of the term `k`."""
     multiply(linear.mass, series.motion[k], series.damping_product)
-    return dot(series.motion[k], series.damping_product) * (k / h) * (k / h)
+    energy: float = dot(series.motion[k], series.damping_product) * (k / h) * (k / h)
+    return energy
 
 
 def next_term(

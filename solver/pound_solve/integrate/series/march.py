@@ -182,7 +182,7 @@ def step_length(lengths: Lengths, t: float, left: float) -> float:
     """Length of the next step: what is `left` in equal parts; 0 where the clock cannot tell it from
     none.
     """
-    h = left / np.ceil(max(left / lengths.next, 1.0) * (1.0 - 1e-9))
+    h: float = left / np.ceil(max(left / lengths.next, 1.0) * (1.0 - 1e-9))
     return t + h - t if h < left else h  # the motion goes as far as the clock does, which is rounded
 
 

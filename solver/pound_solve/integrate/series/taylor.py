@@ -147,7 +147,8 @@ def rate(system: ReducedSystem) -> float:
         float((root * (abs(a) @ root)).max(initial=0.0))
         for a in (system.stiffness + weighted(system.law_rows, stiffest), system.damping)
     )
-    return max(omega2**0.5, decay)
+    fastest: float = max(omega2**0.5, decay)
+    return fastest
 
 
 def cost_of_radian(system: ReducedSystem) -> float:

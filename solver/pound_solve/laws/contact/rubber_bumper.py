@@ -99,7 +99,8 @@ RULE = Rule(
 
 def published(e: float) -> float:
     """Damping constant for restitution `e` as published, a fit to the exact relation."""
-    return 1.55 * (1.0 - e * e) / e**0.7076
+    c: float = 1.55 * (1.0 - e * e) / e**0.7076
+    return c
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:

@@ -132,7 +132,8 @@ def backbone(p: Numbers, m: Numbers, s: float, x: float) -> float:
 def unloading(p: Numbers, x: float) -> float:
     """Stiffness of unloading after ductility `x`."""
     k, r, alpha = p[0], p[3], p[4]
-    return k * max(x**-alpha, (share(p, x) + r * (x - 1.0)) / x)
+    stiffness: float = k * max(x**-alpha, (share(p, x) + r * (x - 1.0)) / x)
+    return stiffness
 
 
 def grown(m: Numbers, s: float, x: float) -> tuple[float, float]:

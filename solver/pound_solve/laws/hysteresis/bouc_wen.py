@@ -96,7 +96,8 @@ def rest(a: float, t: float) -> float:
 
 def limit(a: float) -> float:
     """Constant of q^a phi(a, q) = -log(1 - q) + limit(a) - rest(a, 1 - q), from both series at 1/2."""
-    return 0.5**a * phi(a, 0.5) - math.log(2.0) + rest(a, 0.5)
+    constant: float = 0.5**a * phi(a, 0.5) - math.log(2.0) + rest(a, 0.5)
+    return constant
 
 
 def outwards(p: Numbers, u: float) -> tuple[float, float, float]:

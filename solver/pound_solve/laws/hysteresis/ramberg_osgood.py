@@ -57,13 +57,15 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 def strain(p: Numbers, w: float) -> float:
     """Deformation of the curve, sigma(w)."""
-    return w + p[4] * w * abs(w) ** (p[3] - 1.0)
+    d: float = w + p[4] * w * abs(w) ** (p[3] - 1.0)
+    return d
 
 
 def energy(p: Numbers, w: float) -> float:
     """Integral of w d(sigma)."""
     n = p[3]
-    return 0.5 * w * w + p[4] * n / (n + 1.0) * abs(w) ** (n + 1.0)
+    area: float = 0.5 * w * w + p[4] * n / (n + 1.0) * abs(w) ** (n + 1.0)
+    return area
 
 
 def force(p: Numbers, x: float) -> float:
@@ -75,7 +77,7 @@ def force(p: Numbers, x: float) -> float:
     size = abs(x)
     if size == 0.0:
         return 0.0
-    w = min(size, (size / alpha) ** (1.0 / n))
+    w: float = min(size, (size / alpha) ** (1.0 / n))
     for _ in range(100):
         down = (w + alpha * w**n - size) / (1.0 + alpha * n * w ** (n - 1.0))
         w -= down
