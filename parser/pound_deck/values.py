@@ -20,6 +20,8 @@ _LARGEST: Final = 10**15  #: whole numbers beyond are no longer exact
 class Values:
     """Reads the values of a deck.
 
+    Every method raises :class:`~pound_deck.diagnostics.Mistake` where the part holds something else.
+
     Attributes
     ----------
     catalog : Catalog
@@ -29,8 +31,6 @@ class Values:
         Labels of all property sets, upper case.
     units : Units
         For the messages only.
-
-    Every method raises :class:`~pound_deck.diagnostics.Mistake` where the part holds something else.
     """
 
     catalog: Catalog

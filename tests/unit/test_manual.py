@@ -200,7 +200,7 @@ def test_release_leaves_the_overlap_and_the_loss_of_the_manual():
 
 def test_constants_are_those_of_the_code():
     for _, where, value in table("theory-integration.md", "constants"):
-        module, name = where.split(".")
+        module, name = where.rsplit(".", 1)
         home = importlib.import_module(f"pound_solve.integrate.{module}")
         assert getattr(home, name) == float(value), where
 

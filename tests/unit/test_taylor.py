@@ -667,7 +667,7 @@ ANALYSIS
 
 
 def test_a_light_stiff_node_for_a_long_time_is_told_early(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(taylor, "MOST_STEPS", 200_000)
+    monkeypatch.setattr(taylor, "MAX_STEPS", 200_000)
     r = run_text(OSCILLATOR, {"w": 1e6, "end": 30, "gap": 99, "xi": 1e-6}, "TAYLOR")
     assert r.message.startswith("A502"), r.message
 

@@ -15,6 +15,7 @@ DECOMPOSITION = 8e-4  #: a modal decomposition
 PRODUCTS = 1.5e-6  #: matrix products of a decomposition, over the square of its unknowns
 MODES = 8e-9  #: modes of a decomposition, over the cube of its unknowns
 STEP, STEP_UNKNOWN = 3e-7, 2.5e-8  #: a compiled step of NEWMARK, and each of its unknowns, twice for a law
+TAYLOR_STEP, TAYLOR_UNKNOWN = 9e-6, 5.5e-8  #: a step of TAYLOR, and each of its unknowns
 EVENT_STEPS = 10  #: steps that a located event costs as much as
 INTERPRETED = 100  #: cost of an interpreted step over that of a compiled one
 RADIAN_STEPS = 5  #: steps of NEWMARK that follow the fastest mode through a radian
@@ -28,6 +29,11 @@ def of_decomposition(n: int) -> float:
 def of_step(system: ReducedSystem) -> float:
     """Return the cost of a compiled step of NEWMARK."""
     return STEP + STEP_UNKNOWN * (system.size + 2 * len(system.structure.laws))
+
+
+def of_series_step(system: ReducedSystem) -> float:
+    """Return the cost of a compiled step of TAYLOR."""
+    return TAYLOR_STEP + TAYLOR_UNKNOWN * system.size
 
 
 class CostlyError(Exception):

@@ -264,7 +264,7 @@ def _integral(coefs: Array, tau: float) -> Array:
 
 def direct_response(u_p: Array, v_p: Array, loads: Array, t: Array) -> Array:
     """Return the direct response of massless DOFs to loads: value, rate and second rate of rows,
-    shape (3, n_rows, *t.shape), with load polynomials of some intervals at times `t` of each.
+    shape ``(3, n_rows, *t.shape)``, with load polynomials of some intervals at times `t` of each.
     """
     force, slope, curvature = (polynomial.on(loads, t, order) for order in range(3))
     u, v = (partial(np.tensordot, rows, axes=1) for rows in (u_p, v_p))

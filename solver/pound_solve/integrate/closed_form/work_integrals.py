@@ -29,7 +29,8 @@ from pound_solve.numerics import phi, polynomial
 from pound_solve.numerics.types import Array, Complex
 from pound_solve.structure.reduction import ReducedSystem
 
-SLOW = 0.1  #: modes with |eigenvalue| times interval below this are expanded in powers of time
+#: modes whose eigenvalue times the interval is below this in magnitude are expanded in powers of time
+SLOW = 0.1
 TERMS = 11  #: of that expansion, beyond the force's own
 MAX_NUMBERS = 2**20  #: velocities that the quadrature holds at once
 MAX_CONDITION = 3e3  #: condition of the modes up to which their products are used

@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 
 from pound_deck.schema import Spec
+from pound_solve.integrate import costs
 from pound_solve.integrate.condensed import condensed
 from pound_solve.integrate.events import polynomial_roots
 from pound_solve.integrate.kernels.engine import KernelEngine
@@ -52,9 +53,8 @@ from pound_solve.numerics.modes import massless
 from pound_solve.numerics.record import record
 from pound_solve.structure.reduction import ReducedSystem
 
-MOST_STEPS = 5_000_000  #: that a run may come to
+MAX_STEPS = 5_000_000  #: that a run may come to
 RADIANS = 5.0  #: of the fastest mode in a step
-STEP, EACH = 9e-6, 5.5e-8  #: cost of a step and of each of its unknowns, as `exact.WINDOW`
 
 
 class Taylor(KernelEngine):
@@ -102,7 +102,7 @@ class Taylor(KernelEngine):
         """Take in what was kept; stop where steps are too short for the length of the run."""
         super().fetch()
         done, steps = float(self.state.time - self.times[0]), int(self.state.steps)
-        if steps > PAUSE // 2 and steps * self.dt > MOST_STEPS * done:
+        if steps > PAUSE // 2 and steps * self.dt > MAX_STEPS * done:
             count = f"some {steps * self.dt / done:.1g}" if done else "far too many"
             why = f"the fastest mode asks for {count} steps (now {self.lengths.next:.3g} long)"
             raise self.stop("A502", f"{why}: EXACT or NEWMARK need not follow it")
@@ -152,8 +152,8 @@ def rate(system: ReducedSystem) -> float:
 
 
 def cost_of_radian(system: ReducedSystem) -> float:
-    """What it costs to follow a reduced system for a radian of `rate`, as those of `exact`."""
-    return (STEP + EACH * system.size) / RADIANS
+    """Cost of following a reduced system for a radian of its fastest mode, in the units of `costs`."""
+    return costs.of_series_step(system) / RADIANS
 
 
 def integrate(

@@ -2,7 +2,7 @@
 
 The ground below is taken as white noise.  A soil layer of frequency wg and damping zg passes it on
 (Kanai 1957; Tajimi 1960), and a second filter wf, zf takes out what is slower than the ground can move
-(Clough & Penzien 1975).  With S0 the density of the noise, that of the ground acceleration is
+(Clough & Penzien 1975).  With S0 the density of the noise, that of the ground acceleration is::
 
     S(w) = S0 |Hg(w)|^2 |Hf(w)|^2
     Hg(w) = (wg^2 + 2 i zg wg w) / (wg^2 - w^2 + 2 i zg wg w)
