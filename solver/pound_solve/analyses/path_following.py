@@ -262,7 +262,7 @@ class EquilibriumPath:
         for i, (branch, di, vi, least, size) in enumerate(
             zip(self.branches, d.tolist(), rate.tolist(), noise.tolist(), self._terms(self.u).tolist())
         ):
-            for way, (a, b, c) in enumerate(branch.exits):
+            for way, (a, b, c) in enumerate(branch.events):
                 if a == 0.0:  # where the motion turns
                     if b * vi <= abs(b) * least:
                         continue
@@ -327,7 +327,7 @@ class EquilibriumPath:
         first = crossed[0]
         if first < len(marks):
             return first
-        exits = [PathEvent(i, way) for i, b in enumerate(self.branches) for way in range(len(b.exits))]
+        exits = [PathEvent(i, way) for i, b in enumerate(self.branches) for way in range(len(b.events))]
         return exits[first - len(marks)]
 
     def _values(self, u: Array, factor: float, marks: Sequence[Mark]) -> list[float]:
@@ -338,7 +338,7 @@ class EquilibriumPath:
         for branch, di, vi, least, size in zip(
             self.branches, d.tolist(), rate.tolist(), noise.tolist(), self._terms(u).tolist()
         ):
-            for a, b, c in branch.exits:
+            for a, b, c in branch.events:
                 turns = a == 0.0
                 now, small = (
                     (b * vi, abs(b) * least) if turns else (a * di + c, NEAR * (abs(a) * size + abs(c)))

@@ -209,16 +209,22 @@ def assemble(model: Model, moved: Collection[Dof] = (), self_weight: bool = True
     elements.build()
     if elements.problems:
         raise AssemblyError(elements.problems)
-    parts, mass = elements.parts, elements.mass
-    ordered = [parts[e] for e in model.elements]
-    dofs = number(model.nodes, moved, [f for p in ordered for f in p.internal()])
-    laws = tuple(s for p in ordered for s in p.laws)
+    dofs = number(model.nodes, moved, [f for p in elements.ordered() for f in p.internal()])
+    structure = _joined(model, dofs, elements)
+    if problems := add_damping(structure, elements.mass):
+        raise AssemblyError(problems)
+    return structure
+
+
+def _joined(model: Model, dofs: DofMap, elements: _Elements) -> Structure:
+    """Sum of the parts of all elements, before any damping model is applied."""
+    parts, mass = elements.ordered(), elements.mass
+    laws = tuple(s for p in parts for s in p.laws)
     law_rows = dofs.rows([(s.dofs, s.row) for s in laws])
-    stiffness = dofs.assembled((b.dofs, b.matrix) for p in ordered for b in p.stiffness)
-    dashpots = dofs.assembled((b.dofs, b.matrix) for p in ordered for b in p.damping)
-    loads, released = _loads(model, dofs, ordered)
-    corotational = [c for p in ordered for c in p.corotational]
-    structure = Structure(
+    stiffness = dofs.assembled((b.dofs, b.matrix) for p in parts for b in p.stiffness)
+    dashpots = dofs.assembled((b.dofs, b.matrix) for p in parts for b in p.damping)
+    loads, released = _loads(model, dofs, parts)
+    return Structure(
         model=model,
         dofs=dofs,
         stiffness=stiffness,
@@ -231,18 +237,18 @@ def assemble(model: Model, moved: Collection[Dof] = (), self_weight: bool = True
         ground=ground_inertia(model, dofs, mass),
         laws=laws,
         law_rows=law_rows,
-        outputs=tuple(o for p in ordered for o in p.outputs),
-        geometric=tuple(g for p in ordered for g in p.geometric),
-        corotational=CorotationalMembers(
-            corotational, dofs.rows([(c.dofs, row) for c in corotational for row in c.rows])
-        ),
+        outputs=tuple(o for p in parts for o in p.outputs),
+        geometric=tuple(g for p in parts for g in p.geometric),
+        corotational=_corotational(dofs, parts),
         nodal_mass=elements.nodal_mass,
-        self_weight=self_weight,
-        parts=parts,
+        self_weight=elements.self_weight,
+        parts=elements.parts,
     )
-    if problems := add_damping(structure, mass):
-        raise AssemblyError(problems)
-    return structure
+
+
+def _corotational(dofs: DofMap, parts: Sequence[Parts]) -> CorotationalMembers:
+    members = [c for p in parts for c in p.corotational]
+    return CorotationalMembers(members, dofs.rows([(c.dofs, row) for c in members for row in c.rows]))
 
 
 def _loads(model: Model, dofs: DofMap, parts: Sequence[Parts]) -> tuple[Array, Array]:
@@ -298,6 +304,10 @@ class _Elements:
         for element in contacts:
             self._build(element)
         self.problems += [_refusal(self.model, *why, elements) for why, elements in self._refused.items()]
+
+    def ordered(self) -> list[Parts]:
+        """Parts of all elements in the order of the model, which is not that of their construction."""
+        return [self.parts[e] for e in self.model.elements]
 
     def _kind(self, element: Element) -> str:
         return self.model.props[element.prop].spec.name
