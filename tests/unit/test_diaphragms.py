@@ -165,7 +165,7 @@ def test_equal_bars_need_no_warning_and_rigid_masses_have_no_theory(tmp_path: Pa
         (row,) = results.table("collision_theory")
         assert np.isnan(row["force"]) and row["note"].startswith("no theory: I rigid")
         told = " ".join(render(results, only=("diaphragms", "collision_theory")).split())
-        assert "As found behind" in told  # but no word of columns that are not there
+        assert "Found behind" in told  # but no word of columns that are not there
         assert "alpha" not in told and "lumped" not in told
         hit = results.table("collisions")[0]
         # without a theory the plateau is the mean force

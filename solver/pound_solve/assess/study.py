@@ -213,24 +213,24 @@ class _Bench:
         raise why
 
     def _ladder(self, method: str, reference: Reference | None) -> list[Trial]:
-        """Trials with shorter and shorter steps; without a reference until they change no more."""
+        """Trials with shorter and shorter steps."""
+        if self.plan.steps:
+            return [self.trial(method, DT=dt) for dt in self.plan.steps]
+        return self._halved(method, reference)
+
+    def _halved(self, method: str, reference: Reference | None) -> list[Trial]:
+        """Trials with halved steps until the errors are small, or a run would take too long."""
         out: list[Trial] = []
-        for dt in self.plan.steps or [self.first / 2**k for k in range(HALVINGS)]:
-            trial = self.trial(method, DT=dt)
-            if self.plan.steps:
-                out.append(trial)
-                continue
+        for k in range(HALVINGS):
+            trial = self.trial(method, DT=self.first / 2**k)
             if out and trial.steps and trial.steps == out[-1].steps:
                 continue  # the record and the output times need more steps than DT
             if out and out[-1].stopped and trial.stopped:
                 out.pop()  # of those that stop the finest is enough
             out.append(trial)
             done = [t for t in out if not t.stopped]
-            against = reference.peaks if reference else done[-2].peaks if len(done) > 1 else None
-            if against is not None and done:
-                now = max(errors(done[-1].peaks, against).values(), default=0.0)
-                if not now > TARGETS[-1] / (4.0 * MARGIN) or (reference and now <= 4.0 * reference.doubt):
-                    break
+            if _converged(done, reference):
+                break
             if trial.stopped == TOO_LONG and done:
                 out.pop()
             if trial.stopped == TOO_LONG or 2.0 * trial.time > self.plan.longest:
@@ -315,6 +315,21 @@ class _Bench:
                 peaks=peaks(results),
             )
             return float(took["solve seconds"]), out
+
+
+def _converged(done: Sequence[Trial], reference: Reference | None) -> bool:
+    """Whether the finest of some trials is well within the last target, or as good as the reference.
+
+    Errors are those against the reference, without one those against the trial before.
+    """
+    if not done or (reference is None and len(done) < 2):
+        return False
+    now = max(
+        errors(done[-1].peaks, reference.peaks if reference else done[-2].peaks).values(), default=0.0
+    )
+    return not now > TARGETS[-1] / (4.0 * MARGIN) or (
+        reference is not None and now <= 4.0 * reference.doubt
+    )
 
 
 def peaks(results: Results) -> Peaks:

@@ -48,21 +48,31 @@ def letters(curve: Curve, width: int = 68, height: int = 22) -> str:
     if x0 <= 0.0 <= x1:
         for line in field:
             line[column] = "+" if line[column] == "-" else "|"
-    for (xa, ya), (xb, yb) in pairwise(curve):
-        (ca, ra), (cb, rb) = place(xa, ya), place(xb, yb)
-        steps = max(abs(cb - ca), abs(rb - ra), 1)
-        for n in range(steps + 1):
-            field[round(ra + (rb - ra) * n / steps)][round(ca + (cb - ca) * n / steps)] = "*"
+    for a, b in pairwise(curve):
+        _stroke(field, place(*a), place(*b))
     names = {0: f"{y1:.4g}", height - 1: f"{y0:.4g}"}
     if y0 < 0.0 < y1 and 0 < row < height - 1:
         names[row] = "0"
     wide = max(len(name) for name in names.values())
     out = [f"{names.get(n, ''):>{wide}} {''.join(line)}".rstrip() for n, line in enumerate(field)]
+    return "\n".join([*out, " " * (wide + 1) + _foot(x0, x1, column, width)])
+
+
+def _stroke(field: list[list[str]], start: tuple[int, int], end: tuple[int, int]) -> None:
+    """Draw a straight line between two places (column, row) of the field."""
+    (ca, ra), (cb, rb) = start, end
+    steps = max(abs(cb - ca), abs(rb - ra), 1)
+    for n in range(steps + 1):
+        field[round(ra + (rb - ra) * n / steps)][round(ca + (cb - ca) * n / steps)] = "*"
+
+
+def _foot(x0: float, x1: float, zero: int, width: int) -> str:
+    """Ends of the x axis, and its zero at a column where there is room."""
     low, high = f"{x0:.4g}", f"{x1:.4g}"
     foot = low + " " * (width - len(low) - len(high)) + high
-    if x0 < 0.0 < x1 and len(low) < column < width - len(high) - 1:
-        foot = foot[:column] + "0" + foot[column + 1 :]
-    return "\n".join([*out, " " * (wide + 1) + foot])
+    if x0 < 0.0 < x1 and len(low) < zero < width - len(high) - 1:
+        return foot[:zero] + "0" + foot[zero + 1 :]
+    return foot
 
 
 def svg(curve: Curve, title: str, x_name: str, y_name: str) -> str:

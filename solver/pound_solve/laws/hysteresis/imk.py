@@ -165,53 +165,59 @@ def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: fl
     return (k, fy_plus, fy_minus, values["R"], *dp, *dpc, values["RESIDUAL"], *du, *capacities, values["C"])
 
 
+#: backbone of both sides
+BACKBONE = (
+    Field(
+        "R",
+        Kind.REAL,
+        "-",
+        default=0.0,
+        lo=0.0,
+        below=1.0,
+        doc="hardening stiffness as a share of the initial",
+    ),
+    Field(
+        "DP",
+        Kind.REAL,
+        "L",
+        above=0.0,
+        count=(1, 2),
+        doc="plastic deformation from yield to the cap (theta_p), positive side and negative side; "
+        "one value: the same both ways",
+    ),
+    Field(
+        "DPC",
+        Kind.REAL,
+        "L",
+        above=0.0,
+        count=(1, 2),
+        doc="deformation from the cap to zero strength (theta_pc), likewise",
+    ),
+    Field(
+        "RESIDUAL",
+        Kind.REAL,
+        "-",
+        default=0.0,
+        lo=0.0,
+        below=1.0,
+        doc="residual strength as a share of the yield force",
+    ),
+    Field(
+        "DU",
+        Kind.REAL,
+        "L",
+        default=None,
+        above=0.0,
+        count=(1, 2),
+        doc="ultimate deformation, at which all strength is lost, likewise; left out: none",
+    ),
+)
+
+
 def fields(modes: str, most: int) -> tuple[Field, ...]:
-    """Fields of a card: `modes` of deterioration, at `most` so many."""
+    """Fields of a card: the backbone, and capacities of the `modes` of deterioration, at `most` so many."""
     return (
-        Field(
-            "R",
-            Kind.REAL,
-            "-",
-            default=0.0,
-            lo=0.0,
-            below=1.0,
-            doc="hardening stiffness as a share of the initial",
-        ),
-        Field(
-            "DP",
-            Kind.REAL,
-            "L",
-            above=0.0,
-            count=(1, 2),
-            doc="plastic deformation from yield to the cap (theta_p), positive side and negative side; "
-            "one value: the same both ways",
-        ),
-        Field(
-            "DPC",
-            Kind.REAL,
-            "L",
-            above=0.0,
-            count=(1, 2),
-            doc="deformation from the cap to zero strength (theta_pc), likewise",
-        ),
-        Field(
-            "RESIDUAL",
-            Kind.REAL,
-            "-",
-            default=0.0,
-            lo=0.0,
-            below=1.0,
-            doc="residual strength as a share of the yield force",
-        ),
-        Field(
-            "DU",
-            Kind.REAL,
-            "L",
-            default=None,
-            above=0.0,
-            count=(1, 2),
-            doc="ultimate deformation, at which all strength is lost, likewise; left out: none",
-        ),
+        *BACKBONE,
         Field(
             "LAMBDA",
             Kind.REAL,
