@@ -1,7 +1,7 @@
 """Logical lines to rows of items, each with its Span: the only module that uses lark.
 
 The parser's callbacks only put tokens into postfix order; spans are added afterwards in plain loops.  So no
-step calls itself, however long or deep a card is.  How a card is built depends on the kinds of its tokens
+recursion is needed, however long or deep a card is.  How a card is built depends on the kinds of its tokens
 only, so the thousandth line of a table has the shape of the first and is not parsed again.
 """
 

@@ -56,7 +56,7 @@ def _references(model: Model, cards: Iterable[Card], broken: frozenset[str]) -> 
 
 
 def _named(cards: Iterable[Card]) -> Iterator[tuple[Any, Kind, Span]]:
-    """What the cards say of nodes, elements and property sets, with the places."""
+    """Nodes, elements and property sets that cards name, with the places."""
     for card in cards:
         for spec in (card.spec, *(s for specs in card.laws.values() for s in specs)):
             for f in spec.fields:
@@ -276,7 +276,7 @@ def _weights_twice(model: Model) -> Found:
 
 
 def _weights_of_supports(model: Model) -> Found:
-    """They do nothing, but on supports that move by themselves, or where they press as loads."""
+    """They have no effect, except on supports with a motion of their own, or where they act as loads."""
     if any(card.values.get("GRAVITY") == "YES" for card in model.analyses):
         return
     moved = {node for card in model.equake for node in card.values.get("SUPPORTS") or ()}

@@ -1,7 +1,7 @@
 """Arithmetic of the deck: expressions as postfix steps, PARAM values, no ``eval``.
 
 An expression is kept as the list of steps of a pocket calculator (`1 + 2*n` becomes ``1 2 n * +``), so that
-nothing here calls itself however long a line of a deck is.
+no recursion is needed, however long a line of a deck is.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""STUDY: what accuracy each method buys for what time, on the user's own deck.
+"""STUDY: accuracy of each method against its time, on the user's own deck.
 
 The history is run by several methods over a ladder of steps (or tolerances).  Errors are those of extremes,
 against a reference: EXACT with a search grid of a quarter of the usual, where EXACT can solve the deck in
@@ -52,7 +52,7 @@ class TooLong(Exception):
 
 @dataclass(frozen=True)
 class Plan:
-    """What is run.
+    """Methods and settings of a study.
 
     Attributes
     ----------
@@ -207,7 +207,7 @@ class _Bench:
             except StudyError as err:
                 why = err
                 continue
-            # the two finest made the reference: their own errors would flatter
+            # the two finest made the reference: their own errors would look too small
             out[method] = [t for t in ladder if t.stopped] + [t for t in ladder if not t.stopped][:-2]
             return reference
         raise why
@@ -243,7 +243,7 @@ class _Bench:
         for tol in self.plan.tols:
             out.append(self.trial(method, TOL=tol))
             taken = out[-1].method.removeprefix(f"{method}: ")
-            if taken != out[-1].method:  # it takes a method without steps, and will for less
+            if taken != out[-1].method:  # a method without steps, as for smaller tolerances
                 return [] if len(out) == 1 and taken in self.plan.methods else out
             if not out[-1].stopped and 4.0 * out[-1].time > self.plan.longest:
                 break
@@ -335,7 +335,7 @@ def _converged(done: Sequence[Trial], reference: Reference | None) -> bool:
 def peaks(results: Results) -> Peaks:
     """Largest and smallest values of a history's drifts, member forces and contact forces.
 
-    Drifts, forces of springs and peaks of contacts are those that the method found on its way.  Forces of
+    Drifts, forces of springs and peaks of contacts are those as found by the method itself.  Forces of
     members, and displacements of nodes in place of drifts where there are none, are taken at the output
     times, which are the same for all methods.
     """

@@ -1,4 +1,4 @@
-"""What a deck may hold, for ``pound-solve list`` and for the manual's page; both are made from the Specs.
+"""Reference of the deck, for ``pound-solve list`` and for the manual's page; both are made from the Specs.
 
 ``python -m pound_solve.report.deck_reference`` prints the page ``manual/deck-reference.md``.
 """
@@ -345,7 +345,7 @@ s.
 X points to the right, Y upwards, rotations R turn anticlockwise. Forces, displacements and accelerations
 follow them. End forces of a FRAME member act on the member along its own axes (x from I to J, y to its
 left); its axial force is positive in tension. Moments of its hinges (`hinge I`, `hinge J`) are positive
-where it sags, with tension on the right of the way from I to J. A spring's deformation is the displacement
+where it sags, with tension on the right of the line from I to J. A spring's deformation is the displacement
 of J less that of I. A contact closes as I moves towards J, and its force is positive in compression.
 
 The tables give units in dimensions: `F` force, `L` length, `T` time, `-` a pure number. "must" means that

@@ -1,4 +1,4 @@
-"""Drawings of a curve that need no library: letters for a terminal, SVG for the manual."""
+"""Drawings of a curve without a library: letters for a terminal, SVG for the manual."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def svg(curve: Curve, title: str, x_name: str, y_name: str) -> str:
 
 
 def _span(values: Sequence[float], margin: float = 0.0) -> tuple[float, float]:
-    """Least and largest value, some way apart where they are the same."""
+    """Least and largest value, moved apart where they are equal."""
     low, high = min(values), max(values)
     if low == high:
         low, high = low - 1.0, high + 1.0
@@ -161,7 +161,7 @@ def _path(points: Curve) -> str:
 
 
 def _between(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> bool:
-    """Whether b lies on the way from a to c, to half of a tenth of a pixel."""
+    """Whether b lies on the line from a to c, to half of a tenth of a pixel."""
     dx, dy = c[0] - a[0], c[1] - a[1]
     length = math.hypot(dx, dy)
     if length == 0.0:

@@ -50,7 +50,7 @@ class Structure:
     released : ndarray, shape (n,)
         Those among them that a history removes at its start.
     ground : ndarray, shape (3, n)
-        ``M r`` for a unit acceleration of the ground along x and y and in a turn about the origin,
+        ``M r`` for a unit acceleration of the ground along x and y and for a rotation about the origin,
         supports included [F T^2/L], [F T^2].
     laws : tuple of LawSpring
     law_rows : Matrix, shape (n_laws, n)
@@ -66,7 +66,7 @@ class Structure:
     self_weight : bool
         Whether the weight of members is among the loads.
     parts : mapping of int to Parts
-        What every element added, by its number.
+        Contributions of every element, by its number.
     damping_texts : list of (Card, str)
     """
 
@@ -178,7 +178,7 @@ class AssemblyError(Exception):
 
 
 def _refusal(model: Model, label: str, message: str, item: str, elements: list[Element]) -> Diagnostic:
-    """What is wrong with the elements of one property set, reported once."""
+    """Diagnostic of the elements of one property set, reported once."""
     first, *others = elements
     more = f" and {len(others)} more" if others else ""
     return Diagnostic(
@@ -349,7 +349,7 @@ def stiffness_along(
 ) -> dict[int, float]:
     """Axial stiffness [F/L] along a direction of the elements that meet a node, by their number.
 
-    That of a rod, EA/L, times the squared cosine; what has no length is a rod along the direction.
+    That of a rod, EA/L, times the squared cosine; an element without length is a rod along the direction.
     """
     out = {}
     for name, own in parts.items():
@@ -357,14 +357,14 @@ def stiffness_along(
         at = [n for n, f in enumerate(initial.dofs) if f in ((node, 0), (node, 1))]
         if not at:
             continue
-        way, length = np.array(normal), 0.0
+        axis, length = np.array(normal), 0.0
         if e.j is not None:
             i, j = model.nodes[e.i], model.nodes[e.j]
             line = np.array([j.x - i.x, j.y - i.y])
             length = float(np.hypot(*line))
-            way = line / length if length else way
-        t = way[[initial.dofs[n][1] for n in at]]
-        k = float(t @ initial.matrix[np.ix_(at, at)] @ t) * float(way @ normal) ** 2
+            axis = line / length if length else axis
+        t = axis[[initial.dofs[n][1] for n in at]]
+        k = float(t @ initial.matrix[np.ix_(at, at)] @ t) * float(axis @ normal) ** 2
         if k > 1e-12 * np.abs(initial.matrix).max():  # a column's cosine may be rounding
             out[name] = k
     return out

@@ -1,4 +1,4 @@
-"""DOFs: which displacements are unknown, which follow a master, which are prescribed.
+"""Degrees of freedom (DOFs): which are unknown, which follow a master, which are prescribed.
 
 Every node has ``ux``, ``uy`` and ``rz``; an element may have internal DOFs in addition (the rotations of
 its hinges).  A fixed one is zero, a slaved one follows its master with the rigid arm between them, one at a
@@ -19,7 +19,7 @@ from pound_solve.numerics.types import Array
 
 DIRECTIONS = "XYR"
 NAMES = ("ux", "uy", "rz")
-INTERNAL = ("turn inside I", "turn inside J", "stretch inside I", "stretch inside J")
+INTERNAL = ("rotation inside I", "rotation inside J", "stretch inside I", "stretch inside J")
 
 #: node number and direction (0 x, 1 y, 2 rotation), or element number and 3, 4, ... for its internal ones
 Dof = tuple[int, int]

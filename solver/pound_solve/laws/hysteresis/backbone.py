@@ -16,8 +16,7 @@ A spring that has reached ductility :math:`\mu` unloads with
 The second bound, the secant from the origin to the backbone, is ours: a softer line would reach no force on
 the far side of the origin, and for large :math:`\alpha` run flatter than the backbone itself.
 
-Internal variables of every rule here: the largest ductility of each side (1 before yield), and a point (d,
-f).
+Internal variables of each rule: the largest ductility of each side (1 before yield), and a point (d, f).
 
 References
 ----------

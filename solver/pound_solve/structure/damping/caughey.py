@@ -8,9 +8,9 @@ summed mode by mode, :math:`C = M \Phi\,\mathrm{diag}(2\xi_n\omega_n)\,\Phi^T M`
 :math:`a_b`, whose sizes lie many powers of ten apart, are never formed, nor are powers of matrices, and
 DOFs without mass, for which the series has no meaning, are not damped (Bernal 1994).
 
-Two terms are Rayleigh damping.  With more the ratio swings between the points, and beyond the last it runs
-away, upwards for an even number and downwards for an odd one.  A negative ratio of any mode, or anywhere
-between the points, is an error.
+Two terms are Rayleigh damping.  With more the ratio oscillates between the points, and beyond the last it
+diverges, upwards for an even number and downwards for an odd one.  A negative ratio of any mode, or
+anywhere between the points, is an error.
 
 References
 ----------

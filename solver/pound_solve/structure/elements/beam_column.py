@@ -16,7 +16,7 @@ The centre is off the origin where the section resists compression better than t
 forces are then :math:`(s_i \pm 1) F_i` with :math:`s_i = \alpha + \beta y_i`.
 
 The springs are as stiff as they are strong, and altogether as the length LP of the beam in bending;
-the beam between the hinges gives up what flexibility they have, so that the elastic member is exactly that
+their flexibility is taken off the beam between the hinges, so that the elastic member is exactly that
 of E, A, I.
 
 References
