@@ -159,7 +159,7 @@ def _apply(step: Step, values: list[Value]) -> float:
     numbers = [v for v in values if not isinstance(v, str)]
     if len(numbers) < len(values):
         text = next(v for v in values if isinstance(v, str))
-        raise mistake("P227", f'the text "{text[:60]}" cannot be reckoned with', step.span, "use a number")
+        raise mistake("P227", f'the text "{text[:60]}" is not a number', step.span, "use a number")
     try:
         return _finite(_call(step, numbers) if step.kind == "call" else _operate(step.text, numbers), step)
     except ZeroDivisionError:

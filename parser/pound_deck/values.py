@@ -123,7 +123,7 @@ class Values:
         value = self._param(step) if step and step.kind == "word" else None
         if isinstance(value, str):
             return value
-        # a number as written is a name (DRIFT 5 ...), but nothing that has to be reckoned first
+        # a number as written is a name (DRIFT 5 ...), but an expression is not
         if step and value is None and part.text == step.text:
             return step.text
         what = f"{part.text[:60]} is " + ("an expression" if value is None else f"the number {value:g}")

@@ -384,7 +384,7 @@ class EquilibriumPath:
         return k + self.corotational.stiffness(u) if self.corotational else k
 
     def _linear(self, u: Array, stiffness: Array, force: Array, go: float) -> tuple[Array, float]:
-        """Change of displacements and load factor for a further `force` and a change `go` of the control."""
+        """Change of displacements and load factor for a `force` and a change `go` of the control."""
         k = self._stiffness(u, stiffness)
         push = self.load + self.rows.T @ (stiffness * self.lead)
         if self.control is None:

@@ -183,7 +183,7 @@ def trace(law: Law, path: Sequence[float], rate: float = 0.0) -> Trace:
             continue
         v = rate if goal > d else -rate
         try:
-            for at, new in _pieces(law, state, d, goal, rate):
+            for at, new in _branches(law, state, d, goal, rate):
                 if at != d:  # a branch with an immediate transition does not count
                     drag += _drag(law, state, d, at, v)
                     corners.append(_point(law, state, at, v, drag, at == goal))
@@ -195,7 +195,7 @@ def trace(law: Law, path: Sequence[float], rate: float = 0.0) -> Trace:
     return Trace(tuple(corners), tuple(curve))
 
 
-def _pieces(law: Law, state: State, d: float, goal: float, rate: float) -> Iterator[tuple[float, State]]:
+def _branches(law: Law, state: State, d: float, goal: float, rate: float) -> Iterator[tuple[float, State]]:
     """Ends of the branches on the way, the state after each, and the goal."""
     for at, after in transitions(law, state, d, goal, rate):
         yield at, after

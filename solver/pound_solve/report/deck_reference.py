@@ -204,7 +204,7 @@ def _default(f: Field) -> str:
 
 
 def takes(f: Field) -> str:
-    """What an item takes: choices, limits, number of values."""
+    """Permitted values of an item: choices, limits, number of values."""
     text = _one_value(f) + (", or range" if f.varies else "")
     return ", ".join(t for t in (_many(f), text) if t)
 
@@ -342,7 +342,7 @@ s.
 
 ## Directions and signs
 
-X points to the right, Y upwards, rotations R turn anticlockwise. Forces, displacements and accelerations
+X points to the right, Y upwards, rotations R are anticlockwise. Forces, displacements and accelerations
 follow them. End forces of a FRAME member act on the member along its own axes (x from I to J, y to its
 left); its axial force is positive in tension. Moments of its hinges (`hinge I`, `hinge J`) are positive
 where it sags, with tension on the right of the line from I to J. A spring's deformation is the displacement

@@ -33,7 +33,7 @@ class SeparationError(Exception):
 
 
 class SeparationRecord(NamedTuple):
-    """What the rows are made from, see `text`."""
+    """Input of the rows, see `text`."""
 
     results: Results
     periods: Sequence[float] = ()

@@ -158,7 +158,7 @@ SPEC = Spec(
             "L",
             default=(0.0,),
             count=(1, 2),
-            doc="deformation at which it takes hold, positive and (signed) negative; "
+            doc="deformation at which the spring engages, positive and (signed) negative; "
             "one value: the same on both sides",
         ),
         Field(

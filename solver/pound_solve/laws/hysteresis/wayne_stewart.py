@@ -304,7 +304,7 @@ SPEC = Spec(
             "L",
             default=(0.0,),
             count=(1, 2),
-            doc="deformation at which it takes hold at first, positive and (signed) negative; "
+            doc="deformation at which the spring first engages, positive and (signed) negative; "
             "one value: the same on both sides",
         ),
         Field(

@@ -32,14 +32,14 @@ COMMON: Final = (
         Kind.WORD,
         default="X",
         words=("X", "Y", "R"),
-        doc="direction of the ground motion; R turns the ground about the point ABOUT",
+        doc="direction of the ground motion; R rotates the ground about the point ABOUT",
     ),
     Field(
         "SCALE",
         Kind.REAL,
         "-",
         default=1.0,
-        doc="factor on the acceleration; a negative one turns it round",
+        doc="factor on the acceleration; a negative one reverses it",
     ),
     Field("SUPPORTS", Kind.NODES, default=None, doc="nodes moved by this motion; left out: the whole base"),
     Field(
@@ -56,7 +56,7 @@ COMMON: Final = (
         "L",
         default=(0.0, 0.0),
         count=(2, 2),
-        doc="x,y of the point that stays in place where DIRECTION=R turns the ground",
+        doc="x,y of the point that stays in place where DIRECTION=R rotates the ground",
     ),
 )
 

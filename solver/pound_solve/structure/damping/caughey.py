@@ -64,14 +64,14 @@ def build(card: Card, context: DampingContext) -> Group:
     between = rates(within, at, xi)
     if len(within) and between.min() < floor:
         raise DampingError(
-            "between the given frequencies the series turns negative, "
+            "between the given frequencies the series becomes negative, "
             f"near omega {within[between.argmin()]:.6g}: take fewer of them, or ratios that differ less",
             "XI",
         )
     if len(given) and given.min() < floor:
         n = int(given.argmin())
         raise DampingError(
-            f"the series turns negative beyond the given frequencies, at mode {n + 1} "
+            f"the series becomes negative beyond the given frequencies, at mode {n + 1} "
             f"(omega {modes.omega[n]:.6g}): give a ratio there too, or an even number of them",
             "XI",
         )

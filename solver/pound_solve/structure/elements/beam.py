@@ -407,7 +407,7 @@ FIELDS = (
         default="NONE",
         words=("NONE", "I", "J", "BOTH"),
         codes={"NONE": 0, "I": 1, "J": 2, "BOTH": 3},
-        doc="which ends turn freely",
+        doc="ends that rotate freely",
     ),
     Field(
         "FJ",

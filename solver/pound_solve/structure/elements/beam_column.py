@@ -2,7 +2,7 @@ r"""BEAM_COLUMN: beam-column whose ends yield under axial force and moment toget
 
 A hinge is a row of axial springs across the section.  Springs side by side at distances :math:`y_i` from
 the axis, each of which yields at :math:`\pm F_i`, carry :math:`N = \sum f_i` and
-:math:`M = -\sum f_i y_i`; what they can carry is the sum of the segments :math:`\pm F_i (1, -y_i)`, a
+:math:`M = -\sum f_i y_i`; their capacity is the sum of the segments :math:`\pm F_i (1, -y_i)`, a
 convex polygon that is symmetric about its centre, and every such polygon is a sum of segments.
 So an N-M diagram becomes its springs, edge by edge:
 

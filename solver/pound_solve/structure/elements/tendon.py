@@ -72,7 +72,7 @@ SPEC = Spec(
             doc="post-yield stiffness as a share of the initial",
         ),
         Field("N0", Kind.REAL, "F", default=0.0, lo=0, doc="prestress of the undeformed structure"),
-        Field("SLACK", Kind.REAL, "L", default=0.0, lo=0, doc="elongation at which it takes hold"),
+        Field("SLACK", Kind.REAL, "L", default=0.0, lo=0, doc="elongation at which it becomes taut"),
     ),
     reference="Ruaumoko's rule 5",
     impl=build,
