@@ -21,7 +21,7 @@ def pieces(law: Law, state: State, d0: float, d1: float) -> Iterator[tuple[State
     at, still = d0, 0
     while True:
         where, which = d1, None
-        for n, (a, b, c) in enumerate(law.branch(state).exits):
+        for n, (a, b, c) in enumerate(law.branch(state).events):
             if a == 0.0:
                 reached = at if b * direction > 0.0 and d1 != d0 else None
             else:

@@ -26,6 +26,53 @@ _PLURAL: Final = {
 
 
 @dataclass(slots=True)
+class _Draft:
+    """A card while its fields are filled in.
+
+    Attributes
+    ----------
+    spec : Spec
+    span : Span
+    label : str
+    given : mapping of str to Item
+        By the name of the field.
+    numbers : sequence of int or None
+        Those that a range in the first field generates; None without one.
+    matched : bool
+        Whether every item found a field.
+    whole : bool
+        Whether there is no mistake so far.
+    values : dict of str to value
+    laws : dict of str to tuple of Spec
+        What the FAMILY items choose, whose fields join those of the card.
+    lost : set of str
+        Fields that a FAMILY item with a mistake might have brought along.
+    """
+
+    spec: Spec
+    span: Span
+    label: str
+    given: Mapping[str, Item]
+    numbers: Sequence[int] | None
+    matched: bool
+    whole: bool
+    values: dict[str, Any] = field(default_factory=dict)
+    laws: dict[str, tuple[Spec, ...]] = field(default_factory=dict)
+    lost: set[str] = field(default_factory=set)
+
+    def cards(self) -> list[Card]:
+        """The card, or one for each of the generated numbers."""
+        spans = {name: item.span for name, item in self.given.items()}
+        every = [self.values]
+        if self.numbers is not None:
+            every = [
+                {n: v[k] if isinstance(v, _Steps) else v for n, v in self.values.items()}
+                for k in range(len(self.numbers))
+            ]
+        return [Card(self.spec, values, self.span, self.label, self.laws, spans) for values in every]
+
+
+@dataclass(slots=True)
 class Binder:
     """Binds the items of a deck.
 
@@ -71,47 +118,35 @@ class Binder:
         """
         before = len(self.report)
         given, matched = self._match(spec, items)
-        whole = matched
         numbers = self._count(spec, given) if generate else None
-        values: dict[str, Any] = {}
-        laws: dict[str, tuple[Spec, ...]] = {}
-        lost: set[str] = set()  # names that a FAMILY item with a mistake might have brought along
+        draft = _Draft(spec, span, label, given, numbers, matched, matched)
         fields = list(spec.fields)
         for f in fields:  # grows while FAMILY items add the fields of what they choose
-            if f.name in values:
-                continue
-            item = given.get(f.name)
-            try:
-                if item is None:
-                    values[f.name] = self._default(f, spec, label, span, matched)
-                else:
-                    values[f.name] = self._value(f, item, spec, numbers)
-            except Mistake as error:
-                whole = False
-                values[f.name] = None
-                if error.diagnostic:
-                    self.report.append(error.diagnostic)
-                if f.kind is Kind.FAMILY:
-                    lost |= {g.name for s in self.read.catalog.family(f.family).values() for g in s.fields}
-                continue
-            if f.kind is Kind.FAMILY and values[f.name] is not None:
-                laws[f.name] = self._laws(f, values[f.name])
-                fields += [g for law in laws[f.name] for g in law.fields]
+            if f.name not in draft.values:
+                fields += self._fill(draft, f)
         for name, item in given.items():
-            if name not in values and name not in lost:
-                self.report.append(self._unknown(name, item, spec, laws, [*values]))
-        if not whole or len(self.report) > before:
-            return None
-        spans = {name: item.span for name, item in given.items()}
-        if numbers is None:
-            return [Card(spec, values, span, label, laws, spans)]
-        varying = {name for name, value in values.items() if isinstance(value, _Steps)}
-        return [
-            Card(
-                spec, {n: v[k] if n in varying else v for n, v in values.items()}, span, label, laws, spans
-            )
-            for k in range(len(numbers))
-        ]
+            if name not in draft.values and name not in draft.lost:
+                self.report.append(self._unknown(name, item, draft))
+        return draft.cards() if draft.whole and len(self.report) == before else None
+
+    def _fill(self, draft: _Draft, f: Field) -> Sequence[Field]:
+        """Give a field of a card its value; returns the fields of the laws that the value chooses."""
+        item = draft.given.get(f.name)
+        try:
+            value = self._default(f, draft) if item is None else self._value(f, item, draft)
+        except Mistake as error:
+            draft.whole, draft.values[f.name] = False, None
+            if error.diagnostic:
+                self.report.append(error.diagnostic)
+            if f.kind is Kind.FAMILY:
+                chosen = self.read.catalog.family(f.family).values()
+                draft.lost |= {g.name for s in chosen for g in s.fields}
+            return ()
+        draft.values[f.name] = value
+        if f.kind is not Kind.FAMILY or value is None:
+            return ()
+        draft.laws[f.name] = self._laws(f, value)
+        return [g for law in draft.laws[f.name] for g in law.fields]
 
     def _match(self, spec: Spec, items: Sequence[Item]) -> tuple[dict[str, Item], bool]:
         """Items by field name, and whether all of them found one."""
@@ -147,20 +182,24 @@ class Binder:
         message = f"one item too many: {spec.name} reads {places or 'nothing'} by position"
         self._error("P214", message, item.span, hint)
 
-    def _default(self, f: Field, spec: Spec, label: str, span: Span, whole: bool) -> Any:
-        if not whole and (f.default is REQUIRED or f.kind is Kind.FAMILY):
+    def _default(self, f: Field, draft: _Draft) -> Any:
+        if not draft.matched and (f.default is REQUIRED or f.kind is Kind.FAMILY):
             raise Mistake  # what is out of place may be meant for it
         if f.default is REQUIRED:
-            raise mistake("P213", f"{label or spec.name} needs {self.read.meaning(f)}", span, _how(f))
+            raise mistake(
+                "P213",
+                f"{draft.label or draft.spec.name} needs {self.read.meaning(f)}",
+                draft.span,
+                _how(f),
+            )
         return f.default
 
     def _laws(self, f: Field, chosen: Any) -> tuple[Spec, ...]:
         names = (chosen,) if isinstance(chosen, str) else tuple(chosen)
         return tuple(self.read.catalog.family(f.family)[name] for name in dict.fromkeys(names))
 
-    def _unknown(
-        self, name: str, item: Item, spec: Spec, laws: Mapping[str, tuple[Spec, ...]], takes: list[str]
-    ) -> Diagnostic:
+    def _unknown(self, name: str, item: Item, draft: _Draft) -> Diagnostic:
+        spec, laws, takes = draft.spec, draft.laws, [*draft.values]
         chosen = [f"{key}={','.join(s.name for s in specs)}" for key, specs in laws.items()]
         owner = " with ".join([spec.name, ", ".join(chosen)] if chosen else [spec.name])
         elsewhere = [
@@ -245,7 +284,7 @@ class Binder:
             return _Steps(int(a) + k * (int(b - a) // max(count - 1, 1)) for k in range(count))
         return _Steps(b if k == count - 1 else a + (b - a) * (k / (count - 1)) for k in range(count))
 
-    def _value(self, f: Field, item: Item, spec: Spec, numbers: Sequence[int] | None) -> Any:
+    def _value(self, f: Field, item: Item, draft: _Draft) -> Any:
         if f.kind in _LISTS:
             return self._list(f, item)
         least, most = f.count
@@ -255,10 +294,10 @@ class Binder:
             raise mistake("P218", message, item.span, self.read.meaning(f))
         if isinstance(item.parts[0], Range):
             part = item.parts[0]
-            if f is spec.fields[0] and f.varies:
-                return _Steps(numbers or self._members(part, f))
-            if numbers is not None and f.varies:
-                return self._spread(part, f, numbers)
+            if f is draft.spec.fields[0] and f.varies:
+                return _Steps(draft.numbers or self._members(part, f))
+            if draft.numbers is not None and f.varies:
+                return self._spread(part, f, draft.numbers)
         values = tuple(self.read.one(f, part) for part in item.parts)
         return values[0] if f.count == (1, 1) else values
 

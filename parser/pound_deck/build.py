@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from pound_deck.bind import Binder
 from pound_deck.cards import Item, Row
-from pound_deck.diagnostics import Diagnostic, Mistake, hints
-from pound_deck.expressions import Expression, Value
+from pound_deck.diagnostics import Diagnostic, Mistake, hints, mistake
+from pound_deck.expressions import Expression, Step, Value
 from pound_deck.model import Card, Element, Model, Node, Span, Units
 from pound_deck.outline import FAMILIES, NAMES, Outline
 from pound_deck.schema import Catalog, Field, Kind, Spec
@@ -52,29 +52,15 @@ def build(
     mass = _single(Spec("card", "MASS", "mass of members", (_MASS,)), outline, binder)
     geometry = _single(Spec("card", "GEOMETRY", "displacements", (_GEOMETRY,)), outline, binder)
     output = bound["OUTPUT"] or (_default_output(),)
-    nodes: dict[int, Node] = {}
-    for card in bound["NODES"]:
-        node = _node(card, report)
-        _once(nodes, node.id, node, "P301", f"node {node.id}", card.place("NODE"), report)
-    elements: dict[int, Element] = {}
-    for card in bound["ELEMENTS"]:
-        v = card.values
-        element = Element(v["ELEMENT"], v["PROP"], v["I"], v["J"], card.span, v["NAME"])
-        _once(elements, element.id, element, "P302", f"element {element.id}", card.place("ELEMENT"), report)
-    props: dict[str, Card] = {}
-    for card in bound["PROPS"]:
-        _once(props, card.label, card, "P303", f"property set {card.label}", card.span, report)
-    known = _default_gravity(units)
-    if known and gravity is not None:
-        report += _another_gravity(gravity, known, units, outline.single)
-    if known is None and "GRAVITY" not in outline.single and bound["WEIGHTS"]:
-        message = f"no value of gravity is known for {units.length} and {units.time}"
-        report.append(Diagnostic("P319", message, bound["WEIGHTS"][0].span, "add GRAVITY with its value"))
+    nodes = _nodes(bound["NODES"], report)
+    elements = _elements(bound["ELEMENTS"], report)
+    props = _props(bound["PROPS"], report)
+    report += _doubtful_gravity(gravity, units, outline.single, bound["WEIGHTS"])
     left = {"units": "UNITS", "gravity": "GRAVITY", "mass": "MASS", "geometry": "GEOMETRY"}
     model = Model(
         title=_title(outline.single.get("TITLE")),
         units=units,
-        gravity=gravity if gravity is not None else known or 9.81,
+        gravity=gravity or _default_gravity(units) or 9.81,
         mass=mass or "LUMPED",
         geometry=geometry or "SMALL",
         params={name: value for name, value in params.items() if value is not None},
@@ -114,37 +100,41 @@ def _section(name: str, outline: Outline, binder: Binder) -> tuple[Card, ...]:
 
 def _row(name: str, row: Row, binder: Binder) -> list[Card] | None:
     """Cards of a row: none where its range is empty, None where it has mistakes."""
-    items = row.items or ()
-    if name in _SPECS:
-        cards = binder.cards(_SPECS[name], items, row.span, generate=name in ("NODES", "ELEMENTS"))
-        if cards and name == "DRIFT":
-            cards = [_labelled(card) for card in cards]
-        return cards
-    family = FAMILIES[name]
+    if name not in _SPECS:
+        card = _kind(name, row, binder)
+        return [card] if card else None
+    generate = name in ("NODES", "ELEMENTS")
+    cards = binder.cards(_SPECS[name], row.items or (), row.span, generate=generate)
+    if cards and name == "DRIFT":
+        cards = [_labelled(card) for card in cards]
+    return cards
+
+
+def _kind(name: str, row: Row, binder: Binder) -> Card | None:
+    """Card of a section whose lines name their kind: first, or after the label of a property set."""
+    items, family = row.items or (), FAMILIES[name]
     specs = binder.read.catalog.family(family)
     codes = {s.code: s.name for s in specs.values() if s.code is not None}
     at = 1 if family == "element" else 0
     try:
         if len(items) <= at or any(item.name for item in items[: at + 1]):
-            _no_kind(name, row, items, list(specs), binder)
-            return None
+            raise _no_kind(name, row, specs)
         label = binder.read.label(items[0].parts[0], "PROPS") if at else ""
         if any(len(item.parts) > 1 for item in items[: at + 1]):
-            _no_kind(name, row, items, list(specs), binder)
-            return None
+            raise _no_kind(name, row, specs)
         kind = binder.read.choice(items[at].parts[0], specs, codes, "this card's kind")
     except Mistake as error:
         if error.diagnostic:
             binder.report.append(error.diagnostic)
         return None
-    card = binder.card(specs[kind], items[at + 1 :], row.span, label)
-    return [card] if card else None
+    return binder.card(specs[kind], items[at + 1 :], row.span, label)
 
 
-def _no_kind(name: str, row: Row, items: Iterable[Item], kinds: list[str], binder: Binder) -> None:
+def _no_kind(name: str, row: Row, kinds: Iterable[str]) -> Mistake:
     start = "a label and a kind of element" if name == "PROPS" else "its kind"
-    hint = "kinds are " + ", ".join(kinds)
-    binder.report.append(Diagnostic("P213", f"a line of {name} starts with {start}", row.span, hint))
+    return mistake(
+        "P213", f"a line of {name} starts with {start}", row.span, "kinds are " + ", ".join(kinds)
+    )
 
 
 def _labelled(card: Card) -> Card:
@@ -152,8 +142,21 @@ def _labelled(card: Card) -> Card:
 
 
 def _plain_labels(heads: Iterable[Item]) -> list[str]:
-    parts = [item.parts[0] for item in heads]
-    return [p.lone.text.upper() for p in parts if isinstance(p, Expression) and p.lone]
+    return [step.text.upper() for step in _lone_steps(heads) if step]
+
+
+def _lone_steps(items: Iterable[Item]) -> list[Step | None]:
+    """The only step of each item's first part, such as a word; None where there are more."""
+    parts = [item.parts[0] for item in items]
+    return [p.lone if isinstance(p, Expression) else None for p in parts]
+
+
+def _nodes(cards: Iterable[Card], report: list[Diagnostic]) -> dict[int, Node]:
+    nodes: dict[int, Node] = {}
+    for card in cards:
+        node = _node(card, report)
+        _once(nodes, node.id, node, "P301", f"node {node.id}", card.place("NODE"), report)
+    return nodes
 
 
 def _node(card: Card, report: list[Diagnostic]) -> Node:
@@ -161,13 +164,26 @@ def _node(card: Card, report: list[Diagnostic]) -> Node:
     if bool(v["SLAVED"]) != (v["MASTER"] is not None):
         there, needed = ("SLAVED", "MASTER") if v["SLAVED"] else ("MASTER", "SLAVED")
         message = f"node {v['NODE']} has {there}, but no {needed}"
-        report.append(
-            Diagnostic(
-                "P308", message, card.place(there), "write SLAVED=XYR MASTER=node, or leave both out"
-            )
-        )
+        hint = "write SLAVED=XYR MASTER=node, or leave both out"
+        report.append(Diagnostic("P308", message, card.place(there), hint))
     slaved = dict.fromkeys(v["SLAVED"], v["MASTER"]) if v["MASTER"] is not None else {}
     return Node(v["NODE"], v["X"], v["Y"], v["FIX"], card.span, slaved)
+
+
+def _elements(cards: Iterable[Card], report: list[Diagnostic]) -> dict[int, Element]:
+    elements: dict[int, Element] = {}
+    for card in cards:
+        v = card.values
+        element = Element(v["ELEMENT"], v["PROP"], v["I"], v["J"], card.span, v["NAME"])
+        _once(elements, element.id, element, "P302", f"element {element.id}", card.place("ELEMENT"), report)
+    return elements
+
+
+def _props(cards: Iterable[Card], report: list[Diagnostic]) -> dict[str, Card]:
+    props: dict[str, Card] = {}
+    for card in cards:
+        _once(props, card.label, card, "P303", f"property set {card.label}", card.span, report)
+    return props
 
 
 def _once(
@@ -179,11 +195,11 @@ def _once(
     span: Span,
     report: list[Diagnostic],
 ) -> None:
+    """Add to a table; what has a key that is there already is reported and left out."""
     if key in table:
         first = table[key].span
-        report.append(
-            Diagnostic(code, f"{what} is already given at {first.file}:{first.line}", span, "take one out")
-        )
+        message = f"{what} is already given at {first.file}:{first.line}"
+        report.append(Diagnostic(code, message, span, "take one out"))
     else:
         table[key] = value
 
@@ -199,12 +215,11 @@ def _single(spec: Spec, outline: Outline, binder: Binder) -> Any:
 def _units(row: Row | None, report: list[Diagnostic]) -> Units:
     if row is None or row.items is None:
         return Units()
-    steps = [i.parts[0].lone if isinstance(i.parts[0], Expression) else None for i in row.items[1:]]
+    steps = _lone_steps(row.items[1:])
     words = [s.text for s in steps if s and s.kind == "word"]
-    kinds = [_dimension(word.upper()) for word in words]
-    right = all(kind in ("", want) for kind, want in zip(kinds, "FLT"))
-    named = any(i.name or len(i.parts) > 1 for i in row.items)
-    if named or len(words) != 3 or len(words) != len(steps) or not right:
+    right = _in_order(words)
+    listed = any(i.name or len(i.parts) > 1 for i in row.items)
+    if listed or len(words) != 3 or len(words) != len(steps) or not right:
         message = "UNITS takes the units of force, length and time, in this order"
         missing = _QUANTITIES[len(words) :] if right and len(words) == len(steps) else ()
         hint = hints(f"missing: {', '.join(missing)}" if missing else "", "for example UNITS kN m s")
@@ -212,6 +227,11 @@ def _units(row: Row | None, report: list[Diagnostic]) -> Units:
         return Units()
     force, length, time = words
     return Units(force, length, time, given=True)
+
+
+def _in_order(words: Iterable[str]) -> bool:
+    """Whether words may be units of force, length and time in this order; an unknown one may be any."""
+    return all(_dimension(word.upper()) in ("", want) for word, want in zip(words, "FLT"))
 
 
 def _dimension(word: str) -> str:
@@ -222,10 +242,16 @@ def _default_gravity(units: Units) -> float | None:
     return _LENGTHS.get(units.length.upper()) if units.time.upper() in _TIMES else None
 
 
-def _another_gravity(
-    gravity: float, known: float, units: Units, single: Mapping[str, Row]
+def _doubtful_gravity(
+    gravity: float | None, units: Units, single: Mapping[str, Row], weights: Sequence[Card]
 ) -> Iterator[Diagnostic]:
-    """GRAVITY as it is with another unit of length; `known` is that with the deck's own."""
+    """Gravity that fits another unit of length than the deck's, or that is needed and not known."""
+    known = _default_gravity(units)
+    if known is None and "GRAVITY" not in single and weights:
+        message = f"no value of gravity is known for {units.length} and {units.time}"
+        yield Diagnostic("P319", message, weights[0].span, "add GRAVITY with its value")
+    if known is None or gravity is None:
+        return
     other = next((u for u, g in _LENGTHS.items() if math.isclose(gravity, g, rel_tol=_ALIKE)), "")
     if other and _LENGTHS[other] != known and (units.given or "UNITS" not in single):
         message = (

@@ -1,8 +1,8 @@
 """Logical lines to rows of items, each with its Span: the only module that uses lark.
 
 The parser's callbacks only put tokens into postfix order; spans are added afterwards in plain loops.  So no
-step calls itself, however long or deep a card is.  How a card is built depends on the kinds of its tokens
-only: the thousandth line of a table is taken apart as its first was, without parsing it again.
+recursion is needed, however long or deep a card is.  How a card is built depends on the kinds of its tokens
+only, so the thousandth line of a table has the shape of the first and is not parsed again.
 """
 
 from __future__ import annotations
@@ -17,36 +17,17 @@ from typing import Any, Final
 from lark import Lark, Token, Transformer, UnexpectedCharacters, UnexpectedInput
 from lark.lark import PostLex
 
-from pound_deck.diagnostics import Diagnostic, Mistake, mistake
+from pound_deck.diagnostics import Diagnostic, Mistake
 from pound_deck.expressions import Expression, Range, Step
 from pound_deck.model import Span
 from pound_deck.source import Line
-
-MAX_NESTING: Final = 50
+from pound_deck.syntax import Fault, check_nesting, explain
 
 Part = Expression | Range
 
 _TIGHT: Final = frozenset({"EQUAL", "TO", "BY"})  #: tokens that may have blanks around them
-_SIGNS: Final = frozenset({"PLUS", "MINUS", "STAR", "SLASH", "POWER"})
 # a keyword, and no named item; what follows TITLE is free
 _FIRST_WORD: Final = re.compile(r"\s*(TITLE(?![\w.])|[A-Za-z_][\w.]*(?![\w.]|\s*=))", re.IGNORECASE)
-_BRACKET: Final = re.compile(r""""[^"\n]*"|'[^'\n]*'|([()])""")
-_LONGEST_NAME: Final = 300  #: of a file, with its path
-_PATH_START: Final = re.compile(r"\.{1,2}[/\\]|~/|\\\\|[A-Za-z]:[/\\]")
-_FILE: Final = re.compile(r"""[^()*"']*[A-Za-z_][^()*"']*\.[A-Za-z]\w*""")  #: a letter, and an extension
-#: at the end, or before the = of the next item
-_NO_VALUE: Final = re.compile(r"([A-Za-z_][\w.]*)(\s*=)(\s+[A-Za-z_][\w.]*)?$")
-_LOOKALIKES: Final = {
-    "−": "-",
-    "–": "-",
-    "—": "-",
-    "“": '"',
-    "”": '"',
-    "„": '"',
-    "‘": "'",
-    "’": "'",
-    "×": "*",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +91,7 @@ def parse_items(line: Line, shapes: dict[tuple[str, ...], _Shape] | None = None)
     Mistake
         The line does not follow the grammar.
     """
-    _check_nesting(line)
+    check_nesting(line)
     lexer, parser = _lark()
     try:
         tokens = list(lexer.lex(line.text))
@@ -121,12 +102,12 @@ def parse_items(line: Line, shapes: dict[tuple[str, ...], _Shape] | None = None)
             if shapes is not None:
                 shapes[kinds] = shape
     except UnexpectedInput as error:
-        raise _explain(_first_error(parser, line, error), line) from None
+        raise explain(_fault(_first_error(parser, line, error), line)) from None
     return tuple([_item(item, tokens, line) for item in shape])
 
 
 def _first_error(parser: Lark, line: Line, error: UnexpectedInput) -> UnexpectedInput:
-    """What the parser meets first: the lexer alone runs past mistakes of grammar."""
+    """First error of the parser: the lexer alone does not find errors of grammar."""
     try:
         parser.parse(line.text)
     except UnexpectedInput as first:
@@ -227,7 +208,7 @@ _Shape = tuple[tuple[int | None, tuple[tuple[_Formula, ...], ...]], ...]
 
 
 def _shape(parsed: Any, tokens: list[Token]) -> _Shape:
-    """What `_Postfix` made of a card (lark calls it a tree), with indices in place of its tokens."""
+    """Shape of a parsed card: indices in place of its tokens."""
     index = {token.start_pos: k for k, token in enumerate(tokens)}
 
     def formula(raw: _Postfixed) -> _Formula:
@@ -247,7 +228,7 @@ def _shape(parsed: Any, tokens: list[Token]) -> _Shape:
 @cache
 def _lark() -> tuple[Lark, Lark]:
     """The lexer alone, and the parser with the same lexer."""
-    # the basic lexer looks at no parser state, so _Blanks may read one token ahead
+    # the basic lexer is independent of the parser's state, so _Blanks may read one token ahead
     grammar = files("pound_deck").joinpath("deck.lark").read_text("utf-8")
     return (
         Lark(grammar, parser=None, lexer="basic", postlex=_Blanks()),
@@ -298,117 +279,11 @@ def _item(
     return Item(tokens[name].upper(), tuple(parts), span, _span(tokens[name], line))
 
 
-def _check_nesting(line: Line) -> None:
-    if line.text.count("(") <= MAX_NESTING:
-        return
-    depth = 0
-    for mark in _BRACKET.finditer(line.text):
-        depth += {"(": 1, ")": -1}.get(mark[1] or "", 0)
-        if depth > MAX_NESTING:
-            message = f"brackets are nested more than {MAX_NESTING} deep"
-            raise mistake("P204", message, _place(line, mark.start()), "use PARAM for the parts")
-
-
-def _place(line: Line, at: int, length: int = 1) -> Span:
-    """Span of `length` characters of the line's text."""
-    before = line.text[:at]
-    column = at - before.rfind("\n")
-    return Span(line.file, line.number + before.count("\n"), column, column + max(1, length))
-
-
-def _explain(error: UnexpectedInput, line: Line) -> Mistake:
-    text = line.text
-    at = min(error.pos_in_stream if error.pos_in_stream is not None else len(text), len(text))
-    token: Token = getattr(error, "token", Token("", ""))  # a strange character is none
-    if token.type == "$END":
-        at = len(text.rstrip())
-    path = _path(text, at)
-    if path:
-        start, name = path
-        message = f"{name[:60]} is neither a word nor an expression"
-        return mistake(
-            "P239",
-            message,
-            _place(line, start, len(name)),
-            f'the name of a file stands in quotes: "{name[:60]}"',
-        )
+def _fault(error: UnexpectedInput, line: Line) -> Fault:
+    """Place and token of a syntax error."""
+    end = len(line.text)
+    at = min(end if error.pos_in_stream is None else error.pos_in_stream, end)
     if isinstance(error, UnexpectedCharacters):
-        return _strange(text[at], _place(line, at))
-    before = text[:at].rstrip()
-    last = before[-1:]
-    place = _place(line, at, len(token.rstrip()))
-    hint = "write 1-2 or (1 - 2) for a difference, 1 -2 for two items"
-    empty = _NO_VALUE.search(before)
-    if empty and token.type == ("EQUAL" if empty[3] else "$END"):
-        name = empty[1][:60].upper()
-        there = _place(line, empty.start(), len(empty[1] + empty[2]))
-        return mistake("P209", f"the value of {name} is missing", there, f"write {name}=value")
-    if (token.type == "_WS" and last == ",") or (token.type == "COMMA" and text[at - 1 : at].isspace()):
-        return mistake(
-            "P206",
-            "a list holds no blanks",
-            _place(line, len(before) - 1 if last == "," else at),
-            "write 1,3,5",
-        )
-    if text[:at].count("(") > text[:at].count(")") and token.type in ("$END", "EQUAL", "TO", "BY"):
-        if token.type == "$END":
-            opening = _unclosed(text)
-            return mistake("P203", "this bracket is not closed", _place(line, opening), "add )")
-        message = f"{token} cannot stand in brackets"
-        return mistake("P209", message, place, "close the bracket before it")
-    if token.type == "RPAR" and _unclosed(text[:at]) < 0:
-        return mistake("P203", "this bracket was not opened", place, "take it out, or add (")
-    if token.type == "_WS" and last in tuple("+-*/^"):
-        return mistake("P205", f"a blank after {last}", _place(line, len(before) - 1), hint)
-    if token.type in _SIGNS and text[at - 1 : at].isspace():
-        return mistake("P205", f"a blank before {token}", place, hint)
-    if token.type in ("WORD", "NUMBER") and last and (last.isalnum() or last == "."):
-        start = max(before.rfind(c) for c in " \t\n,=()+-*/^") + 1
-        shown = before[start:] + str(token)
-        message = f"{shown[:60]} is neither a number nor a word"
-        return mistake("P207", message, _place(line, start, len(shown)), "a word starts with a letter")
-    if token.type in ("TO", "BY") or re.search(r"\b(TO|BY)$", before, re.IGNORECASE):
-        return mistake("P208", "this range is not complete", place, "write 1 TO 9, or 1 TO 9 BY 2")
-    if token.type == "$END":
-        return mistake(
-            "P209", "the card ends too early", _place(line, max(at - 1, 0)), f"something must follow {last}"
-        )
-    shown = str(token).strip() or "a blank"
-    return mistake(
-        "P209", f"{shown[:60]} does not belong here", place, "items are separated by blanks: 1 2 NAME=3"
-    )
-
-
-def _path(text: str, at: int) -> tuple[int, str] | None:
-    """Start and text of what stands at a place without blanks, if it is like the name of a file."""
-    start = end = at
-    while start and text[start - 1] not in " \t\n=,":
-        start -= 1
-    while end < len(text) and text[end] not in " \t\n=,":
-        end += 1
-    piece = text[start:end]
-    if end == at or len(piece) > _LONGEST_NAME or not (_PATH_START.match(piece) or _FILE.fullmatch(piece)):
-        return None
-    return start, piece
-
-
-def _unclosed(text: str) -> int:
-    """Index of the last bracket that is open at the end of the text, or -1."""
-    opened: list[int] = []
-    for mark in _BRACKET.finditer(text):
-        if mark[1] == "(":
-            opened.append(mark.start())
-        elif mark[1] and opened:
-            opened.pop()
-    return opened[-1] if opened else -1
-
-
-def _strange(character: str, place: Span) -> Mistake:
-    if character in "\"'":
-        return mistake(
-            "P202", "this quote is not closed", place, f"end the text with {character} on the same line"
-        )
-    plain = _LOOKALIKES.get(character, "")
-    hint = f"write a plain {plain}" if plain else "put texts in quotes; a comment starts with !"
-    shown = character if character.isprintable() else f"the character U+{ord(character):04X}"
-    return mistake("P201", f"{shown} has no meaning here", place, hint)
+        return Fault(line, at)
+    token: Token = getattr(error, "token", Token("", ""))
+    return Fault(line, len(line.text.rstrip()) if token.type == "$END" else at, token.type, str(token))

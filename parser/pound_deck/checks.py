@@ -56,7 +56,7 @@ def _references(model: Model, cards: Iterable[Card], broken: frozenset[str]) -> 
 
 
 def _named(cards: Iterable[Card]) -> Iterator[tuple[Any, Kind, Span]]:
-    """What the cards say of nodes, elements and property sets, with the places."""
+    """Nodes, elements and property sets that cards name, with the places."""
     for card in cards:
         for spec in (card.spec, *(s for specs in card.laws.values() for s in specs)):
             for f in spec.fields:
@@ -186,22 +186,26 @@ def _excitation(model: Model) -> Found:
 
 def _no_axial_force(model: Model) -> Found:
     """P-Delta without a load that compresses the columns: weights are masses only, unless GRAVITY=YES."""
-    static = [card for card in model.analyses if card.spec.name == "STATIC"]
-    kinds = [model.props[e.prop] for e in model.elements.values() if e.prop in model.props]
-    pressed = (
-        any(card.values.get("GRAVITY") == "YES" for card in static)
-        or any(card["FX"] or card["FY"] or card["MZ"] for card in model.loads)
-        or bool(model.member_loads)
-        or any(card.values.get("N0") for card in kinds)
-        or (
-            all(card.values.get("SELF_WEIGHT") != "NO" for card in static)
-            and any(card.values.get("WGT") for card in kinds)
-        )
-    )
-    if model.geometry.startswith("PDELTA") and model.weights and model.analyses and not pressed:
+    compressed = _has_axial_load(model)
+    if model.geometry.startswith("PDELTA") and model.weights and model.analyses and not compressed:
         message = f"GEOMETRY {model.geometry}, but nothing loads the columns: their axial forces are zero"
         hint = "add STATIC GRAVITY=YES, which lets the WEIGHTS press, or LOADS"
-        yield Diagnostic("P340", message, (static or model.analyses)[0].span, hint, "warning")
+        yield Diagnostic("P340", message, (_static(model) or model.analyses)[0].span, hint, "warning")
+
+
+def _has_axial_load(model: Model) -> bool:
+    """Whether static loads, an initial axial force or the self-weight of members may compress columns."""
+    if any(card.values.get("GRAVITY") == "YES" for card in _static(model)) or model.member_loads:
+        return True
+    if any(card["FX"] or card["FY"] or card["MZ"] for card in model.loads):
+        return True
+    props = [model.props[e.prop] for e in model.elements.values() if e.prop in model.props]
+    with_weight = all(card.values.get("SELF_WEIGHT") != "NO" for card in _static(model))
+    return any(card.values.get("N0") or (with_weight and card.values.get("WGT")) for card in props)
+
+
+def _static(model: Model) -> list[Card]:
+    return [card for card in model.analyses if card.spec.name == "STATIC"]
 
 
 def _percent(model: Model) -> Found:
@@ -272,7 +276,7 @@ def _weights_twice(model: Model) -> Found:
 
 
 def _weights_of_supports(model: Model) -> Found:
-    """They do nothing, but on supports that move by themselves, or where they press as loads."""
+    """They have no effect, except on supports with a motion of their own, or where they act as loads."""
     if any(card.values.get("GRAVITY") == "YES" for card in model.analyses):
         return
     moved = {node for card in model.equake for node in card.values.get("SUPPORTS") or ()}

@@ -14,7 +14,7 @@ from typing import Final, Literal
 from pound_deck.model import Span
 
 _MANY_CHOICES, _MOST_CHOICES = 50, 500  #: to be looked through for the one that was meant
-_WIDTH: Final = 160  #: longest piece of a source line that is printed
+_WIDTH: Final = 160  #: most characters of a source line in print
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,10 +47,10 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 
 def closest(word: str, choices: Iterable[str]) -> str:
-    """The choice that is most like a misspelt word, in any case; empty where none is near."""
+    """The choice most similar to a misspelt word, in any case; empty where none is near."""
     known = {choice.upper(): choice for choice in islice(choices, _MOST_CHOICES)}
     word = word.upper()[:100]
-    if len(known) > _MANY_CHOICES:  # a slip seldom changes both ends; looking at all would take too long
+    if len(known) > _MANY_CHOICES:  # a slip seldom changes both ends; comparing all is slow
         known = {k: c for k, c in known.items() if k[:1] == word[:1] or k[-1:] == word[-1:]}
     close = get_close_matches(word, known, n=1, cutoff=0.6)
     return known[close[0]] if close else ""

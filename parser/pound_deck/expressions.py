@@ -1,7 +1,7 @@
 """Arithmetic of the deck: expressions as postfix steps, PARAM values, no ``eval``.
 
 An expression is kept as the list of steps of a pocket calculator (`1 + 2*n` becomes ``1 2 n * +``), so that
-nothing here calls itself however long a line of a deck is.
+no recursion is needed, however long a line of a deck is.
 """
 
 from __future__ import annotations
@@ -159,7 +159,7 @@ def _apply(step: Step, values: list[Value]) -> float:
     numbers = [v for v in values if not isinstance(v, str)]
     if len(numbers) < len(values):
         text = next(v for v in values if isinstance(v, str))
-        raise mistake("P227", f'the text "{text[:60]}" cannot be reckoned with', step.span, "use a number")
+        raise mistake("P227", f'the text "{text[:60]}" is not a number', step.span, "use a number")
     try:
         return _finite(_call(step, numbers) if step.kind == "call" else _operate(step.text, numbers), step)
     except ZeroDivisionError:

@@ -1,4 +1,4 @@
-"""The Model: what a deck says, typed and checked, each part with the place where it stands.
+"""The Model: the contents of a deck, typed and checked, each part with its place.
 
 Nothing here is numerical.  A :class:`Card` carries the bound values of one Spec; the few parts that every
 later stage needs by name (nodes, elements) have fields of their own.
@@ -107,7 +107,7 @@ class Units:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """Everything that a deck says.
+    """Contents of a deck.
 
     Attributes
     ----------
@@ -118,7 +118,8 @@ class Model:
     mass : str
         ``LUMPED`` or ``CONSISTENT`` mass of FRAME members.
     geometry : str
-        ``SMALL`` displacements, or what axial forces do to the stiffness: ``PDELTA``, ``PDELTA_MEMBER``.
+        ``SMALL`` displacements, or the effect of axial forces on the stiffness: ``PDELTA``,
+        ``PDELTA_MEMBER``.
     params : mapping of str to float or str
         Values of all PARAM names, after ``--set``.
     nodes, elements, props : mappings by number or label

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -81,10 +82,9 @@ class Outline:
             self._error("P236", f"{row.word} stands alone on its line", rest[0].name_span, hint)
 
     def _misspelt(self, row: Row) -> bool:
-        """Whether the row is a section's name with a slip; reading then goes on in the section meant."""
+        """Whether the row is a misspelt name of a section, whose lines then follow."""
         items = row.items or ()
-        alone = len(items) == 1 or (len(items) == 2 and _is_whole(items[1]))
-        if not alone or not items[0].word or row.word in self.definitions or row.word in self.lost:
+        if not _like_a_heading(items) or row.word in self.definitions or row.word in self.lost:
             return False
         meant = closest(row.word, (*NAMES, *_SINGLE))
         family = FAMILIES.get(self._section or "", "")
@@ -125,6 +125,12 @@ class Outline:
 
     def _error(self, code: str, message: str, span: Span, hint: str = "") -> None:
         self.report.append(Diagnostic(code, message, span, hint))
+
+
+def _like_a_heading(items: Sequence[Item]) -> bool:
+    """Whether a line is a word alone, or a word and a whole number, as the name of a section is."""
+    numbered = len(items) == 2 and _is_whole(items[1])
+    return bool(items and items[0].word) and (len(items) == 1 or numbered)
 
 
 def _is_whole(item: Item) -> bool:

@@ -114,6 +114,7 @@ def _params(
 def _override(
     source: str, text: str, own: Mapping[str, Value | None], outline: Outline, report: list[Diagnostic]
 ) -> None:
+    """Replace the definition of a PARAM by the text of an override; `own` are the deck's values."""
     name = source.removeprefix("--set ").strip()
     line = Line(source, 1, text)
     place = Span(source, 1, 1, max(2, len(text) + 1))
@@ -125,27 +126,30 @@ def _override(
             )
             report.append(Diagnostic("P232", f"the deck has no PARAM {name[:60]}", place, hint))
         return
-    value: Expression | None = None
-    if isinstance(own[key], str):  # a text stays a text: paths hold slashes, dashes and blanks
-        bare = text.strip()
-        quoted = len(bare) > 1 and bare[0] == bare[-1] and bare[0] in "\"'" and bare.count(bare[0]) == 2
-        value = Expression((Step("text", bare[1:-1] if quoted else bare, place),), place, bare)
-    else:
-        try:
-            items = parse_items(line)
-            part = (
-                items[0].parts[0]
-                if len(items) == 1 and not items[0].name and len(items[0].parts) == 1
-                else None
-            )
-            if isinstance(part, Expression) and not (part.lone and part.lone.kind == "text"):
-                value = part
-        except Mistake:
-            pass
+    # a text stays a text: paths hold slashes, dashes and blanks
+    value = _text(text, place) if isinstance(own[key], str) else _number(line)
     if value is None:
         message = f"PARAM {name} holds a number, and {text[:60]!r} is none"
-        report.append(
-            Diagnostic("P233", message, place, f"write --set {name}=5, or an expression without blanks")
-        )
+        hint = f"write --set {name}=5, or an expression without blanks"
+        report.append(Diagnostic("P233", message, place, hint))
     else:
         outline.definitions[key] = Definition(outline.definitions[key].name, value, place)
+
+
+def _text(text: str, place: Span) -> Expression:
+    """A text, without the quotes around it."""
+    bare = text.strip()
+    quoted = len(bare) > 1 and bare[0] == bare[-1] and bare[0] in "\"'" and bare.count(bare[0]) == 2
+    return Expression((Step("text", bare[1:-1] if quoted else bare, place),), place, bare)
+
+
+def _number(line: Line) -> Expression | None:
+    """The one expression of a line, such as a number; None where it holds anything else."""
+    try:
+        items = parse_items(line)
+    except Mistake:
+        return None
+    if len(items) != 1 or items[0].name or len(items[0].parts) != 1:
+        return None
+    part = items[0].parts[0]
+    return part if isinstance(part, Expression) and not (part.lone and part.lone.kind == "text") else None

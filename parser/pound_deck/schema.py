@@ -1,4 +1,4 @@
-"""The vocabulary of the deck: what a card may hold.
+"""The vocabulary of the deck: the items of a card.
 
 A :class:`Spec` describes one kind of card (a section's line, an element, a hysteresis rule, a contact law,
 a record format, an analysis, ...).  Families of the solver declare their Specs beside their numerics; the

@@ -123,7 +123,7 @@ class Values:
         value = self._param(step) if step and step.kind == "word" else None
         if isinstance(value, str):
             return value
-        # a number as written is a name (DRIFT 5 ...), but nothing that has to be reckoned first
+        # a number as written is a name (DRIFT 5 ...), but an expression is not
         if step and value is None and part.text == step.text:
             return step.text
         what = f"{part.text[:60]} is " + ("an expression" if value is None else f"the number {value:g}")
@@ -157,11 +157,7 @@ class Values:
     def label(self, part: Part, name: str) -> str:
         """Label of a property set, upper case; a whole number is a label too."""
         step = part.lone if isinstance(part, Expression) else None
-        text = step.text.upper() if step else ""
-        if step and step.kind == "word" and text not in self.labels:
-            value = self._param(step)
-            if value is not None:
-                text = value.upper() if isinstance(value, str) else f"{value:.15g}"
+        text = self._substituted(step, self.labels) if step else ""
         if not step or not text.strip() or (step.kind == "number" and not text.isdecimal()):
             hint = "a label is a word, a whole number, or a text in quotes"
             raise mistake("P216", f"{name} takes the label of a property set", part.span, hint)
@@ -173,11 +169,8 @@ class Values:
         """One of `words`, given as a word, an old numeric code, or a PARAM that holds one of them."""
         choices = list(words)
         step = part.lone if isinstance(part, Expression) else None
-        text = step.text.upper() if step else part.text.upper()  # a word may hold a slash: CM/S2
-        if step and step.kind == "word" and text not in choices:
-            value = self._param(step)
-            if value is not None:
-                text = value.upper() if isinstance(value, str) else f"{value:.15g}"
+        # a word may hold a slash: CM/S2
+        text = self._substituted(step, choices) if step else part.text.upper()
         if text in choices:
             return text
         number = _code(text)
@@ -189,6 +182,16 @@ class Values:
             suggest(text, choices), "choose " + (listed or ", ".join(choices) or "nothing: none exist"), doc
         )
         raise mistake("P210", f"{name} cannot be {shown}", part.span, hint)
+
+    def _substituted(self, step: Step, known: Collection[str]) -> str:
+        """Text of a step in upper case; of an unknown word that names a PARAM, the value of that."""
+        text = step.text.upper()
+        if step.kind != "word" or text in known:
+            return text
+        value = self._param(step)
+        if value is None:
+            return text
+        return value.upper() if isinstance(value, str) else f"{value:.15g}"
 
     def meaning(self, f: Field) -> str:
         """Name, unit and meaning of a field, for messages."""

@@ -317,15 +317,15 @@ def test_the_rule_walked_by_hand():
     p = friction.build(100.0, 0.5, 0.4).p
     at, m = friction.RULE.transition(p, friction.OPEN, (20.0, 0.0, 0.0), 0, 3.0, 1.0)
     assert (at, m[friction.ANCHOR]) == (friction.STICKING, 3.0)  # the spring starts where it touched
-    k, _, f0, *exits = friction.RULE.branch(p, at, m)
+    k, _, f0, *events = friction.RULE.branch(p, at, m)
     assert (k, k * 3.1 + f0) == (100.0, pytest.approx(10.0))
-    assert exits[0] * 3.1 + exits[2] == pytest.approx(0.0) == exits[3] * 2.9 + exits[5]
+    assert events[0] * 3.1 + events[2] == pytest.approx(0.0) == events[3] * 2.9 + events[5]
     at, m = friction.RULE.transition(p, at, m, 0, 3.1, 1.0)
     assert at == friction.PLUS and friction.RULE.branch(p, at, m)[2] == pytest.approx(8.0)
     # the limit grows at 0.4 * 50 a second, the spring could follow it at 0.2: what is slower sticks
     m = (m[0], 50.0, m[2])
-    exit_ = friction.RULE.branch(p, at, m)[3:6]
-    assert exit_[1] * 0.3 + exit_[2] < 0.0 < exit_[1] * 0.1 + exit_[2]
+    event = friction.RULE.branch(p, at, m)[3:6]
+    assert event[1] * 0.3 + event[2] < 0.0 < event[1] * 0.1 + event[2]
     at, m = friction.RULE.transition(p, at, m, 0, 4.0, 0.1)
     assert at == friction.STICKING and 100.0 * (4.0 - m[friction.ANCHOR]) == pytest.approx(8.0)  # no jump
     assert friction.RULE.transition(p, at, m, friction.RELEASED, 4.0, 0.1) == (

@@ -65,16 +65,16 @@ class Impact:
         for _ in range(10):
             if law.branch(state).name in ("open", "released"):
                 break
-            exits = []
-            for e in law.branch(state).exits:
+            crossings = []
+            for e in law.branch(state).events:
 
                 def rise(t: float, y: Any, e: Any = e) -> float:
                     return e.d_factor * (y[0] - y[1]) + e.v_factor * (y[2] - y[3]) + e.constant
 
                 rise.terminal, rise.direction = True, 1.0  # type: ignore[attr-defined]
-                exits.append(rise)
+                crossings.append(rise)
             run = solve_ivp(
-                rates, (time, time + 1e12), y, "DOP853", events=exits, rtol=1e-12, atol=1e-14 * v0,
+                rates, (time, time + 1e12), y, "DOP853", events=crossings, rtol=1e-12, atol=1e-14 * v0,
                 first_step=1e-12, dense_output=True,
             )  # fmt: skip
             way = next(i for i, found in enumerate(run.t_events) if len(found))

@@ -134,10 +134,10 @@ def impact(xi: float) -> tuple[Any, Any]:
 def let_go(built: Built, gap: float = 0.0) -> tuple[float, float, float]:
     """Time, overlap and rate at which the law's own exit ends the contact."""
     u, v = impact(built.xi)
-    exit_ = built.law.branch(state(PRESSED)).exits[0]
+    event = built.law.branch(state(PRESSED)).events[0]
 
     def value(t: float) -> float:
-        return exit_.d_factor * (u(t) + gap) + exit_.v_factor * v(t) + exit_.constant
+        return event.d_factor * (u(t) + gap) + event.v_factor * v(t) + event.constant
 
     # bracket the first rise through zero
     t = 1e-3
@@ -214,13 +214,13 @@ def test_touch_release_and_second_touch() -> None:
     branch = law.branch(pressed)
     assert branch.name == "pressed"
     assert branch.force(0.6, -1.0) == pytest.approx(100.0 * 0.1 - 4.0)  # k overlap + c rate
-    assert branch.exits[0].d_factor * 0.6 - branch.exits[0].v_factor * -1.0 < 0.0
+    assert branch.events[0].d_factor * 0.6 - branch.events[0].v_factor * -1.0 < 0.0
     # let go at overlap 0.1 (rate -2.5: force zero), half its spring's energy 100 * 0.1^2 is given up
     released = law.transition(pressed, 0, 0.6)
     assert released == state(RELEASED, 0.6, pytest.approx(0.5))
     assert law.dissipated(released, 0.6) == pytest.approx(0.5)
     assert law.force(released, 0.6, -2.5)[0] == 0.0
-    back, parted = law.branch(released).exits
+    back, parted = law.branch(released).events
     assert back.d_factor * 0.6 + back.v_factor * -2.5 + back.constant == pytest.approx(0.0)
     assert back.d_factor * 0.6 + back.v_factor * -2.0 + back.constant > 0.0  # slower: pressed again
     assert parted.d_factor * 0.6 + parted.constant == pytest.approx(-0.1)

@@ -189,7 +189,17 @@ def test_a_table_that_crushes_walked_by_hand():
         seen.append((law.branch(state).name, law.force(state, d)[0]))
     # 5 at 0.05, residual 0.025; 8 at 0.2, residual 0.16, touched again there; 12; beyond the table 24
     assert [f for _, f in seen] == pytest.approx([5, 0, 8, 0, 4, 12, 24, 0, 6, 14], abs=1e-12)
-    names = ["piece 1", "open", "piece 2", "open", "unloading", "piece 3", "piece 3", "open", "unloading"]
+    names = [
+        "segment 1",
+        "open",
+        "segment 2",
+        "open",
+        "unloading",
+        "segment 3",
+        "segment 3",
+        "open",
+        "unloading",
+    ]
     assert [n.removeprefix("pressed, ") for n, _ in seen] == [*names, "unloading"]
     assert state[3][:3] == pytest.approx((0.48, 0.6, 3.0))  # crushed to 0.48 of the 0.6 that was reached
 

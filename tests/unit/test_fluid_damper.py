@@ -239,7 +239,7 @@ def test_the_law_walked_by_hand():
     law = fluid.build(2.0, 0.5, (4.0, -3.0), (0.2, -0.1))
     inside = law.start()
     assert law.branch(inside).name == "in the play" and law.force(inside, 0.1, 9.0)[0] == 0.0
-    assert [e.constant for e in law.branch(inside).exits] == [-0.2, -0.1]
+    assert [e.constant for e in law.branch(inside).events] == [-0.2, -0.1]
     out = law.transition(inside, 0, 0.2, 1.0)
     assert law.force(out, 0.3, 1.0) == (2.0, 0.0, 1.0) and law.power(out, 0.3, 4.0) == 16.0
     back = law.transition(out, 0, 0.3, -1e-12)

@@ -279,7 +279,7 @@ def test_compiled_functions_give_the_same_numbers(name: str) -> None:
                 expected = rule.curve(law.p, at, own, d0, d, 0.0)
                 assert curve(p, at, m, d0, d, 0.0) == pytest.approx(expected, rel=1e-12, abs=1e-13)
             if n + 1 < len(walk.visits) and walk.visits[n + 1][0] is not state:
-                for way in range(len(law.branch(state).exits)):
+                for way in range(len(law.branch(state).events)):
                     there, memory = transition(p, at, m, way, d, 0.0)
                     to, now = rule.transition(law.p, at, own, way, d, 0.0)
                     assert there == to
@@ -290,8 +290,8 @@ def test_compiled_functions_give_the_same_numbers(name: str) -> None:
 
 
 def jumps(p: Numbers, at: int, m: Numbers) -> Numbers:
-    k, c, f0, *exits = bilinear.branch(p, at, m)
-    return (k, c, 1.01 * f0 if at == bilinear.YIELDING_PLUS else f0, *exits)
+    k, c, f0, *events = bilinear.branch(p, at, m)
+    return (k, c, 1.01 * f0 if at == bilinear.YIELDING_PLUS else f0, *events)
 
 
 def too_stiff(p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float) -> tuple[float, ...]:
@@ -314,10 +314,10 @@ def elsewhere(p: Numbers, at: int, m: Numbers, way: int, d: float, v: float) -> 
 
 def backward(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Once it has slipped, it yields at a force that is exceeded already where it unloads."""
-    k, c, f0, *exits = bilinear.branch(p, at, m)
+    k, c, f0, *events = bilinear.branch(p, at, m)
     if at == bilinear.ELASTIC and m[0] != 0.0:
-        exits[2] += 0.2 * p[1]
-    return (k, c, f0, *exits)
+        events[2] += 0.2 * p[1]
+    return (k, c, f0, *events)
 
 
 def more(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:

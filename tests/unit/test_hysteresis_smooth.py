@@ -260,7 +260,7 @@ def test_any_history_stays_inside_the_outermost_loop(path: list[float]) -> None:
 
 
 def test_unequal_sides_are_refused() -> None:
-    with pytest.raises(ValueError, match="same yield force both ways"):
+    with pytest.raises(ValueError, match="same yield force on both sides"):
         rule("RAMBERG_OSGOOD", -10.0, N=5.0)
     for name, values in (("BOUC_WEN", {"N": 2.0}), ("RAMBERG_OSGOOD", {"N": 5.0})):
         with pytest.raises(ValueError, match="both sides"):

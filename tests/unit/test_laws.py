@@ -100,9 +100,9 @@ def test_branch_with_its_exits() -> None:
     assert state == (STAIR, 0.0, 0.0, (0.0,))
     branch = STEPS.branch(state)
     assert (branch.name, branch.stiffness, branch.damping, branch.force0) == ("stair", 100.0, 0.0, 0.0)
-    # exits that are not there are not told
-    assert branch.exits == (EventFunction(1.0, 0.0, -0.05), EventFunction(-1.0, 0.0, -0.05))
-    assert STEPS.branch(STEPS.transition(state, 0, 0.05)).exits == (EventFunction(0.0, -1.0, 0.0),)
+    # trailing event functions that never rise are left out
+    assert branch.events == (EventFunction(1.0, 0.0, -0.05), EventFunction(-1.0, 0.0, -0.05))
+    assert STEPS.branch(STEPS.transition(state, 0, 0.05)).events == (EventFunction(0.0, -1.0, 0.0),)
     assert STEPS.force(state, 0.02, 7.0) == (2.0, 100.0, 0.0)
 
 
@@ -228,7 +228,7 @@ def test_the_catalog_is_not_empty() -> None:
 
 @contact
 def test_contract_of_a_contact(law: Law, gap: float, k: float) -> None:
-    """Values, exits and slopes along a path, the branches entered on the way included."""
+    """Values, event functions and slopes along a path, the branches entered on the way included."""
     for seed in range(3):
         state, d = law.start(), 0.0
         if not law.curved:
@@ -240,15 +240,15 @@ def test_contract_of_a_contact(law: Law, gap: float, k: float) -> None:
             assert hash(tried) == hash(tuple(tried))
             assert law.branch(state) == law.branch(tuple(state))
             sign = 1.0 if goal > d else -1.0
-            for n, exit_ in enumerate(law.branch(state).exits):
-                if exit_.d_factor * sign <= 0.0:
+            for n, event in enumerate(law.branch(state).events):
+                if event.d_factor * sign <= 0.0:
                     continue
-                where = -exit_.constant / exit_.d_factor
+                where = -event.constant / event.d_factor
                 if not min(d, goal) < where < max(d, goal):
                     continue
                 after = law.transition(state, n, where)
                 entered.add(law.branch(after).name)
-                for again in law.branch(after).exits:
+                for again in law.branch(after).events:
                     # at rest, and moving on the way that led here
                     size = abs(again.d_factor) * REACH + abs(again.constant)
                     assert again.d_factor * where + again.constant <= 1e-12 * size
@@ -258,7 +258,7 @@ def test_contract_of_a_contact(law: Law, gap: float, k: float) -> None:
             branch, h = law.branch(state), 1e-7
             if all(
                 abs(e.d_factor * d + e.constant) > 10 * h * abs(e.d_factor)
-                for e in branch.exits
+                for e in branch.events
                 if e.d_factor
             ):
                 ahead, behind = (law.force(drive(law, state, d, d + s * h), d + s * h)[0] for s in (1, -1))

@@ -413,7 +413,7 @@ def test_a_net_of_yielding_springs_is_in_equilibrium(strengths, loads, hard):
     force = [x.force(y, z, 0.0) for x, y, z in zip(s.laws, state.states, d)]
     assert s.law_rows.T @ force == pytest.approx(loads, abs=1e-10)
     for x, y, z in zip(s.laws, state.states, d):
-        assert all(a * z + c <= 1e-10 for a, _, c in x.law.branch(y).exits if a)
+        assert all(a * z + c <= 1e-10 for a, _, c in x.law.branch(y).events if a)
 
 
 # curved laws

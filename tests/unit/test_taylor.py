@@ -643,7 +643,7 @@ def test_members_that_turn_are_refused() -> None:
 def test_a_dof_without_mass_that_stays_is_named() -> None:
     """Beside a hinge that yields it cannot be condensed; a DOF of a member can be given no weight."""
     r = run_text(frames(hinge=HINGE, turn="0.5"), None, "TAYLOR")
-    assert "A505 at t = 0 s: TAYLOR needs mass at element 1 turn inside I: use EXACT" in r.message
+    assert "A505 at t = 0 s: TAYLOR needs mass at element 1 rotation inside I: use EXACT" in r.message
     r = run_text(TURNS, None, "TAYLOR")
     assert "TAYLOR needs mass at node 2 rz: give it weight, or use EXACT" in r.message, r.message
 

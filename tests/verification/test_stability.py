@@ -103,9 +103,9 @@ def test_the_judge_tells_right_from_wrong():
     ends = np.array([[0.0], [1.05]]), np.array([[0.0], [1.2]])
     assert judged(case, u=ends[0]) == stability.RIGHT
     assert judged(case, u=ends[1]) == stability.FAULT
-    assert judged(case, u=ends[1], looks=("energy: 2",)) == stability.TOLD
+    assert judged(case, u=ends[1], looks=("energy: 2",)) == stability.FLAGGED
     assert judged(case, stop="A503 at t = 1 s: why") == stability.STOPPED
-    assert judged(case, wrong="numbers that are none") == stability.FAULT
+    assert judged(case, wrong="NaN or infinite values") == stability.FAULT
 
 
 LINE = np.linspace(0.0, 1.0, 11)

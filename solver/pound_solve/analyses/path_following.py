@@ -1,21 +1,21 @@
-r"""Equilibrium paths, event to event: what STATIC and PUSHOVER follow.
+r"""Equilibrium paths of STATIC and PUSHOVER, from event to event.
 
 .. math:: K u + \sum_i b_i f_i(d_i) = p_0 + \lambda p, \qquad d_i = b_i^T u + (1-\lambda)\,o_i
 
 grows with the load factor :math:`\lambda`, or with one displacement :math:`c^T u` while :math:`\lambda`
-follows, which gets past a largest load.  :math:`o_i` are deformations that are led in with the load.
+follows, which passes a limit load.  :math:`o_i` are deformations that are applied along with the load.
 
-With linear branches the path is a chain of straight pieces.  Along each one of them
+With linear branches the path is a chain of straight segments.  Along each of them
 
 .. math:: \Bigl(K + \sum_i k_i b_i b_i^T\Bigr)\dot u
           = \dot\lambda\Bigl(p + \sum_i k_i b_i o_i\Bigr), \qquad
           \dot\lambda = \pm 1 \quad\text{or}\quad c^T\dot u = \pm 1
 
-and the point is moved to the first exit of a law, exactly.  Of several exits at one point the first law
-goes first, and the rates are found anew, which ends if the stiffness is positive definite (Murty 1974: the
-least-index pivots of a linear complementarity problem).  What a law lets go at once (it breaks) is handed
-over to the others while the control stands still.  With a curved law the pieces are bent: Newton's method
-finds their points, and the exits are bracketed.
+and the point is moved exactly to the first event of a law.  Of several events at one point that of the
+first law is processed first, and the rates are computed anew, which terminates if the stiffness is positive
+definite (Murty 1974: the least-index pivots of a linear complementarity problem).  A force that a law
+releases suddenly (it fractures) is redistributed to the others at constant control.  With a curved law the
+segments are curved: Newton's method finds their points, and the events are bracketed.
 
 References
 ----------
@@ -42,14 +42,14 @@ from pound_solve.structure.dofs import label
 
 NOISE = 1e-12  #: share of its terms below which a rate is rounding
 JUMP = 1e-12  #: share of its terms above which a force has changed at once
-NEAR = 1e-13  #: share of its terms below which an exit is reached
-PIECES = 20  #: Newton steps to the first mark, at least, where laws are curved
+NEAR = 1e-13  #: share of its terms below which an event is reached
+INCREMENTS = 20  #: Newton steps to the first mark, at least, where laws are curved
 MOST_CHANGES = 10_000
-MOST_RETURNS = 5  #: of all laws to the same branches in one place
+MOST_RETURNS = 5  #: of all laws to the same branches at one point
 
 
 class InstabilityError(Exception):
-    """No equilibrium further on: a mechanism, named by its worst DOF; `code` numbers the message."""
+    """No further equilibrium: a mechanism, named by its worst DOF; `code` is the number of the message."""
 
     def __init__(self, why: str, code: str = "A501") -> None:
         super().__init__(why)
@@ -65,14 +65,14 @@ class Mark(NamedTuple):
 
 
 class PathEvent(NamedTuple):
-    """A law that has come to an exit of its branch."""
+    """Event of a law: index of the law, and of the event function of its branch."""
 
     law: int
-    way: int
+    event: int
 
 
 class Change(NamedTuple):
-    """A law that left its branch."""
+    """Transition of a law, with the names of its branches."""
 
     law: int
     before: str
@@ -80,7 +80,7 @@ class Change(NamedTuple):
 
 
 class EquilibriumPath:
-    """A point on an equilibrium path, and how to go on.
+    """A point on an equilibrium path, which is moved along it.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ class EquilibriumPath:
     applied : ndarray, shape (n_free,)
         Loads that act there [F].
     load : ndarray, shape (n_free,)
-        Loads per load factor; may be replaced on the way.
+        Loads per load factor; may be replaced between steps.
     control : ndarray, shape (n_free,), or None
         Row of the displacement that is controlled; None for the load factor.
     sign : float
@@ -104,7 +104,7 @@ class EquilibriumPath:
     ----------
     factor : float
     changes : int
-        Branch changes on the way.
+        Number of transitions so far.
     """
 
     def __init__(
@@ -146,7 +146,7 @@ class EquilibriumPath:
         return d
 
     def _terms(self, u: Array) -> Array:
-        """Absolute terms that the deformations are made of; a share of them is rounding."""
+        """Sum of the absolute terms of each deformation, on which its rounding depends."""
         return np.asarray(np.abs(self.rows) @ np.abs(u) + np.abs(self.lead))
 
     def forces(self, d: Array) -> tuple[Array, Array]:
@@ -160,23 +160,23 @@ class EquilibriumPath:
         return self._stiffness(self.u, self.forces(self.deformations(self.u, self.factor))[1])
 
     def unbalanced(self) -> float:
-        """Largest force out of balance, as a share of the largest that acts, or did on the way."""
+        """Largest force out of balance, as a share of the largest applied so far."""
         rest, size = self._rest(self.u, self.factor)
         return _share(rest, np.append(size, self._most))
 
     def step(self, marks: Sequence[Mark]) -> PathEvent | int | None:
-        """Go on to the first exit of a law, to the first mark (its index), or, after a law has let go of a
-        force, to where the others have taken it (None).
+        """Move to the first event of a law, to the first mark (its index), or, after a law has released a
+        force, to the point where the others have taken it over (None).
 
         Raises
         ------
-        Unstable
-            There is no way on.
+        InstabilityError
+            There is no further equilibrium.
         """
         try:
             if self._lost.any():
-                return self._hand_over()
-            while (found := self._bent(marks) if self.curved else self._straight(marks)) is None:
+                return self._redistribute()
+            while (found := self._increment(marks) if self.curved else self._segment(marks)) is None:
                 pass
             return found
         except InstabilityError as err:
@@ -184,18 +184,18 @@ class EquilibriumPath:
                 raise
             raise InstabilityError(f"{err}; at load factor {self.factor:.6g}", err.code) from None
 
-    def transition(self, exit_: PathEvent) -> Change:
+    def transition(self, event: PathEvent) -> Change:
         """Put a law onto its next branch.
 
         Raises
         ------
-        Unstable
-            Laws change without end.
+        InstabilityError
+            The transitions do not end.
         """
-        i, law = exit_.law, self.laws[exit_.law].law
+        i, law = event.law, self.laws[event.law].law
         d, before = float(self.deformations(self.u, self.factor)[i]), self.branches[i].name
         held = law.force(self.states[i], d)[0]
-        self.states[i] = law.transition(self.states[i], exit_.way, d)
+        self.states[i] = law.transition(self.states[i], event.event, d)
         self.branches[i] = law.branch(self.states[i])
         if self.branches[i].held:
             raise InstabilityError(
@@ -203,9 +203,9 @@ class EquilibriumPath:
                 "gives it no force: use HISTORY FROM=REST, or a LAW with a stiffness",
                 "A507",
             )
-        let_go = held - law.force(self.states[i], d)[0]
-        if abs(let_go) > JUMP * (abs(held) + abs(law.p[0]) * float(self._terms(self.u)[i])):
-            self._lost = self._lost + let_go * self.rows[i]
+        released = held - law.force(self.states[i], d)[0]
+        if abs(released) > JUMP * (abs(held) + abs(law.p[0]) * float(self._terms(self.u)[i])):
+            self._lost = self._lost + released * self.rows[i]
         self.changes += 1
         if self.changes > MOST_CHANGES:
             raise InstabilityError(
@@ -215,15 +215,16 @@ class EquilibriumPath:
         self._here[same] += 1
         if self._here[same] > MOST_RETURNS:
             raise InstabilityError(
-                f"there is no way on without a jump: element {self.laws[i].element} loses its strength "
-                "faster than what it is joined to gives way, and changes state again and again in the "
-                f"same place; at load factor {self.factor:.6g}",
+                "there is no further equilibrium without a jump: "
+                f"element {self.laws[i].element} loses its strength "
+                "faster than its neighbours unload, and changes state again and again at the "
+                f"same point; at load factor {self.factor:.6g}",
                 "A507",
             )
         return Change(i, before, self.branches[i].name)
 
-    def _straight(self, marks: Sequence[Mark]) -> PathEvent | int:
-        """Go along a straight piece to its end."""
+    def _segment(self, marks: Sequence[Mark]) -> PathEvent | int:
+        """Move along a straight segment to its end."""
         du, rise, best, found = self._ahead(marks)
         if found is None:
             raise InstabilityError("nothing lies ahead: the end of this analysis moves away", "A507")
@@ -231,7 +232,7 @@ class EquilibriumPath:
             self._move(self.u + best * du, self.factor + best * rise)
         return found
 
-    def _hand_over(self) -> PathEvent | None:
+    def _redistribute(self) -> PathEvent | None:
         """Redistribute the forces that laws have released, at fixed control."""
         if self.curved:
             self._lost = np.zeros(len(self.u))
@@ -247,7 +248,7 @@ class EquilibriumPath:
         return found if isinstance(found, PathEvent) and best < 1.0 else None
 
     def _ahead(self, marks: Sequence[Mark]) -> tuple[Array, float, float, PathEvent | int | None]:
-        """Rates of displacements and load factor, distance to what comes first, and what that is."""
+        """Rates of displacements and load factor, distance to the first mark or event, and which it is."""
         d = self.deformations(self.u, self.factor)
         du, rise, rate, noise = self.rates(self.u, self.factor)
         best = np.inf
@@ -259,12 +260,12 @@ class EquilibriumPath:
                 if at < best:
                     best, found = at, j
         if np.isfinite(best) and not np.isfinite(self._longest):
-            self._longest = self._stride = best / PIECES
+            self._longest = self._stride = best / INCREMENTS
         for i, (branch, di, vi, least, size) in enumerate(
             zip(self.branches, d.tolist(), rate.tolist(), noise.tolist(), self._terms(self.u).tolist())
         ):
-            for way, (a, b, c) in enumerate(branch.exits):
-                if a == 0.0:  # where the motion turns
+            for n, (a, b, c) in enumerate(branch.events):
+                if a == 0.0:  # a reversal
                     if b * vi <= abs(b) * least:
                         continue
                     at = 0.0
@@ -274,11 +275,11 @@ class EquilibriumPath:
                     now = a * di + c
                     at = 0.0 if now > -NEAR * (abs(a) * size + abs(c)) else -now / (a * vi)
                 if at < best:
-                    best, found = at, PathEvent(i, way)
+                    best, found = at, PathEvent(i, n)
         return du, rise, best, found
 
     def rates(self, u: Array, factor: float) -> tuple[Array, float, Array, Array]:
-        """Rates of displacements, load factor and deformations, and what of the last is rounding."""
+        """Rates of displacements, load factor and deformations, and the rounding errors of the last."""
         stiffness = self.forces(self.deformations(u, factor))[1]
         du, rise = self._linear(u, stiffness, self._lost, 0.0 if self._lost.any() else self.sign)
         rate = self.rows @ du - self.lead * rise
@@ -290,8 +291,8 @@ class EquilibriumPath:
         self._here.clear()
         self._most = max(self._most, float(np.abs(self.applied).max(initial=0.0)))
 
-    def _bent(self, marks: Sequence[Mark]) -> PathEvent | int | None:
-        """Go one increment along a bent piece, or to its end; None where nothing happened on the way."""
+    def _increment(self, marks: Sequence[Mark]) -> PathEvent | int | None:
+        """Move one increment along a curved segment, or to its end; None where there was no event."""
         du, rise, best, found = self._ahead(marks)
         if best == 0.0:
             return found
@@ -301,7 +302,7 @@ class EquilibriumPath:
         while (found_there := self._point(span, du, rise, marks)) is None:
             span = self._stride = 0.5 * span
             if span < 1e-9 * self._longest:
-                # with the load as control there is none; a displacement could go on somehow
+                # with the load as control there is none; with a displacement there may be one
                 code = "A501" if self.control is None else "A507"
                 raise InstabilityError("no equilibrium was found further on: the strength is used up", code)
         self._stride = min(2.0 * self._stride, self._longest)
@@ -310,12 +311,12 @@ class EquilibriumPath:
         if not (crossed := _crossed(start, values)):
             self._move(*end)
             return None
-        low, high, turn = 0.0, span, 0
+        low, high, tries = 0.0, span, 0
         while high - low > 1e-12 * span:
-            # false position and bisection in turns: the first is fast, the second sure
+            # false position and bisection alternate: the first is fast, the second robust
             shares = [start[j] / (start[j] - values[j]) for j in crossed]
-            share = min(max(min(shares), 0.01), 0.99) if turn % 2 == 0 else 0.5
-            turn += 1
+            share = min(max(min(shares), 0.01), 0.99) if tries % 2 == 0 else 0.5
+            tries += 1
             middle = low + share * (high - low)
             there = self._point(middle, du, rise, marks)
             if there is None:
@@ -328,21 +329,21 @@ class EquilibriumPath:
         first = crossed[0]
         if first < len(marks):
             return first
-        exits = [PathEvent(i, way) for i, b in enumerate(self.branches) for way in range(len(b.exits))]
-        return exits[first - len(marks)]
+        events = [PathEvent(i, n) for i, b in enumerate(self.branches) for n in range(len(b.events))]
+        return events[first - len(marks)]
 
     def _values(self, u: Array, factor: float, marks: Sequence[Mark]) -> list[float]:
-        """What rises to zero at the marks, then at the exits of all laws; rounding counts as zero."""
+        """Functions that rise to zero at marks, then at events of all laws; rounding counts as zero."""
         d = self.deformations(u, factor)
         _, _, rate, noise = self.rates(u, factor)
         out = [float(row @ u) + share * factor - value for row, share, value in marks]
         for branch, di, vi, least, size in zip(
             self.branches, d.tolist(), rate.tolist(), noise.tolist(), self._terms(u).tolist()
         ):
-            for a, b, c in branch.exits:
-                turns = a == 0.0
+            for a, b, c in branch.events:
+                reversal = a == 0.0
                 now, small = (
-                    (b * vi, abs(b) * least) if turns else (a * di + c, NEAR * (abs(a) * size + abs(c)))
+                    (b * vi, abs(b) * least) if reversal else (a * di + c, NEAR * (abs(a) * size + abs(c)))
                 )
                 out.append(0.0 if abs(now) <= small else now)
         return out
@@ -351,7 +352,7 @@ class EquilibriumPath:
         self, span: float, du: Array, rise: float, marks: Sequence[Mark]
     ) -> tuple[tuple[Array, float], list[float]] | None:
         """Displacements and load factor at a distance along the path, by Newton's method,
-        with what `_values` says there; None if there is no stable equilibrium.
+        with the `_values` there; None if there is no stable equilibrium.
         """
         u, factor = self.u + span * du, self.factor + span * rise
         last = np.inf
@@ -384,7 +385,7 @@ class EquilibriumPath:
         return k + self.corotational.stiffness(u) if self.corotational else k
 
     def _linear(self, u: Array, stiffness: Array, force: Array, go: float) -> tuple[Array, float]:
-        """Change of displacements and load factor by a further `force`, while the control goes by `go`."""
+        """Change of displacements and load factor for a `force` and a change `go` of the control."""
         k = self._stiffness(u, stiffness)
         push = self.load + self.rows.T @ (stiffness * self.lead)
         if self.control is None:

@@ -1,4 +1,4 @@
-"""What a study concludes from its trials: errors, the reference, and the advice."""
+"""Conclusions of a study from its trials: errors, the reference, and the advice."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NOISY: Final = 0.25  #: share that times may differ by and be alike; repeats tha
 
 
 class StudyError(Exception):
-    """The deck or the options leave nothing to study."""
+    """The deck or the options contain nothing to study."""
 
 
 #: Extremes by kind and unit.
@@ -42,7 +42,7 @@ class Trial:
     residual : float
     peaks : mapping
     stopped : str
-        Why it did not come to its end; empty if it did.
+        Why it was not completed; empty if it was.
     errors : dict
         By kind.
     """
@@ -84,7 +84,7 @@ class Reference:
 
     @property
     def unseen(self) -> bool:
-        """Whether there are contacts, none of which closed: what steps do to collisions was not seen."""
+        """Whether there are contacts, none of which closed: the effect of steps on them is unknown."""
         forces = [values for (kind, _), values in self.peaks.items() if kind == "contact"]
         return bool(forces) and not any(values.any() for values in forces)
 
@@ -137,12 +137,12 @@ def extrapolated(method: str, ladder: Sequence[Trial]) -> Reference:
     Raises
     ------
     StudyError
-        Less than three trials came to their end.
+        Fewer than three trials were completed.
     """
     done = [t for t in ladder if not t.stopped]
     if len(done) < 3:
         why = next((t.stopped for t in ladder if t.stopped), "give more --steps")
-        raise StudyError(f"a reference needs three runs of {method} that come to their end: {why}")
+        raise StudyError(f"a reference needs three completed runs of {method}: {why}")
 
     def limit(coarse: Trial, fine: Trial) -> Peaks:
         share = 1.0 / ((fine.steps / coarse.steps) ** ORDER - 1.0)

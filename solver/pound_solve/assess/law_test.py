@@ -21,7 +21,7 @@ from pound_solve.report.text_plot import svg
 from pound_solve.structure.assembly import AssemblyError, assemble
 from pound_solve.structure.elements.base import LawSpring
 
-#: start of the specimen's card; items that it is given where the user gives none, and fields that want them
+#: start of the specimen's card; items that it is given where the user gives none, and fields that need them
 _CARDS: Final = {
     "hysteresis": ("SPRING RULE", {"KX=1": "", "FX=1": ""}),
     "contact": (
@@ -31,7 +31,7 @@ _CARDS: Final = {
 }
 DUCTILITIES: Final = (0.5, 1.0, 2.0, 4.0, 6.0)  #: of the cycles that a hysteresis rule goes through
 CLOSURES: Final = (1.0, -0.5, 2.0, -0.5)  #: beyond the gap, that a contact goes through
-SAMPLES: Final = 32  #: points of a curved piece in a drawing
+SAMPLES: Final = 32  #: points of a curved branch in a drawing
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
@@ -54,7 +54,7 @@ class Point:
     branch : str
         The branch that led there.
     work, stored, lost : float
-        Work done on the law so far, what of it comes back, and what does not [F L].
+        Work done on the law so far, the recoverable and the dissipated part [F L].
     turn : bool
     """
 
@@ -80,8 +80,8 @@ def law_of(name: str) -> Spec:
 
     Raises
     ------
-    LoopError
-        There is no such law; the text says what there is.
+    LawTestError
+        There is no such law; the message lists the laws.
     """
     known = {family: catalog().family(family) for family in _CARDS}
     *given, word = name.upper().split()
@@ -108,7 +108,7 @@ def specimen(spec: Spec, items: Sequence[str] = ()) -> tuple[LawSpring, str]:
 
     Raises
     ------
-    LoopError
+    LawTestError
         The items are none of this law, or contradict each other: what the deck's reader says of them.
     """
     if spec.impl is None:
@@ -148,7 +148,7 @@ def protocol(spring: LawSpring) -> list[float]:
 
     Raises
     ------
-    LoopError
+    LawTestError
         The spring has no yield deformation on one of its sides.
     """
     if spring.role.collides:
@@ -172,7 +172,7 @@ def trace(law: Law, path: Sequence[float], rate: float = 0.0) -> Trace:
 
     Raises
     ------
-    LoopError
+    LawTestError
         The law changes branch again and again without moving.
     """
     state, d, drag = law.start(), 0.0, 0.0
@@ -183,8 +183,8 @@ def trace(law: Law, path: Sequence[float], rate: float = 0.0) -> Trace:
             continue
         v = rate if goal > d else -rate
         try:
-            for at, new in _pieces(law, state, d, goal, rate):
-                if at != d:  # a branch that is left at once was none
+            for at, new in _branches(law, state, d, goal, rate):
+                if at != d:  # a branch with an immediate transition does not count
                     drag += _drag(law, state, d, at, v)
                     corners.append(_point(law, state, at, v, drag, at == goal))
                     between = np.linspace(d, at, SAMPLES + 1).tolist() if law.curved else [d, at]
@@ -195,7 +195,7 @@ def trace(law: Law, path: Sequence[float], rate: float = 0.0) -> Trace:
     return Trace(tuple(corners), tuple(curve))
 
 
-def _pieces(law: Law, state: State, d: float, goal: float, rate: float) -> Iterator[tuple[float, State]]:
+def _branches(law: Law, state: State, d: float, goal: float, rate: float) -> Iterator[tuple[float, State]]:
     """Ends of the branches on the way, the state after each, and the goal."""
     for at, after in transitions(law, state, d, goal, rate):
         yield at, after
@@ -220,7 +220,7 @@ def _drag(law: Law, state: State, d0: float, d1: float, v: float) -> float:
 
 
 def table(points: Sequence[Point]) -> str:
-    """Corners as a table; turning points are marked, what is rounding is nought."""
+    """Corners as a table; turning points are marked, rounding errors are zero."""
     heads = ("deformation", "force", "work", "stored", "dissipated")
     columns = np.array([(p.d, p.f, p.work, p.stored, p.lost) for p in points])
     columns[np.abs(columns) < 1e-13 * np.abs(columns).max(axis=0)] = 0.0

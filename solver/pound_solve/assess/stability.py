@@ -1,20 +1,21 @@
 """The stability matrix: every method on every stiff and extreme scene with every law.
 
-Each case must give the right answer, or say clearly why not: a message with its number, place and cause, or
-a self-check of the report that says "look".  Everything else is a fault: a wrong answer with good checks,
-NaN, an exception, or no end.
+Each case must give the right answer, or state clearly why it does not: a message with its number, place and
+cause, or a self-check of the report with the verdict "look".  Everything else is a fault: a wrong answer
+with good checks, NaN, an exception, or a run without end.
 
-Right is the closed form where there is one; else what EXACT finds on a search grid eight times finer; for
-curved laws, which EXACT does not take, NEWMARK with steps so short that a quarter of them changes nothing.
-Displacements and the springs' forces are compared at all times of output, of contacts the largest force
-(one that a dashpot makes jump has no value at the instant of touch).  The methods that take steps are
-allowed the share that the case names, EXACT and TAYLOR `EXACT_WITHIN`.  AUTO is judged by what it
-promises: its peaks by `AUTO_WITHIN`, its histories as those of steps.
+The right answer is the closed form where there is one; else that of EXACT on a search grid eight times
+finer; for curved laws, which EXACT does not support, that of NEWMARK with steps so short that a quarter of
+them changes nothing.  Displacements and the forces of springs are compared at all output times, of contacts
+the largest force (one that jumps by a dashpot has no value at the instant of touch).  The allowed error of
+stepping methods is the share that the case states, that of EXACT and TAYLOR is `EXACT_WITHIN`.  AUTO is
+judged by its tolerance: its peaks by `AUTO_WITHIN`, its histories like those of stepping methods.
 
-Some answers hang on the last digits of the deck: two motions of a chaotic scene part from each other,
-however close they begin, and a contact that just touches may as well just not.  Where something is off, the
-reference is therefore run again with all masses changed by a `NUDGE` of the error allowed.  What that alone
-changes by more than is allowed (a motion from some time on, a largest force) is unknown: not judged.
+Some answers depend on the last digits of the deck: two motions of a chaotic scene diverge, however close
+they begin, and a contact that just closes may as well stay open.  Where an error is too large, the
+reference is therefore run again with all masses changed by a `NUDGE` of the allowed error.  Whatever
+changes by more than the allowed error (a motion from some time on, a largest force) is unknown and not
+judged.
 """
 
 from __future__ import annotations
@@ -48,33 +49,33 @@ from pound_solve.driver import run
 from pound_solve.numerics.types import Array
 from pound_solve.results import Results
 
-STEPLESS: Final = ("EXACT", "TAYLOR")  #: methods without an error but rounding
+STEPLESS: Final = ("EXACT", "TAYLOR")  #: methods whose only error is rounding
 EXACT_WITHIN, AUTO_WITHIN = 1e-6, 2e-3  #: errors allowed, as shares of the largest value
-FASTER: Final = 1.5  #: forces carry more of fast modes than displacements: their share of an error allowed
-NUDGE: Final = 1e-6  #: share of the error allowed by which masses are changed
-LIMIT: Final = 180.0  #: seconds until a case counts as endless
+FASTER: Final = 1.5  #: factor on the allowed error of forces, in which fast modes have a larger share
+NUDGE: Final = 1e-6  #: share of the allowed error by which masses are changed
+LIMIT: Final = 180.0  #: seconds after which a case counts as endless
 SETTLED: Final = 1e-3  #: share by which a reference by steps may still change when they are quartered
 MOST_STEPS: Final = 1e6  #: of such a reference
 ALONE: Final = "energy balances; nothing else to compare with"
 PARTLY: Final = "compared as far as the answer is known"
 FAMILIES: Final = ("linear", "contact", "hysteresis")
-RIGHT, TOLD, STOPPED, FAULT = "right", "told", "stopped", "fault"  #: how a case may end
+RIGHT, FLAGGED, STOPPED, FAULT = "right", "flagged", "stopped", "fault"  #: outcomes of a case
 MEANS: Final = {
     RIGHT: "as the reference",
-    TOLD: "off, and a check of the report says so",
+    FLAGGED: "off, and a check of the report says so",
     STOPPED: "refused or stopped in words",
-    FAULT: "all else, such as a wrong answer that no check tells",
+    FAULT: "all else, such as a wrong answer that no check flags",
 }
-#: a stop names its number and time or stage; a refused deck its place
+#: the message of a stop has its number and time or stage, that of a refused deck its place
 CLEAR: Final = re.compile(r"A5\d\d (at t = \S+ \S+: |static analysis: )\w.{20,}|A50[15] \w.{20,}")
 REFUSED: Final = re.compile(r"\.inp:\d+:\d+: error [A-Z]\d{3}: ")
 REFUSED_AT: Final = re.compile(r"^.*?\.inp:\d+:\d+: error ")  #: in a file that is gone
 
 
 class Found(NamedTuple):
-    """What a run gave: times, displacements, forces of springs; the springs' largest deformations both
-    ways, shape (n_springs, 2), the contacts' largest forces; the stop's or refusal's message; checks that
-    say "look"; what is wrong with it; seconds.
+    """Outcome of a run: times, displacements, forces of springs; the largest deformations of springs,
+    positive and negative, shape (n_springs, 2); the largest forces of contacts; the message of a stop or
+    refusal; checks with the verdict "look"; what is wrong with it; seconds.
     """
 
     t: Array
@@ -102,7 +103,7 @@ class JudgedRun:
     case : Case
     method : str
     end : str
-        `RIGHT`, `TOLD`, `STOPPED` or `FAULT`.
+        `RIGHT`, `FLAGGED`, `STOPPED` or `FAULT`.
     error : float
         The largest of displacements, as a share of the largest; NaN where nothing was compared.
     says : str
@@ -119,7 +120,7 @@ class JudgedRun:
 
 
 def motion(results: Results) -> dict[str, Array]:
-    """What is compared of a run, as `Found` has it."""
+    """The compared quantities of a run, by their names in `Found`."""
     tables = {x: results.table(x) for x in ("spring_envelope", "contact_summary") if x in results.tables}
     out = {}
     if "node/u" in results.histories:
@@ -136,11 +137,11 @@ def motion(results: Results) -> dict[str, Array]:
 
 
 def solve(deck: str, files: Mapping[str, str]) -> Found:
-    """Run a deck in a folder of its own; nothing is raised."""
+    """Run a deck in a temporary folder; every exception becomes part of the result."""
     began = time.perf_counter()
 
-    def found(**told: Any) -> Found:
-        return Found(**{**NOTHING._asdict(), **told, "seconds": time.perf_counter() - began})
+    def found(**known: Any) -> Found:
+        return Found(**{**NOTHING._asdict(), **known, "seconds": time.perf_counter() - began})
 
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -164,14 +165,14 @@ def solve(deck: str, files: Mapping[str, str]) -> Found:
             )
             bad = [name for name in results.histories if not np.isfinite(results.history(name)).all()]
         if bad:
-            return found(**moved, wrong=f"numbers that are none in {', '.join(bad)}")
+            return found(**moved, wrong=f"NaN or infinite values in {', '.join(bad)}")
         if stop and not CLEAR.match(stop):
             return found(**moved, wrong=f"unclear stop: {stop}")
         return found(**moved, stop=stop, looks=tuple(f"{c['check']}: {c['value']}" for c in looks))
 
 
 def serve(line: Connection) -> None:
-    """Solve what comes along a line, in a process of its own; say when its kernels are compiled."""
+    """Solve the decks that arrive on a connection; send None first, once the kernels are compiled."""
     solve(one(KICK).replace(METHOD, "NEWMARK DT=0.1"), {})
     line.send(None)
     with suppress(EOFError):
@@ -180,7 +181,7 @@ def serve(line: Connection) -> None:
 
 
 class Runner:
-    """Runs decks in a process of its own, which may die or be ended; the same deck is run once."""
+    """Runs decks in a process of its own, which may die or be ended; each deck is run once."""
 
     def __init__(self, limit: float) -> None:
         self.limit, self.kept = limit, dict[str, Found]()
@@ -226,21 +227,20 @@ class Runner:
 
 
 def methods() -> list[str]:
-    """Names of the catalog's methods, those that need no step first."""
+    """Names of the catalog's methods, those without steps first."""
     return sorted(catalog().family("method"), key=lambda name: (name not in STEPLESS, name != "AUTO", name))
 
 
 def written(method: str, step: float) -> str:
-    """A method as the deck has it."""
+    """A method as it is written in a deck."""
     return f"{method} DT={step!r}" if catalog().family("method")[method].field("DT") else method
 
 
 def reference(run: Runner, case: Case) -> tuple[Found, str, float] | None:
-    """The right motion, the method that found it, and the share by which it may be off; None where nothing
-    tells it.
+    """The right motion, its method, and the share by which it may be off; None where it cannot be found.
 
-    EXACT; where it cannot, or loses energy, NEWMARK with steps that are quartered until the motion stands
-    still.
+    EXACT; where that stops or loses energy, NEWMARK with steps that are quartered until the motion changes
+    no more.
     """
 
     def holds(found: Found) -> bool:
@@ -265,19 +265,23 @@ def reference(run: Runner, case: Case) -> tuple[Found, str, float] | None:
 
 
 def shares(x: Array, right: Array) -> Array:
-    """How far something is off at some times, as a share of the largest right value."""
+    """Error at some times, as a share of the largest right value."""
     size, off = np.abs(right).max(initial=0.0), np.abs(x - right)
     off = off.reshape(len(off), math.prod(off.shape[1:]))
     return np.asarray((off / size if size else off).max(axis=1, initial=0.0))
 
 
 def nudged(deck: str, share: float) -> str:
-    """A deck whose masses, as far as they are weights, are greater by a share."""
+    """A deck whose masses are greater by a share, as far as they are given as weights."""
     return re.sub(r"(?m)^GRAVITY (\S+)", lambda g: f"GRAVITY {float(g[1]) / (1.0 + share)!r}", deck)
 
 
+Offs = dict[str, tuple[Array, float]]  #: errors of quantities, and the allowed error of each
+PEAKS: Final = "largest "  #: first word of those that are no series in time
+
+
 def judge(run: Runner, case: Case, method: str) -> JudgedRun:
-    """Solve a case by a method and judge what comes."""
+    """Solve a case by a method and judge the outcome."""
     found = run(case, case.deck, written(method, case.step))
 
     def row(end: str, says: str, error: float = np.nan) -> JudgedRun:
@@ -287,49 +291,62 @@ def judge(run: Runner, case: Case, method: str) -> JudgedRun:
         return row(FAULT, found.wrong)
     if found.stop:
         return row(STOPPED, found.stop)
-    says = "; ".join(found.looks)
-    whole = case.right is None and not case.like[0] and case.compared is every  # all there is is comparable
-    within = case.within
-    if method in STEPLESS or (method == "AUTO" and not whole):
-        within = EXACT_WITHIN if method in STEPLESS else AUTO_WITHIN
+    says, part = "; ".join(found.looks), ""
     if case.right is not None:
-        offs = {"displacements": (shares(case.compared(found.t, found.u), case.right(found.t)), within)}
+        error = shares(case.compared(found.t, found.u), case.right(found.t))
+        offs = {"displacements": (error, allowed(case, method))}
     else:
-        told = reference(run, case)
-        if told is None and case.like[0]:
+        right = reference(run, case)
+        if right is None and case.like[0]:
             return row(FAULT, "the deck that gives the right answer does not run")
-        if told is None or len(told[0].t) != len(found.t):
-            return row(TOLD if says else RIGHT, says or ALONE)
-        right, by, doubt = told
-        within += doubt
-
-        def off_by(other: Found, factor: float) -> Offs:
-            u = case.compared(right.t, case.like[1] * right.u)
-            out = {"displacements": (shares(case.compared(other.t, factor * other.u), u), within)}
-            if case.compared is every:
-                out |= forces(other, right, within)
-            if method == "AUTO" and whole:
-                out |= promised(other, right, AUTO_WITHIN + doubt)
-            return out
-
-        offs = off_by(found, 1.0)
-        if beyond(offs):
-            other = run(case, nudged(case.like[0] or case.deck, NUDGE * within), by)
-            if len(other.t) == len(right.t):
-                offs, part = known(offs, off_by(other, case.like[1]), right.t)
-                says = says or part
-    error = float(offs["displacements"][0].max(initial=0.0))
+        if right is None or len(right[0].t) != len(found.t):
+            return row(FLAGGED if says else RIGHT, says or ALONE)
+        offs, part = compared(run, case, method, found, right)
+    largest = float(offs["displacements"][0].max(initial=0.0))
     if wrong := beyond(offs):
-        return row(TOLD, says, error) if found.looks else row(FAULT, wrong, error)
-    return row(RIGHT, says, error)
+        return row(FLAGGED, says, largest) if says else row(FAULT, wrong, largest)
+    return row(RIGHT, says or part, largest)
 
 
-Offs = dict[str, tuple[Array, float]]  #: how far quantities are off, and how far they may be
-PEAKS: Final = "largest "  #: so begin those that are no series in time
+def compared(
+    run: Runner, case: Case, method: str, found: Found, right: tuple[Found, str, float]
+) -> tuple[Offs, str]:
+    """Errors against a reference, as far as that is known (see `known`); and in words how far."""
+    best, by, doubt = right
+    within = allowed(case, method) + doubt
+
+    def errors(other: Found, factor: float) -> Offs:
+        u = case.compared(best.t, case.like[1] * best.u)
+        out = {"displacements": (shares(case.compared(other.t, factor * other.u), u), within)}
+        if case.compared is every:
+            out |= forces(other, best, within)
+        if method == "AUTO" and whole(case):
+            out |= promised(other, best, AUTO_WITHIN + doubt)
+        return out
+
+    offs = errors(found, 1.0)
+    if not beyond(offs):
+        return offs, ""
+    other = run(case, nudged(case.like[0] or case.deck, NUDGE * within), by)
+    if len(other.t) != len(best.t):
+        return offs, ""
+    return known(offs, errors(other, case.like[1]), best.t)
+
+
+def whole(case: Case) -> bool:
+    """Whether all quantities of the runs of a case can be compared, not only some displacements."""
+    return case.right is None and not case.like[0] and case.compared is every
+
+
+def allowed(case: Case, method: str) -> float:
+    """Allowed error of the displacements, as a share of the largest."""
+    if method in STEPLESS:
+        return EXACT_WITHIN
+    return AUTO_WITHIN if method == "AUTO" and not whole(case) else case.within
 
 
 def forces(found: Found, right: Found, within: float) -> Offs:
-    """How far forces are off, where both runs have the same springs and contacts."""
+    """Errors of forces, where both runs have the same springs and contacts."""
     out = {}
     if found.f.shape == right.f.shape:
         out["spring forces"] = shares(found.f, right.f), FASTER * within
@@ -339,7 +356,7 @@ def forces(found: Found, right: Found, within: float) -> Offs:
 
 
 def promised(found: Found, right: Found, within: float) -> Offs:
-    """How far off the figures are that AUTO brings to its tolerance (see `auto`)."""
+    """Errors of the figures that AUTO brings to its tolerance (see `auto`)."""
     swings = np.abs(right.swings).max(axis=1, keepdims=True, initial=0.0)
     return {
         f"{PEAKS}deformations": (parts(found.swings, right.swings, 1e-6, swings), within),
@@ -348,8 +365,8 @@ def promised(found: Found, right: Found, within: float) -> Offs:
 
 
 def parts(x: Array, right: Array, floor: float, size: Array | None = None) -> Array:
-    """How far some values are off, each as a share of its own right size, but of no less than a share
-    `floor` of the largest.
+    """Errors of some values, each as a share of its own right size, or of the share `floor` of the largest
+    if that is greater.
     """
     size = np.abs(right) if size is None else size
     size = np.maximum(size, floor * size.max(initial=0.0))
@@ -357,8 +374,8 @@ def parts(x: Array, right: Array, floor: float, size: Array | None = None) -> Ar
 
 
 def known(offs: Offs, nudged: Offs, t: Array) -> tuple[Offs, str]:
-    """What of some errors counts where those of a nudged deck tell what is known of the answer at the times
-    `t`; and in words whether that is a part only.
+    """Errors that count: those of quantities, at the times `t`, which a nudged deck changes by less than is
+    allowed; and in words whether they are a part only.
     """
     good = {x: off <= most for x, (off, most) in nudged.items()}
     series = [x for x in good if not x.startswith(PEAKS)]
@@ -370,7 +387,7 @@ def known(offs: Offs, nudged: Offs, t: Array) -> tuple[Offs, str]:
 
 
 def beyond(offs: Offs) -> str:
-    """What is further off than allowed, in words."""
+    """Errors beyond the allowed ones, in words."""
     bad = [(x, off.max(), most) for x, (off, most) in offs.items() if not (off <= most).all()]
     return ", ".join(f"{x} {off:.2g} off, above {most:g}" for x, off, most in bad)
 
@@ -414,37 +431,43 @@ def matrix(
             runners.get().close()
 
 
-ENDS: Final = (RIGHT, TOLD, STOPPED, FAULT)
+ENDS: Final = (RIGHT, FLAGGED, STOPPED, FAULT)
 
 
 def table(rows: Sequence[JudgedRun]) -> str:
-    """Counts of how cases end, scene by method, as Markdown."""
-    names = methods()
-    by: dict[tuple[str, str], list[JudgedRun]] = defaultdict(list)
+    """Counts of the outcomes, scene by method, as Markdown."""
+    by: dict[str, dict[str, list[JudgedRun]]] = defaultdict(lambda: defaultdict(list))
     for row in rows:
-        by[row.case.family, row.case.scene].append(row)
+        by[row.case.family][row.case.scene].append(row)
     out = []
-    for family in dict.fromkeys(f for f, _ in by):
-        out += [f"| {family} | cases | " + " | ".join(names) + " |", "|---" * (len(names) + 2) + "|"]
-        for (own, scene), cells in by.items():
-            if own == family:
-                ends = [Counter(r.end for r in cells if r.method == m) for m in names]
-                texts = [" / ".join(str(e[x]) for x in ENDS) for e in ends]
-                out.append(f"| {scene} | {len(cells) // len(names)} | " + " | ".join(texts) + " |")
-        out.append("")
-    total, alone = Counter(r.end for r in rows), sum(r.says == ALONE for r in rows)
-    counts = ", ".join(f"{total[e]} {e}" for e in ENDS)
+    for family, scenes in by.items():
+        out += [*_counts(family, scenes), ""]
+    return "\n".join([*out, _total(rows)])
+
+
+def _counts(family: str, scenes: Mapping[str, Sequence[JudgedRun]]) -> list[str]:
+    """Table of one family: a line for each scene, a column for each method."""
+    names = methods()
+    out = [f"| {family} | cases | " + " | ".join(names) + " |", "|---" * (len(names) + 2) + "|"]
+    for scene, cells in scenes.items():
+        ends = [Counter(r.end for r in cells if r.method == m) for m in names]
+        texts = [" / ".join(str(e[x]) for x in ENDS) for e in ends]
+        out.append(f"| {scene} | {len(cells) // len(names)} | " + " | ".join(texts) + " |")
+    return out
+
+
+def _total(rows: Sequence[JudgedRun]) -> str:
+    """Number of all cases and outcomes, in words."""
+    ends, alone = Counter(r.end for r in rows), sum(r.says == ALONE for r in rows)
+    counts = ", ".join(f"{ends[e]} {e}" for e in ENDS)
     n = len({id(r.case) for r in rows})
-    told = f"{n} cases, {len(rows)} runs: {counts}. Of those right {alone} are known by their energy alone"
+    text = f"{n} cases, {len(rows)} runs: {counts}. Of those right {alone} are known by their energy alone"
     partly = sum(r.end == RIGHT and r.says.startswith(PARTLY) for r in rows)
-    told += f", {partly} in part, as far as the answer is known." if partly else "."
-    return "\n".join([*out, told])
+    return text + (f", {partly} in part, as far as the answer is known." if partly else ".")
 
 
 def stops(rows: Sequence[JudgedRun]) -> str:
-    """The stops by kind, with their count, methods and an example; then what is known in part, and all
-    faults.
-    """
+    """Stops by kind, with count, methods and an example; then runs known in part, and all faults."""
     kinds: dict[str, list[tuple[str, JudgedRun]]] = defaultdict(list)
     for row in rows:
         if row.end == STOPPED:
@@ -467,6 +490,6 @@ def _scene(row: JudgedRun) -> str:
 
 
 def page(rows: Sequence[JudgedRun]) -> str:
-    """Both, for the terminal and the manual."""
+    """Counts and stops, for the terminal and the manual."""
     cells = "; ".join(f"{end}: {MEANS[end]}" for end in ENDS)
     return f"{table(rows)}\n\nThe cells count {' / '.join(ENDS)}. {cells}.\n\n{stops(rows)}"

@@ -1,4 +1,4 @@
-"""STUDY: what accuracy each method buys for what time, on the user's own deck.
+"""STUDY: accuracy of each method against its time, on the user's own deck.
 
 The history is run by several methods over a ladder of steps (or tolerances).  Errors are those of extremes,
 against a reference: EXACT with a search grid of a quarter of the usual, where EXACT can solve the deck in
@@ -52,7 +52,7 @@ class TooLong(Exception):
 
 @dataclass(frozen=True)
 class Plan:
-    """What is run.
+    """Methods and settings of a study.
 
     Attributes
     ----------
@@ -207,30 +207,30 @@ class _Bench:
             except StudyError as err:
                 why = err
                 continue
-            # the two finest made the reference: their own errors would flatter
+            # the two finest made the reference: their own errors would look too small
             out[method] = [t for t in ladder if t.stopped] + [t for t in ladder if not t.stopped][:-2]
             return reference
         raise why
 
     def _ladder(self, method: str, reference: Reference | None) -> list[Trial]:
-        """Trials with shorter and shorter steps; without a reference until they change no more."""
+        """Trials with shorter and shorter steps."""
+        if self.plan.steps:
+            return [self.trial(method, DT=dt) for dt in self.plan.steps]
+        return self._halved(method, reference)
+
+    def _halved(self, method: str, reference: Reference | None) -> list[Trial]:
+        """Trials with halved steps until the errors are small, or a run would take too long."""
         out: list[Trial] = []
-        for dt in self.plan.steps or [self.first / 2**k for k in range(HALVINGS)]:
-            trial = self.trial(method, DT=dt)
-            if self.plan.steps:
-                out.append(trial)
-                continue
+        for k in range(HALVINGS):
+            trial = self.trial(method, DT=self.first / 2**k)
             if out and trial.steps and trial.steps == out[-1].steps:
                 continue  # the record and the output times need more steps than DT
             if out and out[-1].stopped and trial.stopped:
                 out.pop()  # of those that stop the finest is enough
             out.append(trial)
             done = [t for t in out if not t.stopped]
-            against = reference.peaks if reference else done[-2].peaks if len(done) > 1 else None
-            if against is not None and done:
-                now = max(errors(done[-1].peaks, against).values(), default=0.0)
-                if not now > TARGETS[-1] / (4.0 * MARGIN) or (reference and now <= 4.0 * reference.doubt):
-                    break
+            if _converged(done, reference):
+                break
             if trial.stopped == TOO_LONG and done:
                 out.pop()
             if trial.stopped == TOO_LONG or 2.0 * trial.time > self.plan.longest:
@@ -243,7 +243,7 @@ class _Bench:
         for tol in self.plan.tols:
             out.append(self.trial(method, TOL=tol))
             taken = out[-1].method.removeprefix(f"{method}: ")
-            if taken != out[-1].method:  # it takes a method without steps, and will for less
+            if taken != out[-1].method:  # a method without steps, as for smaller tolerances
                 return [] if len(out) == 1 and taken in self.plan.methods else out
             if not out[-1].stopped and 4.0 * out[-1].time > self.plan.longest:
                 break
@@ -317,10 +317,25 @@ class _Bench:
             return float(took["solve seconds"]), out
 
 
+def _converged(done: Sequence[Trial], reference: Reference | None) -> bool:
+    """Whether the finest of some trials is well within the last target, or as good as the reference.
+
+    Errors are those against the reference, without one those against the trial before.
+    """
+    if not done or (reference is None and len(done) < 2):
+        return False
+    now = max(
+        errors(done[-1].peaks, reference.peaks if reference else done[-2].peaks).values(), default=0.0
+    )
+    return not now > TARGETS[-1] / (4.0 * MARGIN) or (
+        reference is not None and now <= 4.0 * reference.doubt
+    )
+
+
 def peaks(results: Results) -> Peaks:
     """Largest and smallest values of a history's drifts, member forces and contact forces.
 
-    Drifts, forces of springs and peaks of contacts are those that the method found on its way.  Forces of
+    Drifts, forces of springs and peaks of contacts are those as found by the method itself.  Forces of
     members, and displacements of nodes in place of drifts where there are none, are taken at the output
     times, which are the same for all methods.
     """

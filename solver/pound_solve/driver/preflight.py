@@ -9,6 +9,7 @@ import numpy as np
 
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
+from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import Structure
 
 
@@ -48,31 +49,42 @@ def pressed(structure: Structure) -> list[Diagnostic]:
 
 
 def adrift(structure: Structure) -> list[Diagnostic]:
-    """Motions of the whole base that nothing ties the structure to: it stays behind, as one body.
+    """Directions in which nothing joins the structure to the shaken ground: it stays behind, as one body.
 
-    What flies by itself is meant to.  Contacts with the ground and dashpots tie it too.
+    A deck with an initial motion or with forces may mean that.
     """
-    model, dofs = structure.model, structure.dofs
+    model = structure.model
     if model.initial or model.forces or all(c.spec.name != "HISTORY" for c in model.analyses):
         return []
-    k = structure.displaced(np.zeros(structure.n_free)).initial_stiffness
-    dashpots = [b for p in structure.parts.values() for b in p.damping]
-    ways = {c["DIRECTION"]: c for c in reversed(model.equake) if c["SUPPORTS"] is None}
+    shaken = {c["DIRECTION"]: c for c in reversed(model.equake) if c["SUPPORTS"] is None}
     out = []
-    for way in sorted(ways.keys() - {"R"}):
-        d = "XY".index(way)
-        ride = np.array([float(own == d) for _, own in dofs.free] + [0.0] * len(dofs.moved))
-        ends = [[dofs.value((f,), (1.0,), ride) for f in b.dofs] for b in dashpots]
-        tied = (
-            (abs(k @ ride) > 1e-9 * (abs(k) @ ride)).any()
-            or (structure.law_rows @ ride).any()
-            or any((b.matrix @ u).any() for b, u in zip(dashpots, ends))
-        )
-        if ride @ structure.ground[d] > 0.0 and not tied:
-            message = f"nothing ties the structure to the ground along {way}: it stays behind as one body"
-            hint = f"fix {way} of its base under NODES, or join it to the ground by an element"
-            out.append(Diagnostic("P337", message, ways[way].span, hint, "warning"))
+    for direction in sorted(shaken.keys() - {"R"}):
+        d = "XY".index(direction)
+        shift = _shift(structure, d)
+        if shift @ structure.ground[d] > 0.0 and not _connected(structure, shift):
+            message = (
+                f"nothing ties the structure to the ground along {direction}: it stays behind as one body"
+            )
+            hint = f"fix {direction} of its base under NODES, or join it to the ground by an element"
+            out.append(Diagnostic("P337", message, shaken[direction].span, hint, "warning"))
     return out
+
+
+def _shift(structure: Structure, d: int) -> Array:
+    """Unit rigid-body displacement of the free DOFs along direction `d`; the supports stay."""
+    dofs = structure.dofs
+    return np.array([float(own == d) for _, own in dofs.free] + [0.0] * len(dofs.moved))
+
+
+def _connected(structure: Structure, shift: Array) -> bool:
+    """Whether a stiffness, a law (also of an open contact) or a dashpot opposes a displacement."""
+    k = structure.displaced(np.zeros(structure.n_free)).initial_stiffness
+    if (abs(k @ shift) > 1e-9 * (abs(k) @ shift)).any() or (structure.law_rows @ shift).any():
+        return True
+    dashpots = (b for p in structure.parts.values() for b in p.damping)
+    return any(
+        (b.matrix @ [structure.dofs.value((f,), (1.0,), shift) for f in b.dofs]).any() for b in dashpots
+    )
 
 
 CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (

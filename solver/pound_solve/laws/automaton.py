@@ -1,10 +1,11 @@
 """Force laws as automata: what hysteresis rules and contact laws share.
 
-A law is always on one of its *branches*.  It leaves the branch when one of up to three *exits*
-``g = a d + b v + g0`` rises through zero, with the deformation ``d`` and its rate ``v``.  On most branches
-the force is linear, ``f = k d + c v + f0``; a law with a `curve` computes it.  An integrator needs no more
-than that: it never knows which law it drives, and a law never knows the integrator.  The state is an
-immutable value, so a step can be tried and forgotten.
+A law is always on one of its *branches*.  A branch has up to three *event functions*
+``g = a d + b v + g0`` of the deformation ``d`` and its rate ``v``; where one of them rises through zero, a
+*transition* to another branch takes place.  On most branches the force is linear, ``f = k d + c v + f0``;
+a law with a `curve` computes it.  Integrators use nothing else of a law, and laws are independent of the
+integrators.  The state (branch and *internal variables*) is an immutable value, so a trial step can be
+discarded.
 
 The functions of a Rule take and return plain numbers and tuples of fixed length, so that `jit` can compile
 the very same source.
@@ -17,11 +18,11 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import NamedTuple
 
-EVENTS = 3  #: most exits of a branch
-PUSH, PUSH_RATE = 0, 1  #: where the memory of a law that leans on another has that one's force and its rate
+EVENTS = 3  #: most event functions of a branch
+PUSH, PUSH_RATE = 0, 1  #: internal variables of a law with normal-force coupling: normal force and its rate
 
 Numbers = tuple[float, ...]
-State = tuple[int, float, float, Numbers]  #: branch; deformation and work at its entry; memory
+State = tuple[int, float, float, Numbers]  #: branch; deformation and work at its entry; internal variables
 
 # the functions of a Rule, which explains them
 StartFunction = Callable[[Numbers], tuple[int, Numbers]]
@@ -31,17 +32,18 @@ EnergyFunction = Callable[[Numbers, int, Numbers, float, float], float]
 CurveFunction = Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]]
 PowerFunction = Callable[[Numbers, int, Numbers, float, float], float]
 
-NEVER = (0.0, 0.0, -1.0)  #: the exit that is not there
-REVERSAL_DOWN, REVERSAL_UP = (0.0, -1.0, 0.0), (0.0, 1.0, 0.0)  #: exits where the rate changes its sign
+NEVER = (0.0, 0.0, -1.0)  #: the event function of an event that never occurs
+# event functions of a change of sign of the rate
+REVERSAL_DOWN, REVERSAL_UP = (0.0, -1.0, 0.0), (0.0, 1.0, 0.0)
 
 
 def above(d: float) -> tuple[float, float, float]:
-    """Exit where the deformation rises above `d`."""
+    """Event function of a deformation that rises above `d`."""
     return (1.0, 0.0, -d)
 
 
 def below(d: float) -> tuple[float, float, float]:
-    """Exit where the deformation falls below `d`."""
+    """Event function of a deformation that falls below `d`."""
     return (-1.0, 0.0, d)
 
 
@@ -53,7 +55,7 @@ def linear(
     third: tuple[float, float, float] = NEVER,
     c: float = 0.0,
 ) -> Numbers:
-    """Return the branch ``f = k d + c v + f0`` with its exits as 3 + 3 x 3 numbers."""
+    """Return the branch ``f = k d + c v + f0`` with its event functions as 3 + 3 x 3 numbers."""
     return (k, c, f0, *first, *second, *third)
 
 
@@ -63,26 +65,28 @@ def on_spring(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 
 def rate_independent(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
-    """Power of a rule whose force does not depend on the rate: it dissipates none by it."""
+    """Power of a rule whose force does not depend on the rate: zero."""
     return 0.0
 
 
 def rate_power(curve: CurveFunction, p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
-    """Power of the part of a curve's force that is not there without the rate."""
+    """Power of the rate-dependent part of a curve's force."""
     return (curve(p, at, m, d, d, v)[0] - curve(p, at, m, d, d, 0.0)[0]) * v
 
 
 class BranchKind(IntEnum):
-    """What a branch means to those who count yields and collisions."""
+    """Kind of a branch, by which yields and collisions are counted."""
 
     ELASTIC = 0  #: below yield: loading, unloading or reloading; every branch of a smooth rule
-    YIELDING = 1  #: on the yield line: to enter it from another kind is a yield event
+    YIELDING = 1  #: on the yield line; its entry from another kind is a yield event
     SLIPPING = 2  #: friction at its limit
     VISCOUS = 3  #: the rate alone makes the force
     OPEN = 4  #: without force: a contact that is open, a spring that is slack or has failed
-    PRESSED = 5  #: a contact that is closed: to enter it is a collision
-    RELEASED = 6  #: a contact without force and with overlap left: pressed again, the collision goes on
-    HELD = 7  #: a rigid contact that is closed: the deformation stays, by whatever force that takes
+    PRESSED = 5  #: a closed contact; its entry is a collision
+    RELEASED = (
+        6  #: a contact without force and with overlap left; pressed again, the same collision goes on
+    )
+    HELD = 7  #: a closed rigid contact: the deformation is constant, the force a reaction
 
     @property
     def closed(self) -> bool:
@@ -103,30 +107,30 @@ class BranchType(NamedTuple):
 
 @dataclass(frozen=True)
 class Rule:
-    """A kind of law as functions of its parameters ``p``, present branch ``at`` and memory ``m``.
+    """A kind of law: functions of its parameters ``p``, present branch ``at`` and internal variables ``m``.
 
     Attributes
     ----------
     branches : tuple of BranchType
         Names and kinds; ``at`` counts them from 0.  A rigid contact has one branch of the kind HELD, on
-        which the deformation stays at ``p[2]``; the exits of that branch are functions of the force instead
-        of the deformation, and its entry is an impact with the restitution ``p[1]``.
+        which the deformation stays at ``p[2]``; its event functions are those of the force instead of the
+        deformation, and its entry is an impact with the restitution ``p[1]``.
     start : callable
         ``start(p) -> (at, m)``: virgin, at zero deformation.
     branch : callable
-        ``branch(p, at, m) -> piece(...)``.
-    leave : callable
-        ``transition(p, at, m, way, d, v) -> (at, m)``: the state after exit `event` was reached at
-        deformation `d` and rate `v`.
-        The force must be the same on both sides, unless a dashpot or a release makes it jump.
+        ``branch(p, at, m) -> linear(...)``.
+    transition : callable
+        ``transition(p, at, m, event, d, v) -> (at, m)``: the state after the event with that index, at
+        deformation `d` and rate `v`.  The force is continuous, except where a dashpot or a release makes
+        it jump.
     recoverable : callable
-        ``recoverable(p, at, m, d, f) -> energy`` that comes back when the force `f` is taken off.
+        ``recoverable(p, at, m, d, f) -> energy`` recovered when the force `f` is removed.
     curve : callable or None
         ``curve(p, at, m, d0, d, v) -> (force, d force/d d, d force/d v, work since d0)`` where branches are
         not linear; `d0` is the deformation at their entry.
     power : callable or None
         ``power(p, at, m, d, v) -> power`` that a rule with a `curve` dissipates by the rate `v`.  None:
-        that of the part of the force that is not there without the rate, see `rate_power`.  A linear
+        that of the rate-dependent part of the force, see `rate_power`.  A linear
         branch dissipates ``c v^2``.
     parameters, variables : int
         How many numbers ``p`` and ``m`` have.
@@ -149,7 +153,7 @@ class Rule:
 
 
 class EventFunction(NamedTuple):
-    """Leave the branch when ``d_factor * d + v_factor * v + constant`` rises through zero."""
+    """Its event is where ``d_factor * d + v_factor * v + constant`` rises through zero."""
 
     d_factor: float
     v_factor: float
@@ -157,14 +161,14 @@ class EventFunction(NamedTuple):
 
 
 class Branch(NamedTuple):
-    """One linear piece: ``f = stiffness * d + damping * v + force0`` until an exit is reached."""
+    """One linear branch: ``f = stiffness * d + damping * v + force0`` up to its first event."""
 
     name: str
     kind: BranchKind
     stiffness: float
     damping: float
     force0: float
-    exits: tuple[EventFunction, ...]
+    events: tuple[EventFunction, ...]
 
     @property
     def held(self) -> bool:
@@ -178,10 +182,10 @@ class Branch(NamedTuple):
 
 @dataclass(frozen=True)
 class Law:
-    """A force law with memory: a Rule with its parameters.
+    """A force law with internal variables: a Rule with its parameters.
 
     The energy balance is the same for every rule: the work done on the spring is integrated in closed form
-    along each branch, and what of it is not recoverable has been dissipated.
+    along each branch, and the part that is not recoverable has been dissipated.
     """
 
     rule: Rule
@@ -212,22 +216,22 @@ class Law:
         return (at, 0.0, self.stored(state, 0.0), m)
 
     def branch(self, state: State) -> Branch:
-        """Return the linear piece that `state` is on (of a curved law its exits, and a tangent)."""
+        """Return the linear branch of `state` (of a curved law its event functions, and a tangent)."""
         k, c, f0, *flat = self.rule.branch(self.p, state[0], state[3])
-        exits = [EventFunction(*flat[i : i + 3]) for i in range(0, 3 * EVENTS, 3)]
-        while exits and exits[-1] == NEVER:
-            exits.pop()
-        return Branch(*self.rule.branches[state[0]], k, c, f0, tuple(exits))
+        events = [EventFunction(*flat[i : i + 3]) for i in range(0, 3 * EVENTS, 3)]
+        while events and events[-1] == NEVER:
+            events.pop()
+        return Branch(*self.rule.branches[state[0]], k, c, f0, tuple(events))
 
     def force(self, state: State, d: float, v: float = 0.0) -> tuple[float, float, float]:
-        """Force at deformation `d` and rate `v`, and its derivatives by them."""
+        """Force at deformation `d` and rate `v`, and its derivatives with respect to them."""
         if self.rule.curve is not None:
             return self.rule.curve(self.p, state[0], state[3], state[1], d, v)[:3]
         k, c, f0 = self.rule.branch(self.p, state[0], state[3])[:3]
         return k * d + c * v + f0, k, c
 
     def power(self, state: State, d: float, v: float) -> float:
-        """Power [F L/T] that the law dissipates by the rate `v` at deformation `d`."""
+        """Power [F L/T] that the law dissipates at rate `v` and deformation `d`."""
         at, _, _, m = state
         if self.rule.curve is None:
             return self.rule.branch(self.p, at, m)[1] * v * v
@@ -244,7 +248,7 @@ class Law:
         return before + (0.5 * k * (d + d0) + f0) * (d - d0)
 
     def transition(self, state: State, event_index: int, d: float, v: float = 0.0) -> State:
-        """Return the state after that exit of the branch was reached at deformation `d` and rate `v`."""
+        """Return the state after that event of the branch, at deformation `d` and rate `v`."""
         at, m = self.rule.transition(self.p, state[0], state[3], event_index, d, v)
         return at, d, self.work(state, d), m
 
@@ -255,17 +259,17 @@ class Law:
     def dissipated(self, state: State, d: float) -> float:
         """Return the energy [F L] lost so far by slip or release, dashpots apart."""
         lost = self.work(state, d) - self.stored(state, d)
-        # what the rounding of d alone makes of it is no loss: an elastic law shows none
+        # a loss within the rounding of d is none: an elastic law dissipates nothing
         return lost if abs(lost) > 1e-14 * self.p[0] * max(abs(d), abs(state[1])) ** 2 else 0.0
 
 
 def consistent(law: Law, state: State, d: float, v: float) -> State:
-    """Leave every branch whose exit is passed already at deformation `d` and rate `v`,
+    """Return the state after the transitions of all events that lie behind deformation `d` and rate `v`,
     as at a sudden start.
     """
     for _ in range(10):
-        exits = law.branch(state).exits
-        passed = [n for n, e in enumerate(exits) if e.d_factor * d + e.v_factor * v + e.constant > 0.0]
+        events = law.branch(state).events
+        passed = [n for n, e in enumerate(events) if e.d_factor * d + e.v_factor * v + e.constant > 0.0]
         if not passed:
             break
         state = law.transition(state, passed[0], d, v)
@@ -297,7 +301,7 @@ def transitions(
     d0, d1 : float
         Deformations [L] or [rad].
     rate : float
-        Speed along the path; 0: infinitely slow, but its sign releases branches that end at a reversal.
+        Speed along the path; 0: infinitely slow, and a branch that ends at a reversal still ends there.
     limit : int
         Most branch changes on the way.
 
@@ -314,22 +318,26 @@ def transitions(
     direction = 1.0 if d1 >= d0 else -1.0
     at, v = d0, direction * rate
     for _ in range(limit):
-        first: tuple[float, int] | None = None
-        for n, (a, b, c) in enumerate(law.branch(state).exits):
-            now, slope = a * at + b * v + c, a * direction
-            if b and not a and not c:
-                where = at if b * direction > 0 else None
-            elif now >= 0 and (slope > 0 or (slope == 0 and now > 0)):
-                where = at
-            elif slope > 0 and a * d1 + b * v + c > 0:
-                where = at - now / slope * direction
-            else:
-                where = None
-            if where is not None and (first is None or (where - first[0]) * direction < 0):
-                first = (where, n)
-        if first is None:
+        places = [event_place(event, at, d1, direction, v) for event in law.branch(state).events]
+        found = [(where, n) for n, where in enumerate(places) if where is not None]
+        if not found:
             return
-        at = first[0]
-        state = law.transition(state, first[1], at, v)
+        at, first = min(found, key=lambda event: direction * event[0])
+        state = law.transition(state, first, at, v)
         yield at, state
     raise NoProgressError("the law changed branch again and again")
+
+
+def event_place(event: EventFunction, at: float, d1: float, direction: float, v: float) -> float | None:
+    """Deformation of an event on a straight path from `at` to `d1` at the rate `v`; None where it does not
+    occur.  A reversal occurs at once, where the path runs against the branch.
+    """
+    a, b, c = event
+    now, slope = a * at + b * v + c, a * direction
+    if b and not a and not c:
+        return at if b * direction > 0 else None
+    if now >= 0 and (slope > 0 or (slope == 0 and now > 0)):
+        return at
+    if slope > 0 and a * d1 + b * v + c > 0:
+        return at - now / slope * direction
+    return None

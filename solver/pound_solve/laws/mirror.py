@@ -1,4 +1,4 @@
-"""For rules that are written once, for the positive side, and mirrored for the negative.
+"""Mirror images: rules are written once, for the positive side, and mirrored for the negative.
 
 Side ``s`` is +1 or -1; a mirrored deformation is ``s d``, a mirrored force ``s f``.  The mirror image of
 ``f = k d + f0`` is ``f = k d + s f0``.  Branches come in pairs: an odd number for the positive side, the
@@ -24,26 +24,26 @@ def both_sides(*names: str) -> tuple[str, ...]:
 
 
 def outward(s: float, d: float) -> tuple[float, float, float]:
-    """Exit where the mirrored deformation rises above `d`."""
+    """Event function of a mirrored deformation that rises above `d`."""
     return (s, 0.0, -d)
 
 
 def inward(s: float, d: float) -> tuple[float, float, float]:
-    """Exit where the mirrored deformation falls below `d`."""
+    """Event function of a mirrored deformation that falls below `d`."""
     return (-s, 0.0, d)
 
 
 def turns_inward(s: float) -> tuple[float, float, float]:
-    """Exit where the motion turns towards the other side."""
+    """Event function of a reversal towards the other side."""
     return (0.0, -s, 0.0)
 
 
 def turns_outward(s: float) -> tuple[float, float, float]:
-    """Exit where the motion turns towards this side."""
+    """Event function of a reversal towards this side."""
     return (0.0, s, 0.0)
 
 
 def need_both_sides(fy_plus: float, fy_minus: float) -> None:
-    """Refuse a rule that divides by its yield deformations when one of them is zero."""
+    """Refuse a zero yield force, for rules that divide by their yield deformations."""
     if not fy_minus < 0.0 < fy_plus:
         raise ValueError("this rule needs a yield force other than zero on both sides")

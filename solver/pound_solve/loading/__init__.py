@@ -1,1 +1,1 @@
-"""What acts on the structure: ground motions, forces in time, records."""
+"""Actions on the structure: ground motions, forces in time, records."""

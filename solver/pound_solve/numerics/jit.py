@@ -1,9 +1,9 @@
-"""The one door to numba: scalar kernels are compiled where the extra `fast` is installed,
-else they run as they are.
+"""Compilation by numba: scalar kernels are compiled where the extra `fast` is installed,
+else they run as Python.
 
-A kernel is plain Python.  Nothing is compiled, nor numba imported, before somebody asks for it here.
+A kernel is plain Python.  Nothing is compiled, nor numba imported, before the first request here.
 The compiled code is kept between runs in the user's cache folder, in a folder of its own for every version
-of the kernels' source: numba itself does not see that a function changed which another one calls.
+of the kernels' source: numba itself does not notice a change in a function that another one calls.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ import numpy as np
 Function = Callable[..., Any]
 
 
-SHORT = 700  #: bytes of Python's code up to which a function is put into its callers
-#: files that hold what is compiled, or what it depends on
+SHORT = 700  #: bytes of bytecode up to which a function is inlined
+#: files of the kernels and of their dependencies
 KERNELS = (
     "numerics/*.py",
     "laws/**/*.py",
@@ -37,7 +37,7 @@ KERNELS = (
 )
 FLAT: set[Function] = set()  #: kernels marked by `flat`
 LOOSE: set[Function] = set()  #: kernels marked by `loose`
-FASTMATH = {"contract", "reassoc"}  #: what compiled code may do to the rounding of the latter
+FASTMATH = {"contract", "reassoc"}  #: reorderings of floating-point operations allowed in the latter
 
 
 def folder() -> Path:
@@ -65,7 +65,7 @@ def available() -> bool:
 
 @cache
 def numba() -> Any:
-    """numba, told where to keep what it compiles; None where it is not `available`."""
+    """numba, with the cache folder set; None where it is not `available`."""
     if not available():
         return None
     try:
@@ -77,7 +77,7 @@ def numba() -> Any:
 
 
 def flat(function: Function) -> Function:
-    """Mark a kernel to be compiled in one piece with all that it calls: it calls them in every step."""
+    """Mark a kernel to be compiled as one function with all that it calls in every step."""
     FLAT.add(function)
     return function
 

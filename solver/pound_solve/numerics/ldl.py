@@ -12,6 +12,7 @@ Davis TA (2006), Direct Methods for Sparse Linear Systems, SIAM, chapters 4 (fac
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -82,31 +83,46 @@ def order(n: int, i: Index, j: Index) -> Index:
 
 def analyse(n: int, i: Index, j: Index) -> Pattern:
     """Pattern of a matrix in its order of elimination, and of its factor; see `order`."""
-    under: list[set[int]] = [set() for _ in range(n)]
+    own: list[set[int]] = [set() for _ in range(n)]
     for a, b in zip(np.maximum(i, j).tolist(), np.minimum(i, j).tolist()):
         if a != b:
-            under[b].add(a)
-    below: list[list[int]] = [[] for _ in range(n)]
-    children: list[list[int]] = [[] for _ in range(n)]
-    for column in range(n):
-        rows = set(under[column])
-        for child in children[column]:
-            rows.update(below[child][1:])
-        below[column] = sorted(rows)
-        if below[column]:
-            children[below[column][0]].append(column)
-    lp = np.concatenate([[0], np.cumsum([len(b) for b in below])]).astype(np.int64)
-    li = np.array([row for b in below for row in b], np.uint32)
-    columns: list[list[tuple[int, int]]] = [[] for _ in range(n)]
+            own[b].add(a)
+    ap, ai = _compressed([[column, *sorted(rows)] for column, rows in enumerate(own)])
+    below = filled(own)
+    lp, li = _compressed(below)
+    rows: list[list[tuple[int, int]]] = [[] for _ in range(n)]  # of L: columns and positions
     for column in range(n):
         for q in range(lp[column], lp[column + 1]):
-            columns[li[q]].append((column, q))
-    rp = np.concatenate([[0], np.cumsum([len(c) for c in columns])]).astype(np.int64)
-    rk = np.array([k for c in columns for k, _ in c], np.uint32)
-    rq = np.array([q for c in columns for _, q in c], np.int64)
-    lower = [[column, *sorted(rows)] for column, rows in enumerate(under)]
-    ap = np.concatenate([[0], np.cumsum([len(x) for x in lower])]).astype(np.int64)
-    return Pattern(ap, np.array([row for x in lower for row in x], np.uint32), lp, li, rp, rk, rq)
+            rows[li[q]].append((column, q))
+    rp, rk = _compressed([[column for column, _ in row] for row in rows])
+    rq = np.array([q for row in rows for _, q in row], np.int64)
+    return Pattern(ap, ai, lp, li, rp, rk, rq)
+
+
+def filled(own: Sequence[set[int]]) -> list[list[int]]:
+    """Symbolic factorisation: rows of L below the diagonal, column by column.
+
+    A column of L has the entries of A and those of its children in the elimination tree.
+
+    Parameters
+    ----------
+    own : sequence of set
+        Rows of A below the diagonal, column by column.
+    """
+    below: list[list[int]] = []
+    children: list[list[int]] = [[] for _ in own]
+    for column, entries in enumerate(own):
+        rows = entries.union(*(below[child][1:] for child in children[column]))
+        below.append(sorted(rows))
+        if rows:
+            children[below[column][0]].append(column)
+    return below
+
+
+def _compressed(lists: Sequence[Sequence[int]]) -> tuple[Index, Place]:
+    """Pointers and entries of a list of lists in one array."""
+    pointers = np.concatenate([[0], np.cumsum([len(x) for x in lists])]).astype(np.int64)
+    return pointers, np.array([x for own in lists for x in own], np.uint32)
 
 
 def factor(s: Pattern, a: Array, l: Array, d: Array, w: Array) -> int:  # noqa: E741

@@ -23,7 +23,7 @@ from pound_solve.numerics import matrices
 from pound_solve.numerics.matrices import Factor, Matrix, dense, diagonal, scaled, used_rows
 from pound_solve.numerics.types import Array, Flags
 
-MISSED = 8  #: how often modes that were passed over are looked for
+MISSED = 8  #: most repetitions of the search for missed modes
 TINY = 1e-15  #: of a diagonal of ones: keeps pivots from being zero
 MORE = 4  #: modes beyond those requested, to find a gap after them
 
@@ -67,12 +67,12 @@ def softest(a: Matrix) -> tuple[float, Array]:
 
 
 def _generic(n: int) -> Array:
-    """A vector that is orthogonal to no mode but by chance, always the same, shape (n,)."""
+    """A fixed vector that is orthogonal to a mode by chance only, shape (n,)."""
     return np.random.default_rng(0).standard_normal(n)
 
 
 class Held:
-    """A symmetric stiffness, scaled to a diagonal of ones, that may be a mechanism or worse.
+    """A symmetric stiffness, scaled to a diagonal of ones, that may be singular or indefinite.
 
     A sparse one that is a mechanism is held where its pivots vanish, which makes it regular; the motions V
     that K does not resist are then :math:`(K + E E^T)^{-1} E`, for :math:`K V = 0`, and under loads that
@@ -116,7 +116,7 @@ class Held:
         assert self._factor is not None
         if self._factor.negative:
             x = _generic(k.shape[0])
-            for _ in range(20):  # what is near to zero, as a structure is that has just collapsed
+            for _ in range(20):  # a pivot near zero, as of a structure that has just collapsed
                 x = self._factor.solve(x / np.linalg.norm(x))
             self.negative = x
 
@@ -149,7 +149,7 @@ def deficiency(k: Array) -> int:
             return 0
     except np.linalg.LinAlgError:
         pass
-    from scipy.linalg.lapack import dpstrf  # pivoting: of no use to the common run, and slow to import
+    from scipy.linalg.lapack import dpstrf  # with pivoting; slow to import and seldom needed
 
     return len(k) - int(dpstrf(k, tol=1e-15 * max(len(k), 10))[2])
 
@@ -211,8 +211,8 @@ def solve(k: Matrix, m: Matrix, count: int | None = None) -> Modes:
     if not len(kk):
         return Modes(np.zeros(0), np.zeros((k.shape[0], 0)))
     if np.any(mm - np.diag(np.diag(mm))):
-        # a mass on a slaved node is felt along fewer directions than its master has:
-        # the rest is massless too
+        # a mass on a slaved node acts along fewer directions than its master has:
+        # the rest is massless, too
         root = 1.0 / np.sqrt(np.diag(mm))
         share, basis = np.linalg.eigh(root[:, None] * mm * root)
         if share[0] < 1e-13 * len(share):
@@ -240,14 +240,14 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
     try:
         if Factor(k).negative:
             raise np.linalg.LinAlgError("negative stiffness")
-    except np.linalg.LinAlgError:  # rigid bodies: a little stiffness where mass is makes them slow modes
+    except np.linalg.LinAlgError:  # rigid bodies: a small stiffness at the masses makes them slow modes
         shift = 1e-8 / float(diagonal(m).max())
     factor = Factor(k + shift * m)
     if factor.negative:
         raise np.linalg.LinAlgError("negative stiffness")
     wanted, values, shapes = count, np.zeros(0), np.zeros((len(at), 0))
     for _ in range(MISSED):
-        # those that are known are taken out, so that another of the same frequency shows
+        # known modes are removed, so that another of the same frequency can be found
         def follow(push: Array, known: Array = shapes, own: Array = values) -> Array:
             x = factor.solve(push.ravel())
             return np.asarray(x - known @ ((known.T @ push.ravel()) / (own + shift)))
@@ -260,7 +260,7 @@ def _slowest(k: Matrix, m: Matrix, count: int) -> Modes | None:
             )
         except ArpackError:
             return None
-        x = factor.solve(m @ x)  # free of what has no mass
+        x = factor.solve(m @ x)  # without massless components
         x /= np.sqrt((x * (m @ x)).sum(axis=0))
         values, shapes = np.append(values, found), np.hstack([shapes, x])
         order = np.argsort(values, kind="stable")

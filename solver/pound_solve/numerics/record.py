@@ -1,4 +1,4 @@
-"""Records: named numbers in one piece of memory, which compiled code changes in place."""
+"""Records: named numbers in one block of memory, which compiled code changes in place."""
 
 from __future__ import annotations
 

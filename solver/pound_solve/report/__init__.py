@@ -1,1 +1,1 @@
-"""What is made of a results file and of the catalog."""
+"""Reports, plots and tables from a results file and from the catalog."""

@@ -1,10 +1,11 @@
-"""What a deck may hold, for ``pound-solve list`` and for the manual's page; both are made from the Specs.
+"""Reference of the deck, for ``pound-solve list`` and for the manual's page; both are made from the Specs.
 
 ``python -m pound_solve.report.deck_reference`` prints the page ``manual/deck-reference.md``.
 """
 
 from __future__ import annotations
 
+import itertools
 import textwrap
 from collections.abc import Iterable, Sequence
 from typing import Final
@@ -147,21 +148,24 @@ def _sheet(spec: Spec) -> list[str]:
     out += _wrapped("example    ", spec.sample) if spec.sample else []
     if not spec.fields:
         return [*out, "", "It has no items."]
-    rows = [_HEADS, *(_row(f) for f in spec.fields)]
+    return [*out, "", *_items(spec.fields), "", *_wrapped("", _legend(spec.fields))]
+
+
+def _items(fields: Sequence[Field]) -> list[str]:
+    """Table of items: what each takes and what it means, each wrapped within its own column."""
+    rows = [_HEADS, *(_row(f) for f in fields)]
     wide = [max(len(row[i]) for row in rows) for i in range(4)]
-    # what is long goes onto lines of its own: a column of it would leave no room for the meaning
+    # long limits are wrapped: a column as wide as them would leave no room for the meaning
     wide[3] = min(wide[3], 24)
-    out.append("")
+    out = []
     for row in rows:
         start = "  ".join(row[i].ljust(wide[i]) for i in range(3)) + "  "
-        takes = textwrap.wrap(row[3], wide[3], break_long_words=False) or [""]
+        limits = textwrap.wrap(row[3], wide[3], break_long_words=False) or [""]
         meaning = textwrap.wrap(row[4], WIDTH - len(start) - wide[3] - 2) or [""]
-        for n in range(max(len(takes), len(meaning))):
-            left, right = (lines[n] if n < len(lines) else "" for lines in (takes, meaning))
-            out.append(
-                ((start if n == 0 else " " * len(start)) + left.ljust(wide[3]) + "  " + right).rstrip()
-            )
-    return [*out, "", *_wrapped("", _legend(spec.fields))]
+        for n, (left, right) in enumerate(itertools.zip_longest(limits, meaning, fillvalue="")):
+            head = start if n == 0 else " " * len(start)
+            out.append((head + left.ljust(wide[3]) + "  " + right).rstrip())
+    return out
 
 
 def _wrapped(head: str, text: str) -> list[str]:
@@ -200,22 +204,29 @@ def _default(f: Field) -> str:
 
 
 def takes(f: Field) -> str:
-    """What an item takes: choices, limits, number of values."""
+    """Permitted values of an item: choices, limits, number of values."""
+    text = _one_value(f) + (", or range" if f.varies else "")
+    return ", ".join(t for t in (_many(f), text) if t)
+
+
+def _many(f: Field) -> str:
+    """How many values an item has; empty of one."""
     least, most = f.count
-    many = "" if most == 1 else f"{least} to {most} values" if least < most else f"{most} values"
+    if most == 1:
+        return ""
+    return f"{least} to {most} values" if least < most else f"{most} values"
+
+
+def _one_value(f: Field) -> str:
     if f.kind is Kind.WORD:
-        text = ", ".join(f"{w} ({f.codes[w]})" if w in f.codes else w for w in f.words)
-    elif f.kind is Kind.FLAGS:
-        text = f"letters of {f.words[0]}"
-    elif f.kind is Kind.FAMILY:
-        text = f"one of {f.family}"
-    else:
-        text = " ".join(t for t in (_KINDS.get(f.kind, ""), _limits(f)) if t)
-        text = text or ("whole number" if f.kind is Kind.INT else "number")
-        text += "".join(f", or {word}" for word in f.words)
-    if f.varies:
-        text += ", or range"
-    return ", ".join(t for t in (many, text) if t)
+        return ", ".join(f"{w} ({f.codes[w]})" if w in f.codes else w for w in f.words)
+    if f.kind is Kind.FLAGS:
+        return f"letters of {f.words[0]}"
+    if f.kind is Kind.FAMILY:
+        return f"one of {f.family}"
+    text = " ".join(t for t in (_KINDS.get(f.kind, ""), _limits(f)) if t)
+    text = text or ("whole number" if f.kind is Kind.INT else "number")
+    return text + "".join(f", or {word}" for word in f.words)
 
 
 def _limits(f: Field) -> str:
@@ -331,10 +342,10 @@ s.
 
 ## Directions and signs
 
-X points to the right, Y upwards, rotations R turn anticlockwise. Forces, displacements and accelerations
+X points to the right, Y upwards, rotations R are anticlockwise. Forces, displacements and accelerations
 follow them. End forces of a FRAME member act on the member along its own axes (x from I to J, y to its
 left); its axial force is positive in tension. Moments of its hinges (`hinge I`, `hinge J`) are positive
-where it sags, with tension on the right of the way from I to J. A spring's deformation is the displacement
+where it sags, with tension on the right of the line from I to J. A spring's deformation is the displacement
 of J less that of I. A contact closes as I moves towards J, and its force is positive in compression.
 
 The tables give units in dimensions: `F` force, `L` length, `T` time, `-` a pure number. "must" means that

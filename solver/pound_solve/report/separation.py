@@ -33,7 +33,7 @@ class SeparationError(Exception):
 
 
 class SeparationRecord(NamedTuple):
-    """What the rows are made from, see `text`."""
+    """Input of the rows, see `text`."""
 
     results: Results
     periods: Sequence[float] = ()
@@ -63,60 +63,71 @@ def text(results: Results, periods: Sequence[float] = (), damping: Sequence[floa
 
 def rows(record: SeparationRecord) -> list[Row]:
     """One row for each contact; see `text`."""
-    results, periods, damping = record
+    results = record.results
+    _check(results)
+    ends = {e["name"] or str(e["element"]): (e["i"], e["j"]) for e in results.table("elements")}
+    summary = {row["contact"]: row for row in results.table("contact_summary")}
+    early = "" if results.status == "done" else f"; the run ended early, at {results.last_time:g}"
+    met = any(row["closures"] > 0 for row in summary.values())  # that changed all displacements
+    note = (MET if met else FREE) + early
+    out = []
+    for law in results.table("contact_laws"):
+        direction, nodes = axes(law["angle"])[0], ends[law["contact"]]
+        u1, u2 = (_peak(results, node, direction) for node in nodes)
+        modes = [_mode(results, node, direction) for node in nodes]
+        t1, t2 = record.periods or [m[0] for m in modes]
+        xi1, xi2 = record.damping or [m[1] for m in modes]
+        ddc, remark = _ddc(u1, u2, (t1, t2), (xi1, xi2))
+        gap = float(law["gap"])
+        closure = NAN if met else gap - float(summary[law["contact"]]["min_gap"])
+        sums = (u1 + u2, math.hypot(u1, u2), ddc)
+        out.append((law["contact"], u1, u2, t1, t2, xi1, xi2, *sums, closure, gap, note + remark))
+    return out
+
+
+def _check(results: Results) -> None:
+    """Raise a SeparationError where there is no history or no contact."""
     if math.isnan(results.last_time):
         why = f": {results.message}" if results.message else ""
         raise SeparationError(f"{results.path} holds no history{why}")
     needed = {"contact_laws", "contact_summary", "node_envelope", "elements"}
     if not needed <= set(results.tables) or not len(results.table("contact_laws")):
         raise SeparationError(f"{results.path}: the rules need a HISTORY of a deck with contacts")
-    ends = {e["name"] or str(e["element"]): (e["i"], e["j"]) for e in results.table("elements")}
-    summary = {row["contact"]: row for row in results.table("contact_summary")}
-    early = "" if results.status == "done" else f"; the run ended early, at {results.last_time:g}"
-    met = any(row["closures"] > 0 for row in summary.values())  # that changed all displacements
-    out = []
-    for law in results.table("contact_laws"):
-        way, nodes = axes(law["angle"])[0], ends[law["contact"]]
-        u1, u2 = (_peak(results, node, way) for node in nodes)
-        modes = [_mode(results, node, way) for node in nodes]
-        t1, t2 = periods or [m[0] for m in modes]
-        xi1, xi2 = damping or [m[1] for m in modes]
-        note = (MET if met else FREE) + early
-        if u2 == 0.0 or u1 == 0.0:
-            ddc = u1 + u2  # one side stands still: nothing to correlate
-        elif math.isnan(t1 + t2 + xi1 + xi2):
-            ddc, note = NAN, note + UNKNOWN
-        else:
-            ddc = double_difference(u1, u2, correlation(t1, t2, xi1 / 100.0, xi2 / 100.0))
-        gap = float(law["gap"])
-        closure = NAN if met else gap - float(summary[law["contact"]]["min_gap"])
-        sums = (u1 + u2, math.hypot(u1, u2), ddc)
-        out.append((law["contact"], u1, u2, t1, t2, xi1, xi2, *sums, closure, gap, note))
-    return out
 
 
-def _peak(results: Results, node: int, way: tuple[float, float]) -> float:
-    """Largest absolute displacement of a node along `way`; 0 of a wall, NaN where it is not stored."""
+def _ddc(
+    u1: float, u2: float, periods: tuple[float, float], damping: tuple[float, float]
+) -> tuple[float, str]:
+    """Double difference combination of two peaks; a remark where a period or a damping [%] is unknown."""
+    if u2 == 0.0 or u1 == 0.0:
+        return u1 + u2, ""  # one side does not move: no correlation
+    if math.isnan(sum(periods) + sum(damping)):
+        return NAN, UNKNOWN
+    return double_difference(u1, u2, correlation(*periods, *(xi / 100.0 for xi in damping))), ""
+
+
+def _peak(results: Results, node: int, direction: tuple[float, float]) -> float:
+    """Largest absolute displacement of a node; 0 of a wall, NaN where it is not stored."""
     if node == 0:
         return 0.0
     envelope = results.table("node_envelope")
     own = envelope[(envelope["node"] == node) & (envelope["quantity"] == "displacement")]
-    if 0.0 in way:
-        axis = own[own["direction"] == ("X" if way[0] else "Y")]
+    if 0.0 in direction:
+        axis = own[own["direction"] == ("X" if direction[0] else "Y")]
         return float(max(abs(axis["max"][0]), abs(axis["min"][0]))) if len(axis) else NAN
     if "node/u" not in results.histories or node not in results.attributes("node/u")["nodes"]:
         return NAN
     at = results.attributes("node/u")["nodes"].index(node)
-    return float(np.abs(results.history("node/u")[:, at, :2] @ way).max(initial=0.0))
+    return float(np.abs(results.history("node/u")[:, at, :2] @ direction).max(initial=0.0))
 
 
-def _mode(results: Results, node: int, way: tuple[float, float]) -> tuple[float, float]:
+def _mode(results: Results, node: int, direction: tuple[float, float]) -> tuple[float, float]:
     """Period [T] and damping [%] of the longest mode that a node takes part in; NaN where there is none."""
     if not {"modes", "mode_shapes"} <= set(results.tables):
         return NAN, NAN
     shapes, modes = results.table("mode_shapes"), results.table("modes")
     own = shapes[shapes["node"] == node]
-    taking = own["mode"][np.abs(own["x"] * way[0] + own["y"] * way[1]) >= TAKES_PART]
+    taking = own["mode"][np.abs(own["x"] * direction[0] + own["y"] * direction[1]) >= TAKES_PART]
     chosen = modes[np.isin(modes["mode"], taking)]
     if not len(chosen):
         return NAN, NAN

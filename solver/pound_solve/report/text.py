@@ -245,17 +245,19 @@ def _format(column: Column, values: list[Any]) -> list[str]:
         return [plain[v] for v in values]
     if column.fmt == "int":
         return [column.zero if column.zero and not v else str(v) for v in values]
-    real = [v for v in values if math.isfinite(v)]
-    if column.fmt == "time":
-        shown = _times(real)
-    elif column.fmt == "percent":
-        shown = [_unsigned_zero(f"{v:.2f}") for v in real]
-    else:
-        given = column.fmt == "given"
-        dust = _TINY if given else max(_TINY, _DUST * max(map(abs, real), default=0.0))
-        shown = _numbers([v if abs(v) > dust else 0.0 for v in real], _DIGITS[column.fmt], given)
-    numbers = iter(shown)
-    return [next(numbers) if math.isfinite(v) else "-" if math.isnan(v) else str(v) for v in values]
+    shown = iter(_decimals(column.fmt, [v for v in values if math.isfinite(v)]))
+    return [next(shown) if math.isfinite(v) else "-" if math.isnan(v) else str(v) for v in values]
+
+
+def _decimals(fmt: str, values: list[float]) -> list[str]:
+    """Finite values in the format of a column of real numbers."""
+    if fmt == "time":
+        return _times(values)
+    if fmt == "percent":
+        return [_unsigned_zero(f"{v:.2f}") for v in values]
+    given = fmt == "given"
+    dust = _TINY if given else max(_TINY, _DUST * max(map(abs, values), default=0.0))
+    return _numbers([v if abs(v) > dust else 0.0 for v in values], _DIGITS[fmt], given)
 
 
 def _times(values: list[float]) -> list[str]:
@@ -269,17 +271,29 @@ def _numbers(values: list[float], digits: int, every: bool = False) -> list[str]
 
     The largest value decides on the decimals of all that are alike, unless `every` digit must show.
     """
-    # of all values but zeros: significant digits without trailing zeros, exponent
-    parts = [f"{abs(v):.{digits - 1}E}".split("E") for v in values if v]
-    shapes = [(len(m.replace(".", "").rstrip("0")), int(e)) for m, e in parts] or [(1, 0)]
-    highest, spread = max(e for _, e in shapes), max(e for _, e in shapes) - min(e for _, e in shapes)
-    exact = max(1, *(n - 1 - e for n, e in shapes))  # decimals that show every value to its last digit
-    room = max(0, digits - 1 - highest)  # decimals that show the largest value to its last digit
-    if -3 <= highest < _WHOLE and (spread <= 3 or exact <= room or highest + exact <= max(_WHOLE, digits)):
-        decimals = exact if every or spread > 3 else min(exact, room)
+    shapes = [_shape(v, digits) for v in values if v] or [(1, 0)]
+    decimals = _fixed(shapes, digits, every)
+    if decimals is not None:
         return [_unsigned_zero(f"{v:.{decimals}f}") for v in values]
     mantissa = max(1, *(n - 1 for n, _ in shapes))
     return [f"{v:.{mantissa}E}" if v else "0" for v in values]
+
+
+def _fixed(shapes: Sequence[tuple[int, int]], digits: int, every: bool) -> int | None:
+    """Decimals with which numbers read well without exponents; None where they do not."""
+    highest, lowest = max(e for _, e in shapes), min(e for _, e in shapes)
+    alike = highest - lowest <= 3
+    exact = max(1, *(n - 1 - e for n, e in shapes))  # decimals that show every value to its last digit
+    room = max(0, digits - 1 - highest)  # decimals that show the largest value to its last digit
+    if -3 <= highest < _WHOLE and (alike or exact <= room or highest + exact <= max(_WHOLE, digits)):
+        return min(exact, room) if alike and not every else exact
+    return None
+
+
+def _shape(value: float, digits: int) -> tuple[int, int]:
+    """Significant digits of a value without trailing zeros, and its decimal exponent."""
+    mantissa, exponent = f"{abs(value):.{digits - 1}E}".split("E")
+    return len(mantissa.replace(".", "").rstrip("0")), int(exponent)
 
 
 def _unsigned_zero(text: str) -> str:

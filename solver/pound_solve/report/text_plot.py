@@ -1,4 +1,4 @@
-"""Drawings of a curve that need no library: letters for a terminal, SVG for the manual."""
+"""Drawings of a curve without a library: letters for a terminal, SVG for the manual."""
 
 from __future__ import annotations
 
@@ -48,21 +48,31 @@ def letters(curve: Curve, width: int = 68, height: int = 22) -> str:
     if x0 <= 0.0 <= x1:
         for line in field:
             line[column] = "+" if line[column] == "-" else "|"
-    for (xa, ya), (xb, yb) in pairwise(curve):
-        (ca, ra), (cb, rb) = place(xa, ya), place(xb, yb)
-        steps = max(abs(cb - ca), abs(rb - ra), 1)
-        for n in range(steps + 1):
-            field[round(ra + (rb - ra) * n / steps)][round(ca + (cb - ca) * n / steps)] = "*"
+    for a, b in pairwise(curve):
+        _stroke(field, place(*a), place(*b))
     names = {0: f"{y1:.4g}", height - 1: f"{y0:.4g}"}
     if y0 < 0.0 < y1 and 0 < row < height - 1:
         names[row] = "0"
     wide = max(len(name) for name in names.values())
     out = [f"{names.get(n, ''):>{wide}} {''.join(line)}".rstrip() for n, line in enumerate(field)]
+    return "\n".join([*out, " " * (wide + 1) + _foot(x0, x1, column, width)])
+
+
+def _stroke(field: list[list[str]], start: tuple[int, int], end: tuple[int, int]) -> None:
+    """Draw a straight line between two places (column, row) of the field."""
+    (ca, ra), (cb, rb) = start, end
+    steps = max(abs(cb - ca), abs(rb - ra), 1)
+    for n in range(steps + 1):
+        field[round(ra + (rb - ra) * n / steps)][round(ca + (cb - ca) * n / steps)] = "*"
+
+
+def _foot(x0: float, x1: float, zero: int, width: int) -> str:
+    """Ends of the x axis, and its zero at a column where there is room."""
     low, high = f"{x0:.4g}", f"{x1:.4g}"
     foot = low + " " * (width - len(low) - len(high)) + high
-    if x0 < 0.0 < x1 and len(low) < column < width - len(high) - 1:
-        foot = foot[:column] + "0" + foot[column + 1 :]
-    return "\n".join([*out, " " * (wide + 1) + foot])
+    if x0 < 0.0 < x1 and len(low) < zero < width - len(high) - 1:
+        return foot[:zero] + "0" + foot[zero + 1 :]
+    return foot
 
 
 def svg(curve: Curve, title: str, x_name: str, y_name: str) -> str:
@@ -118,7 +128,7 @@ def svg(curve: Curve, title: str, x_name: str, y_name: str) -> str:
 
 
 def _span(values: Sequence[float], margin: float = 0.0) -> tuple[float, float]:
-    """Least and largest value, some way apart where they are the same."""
+    """Least and largest value, moved apart where they are equal."""
     low, high = min(values), max(values)
     if low == high:
         low, high = low - 1.0, high + 1.0
@@ -151,7 +161,7 @@ def _path(points: Curve) -> str:
 
 
 def _between(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> bool:
-    """Whether b lies on the way from a to c, to half of a tenth of a pixel."""
+    """Whether b lies on the line from a to c, to half of a tenth of a pixel."""
     dx, dy = c[0] - a[0], c[1] - a[1]
     length = math.hypot(dx, dy)
     if length == 0.0:

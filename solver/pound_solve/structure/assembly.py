@@ -50,7 +50,7 @@ class Structure:
     released : ndarray, shape (n,)
         Those among them that a history removes at its start.
     ground : ndarray, shape (3, n)
-        ``M r`` for a unit acceleration of the ground along x and y and in a turn about the origin,
+        ``M r`` for a unit acceleration of the ground along x and y and for a rotation about the origin,
         supports included [F T^2/L], [F T^2].
     laws : tuple of LawSpring
     law_rows : Matrix, shape (n_laws, n)
@@ -66,7 +66,7 @@ class Structure:
     self_weight : bool
         Whether the weight of members is among the loads.
     parts : mapping of int to Parts
-        What every element added, by its number.
+        Contributions of every element, by its number.
     damping_texts : list of (Card, str)
     """
 
@@ -179,7 +179,7 @@ class AssemblyError(Exception):
 
 
 def _refusal(model: Model, label: str, message: str, item: str, elements: list[Element]) -> Diagnostic:
-    """What is wrong with the elements of one property set, reported once."""
+    """Diagnostic of the elements of one property set, reported once."""
     first, *others = elements
     more = f" and {len(others)} more" if others else ""
     return Diagnostic(
@@ -210,16 +210,22 @@ def assemble(model: Model, moved: Collection[Dof] = (), self_weight: bool = True
     elements.build()
     if elements.problems:
         raise AssemblyError(elements.problems)
-    parts, mass = elements.parts, elements.mass
-    ordered = [parts[e] for e in model.elements]
-    dofs = number(model.nodes, moved, [f for p in ordered for f in p.internal()])
-    laws = tuple(s for p in ordered for s in p.laws)
+    dofs = number(model.nodes, moved, [f for p in elements.ordered() for f in p.internal()])
+    structure = _joined(model, dofs, elements)
+    if problems := add_damping(structure, elements.mass):
+        raise AssemblyError(problems)
+    return structure
+
+
+def _joined(model: Model, dofs: DofMap, elements: _Elements) -> Structure:
+    """Sum of the parts of all elements, before any damping model is applied."""
+    parts, mass = elements.ordered(), elements.mass
+    laws = tuple(s for p in parts for s in p.laws)
     law_rows = dofs.rows([(s.dofs, s.row) for s in laws])
-    stiffness = dofs.assembled((b.dofs, b.matrix) for p in ordered for b in p.stiffness)
-    dashpots = dofs.assembled((b.dofs, b.matrix) for p in ordered for b in p.damping)
-    loads, released = _loads(model, dofs, ordered)
-    corotational = [c for p in ordered for c in p.corotational]
-    structure = Structure(
+    stiffness = dofs.assembled((b.dofs, b.matrix) for p in parts for b in p.stiffness)
+    dashpots = dofs.assembled((b.dofs, b.matrix) for p in parts for b in p.damping)
+    loads, released = _loads(model, dofs, parts)
+    return Structure(
         model=model,
         dofs=dofs,
         stiffness=stiffness,
@@ -232,18 +238,18 @@ def assemble(model: Model, moved: Collection[Dof] = (), self_weight: bool = True
         ground=ground_inertia(model, dofs, mass),
         laws=laws,
         law_rows=law_rows,
-        outputs=tuple(o for p in ordered for o in p.outputs),
-        geometric=tuple(g for p in ordered for g in p.geometric),
-        corotational=CorotationalMembers(
-            corotational, dofs.rows([(c.dofs, row) for c in corotational for row in c.rows])
-        ),
+        outputs=tuple(o for p in parts for o in p.outputs),
+        geometric=tuple(g for p in parts for g in p.geometric),
+        corotational=_corotational(dofs, parts),
         nodal_mass=elements.nodal_mass,
-        self_weight=self_weight,
-        parts=parts,
+        self_weight=elements.self_weight,
+        parts=elements.parts,
     )
-    if problems := add_damping(structure, mass):
-        raise AssemblyError(problems)
-    return structure
+
+
+def _corotational(dofs: DofMap, parts: Sequence[Parts]) -> CorotationalMembers:
+    members = [c for p in parts for c in p.corotational]
+    return CorotationalMembers(members, dofs.rows([(c.dofs, row) for c in members for row in c.rows]))
 
 
 def _loads(model: Model, dofs: DofMap, parts: Sequence[Parts]) -> tuple[Array, Array]:
@@ -300,6 +306,10 @@ class _Elements:
             self._build(element)
         self.problems += [_refusal(self.model, *why, elements) for why, elements in self._refused.items()]
 
+    def ordered(self) -> list[Parts]:
+        """Parts of all elements in the order of the model, which is not that of their construction."""
+        return [self.parts[e] for e in self.model.elements]
+
     def _kind(self, element: Element) -> str:
         return self.model.props[element.prop].spec.name
 
@@ -340,7 +350,7 @@ def stiffness_along(
 ) -> dict[int, float]:
     """Axial stiffness [F/L] along a direction of the elements that meet a node, by their number.
 
-    That of a rod, EA/L, times the squared cosine; what has no length is a rod along the direction.
+    That of a rod, EA/L, times the squared cosine; an element without length is a rod along the direction.
     """
     out = {}
     for name, own in parts.items():
@@ -348,14 +358,14 @@ def stiffness_along(
         at = [n for n, f in enumerate(initial.dofs) if f in ((node, 0), (node, 1))]
         if not at:
             continue
-        way, length = np.array(normal), 0.0
+        axis, length = np.array(normal), 0.0
         if e.j is not None:
             i, j = model.nodes[e.i], model.nodes[e.j]
             line = np.array([j.x - i.x, j.y - i.y])
             length = float(np.hypot(*line))
-            way = line / length if length else way
-        t = way[[initial.dofs[n][1] for n in at]]
-        k = float(t @ initial.matrix[np.ix_(at, at)] @ t) * float(way @ normal) ** 2
+            axis = line / length if length else axis
+        t = axis[[initial.dofs[n][1] for n in at]]
+        k = float(t @ initial.matrix[np.ix_(at, at)] @ t) * float(axis @ normal) ** 2
         if k > 1e-12 * np.abs(initial.matrix).max():  # a column's cosine may be rounding
             out[name] = k
     return out

@@ -19,7 +19,7 @@ from pound_solve.structure.reduction import Decision, ReducedSystem
 
 @dataclass(frozen=True)
 class Condensed:
-    """A reduced system without the massless DOFs that follow the others, and the way back.
+    """A reduced system without the massless DOFs that follow the others, and the expansion to all DOFs.
 
     Attributes
     ----------

@@ -1,9 +1,9 @@
 """The two diaphragms of a contact: given on its card, or found behind its nodes.
 
-From a contact's node the walk goes on straight away from the contact, along members that are stiff in that
+From a contact's node the search goes straight away from the contact, along members that are stiff in that
 direction, to the far end: the masses of the nodes add up, the stiffnesses act in series.  A node with no
-such member behind it is a rigid diaphragm.  So is one whose chain is held at its far end: a wave does not
-come back from there as from a free end, and the theory of `pounding` says nothing of it.
+such member behind it is a rigid diaphragm.  So is one whose chain is fixed at its far end: a wave is not
+reflected there as at a free end, which the theory does not cover.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ STRAIGHT = 1e-6  #: sine of the angle by which a member may miss the contact's d
 
 @dataclass(frozen=True)
 class DiaphragmCollision:
-    """What meets in a contact.
+    """The two diaphragms of a contact.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class DiaphragmCollision:
     pair : Pair or None
         The theory; None where a mass is zero, or rigid without the card saying so.
     lumped_error : float
-        By how much lumped masses get the changes of velocity wrong [-].
+        Error of the changes of velocity with lumped masses [-].
     note : str
     """
 
@@ -83,7 +83,7 @@ def sides(
 
 
 def diaphragm_collisions(structure: Structure) -> dict[int, DiaphragmCollision]:
-    """What meets in every contact, by the number of its law."""
+    """The two diaphragms of every contact, by the number of its law."""
     members: dict[int, list[int]] = {}
     for e in structure.model.elements.values():
         if e.j is not None:
@@ -99,7 +99,7 @@ def diaphragm_collisions(structure: Structure) -> dict[int, DiaphragmCollision]:
 def _diaphragm_collision(
     structure: Structure, members: Mapping[int, Sequence[int]], spring: LawSpring
 ) -> DiaphragmCollision:
-    """Both sides of a contact, and what the theory says of them."""
+    """Both sides of a contact, and their theory."""
     first, second = both = sides(structure, members, spring)
     if 0.0 in (first.mass, second.mass):
         return DiaphragmCollision(both, None, math.nan, "no theory: a diaphragm has no mass")
@@ -132,43 +132,43 @@ def _verdict(lumped: bool, error: float) -> str:
 
 
 def _behind(
-    structure: Structure, members: Mapping[int, Sequence[int]], node: int, way: tuple[float, float]
+    structure: Structure, members: Mapping[int, Sequence[int]], node: int, direction: tuple[float, float]
 ) -> Diaphragm | None:
-    """The chain of members that goes from a node along `way`; None for a rigid one."""
+    """The chain of members that goes from a node along a direction; None for a rigid one."""
     nodes = structure.model.nodes
     mass = flexibility = 0.0
     while True:
-        own = mass_along(structure.model, structure.nodal_mass, node, way)
+        own = mass_along(structure.model, structure.nodal_mass, node, direction)
         if math.isinf(own):
             return None
         mass += own
-        stiffness = _straight_on(structure, members.get(node, ()), node, way)
+        stiffness = _straight_on(structure, members.get(node, ()), node, direction)
         if not stiffness:
             return Diaphragm(mass, 1.0 / flexibility) if flexibility else None
         here = nodes[node]
         node = min(stiffness, key=lambda n: math.hypot(nodes[n].x - here.x, nodes[n].y - here.y))
-        moving = [d for d, n in zip("XY", way) if n != 0.0]
+        moving = [d for d, n in zip("XY", direction) if n != 0.0]
         if any(nodes[node].slaved.get(d, node) == here.slaved.get(d, here.id) for d in moving):
-            return None  # both follow one master: nothing between them gives way
+            return None  # both follow one master: nothing between them deforms
         flexibility += 1.0 / stiffness[node]
 
 
 def _straight_on(
-    structure: Structure, members: Sequence[int], node: int, way: tuple[float, float]
+    structure: Structure, members: Sequence[int], node: int, direction: tuple[float, float]
 ) -> dict[int, float]:
-    """Nodes straight on that members join to this one, and the stiffness between along `way`."""
+    """Nodes straight on that members join to this one, and the stiffness between along a direction."""
     nodes, found = structure.model.nodes, dict[int, float]()
     here = nodes[node]
     for member in members:
         e = structure.model.elements[member]
         other = nodes[e.j if e.i == node and e.j is not None else e.i]
         dx, dy = other.x - here.x, other.y - here.y
-        off = abs(dx * way[1] - dy * way[0])
-        if dx * way[0] + dy * way[1] <= 0.0 or off > STRAIGHT * math.hypot(dx, dy):
+        off = abs(dx * direction[1] - dy * direction[0])
+        if dx * direction[0] + dy * direction[1] <= 0.0 or off > STRAIGHT * math.hypot(dx, dy):
             continue
         block = structure.parts[member].initial()
         from_here, from_there = (
-            np.array([way[d] if owner == n and d < 2 else 0.0 for owner, d in block.dofs])
+            np.array([direction[d] if owner == n and d < 2 else 0.0 for owner, d in block.dofs])
             for n in (node, other.id)
         )
         along = -float(from_here @ block.matrix @ from_there)

@@ -1,8 +1,8 @@
-"""DOFs: which displacements are unknown, which follow a master, which are prescribed.
+"""Degrees of freedom (DOFs): which are unknown, which follow a master, which are prescribed.
 
-Every node has ``ux``, ``uy`` and ``rz``; an element may have internal DOFs besides (the turns of its
-hinges).  A fixed one is zero, a slaved one follows its master
-with the rigid arm between them, one at a moved support is prescribed; the rest are the unknowns.
+Every node has ``ux``, ``uy`` and ``rz``; an element may have internal DOFs in addition (the rotations of
+its hinges).  A fixed one is zero, a slaved one follows its master with the rigid arm between them, one at a
+moved support is prescribed; the rest are the unknowns.
 Columns of every assembled matrix are the unknowns first, then the prescribed DOFs.
 """
 
@@ -19,10 +19,11 @@ from pound_solve.numerics.types import Array
 
 DIRECTIONS = "XYR"
 NAMES = ("ux", "uy", "rz")
-INTERNAL = ("turn inside I", "turn inside J", "stretch inside I", "stretch inside J")
+INTERNAL = ("rotation inside I", "rotation inside J", "stretch inside I", "stretch inside J")
 
 #: node number and direction (0 x, 1 y, 2 rotation), or element number and 3, 4, ... for its internal ones
 Dof = tuple[int, int]
+Terms = tuple[tuple[int, float], ...]  #: columns and factors, whose sum is a DOF
 
 
 def label(dof: Dof) -> str:
@@ -53,7 +54,7 @@ class DofMap:
 
     free: tuple[Dof, ...]
     moved: tuple[Dof, ...]
-    terms: Mapping[Dof, tuple[tuple[int, float], ...]]
+    terms: Mapping[Dof, Terms]
 
     @property
     def size(self) -> int:
@@ -126,23 +127,21 @@ def number(
         if DIRECTIONS[d] not in n.fixed and DIRECTIONS[d] not in n.slaved and (n.id, d) not in prescribed
     ) + tuple(internal)
     column = {f: i for i, f in enumerate(free + moved)}
-    terms: dict[Dof, tuple[tuple[int, float], ...]] = {f: ((column[f], 1.0),) for f in internal}
+    terms: dict[Dof, Terms] = {f: ((column[f], 1.0),) for f in internal}
     for n in nodes.values():
         for d in range(3):
-            if DIRECTIONS[d] in n.slaved:
-                continue  # below, once all masters are known
-            terms[n.id, d] = ((column[n.id, d], 1.0),) if (n.id, d) in column else ()
-    for d in (
-        2,
-        0,
-        1,
-    ):  # rotations first: an arm turns with its master, which may itself follow another there
-        for n in nodes.values():
             if DIRECTIONS[d] not in n.slaved:
-                continue
-            master = nodes[n.slaved[DIRECTIONS[d]]]
-            arm = (-(n.y - master.y), n.x - master.x, 0.0)[d]
-            own = terms[master.id, d]
-            turn = tuple((c, f * arm) for c, f in terms[master.id, 2]) if arm else ()
-            terms[n.id, d] = own + turn
+                terms[n.id, d] = ((column[n.id, d], 1.0),) if (n.id, d) in column else ()
+    # rotations first: the arm of a slaved node rotates with its master, whose rotation may itself be slaved
+    for d in (2, 0, 1):
+        for n in nodes.values():
+            if DIRECTIONS[d] in n.slaved:
+                terms[n.id, d] = _slaved(n, nodes[n.slaved[DIRECTIONS[d]]], d, terms)
     return DofMap(free, moved, terms)
+
+
+def _slaved(node: Node, master: Node, d: int, terms: Mapping[Dof, Terms]) -> Terms:
+    """A slaved DOF as terms of the master's: the same displacement, and the rotation times the arm."""
+    arm = (-(node.y - master.y), node.x - master.x, 0.0)[d]
+    rotation = tuple((c, f * arm) for c, f in terms[master.id, 2]) if arm else ()
+    return terms[master.id, d] + rotation

@@ -32,7 +32,7 @@ def weights(model: Model) -> list[MassBlock]:
 
 
 def nodal_mass(model: Model, blocks: Iterable[MassBlock]) -> dict[Dof, float]:
-    """Diagonal mass by node and direction; a master has the mass of its slaves besides."""
+    """Diagonal mass by node and direction; a master has the mass of its slaves in addition."""
     out: dict[Dof, float] = {}
     for _, at, matrix in blocks:
         for a, dof in enumerate(at):

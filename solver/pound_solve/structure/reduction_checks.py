@@ -1,4 +1,4 @@
-"""What a structure must have so that its motion can be computed."""
+"""Conditions under which the motion of a structure can be computed."""
 
 from __future__ import annotations
 

@@ -47,9 +47,9 @@ class Case:
         Error of those allowed, as a share of the largest displacement.
     right : callable or None
         Displacements ux of the nodes of OUTPUT at some times, shape (n_times, n_nodes), in closed form; or
-        what `compared` makes of them.
+        the result of `compared` for them.
     compared : callable
-        What is compared with the right one: of times and displacements, shape (n_times, n_nodes).
+        Quantity that is compared with the right one: of times and displacements, shape (n_times, n_nodes).
     like : tuple of str and float
         Deck whose displacements times the factor are the right ones; empty: the deck itself.
     files : mapping of str to str

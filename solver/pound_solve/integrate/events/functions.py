@@ -129,9 +129,9 @@ class EventFunctions(RowFunctions):
     """
 
     def __init__(self, branches: Sequence[Branch], reaction_row: Mapping[int, int]) -> None:
-        self.keys = [(i, e) for i, b in enumerate(branches) for e in range(len(b.exits))]
+        self.keys = [(i, e) for i, b in enumerate(branches) for e in range(len(b.events))]
         rows = [reaction_row[i] if branches[i].held else i for i, _ in self.keys]
-        super().__init__(rows, [branches[i].exits[e] for i, e in self.keys])
+        super().__init__(rows, [branches[i].events[e] for i, e in self.keys])
 
     def first_event(self, samples: Sampled, largest: Array, tolerance: float) -> GridEvent | None:
         """Return the earliest event of some samples, or None.

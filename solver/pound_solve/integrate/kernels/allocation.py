@@ -206,12 +206,7 @@ def law_arrays(
     rows = sparse_rows(system.law_rows[:, own.order])
     pointers, places, values = places_in_pattern(rows, own)
     normal = np.array([normal_of(laws, s) for s in laws], np.int64).reshape(count, 2).T
-    numbers, internal = np.zeros((count, PARAMETERS)), np.zeros((count, VARIABLES + 2))
-    for i, (s, (_, _, _, variables)) in enumerate(zip(laws, start.states)):
-        numbers[i, : len(s.law.p)], ruled = s.law.p, s.law.rule.variables
-        internal[i, :ruled] = variables[:ruled]
-        if s.secant:
-            internal[i, -2:] = variables[ruled:]
+    parameters, internal = _law_numbers(laws, start)
     branch, entry, work = (np.array([s[k] for s in start.states]) for k in range(3))
 
     def integers(values: Iterable[int]) -> Index:
@@ -236,7 +231,7 @@ def law_arrays(
         pressed_branches=np.ascontiguousarray(normal[1]),
         tangent_damping=np.array([s.beta for s in laws], float),
         secant_damping=np.array([s.secant for s in laws], float),
-        parameters=numbers,
+        parameters=parameters,
         internal=internal,
         branch=branch.astype(np.int64),
         entry_deformation=entry.astype(float),
@@ -259,6 +254,17 @@ def law_arrays(
         saved_state=np.zeros((count, 3 + internal.shape[1])),
         members=member_arrays(system, own, scheme),
     )
+
+
+def _law_numbers(laws: Sequence[LawSpring], start: Start) -> tuple[Array, Array]:
+    """Parameters and internal variables of laws, a row for each; those of a secant dashpot come last."""
+    parameters, internal = np.zeros((len(laws), PARAMETERS)), np.zeros((len(laws), VARIABLES + 2))
+    for i, (s, (_, _, _, variables)) in enumerate(zip(laws, start.states)):
+        n = s.law.rule.variables
+        parameters[i, : len(s.law.p)], internal[i, :n] = s.law.p, variables[:n]
+        if s.secant:
+            internal[i, -2:] = variables[n:]
+    return parameters, internal
 
 
 def member_arrays(system: ReducedSystem, own: Layout, scheme: Scheme) -> state.Corotational:

@@ -17,7 +17,7 @@ loses :math:`D = \delta_m^2 a (K_1 - K)`.  EXACT: :math:`D = (1-e^2) W`, so that
 .. math:: K_1 = K\,\frac{a + s(1-a)}{a(1-s)}, \qquad K_2 = \frac{K - a K_1}{1-a}
 
 which needs :math:`e^2 > a/(2-a)`.  PUBLISHED: :math:`D = k_h\delta_m^{n+1}(1-e^2)/(n+1)`, the loss
-on the energy of a Hertz contact, which gives back more than :math:`e`.
+on the energy of a Hertz contact; the restitution is then greater than :math:`e`.
 
 Any other speed has a restitution of its own: 1 where :math:`\delta_y` is not passed, and
 least, :math:`(K_2/K_1)^{1/4}`, where the overlap is :math:`\delta_y(1 + \sqrt{K_1/K_2})`.
@@ -58,7 +58,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Deformation is the closure; the memory holds where the slider stands."""
+    """Deformation is the closure; the internal variable is the position of the slider."""
     k1, k2, dy, gap = p[:4]
     if at == OPEN:
         return linear(0.0, 0.0, above(gap))
@@ -70,7 +70,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, slide, turn, or part."""
+    """Touch, slide, reverse, or part."""
     dy, overlap = p[2], d - p[3]
     if at == OPEN:
         return STIFF, (0.0,)
@@ -84,7 +84,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Area below the way back."""
+    """Area below the unloading path."""
     k2, dy, gap = p[1:4]
     if at == OPEN:
         return 0.0
@@ -149,17 +149,17 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         k1, k2, dy = (values[name] for name in plain)
         if k2 > k1:
             raise ValueError(f"K2 {k2:g} is above K1 {k1:g}: the second stiffness is the lower one")
-        asked = given = math.nan
+        required = given = math.nan
         worst = dy * (1.0 + math.sqrt(k1 / k2))
         slow, at = (speed(k1, k2, dy, x, reduced_mass) for x in (dy, worst))
         note = f"e depends on the speed: 1 up to {slow:.4g}, least, {(k2 / k1) ** 0.25:.4g}, at {at:.4g}"
     else:
         k1, k2, dy = constants(values)
-        asked, given = values["E"], restitution(k1, k2, dy, values["DM"])
+        required, given = values["E"], restitution(k1, k2, dy, values["DM"])
         at = speed(k1, k2, dy, values["DM"], reduced_mass)
         relation = values["RELATION"].lower()
         note = f"{relation} relation of E; e depends on the speed: as given at {at:.4g}, which reaches DM"
-    return Built(Law(RULE, (k1, k2, dy, values["GAP"])), k1, 0.0, 0.0, asked, given, note)
+    return Built(Law(RULE, (k1, k2, dy, values["GAP"])), k1, 0.0, 0.0, required, given, note)
 
 
 def constants(values: Mapping[str, Any]) -> tuple[float, float, float]:

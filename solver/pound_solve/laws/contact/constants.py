@@ -1,4 +1,4 @@
-"""The damping constant of a contact law from its card: given itself, or as the restitution E."""
+"""The damping constant of a contact law from its card: given directly, or as the restitution E."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Relation = Callable[[float], float]
 
 
 class Constant(NamedTuple):
-    """A damping constant, the restitution asked for (NaN: none) and the one that it gives; a note."""
+    """A damping constant, the required restitution (NaN: none) and the resulting one; a note."""
 
     value: float
     e_asked: float

@@ -4,16 +4,16 @@ r"""Coulomb friction across a contact: stick on a tangential spring, slip at a s
 
 :math:`x` is the tangential displacement of I against J, :math:`N` the present force of the contact.  The
 spring stands for what lies between the nodes and the surface, so the slider itself moves at the rate
-:math:`\dot x - \dot f / k_t`; where that turns, it sticks again:
+:math:`\dot x - \dot f / k_t`; where that reverses, it sticks again:
 
 .. math:: \pm\dot x < \mu_d \dot N / k_t
 
 At touch the spring begins without force; bodies that slide faster than the limit grows,
-:math:`k_t |\dot x| > \mu_s \dot N`, slip at once.  At release all is forgotten.
+:math:`k_t |\dot x| > \mu_s \dot N`, slip at once.  At release the internal variables are reset.
 
-The law leans on another one: before it is asked for anything, `PUSH` and `PUSH_RATE` of its memory are
-given :math:`N` and :math:`\dot N`.  Its work while it slips is no function of x alone: the integrator adds
-it up.
+The law has normal-force coupling: before each evaluation, the internal variables `PUSH` and `PUSH_RATE` are
+set to :math:`N` and :math:`\dot N`.  Its work while it slips is no function of x alone; the integrator
+accumulates it.
 
 References
 ----------
@@ -37,17 +37,17 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.mirror import side
 
 OPEN, PLUS, MINUS, STICKING = 0, 1, 2, 3
-RELEASED = 2  #: way to leave when the contact opens
-ANCHOR = 2  #: where the memory holds the place at which the spring has no force
+RELEASED = 2  #: index of the event that the contact opens
+ANCHOR = 2  #: internal variable: displacement at which the spring has no force
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open: whether the contact is closed will be told."""
+    """Open; the integrator enters the closed state with the contact."""
     return OPEN, (0.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """The memory: the contact's force and its rate, and where the spring has no force."""
+    """The internal variables: normal force and its rate, displacement at which the spring has no force."""
     kt, mu, mud = p[:3]
     if at == OPEN:
         return linear(0.0, 0.0)
@@ -58,7 +58,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, slip, stick, or let go."""
+    """Touch, slip, stick, or release."""
     kt, mu, mud = p[:3]
     if at != OPEN and event == RELEASED:
         return OPEN, (0.0, 0.0, 0.0)

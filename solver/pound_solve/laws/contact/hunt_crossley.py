@@ -13,7 +13,7 @@ overlap,
 .. math:: v(\delta) = \sqrt{\frac{k\delta^{n+1}}{(n+1)\,m\,\varphi(d)}}, \qquad
           \varphi(d) = \frac{d - \ln(1 + d)}{d^2},
 
-if that is larger: no free impact ever gets there, so that none is changed, and no smallest speed has to be
+if that is larger: no free impact gets there, so that none is changed and no smallest speed has to be
 chosen.  The damping then is :math:`d\sqrt{(n+1)\varphi k m}\;\delta^{(n-1)/2}\dot\delta`, as of
 POWER_LAW_DAMPED.  Where the bodies are pulled apart faster than :math:`v_0/d` the force is zero: it never
 pulls.
@@ -48,7 +48,7 @@ from pound_solve.laws.contact.power import (
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open, or pressed where the gap is negative; the memory: the speed of the approach."""
+    """Open, or pressed where the gap is negative; the internal variable is the approach speed."""
     return (PRESSED if p[2] < 0.0 else OPEN), (0.0,)
 
 
@@ -58,7 +58,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, and remember the speed, or part."""
+    """Touch, with the approach speed, or part."""
     return (PRESSED, (max(v, 0.0),)) if at == OPEN else (OPEN, (0.0,))
 
 

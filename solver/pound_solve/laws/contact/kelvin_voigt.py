@@ -1,6 +1,6 @@
 r"""Kelvin-Voigt contact: spring and dashpot, :math:`f = k\delta + c\dot\delta` while pressed.
 
-With TENSION=NO (default) the contact lets go where the force falls to zero, with some overlap left
+With TENSION=NO (default) the contact releases where the force falls to zero, with some overlap left
 (Shakya, Wijeyewickrema and Ohmachi 2008, 14th World Conf. Earthquake Engng, Beijing);
 with TENSION=YES it holds until the overlap is gone and pulls before it does (Anagnostopoulos 1988,
 Earthquake Engng Struct. Dyn. 16: 443-456).
@@ -45,13 +45,13 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     if at == OPEN:
         return linear(0.0, 0.0, above(gap))
     if at == RELEASED:
-        # overlap left, force zero: pressed again if k*overlap + c*rate turns positive
+        # overlap left, force zero: pressed again if k*overlap + c*rate becomes positive
         return linear(0.0, 0.0, (k, c, -k * gap), below(gap))
     return linear(k, -k * gap, below(gap) if tension != 0.0 else (-k, -c, k * gap), c=c)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, let go, or part."""
+    """Touch, release, or part."""
     if at == OPEN or (at == RELEASED and event == 0):
         return PRESSED, m
     return (OPEN if at == RELEASED or p[3] != 0.0 or p[1] == 0.0 else RELEASED), m
@@ -78,7 +78,7 @@ RULE = Rule(
 
 
 class Built(NamedTuple):
-    """A contact law with what the report says of it; `unit` is that of its stiffness `k`."""
+    """A contact law with its figures in the report; `unit` is that of its stiffness `k`."""
 
     law: Law
     k: float

@@ -2,7 +2,7 @@ r"""Modified viscoelastic contact: the dashpot of Kelvin-Voigt, in approach only
 
 .. math:: f = k\delta + c\dot\delta \ (\dot\delta > 0), \qquad f = k\delta \ (\dot\delta < 0)
 
-The force is continuous where the motion turns, falls to zero with the overlap, and never pulls
+The force is continuous where the motion reverses, falls to zero with the overlap, and never pulls
 (Mahmoud S, Jankowski R 2011, Modified linear viscoelastic model of earthquake-induced structural pounding,
 Iranian J. Sci. Technol. Trans. Civ. Engng 35(C1): 51-62).  Bodies that come together again before they have
 parted meet the dashpot again.
@@ -50,7 +50,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, turn, or part."""
+    """Touch, reverse, or part."""
     if at == OPEN or (at == PARTING and event == 1):
         return APPROACH, m
     return (PARTING if at == APPROACH and event == 0 else OPEN), m

@@ -32,11 +32,12 @@ def drag(c: float, n: float, x: float) -> float:
 
 
 def drag_slope(k: float, n: float, mass: float, x: float, v: float, c: float) -> float:
-    """Derivative by the overlap `x` of the dashpot's force ``c v`` with the present coefficient `c`.
+    """Derivative with respect to the overlap `x` of the dashpot's force ``c v`` with the present
+    coefficient `c`.
 
     With n < 3 it is infinite at touch, where rounding alone decides what `x` is: an iteration that follows
-    it there goes astray.  As long as the spring holds next to nothing of the energy of the motion, nought
-    is the better guide.
+    it there diverges.  As long as the energy of the spring is negligible beside that of the motion, zero
+    is the better derivative.
     """
     if x <= 0.0 or k * x ** (n + 1.0) <= TOUCH * mass * v * v:
         return 0.0

@@ -8,9 +8,9 @@ relation is exact with TENSION=YES, where the contact holds until the overlap is
 (default) there is no force where the sum is below zero, and the exact relation is that of the linear
 contact.
 
-The overlap at which the force vanishes moves with the rate along a curve, so that no exit marks it: the
-contact is pressed until the overlap is gone, with no force on the last part of the way.  The energy that
-the spring still held there counts as lost.
+The overlap at which the force vanishes moves with the rate along a curve, so that no event function
+describes it: the contact is pressed until the overlap is gone, without force in the last part.  The energy
+left in the spring there counts as lost.
 """
 
 from __future__ import annotations

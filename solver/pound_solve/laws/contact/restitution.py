@@ -16,9 +16,9 @@ the motion is :math:`\delta = (v_0/\omega_d) e^{-\xi\omega t}\sin\omega_d t`;
 
 (Schwager and Poeschel 2007, Granular Matter 9: 465-469, give the same result); e = exp(-2) at xi = 1.
 
-*One-sided* (the dashpot acts in approach only): the motion turns at half that time,
-:math:`\arccos(\xi)/\omega_d`, and the spring gives back what it holds there, so that this restitution is
-the root of the one above.
+*One-sided* (the dashpot acts in approach only): the motion reverses at half that time,
+:math:`\arccos(\xi)/\omega_d`, and the spring releases its energy at that instant, so that this restitution
+is the root of the one above.
 
 **Power laws** :math:`f = k\delta^n + c\,\delta^{(n-1)/2}\dot\delta`: with :math:`x = \delta^{(n+1)/2}` the
 path in the plane of :math:`x` and :math:`\dot\delta` is that of the linear contact with the mass
@@ -68,12 +68,12 @@ def no_tension_time(xi: float) -> float:
 
 
 def no_tension(xi: float) -> float:
-    """Restitution [-] for damping ratio `xi` [-] when the contact lets go at zero force."""
+    """Restitution [-] for damping ratio `xi` [-] when the contact releases at zero force."""
     return math.exp(-xi * no_tension_time(xi))
 
 
 def no_tension_ratio(e: float) -> float:
-    """Damping ratio [-] that gives restitution `e` in (0, 1] with a contact that lets go at zero force."""
+    """Damping ratio [-] that gives restitution `e` in (0, 1] with release at zero force."""
     if e == 1.0:
         return 0.0
     high = 1.0

@@ -8,11 +8,11 @@ after Polycarpou PC, Komodromos P, Polycarpou AC (2013), A nonlinear impact mode
 rubber shock absorbers for mitigating the effects of structural pounding during earthquakes, Earthquake
 Engng Struct. Dyn. 42(1): 81-100.  Only its abstract was at hand: the model (the spring, the damping in
 restitution alone, the stiff branch beyond a limit), the defaults N = 2.65 and LIMIT = 0.8 and the published
-relation :math:`d = 1.55 (1 - e^2) / e^{0.7076}` are as remembered.  The relation is a fit to the exact one,
-to 0.016 in e from 0.2 on.  For a real bumper give its own numbers.
+relation :math:`d = 1.55 (1 - e^2) / e^{0.7076}` are quoted from memory.  The relation is a fit to the exact
+one, to 0.016 in e from 0.2 on.  For a real bumper give its own numbers.
 
 That the damping acts on the stiff branch too is our choice: the force is continuous, and the restitution is
-the one asked for however far the bumper is pressed.
+as required for any overlap.
 
 Against a damping beyond all bounds after a slow touch :math:`v_0` is never taken smaller than the speed
 that reaches the present overlap, as in HUNT_CROSSLEY; here that is :math:`\sqrt{2\int F\,d\delta/m}`.
@@ -34,12 +34,12 @@ from pound_solve.laws.contact.power import power_fields, spring_energy, spring_f
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open, or pressed where the gap is negative; the memory: the speed of the approach."""
+    """Open, or pressed where the gap is negative; the internal variable is the approach speed."""
     return (APPROACH if p[2] < 0.0 else OPEN), (0.0,)
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, and remember the speed; turn, or part."""
+    """Touch, with the approach speed; reverse, or part."""
     if at == OPEN:
         return APPROACH, (max(v, 0.0),)
     if at == PARTING and event == 1:

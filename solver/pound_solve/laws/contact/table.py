@@ -1,7 +1,7 @@
 r"""A force given by points: a bumper or stop of any shape, and what crushes.
 
 The force runs straight from (0, 0) through the points and goes on beyond the last one with its last slope.
-Without KU it comes back the same way.  With it, what was pressed in stays so: from the largest overlap
+Without KU it unloads along the same line.  With it, the contact is crushed: from the largest overlap
 :math:`\delta_m` the force falls along the unloading stiffness,
 
 .. math:: f = K_u(\delta - \delta_r), \qquad \delta_r = \delta_m - F(\delta_m)/K_u
@@ -35,7 +35,7 @@ from pound_solve.laws.automaton import (
 )
 from pound_solve.laws.contact.kelvin_voigt import Built
 
-OPEN, MOST = 0, 8  #: pieces of the table are branches 1 to MOST
+OPEN, MOST = 0, 8  #: segments of the table are branches 1 to MOST
 UNLOADING = MOST + 1
 POINTS = 4  #: place of the points in the parameters, after the first slope, gap, KU, their number
 
@@ -51,7 +51,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """The memory: residual depth, largest overlap, and the piece of the table that this is on."""
+    """The internal variables: residual depth, largest overlap, and the segment of the table at that."""
     gap, ku, count = p[1], p[2], int(p[3])
     if at == OPEN:
         return linear(0.0, 0.0, above(gap + m[0]))
@@ -64,7 +64,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, go to the next piece of the table or back, unload, or part."""
+    """Touch, go to the next segment of the table or back, unload, or part."""
     gap, ku = p[1], p[2]
     if at == OPEN:
         return (1 if m[1] == 0.0 else UNLOADING), m
@@ -94,11 +94,11 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return area + 0.5 * (f0 + f) * (d - p[1] - d0)
 
 
-PIECES = tuple(f"pressed, piece {i}" for i in range(1, MOST + 1))
+SEGMENTS = tuple(f"pressed, segment {i}" for i in range(1, MOST + 1))
 RULE = Rule(
     (
         *BranchKind.OPEN.named("open"),
-        *BranchKind.PRESSED.named(*PIECES, "pressed, unloading"),
+        *BranchKind.PRESSED.named(*SEGMENTS, "pressed, unloading"),
     ),
     start,
     branch,
@@ -135,7 +135,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         slopes.append((f1 - f0) / (d1 - d0))
     if slopes[-1] < 0.0:
         raise ValueError(
-            f"the last piece falls, and beyond its end the force would pull: end FORCES level, with a "
+            f"the last segment falls, and beyond its end the force would pull: end FORCES level, with a "
             f"further point of {forces[-1]:g}"
         )
     steepest = max(slopes)

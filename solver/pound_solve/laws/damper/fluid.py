@@ -4,13 +4,13 @@ r"""Fluid viscous damper: a force that is a power of the rate.
           f = 0 \ \text{while}\ g^- < d < g^+
 
 The force limit :math:`F` is that of a relief valve.  The play :math:`g` is a part of the stroke where a
-bypass is open: beyond it the damper resists the motion both ways, outwards and back.
+bypass is open: beyond it the damper resists the motion in both directions.
 
-The force has a corner where the motion turns, where the relief valve opens and at the ends of the play:
+The force has a corner where the motion reverses, where the relief valve opens and at the ends of the play:
 each is a change of branch.  For :math:`\alpha < 1` the slope at :math:`v = 0` is infinite.  There the force
 runs along a straight line from the rate `CORE` on the side that it moves to through zero, on the other side
 until the branch changes at the rate `CORE` there.  So it is concave ahead of the motion and straight behind
-it, and Newton's iteration comes to its root from anywhere.
+it, and Newton's iteration converges from any start.
 
 References
 ----------
@@ -41,12 +41,12 @@ CORE = 1e-12  #: rate up to which the force is straight, as a share of the rate 
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """In the play, or without one; the memory: the side of the play."""
+    """In the play, or without one; the internal variable is the side of the play."""
     return (PLAY if p[7] > p[8] else MOVING), (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Until the motion turns, the limit is reached or left, or the play begins or ends."""
+    """Events: a reversal, the limit is reached or no longer, the play begins or ends."""
     if at == PLAY:
         return linear(0.0, 0.0, above(p[7]), below(p[8]))
     s = side(at)
@@ -64,7 +64,7 @@ def engaged(p: Numbers, v: float) -> int:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Come to the end of the play or into it, turn, reach the limit or leave it."""
+    """Reach the end of the play or enter it, reverse, reach the limit or come off it."""
     if at == PLAY:
         return engaged(p, v), (1.0 if event == 0 else -1.0,)
     s = side(at)
@@ -102,7 +102,7 @@ def curve(
 
 
 def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
-    """All that it takes."""
+    """Force times rate: all of the work is dissipated."""
     return curve(p, at, m, d, d, v)[0] * v
 
 

@@ -16,7 +16,7 @@ A spring that has reached ductility :math:`\mu` unloads with
 The second bound, the secant from the origin to the backbone, is ours: a softer line would reach no force on
 the far side of the origin, and for large :math:`\alpha` run flatter than the backbone itself.
 
-Memory of every rule here: the largest ductility each way (1 before yield), and a point (d, f).
+Internal variables of each rule: the largest ductility of each side (1 before yield), and a point (d, f).
 
 References
 ----------
@@ -63,7 +63,7 @@ LOSS = (
         default="NONE",
         words=("NONE", "EACH", "LARGEST"),
         codes={"NONE": 0, "EACH": 1, "LARGEST": 3},
-        doc="strength falls with the ductility of each direction by itself, or with the largest of both",
+        doc="strength falls with the ductility of each direction alone, or with the larger of both",
     ),
     Field("DUCT1", Kind.REAL, "-", default=None, lo=1.0, doc="ductility where the loss of strength begins"),
     Field("DUCT2", Kind.REAL, "-", default=None, above=1.0, doc="ductility where it ends"),
@@ -72,7 +72,7 @@ LOSS = (
 
 
 def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Numbers:
-    """Numbers that all rules on this backbone begin with: k, both yield forces, r, alpha, then the loss as
+    """First parameters of all rules on this backbone: k, both yield forces, r, alpha, then the loss as
     D1, D2, what is left, and whether the largest ductility of either side drives it.
 
     Raises
@@ -150,7 +150,7 @@ def enter(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
 
 
 def yield_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float]:
-    """Slope and force at zero of the present piece of the backbone, in the senses of its side, and the
+    """Slope and force at zero of the present line of the backbone, mirrored to the positive side, and the
     ductility where it ends (0: it does not).
     """
     k, r, begin, end, left = p[0], p[3], p[5], p[6], p[7]
@@ -164,7 +164,7 @@ def yield_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float]:
 
 
 def yield_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Along the backbone until the motion turns (exit 0) or the piece ends (exit 1)."""
+    """Along the backbone until the motion reverses (event 0) or the line ends (event 1)."""
     s = side(at)
     slope, f0, until = yield_line(p, at, m)
     if until == 0.0:
@@ -172,14 +172,14 @@ def yield_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     return linear(slope, s * f0, turns_inward(s), outward(s, until * yield_force(p, s) / p[0]))
 
 
-def next_piece(p: Numbers, at: int, m: Numbers) -> tuple[int, Numbers]:
-    """State after the end of a piece of the backbone."""
+def next_branch(p: Numbers, at: int, m: Numbers) -> tuple[int, Numbers]:
+    """State after the end of a line of the backbone."""
     s = side(at)
     return (pair(WEAKENING, s), m) if at == pair(YIELDING, s) else enter(p, m, s, p[6])
 
 
 def turn(p: Numbers, at: int, m: Numbers, d: float) -> Numbers:
-    """Memory after the motion turned on the backbone at `d`: ductilities, and the point itself."""
+    """Internal variables after a reversal on the backbone at `d`: ductilities, and the point itself."""
     s = side(at)
     slope, f0, _ = yield_line(p, at, m)
     x = s * d * p[0] / yield_force(p, s)

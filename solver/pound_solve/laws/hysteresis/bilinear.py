@@ -6,7 +6,7 @@ a spring :math:`r k` beside an elastic, perfectly plastic spring :math:`(1-r) k`
 
 .. math:: f = r k d + (1-r) k (d - d_p), \qquad (1-r) F_y^- \le (1-r) k (d - d_p) \le (1-r) F_y^+
 
-Memory: the plastic deformation :math:`d_p`.
+Internal variables: the plastic deformation :math:`d_p`.
 
 References
 ----------
@@ -39,7 +39,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Elastic until the slider slips; yielding until the motion turns."""
+    """Elastic until the slider slips; yielding until the motion reverses."""
     k, plus, minus, r = p[:4]
     ke = (1.0 - r) * k
     if at == ELASTIC:
@@ -51,7 +51,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Yield out of the elastic branch, or unload where the motion turns."""
+    """Yield out of the elastic branch, or unload where the motion reverses."""
     k, plus, minus = p[:3]
     if at == ELASTIC:
         return (YIELDING_PLUS if event == 0 else YIELDING_MINUS), m

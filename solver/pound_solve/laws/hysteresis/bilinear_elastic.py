@@ -2,7 +2,8 @@ r"""Bilinear elastic: softer beyond a limit, and back along the same line; nothi
 
 .. math:: f = k d \quad (F^- \le k d \le F^+), \qquad f = F^\pm + r k (d - F^\pm / k) \quad \text{beyond}
 
-A rocking wall or a post-tensioned joint; beside a spring with BILINEAR it makes a flag.  No memory.
+A rocking wall or a post-tensioned joint; in parallel with a BILINEAR spring it gives a flag-shaped loop.
+No internal variables.
 
 References
 ----------

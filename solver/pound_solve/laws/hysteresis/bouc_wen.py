@@ -19,8 +19,8 @@ so that :math:`u` and the work :math:`w = \int y\,du` are incomplete beta functi
 
 which are summed as series and inverted by Newton's iteration: no step size, error below 1e-13.
 
-Memory: the position :math:`u d_y` (signed, along the present direction) and the deformation at the last
-turn, and :math:`\int z\,dd` from :math:`z = 0`.
+Internal variables: the position :math:`u d_y` (signed, along the present direction) and the deformation at
+the last reversal, and :math:`\int z\,dd` from :math:`z = 0`.
 
 References
 ----------
@@ -60,7 +60,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Loading until the motion turns, and unloading until it turns."""
+    """Loading until the motion reverses, and unloading until it reverses again."""
     return linear(p[0], 0.0, REVERSAL_DOWN if at == LOADING else REVERSAL_UP)
 
 
@@ -209,14 +209,14 @@ def curve(
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Turn."""
+    """Reverse."""
     s = 1.0 if at == LOADING else -1.0
     x, done = position(p, -s, -along(p, s, m[0] + s * (d - m[1]))[0])
     return (UNLOADING if at == LOADING else LOADING), (x, d, done)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy given back on the way to zero force, which is found by Newton's iteration."""
+    """Energy recovered down to zero force, which is found by Newton's iteration."""
     k, r = p[0], p[3]
     if f == 0.0:
         return 0.0

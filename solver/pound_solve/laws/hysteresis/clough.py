@@ -1,8 +1,8 @@
 r"""Clough's degrading stiffness: reloading goes straight to the largest point of that side.
 
 The rule of `peak_oriented` with :math:`\beta = 0`.  ALFA=0, the default, is Clough's own: unloading with
-the initial stiffness.  A spring that has just lost its force and turns back aims at the peak too, however
-small the turn, and not at the point that it came from.
+the initial stiffness.  A spring that reverses at zero force, however shortly after it, aims at the peak,
+too, and not at the point from which it unloaded.
 
 References
 ----------

@@ -5,9 +5,9 @@ The yield lines are those of `backbone`, extended to the other side:
 .. math:: f \le F_y^+ \varphi + r k (d - d_y^+), \qquad f \ge F_y^- \varphi + r k (d - d_y^-)
 
 Between them the spring moves with :math:`k_u` of `backbone`, for the largest ductility of either side,
-along the line through the last turn.  With ALFA=0 and no loss of strength it is BILINEAR.
+along the line through the last reversal.  With ALFA=0 and no loss of strength it is BILINEAR.
 
-Memory: the largest ductilities; the point where the motion turned last.
+Internal variables: the largest ductilities; the point of the last reversal.
 
 References
 ----------
@@ -38,7 +38,7 @@ from pound_solve.laws.hysteresis.backbone import (
     R,
     enter,
     meets,
-    next_piece,
+    next_branch,
     parameters,
     turn,
     unloading,
@@ -54,7 +54,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Elastic until a yield line is met, or along it until the motion turns."""
+    """Elastic until a yield line is met, or along it until the motion reverses."""
     if at != ELASTIC:
         return yield_branch(p, at, m)
     plus, minus, d, f = m[:4]
@@ -64,17 +64,17 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Yield out of the elastic branch, or unload where the motion turns."""
+    """Yield out of the elastic branch, or unload where the motion reverses."""
     if at == ELASTIC:
         s = 1.0 if event == 0 else -1.0
         return enter(p, m, s, meets(p, m, s, unloading(p, max(m[0], m[1])), m[2], m[3]))
     if event == 1:
-        return next_piece(p, at, m)
+        return next_branch(p, at, m)
     return ELASTIC, turn(p, at, m, d)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy that comes back along the unloading line."""
+    """Energy recovered along the unloading line."""
     s = side(at)
     x = 1.0 if at == ELASTIC else s * d * p[0] / yield_force(p, s)
     return 0.5 * f * f / unloading(p, max(x, m[0], m[1]))

@@ -10,7 +10,8 @@ lower one and meets the elastic line :math:`f = k d` at :math:`(1 - \beta) d_y`.
 mirror image with its own yield force.  With :math:`\beta \le 1` nothing is left at zero force.
 A loop out to :math:`d` on one side dissipates :math:`\beta (1 - r) F_y (d - d_y)`.
 
-Memory: the foot :math:`d - f/k` of the elastic line between the two, mirrored to the positive side.
+Internal variables: the foot :math:`d - f/k` of the elastic line between the two, mirrored to the positive
+side.
 
 References
 ----------
@@ -67,7 +68,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Yield, unload from a line where the motion turns, reach a line, or be elastic again."""
+    """Yield, unload from a line where the motion reverses, reach a line, or be elastic again."""
     k, plus, minus, r, beta = p[:5]
     if at == ELASTIC:
         return (YIELDING_PLUS if event == 0 else YIELDING_MINUS), (0.0,)
@@ -83,7 +84,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy given back along the elastic line, the lower line and the elastic line to the origin."""
+    """Energy recovered along the elastic line, the lower line and the elastic line to the origin."""
     k, plus, minus, r, beta = p[:5]
     s = 1.0 if d >= 0.0 else -1.0
     foot = s * d - s * f / k

@@ -5,23 +5,24 @@ The *backbone* of the positive side (the negative one is its mirror image with i
 .. math:: B(d) = \max\bigl(\lambda F_{y0},\ \min(F_y + \alpha_s k\,(d - F_y/k),\ F_{ref} + k_c d)\bigr)
 
 hardening up to the *cap* at :math:`F_y/k + \theta_p`, falling towards zero at :math:`\theta_{pc}` beyond it
-(:math:`k_c` stays what it is at first), and the residual strength :math:`\lambda F_{y0}`.
+(:math:`k_c` does not change), and the residual strength :math:`\lambda F_{y0}`.
 
 An *excursion* goes from one zero of the force to the next.  The energy :math:`E_i` that the i-th one has
 dissipated deteriorates the component by
 
 .. math:: \beta_i = \Bigl(\frac{E_i}{E_t - \sum_{j \le i} E_j}\Bigr)^c, \qquad E_t = \Lambda F_{y0}
 
-with an own :math:`\Lambda` for each mode, and the mean :math:`F_{y0}` of both sides:
+with a separate :math:`\Lambda` for each mode, and the mean :math:`F_{y0}` of both sides:
 
 * basic strength: :math:`F_y` and :math:`\alpha_s` of the side that is entered next, times
   :math:`1 - \beta_s` (:math:`F_y` not below the residual strength);
 * post-capping strength: :math:`F_{ref}` of that side times :math:`1 - \beta_c`;
 * accelerated reloading: the deformation that reloading aims at, times :math:`1 + \beta_a`;
-* unloading stiffness: :math:`k_u` times :math:`1 - \beta_k`, where a motion turns on a loading path, with
-  :math:`E_i` less what will be recovered.
+* unloading stiffness: :math:`k_u` times :math:`1 - \beta_k`, where a motion reverses on a loading path,
+  with :math:`E_i` less what will be recovered.
 
-An energy that leaves no :math:`\beta < 1` is exhausted: the component fails at the end of the excursion.
+The energy capacity is exhausted where no :math:`\beta < 1` remains: the component fails at the end of the
+excursion.
 It fails at once at the ultimate deformation :math:`\theta_u`, and where no strength is left.
 
 References
@@ -31,7 +32,7 @@ deterioration, Earthquake Engng Struct. Dyn. 34(12): 1489-1511.
 Lignos DG, Krawinkler H (2011), Deterioration modeling of steel components in support of collapse prediction
 of steel moment frames under earthquake loading, J. Struct. Eng. 137(11): 1291-1302 (Lambda, the ultimate
 rotation; theta_p and theta_pc).
-Ours: an excursion deteriorates :math:`k_u` once, however often it turns, and by no more than half; only
+Ours: an excursion deteriorates :math:`k_u` once, however often it reverses, and by no more than half; only
 :math:`\Lambda = 0` switches a mode off.
 """
 
@@ -52,19 +53,19 @@ BRANCHES = BranchKind.OPEN.named(
     "failed"
 )  #: the rules' own come in pairs after it: positive side, negative side
 
-# Memory: five numbers of each side, mirrored (the first two are F_y and F_ref), then the unloading
-# stiffness now and at the start of the excursion, where it started, the energy of the finished excursions,
-# and of the present one up to the present branch, and where that was entered
+# Internal variables: five numbers of each side, mirrored (the first two are F_y and F_ref), then the
+# unloading stiffness now and at the start of the excursion, where it started, the energy of the finished
+# excursions, and of the present one up to the present branch, and where that was entered
 KU, KU_BEFORE, FOOT, DONE, SPENT, ENTERED = 10, 11, 12, 13, 14, 15
 
 
 def own(m: Numbers, s: float) -> Numbers:
-    """Numbers of a side in the memory."""
+    """Internal variables of a side."""
     return m[0:5] if s > 0.0 else m[5:10]
 
 
 def renew(m: Numbers, s: float, mine: Numbers) -> Numbers:
-    """Memory with other numbers of a side."""
+    """Internal variables with those of a side replaced."""
     return mine + m[5:16] if s > 0.0 else m[0:5] + mine + m[10:16]
 
 
@@ -110,13 +111,13 @@ def share(energy: float, before: float, capacity: float, c: float) -> float:
 
 
 def advance(line: Numbers, m: Numbers, d: float) -> Numbers:
-    """Memory with the work done on a branch up to `d` counted in."""
+    """Internal variables, with the work done on a branch up to `d` included."""
     k, f0, d0 = line[0], line[2], m[ENTERED]
     return (*m[0:14], m[SPENT] + (0.5 * k * (d + d0) + f0) * (d - d0), d)
 
 
 def softened(p: Numbers, m: Numbers, f: float) -> float:
-    """Unloading stiffness of a motion that turns at the force `f`."""
+    """Unloading stiffness of a motion that reverses at the force `f`."""
     before = m[KU_BEFORE]
     energy = m[SPENT] - 0.5 * f * f / before
     return before * (1.0 - min(share(energy, m[DONE], p[13], p[15]), 0.5))
@@ -127,7 +128,7 @@ def end_excursion(p: Numbers, m: Numbers, s: float, d: float) -> tuple[Numbers, 
 
     Returns
     -------
-    memory, beta of the reloading, whether the component fails
+    internal variables, beta of the reloading, whether the component fails
     """
     energy, before, c = max(m[SPENT], 0.0), m[DONE], p[15]
     strength, cap = share(energy, before, p[11], c), share(energy, before, p[12], c)
@@ -140,13 +141,13 @@ def end_excursion(p: Numbers, m: Numbers, s: float, d: float) -> tuple[Numbers, 
 
 
 def recoverable_energy(p: Numbers, m: Numbers, line: Numbers, loading: bool, d: float, f: float) -> float:
-    """Energy of the line that it would unload along."""
+    """Energy recovered along the unloading line."""
     ku = softened(p, advance(line, m, d), f) if loading else m[KU]
     return 0.5 * f * f / ku
 
 
 def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Numbers:
-    """Numbers that the three rules share, from a card's values.
+    """Common parameters of the three rules, from a card's values.
 
     Raises
     ------
@@ -165,53 +166,59 @@ def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: fl
     return (k, fy_plus, fy_minus, values["R"], *dp, *dpc, values["RESIDUAL"], *du, *capacities, values["C"])
 
 
+#: backbone of both sides
+BACKBONE = (
+    Field(
+        "R",
+        Kind.REAL,
+        "-",
+        default=0.0,
+        lo=0.0,
+        below=1.0,
+        doc="hardening stiffness as a share of the initial",
+    ),
+    Field(
+        "DP",
+        Kind.REAL,
+        "L",
+        above=0.0,
+        count=(1, 2),
+        doc="plastic deformation from yield to the cap (theta_p), positive side and negative side; "
+        "one value: the same on both sides",
+    ),
+    Field(
+        "DPC",
+        Kind.REAL,
+        "L",
+        above=0.0,
+        count=(1, 2),
+        doc="deformation from the cap to zero strength (theta_pc), likewise",
+    ),
+    Field(
+        "RESIDUAL",
+        Kind.REAL,
+        "-",
+        default=0.0,
+        lo=0.0,
+        below=1.0,
+        doc="residual strength as a share of the yield force",
+    ),
+    Field(
+        "DU",
+        Kind.REAL,
+        "L",
+        default=None,
+        above=0.0,
+        count=(1, 2),
+        doc="ultimate deformation, at which all strength is lost, likewise; left out: none",
+    ),
+)
+
+
 def fields(modes: str, most: int) -> tuple[Field, ...]:
-    """Fields of a card: `modes` of deterioration, at `most` so many."""
+    """Fields of a card: the backbone, and capacities of the `modes` of deterioration, at `most` so many."""
     return (
-        Field(
-            "R",
-            Kind.REAL,
-            "-",
-            default=0.0,
-            lo=0.0,
-            below=1.0,
-            doc="hardening stiffness as a share of the initial",
-        ),
-        Field(
-            "DP",
-            Kind.REAL,
-            "L",
-            above=0.0,
-            count=(1, 2),
-            doc="plastic deformation from yield to the cap (theta_p), positive side and negative side; "
-            "one value: the same both ways",
-        ),
-        Field(
-            "DPC",
-            Kind.REAL,
-            "L",
-            above=0.0,
-            count=(1, 2),
-            doc="deformation from the cap to zero strength (theta_pc), likewise",
-        ),
-        Field(
-            "RESIDUAL",
-            Kind.REAL,
-            "-",
-            default=0.0,
-            lo=0.0,
-            below=1.0,
-            doc="residual strength as a share of the yield force",
-        ),
-        Field(
-            "DU",
-            Kind.REAL,
-            "L",
-            default=None,
-            above=0.0,
-            count=(1, 2),
-            doc="ultimate deformation, at which all strength is lost, likewise; left out: none",
-        ),
+        *BACKBONE,
         Field(
             "LAMBDA",
             Kind.REAL,

@@ -6,11 +6,11 @@ Backbone :math:`B`, excursions and deterioration are those of `imk`.  Each side'
           F_{ref} + k_c d)\bigr)
 
 at all deformations of both signs; inside the bounds the spring is elastic with :math:`k_u`.  The *strength
-limit* :math:`F_{lim}` is the smallest force from which the falling or residual branch was left (at first
-the capping force): without it a spring that has lost strength would find it again at smaller deformations.
+limit* :math:`F_{lim}` is the smallest force at a transition from the falling or residual branch (at first
+the capping force): without it lost strength would be regained at smaller deformations.
 
-Memory beyond that of `imk`, of each side: the strength limit, and where the elastic line meets the bound
-(deformation, and the piece there).
+Internal variables beyond those of `imk`, of each side: the strength limit, and where the elastic line meets
+the bound (deformation, and the line there).
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
-    """Slope and (mirrored) force at zero deformation of a piece of the bound."""
+    """Slope and (mirrored) force at zero deformation of a line of the bound."""
     if kind == HARDENING:
         return hardening(p, s, m)
     if kind == LIMITED:
@@ -74,7 +74,7 @@ def line(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[float, float]:
 
 
 def following(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
-    """Piece of the bound after `kind`, and (mirrored) deformation where it begins."""
+    """Line of the bound after `kind`, and (mirrored) deformation where it begins."""
     least, limit = residual(p, s), own(m, s)[2]
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
     end = (least - f2) / k2
@@ -94,7 +94,7 @@ def following(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[int, float]:
 
 
 def yields(p: Numbers, s: float, m: Numbers) -> tuple[int, float]:
-    """Piece of the bound that the elastic line from its foot meets, and where (mirrored)."""
+    """Line of the bound that the elastic line from its foot meets, and where (mirrored)."""
     ku, foot, least, limit = m[KU], s * m[FOOT], residual(p, s), own(m, s)[2]
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
     low = foot + least / ku
@@ -112,7 +112,7 @@ def yields(p: Numbers, s: float, m: Numbers) -> tuple[int, float]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Elastic between the bounds, or along a piece of a bound."""
+    """Elastic between the bounds, or along a line of a bound."""
     if at == FAILED:
         return linear(0.0, 0.0)
     s = side(at)
@@ -127,7 +127,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Yield, pass to the next piece of the bound, fail, turn, or end an excursion."""
+    """Yield, pass to the next line of the bound, fail, reverse, or end an excursion."""
     s = side(at)
     kind = at if s > 0.0 else at - 1
     now = branch(p, at, m)
@@ -155,7 +155,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy of the line that it would unload along."""
+    """Energy recovered along the unloading line."""
     if at == FAILED:
         return 0.0
     return recoverable_energy(p, m, branch(p, at, m), at >= LEAST, d, f)

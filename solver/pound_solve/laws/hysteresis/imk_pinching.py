@@ -2,7 +2,7 @@ r"""Ibarra-Medina-Krawinkler, pinching: reloading is slack before it aims at the
 
 Backbone :math:`B`, excursions and deterioration are those of `imk`.  A side is loaded along its backbone up
 to a point that becomes its *peak*, the largest deformation so far (at first the yield point), with the
-force of the backbone of the day; every turning point is its *local peak*.  It unloads with :math:`k_u`
+force of the present backbone; every turning point is its *local peak*.  It unloads with :math:`k_u`
 from the local peak to zero force, the *foot* of the other side's excursion, which goes
 
 * to the *break point*, if the foot lies before it,
@@ -10,17 +10,18 @@ from the local peak to zero force, the *foot* of the other side's excursion, whi
   .. math:: d_b = (1 - \kappa_d) (d_{peak} - B(d_{peak})/k_u), \qquad
             f_b = \kappa_f B(d_{peak}) \frac{d_b - d_{foot}}{d_{peak} - d_{foot}}
 
-* then to the local peak, where the way there is stiffer than that to the peak, though not stiffer than
+* then to the local peak, where the line there is stiffer than that to the peak, though not stiffer than
   :math:`k_u`, and the local peak lies below the peak and within the backbone,
 * then to the peak, where the backbone goes on.
 
 Reloading is never stiffer than :math:`k`: where a soft :math:`k_u` has brought the foot too near to the
 peak, or beyond it, the peak moves on to where a line of that stiffness meets the backbone.
 
-A motion that turns before goes back along :math:`k_u` and, if it turns again, from there to the break point
-or to the peak.
+A motion that reverses before unloads along :math:`k_u` and, if it reverses again, from there to the break
+point or to the peak.
 
-Memory beyond that of `imk`: deformation of the peak, deformation and force of the local peak of each side.
+Internal variables beyond those of `imk`: deformation of the peak, deformation and force of the local peak
+of each side.
 
 References
 ----------
@@ -84,7 +85,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def backbone(p: Numbers, s: float, m: Numbers, d: float) -> float:
-    """Force of the backbone of the day."""
+    """Force of the present backbone."""
     (k1, f1), (k2, f2) = hardening(p, s, m), falling(p, s, m)
     return max(residual(p, s), min(k1 * d + f1, k2 * d + f2))
 
@@ -127,7 +128,7 @@ def ends(p: Numbers, s: float, m: Numbers, kind: int) -> tuple[Point, Point]:
 
 
 def by_local(p: Numbers, s: float, m: Numbers, d: float, f: float) -> bool:
-    """Whether the way from a point to the peak goes by the local peak."""
+    """Whether the path from a point to the peak passes the local peak."""
     (d1, f1), (d2, f2) = local(s, m), peak(p, s, m)
     inside = d < d1 < d2 and f < f1 < f2 and f1 <= backbone(p, s, m, d1)
     return inside and (f2 - f) * (d1 - d) < (f1 - f) * (d2 - d) and f1 - f <= m[KU] * (d1 - d)
@@ -146,7 +147,7 @@ def bottom(p: Numbers, s: float, m: Numbers) -> float:
 
 
 def on_backbone(p: Numbers, s: float, m: Numbers, d: float) -> int:
-    """Piece of the backbone at a deformation."""
+    """Line of the backbone at a deformation."""
     if d >= bottom(p, s, m):
         return RESIDUAL
     return FALLING if d >= cap(p, s, m) else HARDENING
@@ -227,7 +228,7 @@ def enter(p: Numbers, m: Numbers, s: float, d: float) -> tuple[int, Numbers]:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Go on to the next piece of a path, fail, turn, or end an excursion."""
+    """Go on to the next line of a path, fail, reverse, or end an excursion."""
     s = side(at)
     kind = at if s > 0.0 else at - 1
     now = branch(p, at, m)
@@ -250,7 +251,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy of the line that it would unload along."""
+    """Energy recovered along the unloading line."""
     if at == FAILED:
         return 0.0
     kind = at if at % 2 == 1 else at - 1

@@ -5,7 +5,7 @@ r"""Origin-centred: below its peak each side is elastic along the line through t
 with the largest deformation :math:`d_m` of that side and its force :math:`F_m` on the `backbone`.  Energy
 is lost only while a peak grows.
 
-Memory: the largest ductilities.
+Internal variables: the largest ductilities.
 
 References
 ----------
@@ -33,7 +33,7 @@ from pound_solve.laws.hysteresis.backbone import (
     R,
     backbone,
     enter,
-    next_piece,
+    next_branch,
     parameters,
     reached,
     turn,
@@ -63,17 +63,17 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Yield; turn; arrive at the peak, or pass through the origin."""
+    """Yield; reverse; arrive at the peak, or pass through the origin."""
     if at == ELASTIC:
         return enter(p, m, 1.0 if event == 0 else -1.0, 1.0)
     s = side(at)
     if at < SECANT:
-        return next_piece(p, at, m) if event == 1 else (pair(SECANT, s), turn(p, at, m, d))
+        return next_branch(p, at, m) if event == 1 else (pair(SECANT, s), turn(p, at, m, d))
     return enter(p, m, s, reached(m, s)) if event == 0 else (pair(SECANT, -s), m)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy that comes back on the way to the origin."""
+    """Energy recovered down to the origin."""
     return 0.5 * f * d
 
 

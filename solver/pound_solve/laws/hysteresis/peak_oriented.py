@@ -1,19 +1,19 @@
 r"""What CLOUGH, Q_HYST and TAKEDA share: reloading towards the peak.
 
-From the backbone (`backbone`) the spring unloads with :math:`k_u`.  Where its force is gone, at
-:math:`d_z`, it reloads the other way along the straight line from :math:`(d_z, 0)` to the target on that
+From the backbone (`backbone`) the spring unloads with :math:`k_u`.  Where its force is zero, at
+:math:`d_z`, it reloads the other side along the straight line from :math:`(d_z, 0)` to the target on that
 side's backbone, at the ductility
 
 .. math:: x_t = \mu - \beta (\mu - 1)
 
-where :math:`\mu` is the largest ductility of that side (1 before it has yielded: its yield point); from
-the target on it follows the backbone.  A turn on the way unloads with :math:`k_u` again; if it turns back
-before the force is gone, it returns along the same line and goes on towards the target.
+where :math:`\mu` is the largest ductility of that side (1 before it has yielded: its yield point); from the
+target on it follows the backbone.  A reversal before that unloads with :math:`k_u` again; if it reverses
+once more before the force is zero, it returns along the same line and goes on towards the target.
 
 A reloading line is never steeper than :math:`k_u` (ours; for large :math:`\beta` the target may lie steeply
 above, or behind): it then has the slope :math:`k_u` up to the backbone.
 
-Memory: the largest ductilities; the point where the motion turned last, or where the force was gone.
+Internal variables: the largest ductilities; the point of the last reversal, or of zero force.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from pound_solve.laws.hysteresis.backbone import (
     backbone,
     enter,
     meets,
-    next_piece,
+    next_branch,
     reached,
     turn,
     unloading,
@@ -77,13 +77,13 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Yield; turn; come back to the last turn, or lose the force; arrive at the backbone."""
+    """Yield; reverse; return to the last reversal, or reach zero force; arrive at the backbone."""
     if at == ELASTIC:
         return enter(p, m, 1.0 if event == 0 else -1.0, 1.0)
     s = side(at)
     if at < UNLOADING:
         if event == 1:
-            return next_piece(p, at, m)
+            return next_branch(p, at, m)
         plus, minus, d, f = turn(p, at, m, d)[:4]
         if p[MIRRORED] != 0.0:
             plus = minus = max(plus, minus)
@@ -92,7 +92,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
     if at < RELOADING:
         if event == 1:
             return pair(RELOADING, -s), (plus, minus, d0 - f0 / unloading(p, reached(m, s)), 0.0)
-        # a turn on the backbone too: the line from there ends where it begins
+        # a reversal on the backbone, too: the line from there ends where it begins
         return pair(RELOADING, s), m
     k, end = aim(p, m, s)
     if event == 1:
@@ -101,7 +101,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy that comes back along the unloading line."""
+    """Energy recovered along the unloading line."""
     if at == ELASTIC:
         return 0.5 * f * f / p[0]
     s = side(at)

@@ -14,10 +14,10 @@ Work along a curve scaled by :math:`c` (1 or 2) from its origin, :math:`w = (u -
 .. math:: \int f\,dd = c\,F_0 d_y\,\sigma(w)
           + c^2 F_y d_y \Bigl(\frac{w^2}{2} + \frac{\alpha n}{n+1} |w|^{n+1}\Bigr)
 
-Memory: the number of open reversals, whether some were forgotten, and deformation and force of up to seven,
-the latest first.  An eighth makes the second and the third oldest be forgotten.  A branch that would have
-met the curves from there goes on to the next outer ones: the loop between the oldest reversal, which was on
-the skeleton, and its mirror image.
+Internal variables: the number of open reversals, whether some were dropped, and deformation and force of up
+to seven, the latest first.  At an eighth the second and the third oldest are dropped.  A branch that would
+have met the curves from there goes on to the next outer ones: the loop between the oldest reversal, which
+was on the skeleton, and its mirror image.
 
 References
 ----------
@@ -46,8 +46,8 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.mirror import need_both_sides, outward, turns_inward
 
 LOADING, UNLOADING = 0, 1
-DEPTH = 7.0  #: reversals remembered
-VIRGIN = (0.0,) * 16  #: memory without a reversal
+DEPTH = 7.0  #: reversals stored
+VIRGIN = (0.0,) * 16  #: internal variables without a reversal
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
@@ -91,25 +91,25 @@ def origin(m: Numbers) -> tuple[float, float, float]:
     return (1.0, 0.0, 0.0) if m[0] == 0.0 else (2.0, m[2], m[3])
 
 
-def beside_forgotten(m: Numbers) -> bool:
-    """Whether the present branch came from a curve that was forgotten."""
+def from_dropped(m: Numbers) -> bool:
+    """Whether the present branch began on a curve that was dropped."""
     return m[1] != 0.0 and (m[0] == 2.0 or m[0] == 3.0)
 
 
 def bound(m: Numbers) -> tuple[float, float]:
-    """Origin of the next outer curve beyond a forgotten one: the oldest reversal or its mirror image."""
+    """Origin of the next outer curve beyond a dropped one: the oldest reversal or its mirror image."""
     return (-m[4], -m[5]) if m[0] == 2.0 else (m[6], m[7])
 
 
 def end(p: Numbers, m: Numbers) -> tuple[float, float]:
     """Deformation and force where a branch meets the curve that it came from.
 
-    Beside a forgotten curve it is where it meets the next outer one: the branch is the steeper of the two,
+    Of a dropped curve it is where it meets the next outer one: the branch is the steeper of the two,
     so that bisection finds it, between its own origin and the mirror image of the other's.
     """
     if m[0] == 1.0:
         return -m[2], -m[3]
-    if not beside_forgotten(m):
+    if not from_dropped(m):
         return m[4], m[5]
     d0, f0 = bound(m)
     fy = p[1]
@@ -128,7 +128,7 @@ def end(p: Numbers, m: Numbers) -> tuple[float, float]:
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Turns, or closes its loop."""
+    """Events: a reversal, or the loop closes."""
     s = 1.0 if at == LOADING else -1.0
     return linear(p[0], 0.0, turns_inward(s), outward(s, s * end(p, m)[0]) if m[0] > 0.0 else NEVER)
 
@@ -146,15 +146,15 @@ def curve(
 
 
 def turn(m: Numbers, d: float, f: float) -> Numbers:
-    """Remember a reversal."""
+    """Store a reversal."""
     if m[0] == DEPTH:
         return (DEPTH - 1.0, 1.0, d, f, *m[2:10], *m[14:16], 0.0, 0.0)
     return (m[0] + 1.0, m[1], d, f, *m[2:14])
 
 
 def close(m: Numbers) -> Numbers:
-    """Forget the reversals of the closed loop; from the skeleton on, all."""
-    if beside_forgotten(m):
+    """Drop the reversals of the closed loop; from the skeleton on, all."""
+    if from_dropped(m):
         d0, f0 = bound(m)
         if m[0] == 2.0:
             return (2.0, 0.0, d0, f0, m[4], m[5], *VIRGIN[6:])
@@ -165,18 +165,18 @@ def close(m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Turn, or go on along the curve that the branch came from."""
+    """Reverse, or go on along the curve that the branch came from."""
     if event == 1:
         return at, close(m)
     back = UNLOADING if at == LOADING else LOADING
     s = 1.0 if at == LOADING else -1.0
     if m[0] == 0.0 and s * d <= 0.0:
-        return back, m  # a virgin that starts the other way
+        return back, m  # a virgin state that starts in the other direction
     return back, turn(m, d, curve(p, at, m, d, d, 0.0)[0])
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy given back along the branches that take the force off."""
+    """Energy recovered along the branches down to zero force."""
     k, fy = p[0], p[1]
     if f > 0.0 if at == LOADING else f < 0.0:
         m = turn(m, d, f)
@@ -208,7 +208,7 @@ def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) 
     """Rule from a card's values, a stiffness and the two yield forces."""
     need_both_sides(fy_plus, fy_minus)
     if fy_plus != -fy_minus:
-        raise ValueError("Masing's loops need the same yield force both ways")
+        raise ValueError("Masing's loops need the same yield force on both sides")
     return Law(RULE, (k, fy_plus, fy_minus, values["N"], values["ALPHA"]))
 
 

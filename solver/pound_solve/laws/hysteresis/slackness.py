@@ -1,6 +1,6 @@
 r"""Bilinear with slackness: no force inside a gap, bilinear outside it.
 
-The spring takes hold at :math:`d = g^+` (and at :math:`g^- \le 0`).  On the positive side
+The spring engages at :math:`d = g^+` (and at :math:`g^- \le 0`).  On the positive side
 
 .. math:: f = k (d - g^+ - p^+), \qquad f \le F_y^+ + H p^+, \qquad H = \frac{k r}{1 - r}
 
@@ -8,7 +8,7 @@ where :math:`p^+` is the plastic deformation of that side, and likewise on the n
 With GROW=YES (braces: the slack grows by the plastic deformation) each side keeps its own :math:`p`;
 with GROW=NO the whole slack zone moves with one common :math:`p` and hardening is kinematic:
 after a large :math:`p` the other side's yield force :math:`F_y^- + H p` lies above zero,
-and the spring yields back before it lets go.
+and the spring yields back before it becomes slack.
 
 References
 ----------
@@ -45,7 +45,7 @@ def start(p: Numbers) -> tuple[int, Numbers]:
 
 
 def line(p: Numbers, at: int) -> tuple[float, float, float]:
-    """Gap, yield force and side (+1, -1) of a yield line; yielding back stays on the side that holds."""
+    """Gap, yield force and side (+1, -1) of a yield line; yielding back stays on the engaged side."""
     plus, minus, gap_plus, gap_minus = p[1:5]
     if at == YIELDING_PLUS:
         return gap_plus, plus, 1.0
@@ -55,7 +55,7 @@ def line(p: Numbers, at: int) -> tuple[float, float, float]:
 
 
 def yields_back(p: Numbers, at: int, m: Numbers) -> float:
-    """Force at which an elastic spring yields back, if it gets so far before it lets go."""
+    """Force at which an elastic spring yields back, if it reaches that before it becomes slack."""
     k, plus, minus, _, _, r, grow = p[:7]
     if grow != 0.0:
         return 0.0
@@ -88,7 +88,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Take hold, yield, let go, or unload where the motion turns."""
+    """Engage, yield, become slack, or unload where the motion reverses."""
     k, grow = p[0], p[6]
     if at == SLACK:
         return (ELASTIC_PLUS if event == 0 else ELASTIC_MINUS), m
@@ -158,8 +158,8 @@ SPEC = Spec(
             "L",
             default=(0.0,),
             count=(1, 2),
-            doc="deformation at which it takes hold, positive and (signed) negative; "
-            "one value: the same both ways",
+            doc="deformation at which the spring engages, positive and (signed) negative; "
+            "one value: the same on both sides",
         ),
         Field(
             "GROW",

@@ -5,8 +5,8 @@ The rule of `peak_oriented`: unloading with :math:`k_u = k \mu^{-\alpha}`, reloa
 :math:`\beta = 0` aims at the peak.  Usual are ALFA=0.5 BETA=0 (thin loops, columns) to ALFA=0.3 BETA=0.6
 (fat loops, beams).
 
-Not built, because no source at hand states them exactly: Ruaumoko's KKK (unloading after Drain-2D or after
-Emori and Schnobrich 1978) and NF (power of the reloading; NF=1 is this straight line).
+Not implemented, because no available source states them exactly: Ruaumoko's KKK (unloading after Drain-2D
+or after Emori and Schnobrich 1978) and NF (power of the reloading; NF=1 is this straight line).
 
 References
 ----------

@@ -1,4 +1,4 @@
-r"""Trilinear with kinematic hardening: two yield points each way.
+r"""Trilinear with kinematic hardening: two yield points on each side.
 
 A spring :math:`r_2 k` beside two elastic, perfectly plastic ones: one of stiffness :math:`(1 - r) k` that
 yields at the deformation :math:`d_1 = F_y / k`, one of :math:`(r - r_2) k` that yields at
@@ -7,10 +7,10 @@ yields at the deformation :math:`d_1 = F_y / k`, one of :math:`(r - r_2) k` that
           f = r_2 k d + (1 - r) k (d - p_1) + (r - r_2) k (d - p_2)
 
 so that the slopes are k, r k beyond :math:`F_y`, and :math:`r_2 k` beyond :math:`f_2 F_y`.  Because the
-first range lies within the second, the first spring always slips before the second; turns release both.
-Cycles obey Masing's rule.
+first range lies within the second, the first spring always slips before the second; a reversal releases
+both.  Cycles obey Masing's rule.
 
-Memory: the slips :math:`p_1, p_2`.
+Internal variables: the slips :math:`p_1, p_2`.
 
 References
 ----------
@@ -61,7 +61,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Slip, slip more, or unload where the motion turns."""
+    """Slip, slip more, or unload where the motion reverses."""
     d1_plus, d1_minus, d2_plus, d2_minus = p[3:7]
     if at == ELASTIC:
         return (FIRST_PLUS if event == 0 else FIRST_MINUS), m

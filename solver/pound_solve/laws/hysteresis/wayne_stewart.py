@@ -15,14 +15,15 @@ The *backbone* of the positive side starts at the slackness :math:`g`:
   through the backbone's point at :math:`g + \beta\,(d_{un} - g)`, with :math:`d_{un}` the largest
   deformation of that side so far; there the backbone goes on.  A side that has not yielded reloads with
   :math:`k` to its yield point;
-* a motion that turns anywhere else unloads and reloads with :math:`p_{unl}\,k` between the paths of the
+* a motion that reverses anywhere else unloads and reloads with :math:`p_{unl}\,k` between the paths of the
   two sides.
 
 Where the falling branch comes to zero force, or to the pinched line of the other side, the connection has
-failed: it carries nothing any more.
+failed: its force is zero from then on.
 
-Memory: the largest deformations :math:`d_{un} - g` of both sides (mirrored), the foot :math:`d - f/k_u` of
-the present unloading line, and for its upper and its lower end the branch there and the deformation.
+Internal variables: the largest deformations :math:`d_{un} - g` of both sides (mirrored); the foot
+:math:`d - f/k_u` of the present unloading line; for its upper and its lower end the branch there and the
+deformation.
 
 References
 ----------
@@ -156,7 +157,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 
 def unload(p: Numbers, at: int, m: Numbers, s: float, d: float, f: float) -> tuple[int, Numbers]:
-    """Turn back from a path of side `s` (branch `at`) at deformation `d` and force `f`."""
+    """Reverse on a path of side `s` (branch `at`) at deformation `d` and force `f`."""
     foot = d - f / unloading(p)
     other, end = upper_end(p, -s, m, -s * foot)
     if s > 0.0:
@@ -165,7 +166,7 @@ def unload(p: Numbers, at: int, m: Numbers, s: float, d: float, f: float) -> tup
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Take hold, yield, let go, pass the ultimate force, fail, turn, or reach the next line of a path."""
+    """Engage, yield, become slack, pass the ultimate force, fail, reverse, or reach the next line."""
     if at == SLACK:
         return (ELASTIC if event == 0 else ELASTIC + 1), m
     if at == UNLOADING:
@@ -193,8 +194,8 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy of the lines that take the force off: an unloading line, and what of the other side's pinched
-    line has a force of the same sign.
+    """Energy recovered down to zero force: along an unloading line, and along the part of the other side's
+    pinched line where the force has the same sign.
     """
     if at < UNLOADING or f == 0.0:
         return 0.0
@@ -278,7 +279,7 @@ SPEC = Spec(
             Kind.REAL,
             "F",
             count=(1, 2),
-            doc="ultimate force, positive and (signed) negative; one value: the same both ways",
+            doc="ultimate force, positive and (signed) negative; one value: the same on both sides",
         ),
         Field("FI", Kind.REAL, "F", lo=0.0, doc="force at which the pinched lines cross zero deformation"),
         Field(
@@ -303,8 +304,8 @@ SPEC = Spec(
             "L",
             default=(0.0,),
             count=(1, 2),
-            doc="deformation at which it takes hold at first, positive and (signed) negative; "
-            "one value: the same both ways",
+            doc="deformation at which the spring first engages, positive and (signed) negative; "
+            "one value: the same on both sides",
         ),
         Field(
             "BETA",

@@ -32,14 +32,14 @@ COMMON: Final = (
         Kind.WORD,
         default="X",
         words=("X", "Y", "R"),
-        doc="direction of the ground motion; R turns the ground about the point ABOUT",
+        doc="direction of the ground motion; R rotates the ground about the point ABOUT",
     ),
     Field(
         "SCALE",
         Kind.REAL,
         "-",
         default=1.0,
-        doc="factor on the acceleration; a negative one turns it round",
+        doc="factor on the acceleration; a negative one reverses it",
     ),
     Field("SUPPORTS", Kind.NODES, default=None, doc="nodes moved by this motion; left out: the whole base"),
     Field(
@@ -56,7 +56,7 @@ COMMON: Final = (
         "L",
         default=(0.0, 0.0),
         count=(2, 2),
-        doc="x,y of the point that stays in place where DIRECTION=R turns the ground",
+        doc="x,y of the point that stays in place where DIRECTION=R rotates the ground",
     ),
 )
 
@@ -71,7 +71,7 @@ _STRONG, _WEAK = 3.0, 0.001  # [g]
 
 @dataclass(frozen=True, slots=True)
 class LoadingContext:
-    """What a motion needs from its deck.
+    """Input of a motion.
 
     Attributes
     ----------
@@ -98,7 +98,7 @@ class Motion:
     Attributes
     ----------
     direction : str
-        ``X``, ``Y``, or ``R``: a small turn about the point `about`, radians in place of lengths.
+        ``X``, ``Y``, or ``R``: a small rotation about the point `about`, radians in place of lengths.
     supports : tuple of int, or None
         Nodes that it moves; None for the whole base.
     acceleration : Piecewise, [L/T^2]
@@ -217,7 +217,7 @@ def finish(
     t_pga, pga = acceleration.peak()
     warnings = list(info.get("warnings", ()))
     strength = abs(pga) / context.gravity
-    # a factor of zero is a motion switched off on purpose; a turn is no share of gravity
+    # a factor of zero is a motion switched off on purpose; a rotation is no share of gravity
     if scale != 0 and bare.direction != "R" and not _WEAK <= strength <= _STRONG:
         warnings.append(
             f"peak ground acceleration is {strength:.3g} g; check the unit of the record and SCALE"

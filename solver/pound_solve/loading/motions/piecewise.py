@@ -64,7 +64,7 @@ class Piecewise:
         return float(self.breaks[-1])
 
     def piece(self, t: ArrayLike) -> Index:
-        """Numbers of the intervals that hold the times `t`; at a break the one that begins there.
+        """Indices of the intervals that contain the times `t`; at a break the one that begins there.
 
         Times outside get the nearest interval.
         """

@@ -24,7 +24,7 @@ _PER_METRE: Final = {"M/S2": 1.0, "CM/S2": 100.0, "GAL": 100.0, "MM/S2": 1000.0}
 
 
 class RecordSamples(NamedTuple):
-    """What a card takes out of a record's file.
+    """Part of a record's file that a card selects.
 
     Attributes
     ----------
@@ -80,7 +80,9 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     raw, path = found.raw, found.path
     unit, warnings = _unit(raw, card_values.get("UNIT"))
     if card_values.get("DIRECTION") == "R" and unit != "DECK":
-        message = f"a turn is no share of gravity and no length, but the record is taken to be in {unit}"
+        message = (
+            f"a rotation is no share of gravity and no length, but the record is taken to be in {unit}"
+        )
         raise RecordError("R405", message, "write UNIT=DECK: radians per time squared", "DIRECTION")
     scale = float(card_values.get("SCALE", 1.0))
     factor = _factor(unit, context) * scale
@@ -114,7 +116,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
 
 
 def _unit(raw: RawRecord, wanted: str | None) -> tuple[str, list[str]]:
-    """Unit of the samples, and what is odd about it."""
+    """Unit of the samples, and warnings about it."""
     if wanted is None:
         return raw.unit or "G", []
     if raw.unit and _PER_METRE.get(raw.unit) != _PER_METRE.get(wanted):

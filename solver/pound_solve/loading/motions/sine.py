@@ -134,7 +134,7 @@ def taylor(amplitude: Any, w: np.longdouble, angle: Any, base: Any = 0.0) -> Arr
 
 
 def _joined(parts: list[Piecewise]) -> Piecewise:
-    """Pieces that follow one another as one."""
+    """Consecutive polynomials as one function."""
     if len(parts) == 1:
         return parts[0]
     rows = max(len(p.coefs) for p in parts)

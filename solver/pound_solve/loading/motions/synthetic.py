@@ -1,7 +1,7 @@
 """SYNTHETIC: white noise through the two filters of Clough and Penzien, under an envelope.
 
 The ground below is taken as white noise.  A soil layer of frequency wg and damping zg passes it on
-(Kanai 1957; Tajimi 1960), and a second filter wf, zf takes out what is slower than the ground can move
+(Kanai 1957; Tajimi 1960), and a second filter wf, zf removes the low frequencies
 (Clough & Penzien 1975).  With S0 the density of the noise, that of the ground acceleration is::
 
     S(w) = S0 |Hg(w)|^2 |Hf(w)|^2
@@ -9,7 +9,7 @@ The ground below is taken as white noise.  A soil layer of frequency wg and damp
     Hf(w) = w^2 / (wf^2 - w^2 + 2 i zf wf w)
 
 The envelope of Jennings, Housner & Tsai (1968) rises as (t / RISE)^2, stays at one for STRONG and falls as
-exp(-DECAY s) after that.  What comes out is scaled to PGA.  S0 therefore cancels, and is not a field.
+exp(-DECAY s) after that.  The result is scaled to PGA.  S0 therefore cancels, and is not a field.
 
 The filters are applied to the Fourier transform of the noise, so that the motion is stationary from its
 first sample on and only the envelope makes it grow.

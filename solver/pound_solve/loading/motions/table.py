@@ -51,7 +51,7 @@ def lines(points: Sequence[float]) -> Piecewise:
         raise _wrong(f"all its points are at time {t[0]:g}")
     if any(t[i] == t[i + 2] for i in range(len(t) - 2)):
         raise _wrong("a time stands three times: a jump has two values, before it and after it")
-    # from t = 0 on, as every motion; a piece of no length is a jump
+    # from t = 0 on, as every motion; an interval of no length is a jump
     t, f = (0.0, t[0], *t), (0.0, 0.0, *f)
     breaks, width, values = np.array(t), np.diff(t), np.array(f)
     some = width > 0.0

@@ -3,7 +3,7 @@
 Codes of :class:`RecordError`:
 
 ====== ===================================================================================
-R401   the record is not to be found
+R401   the record is not found
 R402   the file cannot be read: format not recognised, no finite number, times in disorder
 R403   the file holds another number of values than it declares
 R405   an item of the card is missing, or does not fit the file

@@ -1,4 +1,4 @@
-"""Numbers out of the text of a record, fast where the file is clean and patient where it is not.
+"""Numbers out of the text of a record, by a fast path where the file is clean, else word by word.
 
 Old Fortran programs write exponents with a D, leave no blank before a minus sign in fixed columns, and
 print asterisks where a number does not fit.  The first two are read right, the third is an error.

@@ -184,7 +184,7 @@ def _drifts(axes: Any, results: Results) -> None:
     axes.barh(rows, drifts["min"], color=style.COLOURS[1], height=0.6)
     axes.axvline(0.0, color="0.3", linewidth=0.8)
     axes.set_yticks(rows, [str(n) for n in drifts["name"]], fontsize=7)
-    axes.set_title("largest drifts either way", fontsize=9)
+    axes.set_title("largest drifts in both directions", fontsize=9)
 
 
 def _columns(results: Results) -> list[Array]:

@@ -11,7 +11,7 @@ COLOURS = (BLUE, "#b3541e", GREEN, "#7a3d7a", "#8a7a0b", "#0b8a7a", "0.35", "#5a
 
 
 class Nothing(Exception):
-    """There is nothing to draw; says what the file has none of."""
+    """There is nothing to draw; the message states what is missing."""
 
 
 def ready(folder: Path) -> None:

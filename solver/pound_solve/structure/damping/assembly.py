@@ -104,7 +104,7 @@ def _multiples(structure: Structure, dashpots: Dashpots) -> Array:
 
 
 def _at_supports(structure: Structure, c: Matrix) -> Matrix:
-    """What a damping of the unknowns adds at moved supports, if it acts on the motion relative to the
+    """Contribution of a damping of the unknowns at moved supports, if it acts on the motion relative to the
     quasi-static one, shape (n, n).
     """
     n, influence = structure.n_free, structure.influence()

@@ -1,4 +1,4 @@
-"""What a damping model is given and what it returns."""
+"""Input and output of a damping model."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ BUILDING = Field(
 
 @dataclass(frozen=True)
 class DampingContext:
-    """What damping models build upon.
+    """Input of a damping model.
 
     Attributes
     ----------

@@ -8,9 +8,9 @@ summed mode by mode, :math:`C = M \Phi\,\mathrm{diag}(2\xi_n\omega_n)\,\Phi^T M`
 :math:`a_b`, whose sizes lie many powers of ten apart, are never formed, nor are powers of matrices, and
 DOFs without mass, for which the series has no meaning, are not damped (Bernal 1994).
 
-Two terms are Rayleigh damping.  With more the ratio swings between the points, and beyond the last it runs
-away, upwards for an even number and downwards for an odd one.  A negative ratio of any mode, or anywhere
-between the points, is an error.
+Two terms are Rayleigh damping.  With more the ratio oscillates between the points, and beyond the last it
+diverges, upwards for an even number and downwards for an odd one.  A negative ratio of any mode, or
+anywhere between the points, is an error.
 
 References
 ----------
@@ -64,14 +64,14 @@ def build(card: Card, context: DampingContext) -> Group:
     between = rates(within, at, xi)
     if len(within) and between.min() < floor:
         raise DampingError(
-            "between the given frequencies the series turns negative, "
+            "between the given frequencies the series becomes negative, "
             f"near omega {within[between.argmin()]:.6g}: take fewer of them, or ratios that differ less",
             "XI",
         )
     if len(given) and given.min() < floor:
         n = int(given.argmin())
         raise DampingError(
-            f"the series turns negative beyond the given frequencies, at mode {n + 1} "
+            f"the series becomes negative beyond the given frequencies, at mode {n + 1} "
             f"(omega {modes.omega[n]:.6g}): give a ratio there too, or an even number of them",
             "XI",
         )

@@ -9,8 +9,8 @@ by :math:`2\xi_i\omega_i = \alpha + \beta\omega_i^2`:
 The mass part acts on the masses of NODES, the stiffness part on the elements of PROPS; contacts are never
 damped by it.  K is that of the structure at rest (STIFFNESS=INITIAL), or every hysteretic law has a dashpot
 beside it with :math:`\beta` times its present stiffness, TANGENT (none while that is negative) or SECANT
-(that of the farthest turn so far, see `secant`); with ELASTIC the laws have no share, so that a hinge that
-yields is not held by its dashpot.
+(that of the farthest reversal so far, see `secant`); with ELASTIC the laws have no share, so that a
+yielding hinge is not restrained by its dashpot.
 
 References
 ----------

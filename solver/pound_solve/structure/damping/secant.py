@@ -2,9 +2,9 @@ r"""A hysteretic law with its secant stiffness among its internal variables.
 
 .. math:: k_s = \frac{f_t}{d_t}
 
-with the point :math:`(d_t, f_t)` farthest from :math:`d = 0` at which the law has turned back; the initial
-stiffness before it has turned for the first time.  A turn is an exit where the rate changes its sign: a
-dashpot has no force there, so that it may follow :math:`k_s` without a jump.
+with the point :math:`(d_t, f_t)` farthest from :math:`d = 0` of all reversals; the initial stiffness
+before the first.  A reversal is an event where the rate changes its sign: a dashpot has no force there, so
+that it may follow :math:`k_s` without a jump.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from pound_solve.laws.automaton import Law, State
 
 
 class SecantLaw(Law):
-    """A law whose memory ends with two numbers more, which its rule does not look at: the deformation of
-    the farthest turn, and the secant stiffness.
+    """A law with two internal variables more, which its rule does not use: the deformation of the farthest
+    reversal, and the secant stiffness.
     """
 
     def start(self) -> State:
@@ -23,9 +23,9 @@ class SecantLaw(Law):
         return at, d0, work, (*m, 0.0, self.p[0])
 
     def transition(self, state: State, event_index: int, d: float, v: float = 0.0) -> State:
-        """Return the state after that exit of the branch was reached at deformation `d` and rate `v`."""
+        """Return the state after that event of the branch, at deformation `d` and rate `v`."""
         *own, farthest, secant = state[3]
-        d_factor, _, constant = self.branch(state).exits[event_index]
+        d_factor, _, constant = self.branch(state).events[event_index]
         if d_factor == 0.0 == constant and abs(d) > farthest:
             farthest, secant = abs(d), max(self.force(state, d)[0] / d, 0.0)
         at, d0, work, m = super().transition((*state[:3], tuple(own)), event_index, d, v)

@@ -1,4 +1,4 @@
-"""What an element returns to the assembly."""
+"""Contributions of an element to the structure."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class ElementMatrix:
 
 
 class Role(Enum):
-    """What a component is to the structure."""
+    """Function of a component in the structure."""
 
     SPRING = auto()  #: a spring or hinge with a hysteresis rule; damping models may add a dashpot to it
     CONTACT = auto()
@@ -56,7 +56,7 @@ class Role(Enum):
 
 @dataclass(frozen=True)
 class LawSpring:
-    """A component whose force follows a law with memory.
+    """A component whose force follows a law with internal variables.
 
     The deformation is ``sum(row * u[DOFs])``; the force acts back on the DOFs along `row`.
 
@@ -80,7 +80,7 @@ class LawSpring:
     normal_component : str
         Of friction: the component of the same element whose force presses the faces together.
     facts : mapping
-        For a contact: what the report says of it (xi, e_asked, e_given, note, reduced_mass, k, c, gap).
+        For a contact: figures of the report (xi, e_asked, e_given, note, reduced_mass, k, c, gap).
     """
 
     element: int
@@ -99,7 +99,7 @@ class LawSpring:
     normal_component: str = ""
 
     def branch(self, state: State) -> Branch:
-        """Linear piece that the law is on, the dashpots of `beta` and `secant` included."""
+        """Linear branch of the law, the dashpots of `beta` and `secant` included."""
         own = self.law.branch(state)
         if not self.beta and not self.secant:
             return own
@@ -138,7 +138,7 @@ class Geometric:
     axial : ndarray, shape (n,)
         The axial force is ``axial . u + constant``, tension positive [F].
     forces : mapping of str to ndarray, shape (n,)
-        What an axial force of one adds to the rows of the member's outputs, by their quantity.
+        Contribution of an axial force of one to the rows of the member's outputs, by their quantity.
     """
 
     element: int
@@ -193,7 +193,7 @@ class Parts:
 
 @dataclass(frozen=True)
 class ElementContext:
-    """What an element is built from.
+    """Input of an element.
 
     Attributes
     ----------
@@ -206,7 +206,7 @@ class ElementContext:
     self_weight : bool
         Whether member weight loads the structure.
     geometry : str
-        What displacements do to members: ``SMALL`` (nothing), ``PDELTA``, ``PDELTA_MEMBER`` (a geometric
+        Effect of displacements on members: ``SMALL`` (nothing), ``PDELTA``, ``PDELTA_MEMBER`` (a geometric
         stiffness), ``PDELTA_VARYING`` or ``LARGE`` (a chord).
     mass_along : callable
         ``mass_along(node, (nx, ny))``: translational mass [F T^2/L] of a node
@@ -318,7 +318,7 @@ def axes(angle: float) -> tuple[tuple[float, float], tuple[float, float]]:
 
 
 def direction(dx: float, dy: float) -> tuple[float, float]:
-    """Unit vector along (dx, dy); what coordinates miss a right angle by in rounding is none of it."""
+    """Unit vector along (dx, dy); an axis exactly, where it differs from that by rounding only."""
     length = math.hypot(dx, dy)
     c, s = dx / length, dy / length
     return (0.0 if abs(c) < 1e-14 else c), (0.0 if abs(s) < 1e-14 else s)

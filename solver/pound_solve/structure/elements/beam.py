@@ -62,7 +62,7 @@ class Member:
         Those of the nodes, then the member's own.
     opening : ndarray, shape (6, n_freedoms)
         Deformation of the hinges by local DOF: stretch (rows 0, 3) and bend (rows 2, 5), positive in
-        tension and where the member sags (tension on the right of the way from I to J).
+        tension and where the member sags (tension on the right of the line from I to J).
     """
 
     parts: Parts
@@ -90,7 +90,7 @@ def build(context: ElementContext, hinged: tuple[int, ...] = (), taken: Array | 
     hinged : tuple of int
         Local DOFs (0, 3 stretch, 2, 5 bend) that a hinge holds.
     taken : ndarray, shape (6, 6)
-        Flexibility that the hinges have and the beam gives up [L/F, 1/F, 1/(F L)].
+        Flexibility of the hinges, which is taken off the beam [L/F, 1/F, 1/(F L)].
 
     Raises
     ------
@@ -256,7 +256,7 @@ def _add_geometry(
     rows: Array,
     constant: Array,
 ) -> None:
-    """Add what GEOMETRY calls for: a geometric stiffness, a P-Delta string or corotational geometry."""
+    """Add the terms of GEOMETRY: a geometric stiffness, a P-Delta string or corotational geometry."""
     geometry, number, p = context.geometry, context.element.id, context.prop
     axial, mean = 0.5 * (rows[3] - rows[0]), 0.5 * float(constant[3] - constant[0])
     if geometry in ("PDELTA_VARYING", "LARGE"):
@@ -345,7 +345,7 @@ def _bowed(
     p: Card, length: float, phi: float, shape: Array, inner: Array, at_nodes: Array
 ) -> tuple[Array, dict[str, Array]]:
     """Geometric stiffness of the bent member and its rigid blocks for an axial force of one, shape (n, n),
-    and what that adds to the end forces beyond the turning of the chord.
+    and what that adds to the end forces beyond the rotation of the chord.
     """
     flexible = np.zeros((6, 6))
     for xi, w in zip(GAUSS_X, GAUSS_W):
@@ -407,7 +407,7 @@ FIELDS = (
         default="NONE",
         words=("NONE", "I", "J", "BOTH"),
         codes={"NONE": 0, "I": 1, "J": 2, "BOTH": 3},
-        doc="which ends turn freely",
+        doc="ends that rotate freely",
     ),
     Field(
         "FJ",

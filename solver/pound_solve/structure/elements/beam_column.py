@@ -2,7 +2,7 @@ r"""BEAM_COLUMN: beam-column whose ends yield under axial force and moment toget
 
 A hinge is a row of axial springs across the section.  Springs side by side at distances :math:`y_i` from
 the axis, each of which yields at :math:`\pm F_i`, carry :math:`N = \sum f_i` and
-:math:`M = -\sum f_i y_i`; what they can carry is the sum of the segments :math:`\pm F_i (1, -y_i)`, a
+:math:`M = -\sum f_i y_i`; their capacity is the sum of the segments :math:`\pm F_i (1, -y_i)`, a
 convex polygon that is symmetric about its centre, and every such polygon is a sum of segments.
 So an N-M diagram becomes its springs, edge by edge:
 
@@ -16,7 +16,7 @@ The centre is off the origin where the section resists compression better than t
 forces are then :math:`(s_i \pm 1) F_i` with :math:`s_i = \alpha + \beta y_i`.
 
 The springs are as stiff as they are strong, and altogether as the length LP of the beam in bending;
-the beam between the hinges gives up what flexibility they have, so that the elastic member is exactly that
+their flexibility is taken off the beam between the hinges, so that the elastic member is exactly that
 of E, A, I.
 
 References

@@ -36,7 +36,7 @@ def direction(context: ElementContext) -> tuple[float, float]:
 
 
 def adjacent(context: ElementContext, nodes: list[int], normal: tuple[float, float]) -> tuple[float, str]:
-    """Stiffness that a contact takes from its neighbours [F/L], and whose it is."""
+    """Stiffness of a contact from its neighbours [F/L], and its source in words."""
     choice, found = context.prop["ADJACENT"], []
     for node in nodes:
         own = context.stiffness_along(node, normal)
@@ -61,7 +61,7 @@ def adjacent(context: ElementContext, nodes: list[int], normal: tuple[float, flo
 def rubbing(
     context: ElementContext, ends: list[tuple[int, float]], normal: tuple[float, float]
 ) -> tuple[list[LawSpring], str]:
-    """Friction of the contact, if it has any, and what the report says of it."""
+    """Friction of the contact, if it has any, and its figures in the report."""
     card, (nx, ny) = context.prop, normal
     if card["MU"] is None:
         for item in ("MUD", "KT"):
@@ -92,10 +92,10 @@ def rubbing(
 
 
 def across(
-    ends: list[tuple[int, float]], way: tuple[float, float]
+    ends: list[tuple[int, float]], unit: tuple[float, float]
 ) -> tuple[tuple[Dof, ...], tuple[float, ...]]:
     """DOFs of the nodes, and their share in the displacement of I against J along a unit vector."""
-    pairs = [((node, d), sign * n) for node, sign in ends for d, n in enumerate(way) if n != 0.0]
+    pairs = [((node, d), sign * n) for node, sign in ends for d, n in enumerate(unit) if n != 0.0]
     return tuple(f for f, _ in pairs), tuple(x for _, x in pairs)
 
 

@@ -79,7 +79,7 @@ SPEC = Spec(
             "F",
             default=None,
             count=(1, 2),
-            doc="largest force along x, positive and (signed) negative; one value: the same both ways; "
+            doc="largest force along x, positive and (signed) negative; one value: the same for both; "
             "left out: none",
         ),
         Field("FY", Kind.REAL, "F", default=None, count=(1, 2), doc="largest force along y"),
@@ -90,7 +90,7 @@ SPEC = Spec(
             "L",
             default=None,
             count=(1, 2),
-            doc="play along x, positive and (signed) negative end; one value: the same both ways; "
+            doc="play along x, positive and (signed) negative end; one value: the same for both; "
             "no force inside it, beyond it the damper resists the motion outwards and back",
         ),
         Field("GAPY", Kind.REAL, "L", default=None, count=(1, 2), doc="play along y"),

@@ -84,40 +84,63 @@ def build(context: ElementContext) -> Parts:
     kx, ky, kr = stiffness(p["G"], p["NU"], p["B"], p["L"])
     cx, cy, cr, mass = radiation(p, context.gravity, kr)
     ends = [(context.i.id, 1.0)] if context.j is None else [(context.j.id, 1.0), (context.i.id, -1.0)]
-    x, y, turn = ({(node, d): sign for node, sign in ends} for d in range(3))
-    parts = Parts()
-    settling, k_settling = y, ky
-    if p["UPLIFT"] == "YES":
-        row = 3 * kr / p["B"] ** 2
-        if row <= ky:
-            raise ElementError("UPLIFT is for footings less slender than this one: raise L", "UPLIFT")
-        settling, k_settling = {**y, (number, ROW): -1.0}, 1.0 / (1.0 / ky - 1.0 / row)
-        for n, (at, share) in enumerate(zip(*lobatto(p["COUNT"])), 1):
-            below = {(number, ROW): 1.0, **{f: p["B"] * at * s for f, s in turn.items()}}
-            strength = None if p["QU"] is None else share * p["QU"]
-            parts.laws.append(no_tension(number, f"spring {n}", below, share * row, strength, p["B"]))
+    x, y, rotation = ({(node, d): sign for node, sign in ends} for d in range(3))
+    parts, settlement, k_settlement, k_rotation = Parts(), y, ky, kr
+    if p["UPLIFT"] == "YES":  # the row of springs has the stiffness in rocking, and a share of the vertical
+        settlement, k_rotation = {**y, (number, ROW): -1.0}, 0.0
+        k_settlement = _uplift(context, parts, ky, kr, rotation)
     elif p["QU"] is not None:
         raise ElementError("a bearing strength QU needs UPLIFT=YES", "QU")
-    radiating = {**turn, (number, TAIL): -1.0} if cr else turn
-    for name, unit, spring, k, dashpot, c in (
-        ("force X", "F", x, kx, x, cx),
-        ("force Y", "F", settling, k_settling, y, cy),
-        ("moment R", "F*L", turn, 0.0 if p["UPLIFT"] == "YES" else kr, radiating, cr),
-    ):
-        if k:
-            parts.stiffness.append(_block(spring, k))
-        if c:
-            parts.damping.append(_block(dashpot, c))
-        dofs = tuple({**spring, **dashpot})
-        u_row, v_row = (
-            factor * np.array([row.get(f, 0.0) for f in dofs])
-            for factor, row in ((k, spring), (c, dashpot))
-        )
-        if k or c:
-            parts.outputs.append(Output(number, name if k else "dashpot R", unit, dofs, u_row, v_row))
+    radiating = {**rotation, (number, TAIL): -1.0} if cr else rotation
+    _join(parts, number, ("force X", "F"), (kx, x), (cx, x))
+    _join(parts, number, ("force Y", "F"), (k_settlement, settlement), (cy, y))
+    _join(parts, number, ("moment R", "F*L"), (k_rotation, rotation), (cr, radiating))
     if cr:
         parts.mass.append(ElementMatrix(((number, TAIL),), np.array([[mass]])))
     return parts
+
+
+def _uplift(
+    context: ElementContext, parts: Parts, ky: float, kr: float, rotation: Mapping[Dof, float]
+) -> float:
+    """Add the row of springs without tension below the footing.
+
+    Returns
+    -------
+    float
+        Stiffness of the spring between footing and row, which makes the vertical stiffness `ky` [F/L].
+    """
+    p, number = context.prop, context.element.id
+    row: float = 3 * kr / p["B"] ** 2
+    if row <= ky:
+        raise ElementError("UPLIFT is for footings less slender than this one: raise L", "UPLIFT")
+    for n, (at, share) in enumerate(zip(*lobatto(p["COUNT"])), 1):
+        below = {(number, ROW): 1.0, **{f: p["B"] * at * s for f, s in rotation.items()}}
+        strength = None if p["QU"] is None else share * p["QU"]
+        parts.laws.append(no_tension(number, f"spring {n}", below, share * row, strength, p["B"]))
+    return 1.0 / (1.0 / ky - 1.0 / row)
+
+
+def _join(
+    parts: Parts,
+    number: int,
+    quantity: tuple[str, str],
+    spring: tuple[float, Mapping[Dof, float]],
+    dashpot: tuple[float, Mapping[Dof, float]],
+) -> None:
+    """Add spring and dashpot of one direction, each a coefficient along a row of DOFs, and their joint
+    force as output, with its name and unit.
+    """
+    (name, unit), (k, own), (c, row) = quantity, spring, dashpot
+    if k:
+        parts.stiffness.append(_block(own, k))
+    if c:
+        parts.damping.append(_block(row, c))
+    if k or c:
+        dofs = tuple({**own, **row})
+        u_row = k * np.array([own.get(f, 0.0) for f in dofs])
+        v_row = c * np.array([row.get(f, 0.0) for f in dofs])
+        parts.outputs.append(Output(number, name if k else "dashpot R", unit, dofs, u_row, v_row))
 
 
 def _block(row: Mapping[Dof, float], factor: float) -> ElementMatrix:

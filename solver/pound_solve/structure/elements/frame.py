@@ -4,11 +4,11 @@ The one-component member: an elastic beam (`beam`) in series with a rotational s
 flexible length, which follows a hysteresis rule.  The hinge has its own stiffness KH (moment over
 rotation), or a length LP over which the section of the beam yields (moment over curvature): then its
 stiffness is :math:`EI/L_p`, and the flexibility :math:`L_p/EI` that it has is taken off the beam, so that
-the elastic member is exactly that of EI.  A slender beam can give up :math:`L_p < L/4` at one end or
+the elastic member is exactly that of EI.  A slender beam allows :math:`L_p < L/4` at one end or
 :math:`L_p < L/6` at both.
 
-Moments and rotations of hinges are positive where the member sags: tension on the right of the way from
-I to J.  Only the hinges requested are made.
+Moments and rotations of hinges are positive where the member sags: tension on the right of the line from
+I to J.  Only the hinges with a strength are built.
 
 References
 ----------
@@ -63,7 +63,7 @@ def build(context: ElementContext) -> Parts:
 
 
 def _consistent(context: ElementContext, strengths: list[str]) -> None:
-    """Raise where what the card says of hinges does not fit together."""
+    """Raise where the items of hinges contradict each other."""
     p = context.prop
     (rule,) = p.laws["RULE"]
     given = [item for item in ("KH", "LP") if p[item] is not None]

@@ -8,7 +8,7 @@ Springs along local x stand at distances :math:`y_i` from the axis; with the dis
 Over a width the springs stand at the Gauss-Lobatto points with their weights as shares of stiffness and
 strength: the corners about which a section rocks are among them, and the rotational stiffness is exactly
 :math:`K b^2/12` from three springs on.  Springs that take no tension open and close; with a strength
-they are crushed, and what is crushed stays a gap.
+they are crushed, which leaves a gap.
 
 References
 ----------

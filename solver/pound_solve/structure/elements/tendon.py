@@ -5,7 +5,7 @@ Its force follows the rule `BILINEAR_SLACK` on the elongation :math:`e` along th
 .. math:: f = \frac{EA}{L}(e - s - p) \ge 0, \qquad s = \mathrm{SLACK} \quad\mathrm{or}\quad s = -N_0 L / EA
 
 with the plastic elongation :math:`p`, by which the slack grows (a prestress is lost).  In compression it
-hangs slack.  The prestress acts on the undeformed structure, which gives way and takes part of it.
+is slack.  The prestress acts on the undeformed structure, whose deformation reduces it.
 In modes and stiffness-proportional damping a tendon counts where it is prestressed.
 """
 
@@ -72,7 +72,7 @@ SPEC = Spec(
             doc="post-yield stiffness as a share of the initial",
         ),
         Field("N0", Kind.REAL, "F", default=0.0, lo=0, doc="prestress of the undeformed structure"),
-        Field("SLACK", Kind.REAL, "L", default=0.0, lo=0, doc="elongation at which it takes hold"),
+        Field("SLACK", Kind.REAL, "L", default=0.0, lo=0, doc="elongation at which it becomes taut"),
     ),
     reference="Ruaumoko's rule 5",
     impl=build,
