@@ -158,12 +158,15 @@ def functions(rule: Rule) -> tuple[Function, ...]:
             f"a rule has {rule.parameters} parameters and {rule.variables} internal variables: the kernels "
             f"have room for {PARAMETERS} and {VARIABLES}, see PARAMETERS and VARIABLES in {__name__}"
         )
-    lengths = {"parameters": rule.parameters, "variables": rule.variables}
+    # one more where both are as long: numba does not return from typing a function that indexes two tuples
+    # of one type, once with a number and once with a name
+    parameters = rule.parameters + (rule.parameters == rule.variables)
+    lengths = {"parameters": parameters, "variables": rule.variables}
 
     def adapted(template: Function, function: Function) -> Function:
         code = function.__code__
         name = f"{function.__module__}.{function.__qualname__}-{code.co_firstlineno}"
-        return bound(template, f"{name}-{rule.parameters}-{rule.variables}", own=function, **lengths)
+        return bound(template, f"{name}-{parameters}-{rule.variables}", own=function, **lengths)
 
     return (
         adapted(branch, rule.branch),
