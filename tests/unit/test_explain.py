@@ -99,9 +99,10 @@ def test_each_kind_of_deck_imports_what_it_needs_and_no_more(tmp_path, kind):
     # the whole family of methods comes with HISTORY, and nothing of it without
     assert engines(modules) == (ENGINES if moving else set())
     assert ("history" in held) == moving
-    assert not {
-        m for m in modules if m.startswith(("pound_solve.laws.contact.", "pound_solve.assess.study"))
-    }
+    assert "pound_solve.assess.study" not in modules
+    # with the methods come all laws: their kernels have room for the longest
+    laws = {m for m in modules if m.startswith("pound_solve.laws.contact.")}
+    assert moving or not laws
     # and the table says so
     assert told["numba"] == (0, "not imported")
     assert told["kernels compiled"] == (0, "none")

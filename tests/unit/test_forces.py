@@ -393,7 +393,7 @@ def test_the_report_names_the_loads_that_are_let_go(tmp_path: Path) -> None:
     deck.write_text(OSCILLATOR.format("LOADS\n 2 50 HELD=NO\n 2 0 -3"))
     with run(deck) as r:
         assert len(r.table("loads")) == 2
-        assert r.note("loads") == "Taken off where the history starts (HELD=NO): 50 0 0 on 2."
+        assert r.note("loads") == "Removed where the history starts (HELD=NO): 50 0 0 on 2."
 
 
 # ---------------------------------------------------------------- ground that turns

@@ -1,6 +1,7 @@
 """The contract that every hysteresis rule of the catalog keeps, along random paths.
 
-A new rule is held to it as soon as its file declares a SPEC; SAMPLES says with what parameters.
+A new rule is held to it as soon as its file declares a SPEC: with the `sample` there, and with all its
+defaults if nothing must be given.  SAMPLES has further parameters to try.
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ from pound_solve.laws.automaton import (
 )
 from pound_solve.laws.hysteresis import bilinear
 from pound_solve.numerics import jit
+from samples import values
 
 K = 800.0  #: initial stiffness
 PLUS, MINUS = 12.0, -8.0  #: yield forces: at +15 and -10 mm
@@ -64,7 +66,7 @@ CAPPED: list[dict[str, Any]] = [
     {"R": 0.02, "DP": (0.01,), "DPC": (0.03,), "LAMBDA": (0.5, 0.0, 2.0)},
 ]
 
-#: parameters to try for every rule; what is left out has its default
+#: further parameters to try; what is left out has its default
 SAMPLES: dict[str, list[dict[str, Any]]] = {
     "BILINEAR": [{"R": r} for r in (-0.1, 0.0, 0.05, 0.4, 0.9)],
     "BILINEAR_ELASTIC": [{"R": r} for r in (0.0, 0.1, 0.7)],
@@ -107,8 +109,16 @@ SAME_BOTH_WAYS = {"RAMBERG_OSGOOD"}  #: rules that take no unequal yield forces
 RULES = {s.name: s for s in catalog().family("hysteresis").values() if s.impl is not None}
 
 
-def test_every_rule_has_samples() -> None:
-    assert set(SAMPLES) == set(RULES)
+def samples_of(spec: Spec) -> list[dict[str, Any]]:
+    """Parameters to try for a rule."""
+    found = [values(spec, PLUS, PLUS / K), *SAMPLES.get(spec.name, ())]
+    if all(f.default is not REQUIRED for f in spec.fields):
+        found.append({})
+    return [x for n, x in enumerate(found) if x not in found[:n]]
+
+
+def test_samples_are_of_rules_that_there_are() -> None:
+    assert set(SAMPLES) <= set(RULES)
 
 
 def filled(spec: Spec, sample: dict[str, Any]) -> dict[str, Any]:
@@ -139,8 +149,8 @@ def allowed(f: Field, value: Any) -> bool:
 
 
 def cases(minus: float) -> Iterator[Any]:
-    for name in sorted(set(SAMPLES) & set(RULES)):
-        for sample in SAMPLES[name]:
+    for name in sorted(RULES):
+        for sample in samples_of(RULES[name]):
             side = -PLUS if name in SAME_BOTH_WAYS else minus
             law = RULES[name].impl(filled(RULES[name], sample), K, PLUS, side)
             yield pytest.param(law, sample, id=f"{name} {minus} {sample}")
@@ -248,7 +258,7 @@ def test_a_long_history(law: Law, sample: dict[str, Any]) -> None:
 
 
 @pytest.mark.skipif(jit.numba() is None, reason="numba is not installed")
-@pytest.mark.parametrize("name", sorted(set(SAMPLES) & set(RULES)))
+@pytest.mark.parametrize("name", sorted(RULES))
 def test_compiled_functions_give_the_same_numbers(name: str) -> None:
     laws = [p.values[0] for p in UNEQUAL if p.id.startswith(f"{name} ")]
     branch, transition, recoverable, curve, power = (f[0] for f in functions.tables([laws[0].rule]))

@@ -304,7 +304,7 @@ def test_envelopes_see_steps_between_the_outputs(tmp_path, method):
         for r, x in zip(rare.table("member_envelope"), often.history("member/force").T):
             seen(r, x, t)
         count, apart = round(1.2 / (n * step)) * 4, n // 5 * step
-        told = f"Seen at {count} instants, at most {apart:g} s apart, and at the output times"
+        told = f"Taken at {count} instants, at most {apart:g} s apart, and at the output times"
         assert rare.note("node_envelope").startswith(told)
 
 

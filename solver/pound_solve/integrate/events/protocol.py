@@ -1,4 +1,4 @@
-"""What every locator of events returns.
+"""What every locator of events returns: a `LocatedEvent`.
 
 A law leaves its branch when one of its event functions ``a d + b v + c`` of deformation and rate rises
 through zero.  Three locators find the earliest such instant: on a grid of samples with bounds (`grid`, for
@@ -20,9 +20,14 @@ class LocatedEvent(NamedTuple):
     event_index : int
         Which event function of the law's present branch.
     time : float
-        Since the start of the window or step that was searched [T].
+        Since the start of the window or step that was searched [T]; of a series in lengths of its step.
     """
 
     law: int
     event_index: int
     time: float
+
+
+def none(end: float) -> LocatedEvent:
+    """No event up to the time `end`: law -1, for compiled code, which needs one type."""
+    return LocatedEvent(-1, -1, end)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pound_solve.integrate.events.protocol import LocatedEvent, none
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, Step
 from pound_solve.integrate.protocol import STILL
@@ -35,22 +36,19 @@ def value_at_start(laws: Laws, step: Step, i: int, e: int) -> float:
     return np.nan if slope < 0.0 else event_value(laws, i, e, d, v)[0]
 
 
-def first_event(laws: Laws, step: Step, h: float) -> tuple[int, int, float]:
-    """The first event in the step of length `h` that was tried.
+def first_event(laws: Laws, step: Step, h: float) -> LocatedEvent:
+    """The first event in the step of length `h` that was tried, see `none`.
 
-    Returns
-    -------
-    law, event, time : int, int, float
-        Law -1 where there is none; the time is that of the cubic through values and slopes at both ends,
-        for an event at a rate that of the straight line.
+    Its time is that of the cubic through values and slopes at both ends, for an event at a rate that of the
+    straight line.
     """
-    first, law, event = np.inf, -1, -1
+    first = none(np.inf)
     for i in range(len(laws.rule)):
         for e in range(laws.n_events[i]):
             at = time_of_event(laws, step, i, e, h)
-            if at < first:
-                first, law, event = at, i, e
-    return law, event, first
+            if at < first.time:
+                first = LocatedEvent(i, e, at)
+    return first
 
 
 def time_of_event(laws: Laws, step: Step, i: int, e: int, h: float) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.energy import Works, runs_away
+from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.kernels.consistency import make_consistent
 from pound_solve.integrate.kernels.laws import linear_force, transition
 from pound_solve.integrate.kernels.products import evaluate_inputs, form_load, multiply
@@ -144,11 +145,12 @@ def store_looks(
 
 
 def change_branch(
-    laws: Laws, buffers: Buffers, rules: Tables, run: Run, t: float, law: int, event: int
+    laws: Laws, buffers: Buffers, rules: Tables, run: Run, t: float, event: LocatedEvent
 ) -> None:
     """Let a law leave its branch."""
+    law = event.law
     before, d, v = laws.branch[law], laws.now.deformation[law], laws.now.rate[law]
-    transition(laws, rules, law, event, d, v)
+    transition(laws, rules, law, event.event_index, d, v)
     force = linear_force(laws, law, d, v)
     if before != laws.branch[law]:
         log_transition(laws, buffers, run, law, before, t, force)
@@ -157,17 +159,17 @@ def change_branch(
 
 
 def change_branches(
-    laws: Laws, buffers: Buffers, rules: Tables, series: Series, terms: int, h: float, at: float, end:
-    float, law: int, event: int, run: Run,
+    laws: Laws, buffers: Buffers, rules: Tables, series: Series, terms: int, h: float, end: float,
+    event: LocatedEvent, run: Run,
 ) -> None:  # fmt: skip
-    """Let a law leave its branch at the place `at`, and others whose events are at the same instant."""
+    """Let a law leave its branch, and others whose events are at the same instant."""
     now, instant = run.time, INSTANT * max(run.time, h)
-    change_branch(laws, buffers, rules, run, now, law, event)
+    change_branch(laws, buffers, rules, run, now, event)
     for i in range(len(laws.rule)):
-        if i != law:
-            own, place = event_of(laws, series, terms, h, min(at + AHEAD, end), i)
-            if own >= 0 and place <= at + instant / h:
-                change_branch(laws, buffers, rules, run, now, i, own)
+        if i != event.law:
+            own = event_of(laws, series, terms, h, min(event.time + AHEAD, end), i)
+            if own.law >= 0 and own.time <= event.time + instant / h:
+                change_branch(laws, buffers, rules, run, now, own)
     run.same_instant = run.same_instant + 1 if now - run.last_event <= instant else 0
     run.last_event = now
 
@@ -217,7 +219,8 @@ def stride(
         whole = end == 1.0 and h == left
         # terms that were not needed make room for a longer step
         lengths.next = max(h * min(fit * TERMS / terms, GROW), lengths.next if end == 1.0 else 0.0)
-        law, event, at = first_event(laws, series, terms, h, end)
+        event = first_event(laws, series, terms, h, end)
+        at = event.time
         track_outputs(linear, laws, step, series, terms, h, at, t, len(coefs))
         track_laws(laws, step, series, terms, h, at, t, first)
         if at > 0.0:
@@ -225,13 +228,13 @@ def stride(
             add_works(linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, at, works)
             accept(laws, step.now, series, terms, h, at)
         run.steps += 1
-        if law < 0:
+        if event.law < 0:
             if not whole:
                 lengths.shortest = min(lengths.shortest, at * h)
             run.time = goal if whole else t + at * h
             continue
         run.time = t + at * h
-        change_branches(laws, buffers, rules, series, terms, h, at, end, law, event, run)
+        change_branches(laws, buffers, rules, series, terms, h, end, event, run)
         if run.same_instant > 50 + 4 * len(laws.rule):
             return CHATTER
     return DONE

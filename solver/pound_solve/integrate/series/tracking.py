@@ -5,15 +5,16 @@ polynomials, whose first rise and extremes are isolated with proof (`events.poly
 from __future__ import annotations
 
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise, highest, size
+from pound_solve.integrate.events.protocol import LocatedEvent, none
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.series.expansion import Series
 
 
-def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: int) -> tuple[int, float]:
-    """The first event of law `i` before `end`, and where; -1 where there is none."""
-    event, d, p = -1, series.deformation, series.polynomial[POLYNOMIAL]
+def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: int) -> LocatedEvent:
+    """The first event of law `i` before the place `end`, in lengths of the step, see `none`."""
+    first, d, p = none(end), series.deformation, series.polynomial[POLYNOMIAL]
     for e in range(laws.n_events[i]):
         on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
         if on_d == 0.0 and on_v == 0.0:
@@ -25,20 +26,20 @@ def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: in
             for k in range(terms):
                 p[k] += on_v * (k + 1) / h * d[i, k + 1]
         scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i] + abs(constant)
-        at = first_rise(series.polynomial, terms, end, STILL * scale)
-        if at >= 0.0 and (event < 0 or at < end):
-            event, end = e, at
-    return event, end
+        at = first_rise(series.polynomial, terms, first.time, STILL * scale)
+        if at >= 0.0 and (first.law < 0 or at < first.time):
+            first = LocatedEvent(i, e, at)
+    return first
 
 
-def first_event(laws: Laws, series: Series, terms: int, h: float, end: float) -> tuple[int, int, float]:
-    """The first event of any law before `end`: law, event and place; law -1 where there is none."""
-    law, event = -1, -1
+def first_event(laws: Laws, series: Series, terms: int, h: float, end: float) -> LocatedEvent:
+    """The first event of any law before the place `end`, in lengths of the step, see `none`."""
+    first = none(end)
     for i in range(len(laws.rule)):
-        own, at = event_of(laws, series, terms, h, end, i)
-        if own >= 0 and (law < 0 or at < end):
-            law, event, end = i, own, at
-    return law, event, end
+        own = event_of(laws, series, terms, h, first.time, i)
+        if own.law >= 0 and (first.law < 0 or own.time < first.time):
+            first = own
+    return first
 
 
 def count_crest(

@@ -139,7 +139,7 @@ def step_through(
 def passes_event(laws: Laws, step: Step, scheme: Scheme, h: float) -> bool:
     """Whether a law passes an event in the step that was tried."""
     if scheme.locate:
-        return first_event(laws, step, h)[0] >= 0
+        return first_event(laws, step, h).law >= 0
     for i in range(len(laws.rule)):
         d, d1, v1 = laws.now.deformation[i], laws.trial.deformation[i], laws.trial.rate[i]
         if event_on_path(laws, i, d, d1, v1)[0] >= 0:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pound_solve.integrate.energy import Works
+from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.events.within_step import event_value, first_event, value_at_start
 from pound_solve.integrate.kernels.consistency import NEAR, make_consistent, touches_massless
 from pound_solve.integrate.kernels.laws import couple, linear_force, linearise_law, transition
@@ -128,29 +129,32 @@ def verdict(
 
 def locate(
     linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, rules: Tables, coefs: Array, begin: float,
-    length: float, h: float, law: int, event: int, tau: float, run: Run,
-) -> tuple[int, int, int, float]:  # fmt: skip
+    length: float, h: float, event: LocatedEvent, run: Run,
+) -> tuple[int, LocatedEvent]:  # fmt: skip
     """Shorten a step from the local time `begin`, in which events are passed, to the first of them.
 
     Parameters
     ----------
     length, h : float
         Its length as it was tried, and the nominal one.
-    law, event, tau : int, int, float
+    event : LocatedEvent
         What `first_event` found.
 
     Returns
     -------
-    why, law, event, at : int, int, int, float
-        DONE or what failed; the law and its event, law -1 where none is met after all; the length, which
-        was tried last, or 0 where the event is met at once.
+    why : int
+        DONE or what failed.
+    event : LocatedEvent
+        Law -1 where none is met after all; its time is the length that was tried last, or 0 where it is met
+        at once.
     """
-    g = event_value(laws, law, event, laws.trial.deformation[law], laws.trial.rate[law])[0]
-    b = Bracket(0.0, length, np.nan, value_at_start(laws, step, law, event), g, np.nan)
+    law, index, tau = event.law, event.event_index, event.time
+    g = event_value(laws, law, index, laws.trial.deformation[law], laws.trial.rate[law])[0]
+    b = Bracket(0.0, length, np.nan, value_at_start(laws, step, law, index), g, np.nan)
     bisects = False
     for trial in range(100):
         if tau <= CLOSE * h:
-            return DONE, law, event, 0.0
+            return DONE, LocatedEvent(law, index, 0.0)
         last = b.high - b.low <= CLOSE * h
         if last:
             tau = b.high
@@ -159,26 +163,26 @@ def locate(
         bad = factorise(linear, laws, step, scheme, tau, PART)
         if bad >= 0:
             run.fault = bad
-            return PIVOT, law, event, 0.0
+            return PIVOT, event
         if not try_step(linear, laws, step, scheme, rules, coefs, begin + tau, tau, PART, run):
             if last:
-                return NEWTON, law, event, 0.0
+                return NEWTON, event
             start_again(laws, rules)  # at `high` there was a solution: look for the event nearer to it
             b, bisects = Bracket(tau, b.high, np.nan, np.nan, b.g_high, np.nan), True
             continue
-        found, other, guess = first_event(laws, step, tau)
-        passed = found >= 0
-        if passed and (found != law or other != event):
-            law, event = found, other
-            at_start = value_at_start(laws, step, law, event) if b.low == 0.0 else np.nan
+        found = first_event(laws, step, tau)
+        passed = found.law >= 0
+        if passed and (found.law != law or found.event_index != index):
+            law, index = found.law, found.event_index
+            at_start = value_at_start(laws, step, law, index) if b.low == 0.0 else np.nan
             b = Bracket(b.low, b.high, b.third, at_start, np.nan, b.g_third)
-        g, size = event_value(laws, law, event, laws.trial.deformation[law], laws.trial.rate[law])
-        ends = verdict(b, g, size, tau, guess, passed, last, h)
+        g, size = event_value(laws, law, index, laws.trial.deformation[law], laws.trial.rate[law])
+        ends = verdict(b, g, size, tau, found.time, passed, last, h)
         if ends != GO_ON:
-            return DONE, law if ends == MET else -1, event, tau
+            return DONE, LocatedEvent(law if ends == MET else -1, index, tau)
         b = narrowed(b, tau, g, passed)
-        tau = next_time(b, passed, guess, h)
-    return NEWTON, law, event, 0.0
+        tau = next_time(b, passed, found.time, h)
+    return NEWTON, event
 
 
 def factorise_part(
@@ -225,16 +229,16 @@ def step_in_parts(
             start_again(laws, rules)
             continue
         tried, halvings, longest = False, 0, np.inf
-        law, event, tau = first_event(laws, step, part)
-        if law >= 0:
+        event = first_event(laws, step, part)
+        if event.law >= 0:
             if curved:  # what is tried from here on moves the tangents away from the factor at hand
                 run.updates = REFRESH + 1
             at = PART
-            why, law, event, part = locate(
-                linear, laws, step, scheme, rules, coefs, t - piece_start, part, h, law, event, tau, run
-            )
+            begin = t - piece_start
+            why, event = locate(linear, laws, step, scheme, rules, coefs, begin, part, h, event, run)
             if why != DONE:
                 return why
+            part = event.time
             if part > 1e-9 * h:
                 same = 0
         else:
@@ -245,9 +249,10 @@ def step_in_parts(
             run.time = t + part
             track(linear, laws, step, run.time, part)
         at = PART
+        law = event.law
         if law < 0:
             continue
-        change_branch(linear, laws, step, buffers, rules, scheme, run, h, law, event)
+        change_branch(linear, laws, step, buffers, rules, scheme, run, h, law, event.event_index)
         if laws.curved[law] and laws.contact[law] and laws.now.rate[law] > 0.0:
             run.longest_part = FIRST * h
         make_consistent(linear, laws, step)
