@@ -300,7 +300,7 @@ def test_a_thousand_seconds_of_record(tmp_path):
 BITS = """import hashlib, sys
 from pound_solve.cli.main import main
 assert main([sys.argv[1], "-o", sys.argv[2], "--quiet"]) == 0
-from pound_solve.results.file import Results
+from pound_solve.results import Results
 with Results.open(sys.argv[2] + "/row.h5") as r:
     print(*(hashlib.sha256(r.history(k).tobytes()).hexdigest() for k in sorted(r.histories)))
 """
