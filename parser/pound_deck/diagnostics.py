@@ -456,8 +456,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "R406": (
         "there is no saved state to restart from",
-        "Name the .h5 file of a run of the same structure that ended or had a SAVE time; its path is "
-        "relative to the deck's folder.",
+        "Name the .h5 file of a run of the same structure that ended or had a SAVE time, written by the "
+        "same version of the program; its path is relative to the deck's folder.",
     ),
     "A501": (
         "unstable structure",

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from pound_deck.model import Units
+from pound_solve import __version__
 from pound_solve.results import Writer
 from pound_solve.results.contents import HISTORIES, TABLES
 from pound_solve.results.histories.nodes import NODES
@@ -42,7 +43,7 @@ def block(start: int, count: int) -> dict[str, np.ndarray]:
 
 def write(path: Path, *, status: str = "done", message: str = "", blocks: int = 3) -> Path:
     """Write the whole sample."""
-    with Writer(path, title=TITLE, units=UNITS, program_version="0.1.0") as writer:
+    with Writer(path, title=TITLE, units=UNITS, program_version=__version__) as writer:
         writer.text("decks/two buildings.inp", DECK)
         writer.start_history(layout())
         for number in range(blocks):

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from output import sample
+from pound_solve import __version__
 from pound_solve.analyses.static_response import without_rounding
 from pound_solve.report.text import WIDTH, render
 from pound_solve.results import Results, Writer
@@ -62,7 +63,7 @@ def test_sections_and_tables_in_order(report: str) -> None:
 
 def test_banner(report: str) -> None:
     banner = report[: report.index("1  INPUT")]
-    assert "POUND-SOLVE 0.1.0" in banner
+    assert f"POUND-SOLVE {__version__}" in banner
     assert "diaphragm - gap 8 mm, xi = 5 %" in banner
     assert "force kN, length m, time s" in banner
     assert "DID NOT" not in banner

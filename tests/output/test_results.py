@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from output import sample
+from pound_solve import __version__
 from pound_solve.results import Results, ResultsError, Writer
 from pound_solve.results.contents import HISTORIES, TABLES
 from pound_solve.results.writer import BLOCK
@@ -37,7 +38,7 @@ def test_tables_come_back(done: Results, name: str) -> None:
 def test_head_and_texts_come_back(done: Results) -> None:
     assert (done.title, done.status, done.message) == (sample.TITLE, "done", "")
     assert (done.units.force, done.units.length, done.units.time) == ("kN", "m", "s")
-    assert done.program_version == "0.1.0"
+    assert done.program_version == __version__
     assert done.texts == ("decks/two buildings.inp",)
     assert done.text("decks/two buildings.inp") == sample.DECK
     assert done.tables == tuple(TABLES)
@@ -182,6 +183,7 @@ _ENDLESS = """
 import sys
 from pathlib import Path
 from output import sample
+from pound_solve import __version__
 from pound_solve.results import Writer
 writer = Writer(Path(sys.argv[1]), title="killed", units=sample.UNITS, program_version="0")
 writer.table("nodes", sample.rows()["nodes"])

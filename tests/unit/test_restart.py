@@ -1,9 +1,11 @@
 """A history that is taken up again gives the bits of the whole one."""
 
+import h5py
 import numpy as np
 import pytest
 
 import pound_solve
+from pound_solve.driver.run import DeckError
 
 DECK = """UNITS kN m s
 NODES
@@ -94,3 +96,11 @@ def test_a_state_of_another_structure_is_refused(tmp_path):
 def test_a_state_later_than_the_end_is_refused(tmp_path):
     run(tmp_path, "first", "EXACT", end=3)
     assert "ends at 2" in run(tmp_path, "again", "EXACT", end=2, more="RESTART=first.h5").message
+
+
+def test_a_state_of_another_version_is_refused(tmp_path):
+    run(tmp_path, "first", "EXACT", end=2)
+    with h5py.File(tmp_path / "first.h5", "r+") as file:
+        file.attrs["program_version"] = "0.1.0"
+    with pytest.raises(DeckError, match="written by version 0"):
+        run(tmp_path, "again", "EXACT", end=4, more="RESTART=first.h5")

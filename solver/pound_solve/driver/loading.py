@@ -8,6 +8,7 @@ from typing import Any
 
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
+from pound_solve import __version__
 from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import METRE, LoadingContext, Motion
@@ -74,11 +75,14 @@ def saved_state(model: Model, request: Request, found: list[Diagnostic]) -> dict
         path = Path(request.deck).parent / card["RESTART"]
         try:
             with Results.open(path) as results:
-                state = results.restart()
+                state, version = results.restart(), results.program_version
         except ResultsError as err:
             found.append(Diagnostic("R406", str(err), card.place("RESTART")))
             return {}
         if not state:
             found.append(Diagnostic("R406", f"{path} holds no state to go on from", card.place("RESTART")))
+        elif version.split(".")[:2] != __version__.split(".")[:2]:  # the variables of laws may differ
+            message = f"{path} was written by version {version}, this is {__version__}: run its deck again"
+            found.append(Diagnostic("R406", message, card.place("RESTART")))
         return state
     return {}
