@@ -1,5 +1,6 @@
 # make example   run the paper's buildings under El Centro 1940 and show where the report is
-# make test      run the test suite
+# make test      run the quick tests, without compiled code: two minutes on two cores
+# make test-all  run the other tests, with compiled code
 # make docs      build the site: build/site/index.html
 # All set up a virtual environment in $(VENV) first.
 
@@ -8,7 +9,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 OUT ?= build/example
 
-.PHONY: example test lint manual docs clean
+.PHONY: example test test-all lint manual docs clean
 
 $(VENV)/ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -19,7 +20,10 @@ example: $(VENV)/ready
 	$(BIN)/pound-solve examples/cole2011/distributed.inp --set n=20 -o $(OUT)
 
 test: $(VENV)/ready
-	$(BIN)/python -m pytest
+	POUND_COMPILE=0 $(BIN)/python -m pytest -n 2 -m "not full and not slow"
+
+test-all: $(VENV)/ready
+	$(BIN)/python -m pytest -n 2 -m "full and not slow"
 
 lint: $(VENV)/ready
 	$(BIN)/ruff check .

@@ -17,6 +17,8 @@ import pytest
 
 from pound_solve.driver.run import Request, prepare
 
+pytestmark = pytest.mark.full
+
 WORDS = {"deck", "table", "key", "columns", "set", "times", "rtol", "only"}
 MARK = re.compile(r"<!-- expected:(.*?)-->", re.DOTALL)
 

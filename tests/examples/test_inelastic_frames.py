@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
+pytestmark = pytest.mark.full
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 CONCRETE = EXAMPLES / "03_concrete_frame" / "concrete_frame.inp"
 TIMBER = EXAMPLES / "04_timber_frame" / "timber_frame.inp"

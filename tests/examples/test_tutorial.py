@@ -22,6 +22,8 @@ import pytest
 from pound_solve.cli.main import main
 from pound_solve.results.contents import SECTIONS, TABLES
 
+pytestmark = pytest.mark.full
+
 MANUAL = Path(__file__).parents[2] / "manual"
 EXAMPLE = Path(__file__).parents[2] / "examples" / "01_two_oscillators"
 BLOCK = re.compile(r"(?:^<!-- ([^>]*?) -->\n)?^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)

@@ -12,6 +12,8 @@ from decks import structure_of
 from pound_solve.laws.contact import friction
 from pound_solve.structure.assembly import AssemblyError
 
+pytestmark = pytest.mark.full
+
 BALL = """UNITS N m s
 GRAVITY 1
 NODES

@@ -17,6 +17,8 @@ from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.kelvin_voigt import Built
 from verification.cases import run_text
 
+pytestmark = pytest.mark.full
+
 #: laws whose force gives back E at any speed (BILINEAR_IMPACT does at one speed, rigid ones have no force:
 #: they have tests of their own)
 LAWS = {

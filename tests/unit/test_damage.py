@@ -15,6 +15,8 @@ from pound_solve.laws.automaton import Law, State, drive
 from pound_solve.laws.hysteresis import bilinear, bilinear_elastic, elasto_plastic, origin_centred
 from verification.cases import Ran, run_text
 
+pytestmark = pytest.mark.full
+
 K, FY = 100.0, 5.0
 DY = FY / K
 ORIGIN = {"R": 0.1, "ALFA": 0.0, "ILOS": "NONE", "DUCT1": None, "DUCT2": None, "RDUCT": None}

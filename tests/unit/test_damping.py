@@ -31,6 +31,8 @@ from pound_solve.structure.damping.secant import SecantLaw
 from pound_solve.structure.elements.base import LawSpring
 from verification.cases import run_text
 
+pytestmark = pytest.mark.full
+
 FRAME = """
 GRAVITY 9.81
 MASS {mass}

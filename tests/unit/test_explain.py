@@ -12,6 +12,8 @@ from pound_solve.results import Results
 from pound_solve.results.tables.figures.imports import LIBRARIES
 from pound_solve.results.tables.reduced_system.arrays import stored
 
+pytestmark = pytest.mark.full
+
 FRAME = """UNITS  kN m s
 NODES
    1  0 0  FIX=XYR

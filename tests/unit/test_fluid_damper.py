@@ -14,6 +14,8 @@ from pound_solve.numerics import jit
 from pound_solve.structure.assembly import AssemblyError
 from pound_solve.structure.elements.base import Role
 
+pytestmark = pytest.mark.full
+
 compiled = pytest.mark.skipif(jit.numba() is None, reason="numba is not installed")
 
 MASS = """UNITS kN m s

@@ -13,6 +13,8 @@ from pound_solve import run
 from pound_solve.numerics.types import Array
 from verification.cases import Ran, run_text
 
+pytestmark = pytest.mark.full
+
 M, K, F = 10.0, 400.0, 50.0
 W = math.sqrt(K / M)
 OSCILLATOR = f"""

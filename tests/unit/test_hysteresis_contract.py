@@ -38,6 +38,8 @@ from pound_solve.laws.hysteresis import bilinear
 from pound_solve.numerics import jit
 from samples import values
 
+pytestmark = pytest.mark.full
+
 K = 800.0  #: initial stiffness
 PLUS, MINUS = 12.0, -8.0  #: yield forces: at +15 and -10 mm
 REACH = 0.1  #: paths run between plus and minus this

@@ -9,6 +9,8 @@ import pytest
 
 from verification.cases import ROOT, run_deck, run_text
 
+pytestmark = pytest.mark.full
+
 OSCILLATOR = """UNITS N m s
 PARAM w = 5   xi = 0.05   gap = 9
 GRAVITY 1

@@ -19,6 +19,8 @@ from pound_solve.analyses import static
 from pound_solve.analyses.equilibrium import SupportReactions
 from pound_solve.results import Results
 
+pytestmark = pytest.mark.full
+
 KINDS = ("LARGE", "PDELTA_VARYING")
 
 

@@ -18,6 +18,8 @@ from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.numerics import matrices, modes
 from pound_solve.structure.assembly import assemble
 
+pytestmark = pytest.mark.full
+
 FRAME = Path(__file__).parents[2] / "examples" / "frames" / "steel_10x3.inp"
 
 

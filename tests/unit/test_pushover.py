@@ -26,6 +26,8 @@ from pound_solve.laws.automaton import (
 )
 from pound_solve.structure.assembly import assemble
 
+pytestmark = pytest.mark.full
+
 
 def pushed(text: str, card: str, swap=lambda s: s) -> pushover.PushoverResult:
     """Pushover of a deck by a card."""

@@ -7,6 +7,8 @@ import pytest
 import pound_solve
 from pound_solve.driver.run import DeckError
 
+pytestmark = pytest.mark.full
+
 DECK = """UNITS kN m s
 NODES
  1 0 0 FIX=XYR

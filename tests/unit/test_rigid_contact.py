@@ -21,6 +21,8 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import AssemblyError
 from verification.cases import Ran, run_text
 
+pytestmark = pytest.mark.full
+
 
 def row(
     masses: list[float],

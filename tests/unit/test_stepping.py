@@ -19,6 +19,8 @@ from pound_solve.laws import functions
 from pound_solve.laws.hysteresis import bilinear, imk_bilinear
 from pound_solve.numerics import cubic, jit, ldl
 
+pytestmark = pytest.mark.full
+
 # two one-bay frames of which the left one yields at its hinges, slabs that meet with a dashpot
 POUNDING = """UNITS kN m s
 NODES

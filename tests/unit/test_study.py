@@ -15,6 +15,8 @@ from pound_solve.cli.main import main
 from pound_solve.driver import run
 from pound_solve.results import Results
 
+pytestmark = pytest.mark.full
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TWO = (
     (EXAMPLES / "01_two_oscillators/two_oscillators.inp").read_text().replace("HISTORY   5", "HISTORY   3")

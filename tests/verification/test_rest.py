@@ -9,6 +9,8 @@ import pytest
 
 from verification.cases import kelvin_voigt_xi, run_text
 
+pytestmark = pytest.mark.full
+
 BALL = """TITLE  Ball dropped on a floor
 UNITS  N m s
 PARAM  k = 1e5   e = 0.5   drop = 0.5   g = 10   t = 12

@@ -16,6 +16,8 @@ from pound_solve.catalog import catalog
 from pound_solve.cli.main import main
 from pound_solve.integrate import auto
 
+pytestmark = pytest.mark.full
+
 
 def chosen(case):
     """Scenes and laws that have one speciality each; short ones."""

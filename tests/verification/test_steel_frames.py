@@ -18,6 +18,8 @@ from pound_solve import run
 from pound_solve.numerics import jit
 from verification.cases import ROOT
 
+pytestmark = pytest.mark.full
+
 FRAMES = ROOT / "examples" / "frames"
 COMPILED = pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
 
