@@ -185,6 +185,7 @@ def wait_for_rows(process: subprocess.Popen, path: Path):
         time.sleep(0.05)
 
 
+@pytest.mark.full
 def test_a_killed_run_leaves_what_it_had_written(deck):
     process = start(deck)
     wait_for_rows(process, deck.with_suffix(".h5"))
@@ -197,6 +198,7 @@ def test_a_killed_run_leaves_what_it_had_written(deck):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
+@pytest.mark.full
 def test_an_interrupted_run_ends_with_its_results_and_status_1(deck):
     process = start(deck)
     wait_for_rows(process, deck.with_suffix(".h5"))

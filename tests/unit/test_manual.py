@@ -205,6 +205,7 @@ def test_constants_are_those_of_the_code():
         assert getattr(home, name) == float(value), where
 
 
+@pytest.mark.full
 def test_table_of_convergence_is_what_the_methods_do(tmp_path):
     text = (MANUAL / "theory-integration.md").read_text("utf-8")
     deck = tmp_path / "wall.inp"
@@ -225,6 +226,7 @@ def test_table_of_convergence_is_what_the_methods_do(tmp_path):
         assert order == pytest.approx(2.0, abs=0.2 if method == "HHT" else 0.05)
 
 
+@pytest.mark.full
 def test_table_of_taylor_is_what_it_does(tmp_path):
     """The same series and events; differences to EXACT, which are rounding, up to ten times the table's."""
     rows = table("theory-integration.md", "taylor")
