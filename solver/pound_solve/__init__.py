@@ -49,7 +49,7 @@ def run(
 
     Raises
     ------
-    pound_solve.driver.run.DeckError
+    pound_solve.driver.prepare.DeckError
         The deck has mistakes; the text names file, line and column of each.
     OSError
         A file cannot be read or written.

@@ -93,7 +93,7 @@ class Advice(Protocol):
         ...
 
 
-class Study(Protocol):
+class StudyRecord(Protocol):
     """Trials with their errors, the reference, and the advice."""
 
     @property

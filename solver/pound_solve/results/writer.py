@@ -28,7 +28,7 @@ from pound_solve.results.schema import Column, HistoryLayout, Layout, Stage
 if TYPE_CHECKING:
     from pound_deck.model import Units
     from pound_solve.results.record import RunRecord
-    from pound_solve.results.study_record import Study
+    from pound_solve.results.study_record import StudyRecord
 
 #: rows of a chunk, and numbers in it, at most (one row in any case); a block of as many steps costs little
 #: to write, and little is lost by a kill
@@ -154,13 +154,13 @@ class Writer:
         dataset.attrs["units"] = [self._units.text(c.unit) for c in columns]
         self._file.flush()
 
-    def tables(self, stage: Stage, record: RunRecord | Study) -> None:
+    def tables(self, stage: Stage, record: RunRecord | StudyRecord) -> None:
         """Store all tables of a stage that have something to tell.
 
         Parameters
         ----------
         stage : Stage
-        record : RunRecord or Study
+        record : RunRecord or StudyRecord
             What the rows are made from.
         """
         for table in tables_at(stage):

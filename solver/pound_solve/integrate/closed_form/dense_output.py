@@ -17,7 +17,7 @@ from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Index
 
-Motion = tuple[Array, Array, Array]  #: displacement, velocity and acceleration of the unknowns
+Kinematics = tuple[Array, Array, Array]  #: displacement, velocity and acceleration of the unknowns
 
 
 class DenseOutput:
@@ -118,12 +118,12 @@ class DenseOutput:
                     out[order, x.monitored] += np.abs(x.rows @ x.propagator.u_p) @ p.T
         return out
 
-    def motion(self, interval: int, tau: float) -> Motion:
+    def motion(self, interval: int, tau: float) -> Kinematics:
         """Return the motion at `tau` within an interval, shape (n,) each."""
         u, v, a = self.motions(interval, np.array([tau]))
         return u[:, 0], v[:, 0], a[:, 0]
 
-    def motions(self, interval: int, times: Array, enveloped: bool = False) -> Motion:
+    def motions(self, interval: int, times: Array, enveloped: bool = False) -> Kinematics:
         """Return the motion at several times of an interval, shape (n, n_times) each; with `enveloped` that
         of the unknowns in the envelopes, zero elsewhere.
         """
@@ -137,7 +137,7 @@ class DenseOutput:
 
         return self._motions(np.array([interval]), times[None], states, enveloped)
 
-    def enveloped_motions(self, times: Array) -> Motion:
+    def enveloped_motions(self, times: Array) -> Kinematics:
         """Return the motion of the unknowns in the envelopes at several local times, zero elsewhere, shape
         (n, n_times) each.
         """
@@ -149,12 +149,12 @@ class DenseOutput:
         u, v, a = out
         return u, v, a
 
-    def motions_at_ends(self, chosen: Index) -> Motion:
+    def motions_at_ends(self, chosen: Index) -> Kinematics:
         """Return the motion at the ends of some intervals, shape (n, n_chosen) each."""
         t = self.lengths[chosen, None]
         return self._motions(chosen, t, lambda subsystem: subsystem.states[:, chosen + 1, None])
 
-    def enveloped_grid(self, h: float, end: float) -> tuple[Array, Motion]:
+    def enveloped_grid(self, h: float, end: float) -> tuple[Array, Kinematics]:
         """Return local times at steps of `h` in each interval up to `end`, shape (n_times,), and the motion
         then of the unknowns in the envelopes, zero elsewhere, shape (n, n_times) each.
         """
@@ -179,7 +179,7 @@ class DenseOutput:
         t: Array,
         states: Callable[[Subsystem], NDArray[Any]],
         enveloped: bool = False,
-    ) -> Motion:
+    ) -> Kinematics:
         """Motion at times `t`, shape (n_intervals, n_times), within some intervals each; shape
         (n, n_intervals * n_times) each.
 

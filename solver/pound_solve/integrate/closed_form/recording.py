@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from pound_solve.integrate.closed_form.dense_output import DenseOutput, Motion
+from pound_solve.integrate.closed_form.dense_output import DenseOutput, Kinematics
 from pound_solve.integrate.closed_form.rigid_contact import RigidContacts
 from pound_solve.integrate.closed_form.subsystems import Subsystems
 from pound_solve.integrate.energy import law_values
@@ -34,7 +34,7 @@ class DeferredSamples:
     def add(
         self,
         t: Array,
-        motion: Motion,
+        motion: Kinematics,
         entries: Index,
         states: Sequence[State],
         branches: Sequence[Branch],
@@ -88,7 +88,7 @@ class EnvelopeSamples:
             self.release()
 
     def _add_stationary(
-        self, dense: DenseOutput, t0: float, tau: Array, motion: Motion, end: float
+        self, dense: DenseOutput, t0: float, tau: Array, motion: Kinematics, end: float
     ) -> None:
         """Keep the displacements at the instants at which one of them is stationary beyond its range so
         far: of each the highest and the lowest, from the cubic from one point to the next and a step of

@@ -317,8 +317,8 @@ def step_arrays(
     inputs = system.inputs.shape[1]
     value = system.excitation.value
 
-    def motion() -> state.Motion:
-        return state.Motion(*np.zeros((6, n)), *np.zeros((2, inputs)))
+    def motion() -> state.MotionState:
+        return state.MotionState(*np.zeros((6, n)), *np.zeros((2, inputs)))
 
     out = state.Step(
         now=motion(),

@@ -1,7 +1,7 @@
 """What the kernels work on: named arrays in the order of elimination, and the records of a run.
 
 Every array has a name and one place where it is allocated (`allocation`).  An instant of the motion is a
-`Motion`; a step has one at its start, ``now``, and one at its end, ``trial``, until the end is accepted.
+`MotionState`; a step has one at its start, ``now``, and one at its end, ``trial``, until it is accepted.
 """
 
 from __future__ import annotations
@@ -315,7 +315,7 @@ class Laws(NamedTuple):
     members: Corotational
 
 
-class Motion(NamedTuple):
+class MotionState(NamedTuple):
     """The motion of the unknowns at one instant, shape (n,), and what drives it.
 
     Attributes
@@ -343,7 +343,7 @@ class Step(NamedTuple):
 
     Attributes
     ----------
-    now, trial : Motion
+    now, trial : MotionState
         At its start and at its end.
     residual : ndarray, shape (n,)
         ``p - C v - K u - f`` at the start, in balance with the inertia.
@@ -361,8 +361,8 @@ class Step(NamedTuple):
     extremes : Extremes
     """
 
-    now: Motion
-    trial: Motion
+    now: MotionState
+    trial: MotionState
     residual: Array
     right_side: Array
     product: Array

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from pound_solve.integrate.kernels.laws import linear_force
-from pound_solve.integrate.kernels.state import LawMotion, Laws, LinearSystem, MemberState, Motion
+from pound_solve.integrate.kernels.state import LawMotion, Laws, LinearSystem, MemberState, MotionState
 from pound_solve.numerics.jit import loose
 from pound_solve.numerics.types import Array
 
 
 def support_power(
-    linear: LinearSystem, laws: Laws, motion: Motion, law_motion: LawMotion, members: MemberState
+    linear: LinearSystem, laws: Laws, motion: MotionState, law_motion: LawMotion, members: MemberState
 ) -> tuple[float, float]:
     """Power that moved supports put in, and that lost in dashpots which end at them, at one instant."""
     put, lost = 0.0, 0.0
@@ -51,7 +51,7 @@ def load_on_nodes(linear: LinearSystem, inputs: Array, i: int) -> float:
 
 
 @loose
-def mean_damping_power(now: Motion, trial: Motion) -> float:
+def mean_damping_power(now: MotionState, trial: MotionState) -> float:
     """Three times the mean power that the dashpots of the structure take in a step."""
     loss = 0.0
     for i in range(len(now.velocity)):
@@ -63,7 +63,7 @@ def mean_damping_power(now: Motion, trial: Motion) -> float:
 
 
 @loose
-def mean_load_power(now: Motion, trial: Motion) -> float:
+def mean_load_power(now: MotionState, trial: MotionState) -> float:
     """Six times the mean power that the loads put in, in a step."""
     work = 0.0
     for i in range(len(now.velocity)):

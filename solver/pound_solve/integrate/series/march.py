@@ -23,7 +23,7 @@ from pound_solve.integrate.kernels.state import (
     Buffers,
     Laws,
     LinearSystem,
-    Motion,
+    MotionState,
     Run,
     Step,
 )
@@ -108,7 +108,7 @@ def add_works(
     works.gross_input += abs(put)
 
 
-def accept(laws: Laws, now: Motion, series: Series, terms: int, h: float, end: float) -> None:
+def accept(laws: Laws, now: MotionState, series: Series, terms: int, h: float, end: float) -> None:
     """Make the place `end` the present."""
     evaluate(series, terms, end, h, 0, now.displacement)
     evaluate(series, terms, end, h, 1, now.velocity)
@@ -121,7 +121,7 @@ def accept(laws: Laws, now: Motion, series: Series, terms: int, h: float, end: f
 
 @flat
 def store_looks(
-    trial: Motion,
+    trial: MotionState,
     buffers: Buffers,
     series: Series,
     terms: int,

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from pound_solve.results.schema import Column, Row, Stage, Table
-from pound_solve.results.study_record import Study
+from pound_solve.results.study_record import StudyRecord
 
 
-def rows(study: Study) -> list[Row]:
+def rows(study: StudyRecord) -> list[Row]:
     """One row for each trial."""
     return [
         (
@@ -26,7 +26,7 @@ def rows(study: Study) -> list[Row]:
     ]
 
 
-def remark(study: Study) -> str:
+def remark(study: StudyRecord) -> str:
     """Tell what the errors are measured against, and whether the times can be trusted."""
     own = ", ".join(f"{e:.1e} ({kind})" for kind, e in study.reference.error.items() if math.isfinite(e))
     errors = f"; its own errors are about {own}." if own else "."

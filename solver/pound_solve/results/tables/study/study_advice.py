@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterator
 
 from pound_solve.results.schema import Column, Row, Stage, Table
-from pound_solve.results.study_record import Study
+from pound_solve.results.study_record import StudyRecord
 
 
-def rows(study: Study) -> Iterator[Row]:
+def rows(study: StudyRecord) -> Iterator[Row]:
     """One row for each target."""
     for a in study.advice:
         if a.trial is None:
@@ -18,7 +18,7 @@ def rows(study: Study) -> Iterator[Row]:
             yield a.target, a.trial.method, a.trial.setting, a.trial.time, a.trial.error, a.sure
 
 
-def remark(study: Study) -> str:
+def remark(study: StudyRecord) -> str:
     """Give the advice in one sentence."""
     return study.sentence
 
