@@ -32,12 +32,10 @@ KERNELS = (
     "numerics/*.py",
     "laws/**/*.py",
     "structure/corotational.py",
-    "integrate/protocol.py",
+    "integrate/*.py",
     "integrate/[!c]*/*.py",  # all methods but the closed forms, which numpy serves
 )
-FLAT: set[Function] = set()  #: kernels marked by `flat`
-LOOSE: set[Function] = set()  #: kernels marked by `loose`
-FASTMATH = {"contract", "reassoc"}  #: reorderings of floating-point operations allowed in the latter
+FASTMATH = {"contract", "reassoc"}  #: reorderings of floating-point operations allowed in `loose` kernels
 
 
 def folder() -> Path:
@@ -78,13 +76,13 @@ def numba() -> Any:
 
 def flat(function: Function) -> Function:
     """Mark a kernel to be compiled as one function with all that it calls in every step."""
-    FLAT.add(function)
+    vars(function)["flat"] = True
     return function
 
 
 def loose(function: Function) -> Function:
     """Mark a kernel whose sums may be taken in another order, several terms at once."""
-    LOOSE.add(function)
+    vars(function)["loose"] = True
     return function
 
 
@@ -138,7 +136,7 @@ def compiled(
     found = numba()
     if found is None:
         return function
-    scope, flat = dict(function.__globals__), function in FLAT
+    scope, flat = dict(function.__globals__), "flat" in vars(function)
     for used in {i.argval for i in dis.get_instructions(function) if i.opname == "LOAD_GLOBAL"}:
         value = scope.get(used)
         if isinstance(value, types.FunctionType) and value.__module__.startswith("pound_solve"):
@@ -152,7 +150,7 @@ def compiled(
     if inner:  # no Python calls it, so that it needs no door to it; kept by a name of its own
         twin.__qualname__ += "_inline" if inline else "_inner"
         how |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    if function in LOOSE:
+    if "loose" in vars(function):
         how["fastmath"] = FASTMATH
     with compiling():
         out: Function = found.njit(*([] if signature is None else [signature]), **how)(twin)
