@@ -16,9 +16,10 @@ from pound_solve.loading.motions.base import LoadingContext
 from pound_solve.loading.motions.wave import fronts
 from pound_solve.numerics.types import Array
 from pound_solve.structure import reduction
-from pound_solve.structure.assembly import Structure, assemble
+from pound_solve.structure.assembly import assemble
 from pound_solve.structure.condensation import condense
 from pound_solve.structure.dofs import Dof
+from pound_solve.structure.structure import Structure
 
 
 def model_of(text: str, params: Mapping[str, object] | None = None) -> Model:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-__version__ = "0.2.0"
-
 from typing import TYPE_CHECKING
+
+from pound_solve.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

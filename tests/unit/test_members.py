@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 from decks import solved, structure_of
 from pound_solve.analyses import static
 from pound_solve.numerics.types import Array
-from pound_solve.structure.assembly import AssemblyError, Structure
+from pound_solve.structure.assembly import AssemblyError
 from pound_solve.structure.elements.foundation import radiation, stiffness
 from pound_solve.structure.elements.multispring import lobatto
+from pound_solve.structure.structure import Structure
 from verification.cases import run_text
 
 

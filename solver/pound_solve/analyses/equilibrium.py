@@ -11,8 +11,9 @@ import numpy as np
 from pound_solve.laws.automaton import State
 from pound_solve.numerics.matrices import by_rows, least_squares, used_rows
 from pound_solve.numerics.types import Array
-from pound_solve.structure.assembly import Structure, assemble
+from pound_solve.structure.assembly import assemble
 from pound_solve.structure.dofs import Dof
+from pound_solve.structure.structure import Structure
 
 ROUNDING = 1e-9  #: share of the largest term below which a sum of forces is zero
 

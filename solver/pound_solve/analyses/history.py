@@ -25,8 +25,8 @@ from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import Motion
 from pound_solve.numerics.types import Array
 from pound_solve.structure import reduction
-from pound_solve.structure.assembly import Structure
 from pound_solve.structure.reduction import ReducedSystem
+from pound_solve.structure.structure import Structure
 
 MOST_ROWS = 5_000_000  #: of stored histories
 RESIDUAL = "largest energy residual over the largest energy"  #: name of the check

@@ -11,8 +11,8 @@ from pound_solve.laws.automaton import State, consistent, drive
 from pound_solve.numerics.matrices import least_squares, used_columns, used_rows, weighted
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array
-from pound_solve.structure.assembly import Structure
 from pound_solve.structure.reduction import ReducedSystem
+from pound_solve.structure.structure import Structure
 
 
 def initial(structure: Structure) -> tuple[Array, Array]:

@@ -25,7 +25,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.analyses import static
 from pound_solve.numerics.modes import moving_mass
 from pound_solve.numerics.types import Array
-from pound_solve.structure.assembly import Structure
+from pound_solve.structure.structure import Structure
 
 SPEC = Spec(
     "analysis",

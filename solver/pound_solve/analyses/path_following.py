@@ -37,8 +37,8 @@ from pound_solve.laws.automaton import State
 from pound_solve.numerics.matrices import Matrix, bordered, by_rows, dense, gathered, scaled, used_rows
 from pound_solve.numerics.modes import Held, scaling
 from pound_solve.numerics.types import Array
-from pound_solve.structure.assembly import Structure
 from pound_solve.structure.dofs import label
+from pound_solve.structure.structure import Structure
 
 NOISE = 1e-12  #: share of its terms below which a rate is rounding
 JUMP = 1e-12  #: share of its terms above which a force has changed at once

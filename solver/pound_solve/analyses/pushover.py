@@ -38,7 +38,7 @@ from pound_solve.analyses.path_following import Change, EquilibriumPath, Instabi
 from pound_solve.analyses.static import StaticState
 from pound_solve.numerics import modes
 from pound_solve.numerics.types import Array
-from pound_solve.structure.assembly import Structure
+from pound_solve.structure.structure import Structure
 
 SOUGHT = 12  #: slowest modes of a large structure among which the pattern is chosen
 

@@ -16,9 +16,9 @@ from pound_solve.integrate.protocol import Outcome, Start
 from pound_solve.integrate.tracker import Extreme, Peaks
 from pound_solve.laws.automaton import State
 from pound_solve.numerics.types import Array
-from pound_solve.structure.assembly import Structure
 from pound_solve.structure.dofs import label
 from pound_solve.structure.reduction import ReducedSystem
+from pound_solve.structure.structure import Structure
 
 
 class RestartError(Exception):

@@ -11,8 +11,8 @@ from pound_solve.analyses import damage
 from pound_solve.analyses.recorder import HistoryRecorder
 from pound_solve.integrate.protocol import Outcome
 from pound_solve.integrate.tracker import Extreme
-from pound_solve.structure.assembly import Structure
 from pound_solve.structure.elements.base import LawSpring, Role
+from pound_solve.structure.structure import Structure
 
 
 class PlasticDeformation(NamedTuple):

@@ -23,7 +23,7 @@ from pound_solve.laws.automaton import State
 from pound_solve.numerics.matrices import Factor, Matrix, scaled, used_rows
 from pound_solve.numerics.modes import scaling
 from pound_solve.numerics.types import Array
-from pound_solve.structure.assembly import Structure
+from pound_solve.structure.structure import Structure
 
 MOST_ROUNDS = 100  #: of axial forces
 

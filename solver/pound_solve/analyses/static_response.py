@@ -11,7 +11,7 @@ import numpy as np
 from pound_solve.analyses.equilibrium import ROUNDING, SupportReactions
 from pound_solve.analyses.static import StaticState
 from pound_solve.numerics.types import Array
-from pound_solve.structure.assembly import Structure
+from pound_solve.structure.structure import Structure
 
 DUST = 1e-12  #: share of the largest value below which a number is rounding
 

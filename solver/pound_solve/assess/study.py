@@ -17,7 +17,6 @@ from typing import Final
 
 import numpy as np
 
-from pound_solve import __version__
 from pound_solve.analyses.history import RESIDUAL, ROWS
 from pound_solve.assess.advice import (
     MARGIN,
@@ -38,6 +37,7 @@ from pound_solve.driver import run as driver
 from pound_solve.driver.overrides import with_method
 from pound_solve.results import Results, Writer
 from pound_solve.results.schema import Stage
+from pound_solve.version import __version__
 
 Report = Callable[[str], None]
 

@@ -11,9 +11,9 @@ from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
 
-from pound_solve import __version__
 from pound_solve.cli import verbs
 from pound_solve.cli.common import MISTAKES, STOPPED, complain
+from pound_solve.version import __version__
 
 VERBS = tuple(sorted(module.name for module in iter_modules(verbs.__path__)))
 #: environment variables by which builds of numpy's linear algebra limit their threads

@@ -8,7 +8,6 @@ from typing import Any
 
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
-from pound_solve import __version__
 from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import METRE, LoadingContext, Motion
@@ -16,6 +15,7 @@ from pound_solve.loading.motions.wave import fronts
 from pound_solve.loading.records.base import RecordError
 from pound_solve.numerics.types import Array
 from pound_solve.results import Results, ResultsError
+from pound_solve.version import __version__
 
 
 def context(model: Model, request: Request) -> LoadingContext:

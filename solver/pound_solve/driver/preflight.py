@@ -10,7 +10,7 @@ import numpy as np
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
 from pound_solve.numerics.types import Array
-from pound_solve.structure.assembly import Structure
+from pound_solve.structure.structure import Structure
 
 
 def inclined(structure: Structure) -> list[Diagnostic]:

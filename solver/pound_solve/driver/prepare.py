@@ -16,8 +16,9 @@ from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import Motion
 from pound_solve.numerics.types import Array
-from pound_solve.structure.assembly import AssemblyError, Structure, assemble
+from pound_solve.structure.assembly import AssemblyError, assemble
 from pound_solve.structure.reduction import moved_supports
+from pound_solve.structure.structure import Structure
 
 
 class DeckError(Exception):

@@ -5,11 +5,11 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
-from pound_solve import __version__
 from pound_solve.driver.prepare import DeckError, Prepared, prepare
 from pound_solve.driver.request import Request
 from pound_solve.driver.sequence import AnalysisSequence, Progress
 from pound_solve.results import Results, Writer
+from pound_solve.version import __version__
 
 __all__ = (
     "DONE",

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from pound_solve.analyses.static_response import StaticResponse
     from pound_solve.loading.forces.base import Force
     from pound_solve.loading.motions.base import Motion
-    from pound_solve.structure.assembly import Structure
     from pound_solve.structure.diaphragms import DiaphragmCollision
+    from pound_solve.structure.structure import Structure
 
 Check: TypeAlias = tuple[str, str, str]  #: what was checked, what was found, whether that is good enough
 

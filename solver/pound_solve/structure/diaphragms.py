@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pound_solve.structure.assembly import Structure
 from pound_solve.structure.elements.base import LawSpring, axes
 from pound_solve.structure.mass import mass_along
+from pound_solve.structure.structure import Structure
 from pound_solve.theory.two_bars import Diaphragm, Pair
 
 GOOD_ENOUGH = 0.05  #: error of the changes of velocity up to which lumped mass will do

@@ -27,10 +27,10 @@ from pound_solve.loading.motions.base import Motion, Piecewise, common_breaks
 from pound_solve.numerics.graph import components
 from pound_solve.numerics.matrices import Matrix, by_rows, entries, gathered, selection, used_rows
 from pound_solve.numerics.types import Array, Flags
-from pound_solve.structure.assembly import Structure
 from pound_solve.structure.corotational import QUANTITIES, CorotationalMembers
 from pound_solve.structure.dofs import Dof, label, labels
 from pound_solve.structure.reduction_checks import check_inertia, check_jumps
+from pound_solve.structure.structure import Structure
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ from pound_solve.numerics.matrices import (
 )
 from pound_solve.numerics.modes import massless, softest
 from pound_solve.numerics.types import Array, Flags
-from pound_solve.structure.assembly import Structure
 from pound_solve.structure.dofs import Dof, label
+from pound_solve.structure.structure import Structure
 
 
 class ReductionError(Exception):

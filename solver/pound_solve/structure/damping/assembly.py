@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,9 +18,7 @@ from pound_solve.structure.damping.secant import SecantLaw
 from pound_solve.structure.dofs import label
 from pound_solve.structure.elements.base import Role
 from pound_solve.structure.mass import MassBlock
-
-if TYPE_CHECKING:
-    from pound_solve.structure.assembly import Structure
+from pound_solve.structure.structure import Structure
 
 MECHANISM = "the modes that this damping needs cannot be computed: the structure is a mechanism"
 

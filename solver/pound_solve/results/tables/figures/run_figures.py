@@ -8,10 +8,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from pound_solve import __version__
 from pound_solve.results.columns import ITEM, VALUE
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Row, Stage, Table
+from pound_solve.version import __version__
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
