@@ -155,7 +155,8 @@ def test_imports_go_down():
 def test_no_modules_import_each_other_in_a_circle():
     files = {".".join(p.relative_to(SOLVER.parent).with_suffix("").parts): p for p in SOLVER.rglob("*.py")}
     needs = {
-        name: {module for n in imported(p) for module in (n, n.rpartition(".")[0]) if module in files} - {name}
+        name: {module for n in imported(p) for module in (n, n.rpartition(".")[0]) if module in files}
+        - {name}
         for name, p in files.items()
     }
     TopologicalSorter(needs).prepare()  # CycleError names the circle
