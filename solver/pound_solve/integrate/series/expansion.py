@@ -13,12 +13,12 @@ again if that is far from its end.
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
-
 import numpy as np
 
-from pound_solve.integrate.kernels.products import along, multiply
+from pound_solve.integrate.kernels.products import multiply
 from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Step
+from pound_solve.integrate.series.massless import add_massless, deformation
+from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.numerics.jit import flat, loose
 from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
@@ -28,45 +28,6 @@ CHECK = 4  #: terms after which it is seen whether they suffice
 SMALL = 1e-14  #: share of the motion that a term left out may be
 QUIET = 1e-13  #: share of its energy that a term may carry that works need not see
 GROW = 2.0  #: how much longer than the last a step may be
-
-
-class Lengths(Protocol):
-    """Lengths and sizes that the steps of a run learn from one another: a numpy record."""
-
-    next: float  #: length to try next
-    kinetic: float  #: most of v M v so far
-    shortest: float  #: step
-    carried: int  #: terms of the present series that carry energy
-
-
-class Series(NamedTuple):
-    """The series of a step.
-
-    Attributes
-    ----------
-    motion : ndarray, shape (TERMS + 1, n)
-        Coefficients of the unknowns.
-    stiffness_product, damping_product : ndarray, shape (n,)
-        Scratch: products of coefficients with K, and with C or M.
-    deformation : ndarray, shape (n_laws, TERMS + 1)
-        Of the laws.
-    inputs : ndarray, shape (TERMS + 1, n_inputs)
-    polynomial : ndarray, shape `polynomial_roots.room`
-        What `polynomial_roots` works on.
-    inverse : ndarray, shape (n,)
-        Of a diagonal mass.
-    gauss : ndarray, shape (TERMS // CHECK + 1, 2, most points)
-        Weights and points on (0, 1), two more than half of the terms that carry energy.
-    """
-
-    motion: Array
-    stiffness_product: Array
-    damping_product: Array
-    deformation: Array
-    inputs: Array
-    polynomial: Array
-    inverse: Array
-    gauss: Array
 
 
 @loose
@@ -97,17 +58,22 @@ def expand_inputs(series: Series, coefs: Array, begin: float, h: float) -> None:
 def expand_deformations(laws: Laws, series: Series, k: int, top: int) -> None:
     """Coefficients `k` of the deformations; the inputs have `top` of them."""
     for i in range(len(laws.rule)):
-        d = along(laws.rows, i, series.motion[k])
-        if k < top:
-            for j in range(series.inputs.shape[1]):
-                d += laws.inputs[i, j] * series.inputs[k, j]
-        series.deformation[i, k] = d
+        series.deformation[i, k] = deformation(laws, series, k, top, i)
 
 
-def energy_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> float:
+def kinetic_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> float:
     """Twice the kinetic energy of the term `k`."""
     multiply(linear.mass, series.motion[k], series.damping_product)
     energy: float = dot(series.motion[k], series.damping_product) * (k / h) * (k / h)
+    return energy
+
+
+def energy_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> float:
+    """Twice the kinetic energy of the term `k`, and twice the elastic one of the unknowns without mass."""
+    held, energy = series.massless, kinetic_of_term(linear, series, k, h)
+    for n in range(len(held.unknown)):
+        x = series.motion[k, held.unknown[n]]
+        energy += held.elastic[n] * x * x
     return energy
 
 
@@ -147,7 +113,23 @@ def next_term(
         for i in range(n):
             new[i] *= below
         solve(linear.pattern, step.factors[MASS], step.pivots[MASS], new)
+    if len(series.massless.unknown):
+        add_massless(linear, laws, step, series, k + 2, h, top)
     expand_deformations(laws, series, k + 2, top)
+
+
+def begin_series(
+    linear: LinearSystem, laws: Laws, step: Step, series: Series, coefs: Array, begin: float, h: float
+) -> None:
+    """First two coefficients, from the present state."""
+    c, now, top = series.motion, step.now, len(coefs)
+    expand_inputs(series, coefs, begin, h)
+    for i in range(len(now.displacement)):
+        c[0, i], c[1, i] = now.displacement[i], h * now.velocity[i]
+    for k in range(2):
+        if len(series.massless.unknown):
+            add_massless(linear, laws, step, series, k, h, top)
+        expand_deformations(laws, series, k, top)
 
 
 @flat
@@ -165,13 +147,9 @@ def expand(
         Part of the step, or multiple of it, up to which it is right; NaN where numbers are beyond all
         bounds.
     """
-    c, now, top = series.motion, step.now, len(coefs)
-    expand_inputs(series, coefs, begin, h)
-    for i in range(len(now.displacement)):
-        c[0, i], c[1, i] = now.displacement[i], h * now.velocity[i]
-    expand_deformations(laws, series, 0, top)
-    expand_deformations(laws, series, 1, top)
-    lengths.kinetic = max(lengths.kinetic, energy_of_term(linear, series, 1, h))
+    top = len(coefs)
+    begin_series(linear, laws, step, series, coefs, begin, h)
+    lengths.kinetic = max(lengths.kinetic, kinetic_of_term(linear, series, 1, h))
     most, k, own, last, lengths.carried = lengths.kinetic, 0, 0.0, 0.0, CHECK
     while k + 2 <= TERMS:
         while True:

@@ -13,7 +13,7 @@ from pound_solve.integrate.kernels.recording import (
     log_transition,
     next_pause,
     store_sample,
-    take_first_sample,
+    track,
 )
 from pound_solve.integrate.kernels.state import (
     CHATTER,
@@ -32,13 +32,15 @@ from pound_solve.integrate.series.expansion import (
     CHECK,
     GROW,
     TERMS,
-    Lengths,
-    Series,
+    begin_series,
     dot,
     evaluate,
     expand,
     law_at,
+    next_term,
 )
+from pound_solve.integrate.series.massless import factorise, violated
+from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.integrate.series.tracking import event_of, first_event, track_laws, track_outputs
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.jit import flat
@@ -48,7 +50,9 @@ AHEAD = 1e-3  #: part of a step that laws are looked at for which may leave at t
 LOOKS = 2  #: instants of a step that envelopes of nodes and members see: some 2.5 radians apart
 CUT = 0.5  #: part of a step, as it was tried, that is taken at least
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
-SHORT = 7  #: why `march` came back, beside those of `kernels.state`: steps are too short for the clock
+#: why `march` came back, beside those of `kernels.state`: steps are too short for the clock; an unknown
+#: without mass is not held
+SHORT, LOOSE = 7, 8
 
 
 def add_law_losses(
@@ -156,6 +160,7 @@ def change_branch(
         log_transition(laws, buffers, run, law, before, t, force)
     run.events += 1
     run.fault = law
+    run.stale = 1
 
 
 def change_branches(
@@ -165,13 +170,55 @@ def change_branches(
     """Let a law leave its branch, and others whose events are at the same instant."""
     now, instant = run.time, INSTANT * max(run.time, h)
     change_branch(laws, buffers, rules, run, now, event)
-    for i in range(len(laws.rule)):
+    for i in range(len(laws.rule) if len(series.massless.unknown) == 0 else 0):  # else `settle` decides
         if i != event.law:
             own = event_of(laws, series, terms, h, min(event.time + AHEAD, end), i)
             if own.law >= 0 and own.time <= event.time + instant / h:
                 change_branch(laws, buffers, rules, run, now, own)
     run.same_instant = run.same_instant + 1 if now - run.last_event <= instant else 0
     run.last_event = now
+
+
+def settle(
+    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
+    coefs: Array, begin: float, run: Run,
+) -> int:  # fmt: skip
+    """Give the unknowns without mass the rates that the present branches ask for.
+
+    These rates jump where a stiffness or a dashpot among them changes, and a law whose rate changes its
+    sign so must leave its branch, too.  Of several the first in number does, then all are looked at again:
+    such a rule of least index ends where the laws harden (Murty's, for linear complementarity problems).
+
+    Returns
+    -------
+    int
+        DONE, or what is wrong.
+
+    References
+    ----------
+    Murty KG (1974), Note on a Bard-type scheme for solving the complementarity problem, Opsearch 11:
+    123-130.
+    """
+    held, now = series.massless, step.now
+    for _ in range(50 + 4 * len(laws.rule)):
+        if run.stale:
+            run.fault = factorise(laws, held)
+            if run.fault >= 0:
+                run.fault = held.unknown[run.fault]
+                return LOOSE
+            run.stale = 0
+        begin_series(linear, laws, step, series, coefs, begin, 1.0)
+        next_term(linear, laws, step, series, 0, 1.0, len(coefs))
+        for i in held.unknown:
+            now.displacement[i], now.velocity[i] = series.motion[0, i], series.motion[1, i]
+        for i in held.laws:
+            laws.now.deformation[i], laws.now.rate[i] = series.deformation[i, 0], series.deformation[i, 1]
+        law, event = violated(laws, held)
+        if law < 0:
+            return DONE
+        change_branch(laws, buffers, rules, run, run.time, LocatedEvent(law, event, 0.0))
+        run.stale = 1
+    return CHATTER
 
 
 def must_pause(buffers: Buffers, run: Run, pause: int) -> bool:
@@ -235,9 +282,33 @@ def stride(
             continue
         run.time = t + at * h
         change_branches(laws, buffers, rules, series, terms, h, end, event, run)
+        if len(series.massless.unknown):
+            why = settle(linear, laws, step, buffers, rules, series, coefs, run.time - begin, run)
+            if why != DONE:
+                return why
         if run.same_instant > 50 + 4 * len(laws.rule):
             return CHATTER
     return DONE
+
+
+def sample(
+    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
+    coefs: Array, begin: float, works: Works, run: Run,
+) -> None:  # fmt: skip
+    """Keep the present motion; as the first sample, count it into the peaks."""
+    now = step.now
+    if len(series.massless.unknown):
+        settle(linear, laws, step, buffers, rules, series, coefs, run.time - begin, run)
+    evaluate_inputs(coefs, run.time - begin, now.inputs, now.input_rates)
+    form_load(linear, now.inputs, now.load)
+    multiply(linear.damping, now.velocity, now.damping_force)
+    make_consistent(linear, laws, step)
+    for i in series.massless.unknown:
+        now.acceleration[i] = 2.0 * series.motion[2, i]
+    if run.started == 0:
+        track(linear, laws, step, run.time, 0.0)
+        run.started = 1
+    store_sample(laws, step, buffers, rules, works, run, run.time)
 
 
 def march(
@@ -249,11 +320,15 @@ def march(
     `stepping.kernel.advance`).
     """
     pause, now = next_pause(step, run), step.now
-    if run.started == 0:
-        take_first_sample(linear, laws, step, buffers, rules, works, run)
     while run.goal < len(goals):
         goal = run.goal
         begin, piece = breaks[pieces[goal]], coefs[pieces[goal]]
+        if run.started == 0:
+            sample(linear, laws, step, buffers, rules, series, piece, begin, works, run)
+        if len(series.massless.unknown):  # the excitation may have a kink here
+            why = settle(linear, laws, step, buffers, rules, series, piece, run.time - begin, run)
+            if why != DONE:
+                return why
         why = stride(
             linear,
             laws,
@@ -278,11 +353,7 @@ def march(
             return RUNAWAY
         run.goal += 1
         if outputs[goal]:
-            evaluate_inputs(piece, run.time - begin, now.inputs, now.input_rates)
-            form_load(linear, now.inputs, now.load)
-            multiply(linear.damping, now.velocity, now.damping_force)
-            make_consistent(linear, laws, step)
-            store_sample(laws, step, buffers, rules, works, run, run.time)
+            sample(linear, laws, step, buffers, rules, series, piece, begin, works, run)
             if run.kept == len(buffers.time):
                 return FULL
     return DONE

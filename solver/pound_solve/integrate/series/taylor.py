@@ -27,7 +27,6 @@ import numpy as np
 
 from pound_deck.schema import Spec
 from pound_solve.integrate import costs
-from pound_solve.integrate.condensed import condensed
 from pound_solve.integrate.events import polynomial_roots
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import PAUSE
@@ -46,10 +45,10 @@ from pound_solve.integrate.protocol import (
     refuse_rigid,
     rounding_check,
 )
-from pound_solve.integrate.series import expansion, march
+from pound_solve.integrate.series import expansion, march, massless, state
+from pound_solve.integrate.series.massless import STIFFNESS
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.numerics.matrices import diagonal, weighted
-from pound_solve.numerics.modes import massless
 from pound_solve.numerics.record import record
 from pound_solve.structure.reduction import ReducedSystem
 
@@ -70,23 +69,37 @@ class Taylor(KernelEngine):
         super().__init__(
             system, start, monitored, recorder, nothing_to_solve, length, "TAYLOR, power series"
         )
-        terms, rules = expansion.TERMS + 1, expansion.TERMS // expansion.CHECK + 1
+        o, laws = self.order, self.springs
+        self.massless = massless.allocate(
+            self.linear,
+            system.stiffness[np.ix_(o, o)],
+            system.damping[np.ix_(o, o)],
+            system.law_rows[:, o],
+            np.array([s.facts.get("k", s.k0) * (not s.role.collides) for s in laws], float),
+        )
+        self.state.stale = 1
+        m, terms, rules = (
+            self.linear.mass.diagonals[0],
+            expansion.TERMS + 1,
+            expansion.TERMS // expansion.CHECK + 1,
+        )
         gauss = np.zeros((rules, 2, 2 * rules))
         for i in range(rules):
             count = 2 * (i + 1)
             places, weights = np.polynomial.legendre.leggauss(count)
             gauss[i, :, :count] = 0.5 * weights, 0.5 * (1.0 + places)
-        self.series = expansion.Series(
+        self.series = state.Series(
             motion=np.zeros((terms, system.size)),
             stiffness_product=np.zeros(system.size),
             damping_product=np.zeros(system.size),
             deformation=np.zeros((len(self.springs), terms)),
             inputs=np.zeros((terms, system.inputs.shape[1])),
             polynomial=np.zeros(polynomial_roots.room(expansion.TERMS)),
-            inverse=1.0 / self.linear.mass.diagonals[0],
+            inverse=np.divide(1.0, m, out=np.zeros(system.size), where=m > 0.0),
             gauss=gauss,
+            massless=self.massless,
         )
-        self.lengths: expansion.Lengths = record(expansion.Lengths)
+        self.lengths: state.Lengths = record(state.Lengths)
         self.lengths.next, self.lengths.shortest = length, np.inf
 
     def integrate(self) -> None:
@@ -111,6 +124,8 @@ class Taylor(KernelEngine):
         """What the kernel came back for, in words."""
         if why == march.SHORT:
             return self.stop("A502", "the fastest mode asks for steps too short to tell the times apart")
+        if why == march.LOOSE:
+            return self.stop("A501", self._loose())
         if why == RUNAWAY:
             return self.stop("A504", GROWS.format(self.state.initial_energy))
         if why == CHATTER:
@@ -119,6 +134,16 @@ class Taylor(KernelEngine):
             what = (int(self.state.same_instant), s.element, s.rule, s.law.rule.branches[at].name)
             return self.stop("A503", CHANGES.format(*what, STEPPED))
         return super().trouble(why)
+
+    def _loose(self) -> str:
+        """Which unknown without mass is not held, and why."""
+        fault, held = int(self.state.fault), self.massless
+        name, n = self.system.name(int(self.order[fault])), int(np.flatnonzero(held.unknown == fault)[0])
+        if held.damped[n]:
+            return f"{name} has no mass, and only dashpots to others without mass resist it: give it weight"
+        if held.pivots[STIFFNESS, n] < 0.0:
+            return f"{name} has no mass, and its stiffness has become negative: it snaps through"
+        return f"{name} has no mass and nothing holds it"
 
     def figures(self) -> dict[str, Any]:
         """Figures of the run for the report."""
@@ -175,13 +200,6 @@ def integrate(
     begin = float(start.times[0])
     if why := not_linear(system):
         raise Stop("A505", begin, f"TAYLOR needs linear pieces, and {why}: AUTO takes steps")
-    if massless(system.mass).any():
-        system, start, monitored, recorder = condensed(system, start, monitored, recorder, "TAYLOR")
-    light = massless(system.mass)
-    if light.any():
-        name = system.name(int(np.argmax(light)))
-        weight = "give it weight, or " if name.startswith("node") else ""
-        raise Stop("A505", begin, f"TAYLOR needs mass at {name}: {weight}use EXACT or NEWMARK")
     return Taylor(system, start, monitored, recorder).run()
 
 

@@ -9,7 +9,7 @@ from pound_solve.integrate.events.protocol import LocatedEvent, none
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import STILL
-from pound_solve.integrate.series.expansion import Series
+from pound_solve.integrate.series.state import Series
 
 
 def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: int) -> LocatedEvent:

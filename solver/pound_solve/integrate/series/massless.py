@@ -1,0 +1,205 @@
+r"""Unknowns without mass in a power series: kernels, and the arrays they work on.
+
+An unknown without mass that a dashpot resists (order one) moves at the rate that its forces leave to the
+dashpot; one that nothing resists but springs (order zero) is where they are in balance.  The coefficient k
+of the first follows from the coefficients k - 1 of all and k of those with mass, that of the second then
+from the coefficients k of all others:
+
+.. math::
+    \frac kh\,C_{RR}\, c_{R,k} &= p_{R,k-1} - (K c_{k-1} + f_{k-1})_R - \frac kh\,C_{RH}\, c_{H,k} \\
+    K_{ZZ}\, c_{Z,k} &= p_{Z,k} - K_{ZH}\, c_{H,k} - K_{ZR}\, c_{R,k}
+
+H, R and Z being the unknowns of order two, one and zero; dashpots of laws are part of C, tangents of laws
+on order zero part of :math:`K_{ZZ}`.  Which order an unknown has depends on the branches of the laws, so
+both matrices are factorised again when one of these changes.  :math:`c_{Z,0}` is solved for in every step:
+no error adds up.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.integrate.kernels.allocation import Layout, coupled_pairs, places_in_pattern, sparse_rows
+from pound_solve.integrate.kernels.products import along, spread
+from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
+from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.series.state import Massless, Series
+from pound_solve.numerics import ldl
+from pound_solve.numerics.ldl import factor, solve
+from pound_solve.numerics.matrices import Matrix, at, by_rows, diagonal, entries, used_rows, weighted
+from pound_solve.numerics.types import Array
+
+DAMPING, STIFFNESS = range(2)  #: rows of `Massless.factors`
+
+
+def allocate(
+    linear: LinearSystem, stiffness: Matrix, damping: Matrix, law_rows: Matrix, elastic: Array
+) -> Massless:
+    """Lay out the unknowns without mass.
+
+    Parameters
+    ----------
+    linear : LinearSystem
+    stiffness, damping : Matrix, shape (n, n)
+        In the order of elimination, laws apart.
+    law_rows : Matrix, shape (n_laws, n)
+    elastic : ndarray, shape (n_laws,)
+        Initial stiffness of the laws [F/L].
+    """
+    first = np.flatnonzero(~linear.has_mass)
+    laws = np.flatnonzero(used_rows(law_rows[:, first]))
+    touched = law_rows[laws][:, first]
+    among = [a[np.ix_(first, first)] for a in (damping, stiffness)]
+    linked = [*(entries(a)[:2] for a in among), coupled_pairs(columns for columns, _ in by_rows(touched))]
+    one, other = (np.concatenate(part) for part in zip(*linked))
+    order = ldl.order(len(first), one, other)
+    place, unknown = np.argsort(order), first[order]
+    pattern = ldl.analyse(len(first), place[one], place[other])
+    column = np.repeat(np.arange(len(first)), np.diff(pattern.ap))
+    position = {(int(i), int(j)): q for q, (i, j) in enumerate(zip(pattern.ai, column))}
+    rows = sparse_rows(touched[:, order])
+    own = Layout(order, place, pattern, column, np.ones(len(laws), bool), position)
+    pointers, places, values = places_in_pattern(rows, own)
+    lower = pattern.ai.astype(np.int64)
+    springs = weighted(touched[:, order], elastic[laws])
+    return Massless(
+        unknown=unknown,
+        stiffness=sparse_rows(stiffness[unknown]),
+        damping=sparse_rows(damping[unknown]),
+        laws=laws,
+        rows=rows,
+        pattern=pattern,
+        column=column,
+        on_pattern=np.array([at(a[np.ix_(order, order)], lower, column) for a in among]),
+        pair_pointers=pointers,
+        pair_places=places,
+        pair_values=values,
+        damped=np.zeros(len(first), bool),
+        factors=np.zeros((2, len(pattern.li))),
+        pivots=np.ones((2, len(first))),
+        matrix=np.zeros(len(column)),
+        row=np.zeros(len(first)),
+        right_side=np.zeros(len(first)),
+        elastic=np.abs(diagonal(stiffness)[unknown] + diagonal(springs)),
+    )
+
+
+def form(laws: Laws, held: Massless, which: int) -> None:
+    """Fill in C of the unknowns of order one, or K of those of order zero; ones for the others."""
+    for q in range(len(held.matrix)):
+        held.matrix[q] = held.on_pattern[which, q]
+    for n in range(len(held.laws)):
+        i = held.laws[n]
+        own = laws.damping[i] if which == DAMPING else laws.stiffness[i]
+        for q in range(held.pair_pointers[n], held.pair_pointers[n + 1]):
+            held.matrix[held.pair_places[q]] += own * held.pair_values[q]
+
+
+def factorise(laws: Laws, held: Massless) -> int:
+    """Find the orders of the unknowns on the present branches, and factorise C and K for them.
+
+    Returns
+    -------
+    int
+        -1, or the number of one that nothing holds, or that would snap through, by K; one that is held by
+        dashpots between such unknowns alone, by C.
+    """
+    form(laws, held, DAMPING)
+    for i in range(len(held.unknown)):
+        held.damped[i] = held.matrix[held.pattern.ap[i]] != 0.0
+    for which in range(2):
+        if which == STIFFNESS:
+            form(laws, held, STIFFNESS)
+        for q in range(len(held.matrix)):
+            i, j = held.pattern.ai[q], held.column[q]
+            if held.damped[i] != (which == DAMPING) or held.damped[j] != (which == DAMPING):
+                held.matrix[q] = 1.0 if i == j else 0.0
+        fault = factor(held.pattern, held.matrix, held.factors[which], held.pivots[which], held.row)
+        if fault >= 0:
+            return fault
+        for i in range(len(held.unknown)):
+            if held.pivots[which, i] < 0.0:
+                return i
+    return -1
+
+
+def balance(linear: LinearSystem, series: Series, k: int, top: int, order: int) -> None:
+    """Loads less forces of K at the coefficients `k`, on the unknowns of an order; zero on the others."""
+    held = series.massless
+    for n in range(len(held.unknown)):
+        held.right_side[n] = 0.0
+        if held.damped[n] == (order == 1):
+            i = held.unknown[n]
+            load = linear.constant[i] if k == 0 else 0.0
+            if k < top:
+                for j in range(series.inputs.shape[1]):
+                    load += linear.inputs[j, i] * series.inputs[k, j]
+            held.right_side[n] = load - along(held.stiffness, n, series.motion[k])
+
+
+def deformation(laws: Laws, series: Series, k: int, top: int, i: int) -> float:
+    """Coefficient `k` of the deformation of law `i`; the inputs have `top` of them."""
+    d = along(laws.rows, i, series.motion[k])
+    if k < top:
+        for j in range(series.inputs.shape[1]):
+            d += laws.inputs[i, j] * series.inputs[k, j]
+    return d
+
+
+def add_massless(
+    linear: LinearSystem, laws: Laws, step: Step, series: Series, k: int, h: float, top: int
+) -> None:
+    """Add the unknowns without mass to the coefficients `k` (see the module's head)."""
+    held, c = series.massless, series.motion
+    for n in range(len(held.unknown)):
+        i = held.unknown[n]
+        c[k, i] = step.now.displacement[i] if k == 0 and held.damped[n] else 0.0
+    if k > 0:
+        balance(linear, series, k - 1, top, 1)
+        for n in range(len(held.laws)):
+            i = held.laws[n]
+            force = laws.stiffness[i] * series.deformation[i, k - 1]
+            if k == 1:
+                force += laws.offset[i]
+            if laws.damping[i] != 0.0:
+                force += k / h * laws.damping[i] * deformation(laws, series, k, top, i)
+            spread(held.rows, n, -force, held.right_side)
+        for n in range(len(held.unknown)):
+            if held.damped[n]:
+                held.right_side[n] -= k / h * along(held.damping, n, c[k])
+            else:
+                held.right_side[n] = 0.0
+        solve(held.pattern, held.factors[DAMPING], held.pivots[DAMPING], held.right_side)
+        for n in range(len(held.unknown)):
+            if held.damped[n]:
+                c[k, held.unknown[n]] = held.right_side[n] * h / k
+    balance(linear, series, k, top, 0)
+    for n in range(len(held.laws)):
+        i = held.laws[n]
+        force = laws.stiffness[i] * deformation(laws, series, k, top, i)
+        if k == 0:
+            force += laws.offset[i]
+        spread(held.rows, n, -force, held.right_side)
+    for n in range(len(held.unknown)):
+        if held.damped[n]:
+            held.right_side[n] = 0.0
+    solve(held.pattern, held.factors[STIFFNESS], held.pivots[STIFFNESS], held.right_side)
+    for n in range(len(held.unknown)):
+        if not held.damped[n]:
+            c[k, held.unknown[n]] = held.right_side[n]
+
+
+def violated(laws: Laws, held: Massless) -> tuple[int, int]:
+    """The first law at fault and its event: its rate has jumped, and an event function that depends on it
+    is above zero; -1 where there is none.
+    """
+    for n in range(len(held.laws)):
+        i = held.laws[n]
+        d, v = laws.now.deformation[i], laws.now.rate[i]
+        for e in range(laws.n_events[i]):
+            on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
+            if on_v != 0.0:
+                scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i]
+                if on_d * d + on_v * v + constant > STILL * (scale + abs(constant)):
+                    return i, e
+    return -1, -1

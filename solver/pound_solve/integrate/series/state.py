@@ -1,0 +1,102 @@
+"""What the kernels of TAYLOR work on beside the arrays that all kernels share."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+from pound_solve.integrate.kernels.state import Rows
+from pound_solve.numerics.ldl import Pattern, Place
+from pound_solve.numerics.types import Array, Flags, Index
+
+
+class Lengths(Protocol):
+    """Lengths and sizes that the steps of a run learn from one another: a numpy record."""
+
+    next: float  #: length to try next
+    kinetic: float  #: most of v M v so far
+    shortest: float  #: step
+    carried: int  #: terms of the present series that carry energy
+
+
+class Massless(NamedTuple):
+    """The unknowns without mass, numbered among themselves, and the laws that hold them.
+
+    Attributes
+    ----------
+    unknown : ndarray, shape (n_massless,)
+        Their places in the order of elimination.
+    stiffness, damping : Rows
+        Their rows of K and C over all unknowns.
+    laws : ndarray, shape (n_holding,)
+        The laws that hold one of them, ascending.
+    rows : Rows
+        The deformations of these over the unknowns without mass.
+    pattern : Pattern
+        Of C and K among them, laws included.
+    column : ndarray, shape (n_entries,)
+    on_pattern : ndarray, shape (2, n_entries)
+        C and K on the pattern, laws apart.
+    pair_pointers, pair_places, pair_values : ndarray
+        Where each of the laws adds to it.
+    damped : ndarray, shape (n_massless,)
+        Whether a dashpot resists an unknown on the present branches: its order is one, else zero.
+    factors : ndarray, shape (2, n_entries of L)
+        Rows `DAMPING` (of order one, ones for the others), `STIFFNESS` (of order zero, likewise).
+    pivots : ndarray, shape (2, n_massless)
+    matrix : ndarray, shape (n_entries,)
+        Scratch, as the others.
+    row, right_side : ndarray, shape (n_massless,)
+    elastic : ndarray, shape (n_massless,)
+        Diagonal of K, the laws elastic: it makes energies of displacements.
+    """
+
+    unknown: Index
+    stiffness: Rows
+    damping: Rows
+    laws: Index
+    rows: Rows
+    pattern: Pattern
+    column: Index
+    on_pattern: Array
+    pair_pointers: Index
+    pair_places: Place
+    pair_values: Array
+    damped: Flags
+    factors: Array
+    pivots: Array
+    matrix: Array
+    row: Array
+    right_side: Array
+    elastic: Array
+
+
+class Series(NamedTuple):
+    """The series of a step.
+
+    Attributes
+    ----------
+    motion : ndarray, shape (TERMS + 1, n)
+        Coefficients of the unknowns.
+    stiffness_product, damping_product : ndarray, shape (n,)
+        Scratch: products of coefficients with K, and with C or M.
+    deformation : ndarray, shape (n_laws, TERMS + 1)
+        Of the laws.
+    inputs : ndarray, shape (TERMS + 1, n_inputs)
+    polynomial : ndarray, shape `polynomial_roots.room`
+        What `polynomial_roots` works on.
+    inverse : ndarray, shape (n,)
+        Of a diagonal mass.
+    gauss : ndarray, shape (TERMS // CHECK + 1, 2, most points)
+        Weights and points on (0, 1), two more than half of the terms that carry energy.
+    massless : Massless
+    """
+
+    motion: Array
+    stiffness_product: Array
+    damping_product: Array
+    deformation: Array
+    inputs: Array
+    polynomial: Array
+    inverse: Array
+    gauss: Array
+    massless: Massless
