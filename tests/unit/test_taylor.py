@@ -642,32 +642,6 @@ def test_members_that_turn_are_refused() -> None:
         assert r.message.startswith("A505") and f"GEOMETRY {geometry}" in r.message, r.message
 
 
-def test_a_dof_without_mass_that_stays_is_named() -> None:
-    """Beside a hinge that yields it cannot be condensed; a DOF of a member can be given no weight."""
-    r = run_text(frames(hinge=HINGE, turn="0.5"), None, "TAYLOR")
-    assert "A505 at t = 0 s: TAYLOR needs mass at element 1 rotation inside I: use EXACT" in r.message
-    r = run_text(TURNS, None, "TAYLOR")
-    assert "TAYLOR needs mass at node 2 rz: give it weight, or use EXACT" in r.message, r.message
-
-
-TURNS = """NODES
- 1 0 0 FIX=XYR
- 2 0 3 FIX=Y
-ELEMENTS
- 1 COL 1 2
- 2 HOLD 1 2
-PROPS
- COL FRAME E=2E7 A=0.1 I=0.001
- HOLD SPRING KR=1000 MR=10 RULE=BILINEAR R=0.1
-WEIGHTS
- 2 100
-INITIAL
- 2 VX=1
-ANALYSIS
- HISTORY 0.5
-"""
-
-
 def test_a_light_stiff_node_for_a_long_time_is_told_early(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(taylor, "MAX_STEPS", 200_000)
     r = run_text(OSCILLATOR, {"w": 1e6, "end": 30, "gap": 99, "xi": 1e-6}, "TAYLOR")

@@ -212,9 +212,13 @@ def figures(system: ReducedSystem, peaks: Peaks, replay: Replay) -> tuple[Array,
     if not peaks.monitored:
         direction = np.array([d for _, d in system.dofs])
         displacement = np.column_stack([np.ravel(replay.high), np.ravel(replay.low)])
-        largest = np.array([np.abs(displacement[direction == d]).max(initial=0.0) for d in range(3)])
+        largest = np.zeros(
+            len(direction)
+        )  # in its direction; hinges and uplift have directions of their own
+        for d in np.unique(direction):
+            largest[direction == d] = np.abs(displacement[direction == d]).max()
         values = np.concatenate([values, displacement])
-        size = np.append(size, np.repeat(largest[direction], 2))
+        size = np.append(size, np.repeat(largest, 2))
     scales = [np.maximum(x, share * x.max(initial=0.0)) for x, share in ((size, 1e-6), (force, 0.05))]
     return np.concatenate([np.ravel(values), force]), np.concatenate(scales)
 

@@ -33,7 +33,7 @@ from pound_solve.integrate.closed_form.grid_samples import GridSamples
 from pound_solve.integrate.closed_form.recording import DeferredSamples, EnvelopeSamples
 from pound_solve.integrate.closed_form.rigid_contact import MasslessContact
 from pound_solve.integrate.closed_form.rigid_instants import RigidInstants
-from pound_solve.integrate.closed_form.search import Search
+from pound_solve.integrate.closed_form.search import SURE, Search
 from pound_solve.integrate.closed_form.series_propagator import SeriesPropagator
 from pound_solve.integrate.closed_form.state_space import Mechanism
 from pound_solve.integrate.closed_form.subsystems import Subsystems
@@ -151,6 +151,14 @@ class Exact(EventDrivenRun):
         coarse = self.search.coarse(dense, bounds, window.h, self.largest)
         if not np.isfinite(coarse.value).all() or not np.isfinite(coarse.rate).all():
             raise self.stop("A504", "the motion grew beyond all numbers")
+        overdue = self.search.events.violated(coarse, self.largest, SURE * STILL, self._massless_laws)
+        if overdue is not None:
+            law = overdue.law
+            self.count_change(0.0, SAME_INSTANT)
+            self._switch(
+                law, overdue.event_index, float(coarse.value[law, 0, 0]), float(coarse.rate[law, 0, 0])
+            )
+            return cursor
         fine = self.search.fine(coarse, bounds, window.h, self.largest)
         self.window_count += 1
         self._charge_window(dense, window.h, coarse.t.size + fine.t.size)

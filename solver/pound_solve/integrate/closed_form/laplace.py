@@ -25,6 +25,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate.closed_form.event_loop import EventDrivenRun
 from pound_solve.integrate.closed_form.hermite import SampledMotion, SampledRows, simpson
 from pound_solve.integrate.closed_form.laplace_transform import DynamicStiffness, LaplaceTransform
+from pound_solve.integrate.closed_form.search import SURE
 from pound_solve.integrate.closed_form.state_space import Mechanism
 from pound_solve.integrate.condensed import condensed
 from pound_solve.integrate.energy import law_values
@@ -128,8 +129,10 @@ class Laplace(EventDrivenRun):
         """Advance to the next event, to the middle of the window, or to the end."""
         motion, rows = self._transformed(end)
         span = min(float(rows.t[0, -1]), end - self.t)
-        found = EventFunctions(self.branches, {}).first_event(rows, self.largest, STILL)
+        functions = EventFunctions(self.branches, {})
+        found = functions.first_event(rows, self.largest, STILL)
         event = None if found is None or found.event.time >= span else found.event
+        event = functions.violated(rows, self.largest, SURE * STILL, self._massless_laws) or event
         tau = span if event is None else event.time
         if first:
             self._sample(self.t, motion.u[:, 0], motion.v[:, 0], motion.a[:, 0], self.energy.array())

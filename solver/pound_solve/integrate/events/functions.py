@@ -11,7 +11,7 @@ from pound_solve.integrate.events import grid
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.tracker import Peak, ResponseTracker
 from pound_solve.laws.automaton import Branch
-from pound_solve.numerics.types import Array
+from pound_solve.numerics.types import Array, Flags
 
 
 class RowSet(NamedTuple):
@@ -132,6 +132,28 @@ class EventFunctions(RowFunctions):
         self.keys = [(i, e) for i, b in enumerate(branches) for e in range(len(b.events))]
         rows = [reaction_row[i] if branches[i].held else i for i, _ in self.keys]
         super().__init__(rows, [branches[i].events[e] for i, e in self.keys])
+
+    def violated(
+        self, samples: Sampled, largest: Array, tolerance: float, laws: Flags
+    ) -> LocatedEvent | None:
+        """Return the first event, by number, that a jump of a law's rate has made overdue, or None: at the
+        first sample a function that depends on the rate is above zero.
+
+        Parameters
+        ----------
+        samples, largest, tolerance
+            As of `first_event`.
+        laws : ndarray of bool, shape (n_laws,)
+            Those whose rates may jump.
+        """
+        if not self.by_rate or not laws.any() or not samples.t.size:
+            return None
+        g = self.sampled(samples)[0][:, 0, 0]
+        overdue = (g > tolerance * self.scale(largest)) & (self.factors[1] != 0.0)
+        for n in np.flatnonzero(overdue).tolist():
+            if laws[self.keys[n][0]]:
+                return LocatedEvent(*self.keys[n], 0.0)
+        return None
 
     def first_event(self, samples: Sampled, largest: Array, tolerance: float) -> GridEvent | None:
         """Return the earliest event of some samples, or None.

@@ -1,0 +1,212 @@
+"""TAYLOR with unknowns without mass, of order one and zero: closed forms, EXACT's answers, rates that jump,
+joints that nothing holds.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from unit.test_taylor import HINGE, LOADS, SHAKEN, agree, frames
+from verification.cases import Ran, run_text
+
+pytestmark = pytest.mark.full
+
+
+# ---------------------------------------------------------------- closed forms
+
+ZENER = """UNITS N m s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 1 0 FIX=YR
+ 3 2 0 FIX=YR
+ 4 3 0 FIX=XYR
+ELEMENTS
+ 1 K 1 2
+ 2 SOFT 2 3
+ 3 DRAG 3 4
+PROPS
+ K SPRING KX=9
+ SOFT SPRING KX=7
+ DRAG DASHPOT CX={c}
+WEIGHTS
+ 2 1
+INITIAL
+ 2 UX=1 VX=0.5
+OUTPUT
+ EVERY=0.05
+ANALYSIS
+ HISTORY 10
+"""
+
+
+def of_first_order(a: np.ndarray, x: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Solution of ``x' = a x``, shape (n, n_times)."""
+    values, vectors = np.linalg.eig(a)
+    free = np.linalg.solve(vectors, x.astype(complex))
+    return np.asarray((vectors @ (free[:, None] * np.exp(np.outer(values, t)))).real)
+
+
+@pytest.mark.parametrize("c", [0.02, 1.5, 400.0])
+def test_a_spring_in_series_with_a_dashpot(c: float) -> None:
+    """The node between them has no mass: u'' = -9 u - 7 (u - z), c z' = 7 (u - z)."""
+    r = run_text(ZENER.format(c=c), None, "TAYLOR")
+    a = np.array([[0, 1, 0], [-16, 0, 7], [7 / c, 0, -7 / c]])
+    exact = of_first_order(a, np.array([1.0, 0.5, 0.0]), r.time)
+    assert np.abs(r.u[:, r.nodes.index(2), 0] - exact[0]).max() < 1e-11
+    assert np.abs(r.u[:, r.nodes.index(3), 0] - exact[2]).max() < 1e-11
+    rate = 7 / c * (exact[0] - exact[2])
+    assert np.abs(r.v[:, r.nodes.index(3), 0] - rate).max() < 1e-11 * max(np.abs(rate).max(), 1.0)
+    assert np.abs(r.a[:, r.nodes.index(3), 0] - 7 / c * (exact[1] - rate)).max() < 1e-9 / c
+    assert r.check() < 1e-12
+
+
+def test_springs_in_series() -> None:
+    """The node between two springs is where they are in balance, and moves in proportion."""
+    deck = ZENER.replace("DRAG DASHPOT CX={c}", "DRAG SPRING KX=3").replace("DRAG", "STIFF")
+    r = run_text(deck, None, "TAYLOR")
+    w = np.sqrt(9 + 2.1)
+    u = np.cos(w * r.time) + 0.5 / w * np.sin(w * r.time)
+    assert np.abs(r.u[:, r.nodes.index(2), 0] - u).max() < 1e-12
+    for name, scale in (("u", 1.0), ("v", w), ("a", w * w)):
+        two, three = (getattr(r, name)[:, r.nodes.index(n), 0] for n in (2, 3))
+        assert np.abs(three - 0.7 * two).max() < 1e-12 * scale, name
+
+
+# ---------------------------------------------------------------- frames
+
+HELD = {
+    "rotations without mass or dashpot": "RAYLEIGH ALPHA=0.4",
+    "rotations that dashpots resist": "RAYLEIGH ALPHA=0.4 BETA=0.001",
+    "hinges with dashpots of their own": "RAYLEIGH ALPHA=0.4 BETA=0.001 STIFFNESS=TANGENT",
+    "a full matrix": "MODAL XI=0.05",
+    "no damping": "",
+}
+
+
+def hinged(damping: str, turn: str = "0", head: str = "", load: str = SHAKEN) -> str:
+    deck = frames(head=head, hinge=HINGE, turn=turn, load=load)
+    section = f"DAMPING\n {damping}\n" if damping else ""
+    return deck.replace("DAMPING\n RAYLEIGH ALPHA=0.4 BETA=0.001\n", section)
+
+
+def yields(r: Ran) -> int:
+    return int(r.column("spring_envelope", "yield_events").sum())
+
+
+@pytest.mark.parametrize("damping", HELD)
+@pytest.mark.parametrize("turn", ["0", "0.5"])
+def test_hinges_of_a_frame(damping: str, turn: str) -> None:
+    r, _ = agree(hinged(HELD[damping], turn))
+    assert yields(r) > 10
+
+
+@pytest.mark.parametrize("load", LOADS)
+def test_what_moves_hinges(load: str) -> None:
+    agree(hinged("RAYLEIGH ALPHA=0.4 BETA=0.001", load=LOADS[load]))
+
+
+@pytest.mark.parametrize("head", ["GEOMETRY PDELTA", "GEOMETRY PDELTA_MEMBER", "MASS CONSISTENT"])
+def test_geometry_and_mass_beside_hinges(head: str) -> None:
+    agree(hinged("RAYLEIGH ALPHA=0.4 BETA=0.001", head=head))
+
+
+@pytest.mark.parametrize("rule", ["TAKEDA R=0.02 ALFA=0.5 BETA=0", "CLOUGH R=0.05", "ORIGIN_CENTRED R=0.1"])
+def test_rules_of_hinges(rule: str) -> None:
+    deck = hinged("RAYLEIGH ALPHA=0.4")
+    r, _ = agree(deck.replace("RULE=BILINEAR R=0.05", f"RULE={rule}"))
+    assert yields(r) > 4
+
+
+# ---------------------------------------------------------------- rates that jump
+
+SERIES = """UNITS N m s
+GRAVITY 1
+PARAM every = 0.05
+NODES
+ 1 0 0 FIX=XYR
+ 2 1 0 FIX=YR
+ 3 2 0 FIX=XYR
+ 4 3 0 FIX=XYR
+ 5 4 0 FIX=YR
+ELEMENTS
+ 1 A 1 2
+ 2 B 2 3
+ 3 C 2 4
+ 4 M 4 5
+PROPS
+ A SPRING KX=40 FX=0.2 RULE=BILINEAR R=0.1
+ B SPRING KX=100 FX=30 RULE=BILINEAR R=0.01
+ C SPRING KX=40 FX=90 RULE=BILINEAR R=0.2
+ M SPRING KX=30
+WEIGHTS
+ 5 1
+EQUAKE
+ TABLE POINTS=0,0.1,2,-0.3,4,0 SUPPORTS=1
+ TABLE POINTS=0,6,0.3,6,0.31,0,1.5,-3,2.5,2,3.5,-2,4,0 SUPPORTS=3
+ TABLE POINTS=0,-6,0.3,-6,0.31,2,0.43,2,0.435,90,0.46,90,0.47,0,1.5,3,2.5,-9,3.5,2,4,0 SUPPORTS=4
+OUTPUT
+ EVERY=every
+ANALYSIS
+ HISTORY 4
+"""
+SPRINGS = ((40.0, 0.2, 0.1), (100.0, 30.0, 0.01), (40.0, 90.0, 0.2))  #: k, yield force, share of k after it
+
+
+def balanced(supports: np.ndarray, n: int = 10) -> np.ndarray:
+    """Place of the node between three springs with kinematic hardening, at supports of shape (3, n_times):
+    by return mapping in `n` increments between two times, with Newton's iterations to their balance.
+    """
+    k, fy, r = np.array(SPRINGS).T
+    slip, z, out = np.zeros(3), 0.0, [0.0]
+    for a, b in zip(supports.T[:-1], supports.T[1:]):
+        for s in np.linspace(a, b, n + 1)[1:]:
+            for _ in range(50):
+                trial = (1 - r) * k * (z - s - slip)
+                limit = (1 - r) * fy
+                f = r * k * (z - s) + np.clip(trial, -limit, limit)
+                tangent = k * np.where(np.abs(trial) > limit, r, 1.0)
+                step = f.sum() / tangent.sum()
+                z -= step
+                if abs(step) < 1e-15:
+                    break
+            trial = (1 - r) * k * (z - s - slip)
+            slip += np.where(np.abs(trial) > limit, trial - np.sign(trial) * limit, 0.0) / ((1 - r) * k)
+        out.append(z)
+    return np.array(out)
+
+
+@pytest.mark.parametrize("method", ["TAYLOR", "EXACT"])
+def test_a_law_that_another_makes_turn_back(method: str) -> None:
+    """Where spring B yields, its node runs away with it, and a spring that was yielding has to unload at
+    once: its rate changes its sign without passing through zero.
+    """
+    r = run_text(SERIES, None, method)
+    assert (r.status, r.message) == ("done", "")
+    supports = np.array([r.u[:, r.nodes.index(n), 0] for n in (1, 3, 4)])
+    z = r.u[:, r.nodes.index(2), 0]
+    want = balanced(supports)
+    assert np.abs(z - want).max() < 1e-5 * np.abs(want).max()
+    assert r.check() < 1e-9
+    assert yields(r) >= 8
+
+
+# ---------------------------------------------------------------- joints that nothing holds
+
+
+def test_dashpots_between_two_joints_without_mass_are_told() -> None:
+    deck = ZENER.format(c=2).replace(" 4 3 0 FIX=XYR", " 4 3 0 FIX=YR\n 5 4 0 FIX=XYR")
+    deck = deck.replace(" 3 DRAG 3 4", " 3 DRAG 3 4\n 4 SOFT 4 5")
+    r = run_text(deck, None, "TAYLOR")
+    assert r.message.startswith("A501 at t = 0 s"), r.message
+    assert "has no mass, and only dashpots to others without mass resist it: give it weight" in r.message
+
+
+def test_a_joint_that_snaps_through_is_named() -> None:
+    """Two springs in series, of which one softens more steeply than the other is stiff."""
+    deck = ZENER.replace("DRAG DASHPOT CX={c}", "STEEP SPRING KX=30 FX=2 RULE=BILINEAR R=-0.5")
+    r = run_text(deck.replace("DRAG", "STEEP"), None, "TAYLOR")
+    assert r.message.startswith("A501 at t = "), r.message
+    assert "node 3 ux has no mass, and its stiffness has become negative: it snaps through" in r.message
+    assert len(r.time) > 2
