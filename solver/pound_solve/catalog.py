@@ -20,6 +20,7 @@ FAMILIES: Final[Mapping[str, str]] = MappingProxyType(
         "element": "structure.elements",
         "hysteresis": "laws.hysteresis",
         "contact": "laws.contact",
+        "damper": "laws.damper",
         "damping": "structure.damping",
         "record": "loading.records",
         "motion": "loading.motions",

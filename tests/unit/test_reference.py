@@ -28,6 +28,7 @@ def chapter(page: str, spec: Spec) -> str:
         "damping": "Damping",
         "motion": "Ground motions",
         "force": "Forces in time",
+        "damper": "Damper laws",
         "record": "Record formats",
         "analysis": "Analyses",
         "method": "Methods of integration",
