@@ -1,6 +1,6 @@
-"""Quasi-static paths through a force law, walked exit by exit; work is found by quadrature of the force.
+"""Quasi-static paths through a force law, walked event by event; work is found by quadrature of the force.
 
-Written anew beside `pound_solve.laws.automaton.follow`, so that tests of the one see faults of the other.
+Written anew beside `pound_solve.laws.automaton.drive`, so that tests of the one see faults of the other.
 """
 
 from __future__ import annotations

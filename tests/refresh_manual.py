@@ -2,6 +2,7 @@
 tests check that they are fresh.
 """
 
+import argparse
 from pathlib import Path
 
 from pound_deck.diagnostics import messages_page
@@ -26,19 +27,44 @@ def pictures() -> dict[str, str]:
     return {f"{kind[s.family]}_{s.name.lower()}.svg": picture(s) for s in drawn}
 
 
-if __name__ == "__main__":
+def messages() -> None:
+    """The page of messages."""
     write("messages.md", messages_page())
+
+
+def reference() -> None:
+    """The deck reference."""
     write("deck-reference.md", deck_page())
+
+
+def results() -> None:
+    """The tables of the results file, below a head that is written by hand."""
     page = (MANUAL / "results.md").read_text(encoding="utf-8")
     mark = "<!-- made by pound_solve.results.page.results_page"
     head, line = page.split(mark)[0], mark + page.split(mark)[1].split("\n")[0]
     write("results.md", f"{head}{line}\n\n{results_page()}")
-    cases.PAGE.write_text(
-        cases.page(cases.PAGE.read_text(encoding="utf-8")), encoding="utf-8", newline="\n"
-    )
+
+
+def verification() -> None:
+    """The page of verification, whose cases are run."""
+    page = cases.page(cases.PAGE.read_text(encoding="utf-8"))
+    cases.PAGE.write_text(page, encoding="utf-8", newline="\n")
+
+
+def loops() -> None:
+    """The pictures of rules and contact laws."""
     folder = MANUAL / "pictures"
     folder.mkdir(exist_ok=True)
     for old in folder.glob("*.svg"):
         old.unlink()
     for name, text in pictures().items():
         write(f"pictures/{name}", text)
+
+
+PARTS = {part.__name__: part for part in (messages, reference, results, loops, verification)}
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("part", nargs="*", choices=PARTS, help="all if left out", default=list(PARTS))
+    for name in parser.parse_args().part:
+        PARTS[name]()

@@ -1,8 +1,9 @@
-"""Parameters of a rule for tests, from its own Spec: a new rule is tested without a list to mend."""
+"""Samples for tests from the Specs of the catalog: what is new is tested without a list to mend."""
 
 from __future__ import annotations
 
 from pound_deck.schema import Spec
+from pound_solve.catalog import catalog
 
 
 def items(spec: Spec, force: float, deformation: float) -> dict[str, tuple[float, ...] | str]:
@@ -35,3 +36,9 @@ def values(spec: Spec, force: float, deformation: float) -> dict[str, object]:
         field = spec.field(name)
         found[name] = x[0] if field is not None and field.count == (1, 1) and not field.words else x
     return found
+
+
+def stepping_methods() -> list[str]:
+    """Names of the methods that take time steps."""
+    family = catalog().family("method")
+    return [name for name, spec in family.items() if spec.impl.__module__.count(".stepping.")]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any, Final
 
 from pound_deck.bind import Binder
@@ -114,7 +115,7 @@ def _kind(name: str, row: Row, binder: Binder) -> Card | None:
     """Card of a section whose lines name their kind: first, or after the label of a property set."""
     items, family = row.items or (), FAMILIES[name]
     specs = binder.read.catalog.family(family)
-    codes = {s.code: s.name for s in specs.values() if s.code is not None}
+    codes = partial(binder.read.catalog.codes, family)
     at = 1 if family == "element" else 0
     try:
         if len(items) <= at or any(item.name for item in items[: at + 1]):

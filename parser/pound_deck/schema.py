@@ -165,6 +165,10 @@ class Catalog:
         """Specs of a family by name (empty when there are none)."""
         return self._families.get(name, {})
 
+    def codes(self, family: str) -> Mapping[int, str]:
+        """Names of a family's Specs by their old numeric codes."""
+        return {s.code: s.name for s in self.family(family).values() if s.code is not None}
+
     def by_code(self, family: str, code: int) -> Spec | None:
         """Spec with that old numeric code, or None."""
         return next((s for s in self.family(family).values() if s.code == code), None)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final
 
 from pound_deck.cards import Part
@@ -53,16 +54,16 @@ class Values:
             case Kind.TEXT:
                 return self._text(part, f)
             case Kind.WORD:
-                codes = {code: word for word, code in f.codes.items()}
-                return self.choice(part, f.words, codes, f.name, f.doc)
+                return self.choice(
+                    part, f.words, lambda: {code: word for word, code in f.codes.items()}, f.name, f.doc
+                )
             case Kind.FLAGS:
                 return self._flags(part, f)
             case Kind.PROP:
                 return self.label(part, f.name)
             case Kind.FAMILY:
-                specs = self.catalog.family(f.family)
-                codes = {s.code: s.name for s in specs.values() if s.code is not None}
-                return self.choice(part, specs, codes, f.name, f.doc)
+                codes = partial(self.catalog.codes, f.family)
+                return self.choice(part, self.catalog.family(f.family), codes, f.name, f.doc)
         raise AssertionError(f.kind)
 
     def _instead(self, part: Expression, f: Field) -> str:
@@ -164,20 +165,28 @@ class Values:
         return text
 
     def choice(
-        self, part: Part, words: Iterable[str], codes: Mapping[int, str], name: str, doc: str = ""
+        self,
+        part: Part,
+        words: Collection[str],
+        codes: Callable[[], Mapping[int, str]],
+        name: str,
+        doc: str = "",
     ) -> str:
-        """One of `words`, given as a word, an old numeric code, or a PARAM that holds one of them."""
-        choices = list(words)
+        """One of `words`, given as a word, an old numeric code, or a PARAM that holds one of them.
+
+        All words and codes are asked for only where the word is not among them: a family of laws need not
+        be imported for one.
+        """
         step = part.lone if isinstance(part, Expression) else None
         # a word may hold a slash: CM/S2
-        text = self._substituted(step, choices) if step else part.text.upper()
-        if text in choices:
+        text = self._substituted(step, words) if step else part.text.upper()
+        if text in words:
             return text
-        number = _code(text)
-        if number is not None and number in codes:
-            return codes[number]
-        shown = (step or part).text[:60]
-        listed = ", ".join(f"{w} ({c})" for c, w in sorted(codes.items())) if number is not None else ""
+        number, known = _code(text), codes()
+        if number is not None and number in known:
+            return known[number]
+        shown, choices = (step or part).text[:60], list(words)
+        listed = ", ".join(f"{w} ({c})" for c, w in sorted(known.items())) if number is not None else ""
         hint = hints(
             suggest(text, choices), "choose " + (listed or ", ".join(choices) or "nothing: none exist"), doc
         )

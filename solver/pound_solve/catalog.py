@@ -1,18 +1,19 @@
-"""The Catalog of all Specs: every module of a family package that declares a SPEC is in it.
+"""The Catalog of all Specs: every module of a family package that declares a SPEC, of its own name in
+capitals, is in it.
 
-A family is imported when it is first asked for: a deck without HISTORY never sees a method.
+A module is imported when its Spec is first asked for: a deck without HISTORY never sees a method.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib import import_module
-from pkgutil import walk_packages
 from types import MappingProxyType
 from typing import Final
 
 from pound_deck.schema import Catalog, Spec
+from pound_solve.modules import modules_below
 
 #: Package of every family.
 FAMILIES: Final[Mapping[str, str]] = MappingProxyType(
@@ -20,6 +21,7 @@ FAMILIES: Final[Mapping[str, str]] = MappingProxyType(
         "element": "structure.elements",
         "hysteresis": "laws.hysteresis",
         "contact": "laws.contact",
+        "damper": "laws.damper",
         "damping": "structure.damping",
         "record": "loading.records",
         "motion": "loading.motions",
@@ -30,8 +32,39 @@ FAMILIES: Final[Mapping[str, str]] = MappingProxyType(
 )
 
 
+class Members(Mapping[str, Spec]):
+    """Specs of a family by name.
+
+    The Spec of a name is in the module of that name, which is imported when it is asked for: a deck with
+    one contact law does not load the others.
+
+    Parameters
+    ----------
+    package : str
+        Dotted name.
+    """
+
+    def __init__(self, package: str) -> None:
+        self._modules: dict[str, list[str]] = {}
+        for name in modules_below(import_module(package)):
+            self._modules.setdefault(name.rpartition(".")[2].upper(), []).append(name)
+
+    def __getitem__(self, name: str) -> Spec:
+        for module in map(import_module, self._modules[name]):
+            if hasattr(module, "SPEC"):
+                spec: Spec = module.SPEC
+                return spec
+        raise KeyError(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name in sorted(self._modules) if name in self)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+
 class Families(Catalog):
-    """A Catalog whose families are imported one by one, when asked for."""
+    """A Catalog whose families are looked into when they are asked for."""
 
     def families(self) -> tuple[str, ...]:
         """Names of the families."""
@@ -39,16 +72,13 @@ class Families(Catalog):
 
     def family(self, name: str) -> Mapping[str, Spec]:
         """Specs of a family by name (empty when there are none)."""
-        return members(name).family(name) if name in FAMILIES else {}
+        return members(name) if name in FAMILIES else {}
 
 
 @cache
-def members(family: str) -> Catalog:
-    """Import a family: its Specs, in the order of file names."""
-    package = import_module(f"pound_solve.{FAMILIES[family]}")
-    names = [m.name for m in walk_packages(package.__path__, f"{package.__name__}.") if not m.ispkg]
-    modules = (import_module(name) for name in sorted(names, key=lambda name: name.rpartition(".")[2]))
-    return Catalog(module.SPEC for module in modules if hasattr(module, "SPEC"))
+def members(family: str) -> Members:
+    """Return the Specs of a family, in the order of their names."""
+    return Members(f"pound_solve.{FAMILIES[family]}")
 
 
 def catalog() -> Catalog:
@@ -57,5 +87,5 @@ def catalog() -> Catalog:
 
 
 def specs() -> tuple[Spec, ...]:
-    """Return the Specs of all families, in the order of `FAMILIES` and of file names."""
-    return tuple(spec for family in FAMILIES for spec in members(family).family(family).values())
+    """Return the Specs of all families, in the order of `FAMILIES` and of their names."""
+    return tuple(spec for family in FAMILIES for spec in members(family).values())

@@ -15,7 +15,7 @@ from pound_solve.laws.automaton import (
     drive,
 )
 from pound_solve.laws.contact import kelvin_voigt
-from pound_solve.laws.hysteresis import bilinear, slackness
+from pound_solve.laws.hysteresis import bilinear, bilinear_slack
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
 
@@ -31,7 +31,7 @@ def rules(draw: st.DrawFn) -> Law:
     if draw(st.booleans()):
         return Law(bilinear.RULE, (k, plus, minus, draw(ratios)))
     gap = draw(st.floats(0.0, 2.0)), -draw(st.floats(0.0, 2.0))
-    return Law(slackness.RULE, (k, plus, minus, *gap, draw(hardening), float(draw(st.booleans()))))
+    return Law(bilinear_slack.RULE, (k, plus, minus, *gap, draw(hardening), float(draw(st.booleans()))))
 
 
 def gross(law: Law, walk: Walk) -> float:

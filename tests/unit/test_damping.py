@@ -23,7 +23,7 @@ from pound_solve.laws.automaton import (
     drive,
     linear,
 )
-from pound_solve.laws.hysteresis import bilinear, slackness
+from pound_solve.laws.hysteresis import bilinear, bilinear_slack
 from pound_solve.numerics.modes import condense, massless
 from pound_solve.structure.assembly import AssemblyError
 from pound_solve.structure.damping import caughey
@@ -666,7 +666,7 @@ def test_steps_converge_to_the_exact_method_with_order_two(stiffness):
 # ---------------------------------------------------------------- laws that know their secant stiffness
 
 BILINEAR = (bilinear.RULE, (100.0, 5.0, -5.0, 0.1))
-SLACK = (slackness.RULE, (100.0, 5.0, -5.0, 0.01, -0.02, 0.05, 1.0))
+SLACK = (bilinear_slack.RULE, (100.0, 5.0, -5.0, 0.01, -0.02, 0.05, 1.0))
 
 
 def spring(law, **factors):

@@ -49,8 +49,11 @@ KINDS = {
 #: libraries that are slow to import, and the kinds that need any; steps take numba too where it is on
 NUMERICS = {"scipy", "numba", "llvmlite"}
 NEEDS = {"general history": {"scipy"}}
-#: the folders of the methods
-ENGINES = {"closed_form", "events", "kernels", "series", "stepping"}
+#: the folders of the methods, and those that kinds of decks need
+FOLDERS = {"closed_form", "events", "kernels", "series", "stepping"}
+STEPS = {"events", "kernels", "stepping"}
+EXACT = {"closed_form", "events"}
+ENGINES = {"linear history": EXACT, "piecewise linear history": EXACT, "general history": STEPS}
 
 
 def deck(folder, kind):
@@ -84,7 +87,7 @@ def libraries(modules):
 
 
 def engines(modules):
-    return {name for name in ENGINES if f"pound_solve.integrate.{name}" in modules}
+    return {name for name in FOLDERS if f"pound_solve.integrate.{name}" in modules}
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -98,18 +101,15 @@ def test_each_kind_of_deck_imports_what_it_needs_and_no_more(tmp_path, kind):
     assert libraries(modules) & NUMERICS == NEEDS.get(kind, set())
     assert "matplotlib" not in libraries(modules)
     moving = "history" in kind
-    # the whole family of methods comes with HISTORY, and nothing of it without
-    assert engines(modules) == (ENGINES if moving else set())
+    assert engines(modules) == ENGINES.get(kind, set())
     assert ("history" in held) == moving
     assert "pound_solve.assess.study" not in modules
-    # with the methods come all laws: their kernels have room for the longest
-    laws = {m for m in modules if m.startswith("pound_solve.laws.contact.")}
-    assert moving or not laws
+    assert not {m for m in modules if m.startswith("pound_solve.laws.contact.")}
     # and the table says so
     assert told["numba"] == (0, "not imported")
     assert told["kernels compiled"] == (0, "none")
     assert set(told["pound_solve.integrate"][1].split(", ")) >= {"protocol"}
-    assert ("pound_solve.integrate.closed_form" in told) == moving
+    assert ("pound_solve.integrate.closed_form" in told) == ("closed_form" in ENGINES.get(kind, set()))
 
 
 def test_a_deck_without_contacts_holds_none_of_their_arrays(tmp_path):
@@ -150,7 +150,11 @@ def test_the_version_and_the_help_need_no_numbers():
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
         loaded = set(done.stdout.splitlines()[-1].split())
-        assert {m for m in loaded if not m.startswith("pound_solve.cli")} == {"pound_solve"}
+        assert {m for m in loaded if not m.startswith("pound_solve.cli")} == {
+            "pound_solve",
+            "pound_solve.modules",
+            "pound_solve.version",
+        }
 
 
 def test_a_report_needs_no_numerics(tmp_path):
@@ -159,7 +163,7 @@ def test_a_report_needs_no_numerics(tmp_path):
     modules, _ = main(["report", str(path.with_suffix(".h5"))])
     assert not libraries(modules) & (NUMERICS | {"lark", "matplotlib"})
     rooms = {name.split(".")[1] for name in modules if name.startswith("pound_solve.")}
-    assert rooms <= {"cli", "numerics", "report", "results"}
+    assert rooms <= {"cli", "numerics", "report", "results", "modules", "version"}
     assert {name for name in modules if name.startswith("pound_solve.numerics.")} == {
         "pound_solve.numerics.types"
     }

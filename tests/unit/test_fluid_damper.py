@@ -238,7 +238,7 @@ def test_vibration_through_a_play(tmp_path, items):
 
 
 def test_the_law_walked_by_hand():
-    law = fluid.build(2.0, 0.5, (4.0, -3.0), (0.2, -0.1))
+    law = fluid.damper(2.0, 0.5, (4.0, -3.0), (0.2, -0.1))
     inside = law.start()
     assert law.branch(inside).name == "in the play" and law.force(inside, 0.1, 9.0)[0] == 0.0
     assert [e.constant for e in law.branch(inside).events] == [-0.2, -0.1]
@@ -257,7 +257,7 @@ def test_the_law_walked_by_hand():
 
 @pytest.mark.parametrize("alpha", [0.2, 0.5, 1.0, 1.7, 3.0])
 def test_the_force_is_odd_and_its_slope_is_its_own(alpha):
-    law = fluid.build(2.0, alpha)
+    law = fluid.damper(2.0, alpha)
     out = law.start()
     back = law.transition(out, 0, 0.0, -1e-12)
     for v in (1e-13, 1e-6, 0.3, 5.0):
@@ -303,7 +303,7 @@ def test_half_said(items, words):
         ("EXACT", "the law FLUID of element 1 is curved"),
         ("TAYLOR", "the law FLUID of element 1 is curved"),
         ("LAPLACE DT=1E-3", "the law FLUID of element 1 is curved"),
-        ("NEWMARK DT=1E-3 EVENTS=STEPPED", "a fluid damper (element 1) needs steps with EVENTS=LOCATED"),
+        ("NEWMARK DT=1E-3 EVENTS=STEPPED", "the damper FLUID (element 1) needs steps with EVENTS=LOCATED"),
     ],
 )
 def test_methods_that_do_not_take_it(tmp_path, method, words):

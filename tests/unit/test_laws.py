@@ -95,7 +95,7 @@ def test_numbers_have_the_lengths_that_the_rule_says() -> None:
     assert flat == (1.0, 3.0, 2.0, *NEVER * EVENTS)
 
 
-def test_branch_with_its_exits() -> None:
+def test_branch_with_its_events() -> None:
     state = STEPS.start()
     assert state == (STAIR, 0.0, 0.0, (0.0,))
     branch = STEPS.branch(state)
@@ -128,7 +128,7 @@ def test_rounding_is_no_loss_and_a_loss_is_no_rounding() -> None:
     assert STEPS.dissipated((STAIR, 0.04, state[2] + off, (0.0,)), 0.04) > 0.0
 
 
-def test_follow_takes_the_exits_on_its_way() -> None:
+def test_drive_takes_the_events_on_its_way() -> None:
     state = drive(STEPS, STEPS.start(), 0.0, 0.08)
     assert state[0] == FLAT
     assert drive(STEPS, state, 0.08, 0.09) == state
@@ -139,14 +139,14 @@ def test_follow_takes_the_exits_on_its_way() -> None:
     assert drive(STEPS, STEPS.start(), 0.0, 0.05) == STEPS.start()
 
 
-def test_settle_leaves_what_is_passed_already() -> None:
+def test_consistent_leaves_a_branch_that_is_passed_already() -> None:
     assert consistent(STEPS, STEPS.start(), 0.02, 0.0) == STEPS.start()
     assert consistent(STEPS, STEPS.start(), 0.08, 1.0)[0] == FLAT
     stationary = consistent(STEPS, STEPS.start(), 0.08, -1.0)
     assert (stationary[0], stationary[3][0]) == (STAIR, pytest.approx(0.03))
 
 
-def test_a_law_that_never_settles_is_stopped() -> None:
+def test_a_law_that_never_comes_to_rest_is_stopped() -> None:
     def restless(p: Numbers, at: int, m: Numbers) -> Numbers:
         return linear(1.0, 0.0, above(-1.0))
 

@@ -2,7 +2,10 @@
 
 import importlib
 import math
+import os
 import re
+import shutil
+import subprocess
 import sys
 import tomllib
 from dataclasses import replace
@@ -14,10 +17,11 @@ import pytest
 import contract
 from decks import model_of, solved
 from pound_solve import run
-from pound_solve.catalog import members, specs
+from pound_solve.catalog import catalog, members, specs
 from pound_solve.driver.run import Request, prepare
 from pound_solve.laws.contact import restitution
 from pound_solve.structure.assembly import AssemblyError, assemble
+from unit import test_damper_contract
 
 ROOT = Path(__file__).parents[2]
 MANUAL = ROOT / "manual"
@@ -93,6 +97,7 @@ HOME = {
     "hysteresis": ("hysteresis.md",),
     "contact": ("theory-contact.md",),
     "damping": ("theory-damping.md",),
+    "damper": ("theory-damping.md",),
     "analysis": ("theory-structure.md", "theory-static.md", "theory-integration.md"),
     "method": ("theory-integration.md",),
     "motion": ("records.md",),
@@ -330,6 +335,22 @@ def test_the_example_contact_works_in_a_deck(extended):
         assert hit["peak_force"] == pytest.approx(math.sqrt(1e6 / 4 * reduced), rel=1e-12)
 
 
+def test_the_example_damper_keeps_the_contract(extended):
+    """By every method the same force, which is linear in the rate beyond the valve."""
+    spec = catalog().family("damper")["TWO_STAGE"]
+    test_damper_contract.keep(test_damper_contract.law_of(spec))
+    forces = []
+    for method, tol in (("EXACT", 1e-12), ("TAYLOR", 1e-12), ("NEWMARK DT=5E-4", 2e-5)):
+        r = test_damper_contract.shaken(spec, method)
+        test_damper_contract.balanced(r, tol)
+        (force,) = (x for x in r.tables["spring_envelope"] if x["element"] == 2)
+        forces.append([force["force_max"], force["force_min"]])
+        speed = np.abs(r.v[:, r.nodes.index(2), 0]).max()
+        assert max(np.abs(forces[-1])) == pytest.approx(6.0 + 6.0 * (speed - 0.1), rel=1e-3)
+    assert np.abs(np.array(forces) - forces[0]).max() < 1e-3 * np.abs(forces[0]).max()
+    assert np.abs(np.array(forces[1]) - forces[0]).max() < 1e-10 * np.abs(forces[0]).max()
+
+
 LINK = """UNITS kN m s
 NODES
    1  0 0  FIX=XYR
@@ -365,5 +386,37 @@ def test_the_example_record_format_works_in_a_deck(extended):
     assert motion.acceleration.value([0.02, 0.03, 0.06]) == pytest.approx(expected, rel=1e-13)
 
 
+TOTAL = """
+import sys
+from pound_solve import run
+from pound_solve.report.text import render
+with run(sys.argv[1]) as results:
+    total, apart = results.history("contact/total"), results.history("contact/force")
+    assert (total[:, 0] == apart.sum(axis=1)).all()
+    (row,) = results.table("contact_total")
+    assert (row["contacts"], row["peak"]) == (1, apart.max()) and row["peak"] > 0
+    assert results.time[apart[:, 0].argmax()] == row["t_peak"]
+    assert "SUM OF ALL CONTACT FORCES" in render(results)
+"""
+
+
+def test_the_example_table_and_its_history_are_in_the_report(extended):
+    """In a copy of the program, in a process of its own: what the results hold is found once."""
+    deck, own = extended / "impact.inp", "results/tables/contacts/contact_total.py"
+    deck.write_text(IMPACT.replace("EVERY=0.25", "EVERY=1E-4"))
+    copied = [
+        shutil.copytree(ROOT / package, extended / package, ignore=shutil.ignore_patterns("__pycache__"))
+        for package in ("solver/pound_solve", "parser/pound_deck")
+    ]
+    (copied[0] / own).write_text(EXAMPLES[own], "utf-8")
+    done = subprocess.run(
+        [sys.executable, "-c", TOTAL, str(deck)],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(str(p.parent) for p in copied)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+
+
 def test_the_examples_leave_no_trace():
-    assert not {"STIFFENING", "SLAB_END", "LINK", "STEPPED"} & {s.name for s in specs()}
+    assert not {"STIFFENING", "SLAB_END", "TWO_STAGE", "LINK", "STEPPED"} & {s.name for s in specs()}

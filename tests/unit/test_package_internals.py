@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from pound_solve.loading.records.known import KNOWN
-from pound_solve.numerics import jit
+from pound_solve.numerics import cubic, jit
 
 PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
 ADVICE = {
@@ -40,6 +40,27 @@ def test_numba_keeps_its_settings_and_its_statistics_where_they_are_read():
     assert twice(1.0) == 2.0
     compiled, loaded = twice.stats.cache_misses, twice.stats.cache_hits
     assert (sum(compiled.values()), sum(loaded.values())) == (1, 0), ADVICE["numba"]
+
+
+@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
+def test_numba_links_inner_kernels_without_emitting_them():
+    """What `jit.lighten` replaces is there, and an inner kernel has no machine code of its own."""
+    codegen = jit.numba().core.codegen
+    assert codegen.JITCPUCodegen._library_class is codegen.JITCodeLibrary, ADVICE["numba"]
+    for owner, name in (
+        (codegen.CPUCodeLibrary, "_optimize_final_module"),
+        (codegen.CPUCodeLibrary, "_finalize_final_module"),
+        (codegen.JITCPUCodegen, "set_env"),
+    ):
+        assert callable(getattr(owner, name, None)), f"{name}: {ADVICE['numba']}"
+    root = jit.compiled(cubic.next_trial)
+    assert root(0.0, 1.0, 0.5, -1.0, 1.0, 0.1) == cubic.next_trial(0.0, 1.0, 0.5, -1.0, 1.0, 0.1)
+    f8 = jit.numba().types.float64
+    inner = jit.compiled(
+        cubic.cubic_peak, jit.numba().types.UniTuple(f8, 2)(f8, f8, f8, f8, f8), inner=True
+    )
+    (own,) = inner.overloads.values()
+    assert not own.library.get_pointer_to_function(own.fndesc.llvm_func_name), ADVICE["numba"]
 
 
 @pytest.mark.parametrize("name", KNOWN)

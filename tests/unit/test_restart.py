@@ -6,6 +6,7 @@ import pytest
 
 import pound_solve
 from pound_solve.driver.run import DeckError
+from samples import stepping_methods
 
 pytestmark = pytest.mark.full
 
@@ -39,7 +40,7 @@ OUTPUT
  EVERY=0.02
 """
 
-STEPS = ["NEWMARK DT=1e-3", "HHT DT=1e-3", "GENERALISED_ALPHA DT=1e-3", "CENTRAL DT=1e-3"]
+STEPS = [f"{name} DT=1e-3" for name in stepping_methods()]
 METHODS = ["EXACT", "TAYLOR", *STEPS]
 
 

@@ -9,13 +9,13 @@ from collections.abc import Callable, Sequence
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
-from pkgutil import iter_modules
 
 from pound_solve.cli import verbs
 from pound_solve.cli.common import MISTAKES, STOPPED, complain
+from pound_solve.modules import modules_below
 from pound_solve.version import __version__
 
-VERBS = tuple(sorted(module.name for module in iter_modules(verbs.__path__)))
+VERBS = tuple(name.rpartition(".")[2] for name in modules_below(verbs))
 #: environment variables by which builds of numpy's linear algebra limit their threads
 THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 

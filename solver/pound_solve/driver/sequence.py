@@ -57,6 +57,7 @@ class AnalysisSequence:
             began,
             diaphragm_collisions(ready.structure),
         )
+        self.record.stored = writer.stored
         self.output = HistoryWriter(self.record, writer, progress)
 
     def run(self) -> str:

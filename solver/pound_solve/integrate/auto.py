@@ -45,8 +45,6 @@ from pound_solve.integrate.protocol import (
     refuse_rigid,
     rounding_check,
 )
-from pound_solve.integrate.series import taylor
-from pound_solve.integrate.stepping import newmark
 from pound_solve.integrate.tracker import Extreme, Peaks
 from pound_solve.numerics import jit
 from pound_solve.numerics.modes import massless
@@ -127,7 +125,7 @@ def has_series(system: ReducedSystem) -> bool:
 def cost_of_radian(system: ReducedSystem) -> float:
     """Return the cost of a run that resolves the fastest mode, per radian of it."""
     if has_series(system):
-        return taylor.cost_of_radian(system)
+        return costs.of_series_radian(system)
     return costs.RADIAN_STEPS * costs.of_step(system)
 
 
@@ -135,9 +133,9 @@ def cost_of_series(system: ReducedSystem, start: Start) -> float:
     """Return the cost of TAYLOR; infinite where it is not applicable."""
     if not has_series(system):
         return np.inf
-    count = taylor.RADIANS * len(goals(system, start.times)[0])  # each is the end of a step
+    count = costs.TAYLOR_RADIANS * len(goals(system, start.times)[0])  # each is the end of a step
     length = float(start.times[-1] - start.times[0])
-    return taylor.cost_of_radian(system) * (length * taylor.rate(system) + count)
+    return costs.of_series_radian(system) * (length * costs.fastest_rate(system) + count)
 
 
 class ExactTrial:
@@ -290,6 +288,8 @@ class StepRefinement:
         Stop
             The run stopped, and not because its step was too long.
         """
+        from pound_solve.integrate.stepping import newmark  # where no steps are taken it is not loaded
+
         replay = Replay(self.recorder)
         options = {"DT": self.h, "BETA": 0.25, "GAMMA": 0.5}
         try:
@@ -371,6 +371,8 @@ def to_tolerance(
     steps = StepRefinement(system, start, monitored, recorder, options["TOL"])
     while True:
         if series <= max(LOADING, steps.cost_ahead()):
+            from pound_solve.integrate.series import taylor  # likewise
+
             system.decisions.append(Decision("method", "TAYLOR", LINEAR))
             return taylor.integrate(system, start, monitored, {}, recorder)
         budget = steps.cost_ahead(LATER_BUDGET)

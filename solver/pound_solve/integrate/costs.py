@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pound_solve.numerics.matrices import diagonal, weighted
 from pound_solve.structure.reduction import ReducedSystem
 
 WINDOW = 1.3e-3  #: of EXACT: a window of dense output
@@ -16,6 +17,7 @@ PRODUCTS = 1.5e-6  #: matrix products of a decomposition, over the square of its
 MODES = 8e-9  #: modes of a decomposition, over the cube of its unknowns
 STEP, STEP_UNKNOWN = 3e-7, 2.5e-8  #: a compiled step of NEWMARK, and each of its unknowns, twice for a law
 TAYLOR_STEP, TAYLOR_UNKNOWN = 9e-6, 5.5e-8  #: a step of TAYLOR, and each of its unknowns
+TAYLOR_RADIANS = 5.0  #: of the fastest mode in a step of TAYLOR
 EVENT_STEPS = 10  #: steps that a located event costs as much as
 INTERPRETED = 100  #: cost of an interpreted step over that of a compiled one
 RADIAN_STEPS = 5  #: steps of NEWMARK that follow the fastest mode through a radian
@@ -34,6 +36,27 @@ def of_step(system: ReducedSystem) -> float:
 def of_series_step(system: ReducedSystem) -> float:
     """Return the cost of a compiled step of TAYLOR."""
     return TAYLOR_STEP + TAYLOR_UNKNOWN * system.size
+
+
+def fastest_rate(system: ReducedSystem) -> float:
+    """Radians that steps of TAYLOR follow at most [1/T]: of the fastest mode with all springs elastic
+    and all contacts open (they are closed for moments only), or of the fastest decay.
+
+    By the row sums of ``M^-1/2 A M^-1/2``, which bound its eigenvalues (Gershgorin).
+    """
+    stiffest = [0.0 if s.role.collides else s.facts.get("k", s.k0) for s in system.structure.laws]
+    root = 1.0 / np.sqrt(diagonal(system.mass))
+    omega2, decay = (
+        float((root * (abs(a) @ root)).max(initial=0.0))
+        for a in (system.stiffness + weighted(system.law_rows, stiffest), system.damping)
+    )
+    fastest: float = max(omega2**0.5, decay)
+    return fastest
+
+
+def of_series_radian(system: ReducedSystem) -> float:
+    """Return the cost of following a reduced system by TAYLOR for a radian of its fastest mode."""
+    return of_series_step(system) / TAYLOR_RADIANS
 
 
 class CostlyError(Exception):

@@ -130,11 +130,13 @@ def energies(
         u = system.expanded(u.T, system.excitation.values(t).T).T
         v = system.expanded(v.T, system.excitation.values(t, 1).T, 1).T
     contact = np.array([s.role.contact_energy for s in system.structure.laws], bool)
+    damper = np.array([s.role.damping_energy for s in system.structure.laws], bool)
     out = np.zeros((len(t), len(ENERGIES)))
     out[:, 0], out[:, 3], out[:, 5] = works.T
     out[:, 1] = 0.5 * (v * (v @ mass)).sum(axis=1)
     out[:, 2] = 0.5 * (u * (u @ stiffness)).sum(axis=1) + stored.sum(axis=1) + turning
-    out[:, 4] = lost[:, ~contact].sum(axis=1)
+    out[:, 3] += lost[:, damper].sum(axis=1)
+    out[:, 4] = lost[:, ~(contact | damper)].sum(axis=1)
     out[:, 5] += lost[:, contact].sum(axis=1)
     return out
 

@@ -146,6 +146,10 @@ class Rule:
     parameters: int = field(kw_only=True)
     variables: int = field(kw_only=True)
 
+    def __post_init__(self) -> None:
+        if self.power is not None and self.curve is None:
+            raise ValueError("a rule states its power beside a curve only: a linear branch loses c v^2")
+
     @property
     def rigid(self) -> bool:
         """Whether it is a rigid contact."""

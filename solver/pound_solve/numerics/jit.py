@@ -71,7 +71,42 @@ def numba() -> Any:
     except ImportError:
         return None
     setattr(found.config, "CACHE_DIR", str(folder()))  # noqa: B010
+    lighten(found)
     return found
+
+
+INNER, INLINE = "_inner", "_inline"  #: ends of the names of kernels that only other kernels call
+
+
+def lighten(found: Any) -> None:
+    """Let numba neither optimise nor emit code of inner kernels.
+
+    It would optimise each of them with all that it calls, and again in every kernel that calls it.  Their
+    plain code is linked into the outermost kernel, which alone is optimised and emitted: once.
+    """
+    library, engine = found.core.codegen.JITCodeLibrary, found.core.codegen.JITCPUCodegen
+    optimise, emit = library._optimize_final_module, library._finalize_final_module
+    set_environment = engine.set_env
+
+    def is_inner(own: Any) -> bool:
+        return bool(own.name.endswith((INNER, INLINE)))
+
+    def optimise_outermost(own: Any) -> None:
+        if not is_inner(own):
+            optimise(own)
+
+    def emit_outermost(own: Any) -> None:
+        if is_inner(own):
+            own._finalized = True
+        else:
+            emit(own)
+
+    def set_if_emitted(self: Any, name: str, environment: Any) -> None:
+        if self._engine.is_symbol_defined(name):
+            set_environment(self, name, environment)
+
+    library._optimize_final_module, library._finalize_final_module = optimise_outermost, emit_outermost
+    engine.set_env = set_if_emitted
 
 
 def flat(function: Function) -> Function:
@@ -148,8 +183,8 @@ def compiled(
     # arrays belong to the caller of a kernel: they need not be counted, which would cost more than the work
     how = {"cache": True, "error_model": "numpy", "_nrt": False, "forceinline": inline}
     if inner:  # no Python calls it, so that it needs no door to it; kept by a name of its own
-        twin.__qualname__ += "_inline" if inline else "_inner"
-        how |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+        twin.__qualname__ += INLINE if inline else INNER
+        how |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "cache": False}
     if "loose" in vars(function):
         how["fastmath"] = FASTMATH
     with compiling():

@@ -24,6 +24,7 @@ _FAMILIES: Final = {
     "element": ("Elements", "label {name}", "lines of PROPS"),
     "hysteresis": ("Hysteresis rules", "RULE={name}", "RULE of a SPRING in PROPS"),
     "contact": ("Contact laws", "LAW={name}", "LAW of a CONTACT in PROPS"),
+    "damper": ("Damper laws", "LAW={name}", "LAW of a DASHPOT in PROPS"),
     "damping": ("Damping", "{name}", "lines of DAMPING"),
     "motion": ("Ground motions", "{name}", "lines of EQUAKE"),
     "force": ("Forces in time", "{name}", "lines of FORCES"),

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from importlib import import_module
-from pkgutil import walk_packages
 from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, Any, Final
 
+from pound_solve.modules import modules_below
 from pound_solve.results import histories, tables
 from pound_solve.results.schema import History, Layout, Section, Stage, Table
 
@@ -16,27 +16,24 @@ if TYPE_CHECKING:
     from pound_solve.numerics.types import Array
 
 
-def _modules(package: ModuleType) -> Iterator[ModuleType]:
-    """Every module of a package and of the packages in it, by name."""
-    for found in sorted(walk_packages(package.__path__, f"{package.__name__}."), key=lambda m: m.name):
-        yield import_module(found.name)
+_MODULES: Final = tuple(map(import_module, (*modules_below(tables), *modules_below(histories))))
+_FOLDERS: Final = tuple(map(import_module, dict.fromkeys(m.__package__ or "" for m in _MODULES)))
 
 
-def _found(kind: type) -> list[tuple[ModuleType, Any]]:
-    """Objects of a kind that stand at the top of a module, with the first module that holds each."""
-    out = {
-        id(x): (module, x)
-        for module in reversed(_ALL)
-        for x in vars(module).values()
-        if isinstance(x, kind)
-    }
+def _found(kind: type, modules: Iterable[ModuleType]) -> list[tuple[ModuleType, Any]]:
+    """Objects of a kind at the top of modules, by place, with the first module that holds each."""
+    out: dict[int, tuple[ModuleType, Any]] = {}
+    for module in modules:
+        for x in vars(module).values():
+            if isinstance(x, kind):
+                out.setdefault(id(x), (module, x))
     return sorted(out.values(), key=lambda pair: pair[1].place)
 
 
-_ALL: Final = (*_modules(tables), *_modules(histories))
+_TABLES: Final = _found(Table, _MODULES)
 _PARTS: Final[tuple[tuple[Section, tuple[Table[Any], ...]], ...]] = tuple(
-    (section, tuple(t for module, t in _found(Table) if module.__package__ == folder.__name__))
-    for folder, section in _found(Section)
+    (section, tuple(t for module, t in _TABLES if module.__package__ == folder.__name__))
+    for folder, section in _found(Section, _FOLDERS)
 )
 
 #: Sections of the report: heading, names of the tables.  The number of a section is its place here.
@@ -46,7 +43,9 @@ SECTIONS: Final = tuple((section.heading, tuple(t.name for t in own)) for sectio
 TABLES: Final[Mapping[str, Table[Any]]] = MappingProxyType({t.name: t for _, own in _PARTS for t in own})
 
 #: Every history by its path below ``/history``, ``time`` first.
-HISTORIES: Final[Mapping[str, History]] = MappingProxyType({h.name: h for _, h in _found(History)})
+HISTORIES: Final[Mapping[str, History]] = MappingProxyType(
+    {h.name: h for _, h in _found(History, _MODULES)}
+)
 
 
 def tables_at(stage: Stage) -> Iterator[Table[Any]]:

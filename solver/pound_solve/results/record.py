@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from pound_solve.analyses.static_response import StaticResponse
     from pound_solve.loading.forces.base import Force
     from pound_solve.loading.motions.base import Motion
+    from pound_solve.numerics.types import Array
     from pound_solve.structure.diaphragms import DiaphragmCollision
     from pound_solve.structure.structure import Structure
 
@@ -44,6 +45,9 @@ class RunRecord:
         Results of the analyses; each is set when its analysis is over.
     recorded, layout
         What the history records, and its layout in the file; set when it starts.
+    stored : callable
+        Rows of a history so far, by its name (``time`` among them), shape (n_times, \\*row): for tables of
+        figures that no method tracks.  Peaks between the output times are not among them.
     checks : list of Check
         Of all analyses.
     solve_seconds, cpu_seconds : float
@@ -63,6 +67,7 @@ class RunRecord:
     history: HistoryResult = field(init=False)
     recorded: RecordedItems | None = None
     layout: Layout = field(default_factory=dict)
+    stored: Callable[[str], Array] = field(init=False)
     checks: list[Check] = field(default_factory=list)
     solve_seconds: float = 0.0
     cpu_seconds: float = 0.0

@@ -213,6 +213,17 @@ class Writer:
                 dataset.attrs.create(key, texts, dtype=_TEXT)
         self._history[name] = dataset
 
+    def stored(self, name: str) -> NDArray[np.float64]:
+        """Rows of a history so far, shape (n_times, \\*row).
+
+        Raises
+        ------
+        KeyError
+            The run has no such history.
+        """
+        rows: NDArray[np.float64] = self._history[name][:]
+        return rows
+
     def append(self, block: Mapping[str, NDArray[Any]]) -> None:
         """Append a block of instants to all histories.
 

@@ -26,7 +26,6 @@ from typing import Any
 import numpy as np
 
 from pound_deck.schema import Spec
-from pound_solve.integrate import costs
 from pound_solve.integrate.events import polynomial_roots
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import PAUSE
@@ -48,12 +47,10 @@ from pound_solve.integrate.protocol import (
 from pound_solve.integrate.series import expansion, march, massless, state
 from pound_solve.integrate.series.massless import STIFFNESS
 from pound_solve.integrate.tracker import Peaks
-from pound_solve.numerics.matrices import diagonal, weighted
 from pound_solve.numerics.record import record
 from pound_solve.structure.reduction import ReducedSystem
 
 MAX_STEPS = 5_000_000  #: that a run may come to
-RADIANS = 5.0  #: of the fastest mode in a step
 
 
 class Taylor(KernelEngine):
@@ -158,27 +155,6 @@ class Taylor(KernelEngine):
     def checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
         """Self-checks of the run."""
         return rounding_check(self.springs, peaks)
-
-
-def rate(system: ReducedSystem) -> float:
-    """Radians that its steps have to follow at most [1/T]: of the fastest mode with all springs elastic and
-    all contacts open (they are closed for moments only), or of the fastest decay.
-
-    By the row sums of ``M^-1/2 A M^-1/2``, which bound its eigenvalues (Gershgorin).
-    """
-    stiffest = [0.0 if s.role.collides else s.facts.get("k", s.k0) for s in system.structure.laws]
-    root = 1.0 / np.sqrt(diagonal(system.mass))
-    omega2, decay = (
-        float((root * (abs(a) @ root)).max(initial=0.0))
-        for a in (system.stiffness + weighted(system.law_rows, stiffest), system.damping)
-    )
-    fastest: float = max(omega2**0.5, decay)
-    return fastest
-
-
-def cost_of_radian(system: ReducedSystem) -> float:
-    """Cost of following a reduced system for a radian of its fastest mode, in the units of `costs`."""
-    return costs.of_series_step(system) / RADIANS
 
 
 def integrate(

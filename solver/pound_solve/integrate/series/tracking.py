@@ -91,7 +91,7 @@ def track_laws(
                 p[k] = d[i, k]
             count_crest(laws, step, series, terms, h, end, t, first + i, -1)
         own = first + len(laws.rule) + i
-        stiffness, damping = laws.stiffness[i], laws.damping[i] if laws.contact[i] else 0.0
+        stiffness, damping = laws.stiffness[i], laws.damping[i] if laws.viscous[i] else 0.0
         far *= abs(stiffness)
         high = extremes.high[own]
         if laws.contact[i]:

@@ -217,6 +217,8 @@ def step_in_parts(
         t, part = run.time, min(left, run.longest_part, longest)
         if at == PART or part < left:
             at = PART
+            if curved:  # what is tried from here on moves the tangents away from the factor at hand
+                run.updates = REFRESH + 1
             why = factorise_part(linear, laws, step, scheme, part, halvings, run)
             if why != DONE:
                 return why
@@ -231,7 +233,7 @@ def step_in_parts(
         tried, halvings, longest = False, 0, np.inf
         event = first_event(laws, step, part)
         if event.law >= 0:
-            if curved:  # what is tried from here on moves the tangents away from the factor at hand
+            if curved:  # likewise, at the end of a step that was tried whole
                 run.updates = REFRESH + 1
             at = PART
             begin = t - piece_start

@@ -50,6 +50,7 @@ from pound_solve.integrate.kernels.work import (
     support_power,
 )
 from pound_solve.laws.functions import Tables
+from pound_solve.numerics.jit import flat
 from pound_solve.numerics.ldl import factor, update
 from pound_solve.numerics.ldl import solve as solve_factored
 from pound_solve.numerics.types import Array
@@ -197,6 +198,7 @@ def redraw_members(
     return True
 
 
+@flat
 def iterate(
     linear: LinearSystem, laws: Laws, step: Step, rules: Tables, scheme: Scheme, h: float, at: int,
     run: Run,
@@ -226,6 +228,7 @@ def iterate(
     return False
 
 
+@flat
 def try_step(
     linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, rules: Tables, coefs: Array, end: float,
     h: float, at: int, run: Run,
@@ -333,6 +336,7 @@ def update_residual(linear: LinearSystem, step: Step, scheme: Scheme) -> None:
         residual[i] = one * (step.right_side[i] - scheme.alpha_f * residual[i])
 
 
+@flat
 def accept(
     linear: LinearSystem, laws: Laws, step: Step, rules: Tables, scheme: Scheme, h: float, at: int,
     works: Works, run: Run,

@@ -91,7 +91,7 @@ class Stepper(KernelEngine):
         """Integrate in equal steps from one goal to the next."""
         turns = next((s for s in self.springs if s.role in (Role.FRICTION, Role.DAMPER)), None)
         if turns is not None and not self.scheme.locate:
-            what = "friction" if turns.role is Role.FRICTION else "a fluid damper"
+            what = "friction" if turns.role is Role.FRICTION else f"the damper {turns.rule}"
             raise self.stop("A505", f"{what} (element {turns.element}) needs steps with EVENTS=LOCATED")
         self.begin(kernel.advance)
         ends, is_output = goals(self.system, self.times)

@@ -78,7 +78,23 @@ RULE = Rule(
 
 
 class Built(NamedTuple):
-    """A contact law with its figures in the report; `unit` is that of its stiffness `k`."""
+    """A contact law with its figures in the report; NaN stands for what depends on the speed.
+
+    Attributes
+    ----------
+    law : Law
+    k : float
+        Stiffness, in `unit`.
+    c : float
+        Dashpot [F T/L].
+    xi : float
+        Damping ratio of the closed contact with the reduced mass.
+    e_asked, e_given : float
+        Restitution that the card asks for, and that the law gives.
+    note : str
+        For the report.
+    unit : str
+    """
 
     law: Law
     k: float

@@ -23,7 +23,10 @@ Engineering, Springer (the energy of a cycle).
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
+from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
     NEVER,
     BranchKind,
@@ -124,7 +127,7 @@ RULE = Rule(
 )
 
 
-def build(
+def damper(
     c: float, alpha: float, limit: tuple[float, float] | None = None, play: tuple[float, float] = (0.0, 0.0)
 ) -> Law:
     """Law of a damper.
@@ -146,3 +149,35 @@ def build(
         limits = (limit[0], -limit[1])
         rates = ((limits[0] / c) ** (1.0 / alpha), (limits[1] / c) ** (1.0 / alpha))
     return Law(RULE, (0.0, c, alpha, *limits, *rates, *play))
+
+
+def build(
+    values: Mapping[str, Any],
+    c: float,
+    limit: tuple[float, float] | None,
+    play: tuple[float, float] | None,
+) -> Law | None:
+    """Law of one component of a DASHPOT from its card's values; None for a linear dashpot.
+
+    Parameters
+    ----------
+    values : mapping
+        ALPHA.
+    c, limit, play
+        See `damper`; None where the card gives none.
+    """
+    alpha = float(values["ALPHA"])
+    if alpha == 1.0 and limit is None and play is None:
+        return None
+    return damper(c, alpha, limit, play or (0.0, 0.0))
+
+
+SPEC = Spec(
+    "damper",
+    "FLUID",
+    "a power of the rate; with ALPHA=1 a linear dashpot",
+    (Field("ALPHA", Kind.REAL, "-", default=1.0, above=0, doc="exponent of the rate in the force"),),
+    reference="Constantinou & Symans 1992",
+    sample="ALPHA=0.5",
+    impl=build,
+)

@@ -53,6 +53,11 @@ class Role(Enum):
         """
         return self is Role.CONTACT
 
+    @property
+    def damping_energy(self) -> bool:
+        """Whether all its losses belong to damping, those of a constant force too."""
+        return self is Role.DAMPER
+
 
 @dataclass(frozen=True)
 class LawSpring:

@@ -1,7 +1,7 @@
-r"""DASHPOT: viscous components x, y and rotation; geometry as in SPRING.
+"""DASHPOT: components x, y and rotation that resist the rate; geometry as in SPRING.
 
-A linear one without play and limit is part of the structure's damping matrix.  Any other is a fluid damper
-(:mod:`pound_solve.laws.damper.fluid`), :math:`f = C\,\mathrm{sgn}(v)\,|v|^\alpha`.
+A linear one without play and limit is part of the structure's damping matrix; any other follows a law of
+`pound_solve.laws.damper`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,15 @@ def build(context: ElementContext) -> Parts:
                 if card[item] is not None:
                     raise ElementError(f"{item} has no effect without C{name}", item)
             continue
-        if card["ALPHA"] == 1.0 and limit is None and play is None:
+        limits = None if limit is None else signed(limit, LIMITS[name])
+        if limits is not None and 0.0 in limits:
+            raise ElementError(f"{LIMITS[name]}, the largest force, is not 0", LIMITS[name])
+        ends = None if play is None else signed(play, PLAYS[name])
+        try:
+            law = card.laws["LAW"][0].impl(card.values, c, limits, ends)
+        except ValueError as err:
+            raise ElementError(str(err), "LAW") from None
+        if law is None:
             r = np.array(row)
             parts.damping.append(ElementMatrix(dofs, c * np.outer(r, r)))
             kind = "moment" if name == "R" else "force"
@@ -43,15 +51,8 @@ def build(context: ElementContext) -> Parts:
                 Output(context.element.id, f"{kind} {name}", unit, dofs, np.zeros(len(row)), c * r)
             )
             continue
-        from pound_solve.laws.damper import fluid  # a deck without one does not load it
-
-        limits = None if limit is None else signed(limit, LIMITS[name])
-        if limits is not None and 0.0 in limits:
-            raise ElementError(f"{LIMITS[name]}, the largest force, is not 0", LIMITS[name])
-        ends = (0.0, 0.0) if play is None else signed(play, PLAYS[name])
-        law = fluid.build(c, card["ALPHA"], limits, ends)
         parts.laws.append(
-            LawSpring(context.element.id, name, "FLUID", dofs, row, law, unit=unit, role=Role.DAMPER)
+            LawSpring(context.element.id, name, card["LAW"], dofs, row, law, unit=unit, role=Role.DAMPER)
         )
     return parts
 
@@ -59,20 +60,20 @@ def build(context: ElementContext) -> Parts:
 SPEC = Spec(
     "element",
     "DASHPOT",
-    "dashpot or fluid damper with components x, y and rotation",
+    "dashpot or damper with components x, y and rotation",
     (
-        Field("CX", Kind.REAL, "F*(T/L)^ALPHA", default=0.0, lo=0, doc="dashpot along local x"),
-        Field("CY", Kind.REAL, "F*(T/L)^ALPHA", default=0.0, lo=0, doc="dashpot along local y"),
-        Field("CR", Kind.REAL, "F*L*T^ALPHA", default=0.0, lo=0, doc="rotational dashpot"),
-        Field("ANGLE", Kind.REAL, "deg", default=0.0, doc="angle of local x from global x, anticlockwise"),
         Field(
-            "ALPHA",
+            "CX",
             Kind.REAL,
-            "-",
-            default=1.0,
-            above=0,
-            doc="exponent of the rate in the force; 1: linear",
+            "F*T/L",
+            default=0.0,
+            lo=0,
+            doc="force at the rate one along local x",
         ),
+        Field("CY", Kind.REAL, "F*T/L", default=0.0, lo=0, doc="force at the rate one along local y"),
+        Field("CR", Kind.REAL, "F*L*T", default=0.0, lo=0, doc="moment at the rate one"),
+        Field("ANGLE", Kind.REAL, "deg", default=0.0, doc="angle of local x from global x, anticlockwise"),
+        Field("LAW", Kind.FAMILY, default="FLUID", family="damper", doc="damper law"),
         Field(
             "FX",
             Kind.REAL,
@@ -96,6 +97,6 @@ SPEC = Spec(
         Field("GAPY", Kind.REAL, "L", default=None, count=(1, 2), doc="play along y"),
         Field("GAPR", Kind.REAL, "rad", default=None, count=(1, 2), doc="play of the rotation"),
     ),
-    reference="Constantinou & Symans 1992",
+    reference="",
     impl=build,
 )

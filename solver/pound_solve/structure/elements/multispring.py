@@ -27,7 +27,7 @@ import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import Law
-from pound_solve.laws.hysteresis.slackness import RULE
+from pound_solve.laws.hysteresis.bilinear_slack import RULE
 from pound_solve.numerics.types import Array
 from pound_solve.structure.dofs import Dof
 from pound_solve.structure.elements.base import (

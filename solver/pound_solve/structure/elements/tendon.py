@@ -15,7 +15,7 @@ import math
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import Law
-from pound_solve.laws.hysteresis.slackness import RULE
+from pound_solve.laws.hysteresis.bilinear_slack import RULE
 from pound_solve.structure.elements.base import ElementContext, ElementError, LawSpring, Parts, direction
 
 FAR = 1e3  #: strain that is never reached

@@ -15,6 +15,7 @@ def rows(run: RunRecord) -> list[Row]:
     slaved = sum(len(set(n.slaved) - set(n.fixed)) for n in nodes)
     internal = sum(d >= 3 for _, d in structure.dofs.free)
     contacts = sum(x.role.collides for x in structure.laws)
+    dampers = sum(x.role.damping_energy for x in structure.laws)
     counts = {
         "nodes": len(nodes),
         "elements": len(structure.model.elements),
@@ -24,7 +25,8 @@ def rows(run: RunRecord) -> list[Row]:
         "less slaved": slaved,
         "plus internal of elements (hinges)": internal,
         "unknowns before reduction": structure.n_free,
-        "hysteretic components": len(structure.laws) - contacts,
+        "hysteretic components": len(structure.laws) - contacts - dampers,
+        **({"dampers with a law": dampers} if dampers else {}),
         "contacts": contacts,
     }
     return [(item, str(count)) for item, count in counts.items()]

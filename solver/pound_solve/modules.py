@@ -1,0 +1,15 @@
+"""The modules of a package, found by their files: what is added needs no list."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType
+
+
+def modules_below(package: ModuleType) -> list[str]:
+    """Dotted names of all modules in a package and in the folders below it, by name; none is imported."""
+    out = []
+    for folder in map(Path, package.__path__):
+        for path in folder.rglob("[!_]*.py"):
+            out.append(".".join((package.__name__, *path.relative_to(folder).with_suffix("").parts)))
+    return sorted(out)
