@@ -56,8 +56,10 @@ def expand_inputs(series: Series, coefs: Array, begin: float, h: float) -> None:
 
 
 def expand_deformations(laws: Laws, series: Series, k: int, top: int) -> None:
-    """Coefficients `k` of the deformations; the inputs have `top` of them."""
-    for i in range(len(laws.rule)):
+    """Coefficients `k` of the deformations of laws between unknowns with mass; the inputs have `top` of
+    them.
+    """
+    for i in series.massless.other_laws:
         series.deformation[i, k] = deformation(laws, series, k, top, i)
 
 

@@ -25,7 +25,7 @@ from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.series.state import Massless, Series
 from pound_solve.numerics import ldl
-from pound_solve.numerics.ldl import factor, solve
+from pound_solve.numerics.ldl import factor
 from pound_solve.numerics.matrices import Matrix, at, by_rows, diagonal, entries, used_rows, weighted
 from pound_solve.numerics.types import Array
 
@@ -67,6 +67,7 @@ def allocate(
         stiffness=sparse_rows(stiffness[unknown]),
         damping=sparse_rows(damping[unknown]),
         laws=laws,
+        other_laws=np.setdiff1d(np.arange(law_rows.shape[0]), laws),
         rows=rows,
         pattern=pattern,
         column=column,
@@ -75,6 +76,7 @@ def allocate(
         pair_places=places,
         pair_values=values,
         damped=np.zeros(len(first), bool),
+        any_damped=np.zeros(1, bool),
         factors=np.zeros((2, len(pattern.li))),
         pivots=np.ones((2, len(first))),
         matrix=np.zeros(len(column)),
@@ -105,8 +107,10 @@ def factorise(laws: Laws, held: Massless) -> int:
         dashpots between such unknowns alone, by C.
     """
     form(laws, held, DAMPING)
+    held.any_damped[0] = False
     for i in range(len(held.unknown)):
         held.damped[i] = held.matrix[held.pattern.ap[i]] != 0.0
+        held.any_damped[0] = held.any_damped[0] or held.damped[i]
     for which in range(2):
         if which == STIFFNESS:
             form(laws, held, STIFFNESS)
@@ -120,21 +124,36 @@ def factorise(laws: Laws, held: Massless) -> int:
         for i in range(len(held.unknown)):
             if held.pivots[which, i] < 0.0:
                 return i
+        for i in range(len(held.unknown)):
+            held.pivots[which, i] = 1.0 / held.pivots[which, i]
     return -1
 
 
-def balance(linear: LinearSystem, series: Series, k: int, top: int, order: int) -> None:
-    """Loads less forces of K at the coefficients `k`, on the unknowns of an order; zero on the others."""
-    held = series.massless
-    for n in range(len(held.unknown)):
-        held.right_side[n] = 0.0
-        if held.damped[n] == (order == 1):
-            i = held.unknown[n]
-            load = linear.constant[i] if k == 0 else 0.0
-            if k < top:
-                for j in range(series.inputs.shape[1]):
-                    load += linear.inputs[j, i] * series.inputs[k, j]
-            held.right_side[n] = load - along(held.stiffness, n, series.motion[k])
+def solve_order(held: Massless, which: int) -> None:
+    """Solve in place for the unknowns of one order; the right sides of the others do not matter."""
+    s, l, d, x = held.pattern, held.factors[which], held.pivots[which], held.right_side  # noqa: E741
+    n, damped = len(d), which == DAMPING
+    for j in range(n):
+        if held.damped[j] == damped:
+            t = x[j]
+            for y in range(s.lp[j], s.lp[j + 1]):
+                x[s.li[y]] -= l[y] * t
+    for j in range(n - 1, -1, -1):
+        if held.damped[j] == damped:
+            t = x[j] * d[j]
+            for y in range(s.lp[j], s.lp[j + 1]):
+                t -= l[y] * x[s.li[y]]
+            x[j] = t
+
+
+def balance(linear: LinearSystem, series: Series, k: int, top: int, n: int) -> float:
+    """Load less the forces of K at the coefficients `k`, on an unknown without mass."""
+    i = series.massless.unknown[n]
+    load: float = linear.constant[i] if k == 0 else 0.0
+    if k < top:
+        for j in range(series.inputs.shape[1]):
+            load += linear.inputs[j, i] * series.inputs[k, j]
+    return load - along(series.massless.stiffness, n, series.motion[k])
 
 
 def deformation(laws: Laws, series: Series, k: int, top: int, i: int) -> float:
@@ -146,47 +165,57 @@ def deformation(laws: Laws, series: Series, k: int, top: int, i: int) -> float:
     return d
 
 
+def add_damped(linear: LinearSystem, laws: Laws, series: Series, k: int, h: float, top: int) -> None:
+    """Add the unknowns of order one to the coefficients `k` > 0."""
+    held, c, x = series.massless, series.motion, series.massless.right_side
+    for n in range(len(x)):
+        if held.damped[n]:
+            x[n] = balance(linear, series, k - 1, top, n) - k / h * along(held.damping, n, c[k])
+    for n in range(len(held.laws)):
+        i = held.laws[n]
+        force = laws.stiffness[i] * series.deformation[i, k - 1]
+        if k == 1:
+            force += laws.offset[i]
+        if laws.damping[i] != 0.0:
+            force += k / h * laws.damping[i] * deformation(laws, series, k, top, i)
+        spread(held.rows, n, -force, x)
+    solve_order(held, DAMPING)
+    for n in range(len(x)):
+        if held.damped[n]:
+            c[k, held.unknown[n]] = x[n] * (h / k)
+
+
 def add_massless(
     linear: LinearSystem, laws: Laws, step: Step, series: Series, k: int, h: float, top: int
 ) -> None:
-    """Add the unknowns without mass to the coefficients `k` (see the module's head)."""
-    held, c = series.massless, series.motion
-    for n in range(len(held.unknown)):
+    """Add the unknowns without mass to the coefficients `k` (see the module's head), and the deformations of
+    the laws that hold them.
+    """
+    held, c, x = series.massless, series.motion, series.massless.right_side
+    for n in range(len(x)):
         i = held.unknown[n]
         c[k, i] = step.now.displacement[i] if k == 0 and held.damped[n] else 0.0
-    if k > 0:
-        balance(linear, series, k - 1, top, 1)
-        for n in range(len(held.laws)):
-            i = held.laws[n]
-            force = laws.stiffness[i] * series.deformation[i, k - 1]
-            if k == 1:
-                force += laws.offset[i]
-            if laws.damping[i] != 0.0:
-                force += k / h * laws.damping[i] * deformation(laws, series, k, top, i)
-            spread(held.rows, n, -force, held.right_side)
-        for n in range(len(held.unknown)):
-            if held.damped[n]:
-                held.right_side[n] -= k / h * along(held.damping, n, c[k])
-            else:
-                held.right_side[n] = 0.0
-        solve(held.pattern, held.factors[DAMPING], held.pivots[DAMPING], held.right_side)
-        for n in range(len(held.unknown)):
-            if held.damped[n]:
-                c[k, held.unknown[n]] = held.right_side[n] * h / k
-    balance(linear, series, k, top, 0)
+    if k > 0 and held.any_damped[0]:
+        add_damped(linear, laws, series, k, h, top)
+    for n in range(len(x)):
+        if not held.damped[n]:
+            x[n] = balance(linear, series, k, top, n)
     for n in range(len(held.laws)):
         i = held.laws[n]
-        force = laws.stiffness[i] * deformation(laws, series, k, top, i)
+        d = deformation(laws, series, k, top, i)
+        series.deformation[i, k] = d
+        force = laws.stiffness[i] * d
         if k == 0:
             force += laws.offset[i]
-        spread(held.rows, n, -force, held.right_side)
-    for n in range(len(held.unknown)):
-        if held.damped[n]:
-            held.right_side[n] = 0.0
-    solve(held.pattern, held.factors[STIFFNESS], held.pivots[STIFFNESS], held.right_side)
-    for n in range(len(held.unknown)):
+        spread(held.rows, n, -force, x)
+    solve_order(held, STIFFNESS)
+    for n in range(len(x)):
         if not held.damped[n]:
-            c[k, held.unknown[n]] = held.right_side[n]
+            c[k, held.unknown[n]] = x[n]
+        else:
+            x[n] = 0.0
+    for n in range(len(held.laws)):
+        series.deformation[held.laws[n], k] += along(held.rows, n, x)
 
 
 def violated(laws: Laws, held: Massless) -> tuple[int, int]:

@@ -27,8 +27,8 @@ class Massless(NamedTuple):
         Their places in the order of elimination.
     stiffness, damping : Rows
         Their rows of K and C over all unknowns.
-    laws : ndarray, shape (n_holding,)
-        The laws that hold one of them, ascending.
+    laws, other_laws : ndarray, shapes (n_holding,), (n_laws - n_holding,)
+        The laws that hold one of them, and the others, ascending.
     rows : Rows
         The deformations of these over the unknowns without mass.
     pattern : Pattern
@@ -40,9 +40,11 @@ class Massless(NamedTuple):
         Where each of the laws adds to it.
     damped : ndarray, shape (n_massless,)
         Whether a dashpot resists an unknown on the present branches: its order is one, else zero.
+    any_damped : ndarray, shape (1,)
     factors : ndarray, shape (2, n_entries of L)
         Rows `DAMPING` (of order one, ones for the others), `STIFFNESS` (of order zero, likewise).
     pivots : ndarray, shape (2, n_massless)
+        Their inverses.
     matrix : ndarray, shape (n_entries,)
         Scratch, as the others.
     row, right_side : ndarray, shape (n_massless,)
@@ -54,6 +56,7 @@ class Massless(NamedTuple):
     stiffness: Rows
     damping: Rows
     laws: Index
+    other_laws: Index
     rows: Rows
     pattern: Pattern
     column: Index
@@ -62,6 +65,7 @@ class Massless(NamedTuple):
     pair_places: Place
     pair_values: Array
     damped: Flags
+    any_damped: Flags
     factors: Array
     pivots: Array
     matrix: Array
