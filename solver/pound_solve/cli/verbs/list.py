@@ -14,7 +14,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "family",
         nargs="?",
-        help="section, element, hysteresis, contact, damper, damping, motion, force, record, analysis or method",
+        help="section, element, hysteresis, contact, damper, damping, motion, force, record, analysis or "
+        "method",
     )
     parser.add_argument("name", nargs="?", help="one member: its items")
 
