@@ -47,13 +47,14 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.tracker import Extreme, Peaks
 from pound_solve.numerics import jit
-from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.reduction import Decision, ReducedSystem
 
 # EXACT before any steps
 FIRST_BUDGET = 1.0  #: what it may cost: loading the kernels of steps costs as much
 FIRST_CHECK = 0.3  #: share of that after which its progress is checked
+#: the same as a share of what TAYLOR would cost, if that is less, but not less than the other
+TRIAL_SHARE, LEAST_TRIAL = 0.25, 0.05
 EXPECTED_DECOMPOSITIONS = 12  #: of all unknowns together, that a run is assumed to need
 #: decompositions that EXACT may make within that budget (where combinations of stiffnesses do not return,
 #: more will come), and laws from which on it is assumed to need more (combinations seldom return); both for
@@ -62,7 +63,7 @@ MAX_DECOMPOSITIONS, MAX_LAWS, REFERENCE_TOL = 40, 12, 1e-3
 # EXACT and TAYLOR before a run with steps
 LATER_BUDGET = 4.0  #: times the cost of that run, where shorter steps are to come
 LATER_CHECK = 0.1  #: share of the budget after which the progress of EXACT is checked
-LOADING = 0.1  #: cost up to which TAYLOR is taken before any steps: loading their kernels
+SERIES_FIRST = 1.0  #: cost up to which TAYLOR is taken before any steps: it has no error to be estimated
 # runs with steps
 MAX_STEPS = 50_000_000  #: of one run
 MAX_RETRY_COST = 20.0  #: of a run that follows one that stopped
@@ -119,7 +120,7 @@ class Replay:
 
 def has_series(system: ReducedSystem) -> bool:
     """Return whether TAYLOR is applicable."""
-    return not not_linear(system) and not massless(system.mass).any() and jit.available()
+    return not not_linear(system) and jit.available()
 
 
 def cost_of_radian(system: ReducedSystem) -> float:
@@ -171,7 +172,7 @@ class ExactTrial:
         limits = {
             "DECOMPOSITIONS": self.ease * MAX_DECOMPOSITIONS,
             "PER_RADIAN": cost_of_radian(self.system),
-            "TRIAL": FIRST_CHECK * FIRST_BUDGET,
+            "TRIAL": min(FIRST_CHECK * FIRST_BUDGET, max(LEAST_TRIAL, TRIAL_SHARE * other)),
         }
         return self.run(FIRST_BUDGET, limits)
 
@@ -370,7 +371,7 @@ def to_tolerance(
     """
     steps = StepRefinement(system, start, monitored, recorder, options["TOL"])
     while True:
-        if series <= max(LOADING, steps.cost_ahead()):
+        if series <= max(SERIES_FIRST, steps.cost_ahead()):
             from pound_solve.integrate.series import taylor  # likewise
 
             system.decisions.append(Decision("method", "TAYLOR", LINEAR))

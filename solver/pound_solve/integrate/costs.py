@@ -6,7 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.numerics.matrices import diagonal, weighted
+from pound_solve.numerics.matrices import Factor, Matrix, diagonal, weighted
+from pound_solve.numerics.modes import massless
 from pound_solve.structure.reduction import ReducedSystem
 
 WINDOW = 1.3e-3  #: of EXACT: a window of dense output
@@ -16,9 +17,10 @@ DECOMPOSITION = 8e-4  #: a modal decomposition
 PRODUCTS = 1.5e-6  #: matrix products of a decomposition, over the square of its unknowns
 MODES = 8e-9  #: modes of a decomposition, over the cube of its unknowns
 STEP, STEP_UNKNOWN = 3e-7, 2.5e-8  #: a compiled step of NEWMARK, and each of its unknowns, twice for a law
-TAYLOR_STEP, TAYLOR_UNKNOWN = 9e-6, 5.5e-8  #: a step of TAYLOR, and each of its unknowns
+TAYLOR_STEP, TAYLOR_UNKNOWN = 9e-6, 5.5e-8  #: a step of TAYLOR, and each of its unknowns and laws
 TAYLOR_RADIANS = 5.0  #: of the fastest mode in a step of TAYLOR
 EVENT_STEPS = 10  #: steps that a located event costs as much as
+POWERS = 30  #: iterations to the fastest decay
 INTERPRETED = 100  #: cost of an interpreted step over that of a compiled one
 RADIAN_STEPS = 5  #: steps of NEWMARK that follow the fastest mode through a radian
 
@@ -35,23 +37,46 @@ def of_step(system: ReducedSystem) -> float:
 
 def of_series_step(system: ReducedSystem) -> float:
     """Return the cost of a compiled step of TAYLOR."""
-    return TAYLOR_STEP + TAYLOR_UNKNOWN * system.size
+    return TAYLOR_STEP + TAYLOR_UNKNOWN * (system.size + len(system.structure.laws))
 
 
 def fastest_rate(system: ReducedSystem) -> float:
-    """Radians that steps of TAYLOR follow at most [1/T]: of the fastest mode with all springs elastic
-    and all contacts open (they are closed for moments only), or of the fastest decay.
+    r"""Radians that steps of TAYLOR follow at most [1/T]: of the fastest mode with all springs elastic and
+    all contacts open (they are closed for moments only), or of the fastest decay.
 
-    By the row sums of ``M^-1/2 A M^-1/2``, which bound its eigenvalues (Gershgorin).
+    By the row sums of ``M^-1/2 A M^-1/2``, which bound its eigenvalues (Gershgorin).  Unknowns without mass
+    that dashpots resist decay at :math:`\lambda \le` the largest eigenvalue of :math:`K x = \lambda C x`.
     """
-    stiffest = [0.0 if s.role.collides else s.facts.get("k", s.k0) for s in system.structure.laws]
-    root = 1.0 / np.sqrt(diagonal(system.mass))
+    laws = system.structure.laws
+    elastic = np.array([0.0 if s.role.collides else s.facts.get("k", s.k0) for s in laws], float)
+    stiffness = system.stiffness + weighted(system.law_rows, elastic)
+    damping = system.damping + weighted(system.law_rows, [s.beta * k for s, k in zip(laws, elastic)])
+    light = massless(system.mass)
+    heavy = np.flatnonzero(~light)
+    root = 1.0 / np.sqrt(diagonal(system.mass)[heavy])
     omega2, decay = (
-        float((root * (abs(a) @ root)).max(initial=0.0))
-        for a in (system.stiffness + weighted(system.law_rows, stiffest), system.damping)
+        float((root * (abs(a[np.ix_(heavy, heavy)]) @ root)).max(initial=0.0)) for a in (stiffness, damping)
     )
+    damped = np.flatnonzero(light & (diagonal(damping) > 0.0))
+    if len(damped):
+        grid = np.ix_(damped, damped)
+        decay = max(decay, fastest_decay(stiffness[grid], damping[grid]))
     fastest: float = max(omega2**0.5, decay)
     return fastest
+
+
+def fastest_decay(k: Matrix, c: Matrix) -> float:
+    """Largest eigenvalue of ``K x = lambda C x``, by power iteration; infinite where C is singular."""
+    try:
+        factor = Factor(c)
+    except np.linalg.LinAlgError:
+        return np.inf
+    x, found = np.cos(np.arange(c.shape[0]) ** 2.0), 0.0
+    for _ in range(POWERS):
+        x /= np.linalg.norm(x)
+        x = factor.solve(k @ x)
+        found = max(found, float(np.linalg.norm(x)))
+    return found
 
 
 def of_series_radian(system: ReducedSystem) -> float:

@@ -15,9 +15,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.products import multiply
+from pound_solve.integrate.kernels.products import multiply, spread
 from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Step
-from pound_solve.integrate.series.massless import add_massless, deformation
+from pound_solve.integrate.series.massless import add_massless
+from pound_solve.integrate.series.springs import add_product, deformation
 from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.numerics.jit import flat, loose
 from pound_solve.numerics.ldl import solve
@@ -55,12 +56,11 @@ def expand_inputs(series: Series, coefs: Array, begin: float, h: float) -> None:
             scale *= h
 
 
-def expand_deformations(laws: Laws, series: Series, k: int, top: int) -> None:
-    """Coefficients `k` of the deformations of laws between unknowns with mass; the inputs have `top` of
-    them.
-    """
-    for i in series.massless.other_laws:
-        series.deformation[i, k] = deformation(laws, series, k, top, i)
+def expand_deformations(laws: Laws, series: Series, terms: int, top: int) -> None:
+    """Coefficients of the deformations up to `terms`; the inputs have `top` of them."""
+    for k in range(terms + 1):
+        for i in range(len(laws.rule)):
+            series.deformation[i, k] = deformation(laws, series, k, top, i)
 
 
 def kinetic_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> float:
@@ -85,28 +85,26 @@ def next_term(
     """Coefficients `k` + 2 of the unknowns from the two before (see the module's head)."""
     c, new = series.motion, series.motion[k + 2]
     n = len(new)
+    springs = series.springs
     multiply(linear.stiffness, c[k], series.stiffness_product)
+    add_product(springs, c[k], series.stiffness_product)
     multiply(linear.damping, c[k + 1], series.damping_product)
     rate = h * (k + 1)
     for i in range(n):
         new[i] = -h * h * series.stiffness_product[i] - rate * series.damping_product[i]
     if k == 0:
         for i in range(n):
-            new[i] += h * h * linear.constant[i]
+            new[i] += h * h * springs.constant[i]
     if k < top:
         for j in range(series.inputs.shape[1]):
             push = h * h * series.inputs[k, j]
             if push != 0.0:
                 for i in range(n):
-                    new[i] += linear.inputs[j, i] * push
-    for i in range(len(laws.rule)):
-        d = series.deformation
-        force = h * h * laws.stiffness[i] * d[i, k] + rate * laws.damping[i] * d[i, k + 1]
-        if k == 0:
-            force += h * h * laws.offset[i]
-        if force != 0.0:
-            for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
-                new[laws.rows.columns[q]] -= laws.rows.values[q] * force
+                    new[i] += springs.inputs[j, i] * push
+    for q in range(springs.n_dashpots[0]):
+        law = springs.dashpots[q]
+        force = rate * laws.damping[law] * deformation(laws, series, k + 1, top, law)
+        spread(laws.rows, law, -force, new)
     below = 1.0 / ((k + 1) * (k + 2))
     if linear.diagonal:
         for i in range(n):
@@ -116,8 +114,7 @@ def next_term(
             new[i] *= below
         solve(linear.pattern, step.factors[MASS], step.pivots[MASS], new)
     if len(series.massless.unknown):
-        add_massless(linear, laws, step, series, k + 2, h, top)
-    expand_deformations(laws, series, k + 2, top)
+        add_massless(laws, step, series, k + 2, h, top)
 
 
 def begin_series(
@@ -130,8 +127,7 @@ def begin_series(
         c[0, i], c[1, i] = now.displacement[i], h * now.velocity[i]
     for k in range(2):
         if len(series.massless.unknown):
-            add_massless(linear, laws, step, series, k, h, top)
-        expand_deformations(laws, series, k, top)
+            add_massless(laws, step, series, k, h, top)
 
 
 @flat
@@ -169,6 +165,7 @@ def expand(
             break
     if not own + last < np.inf:
         return terms, np.nan
+    expand_deformations(laws, series, terms, top)
     end = GROW
     if own > 0.0:
         end = min(end, (SMALL * SMALL * most / own) ** (0.5 / terms))

@@ -40,6 +40,7 @@ from pound_solve.integrate.series.expansion import (
     next_term,
 )
 from pound_solve.integrate.series.massless import factorise, violated
+from pound_solve.integrate.series.springs import add_up, deformation
 from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.integrate.series.tracking import event_of, first_event, track_laws, track_outputs
 from pound_solve.laws.functions import Tables
@@ -202,6 +203,7 @@ def settle(
     held, now = series.massless, step.now
     for _ in range(50 + 4 * len(laws.rule)):
         if run.stale:
+            add_up(linear, laws, series.springs)
             run.fault = factorise(laws, held)
             if run.fault >= 0:
                 run.fault = held.unknown[run.fault]
@@ -212,7 +214,8 @@ def settle(
         for i in held.unknown:
             now.displacement[i], now.velocity[i] = series.motion[0, i], series.motion[1, i]
         for i in held.laws:
-            laws.now.deformation[i], laws.now.rate[i] = series.deformation[i, 0], series.deformation[i, 1]
+            laws.now.deformation[i] = deformation(laws, series, 0, len(coefs), i)
+            laws.now.rate[i] = deformation(laws, series, 1, len(coefs), i)
         law, event = violated(laws, held)
         if law < 0:
             return DONE
@@ -256,6 +259,9 @@ def stride(
         h = step_length(lengths, t, left)
         if h == 0.0:
             return SHORT
+        if run.stale:  # with unknowns without mass `settle` has done it
+            add_up(linear, laws, series.springs)
+            run.stale = 0
         terms, fit = expand(linear, laws, step, series, lengths, coefs, t - begin, h)
         if not fit >= CUT:  # what is known of the motion from terms far too large misleads
             lengths.next = h * fit if fit > 1.0 / 16.0 else h / 16.0

@@ -23,6 +23,7 @@ from pound_solve.integrate.kernels.allocation import Layout, coupled_pairs, plac
 from pound_solve.integrate.kernels.products import along, spread
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.series.springs import deformation, load
 from pound_solve.integrate.series.state import Massless, Series
 from pound_solve.numerics import ldl
 from pound_solve.numerics.ldl import factor
@@ -59,7 +60,9 @@ def allocate(
     position = {(int(i), int(j)): q for q, (i, j) in enumerate(zip(pattern.ai, column))}
     rows = sparse_rows(touched[:, order])
     own = Layout(order, place, pattern, column, np.ones(len(laws), bool), position)
-    pointers, places, values = places_in_pattern(rows, own)
+    pointers, pairs, values = places_in_pattern(rows, own)
+    places = np.full(law_rows.shape[0], -1)
+    places[laws] = np.arange(len(laws))
     lower = pattern.ai.astype(np.int64)
     springs = weighted(touched[:, order], elastic[laws])
     return Massless(
@@ -67,13 +70,13 @@ def allocate(
         stiffness=sparse_rows(stiffness[unknown]),
         damping=sparse_rows(damping[unknown]),
         laws=laws,
-        other_laws=np.setdiff1d(np.arange(law_rows.shape[0]), laws),
+        held=places,
         rows=rows,
         pattern=pattern,
         column=column,
         on_pattern=np.array([at(a[np.ix_(order, order)], lower, column) for a in among]),
         pair_pointers=pointers,
-        pair_places=places,
+        pair_places=pairs,
         pair_values=values,
         damped=np.zeros(len(first), bool),
         any_damped=np.zeros(1, bool),
@@ -146,76 +149,49 @@ def solve_order(held: Massless, which: int) -> None:
             x[j] = t
 
 
-def balance(linear: LinearSystem, series: Series, k: int, top: int, n: int) -> float:
-    """Load less the forces of K at the coefficients `k`, on an unknown without mass."""
-    i = series.massless.unknown[n]
-    load: float = linear.constant[i] if k == 0 else 0.0
-    if k < top:
-        for j in range(series.inputs.shape[1]):
-            load += linear.inputs[j, i] * series.inputs[k, j]
-    return load - along(series.massless.stiffness, n, series.motion[k])
+def balance(series: Series, k: int, top: int, n: int) -> float:
+    """Load less the forces of K and of the laws' springs at the coefficients `k`, on an unknown without
+    mass.
+    """
+    i, springs = series.massless.unknown[n], series.springs
+    left = load(springs, series, k, top, i) - along(series.massless.stiffness, n, series.motion[k])
+    if springs.number[i] >= 0:
+        left -= along(springs.rows, springs.number[i], series.motion[k])
+    return left
 
 
-def deformation(laws: Laws, series: Series, k: int, top: int, i: int) -> float:
-    """Coefficient `k` of the deformation of law `i`; the inputs have `top` of them."""
-    d = along(laws.rows, i, series.motion[k])
-    if k < top:
-        for j in range(series.inputs.shape[1]):
-            d += laws.inputs[i, j] * series.inputs[k, j]
-    return d
-
-
-def add_damped(linear: LinearSystem, laws: Laws, series: Series, k: int, h: float, top: int) -> None:
+def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
     """Add the unknowns of order one to the coefficients `k` > 0."""
     held, c, x = series.massless, series.motion, series.massless.right_side
     for n in range(len(x)):
         if held.damped[n]:
-            x[n] = balance(linear, series, k - 1, top, n) - k / h * along(held.damping, n, c[k])
-    for n in range(len(held.laws)):
-        i = held.laws[n]
-        force = laws.stiffness[i] * series.deformation[i, k - 1]
-        if k == 1:
-            force += laws.offset[i]
-        if laws.damping[i] != 0.0:
-            force += k / h * laws.damping[i] * deformation(laws, series, k, top, i)
-        spread(held.rows, n, -force, x)
+            x[n] = balance(series, k - 1, top, n) - k / h * along(held.damping, n, c[k])
+    for q in range(series.springs.n_dashpots[0]):
+        i = series.springs.dashpots[q]
+        if held.held[i] >= 0:
+            force = k / h * laws.damping[i] * deformation(laws, series, k, top, i)
+            spread(held.rows, held.held[i], -force, x)
     solve_order(held, DAMPING)
     for n in range(len(x)):
         if held.damped[n]:
             c[k, held.unknown[n]] = x[n] * (h / k)
 
 
-def add_massless(
-    linear: LinearSystem, laws: Laws, step: Step, series: Series, k: int, h: float, top: int
-) -> None:
-    """Add the unknowns without mass to the coefficients `k` (see the module's head), and the deformations of
-    the laws that hold them.
-    """
+def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, top: int) -> None:
+    """Add the unknowns without mass to the coefficients `k` (see the module's head)."""
     held, c, x = series.massless, series.motion, series.massless.right_side
     for n in range(len(x)):
         i = held.unknown[n]
         c[k, i] = step.now.displacement[i] if k == 0 and held.damped[n] else 0.0
     if k > 0 and held.any_damped[0]:
-        add_damped(linear, laws, series, k, h, top)
+        add_damped(laws, series, k, h, top)
     for n in range(len(x)):
         if not held.damped[n]:
-            x[n] = balance(linear, series, k, top, n)
-    for n in range(len(held.laws)):
-        i = held.laws[n]
-        d = deformation(laws, series, k, top, i)
-        series.deformation[i, k] = d
-        force = laws.stiffness[i] * d
-        if k == 0:
-            force += laws.offset[i]
-        spread(held.rows, n, -force, x)
+            x[n] = balance(series, k, top, n)
     solve_order(held, STIFFNESS)
     for n in range(len(x)):
         if not held.damped[n]:
             c[k, held.unknown[n]] = x[n]
-        else:
-            x[n] = 0.0
-    for n in range(len(held.laws)):
-        series.deformation[held.laws[n], k] += along(held.rows, n, x)
 
 
 def violated(laws: Laws, held: Massless) -> tuple[int, int]:

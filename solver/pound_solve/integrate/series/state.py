@@ -18,6 +18,40 @@ class Lengths(Protocol):
     carried: int  #: terms of the present series that carry energy
 
 
+class Springs(NamedTuple):
+    """The laws on their present branches, added up over the unknowns (see `springs`).
+
+    Attributes
+    ----------
+    row : ndarray, shape (n_rows,)
+        Unknowns that laws hold.
+    number : ndarray, shape (n,)
+        Place of an unknown in `row`, -1 for others.
+    rows : Rows
+        Sum of ``k b b^T`` in these rows.
+    pair_pointers, pair_places, pair_values : ndarray
+        Where the product ``b b^T`` of each law adds to it.
+    constant : ndarray, shape (n,)
+        Constant loads less the constant forces of the laws.
+    inputs : ndarray, shape (n_inputs, n)
+        Loads of unit inputs, less the forces of laws at supports that these move.
+    dashpots : ndarray, shape (n_laws,)
+        Laws with a dashpot, the first `n_dashpots`.
+    n_dashpots : ndarray, shape (1,)
+    """
+
+    row: Place
+    number: Index
+    rows: Rows
+    pair_pointers: Index
+    pair_places: Place
+    pair_values: Array
+    constant: Array
+    inputs: Array
+    dashpots: Index
+    n_dashpots: Index
+
+
 class Massless(NamedTuple):
     """The unknowns without mass, numbered among themselves, and the laws that hold them.
 
@@ -27,8 +61,10 @@ class Massless(NamedTuple):
         Their places in the order of elimination.
     stiffness, damping : Rows
         Their rows of K and C over all unknowns.
-    laws, other_laws : ndarray, shapes (n_holding,), (n_laws - n_holding,)
-        The laws that hold one of them, and the others, ascending.
+    laws : ndarray, shape (n_holding,)
+        The laws that hold one of them, ascending.
+    held : ndarray, shape (n_laws,)
+        Place of a law in `laws`, -1 for others.
     rows : Rows
         The deformations of these over the unknowns without mass.
     pattern : Pattern
@@ -56,7 +92,7 @@ class Massless(NamedTuple):
     stiffness: Rows
     damping: Rows
     laws: Index
-    other_laws: Index
+    held: Index
     rows: Rows
     pattern: Pattern
     column: Index
@@ -92,6 +128,7 @@ class Series(NamedTuple):
         Of a diagonal mass.
     gauss : ndarray, shape (TERMS // CHECK + 1, 2, most points)
         Weights and points on (0, 1), two more than half of the terms that carry energy.
+    springs : Springs
     massless : Massless
     """
 
@@ -103,4 +140,5 @@ class Series(NamedTuple):
     polynomial: Array
     inverse: Array
     gauss: Array
+    springs: Springs
     massless: Massless

@@ -44,7 +44,7 @@ from pound_solve.integrate.protocol import (
     refuse_rigid,
     rounding_check,
 )
-from pound_solve.integrate.series import expansion, march, massless, state
+from pound_solve.integrate.series import expansion, march, massless, springs, state
 from pound_solve.integrate.series.massless import STIFFNESS
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.numerics.record import record
@@ -94,6 +94,7 @@ class Taylor(KernelEngine):
             polynomial=np.zeros(polynomial_roots.room(expansion.TERMS)),
             inverse=np.divide(1.0, m, out=np.zeros(system.size), where=m > 0.0),
             gauss=gauss,
+            springs=springs.allocate(system.size, self.laws.rows, self.linear.inputs),
             massless=self.massless,
         )
         self.lengths: state.Lengths = record(state.Lengths)

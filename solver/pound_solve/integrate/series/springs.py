@@ -1,0 +1,103 @@
+"""The laws on their present branches, added up over the unknowns: kernels, and the arrays they work on.
+
+Between two events a law is a spring, a dashpot and a constant force.  Their sums are formed once after
+every event, so that a term of the series costs one product instead of a walk over all laws.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.state import Laws, LinearSystem, Rows
+from pound_solve.integrate.series.state import Series, Springs
+from pound_solve.numerics.types import Array
+
+
+def allocate(n: int, rows: Rows, inputs: Array) -> Springs:
+    """Lay out the products ``b b^T`` of the laws.
+
+    Parameters
+    ----------
+    n : int
+        Number of unknowns.
+    rows : Rows
+        Deformations of the laws over them.
+    inputs : ndarray, shape (n_inputs, n)
+        Loads of unit inputs.
+    """
+    ends = rows.pointers.tolist()
+    touched = [(rows.columns[a:b].tolist(), rows.values[a:b].tolist()) for a, b in pairwise(ends)]
+    pairs = sorted({(i, j) for columns, _ in touched for i in columns for j in columns})
+    place = {pair: q for q, pair in enumerate(pairs)}
+    row = sorted({i for i, _ in pairs})
+    first = np.searchsorted([i for i, _ in pairs], row)
+    number = np.full(n, -1)
+    number[row] = np.arange(len(row))
+    entries = [[(place[i, j], x * y) for i, x in zip(*law) for j, y in zip(*law)] for law in touched]
+    return Springs(
+        row=np.array(row, np.uint32),
+        number=number.astype(np.int64),
+        rows=Rows(
+            np.append(first, len(pairs)).astype(np.int64),
+            np.array([j for _, j in pairs], np.uint32),
+            np.zeros(len(pairs)),
+        ),
+        pair_pointers=np.concatenate([[0], np.cumsum([len(x) for x in entries])]).astype(np.int64),
+        pair_places=np.array([q for x in entries for q, _ in x], np.uint32),
+        pair_values=np.array([v for x in entries for _, v in x], float),
+        constant=np.zeros(n),
+        inputs=np.zeros_like(inputs),
+        dashpots=np.zeros(len(touched), np.int64),
+        n_dashpots=np.zeros(1, np.int64),
+    )
+
+
+def add_up(linear: LinearSystem, laws: Laws, springs: Springs) -> None:
+    """Add up the laws on their present branches."""
+    values, moved, n = springs.rows.values, springs.inputs, 0
+    for q in range(len(values)):
+        values[q] = 0.0
+    for i in range(len(springs.constant)):
+        springs.constant[i] = linear.constant[i]
+        for j in range(len(moved)):
+            moved[j, i] = linear.inputs[j, i]
+    for i in range(len(laws.rule)):
+        k, offset = laws.stiffness[i], laws.offset[i]
+        for q in range(springs.pair_pointers[i], springs.pair_pointers[i + 1]):
+            values[springs.pair_places[q]] += k * springs.pair_values[q]
+        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+            at, x = laws.rows.columns[q], laws.rows.values[q]
+            springs.constant[at] -= x * offset
+            for j in range(len(moved)):
+                moved[j, at] -= x * k * laws.inputs[i, j]
+        if laws.damping[i] != 0.0:
+            springs.dashpots[n] = i
+            n += 1
+    springs.n_dashpots[0] = n
+
+
+def add_product(springs: Springs, x: Array, out: Array) -> None:
+    """Add the forces of the springs at displacements `x`."""
+    for r in range(len(springs.row)):
+        out[springs.row[r]] += along(springs.rows, r, x)
+
+
+def load(springs: Springs, series: Series, k: int, top: int, i: int) -> float:
+    """Coefficient `k` of the load on an unknown less the constant forces of laws; the inputs have `top`."""
+    out: float = springs.constant[i] if k == 0 else 0.0
+    if k < top:
+        for j in range(series.inputs.shape[1]):
+            out += springs.inputs[j, i] * series.inputs[k, j]
+    return out
+
+
+def deformation(laws: Laws, series: Series, k: int, top: int, i: int) -> float:
+    """Coefficient `k` of the deformation of law `i`; the inputs have `top` of them."""
+    d = along(laws.rows, i, series.motion[k])
+    if k < top:
+        for j in range(series.inputs.shape[1]):
+            d += laws.inputs[i, j] * series.inputs[k, j]
+    return d
