@@ -4,9 +4,14 @@ joints that nothing holds.
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from pound_solve.integrate.events.functions import EventFunctions
+from pound_solve.integrate.events.protocol import LocatedEvent
+from pound_solve.laws.automaton import Branch, BranchKind, EventFunction
 from unit.test_taylor import HINGE, LOADS, SHAKEN, agree, frames
 from verification.cases import Ran, run_text
 
@@ -182,14 +187,34 @@ def test_a_law_that_another_makes_turn_back(method: str) -> None:
     """Where spring B yields, its node runs away with it, and a spring that was yielding has to unload at
     once: its rate changes its sign without passing through zero.
     """
-    r = run_text(SERIES, None, method)
-    assert (r.status, r.message) == ("done", "")
-    supports = np.array([r.u[:, r.nodes.index(n), 0] for n in (1, 3, 4)])
-    z = r.u[:, r.nodes.index(2), 0]
-    want = balanced(supports)
-    assert np.abs(z - want).max() < 1e-5 * np.abs(want).max()
-    assert r.check() < 1e-9
-    assert yields(r) >= 8
+    fine = run_text(SERIES, {"every": 0.0005}, method)
+    supports = np.array([fine.u[:, fine.nodes.index(n), 0] for n in (1, 3, 4)])
+    want = balanced(supports, 4)
+    for every, r in ((1, fine), (100, run_text(SERIES, None, method))):
+        assert (r.status, r.message) == ("done", "")
+        z = r.u[:, r.nodes.index(2), 0]
+        assert np.abs(z - want[::every]).max() < 1e-5 * np.abs(want).max()
+        assert r.check() < 1e-12
+        assert yields(r) == 5
+
+
+def test_an_event_function_above_zero_at_the_first_sample_is_overdue_if_it_depends_on_the_rate() -> None:
+    """Law 0 would unload where its rate is negative, law 1 where its deformation is above 2."""
+    unload, above = EventFunction(0.0, -1.0, 0.0), EventFunction(1.0, 0.0, -2.0)
+    kind = BranchKind.YIELDING
+    branches = [Branch("", kind, 1.0, 0.0, 0.0, (unload,)), Branch("", kind, 1.0, 0.0, 0.0, (above,))]
+    functions = EventFunctions(branches, {})
+
+    def found(rate: float, jumping: tuple[bool, bool]) -> LocatedEvent | None:
+        first = np.array([[[0.0, 0.1]], [[3.0, 3.0]]])
+        rates = np.array([[[rate, 1.0]], [[0.0, 0.0]]])
+        samples = SimpleNamespace(t=np.array([[0.0, 1.0]]), value=first, rate=rates, second=0.0 * rates)
+        return functions.violated(samples, np.ones((2, 2)), 1e-9, np.array(jumping))
+
+    assert found(-0.01, (True, True)) == LocatedEvent(0, 0, 0.0)
+    assert found(-0.01, (False, True)) is None
+    assert found(-1e-10, (True, True)) is None
+    assert found(0.01, (True, True)) is None
 
 
 # ---------------------------------------------------------------- joints that nothing holds
@@ -205,7 +230,9 @@ def test_dashpots_between_two_joints_without_mass_are_told() -> None:
 
 def test_a_joint_that_snaps_through_is_named() -> None:
     """Two springs in series, of which one softens more steeply than the other is stiff."""
-    deck = ZENER.replace("DRAG DASHPOT CX={c}", "STEEP SPRING KX=30 FX=2 RULE=BILINEAR R=-0.5")
+    deck = ZENER.replace("UX=1 VX=0.5", "VX=3").replace(
+        "DRAG DASHPOT CX={c}", "STEEP SPRING KX=30 FX=2 RULE=BILINEAR R=-0.5"
+    )
     r = run_text(deck.replace("DRAG", "STEEP"), None, "TAYLOR")
     assert r.message.startswith("A501 at t = "), r.message
     assert "node 3 ux has no mass, and its stiffness has become negative: it snaps through" in r.message
