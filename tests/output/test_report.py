@@ -118,7 +118,7 @@ def test_words_for_zero(report: str) -> None:
 
 
 def test_defaults_are_marked(report: str) -> None:
-    assert "A * marks a default value." in report
+    assert "An asterisk (*) marks a default value." in report
     assert re.search(r"gravity +9\.80665 m/s\^2 +\*  weights", report)
     assert not re.search(r"duration .*\*", report)
 

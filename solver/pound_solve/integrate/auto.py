@@ -10,8 +10,8 @@ estimate is conservative.
 
 The cost of TAYLOR is known in advance; that of EXACT depends on the events.  Where few laws change
 stiffness, and a handful of decompositions does not cost more than TAYLOR, EXACT starts with a small budget.
-If that does not suffice, TAYLOR is used where it costs no more than the NEWMARK runs to come; before each
-of these EXACT may cost as much as they do, if it would complete the run at its rate so far.
+If that does not suffice, TAYLOR is used where it costs little, or no more than the NEWMARK runs to come;
+before each of these EXACT may cost as much as they do, if it would complete the run at its rate so far.
 Costs are counted from windows, decompositions, steps and unknowns (:mod:`.costs`), not measured, so that a
 deck is always solved in the same way.
 
@@ -71,7 +71,7 @@ MAX_STALE_RUNS = 4  #: runs in a row that do not halve the error, after which sh
 SAFETY = 0.6  #: of the tolerance, that the next step aims at
 
 #: why no steps are taken
-LINEAR = "all laws are piecewise linear: no step is needed, and steps, with their loading, cost more"
+LINEAR = "all laws are piecewise linear, so no time step is needed; stepping would cost more"
 GIVEN_UP = ("the most that are tried", "nor nearer than with far fewer")  #: why no shorter steps are tried
 
 
@@ -224,7 +224,7 @@ def figures(system: ReducedSystem, peaks: Peaks, replay: Replay) -> tuple[Array,
 
 def stepped(system: ReducedSystem) -> Decision:
     """Return the decision that steps were taken."""
-    reason = not_linear(system) or "EXACT would cost more, for all its unknowns or changes of stiffness"
+    reason = not_linear(system) or "EXACT would cost more: too many unknowns or changes of stiffness"
     return Decision("method", "NEWMARK", f"{reason}; steps are shortened until the peaks converge")
 
 

@@ -8,7 +8,7 @@ from pound_solve.results.record import RunRecord
 
 SIGNS: Final = (
     "End forces act on the member along its own axes; axial tension and contact compression are positive, "
-    "moments of hinges where the member sags."
+    "and so is the moment of a hinge where the member sags."
 )
 
 

@@ -112,13 +112,17 @@ def _decisions(dofs: Sequence[Dof], condensed: Flags, kept: Flags) -> list[Decis
     """Lines of the report on the massless DOFs."""
     out = []
     if condensed.any():
-        subject = f"{int(condensed.sum())} massless degrees of freedom"
+        subject = _massless(int(condensed.sum()))
         out.append(Decision(subject, "condensed", "they follow the others statically, no error is made"))
     if kept.any():
-        subject = f"{int(kept.sum())} massless degrees of freedom"
+        subject = _massless(int(kept.sum()))
         why = "dashpots move them: " + labels([f for f, own in zip(dofs, kept) if own])
         out.append(Decision(subject, "kept", why))
     return out
+
+
+def _massless(count: int) -> str:
+    return f"{count} massless degree{'s' * (count != 1)} of freedom"
 
 
 def _condensable(k: Array, c: Array, applied: Array, light: Flags) -> Flags:

@@ -22,6 +22,8 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
+ROUNDING = 1e-12  #: share by which like impedances may differ
+
 
 @dataclass(frozen=True)
 class Diaphragm:
@@ -111,9 +113,11 @@ class Pair:
 
     @property
     def paper_holds(self) -> bool:
-        """Whether the bars part at the shorter period, as Eqs 7, 8 and 14 to 17 assume."""
+        """Whether the bars part at the shorter period, as Eqs 7, 8 and 14 to 17 assume; like bars, whose
+        impedances differ by rounding, do.
+        """
         one, two = self._ordered
-        return one.impedance <= two.impedance
+        return one.impedance <= two.impedance * (1.0 + ROUNDING)
 
     @property
     def alpha_lumped(self) -> tuple[float, float]:

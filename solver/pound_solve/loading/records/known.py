@@ -186,8 +186,8 @@ def _missing(name: str, record: Known | None, search_path: Sequence[Path]) -> Re
     if shipped := record or by_file:
         return RecordError("R401", message, f"{_EXTRA} brings it: {shipped.description}")
     names = {plain(key): key for key in KNOWN}
-    if close := difflib.get_close_matches(plain(Path(name).stem), names, n=1, cutoff=0.75):
-        return RecordError("R401", message, f"did you mean {names[close[0]]} ({_EXTRA})?")
+    if close := difflib.get_close_matches(plain(Path(name).stem), names, n=3, cutoff=0.75):
+        return RecordError("R401", message, f"did you mean {' or '.join(names[c] for c in close)}?")
     if source := next((where for word, where in _SOURCES.items() if word in plain(name)), None):
         return RecordError("R401", message, f"it is not shipped; see {source}")
     return RecordError(

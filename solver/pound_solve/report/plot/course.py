@@ -44,7 +44,7 @@ def energy(results: Results) -> Any:
     colours = ("#9dc3e6", "#c9b3e0", "#f2c48d", "#e39a8b", "#a9cf9f")
     axes.stackplot(t, *(by_name[p] for p in parts), labels=parts, colors=colours)
     there = sum(by_name[p][0] for p in parts)  # strain under gravity, motion of INITIAL
-    label = "input" if there == 0.0 else "at the start, and input"
+    label = "input" if there == 0.0 else "energy at the start plus input"
     axes.plot(t, there + by_name["input"], color="0.1", linewidth=1.2, label=label)
     axes.legend(fontsize=7, loc="upper left")
     return figure

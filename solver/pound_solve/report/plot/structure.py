@@ -172,7 +172,7 @@ def envelopes(results: Results) -> Any:
             axes.plot(low, height, color=style.COLOURS[1], linewidth=1, marker=".")
             axes.plot(high, height, color=style.BLUE, linewidth=1, marker=".")
         axes.axvline(0.0, color="0.3", linewidth=0.8)
-        axes.set_title("extremes of the nodes over the height, a line a column", fontsize=9)
+        axes.set_title("envelopes over the height, one line for each column", fontsize=9)
     return figure
 
 

@@ -121,7 +121,9 @@ def frequencies(card: Card, omega: Callable[[], Array]) -> Array:
         raise DampingError(f"the structure has {len(known)} modes only", "MODES")
     out = known[np.array(card["MODES"]) - 1]
     if not out.all():
-        raise DampingError("a mode of zero frequency cannot carry a damping ratio", "MODES")
+        raise DampingError(
+            "a mode of zero frequency cannot carry a damping ratio: is a support (FIX) missing?", "MODES"
+        )
     return np.asarray(out)
 
 
