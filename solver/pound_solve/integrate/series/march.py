@@ -47,6 +47,7 @@ from pound_solve.laws.functions import Tables
 from pound_solve.numerics.jit import flat
 from pound_solve.numerics.types import Array, Flags, Index
 
+SHRINK = 1.0 / 16.0  #: of the length of a step that is tried again, at least
 AHEAD = 1e-3  #: part of a step that laws are looked at for which may leave at the instant of another
 LOOKS = 2  #: instants of a step that envelopes of nodes and members see: some 2.5 radians apart
 CUT = 0.5  #: part of a step, as it was tried, that is taken at least
@@ -180,6 +181,21 @@ def change_branches(
     run.last_event = now
 
 
+def renew(linear: LinearSystem, laws: Laws, series: Series, run: Run) -> bool:
+    """Take over the branches of the laws after a change; False where they leave an unknown without mass
+    loose, which `run.fault` names.
+    """
+    held = series.massless
+    if run.stale:
+        add_up(linear, laws, series.springs)
+        fault = factorise(laws, held) if len(held.unknown) else -1
+        if fault >= 0:
+            run.fault = held.unknown[fault]
+            return False
+        run.stale = 0
+    return True
+
+
 def settle(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
     coefs: Array, begin: float, run: Run,
@@ -201,14 +217,11 @@ def settle(
     123-130.
     """
     held, now = series.massless, step.now
+    if len(held.unknown) == 0:
+        return DONE
     for _ in range(50 + 4 * len(laws.rule)):
-        if run.stale:
-            add_up(linear, laws, series.springs)
-            run.fault = factorise(laws, held)
-            if run.fault >= 0:
-                run.fault = held.unknown[run.fault]
-                return LOOSE
-            run.stale = 0
+        if not renew(linear, laws, series, run):
+            return LOOSE
         begin_series(linear, laws, step, series, coefs, begin, 1.0)
         next_term(linear, laws, step, series, 0, 1.0, len(coefs))
         for i in held.unknown:
@@ -238,6 +251,21 @@ def step_length(lengths: Lengths, t: float, left: float) -> float:
     return t + h - t if h < left else h  # the motion goes as far as the clock does, which is rounded
 
 
+def take(
+    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, series: Series, lengths: Lengths,
+    coefs: Array, begin: float, terms: int, h: float, end: float, works: Works, run: Run,
+) -> None:  # fmt: skip
+    """Take the step up to its place `end`: peaks, looks, works, and the motion there."""
+    t = run.time
+    track_outputs(linear, laws, step, series, terms, h, end, t, len(coefs))
+    track_laws(laws, step, series, terms, h, end, t, len(linear.monitored_constants))
+    if end > 0.0:
+        store_looks(step.trial, buffers, series, terms, h, end, run, t)
+        add_works(linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, end, works)
+        accept(laws, step.now, series, terms, h, end)
+    run.steps += 1
+
+
 def stride(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
     lengths: Lengths, coefs: Array, begin: float, goal: float, pause: int, works: Works,
@@ -250,7 +278,6 @@ def stride(
     int
         DONE, or what is wrong.
     """
-    first = len(linear.monitored_constants)
     while run.time < goal:
         if must_pause(buffers, run, pause):
             return FULL
@@ -259,12 +286,11 @@ def stride(
         h = step_length(lengths, t, left)
         if h == 0.0:
             return SHORT
-        if run.stale:  # with unknowns without mass `settle` has done it
-            add_up(linear, laws, series.springs)
-            run.stale = 0
+        if not renew(linear, laws, series, run):
+            return LOOSE
         terms, fit = expand(linear, laws, step, series, lengths, coefs, t - begin, h)
         if not fit >= CUT:  # what is known of the motion from terms far too large misleads
-            lengths.next = h * fit if fit > 1.0 / 16.0 else h / 16.0
+            lengths.next = h * (fit if fit > SHRINK else SHRINK)
             continue
         end = 1.0 if fit >= 1.0 else (t + fit * h - t) / h
         if end == 0.0:
@@ -274,13 +300,7 @@ def stride(
         lengths.next = max(h * min(fit * TERMS / terms, GROW), lengths.next if end == 1.0 else 0.0)
         event = first_event(laws, series, terms, h, end)
         at = event.time
-        track_outputs(linear, laws, step, series, terms, h, at, t, len(coefs))
-        track_laws(laws, step, series, terms, h, at, t, first)
-        if at > 0.0:
-            store_looks(step.trial, buffers, series, terms, h, at, run, t)
-            add_works(linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, at, works)
-            accept(laws, step.now, series, terms, h, at)
-        run.steps += 1
+        take(linear, laws, step, buffers, series, lengths, coefs, begin, terms, h, at, works, run)
         if event.law < 0:
             if not whole:
                 lengths.shortest = min(lengths.shortest, at * h)
@@ -288,10 +308,9 @@ def stride(
             continue
         run.time = t + at * h
         change_branches(laws, buffers, rules, series, terms, h, end, event, run)
-        if len(series.massless.unknown):
-            why = settle(linear, laws, step, buffers, rules, series, coefs, run.time - begin, run)
-            if why != DONE:
-                return why
+        why = settle(linear, laws, step, buffers, rules, series, coefs, run.time - begin, run)
+        if why != DONE:
+            return why
         if run.same_instant > 50 + 4 * len(laws.rule):
             return CHATTER
     return DONE
@@ -303,8 +322,7 @@ def sample(
 ) -> None:  # fmt: skip
     """Keep the present motion; as the first sample, count it into the peaks."""
     now = step.now
-    if len(series.massless.unknown):
-        settle(linear, laws, step, buffers, rules, series, coefs, run.time - begin, run)
+    settle(linear, laws, step, buffers, rules, series, coefs, run.time - begin, run)
     evaluate_inputs(coefs, run.time - begin, now.inputs, now.input_rates)
     form_load(linear, now.inputs, now.load)
     multiply(linear.damping, now.velocity, now.damping_force)
@@ -331,10 +349,10 @@ def march(
         begin, piece = breaks[pieces[goal]], coefs[pieces[goal]]
         if run.started == 0:
             sample(linear, laws, step, buffers, rules, series, piece, begin, works, run)
-        if len(series.massless.unknown):  # the excitation may have a kink here
-            why = settle(linear, laws, step, buffers, rules, series, piece, run.time - begin, run)
-            if why != DONE:
-                return why
+        # the excitation may have a kink here
+        why = settle(linear, laws, step, buffers, rules, series, piece, run.time - begin, run)
+        if why != DONE:
+            return why
         why = stride(
             linear,
             laws,

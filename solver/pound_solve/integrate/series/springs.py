@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from pound_solve.integrate.kernels.allocation import coupled_pairs
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Rows
 from pound_solve.integrate.series.state import Series, Springs
@@ -28,29 +29,23 @@ def allocate(n: int, rows: Rows, inputs: Array) -> Springs:
     inputs : ndarray, shape (n_inputs, n)
         Loads of unit inputs.
     """
-    ends = rows.pointers.tolist()
-    touched = [(rows.columns[a:b].tolist(), rows.values[a:b].tolist()) for a, b in pairwise(ends)]
-    pairs = sorted({(i, j) for columns, _ in touched for i in columns for j in columns})
-    place = {pair: q for q, pair in enumerate(pairs)}
-    row = sorted({i for i, _ in pairs})
-    first = np.searchsorted([i for i, _ in pairs], row)
+    own = [slice(a, b) for a, b in pairwise(rows.pointers.tolist())]
+    one, other = coupled_pairs(rows.columns[x].astype(np.int64) for x in own)
+    keys, place = np.unique(one * n + other, return_inverse=True)
+    row, first = np.unique(keys // n, return_index=True)
     number = np.full(n, -1)
     number[row] = np.arange(len(row))
-    entries = [[(place[i, j], x * y) for i, x in zip(*law) for j, y in zip(*law)] for law in touched]
+    squares = [np.outer(rows.values[x], rows.values[x]).ravel() for x in own]
     return Springs(
-        row=np.array(row, np.uint32),
-        number=number.astype(np.int64),
-        rows=Rows(
-            np.append(first, len(pairs)).astype(np.int64),
-            np.array([j for _, j in pairs], np.uint32),
-            np.zeros(len(pairs)),
-        ),
-        pair_pointers=np.concatenate([[0], np.cumsum([len(x) for x in entries])]).astype(np.int64),
-        pair_places=np.array([q for x in entries for q, _ in x], np.uint32),
-        pair_values=np.array([v for x in entries for _, v in x], float),
+        row=row.astype(np.uint32),
+        number=number,
+        rows=Rows(np.append(first, len(keys)), (keys % n).astype(np.uint32), np.zeros(len(keys))),
+        pair_pointers=np.cumsum([0, *map(len, squares)]),
+        pair_places=place.astype(np.uint32),
+        pair_values=np.concatenate([np.zeros(0), *squares]),
         constant=np.zeros(n),
         inputs=np.zeros_like(inputs),
-        dashpots=np.zeros(len(touched), np.int64),
+        dashpots=np.zeros(len(own), np.int64),
         n_dashpots=np.zeros(1, np.int64),
     )
 
