@@ -338,3 +338,18 @@ def test_the_rule_walked_by_hand():
     touch = (0.0, 50.0, 0.0)
     for v, wanted in ((0.26, friction.PLUS), (-0.26, friction.MINUS), (0.24, friction.STICKING)):
         assert friction.RULE.transition(p, friction.OPEN, touch, 0, 0.0, v)[0] == wanted
+
+
+@pytest.mark.parametrize("law", ["HERTZDAMP K=2E6 E=0.6", "HUNT_CROSSLEY K=2E6 E=0.6", "HERTZ K=2E6"])
+def test_a_ball_that_hardly_slides_when_it_touches_a_curved_contact(tmp_path, law):
+    """At touch the normal force does not grow yet, so the ball slips; it sticks soon after.  Whatever the step
+    is, and wherever in it the ball touches, the run goes on, to the same speeds.
+    """
+    after = []
+    for n in range(12):
+        dt = 7e-4 * 0.83**n
+        vn, vt, _ = ball(
+            tmp_path, "MU=0.4 KT=1E5", vn=0.13, vt=0.002, law=f"LAW={law}", method=f"NEWMARK DT={dt}"
+        )
+        after.append((vn, vt))
+    assert np.ptp(np.array(after)[6:], axis=0) == pytest.approx([0.0, 0.0], abs=2e-5)

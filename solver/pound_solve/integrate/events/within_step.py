@@ -22,18 +22,23 @@ def event_value(laws: Laws, i: int, e: int, d: float, v: float) -> tuple[float, 
     return on_d * d + on_v * v + constant, size
 
 
+def start_value(laws: Laws, i: int, e: int) -> float:
+    """Event function `e` of law `i` at the start of the step."""
+    g = event_value(laws, i, e, laws.now.deformation[i], laws.now.rate[i])[0]
+    return g + laws.limits_at_start[i, e] - laws.events[i, e, 2] if laws.normal[i] >= 0 else g
+
+
 def value_at_start(laws: Laws, step: Step, i: int, e: int) -> float:
     """Event function at the start of the step, for an interpolation; NaN where it falls at first.
 
     A law that has just come through an event and moves on stands next to zero there: an interpolation would
     take the way back to that event, late in the step, for one at once.
     """
-    d, v = laws.now.deformation[i], laws.now.rate[i]
     on_d, on_v = laws.events[i, e, 0], laws.events[i, e, 1]
-    slope = on_d * v
+    slope = on_d * laws.now.rate[i]
     if on_v != 0.0:
         slope += on_v * along(laws.rows, i, step.now.acceleration)
-    return np.nan if slope < 0.0 else event_value(laws, i, e, d, v)[0]
+    return np.nan if slope < 0.0 else start_value(laws, i, e)
 
 
 def first_event(laws: Laws, step: Step, h: float) -> LocatedEvent:
@@ -56,7 +61,7 @@ def time_of_event(laws: Laws, step: Step, i: int, e: int, h: float) -> float:
     on_d, on_v = laws.events[i, e, 0], laws.events[i, e, 1]
     if on_d == 0.0 and on_v == 0.0:
         return np.inf
-    d, v, d1, v1 = laws.now.deformation[i], laws.now.rate[i], laws.trial.deformation[i], laws.trial.rate[i]
+    v, d1, v1 = laws.now.rate[i], laws.trial.deformation[i], laws.trial.rate[i]
     g1, size = event_value(laws, i, e, d1, v1)
     s0, s1 = on_d * v, on_d * v1
     turns = s0 > 0.0 and s1 < 0.0
@@ -66,8 +71,9 @@ def time_of_event(laws: Laws, step: Step, i: int, e: int, h: float) -> float:
     if on_v != 0.0:
         s0 += on_v * along(laws.rows, i, step.now.acceleration)
         s1 += on_v * along(laws.rows, i, step.trial.acceleration)
-    g0 = min(event_value(laws, i, e, d, v)[0], 0.0)  # a branch holds when it is entered
-    if g1 > tol and g0 < 0.0 and on_d == 0.0:  # accelerations of massless unknowns would mislead
+    g0 = min(start_value(laws, i, e), 0.0)  # a branch holds when it is entered
+    # accelerations of massless unknowns would mislead, as do limits that change
+    if g1 > tol and g0 < 0.0 and (on_d == 0.0 or laws.normal[i] >= 0):
         return h * g0 / (g0 - g1)
     if g1 > tol:
         return cubic_rise(g0, g1, s0, s1, h)

@@ -241,6 +241,7 @@ def law_arrays(
         offset=zeros(),
         n_events=np.zeros(count, np.int64),
         events=np.zeros((count, EVENTS, 3)),
+        limits_at_start=np.zeros((count, EVENTS)),
         now=state.LawMotion(d, v),
         trial=state.LawMotion(zeros(), zeros()),
         largest_deformation=np.abs(d),

@@ -120,6 +120,7 @@ class KernelEngine(ABC):
                 laws.peak_force[i] = force
         for i in laws.coupled.tolist():
             law_kernels.couple(laws, self.rules, self.step.now.acceleration, i)
+        law_kernels.hold_friction_limits(laws)
         if jit.cold(advance):
             self.recorder.trial(t, "compiling the kernels, once for this version: some 40 s")
 

@@ -123,6 +123,13 @@ def update_friction_limits(laws: Laws, rules: Tables, acceleration: Array) -> No
         enter_branch(laws, rules, i)
 
 
+def hold_friction_limits(laws: Laws) -> None:
+    """Keep the limits of the coupled laws as those of the start of the coming step."""
+    for i in laws.coupled:
+        for e in range(laws.events.shape[1]):
+            laws.limits_at_start[i, e] = laws.events[i, e, 2]
+
+
 def add_slip_work(laws: Laws, h: float) -> None:
     """Add up the work of the coupled laws that slip, over a step of length `h`."""
     for i in laws.coupled:
@@ -138,7 +145,11 @@ def couple(laws: Laws, rules: Tables, acceleration: Array, i: int) -> None:
     force.
     """
     j = laws.normal[i]
-    set_normal_force(laws, i, laws.now.deformation[j], laws.now.rate[j], along(laws.rows, j, acceleration))
+    d, v, a = laws.now.deformation[j], laws.now.rate[j], along(laws.rows, j, acceleration)
+    set_normal_force(laws, i, d, v, a)
+    if laws.curved[j]:  # its tangent may be that of the end of a step that was tried
+        c = curve(laws, rules, j, d, v)
+        laws.internal[i, PUSH], laws.internal[i, PUSH_RATE] = max(c[0], 0.0), c[1] * v + c[2] * a
     pressed = (laws.pressed_branches[i] >> laws.branch[j]) & 1
     if pressed != (laws.branch[i] != 0):
         transition(laws, rules, i, 0 if pressed else 2, laws.now.deformation[i], laws.now.rate[i])

@@ -261,6 +261,8 @@ class Laws(NamedTuple):
     n_events : ndarray of int
     events : ndarray, shape (n_laws, EVENTS, 3)
         Event functions of the branch, ``a d + b v + c``.
+    limits_at_start : ndarray, shape (n_laws, EVENTS)
+        Of a coupled law, c at the start of the step: its limits change with the normal force.
     now, trial : LawMotion
     largest_deformation, largest_rate : ndarray
     friction_force : ndarray
@@ -301,6 +303,7 @@ class Laws(NamedTuple):
     offset: Array
     n_events: Index
     events: Array
+    limits_at_start: Array
     now: LawMotion
     trial: LawMotion
     largest_deformation: Array

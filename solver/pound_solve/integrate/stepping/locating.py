@@ -12,7 +12,13 @@ from pound_solve.integrate.energy import Works
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.events.within_step import event_value, first_event, value_at_start
 from pound_solve.integrate.kernels.consistency import NEAR, make_consistent, touches_massless
-from pound_solve.integrate.kernels.laws import couple, linear_force, linearise_law, transition
+from pound_solve.integrate.kernels.laws import (
+    couple,
+    hold_friction_limits,
+    linear_force,
+    linearise_law,
+    transition,
+)
 from pound_solve.integrate.kernels.recording import log_transition, track
 from pound_solve.integrate.kernels.state import (
     CHATTER,
@@ -79,6 +85,7 @@ def change_branch(
         if before != laws.branch[j]:
             log_transition(laws, buffers, run, j, before, run.time, laws.friction_force[j])
             run.updates = REFRESH + 1
+    hold_friction_limits(laws)
 
 
 class Bracket(NamedTuple):

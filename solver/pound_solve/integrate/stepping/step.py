@@ -34,6 +34,7 @@ from pound_solve.integrate.kernels.laws import (
     add_slip_work,
     curve,
     drag,
+    hold_friction_limits,
     law_force,
     linear_force,
     linearise_laws,
@@ -366,6 +367,7 @@ def accept(
     accept_members(laws)
     if len(laws.coupled) > 0:
         add_slip_work(laws, h)
+        hold_friction_limits(laws)
     accept_laws(laws, rules, h, works)
     if scheme.alpha_f != 0.0 or scheme.alpha_m != 0.0:
         update_residual(linear, step, scheme)
