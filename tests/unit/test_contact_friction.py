@@ -342,8 +342,8 @@ def test_the_rule_walked_by_hand():
 
 @pytest.mark.parametrize("law", ["HERTZDAMP K=2E6 E=0.6", "HUNT_CROSSLEY K=2E6 E=0.6", "HERTZ K=2E6"])
 def test_a_ball_that_hardly_slides_when_it_touches_a_curved_contact(tmp_path, law):
-    """At touch the normal force does not grow yet, so the ball slips; it sticks soon after.  Whatever the step
-    is, and wherever in it the ball touches, the run goes on, to the same speeds.
+    """At touch the normal force does not grow yet, so the ball slips; it sticks soon after.  Whatever the
+    step is, and wherever in it the ball touches, the run goes on, to the same speeds.
     """
     after = []
     for n in range(12):
