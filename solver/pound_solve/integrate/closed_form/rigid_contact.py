@@ -175,7 +175,10 @@ class RigidContacts:
                 -system.law_rows.T @ force,
             ]
         )
-        size = np.abs(self.velocity_change).T @ np.abs(terms).sum(axis=0)
+        # bodies that move as one cancel in K u, their rounding does not
+        sums = np.abs(terms[:2]).sum(axis=0) + np.abs(system.law_rows).T @ np.abs(force)
+        sums = sums + np.abs(system.damping) @ np.abs(v) + np.abs(system.stiffness) @ np.abs(u)
+        size = np.abs(self.velocity_change).T @ sums
         return self.velocity_change.T @ terms.sum(axis=0) + self.inputs @ inputs[2], size
 
     def forces(self, held: Flags, branches: Sequence[Branch], u: Array, v: Array, inputs: Array) -> Array:
