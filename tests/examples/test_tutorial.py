@@ -20,6 +20,7 @@ from typing import Any
 import pytest
 
 from pound_solve.cli.main import main
+from pound_solve.integrate.kernels.engine import COMPILING
 from pound_solve.results.contents import SECTIONS, TABLES
 
 pytestmark = pytest.mark.full
@@ -66,11 +67,11 @@ def follow(steps: list[Block]) -> list[str]:
 
 
 def captured(function: Any, *arguments: Any) -> tuple[Any, str]:
-    """Result of a call, and what it printed on either stream."""
+    """Result of a call, and what it printed on either stream, but that it compiled kernels."""
     stream = io.StringIO()
     with contextlib.redirect_stdout(stream), contextlib.redirect_stderr(stream):
         result = function(*arguments)
-    return result, stream.getvalue()
+    return result, stream.getvalue().replace(f"pound-solve: {COMPILING}\n", "")
 
 
 def plain(text: str) -> str:

@@ -247,13 +247,16 @@ def test_a_linear_run_imports_only_what_it_needs(deck):
 
 
 @pytest.mark.parametrize(("terminal", "quiet"), [(True, False), (True, True), (False, False)])
-def test_what_keeps_a_run_waiting_is_told_on_a_terminal_only(monkeypatch, terminal, quiet):
+def test_what_keeps_a_run_waiting_is_told_once_where_there_is_no_terminal(monkeypatch, terminal, quiet):
     stream = io.StringIO()
     stream.isatty = lambda: terminal
     monkeypatch.setattr(sys, "stderr", stream)
     progress = Progress(quiet)
     progress(0.0, 5.0, "compiling the kernels")
+    if not terminal:
+        progress(0.0, 5.0, "compiling the kernels")
     progress(0.1, 5.0, "")  # too soon after the last
     progress.end()
     lines = [line.strip() for line in stream.getvalue().split("\r")]
-    assert lines == (["", "compiling the kernels", "", ""] if terminal and not quiet else [""])
+    once = ["" if quiet else "pound-solve: compiling the kernels"]
+    assert lines == (["", "compiling the kernels", "", ""] if terminal and not quiet else once)

@@ -12,15 +12,23 @@ INTERVAL = 0.1  #: least time between two lines [s]
 
 
 class StatusLine:
-    """A line on the error stream that is rewritten in place; silent unless that is a terminal."""
+    """A line on the error stream that is rewritten in place if that is a terminal."""
 
     def __init__(self, quiet: bool = False) -> None:
-        self.live = sys.stderr.isatty() and not quiet
+        self.quiet, self.live = quiet, sys.stderr.isatty() and not quiet
+        self._told: set[str] = set()
 
     def show(self, text: str) -> None:
         """Replace the line."""
         if self.live:
             print(f"\r {text:{WIDTH}}", end="", file=sys.stderr, flush=True)
+
+    def tell(self, text: str) -> None:
+        """Show what keeps a run waiting; where there is no terminal, print it once."""
+        self.show(text)
+        if not self.live and not self.quiet and text not in self._told:
+            self._told.add(text)
+            print(f"pound-solve: {text}", file=sys.stderr, flush=True)
 
     def clear(self) -> None:
         """Blank the line and return to its start."""
@@ -57,8 +65,11 @@ class Progress:
         if now - self.shown < INTERVAL and not doing:
             return
         self.shown = now
+        if doing:
+            self.line.tell(doing)
+            return
         left = (now - self.began) * (end / t - 1.0) if t > 0 else 0.0
-        self.line.show(doing or f"t = {t:10.4f} of {end:g}   {100 * t / end:5.1f} %   {left:6.0f} s to go")
+        self.line.show(f"t = {t:10.4f} of {end:g}   {100 * t / end:5.1f} %   {left:6.0f} s to go")
 
     def end(self) -> None:
         """Clear the line and restore the signal handler."""

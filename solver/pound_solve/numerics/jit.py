@@ -61,6 +61,11 @@ def available() -> bool:
     return os.environ.get("POUND_COMPILE") != "0" and find_spec("numba") is not None
 
 
+def missing() -> bool:
+    """Whether kernels run as Python because numba is not installed."""
+    return os.environ.get("POUND_COMPILE") != "0" and find_spec("numba") is None
+
+
 @cache
 def numba() -> Any:
     """numba, with the cache folder set; None where it is not `available`."""

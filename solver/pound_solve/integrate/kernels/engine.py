@@ -31,6 +31,9 @@ from pound_solve.laws.hysteresis import bilinear
 from pound_solve.numerics import jit
 from pound_solve.structure.reduction import ReducedSystem
 
+COMPILING = "compiling the kernels, once for this version: some 40 s"
+INTERPRETED = "steps are not compiled, some 100 times slower: pip install numba"
+
 
 class KernelEngine(ABC):
     """One run of a method.
@@ -122,7 +125,9 @@ class KernelEngine(ABC):
             law_kernels.couple(laws, self.rules, self.step.now.acceleration, i)
         law_kernels.hold_friction_limits(laws)
         if jit.cold(advance):
-            self.recorder.trial(t, "compiling the kernels, once for this version: some 40 s")
+            self.recorder.trial(t, COMPILING)
+        elif jit.missing():
+            self.recorder.trial(t, INTERPRETED)
 
     def advance(self, kernel: jit.Function, *given: Any) -> None:
         """Let a kernel advance to the end, and take in what it keeps."""
