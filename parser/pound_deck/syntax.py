@@ -179,13 +179,19 @@ def _unclosed(text: str) -> int:
 
 
 def _blank_at_operator(fault: Fault) -> Mistake | None:
-    hint = "write 1-2 or (1 - 2) for a difference, 1 -2 for two items"
     if fault.kind == "_WS" and fault.last in tuple("+-*/^"):
         span = place(fault.line, len(fault.before) - 1)
-        return mistake("P205", f"a blank after {fault.last}", span, hint)
+        return mistake("P205", f"a blank after {fault.last}", span, _without_blanks(fault.last))
     if fault.kind in _OPERATORS and fault.after_blank:
-        return mistake("P205", f"a blank before {fault.token}", fault.span, hint)
+        return mistake("P205", f"a blank before {fault.token}", fault.span, _without_blanks(fault.token))
     return None
+
+
+def _without_blanks(operator: str) -> str:
+    items = f"; 1 {operator}2 for two items" if operator in ("+", "-") else ""
+    return (
+        f"remove the blanks or put the expression in parentheses: 1{operator}2 or (1 {operator} 2){items}"
+    )
 
 
 def _neither_number_nor_word(fault: Fault) -> Mistake | None:
