@@ -211,11 +211,9 @@ def figures(system: ReducedSystem, peaks: Peaks, replay: Replay) -> tuple[Array,
     if not peaks.monitored:
         direction = np.array([d for _, d in system.dofs])
         displacement = np.column_stack([np.ravel(replay.high), np.ravel(replay.low)])
-        largest = np.zeros(
-            len(direction)
-        )  # in its direction; hinges and uplift have directions of their own
-        for d in np.unique(direction):
-            largest[direction == d] = np.abs(displacement[direction == d]).max()
+        # hinges and uplift have directions of their own
+        most = {d: np.abs(displacement[direction == d]).max() for d in np.unique(direction).tolist()}
+        largest = np.array([most[d] for d in direction.tolist()])
         values = np.concatenate([values, displacement])
         size = np.append(size, np.repeat(largest, 2))
     scales = [np.maximum(x, share * x.max(initial=0.0)) for x, share in ((size, 1e-6), (force, 0.05))]

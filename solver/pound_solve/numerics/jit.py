@@ -83,8 +83,9 @@ def numba() -> Any:
 INNER, INLINE = "_inner", "_inline"  #: ends of the names of kernels that only other kernels call
 
 
+@cache
 def lighten(found: Any) -> None:
-    """Let numba neither optimise nor emit code of inner kernels.
+    """Let numba neither optimise nor emit code of inner kernels, from the first call on.
 
     It would optimise each of them with all that it calls, and again in every kernel that calls it.  Their
     plain code is linked into the outermost kernel, which alone is optimised and emitted: once.

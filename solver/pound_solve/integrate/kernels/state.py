@@ -38,7 +38,7 @@ class Run(Protocol):
     same_instant: int  #: transitions at one instant
     driven: int  #: branches left in a step that is not cut at events
     updates: int  #: of rank one since the factor was made
-    stale: int  #: whether the factor of the massless unknowns must be made anew
+    stale: int  #: whether what follows from the branches of the laws, as a factor, must be made anew
     falling: int  #: steps that are too long for a falling branch
     fault: int  #: law or unknown at fault, -1 for none
     time: float

@@ -70,7 +70,7 @@ def allocate(
         stiffness=sparse_rows(stiffness[unknown]),
         damping=sparse_rows(damping[unknown]),
         laws=laws,
-        held=places,
+        law_number=places,
         rows=rows,
         pattern=pattern,
         column=column,
@@ -168,9 +168,9 @@ def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
             x[n] = balance(series, k - 1, top, n) - k / h * along(held.damping, n, c[k])
     for q in range(series.springs.n_dashpots[0]):
         i = series.springs.dashpots[q]
-        if held.held[i] >= 0:
+        if held.law_number[i] >= 0:
             force = k / h * laws.damping[i] * deformation(laws, series, k, top, i)
-            spread(held.rows, held.held[i], -force, x)
+            spread(held.rows, held.law_number[i], -force, x)
     solve_order(held, DAMPING)
     for n in range(len(x)):
         if held.damped[n]:

@@ -63,7 +63,7 @@ class Massless(NamedTuple):
         Their rows of K and C over all unknowns.
     laws : ndarray, shape (n_holding,)
         The laws that hold one of them, ascending.
-    held : ndarray, shape (n_laws,)
+    law_number : ndarray, shape (n_laws,)
         Place of a law in `laws`, -1 for others.
     rows : Rows
         The deformations of these over the unknowns without mass.
@@ -92,7 +92,7 @@ class Massless(NamedTuple):
     stiffness: Rows
     damping: Rows
     laws: Index
-    held: Index
+    law_number: Index
     rows: Rows
     pattern: Pattern
     column: Index
