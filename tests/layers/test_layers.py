@@ -39,6 +39,7 @@ WITHIN = {
     "integrate": (
         "protocol",
         "costs",
+        "rigid",
         "kernels",
         "events",
         "condensed",

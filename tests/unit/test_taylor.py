@@ -624,7 +624,6 @@ def test_envelopes_see_the_jump_at_a_touch_between_two_outputs() -> None:
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        (("LAW=KELVIN_VOIGT K=1000 E=0.7", "LAW=STEREOMECHANICS E=1"), "TAYLOR knows no rigid contact"),
         (("LAW=KELVIN_VOIGT K=1000 E=0.7", "LAW=HERTZ K=1000"), "the law HERTZ of element 2 is curved"),
         (("KX=w^2", "KX=w^2 FX=3 RULE=BOUC_WEN N=2"), "the law BOUC_WEN of element 1 is curved"),
         (("K=1000 E=0.7", "K=1000 E=0.7 MU=0.3 KT=1E4"), "the law COULOMB of element 2 is curved"),

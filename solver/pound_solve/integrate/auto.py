@@ -355,6 +355,16 @@ class StepRefinement:
         ]
 
 
+def by_series(
+    system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: EnvelopeRecorder
+) -> Outcome:
+    """Run TAYLOR."""
+    from pound_solve.integrate.series import taylor  # where it is not needed it is not loaded
+
+    system.decisions.append(Decision("method", "TAYLOR", LINEAR))
+    return taylor.integrate(system, start, monitored, {}, recorder)
+
+
 def to_tolerance(
     system: ReducedSystem,
     start: Start,
@@ -370,10 +380,7 @@ def to_tolerance(
     steps = StepRefinement(system, start, monitored, recorder, options["TOL"])
     while True:
         if series <= max(SERIES_FIRST, steps.cost_ahead()):
-            from pound_solve.integrate.series import taylor  # likewise
-
-            system.decisions.append(Decision("method", "TAYLOR", LINEAR))
-            return taylor.integrate(system, start, monitored, {}, recorder)
+            return by_series(system, start, monitored, recorder)
         budget = steps.cost_ahead(LATER_BUDGET)
         if (outcome := trial.run(budget, {"TRIAL": LATER_CHECK * budget})) is not None:
             return outcome
@@ -389,14 +396,19 @@ def integrate(
     recorder: EnvelopeRecorder,
 ) -> Outcome:
     """Choose a method, state why, and run it."""
+    rigid = any(s.law.rigid for s in system.structure.laws)
     if not_linear(system):
         refuse_rigid(system, start, "AUTO")
-    elif any(s.law.rigid for s in system.structure.laws):
-        system.decisions.append(Decision("method", "EXACT", "no other method takes rigid contacts"))
+    elif rigid and not has_series(system):
+        system.decisions.append(Decision("method", "EXACT", "steps take no rigid contacts"))
         return exact.integrate(system, start, monitored, {}, recorder)
     trial = ExactTrial(system, start, monitored, recorder, options["TOL"])
     series = cost_of_series(system, start)
-    return trial.first(series) or to_tolerance(system, start, monitored, options, recorder, trial, series)
+    if (outcome := trial.first(series)) is not None:
+        return outcome
+    if rigid:
+        return by_series(system, start, monitored, recorder)
+    return to_tolerance(system, start, monitored, options, recorder, trial, series)
 
 
 SPEC = Spec(

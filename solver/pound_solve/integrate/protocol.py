@@ -19,7 +19,6 @@ STILL = 1e-12  #: share of its largest value below which an exit counts as not r
 SHARP = 1e-2  #: share of a spring's largest force that rounding may make
 RUNAWAY = "the motion grows without bound: its energy {:.3g} is far above what was put in"
 CHATTER = "{} changes at one instant, the last in element {} ({}) to {!r}: try {}"
-STEPPED = "NEWMARK EVENTS=STEPPED"  #: which passes over them
 INTERRUPTED = "interrupted by the user; what was computed up to then is kept"
 
 
@@ -175,6 +174,13 @@ def light(system: ReducedSystem) -> Flags:
     return np.asarray((system.law_rows[:, massless(system.mass)] != 0.0).any(axis=1))
 
 
+def remedy(system: ReducedSystem) -> str:
+    """What to try where there are too many changes at one instant."""
+    if any(s.law.rigid for s in system.structure.laws):  # which no method with steps takes
+        return "LAWs with a stiffness for the rigid contacts"
+    return "NEWMARK EVENTS=STEPPED"  # which passes over the changes
+
+
 def rounding_check(
     laws: Sequence[LawSpring], peaks: Peaks, still: float = STILL
 ) -> list[tuple[str, str, str]]:
@@ -207,7 +213,7 @@ def refuse_rigid(system: ReducedSystem, start: Start, method: str) -> None:
         cure = f"give the contact a LAW with a stiffness, or choose {other}"
     else:
         told = f"{method} knows no rigid contact, and {contact} is one"
-        cure = "EXACT takes it, or a LAW with a stiffness"
+        cure = "TAYLOR and EXACT take it, or a LAW with a stiffness"
     raise Stop("A505", float(start.times[0]), f"{told}: {cure}")
 
 

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from pound_solve.integrate.closed_form.modal_propagator import ModalPropagator
 from pound_solve.integrate.closed_form.propagator import Propagator, real_rows
-from pound_solve.integrate.closed_form.rigid_contact import RigidContacts
 from pound_solve.integrate.closed_form.series_propagator import SeriesPropagator
 from pound_solve.integrate.closed_form.state_space import Mechanism, held_space, state_space
 from pound_solve.integrate.closed_form.work_integrals import WorkIntegrals
 from pound_solve.integrate.events.functions import RowSet
+from pound_solve.integrate.rigid.contacts import RigidContacts
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
@@ -252,7 +252,7 @@ class Decomposer:
     def _reactions(
         self, held: Index, unknowns: Index, propagator: Propagator, c: Array, k: Array
     ) -> Reactions:
-        """From ``G f = B M^-1 (p - C v - K u) - x''``, see `rigid_contact` and `held_space`."""
+        """From ``G f = B M^-1 (p - C v - K u) - x''``, see `rigid.contacts` and `held_space`."""
         assert propagator.u_p is not None and propagator.v_p is not None  # of all that is held
         at = np.array([self.rigid.laws.index(i) for i in held], np.intp)
         inverse = np.linalg.pinv(self.rigid.delassus[np.ix_(at, at)], rcond=1e-12)

@@ -31,8 +31,6 @@ from pound_solve.integrate.closed_form.dense_output import DenseOutput
 from pound_solve.integrate.closed_form.event_loop import EventDrivenRun
 from pound_solve.integrate.closed_form.grid_samples import GridSamples
 from pound_solve.integrate.closed_form.recording import DeferredSamples, EnvelopeSamples
-from pound_solve.integrate.closed_form.rigid_contact import MasslessContact
-from pound_solve.integrate.closed_form.rigid_instants import RigidInstants
 from pound_solve.integrate.closed_form.search import SURE, Search
 from pound_solve.integrate.closed_form.series_propagator import SeriesPropagator
 from pound_solve.integrate.closed_form.state_space import Mechanism
@@ -42,7 +40,6 @@ from pound_solve.integrate.condensed import condensed
 from pound_solve.integrate.events.functions import EventFunctions, GridEvent, monitored_functions
 from pound_solve.integrate.protocol import (
     INTERRUPTED,
-    STEPPED,
     STILL,
     MonitoredOutputs,
     Outcome,
@@ -52,8 +49,11 @@ from pound_solve.integrate.protocol import (
     goals,
     not_linear,
     refuse_rigid,
+    remedy,
     rounding_check,
 )
+from pound_solve.integrate.rigid.contacts import MasslessContact
+from pound_solve.integrate.rigid.instants import RigidInstants
 from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import Decision, ReducedSystem
 
@@ -94,7 +94,7 @@ class Exact(EventDrivenRun):
             )
         contact = np.array([s.role.contact_energy for s in self.laws], bool)
         self.work = DeferredWork(self.energy, system.constant, contact)
-        self.rigid = RigidInstants(self, self.subsystems, self.work)
+        self.rigid = RigidInstants(self, self.subsystems.rigid)
         self.samples = DeferredSamples(system, self.subsystems.rigid, recorder)
         self.envelopes = EnvelopeSamples(self.subsystems, self.u, recorder)
         self.windows = Windows(int(options.get("REFINE") or 0))
@@ -214,15 +214,26 @@ class Exact(EventDrivenRun):
         """Let a law leave its branch, and all that follows from it at the same instant."""
         self.events += 1
         try:
-            if self.laws[law].law.rigid and not self.branches[law].held:
+            strikes = self.laws[law].law.rigid and not self.branches[law].held
+            if strikes:
                 self.rigid.impact()
             else:
                 self.transition(law, event_index, d, v)
-                self.rigid.open_pulled()
+            self.rigid.open_pulled(self.subsystems.spectral_radius)
+            if strikes:
+                self.subsystems.present = []  # the velocities have jumped
         except ArithmeticError as err:
             raise self.stop("A503", str(err)) from None
-        self.stop_chatter(law, STEPPED)
+        self.stop_chatter(law, remedy(self.system))
+        if self.rigid.contacts.laws:
+            rows = list(self.subsystems.reaction_row.values())
+            self.largest[0, rows] = np.maximum(self.largest[0, rows], self.rigid.rounding)
         self._update_subsystems()
+
+    def take_impact(self, put_in: float, lost: Array) -> None:
+        """Count the works of an impact of rigid contacts (see `RigidRun`)."""
+        self.work.add(np.array([put_in, 0.0, lost.sum()]))
+        self.energy.dashpot_losses += lost
 
     def _check_progress(self, length: float) -> None:
         """Stop where the fastest mode is not resolvable: time would not advance, or too slowly."""

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from pound_solve.integrate.closed_form.dense_output import DenseOutput, Kinematics
-from pound_solve.integrate.closed_form.rigid_contact import RigidContacts
 from pound_solve.integrate.closed_form.subsystems import Subsystems
 from pound_solve.integrate.energy import law_values
 from pound_solve.integrate.events import grid
 from pound_solve.integrate.protocol import LawValues, Recorder
+from pound_solve.integrate.rigid.contacts import RigidContacts
 from pound_solve.laws.automaton import Branch, State
 from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.reduction import ReducedSystem

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from pound_solve.integrate import costs
 from pound_solve.integrate.closed_form.decomposition import Decomposer, Decomposition
 from pound_solve.integrate.closed_form.modal_propagator import ModalPropagator
-from pound_solve.integrate.closed_form.rigid_contact import RigidContacts
 from pound_solve.integrate.events.functions import RowSet
+from pound_solve.integrate.rigid.contacts import RigidContacts
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.graph import components
 from pound_solve.numerics.types import Array, Flags, Index

@@ -140,22 +140,28 @@ class KernelEngine(ABC):
             if why == DONE:
                 return
             if why != FULL:
-                raise self.trouble(why)
+                self.resume(why)
+
+    def resume(self, why: int) -> None:
+        """Do what a kernel came back for, that it may go on; stop where it cannot."""
+        raise self.trouble(why)
 
     def fetch(self) -> None:
         """Take in the samples and the transitions that were kept."""
-        self._fetch_transitions()
+        self.fetch_transitions()
         self._fetch_shown()
         self._fetch_samples()
-        self.state.logged = self.state.kept = self.state.shown = 0
+        self.state.kept = self.state.shown = 0
 
-    def _fetch_transitions(self) -> None:
+    def fetch_transitions(self) -> None:
+        """Take in the transitions that were kept."""
         for row in self.buffers.log[: self.state.logged].tolist():
             law, before, after = (int(x) for x in row[:3])
             branches = self.springs[law].law.rule.branches
             if law in self.tracker.open:
                 self.tracker.open[law].count(*row[7:])
             self.tracker.switched(law, branches[before].kind, branches[after].kind, *row[3:7])
+        self.state.logged = 0
 
     def _fetch_shown(self) -> None:
         buffers, shown = self.buffers, self.state.shown
@@ -212,10 +218,10 @@ class KernelEngine(ABC):
             running = laws.peak_force[law], laws.peak_time[law], laws.impulse[law]
             collision.count(*(float(x) for x in running))
         peaks = self.tracker.close(self.accumulator.dashpot_losses)
-        states = tuple(self._state(i) for i in range(len(self.springs)))
+        states = tuple(self.law_state(i) for i in range(len(self.springs)))
         return Outcome(peaks, self.figures(), states, self.checks(peaks), self.exact)
 
-    def _state(self, i: int) -> State:
+    def law_state(self, i: int) -> State:
         """State of law `i`."""
         laws, spring = self.laws, self.springs[i]
         variables = laws.internal[i, : spring.law.rule.variables].tolist()

@@ -18,6 +18,7 @@ import numpy as np
 from pound_solve.integrate.kernels.products import multiply, spread
 from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Step
 from pound_solve.integrate.series.massless import add_massless
+from pound_solve.integrate.series.rigid import hold
 from pound_solve.integrate.series.springs import add_product, deformation
 from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.numerics.jit import flat, loose
@@ -113,6 +114,7 @@ def next_term(
         for i in range(n):
             new[i] *= below
         solve(linear.pattern, step.factors[MASS], step.pivots[MASS], new)
+    hold(laws, series, k + 2, h, top)
     if len(series.massless.unknown):
         add_massless(laws, step, series, k + 2, h, top)
 
@@ -126,6 +128,7 @@ def begin_series(
     for i in range(len(now.displacement)):
         c[0, i], c[1, i] = now.displacement[i], h * now.velocity[i]
     for k in range(2):
+        hold(laws, series, k, h, top)
         if len(series.massless.unknown):
             add_massless(laws, step, series, k, h, top)
 

@@ -40,6 +40,7 @@ from pound_solve.integrate.series.expansion import (
     next_term,
 )
 from pound_solve.integrate.series.massless import factorise, violated
+from pound_solve.integrate.series.rigid import is_held, press
 from pound_solve.integrate.series.springs import add_up, deformation
 from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.integrate.series.tracking import event_of, first_event, track_laws, track_outputs
@@ -53,8 +54,8 @@ LOOKS = 2  #: instants of a step that envelopes of nodes and members see: some 2
 CUT = 0.5  #: part of a step, as it was tried, that is taken at least
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
 #: why `march` came back, beside those of `kernels.state`: steps are too short for the clock; an unknown
-#: without mass is not held
-SHORT, LOOSE = 7, 8
+#: without mass is not held; a rigid contact touches or parts
+SHORT, LOOSE, STRIKE = 7, 8, 9
 
 
 def add_law_losses(
@@ -68,6 +69,7 @@ def add_law_losses(
     works: Works,
 ) -> None:
     """Add up the losses in the laws' dashpots and the contacts' impulses at one Gauss point."""
+    press(laws, series.rigid, terms, s)
     for i in range(len(laws.rule)):
         drag = laws.damping[i]
         pressed = laws.contact[i] and (laws.stiffness[i] != 0.0 or laws.offset[i] != 0.0)
@@ -120,9 +122,16 @@ def accept(laws: Laws, now: MotionState, series: Series, terms: int, h: float, e
     evaluate(series, terms, end, h, 1, now.velocity)
     for i in range(len(laws.rule)):
         d, v = law_at(series, terms, end, h, i)
+        if is_held(series.rigid, i):
+            d, v = laws.entry_deformation[i], 0.0
         laws.now.deformation[i], laws.now.rate[i] = d, v
         laws.largest_deformation[i] = max(laws.largest_deformation[i], abs(d))
         laws.largest_rate[i] = max(laws.largest_rate[i], abs(v))
+    rigid = series.rigid
+    press(laws, rigid, terms, end)
+    for q in range(rigid.n_held[0]):
+        r = rigid.held[q]
+        rigid.largest[r] = max(rigid.largest[r], abs(laws.offset[rigid.laws[r]]))
 
 
 @flat
@@ -173,12 +182,17 @@ def change_branches(
     now, instant = run.time, INSTANT * max(run.time, h)
     change_branch(laws, buffers, rules, run, now, event)
     for i in range(len(laws.rule) if len(series.massless.unknown) == 0 else 0):  # else `settle` decides
-        if i != event.law:
+        if i != event.law and series.rigid.number[i] < 0:
             own = event_of(laws, series, terms, h, min(event.time + AHEAD, end), i)
             if own.law >= 0 and own.time <= event.time + instant / h:
                 change_branch(laws, buffers, rules, run, now, own)
-    run.same_instant = run.same_instant + 1 if now - run.last_event <= instant else 0
-    run.last_event = now
+
+
+def count_instant(run: Run, h: float) -> None:
+    """Count the events at one instant."""
+    same = run.time - run.last_event <= INSTANT * max(run.time, h)
+    run.same_instant = run.same_instant + 1 if same else 0
+    run.last_event = run.time
 
 
 def renew(linear: LinearSystem, laws: Laws, series: Series, run: Run) -> bool:
@@ -187,7 +201,7 @@ def renew(linear: LinearSystem, laws: Laws, series: Series, run: Run) -> bool:
     """
     held = series.massless
     if run.stale:
-        add_up(linear, laws, series.springs)
+        add_up(linear, laws, series.springs, series.rigid)
         fault = factorise(laws, held) if len(held.unknown) else -1
         if fault >= 0:
             run.fault = held.unknown[fault]
@@ -200,7 +214,8 @@ def settle(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
     coefs: Array, begin: float, run: Run,
 ) -> int:  # fmt: skip
-    """Give the unknowns without mass the rates that the present branches ask for.
+    """Give the unknowns without mass the rates that the present branches ask for, and closed rigid contacts
+    their forces.
 
     These rates jump where a stiffness or a dashpot among them changes, and a law whose rate changes its
     sign so must leave its branch, too.  Of several the first in number does, then all are looked at again:
@@ -217,7 +232,7 @@ def settle(
     123-130.
     """
     held, now = series.massless, step.now
-    if len(held.unknown) == 0:
+    if len(held.unknown) == 0 and series.rigid.n_held[0] == 0:
         return DONE
     for _ in range(50 + 4 * len(laws.rule)):
         if not renew(linear, laws, series, run):
@@ -231,6 +246,7 @@ def settle(
             laws.now.rate[i] = deformation(laws, series, 1, len(coefs), i)
         law, event = violated(laws, held)
         if law < 0:
+            press(laws, series.rigid, 2, 0.0)
             return DONE
         change_branch(laws, buffers, rules, run, run.time, LocatedEvent(law, event, 0.0))
         run.stale = 1
@@ -307,12 +323,17 @@ def stride(
             run.time = goal if whole else t + at * h
             continue
         run.time = t + at * h
+        count_instant(run, h)
+        if run.same_instant > 50 + 4 * len(laws.rule):
+            run.fault = event.law
+            return CHATTER
+        if series.rigid.number[event.law] >= 0:
+            run.fault = event.law
+            return STRIKE
         change_branches(laws, buffers, rules, series, terms, h, end, event, run)
         why = settle(linear, laws, step, buffers, rules, series, coefs, run.time - begin, run)
         if why != DONE:
             return why
-        if run.same_instant > 50 + 4 * len(laws.rule):
-            return CHATTER
     return DONE
 
 

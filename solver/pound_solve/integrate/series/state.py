@@ -110,6 +110,44 @@ class Massless(NamedTuple):
     elastic: Array
 
 
+class Rigid(NamedTuple):
+    """The rigid contacts, numbered among themselves (see `rigid`).
+
+    Attributes
+    ----------
+    laws : ndarray, shape (n_rigid,)
+    number : ndarray, shape (n_laws,)
+        Place of a law in `laws`, -1 for others.
+    gap : ndarray, shape (n_rigid,)
+    velocity_change : ndarray, shape (n_rigid, n)
+        Change of the velocities for unit impulses.
+    held : ndarray, shape (n_rigid,)
+        Those that are closed, the first `n_held`.
+    n_held : ndarray, shape (1,)
+    is_held : ndarray, shape (n_rigid,)
+    inverse : ndarray, shape (n_rigid, n_rigid)
+        Of G over `held`.
+    violation : ndarray, shape (n_rigid,)
+        Scratch: what the coefficients at work violate, by place in `held`.
+    force : ndarray, shape (n_rigid, TERMS + 1)
+        Coefficients of the forces.
+    largest : ndarray, shape (n_rigid,)
+        Largest magnitude of the force, or of its terms, so far.
+    """
+
+    laws: Index
+    number: Index
+    gap: Array
+    velocity_change: Array
+    held: Index
+    n_held: Index
+    is_held: Flags
+    inverse: Array
+    violation: Array
+    force: Array
+    largest: Array
+
+
 class Series(NamedTuple):
     """The series of a step.
 
@@ -130,6 +168,7 @@ class Series(NamedTuple):
         Weights and points on (0, 1), two more than half of the terms that carry energy.
     springs : Springs
     massless : Massless
+    rigid : Rigid
     """
 
     motion: Array
@@ -142,3 +181,4 @@ class Series(NamedTuple):
     gauss: Array
     springs: Springs
     massless: Massless
+    rigid: Rigid

@@ -34,7 +34,6 @@ from pound_solve.integrate.kernels.state import CHATTER, RUNAWAY, Scheme
 from pound_solve.integrate.protocol import CHATTER as CHANGES
 from pound_solve.integrate.protocol import RUNAWAY as GROWS
 from pound_solve.integrate.protocol import (
-    STEPPED,
     MonitoredOutputs,
     Outcome,
     Recorder,
@@ -43,12 +42,18 @@ from pound_solve.integrate.protocol import (
     goals,
     not_linear,
     refuse_rigid,
+    remedy,
     rounding_check,
 )
-from pound_solve.integrate.series import expansion, march, massless, springs, state
+from pound_solve.integrate.rigid.contacts import MasslessContact, RigidContacts
+from pound_solve.integrate.rigid.instants import RigidInstants
+from pound_solve.integrate.series import expansion, march, massless, rigid, springs, state
 from pound_solve.integrate.series.massless import STIFFNESS
+from pound_solve.integrate.series.present import Present
 from pound_solve.integrate.tracker import Peaks
+from pound_solve.laws.automaton import BranchKind
 from pound_solve.numerics.record import record
+from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import ReducedSystem
 
 MAX_STEPS = 5_000_000  #: that a run may come to
@@ -60,7 +65,12 @@ class Taylor(KernelEngine):
     exact = True
 
     def __init__(
-        self, system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: Recorder
+        self,
+        system: ReducedSystem,
+        start: Start,
+        monitored: MonitoredOutputs,
+        recorder: Recorder,
+        contacts: RigidContacts,
     ) -> None:
         length = float(start.times[-1] - start.times[0])
         nothing_to_solve = Scheme(0.0, 0.0)
@@ -68,6 +78,7 @@ class Taylor(KernelEngine):
             system, start, monitored, recorder, nothing_to_solve, length, "TAYLOR, power series"
         )
         o, laws = self.order, self.springs
+        self.contacts = contacts
         self.massless = massless.allocate(
             self.linear,
             system.stiffness[np.ix_(o, o)],
@@ -97,18 +108,47 @@ class Taylor(KernelEngine):
             gauss=gauss,
             springs=springs.allocate(system.size, self.laws.rows, self.linear.inputs),
             massless=self.massless,
+            rigid=rigid.allocate(self.contacts, o, len(laws), terms),
         )
+        self._hold()
         self.lengths: state.Lengths = record(state.Lengths)
         self.lengths.next, self.lengths.shortest = length, np.inf
 
     def integrate(self) -> None:
         """Integrate by series from event to event."""
+        RigidInstants(Present(self), self.contacts).check_start()
         self.begin(march.march)
         ex = self.system.excitation
         ends, is_output = goals(self.system, self.times)
         pieces = ex.pieces_after(np.append(self.times[0], ends[:-1]))
         coefs = np.ascontiguousarray(ex.coefs)
         self.advance(march.march, self.series, self.lengths, coefs, ex.breaks, ends, is_output, pieces)
+
+    def resume(self, why: int) -> None:
+        """Let rigid contacts strike, close or part; stop where there is no going on."""
+        if why != march.STRIKE:
+            raise self.trouble(why)
+        present, law = Present(self), int(self.state.fault)
+        instants = RigidInstants(present, self.contacts)
+        try:
+            if present.branches[law].held:
+                d, v = float(self.laws.now.deformation[law]), float(self.laws.now.rate[law])
+                present.transition(law, 0, d, v)
+            else:
+                instants.impact()
+            instants.open_pulled()
+        except ArithmeticError as err:
+            raise self.stop("A503", str(err)) from None
+        present.hand_back()
+        self.state.events += 1
+        self._hold(instants.rounding)
+
+    def _hold(self, rounding: Array | float = 0.0) -> None:
+        """Take over which rigid contacts are closed, and the `rounding` of their forces."""
+        x = self.series.rigid
+        kinds = [self.springs[i].law.rule.branches[self.laws.branch[i]].kind for i in x.laws]
+        rigid.take_over(x, self.contacts, np.array([kind is BranchKind.HELD for kind in kinds], bool))
+        x.largest[:] = np.maximum(x.largest, rounding)
 
     def fetch(self) -> None:
         """Take in what was kept; stop where steps are too short for the length of the run."""
@@ -131,7 +171,7 @@ class Taylor(KernelEngine):
             fault = int(self.state.fault)
             s, at = self.springs[fault], self.laws.branch[fault]
             what = (int(self.state.same_instant), s.element, s.rule, s.law.rule.branches[at].name)
-            return self.stop("A503", CHANGES.format(*what, STEPPED))
+            return self.stop("A503", CHANGES.format(*what, remedy(self.system)))
         return super().trouble(why)
 
     def _loose(self) -> str:
@@ -174,11 +214,15 @@ def integrate(
         A reduced system that is not piecewise linear, massless DOFs that cannot be condensed, too many
         changes at one instant, too many steps, numbers beyond all bounds, or an interrupt.
     """
-    refuse_rigid(system, start, "TAYLOR")
     begin = float(start.times[0])
     if why := not_linear(system):
+        refuse_rigid(system, start, "TAYLOR")
         raise Stop("A505", begin, f"TAYLOR needs linear pieces, and {why}: AUTO takes steps")
-    return Taylor(system, start, monitored, recorder).run()
+    try:
+        contacts = RigidContacts(system)
+    except MasslessContact as err:
+        raise Stop("A505", begin, str(err)) from None
+    return Taylor(system, start, monitored, recorder, contacts).run()
 
 
 SPEC = Spec(

@@ -9,7 +9,20 @@ from pound_solve.integrate.events.protocol import LocatedEvent, none
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.state import Series
+
+
+def parting(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
+    """The instant at which closed rigid contact `i` would pull, before the place `end`, see `none`."""
+    r, p = series.rigid.number[i], series.polynomial[POLYNOMIAL]
+    force, still = series.rigid.force[r], STILL * series.rigid.largest[r]
+    for k in range(terms + 1):
+        p[k] = -force[k] if k < terms - 1 else 0.0
+    if p[0] > still:  # the force has jumped
+        return LocatedEvent(i, 0, 0.0)
+    at = first_rise(series.polynomial, terms, end, still)
+    return LocatedEvent(i, 0, at) if at >= 0.0 else none(end)
 
 
 def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: int) -> LocatedEvent:
@@ -19,6 +32,8 @@ def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: in
         on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
         if on_d == 0.0 and on_v == 0.0:
             continue
+        if is_held(series.rigid, i):
+            return parting(series, terms, end, i)
         for k in range(terms + 1):
             p[k] = on_d * d[i, k]
         p[0] += constant
@@ -92,6 +107,12 @@ def track_laws(
             count_crest(laws, step, series, terms, h, end, t, first + i, -1)
         own = first + len(laws.rule) + i
         stiffness, damping = laws.stiffness[i], laws.damping[i] if laws.viscous[i] else 0.0
+        if is_held(series.rigid, i):
+            force_series = series.rigid.force[series.rigid.number[i]]
+            for k in range(terms + 1):
+                p[k] = force_series[k] if k < terms - 1 else 0.0
+            count_crest(laws, step, series, terms, h, end, t, own, i)
+            continue
         far *= abs(stiffness)
         high = extremes.high[own]
         if laws.contact[i]:

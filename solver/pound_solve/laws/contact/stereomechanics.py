@@ -12,7 +12,7 @@ With the contact's row b in a structure of mass M this is the impulse
 .. math:: J = (1+e)\,\frac{b^T v}{b^T M^{-1} b}, \qquad v' = v - M^{-1} b\,J
 
 An impact without rebound closes the contact: from then on it holds its deformation by the force that this
-takes, and it opens when the force would pull (:mod:`~pound_solve.integrate.closed_form.rigid_contact`).
+takes, and it opens when the force would pull (:mod:`~pound_solve.integrate.rigid.contacts`).
 """
 
 from __future__ import annotations

@@ -2,16 +2,58 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Protocol
+
 import numpy as np
 
-from pound_solve.integrate.closed_form.deferred_work import DeferredWork
-from pound_solve.integrate.closed_form.event_loop import EventDrivenRun
-from pound_solve.integrate.closed_form.rigid_contact import ROUNDING, RigidContacts
-from pound_solve.integrate.closed_form.subsystems import Subsystems
+from pound_solve.integrate.protocol import STILL, Stop
+from pound_solve.integrate.rigid.contacts import ROUNDING, RigidContacts
+from pound_solve.integrate.tracker import ResponseTracker
+from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Flags
+from pound_solve.structure.reduction import ReducedSystem
 
+SLOW = 1e-6  #: share of a contact's fastest rate below which an approach has no rebound
+LOST = 4.0  #: height of a hop that is lost in rounding, over that rounding
 OVERLAP = 1e-10  #: share of its terms beyond which a deformation overlaps at the start
+
+
+class RigidRun(Protocol):
+    """A run as its rigid contacts see it.
+
+    Attributes
+    ----------
+    u, v : ndarray, shape (n,)
+        Present displacement and velocity.
+    largest : ndarray, shape (2, at least n_laws)
+        Largest deformations and rates of the laws so far.
+    """
+
+    t: float
+    u: Array
+    v: Array
+    largest: Array
+    system: ReducedSystem
+    tracker: ResponseTracker
+
+    @property
+    def branches(self) -> Sequence[Branch]:
+        """Present branches of all laws."""
+        ...
+
+    def transition(self, law: int, event_index: int, d: float, v: float) -> None:
+        """Let a law leave its branch at deformation `d` and rate `v`."""
+        ...
+
+    def take_impact(self, put_in: float, lost: Array) -> None:
+        """Count the work that moving supports put in at an impact, and what each law lost, (n_laws,)."""
+        ...
+
+    def stop(self, code: str, why: str) -> Stop:
+        """Return the exception that ends the run here."""
+        ...
 
 
 class RigidInstants:
@@ -19,14 +61,18 @@ class RigidInstants:
 
     Parameters
     ----------
-    run : EventDrivenRun
-    subsystems : Subsystems
-    work : DeferredWork
+    run : RigidRun
+    contacts : RigidContacts
+
+    Attributes
+    ----------
+    rounding : ndarray, shape (n_rigid,)
+        Largest rounding of the terms of their forces so far, over `contacts.ROUNDING` [F].
     """
 
-    def __init__(self, run: EventDrivenRun, subsystems: Subsystems, work: DeferredWork) -> None:
-        self.run, self.subsystems, self.work = run, subsystems, work
-        self.contacts: RigidContacts = subsystems.rigid
+    def __init__(self, run: RigidRun, contacts: RigidContacts) -> None:
+        self.run, self.contacts = run, contacts
+        self.rounding = np.zeros(len(contacts.laws))
 
     def _inputs(self) -> Array:
         """Inputs and their first two derivatives just after the present time, shape (3, n_inputs)."""
@@ -44,7 +90,7 @@ class RigidInstants:
         d = x.rows @ run.u + x.inputs @ self._inputs()[0]
         size = np.abs(x.rows) @ np.abs(run.u) + x.gap
         for i in np.flatnonzero(d - x.gap > OVERLAP * size).tolist():
-            s = run.laws[x.laws[i]]
+            s = run.system.structure.laws[x.laws[i]]
             why = f"the rigid contact {s.element} ({s.rule}) overlaps by {d[i] - x.gap[i]:.3g} at the start"
             raise run.stop("A505", why)
 
@@ -61,13 +107,13 @@ class RigidInstants:
         near = 1e-12 * (run.largest[0, x.laws] + x.gap) + 1e-13 * max(1.0, run.t) * np.abs(rates)
         touching = held | (d >= x.gap - near)
         fastest = run.largest[1, x.laws]
-        impulse, lost, after = x.impact(rates, touching, fastest)
+        impulse, lost, after = x.impact(rates, touching, self._slow(s))
         run.v = run.v - x.velocity_change @ impulse
-        # moving supports put work in
-        self.work.add(np.array([float(impulse @ (x.inputs @ s[1])), 0.0, lost.sum()]))
+        losses = np.zeros(len(run.branches))
+        losses[x.laws] = lost
+        run.take_impact(float(impulse @ (x.inputs @ s[1])), losses)
         stays = touching & (after >= -ROUNDING * fastest)
         for i, law in enumerate(x.laws):
-            run.energy.dashpot_losses[law] += float(lost[i])
             if not held[i] and (stays[i] or impulse[i] > 0.0):
                 run.transition(law, 0, float(d[i]), float(rates[i]))
             if law in run.tracker.open:
@@ -76,11 +122,29 @@ class RigidInstants:
                 if not held[i]:
                     run.tracker.open[law].peak = np.nan  # the force of an impact is infinite
                 run.transition(law, 0, float(d[i]), float(after[i]))
-        self.open_pulled()
-        self.subsystems.present = []  # the velocities have jumped
 
-    def open_pulled(self) -> None:
+    def _slow(self, inputs: Array) -> Array:
+        """Rates up to which an approach has no rebound, shape (n_rigid,).
+
+        The last of the hops by which a body comes to rest are lost in the rounding of its deformation: a
+        approach at v, with the restitution e, leads to one of the height (e v)^2 / 2a, a being the
+        acceleration that brings the body back.
+        """
+        x, run = self.contacts, self.run
+        pressing = np.maximum(x.free_accelerations(run.branches, run.u, run.v, inputs)[0], 0.0)
+        lost = LOST * STILL * (run.largest[0, x.laws] + x.gap)
+        rebound, e = np.sqrt(2.0 * pressing * lost), x.restitution
+        own = np.divide(rebound, e, out=np.zeros(len(e)), where=e > 0.0)
+        return np.maximum(SLOW * run.largest[1, x.laws], own)
+
+    def open_pulled(self, spectral_radius: float = 0.0) -> None:
         """Open those of the closed rigid contacts whose force would be tensile.
+
+        Parameters
+        ----------
+        spectral_radius : float
+            Where the displacements come from modes that carry the velocities as well: the largest magnitude
+            of their eigenvalues [1/T].
 
         Raises
         ------
@@ -98,12 +162,10 @@ class RigidInstants:
             return
         s = self._inputs()
         free, size = x.free_accelerations(run.branches, run.u, run.v, s)
-        # displacements come from modes that carry the velocities as well
-        size = size + self.subsystems.spectral_radius * (np.abs(x.rows) @ np.abs(run.v))
+        size = size + spectral_radius * (np.abs(x.rows) @ np.abs(run.v))
         force = x.plastic_impulses(free, held)
         parting = held & (force == 0.0) & (free - x.delassus @ force < -ROUNDING * size)
         for i in np.flatnonzero(parting).tolist():
             d, v = x.rows[i] @ run.u + x.inputs[i] @ s[0], x.rows[i] @ run.v + x.inputs[i] @ s[1]
             run.transition(x.laws[i], 0, float(d), float(v))
-        rows = [self.subsystems.reaction_row[i] for i in x.laws]
-        run.largest[0, rows] = np.maximum(run.largest[0, rows], size / np.diag(x.delassus))
+        self.rounding = np.maximum(self.rounding, size / np.diag(x.delassus))

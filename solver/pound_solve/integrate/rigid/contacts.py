@@ -29,11 +29,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from pound_solve.laws.automaton import Branch
+from pound_solve.numerics.matrices import dense, least_squares
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.reduction import ReducedSystem
 
-SLOW = 1e-6  #: share of a contact's fastest rate below which an approach has no rebound
 ROUNDING = 1e-12  #: share of its terms below which an acceleration is rounding
 MAX_IMPACTS = 100_000  #: at one instant
 MAX_PIVOTS = 10_000
@@ -68,7 +68,7 @@ class RigidContacts:
         laws = system.structure.laws
         self.system = system
         self.laws = [i for i, s in enumerate(laws) if s.law.rigid]
-        self.rows, self.inputs = system.law_rows[self.laws], system.law_inputs[self.laws]
+        self.rows, self.inputs = dense(system.law_rows[self.laws]), system.law_inputs[self.laws]
         without_mass = massless(system.mass)
         if (bad := self.rows[:, without_mass].any(axis=1)).any():
             s = laws[self.laws[int(np.argmax(bad))]]
@@ -79,7 +79,7 @@ class RigidContacts:
         with_mass = np.flatnonzero(~without_mass) if self.laws else np.zeros(0, np.intp)
         mass = system.mass[np.ix_(with_mass, with_mass)]
         self.velocity_change = np.zeros(self.rows.T.shape)
-        self.velocity_change[with_mass] = np.linalg.solve(mass, self.rows[:, with_mass].T)
+        self.velocity_change[with_mass] = least_squares(mass, self.rows[:, with_mass].T)
         self.delassus = self.rows @ self.velocity_change
         self.gap = np.array([laws[i].law.p[2] for i in self.laws])
         self.restitution = np.array([laws[i].law.p[1] for i in self.laws])
@@ -115,7 +115,7 @@ class RigidContacts:
             impulse[own] = np.linalg.lstsq(delassus, rates[own], rcond=ROUNDING)[0]
         raise ArithmeticError("the set of rigid contacts that press cannot be found")
 
-    def impact(self, rates: Array, touching: Flags, fastest: Array) -> tuple[Array, Array, Array]:
+    def impact(self, rates: Array, touching: Flags, slow: Array) -> tuple[Array, Array, Array]:
         """Return impulses, energies lost, and the rates after the impacts of one instant, shape (n_rigid,)
         each.
 
@@ -124,8 +124,8 @@ class RigidContacts:
         rates : ndarray, shape (n_rigid,)
             Approaching is positive.
         touching : ndarray of bool, shape (n_rigid,)
-        fastest : ndarray, shape (n_rigid,)
-            Largest rates so far: approaches below `SLOW` times these are without rebound.
+        slow : ndarray, shape (n_rigid,)
+            Approaches up to these rates are without rebound.
 
         Raises
         ------
@@ -134,7 +134,7 @@ class RigidContacts:
         """
         impulse, lost = np.zeros(len(rates)), np.zeros(len(rates))
         for _ in range(MAX_IMPACTS):
-            hit = touching & (rates > SLOW * fastest)
+            hit = touching & (rates > slow)
             if not hit.any():
                 break
             e = float(self.restitution[np.argmax(np.where(hit, rates, 0.0))])
@@ -176,8 +176,8 @@ class RigidContacts:
             ]
         )
         # bodies that move as one cancel in K u, their rounding does not
-        sums = np.abs(terms[:2]).sum(axis=0) + np.abs(system.law_rows).T @ np.abs(force)
-        sums = sums + np.abs(system.damping) @ np.abs(v) + np.abs(system.stiffness) @ np.abs(u)
+        sums = np.abs(terms[:2]).sum(axis=0) + abs(system.law_rows).T @ np.abs(force)
+        sums = sums + abs(system.damping) @ np.abs(v) + abs(system.stiffness) @ np.abs(u)
         size = np.abs(self.velocity_change).T @ sums
         return self.velocity_change.T @ terms.sum(axis=0) + self.inputs @ inputs[2], size
 

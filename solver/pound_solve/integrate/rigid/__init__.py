@@ -1,0 +1,1 @@
+"""Rigid contacts: impacts, and closed contacts that press or part, for all methods that take them."""

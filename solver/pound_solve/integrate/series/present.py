@@ -1,0 +1,68 @@
+"""The present of a run of kernels, as its rigid contacts see and change it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pound_solve.integrate.kernels import laws as law_kernels
+from pound_solve.integrate.kernels.engine import KernelEngine
+from pound_solve.integrate.kernels.recording import log_transition
+from pound_solve.integrate.protocol import Stop
+from pound_solve.laws.automaton import Branch
+from pound_solve.numerics.types import Array
+
+
+class Present:
+    """One instant of a run, see `rigid.instants.RigidRun`.
+
+    Parameters
+    ----------
+    engine : KernelEngine
+        Its kernel has returned, and its transitions are taken in.
+    """
+
+    def __init__(self, engine: KernelEngine) -> None:
+        self.engine, self.system, self.tracker = engine, engine.system, engine.tracker
+        now, laws, back = engine.step.now, engine.laws, np.argsort(engine.order)
+        self.t = float(engine.state.time)
+        self.u, self.v = now.displacement[back], now.velocity[back]
+        self.largest = np.array([laws.largest_deformation, laws.largest_rate])
+        self._branches = [s.branch(engine.law_state(i)) for i, s in enumerate(engine.springs)]
+
+    @property
+    def branches(self) -> Sequence[Branch]:
+        """Present branches of all laws."""
+        return self._branches
+
+    def transition(self, law: int, event_index: int, d: float, v: float) -> None:
+        """Let a law leave its branch at deformation `d` and rate `v`."""
+        own, laws = self.engine, self.engine.laws
+        before = int(laws.branch[law])
+        laws.now.deformation[law], laws.now.rate[law] = d, v
+        law_kernels.transition(laws, own.rules, law, event_index, d, v)
+        log_transition(laws, own.buffers, own.state, law, before, self.t, 0.0)
+        own.fetch_transitions()
+        self._branches[law] = own.springs[law].branch(own.law_state(law))
+
+    def take_impact(self, put_in: float, lost: Array) -> None:
+        """Count the work that moving supports put in at an impact, and what each law lost, (n_laws,)."""
+        works = self.engine.accumulator.works
+        works.input += put_in
+        works.gross_input += abs(put_in)
+        works.contact += float(lost.sum())
+        self.engine.laws.dashpot_loss[:] += lost
+
+    def stop(self, code: str, why: str) -> Stop:
+        """Return the exception that ends the run here."""
+        return self.engine.stop(code, why)
+
+    def hand_back(self) -> None:
+        """Let the run go on from here."""
+        laws, now, order = self.engine.laws, self.engine.step.now, self.engine.order
+        now.displacement[:], now.velocity[:] = self.u[order], self.v[order]
+        laws.largest_deformation[:], laws.largest_rate[:] = self.largest
+        inputs = self.system.excitation.value(self.t, 1)
+        laws.now.rate[:] = self.system.law_rows @ self.v + self.system.law_inputs @ inputs
+        self.engine.state.stale = 1

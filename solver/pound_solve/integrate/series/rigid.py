@@ -1,0 +1,96 @@
+r"""Rigid contacts in a power series: kernels, and the arrays they work on.
+
+While contacts are held closed their deformations stay at the gaps, by forces r that are a series of their
+own.  With the coefficient k of the motion as it would be without them, and the rows B, the inverse masses
+and :math:`G = B M^{-1} B^T` of `rigid.contacts`,
+
+.. math:: G\,x_k = B c_k + B_s s_k - g\,\delta_{k0}, \qquad c_k \leftarrow c_k - M^{-1} B^T x_k, \qquad
+          r_{k-2} = \frac{k(k-1)}{h^2}\, x_k
+
+:math:`B_s s_k` being the part of the inputs and g the gaps.  The first two coefficients, which are the
+present state, are freed of their rounding so in every step.  A contact parts where its force falls to zero.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.rigid.contacts import ROUNDING, RigidContacts
+from pound_solve.integrate.series.state import Rigid, Series
+from pound_solve.numerics.types import Array, Flags, Index
+
+
+def allocate(contacts: RigidContacts, order: Index, n_laws: int, terms: int) -> Rigid:
+    """Lay out the rigid contacts for series of so many `terms`, the unknowns in an `order`."""
+    n = len(contacts.laws)
+    number = np.full(n_laws, -1)
+    number[contacts.laws] = np.arange(n)
+    return Rigid(
+        laws=np.array(contacts.laws, np.int64),
+        number=number,
+        gap=contacts.gap,
+        velocity_change=np.ascontiguousarray(contacts.velocity_change[order].T),
+        held=np.zeros(n, np.int64),
+        n_held=np.zeros(1, np.int64),
+        is_held=np.zeros(n, bool),
+        inverse=np.zeros((n, n)),
+        violation=np.zeros(n),
+        force=np.zeros((n, terms)),
+        largest=np.zeros(n),
+    )
+
+
+def take_over(rigid: Rigid, contacts: RigidContacts, held: Flags) -> None:
+    """Take over which contacts are closed."""
+    at = np.flatnonzero(held)
+    rigid.is_held[:], rigid.n_held[0], rigid.held[: len(at)] = held, len(at), at
+    inverse = np.linalg.pinv(contacts.delassus[np.ix_(at, at)], rcond=ROUNDING)
+    rigid.inverse[: len(at), : len(at)] = inverse
+    rigid.force[:] = 0.0
+
+
+def is_held(rigid: Rigid, law: int) -> bool:
+    """Whether a law is a rigid contact that is closed."""
+    return bool(rigid.number[law] >= 0 and rigid.is_held[rigid.number[law]])
+
+
+def hold(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
+    """Correct the coefficients `k` of the unknowns with mass so that closed contacts stay closed.
+
+    The inputs have `top` coefficients.
+    """
+    rigid, c = series.rigid, series.motion[k]
+    n = rigid.n_held[0]
+    for q in range(n):
+        r = rigid.held[q]
+        law = rigid.laws[r]
+        off = along(laws.rows, law, c)
+        if k < top:
+            for j in range(series.inputs.shape[1]):
+                off += laws.inputs[law, j] * series.inputs[k, j]
+        rigid.violation[q] = off - rigid.gap[r] if k == 0 else off
+    for q in range(n):
+        r, x = rigid.held[q], 0.0
+        for p in range(n):
+            x += rigid.inverse[q, p] * rigid.violation[p]
+        for i in range(len(c)):
+            c[i] -= rigid.velocity_change[r, i] * x
+        if k >= 2:
+            rigid.force[r, k - 2] = x * (k * (k - 1)) / (h * h)
+
+
+def force_at(force: Array, terms: int, s: float) -> float:
+    """Force of a closed contact at the place `s`, from its series."""
+    out = 0.0
+    for k in range(terms - 2, -1, -1):
+        out = out * s + force[k]
+    return out
+
+
+def press(laws: Laws, rigid: Rigid, terms: int, s: float) -> None:
+    """Make the forces at the place `s` those of the laws' branches."""
+    for q in range(rigid.n_held[0]):
+        r = rigid.held[q]
+        laws.offset[rigid.laws[r]] = force_at(rigid.force[r], terms, s)
