@@ -41,6 +41,7 @@ from pound_solve.integrate.protocol import (
     Start,
     Stop,
     goals,
+    not_in_series,
     not_linear,
     refuse_rigid,
     rounding_check,
@@ -120,7 +121,7 @@ class Replay:
 
 def has_series(system: ReducedSystem) -> bool:
     """Return whether TAYLOR is applicable."""
-    return not not_linear(system) and jit.available()
+    return not not_in_series(system) and jit.available()
 
 
 def cost_of_radian(system: ReducedSystem) -> float:

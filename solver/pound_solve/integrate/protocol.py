@@ -167,6 +167,16 @@ def not_linear(system: ReducedSystem) -> str:
     return "" if curved is None else f"the law {curved.rule} of element {curved.element} is curved"
 
 
+def not_in_series(system: ReducedSystem) -> str:
+    """Reason why the motion of a reduced system has no power series that is known; empty where it has."""
+    laws, without_mass = system.structure.laws, light(system)
+    curved = [i for i, s in enumerate(laws) if s.law.curved]
+    for i in curved:
+        if laws[i].law.rule.powers is None or without_mass[i] or any(s.law.rigid for s in laws):
+            return not_linear(system)
+    return not_linear(system) if system.structure.corotational else ""
+
+
 def light(system: ReducedSystem) -> Flags:
     """Which laws hold an unknown without mass, whose velocity may jump, shape (n_laws,): the force of their
     dashpots is only known when the velocities have settled.

@@ -31,6 +31,7 @@ TransitionFunction = Callable[[Numbers, int, Numbers, int, float, float], tuple[
 EnergyFunction = Callable[[Numbers, int, Numbers, float, float], float]
 CurveFunction = Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]]
 PowerFunction = Callable[[Numbers, int, Numbers, float, float], float]
+PowersFunction = Callable[[Numbers, int, Numbers], tuple[float, float, float, float, float]]
 
 NEVER = (0.0, 0.0, -1.0)  #: the event function of an event that never occurs
 # event functions of a change of sign of the rate
@@ -132,6 +133,10 @@ class Rule:
         ``power(p, at, m, d, v) -> power`` that a rule with a `curve` dissipates by the rate `v`.  None:
         that of the rate-dependent part of the force, see `rate_power`.  A linear
         branch dissipates ``c v^2``.
+    powers : callable or None
+        ``powers(p, at, m) -> (k, n, c, q, pulls)``: the force of a pressed contact with a `curve` is
+        ``k x^n + c x^q v`` at the overlap ``x = d - p[2]``, and, unless `pulls` is above zero, nothing
+        where that would pull.  None: it is not of this kind.
     parameters, variables : int
         How many numbers ``p`` and ``m`` have.
     """
@@ -143,6 +148,7 @@ class Rule:
     recoverable: EnergyFunction = on_spring
     curve: CurveFunction | None = None
     power: PowerFunction | None = None
+    powers: PowersFunction | None = None
     parameters: int = field(kw_only=True)
     variables: int = field(kw_only=True)
 

@@ -19,6 +19,7 @@ from pound_solve.laws.automaton import (
     EnergyFunction,
     Numbers,
     PowerFunction,
+    PowersFunction,
     Rule,
     TransitionFunction,
     rate_independent,
@@ -43,6 +44,7 @@ class Tables(NamedTuple):
     recoverable: tuple[EnergyFunction, ...]
     curve: tuple[CurveFunction, ...]
     power: tuple[PowerFunction, ...]
+    powers: tuple[PowersFunction, ...]
 
 
 def straight(
@@ -50,6 +52,11 @@ def straight(
 ) -> tuple[float, float, float, float]:
     """Stand in for the curve of a rule that has none."""
     return 0.0, 0.0, 0.0, 0.0
+
+
+def no_powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float, float]:
+    """Stand in for the powers of a rule that has none."""
+    return 0.0, 1.0, 0.0, 1.0, 0.0
 
 
 def missing(*_: Any) -> Any:
@@ -144,6 +151,12 @@ def power_by_rate(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
     return rate_power(own, p[:parameters], at, m[:variables], d, v)
 
 
+def powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float, float]:
+    """Powers of a rule."""
+    found: tuple[float, float, float, float, float] = own(p[:parameters], at, m[:variables])
+    return found
+
+
 @cache
 def functions(rule: Rule) -> tuple[Function, ...]:
     """Functions of a rule in the order of `Tables`, each for the lengths `PARAMETERS` and `VARIABLES`.
@@ -178,6 +191,7 @@ def functions(rule: Rule) -> tuple[Function, ...]:
         else adapted(power_by_rate, rule.curve)
         if rule.power is None
         else adapted(power, rule.power),
+        no_powers if rule.powers is None else adapted(powers, rule.powers),
     )
 
 
@@ -199,6 +213,7 @@ def tables(rules: Sequence[Rule]) -> Tables:
             f8(p, i8, m, f8, f8),
             t.UniTuple(f8, 4)(p, i8, m, f8, f8, f8),
             f8(p, i8, m, f8, f8),
+            t.UniTuple(f8, 5)(p, i8, m),
         ]
     found = [functions(r) for r in rules]
     found += found[-1:] * (-len(found) % ROOM)

@@ -135,7 +135,8 @@ class RigidInstants:
         lost = LOST * STILL * (run.largest[0, x.laws] + x.gap)
         rebound, e = np.sqrt(2.0 * pressing * lost), x.restitution
         own = np.divide(rebound, e, out=np.zeros(len(e)), where=e > 0.0)
-        return np.maximum(SLOW * run.largest[1, x.laws], own)
+        out: Array = np.maximum(SLOW * run.largest[1, x.laws], own)
+        return out
 
     def open_pulled(self, spectral_radius: float = 0.0) -> None:
         """Open those of the closed rigid contacts whose force would be tensile.

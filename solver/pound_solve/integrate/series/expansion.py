@@ -17,6 +17,7 @@ import numpy as np
 
 from pound_solve.integrate.kernels.products import multiply, spread
 from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Step
+from pound_solve.integrate.series.curved import add_contacts, right_up_to
 from pound_solve.integrate.series.massless import add_massless
 from pound_solve.integrate.series.rigid import hold
 from pound_solve.integrate.series.springs import add_product, deformation
@@ -106,6 +107,7 @@ def next_term(
         law = springs.dashpots[q]
         force = rate * laws.damping[law] * deformation(laws, series, k + 1, top, law)
         spread(laws.rows, law, -force, new)
+    add_contacts(laws, series, k, h, top, new)
     below = 1.0 / ((k + 1) * (k + 2))
     if linear.diagonal:
         for i in range(n):
@@ -164,7 +166,8 @@ def expand(
             most = max(energy_of_term(linear, series, 2, h), last, own)
         if own + last > QUIET * most:
             lengths.carried = terms + CHECK
-        if terms > top and own + last <= SMALL * SMALL * most:
+        enough = terms > top and own + last <= SMALL * SMALL * most
+        if enough and right_up_to(series.curved, terms, 1.0) == 1.0:
             break
     if not own + last < np.inf:
         return terms, np.nan
@@ -174,7 +177,7 @@ def expand(
         end = min(end, (SMALL * SMALL * most / own) ** (0.5 / terms))
     if last > 0.0:
         end = min(end, (SMALL * SMALL * most / last) ** (0.5 / (terms - 1)))
-    return terms, end
+    return terms, right_up_to(series.curved, terms, end)
 
 
 def derived(k: int, order: int, h: float) -> float:

@@ -7,7 +7,8 @@ import numpy as np
 from pound_solve.integrate.energy import Works, runs_away
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.kernels.consistency import make_consistent
-from pound_solve.integrate.kernels.laws import linear_force, transition
+from pound_solve.integrate.kernels.laws import drag as law_drag
+from pound_solve.integrate.kernels.laws import law_force, transition
 from pound_solve.integrate.kernels.products import evaluate_inputs, form_load, multiply
 from pound_solve.integrate.kernels.recording import (
     log_transition,
@@ -28,6 +29,7 @@ from pound_solve.integrate.kernels.state import (
     Step,
 )
 from pound_solve.integrate.kernels.work import load_on_nodes, support_power
+from pound_solve.integrate.series.curved import ASLEEP, change_phase, enter
 from pound_solve.integrate.series.expansion import (
     CHECK,
     GROW,
@@ -39,8 +41,9 @@ from pound_solve.integrate.series.expansion import (
     law_at,
     next_term,
 )
+from pound_solve.integrate.series.forces import count_largest, press
 from pound_solve.integrate.series.massless import factorise, violated
-from pound_solve.integrate.series.rigid import is_held, press
+from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.springs import add_up, deformation
 from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.integrate.series.tracking import event_of, first_event, track_laws, track_outputs
@@ -67,16 +70,18 @@ def add_law_losses(
     weight: float,
     moved: bool,
     works: Works,
+    rules: Tables,
 ) -> None:
     """Add up the losses in the laws' dashpots and the contacts' impulses at one Gauss point."""
-    press(laws, series.rigid, terms, s)
+    press(laws, series, terms, s)
     for i in range(len(laws.rule)):
-        drag = laws.damping[i]
+        drag, curved = laws.damping[i], series.curved.number[i]
+        awake = curved >= 0 and series.curved.phase[curved] != ASLEEP
         pressed = laws.contact[i] and (laws.stiffness[i] != 0.0 or laws.offset[i] != 0.0)
-        if drag != 0.0 or moved or pressed:
+        if drag != 0.0 or moved or pressed or awake:
             d, v = law_at(series, terms, s, h, i)
             laws.trial.deformation[i], laws.trial.rate[i] = d, v
-            lost = weight * drag * v * v
+            lost = weight * v * (law_drag(laws, rules, i, d, v) if awake else drag * v)
             laws.dashpot_loss[i] += lost
             if laws.contact[i]:
                 works.contact += lost
@@ -88,7 +93,7 @@ def add_law_losses(
 @flat
 def add_works(
     linear: LinearSystem, laws: Laws, step: Step, series: Series, coefs: Array, begin: float, terms: int,
-    carried: int, h: float, end: float, works: Works,
+    carried: int, h: float, end: float, works: Works, rules: Tables,
 ) -> None:  # fmt: skip
     """Add up the works over the step to `end`, by Gauss's rule."""
     moved, trial = len(linear.support_damping) > 0, step.trial
@@ -100,7 +105,7 @@ def add_works(
         multiply(linear.damping, trial.velocity, step.product)
         works.damping += weight * dot(trial.velocity, step.product)
         evaluate_inputs(coefs, begin + s * h, trial.inputs, trial.input_rates)
-        add_law_losses(laws, series, terms, s, h, weight, moved, works)
+        add_law_losses(laws, series, terms, s, h, weight, moved, works, rules)
         if moved:
             evaluate(series, terms, s, h, 0, trial.displacement)
             evaluate(series, terms, s, h, 2, trial.acceleration)
@@ -127,11 +132,8 @@ def accept(laws: Laws, now: MotionState, series: Series, terms: int, h: float, e
         laws.now.deformation[i], laws.now.rate[i] = d, v
         laws.largest_deformation[i] = max(laws.largest_deformation[i], abs(d))
         laws.largest_rate[i] = max(laws.largest_rate[i], abs(v))
-    rigid = series.rigid
-    press(laws, rigid, terms, end)
-    for q in range(rigid.n_held[0]):
-        r = rigid.held[q]
-        rigid.largest[r] = max(rigid.largest[r], abs(laws.offset[rigid.laws[r]]))
+    press(laws, series, terms, end)
+    count_largest(laws, series)
 
 
 @flat
@@ -160,13 +162,15 @@ def store_looks(
 
 
 def change_branch(
-    laws: Laws, buffers: Buffers, rules: Tables, run: Run, t: float, event: LocatedEvent
+    laws: Laws, buffers: Buffers, rules: Tables, series: Series, run: Run, t: float, event: LocatedEvent
 ) -> None:
     """Let a law leave its branch."""
     law = event.law
     before, d, v = laws.branch[law], laws.now.deformation[law], laws.now.rate[law]
     transition(laws, rules, law, event.event_index, d, v)
-    force = linear_force(laws, law, d, v)
+    if series.curved.number[law] >= 0:
+        enter(laws, rules, series.curved, law)
+    force = law_force(laws, rules, law, d, v)
     if before != laws.branch[law]:
         log_transition(laws, buffers, run, law, before, t, force)
     run.events += 1
@@ -180,12 +184,12 @@ def change_branches(
 ) -> None:  # fmt: skip
     """Let a law leave its branch, and others whose events are at the same instant."""
     now, instant = run.time, INSTANT * max(run.time, h)
-    change_branch(laws, buffers, rules, run, now, event)
+    change_branch(laws, buffers, rules, series, run, now, event)
     for i in range(len(laws.rule) if len(series.massless.unknown) == 0 else 0):  # else `settle` decides
         if i != event.law and series.rigid.number[i] < 0:
             own = event_of(laws, series, terms, h, min(event.time + AHEAD, end), i)
-            if own.law >= 0 and own.time <= event.time + instant / h:
-                change_branch(laws, buffers, rules, run, now, own)
+            if own.law >= 0 and own.event_index >= 0 and own.time <= event.time + instant / h:
+                change_branch(laws, buffers, rules, series, run, now, own)
 
 
 def count_instant(run: Run, h: float) -> None:
@@ -201,7 +205,7 @@ def renew(linear: LinearSystem, laws: Laws, series: Series, run: Run) -> bool:
     """
     held = series.massless
     if run.stale:
-        add_up(linear, laws, series.springs, series.rigid)
+        add_up(linear, laws, series)
         fault = factorise(laws, held) if len(held.unknown) else -1
         if fault >= 0:
             run.fault = held.unknown[fault]
@@ -232,7 +236,7 @@ def settle(
     123-130.
     """
     held, now = series.massless, step.now
-    if len(held.unknown) == 0 and series.rigid.n_held[0] == 0:
+    if len(held.unknown) == 0 and series.rigid.n_held[0] == 0 and len(series.curved.laws) == 0:
         return DONE
     for _ in range(50 + 4 * len(laws.rule)):
         if not renew(linear, laws, series, run):
@@ -246,9 +250,9 @@ def settle(
             laws.now.rate[i] = deformation(laws, series, 1, len(coefs), i)
         law, event = violated(laws, held)
         if law < 0:
-            press(laws, series.rigid, 2, 0.0)
+            press(laws, series, 2, 0.0)
             return DONE
-        change_branch(laws, buffers, rules, run, run.time, LocatedEvent(law, event, 0.0))
+        change_branch(laws, buffers, rules, series, run, run.time, LocatedEvent(law, event, 0.0))
         run.stale = 1
     return CHATTER
 
@@ -269,7 +273,7 @@ def step_length(lengths: Lengths, t: float, left: float) -> float:
 
 def take(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, series: Series, lengths: Lengths,
-    coefs: Array, begin: float, terms: int, h: float, end: float, works: Works, run: Run,
+    coefs: Array, begin: float, terms: int, h: float, end: float, works: Works, run: Run, rules: Tables,
 ) -> None:  # fmt: skip
     """Take the step up to its place `end`: peaks, looks, works, and the motion there."""
     t = run.time
@@ -277,7 +281,9 @@ def take(
     track_laws(laws, step, series, terms, h, end, t, len(linear.monitored_constants))
     if end > 0.0:
         store_looks(step.trial, buffers, series, terms, h, end, run, t)
-        add_works(linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, end, works)
+        add_works(
+            linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, end, works, rules
+        )
         accept(laws, step.now, series, terms, h, end)
     run.steps += 1
 
@@ -316,7 +322,7 @@ def stride(
         lengths.next = max(h * min(fit * TERMS / terms, GROW), lengths.next if end == 1.0 else 0.0)
         event = first_event(laws, series, terms, h, end)
         at = event.time
-        take(linear, laws, step, buffers, series, lengths, coefs, begin, terms, h, at, works, run)
+        take(linear, laws, step, buffers, series, lengths, coefs, begin, terms, h, at, works, run, rules)
         if event.law < 0:
             if not whole:
                 lengths.shortest = min(lengths.shortest, at * h)
@@ -327,6 +333,9 @@ def stride(
         if run.same_instant > 50 + 4 * len(laws.rule):
             run.fault = event.law
             return CHATTER
+        if event.event_index < 0:
+            change_phase(laws, series.curved, lengths, event.law, event.event_index)
+            continue
         if series.rigid.number[event.law] >= 0:
             run.fault = event.law
             return STRIKE

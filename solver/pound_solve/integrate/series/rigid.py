@@ -19,7 +19,7 @@ from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.rigid.contacts import ROUNDING, RigidContacts
 from pound_solve.integrate.series.state import Rigid, Series
-from pound_solve.numerics.types import Array, Flags, Index
+from pound_solve.numerics.types import Flags, Index
 
 
 def allocate(contacts: RigidContacts, order: Index, n_laws: int, terms: int) -> Rigid:
@@ -79,18 +79,3 @@ def hold(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
             c[i] -= rigid.velocity_change[r, i] * x
         if k >= 2:
             rigid.force[r, k - 2] = x * (k * (k - 1)) / (h * h)
-
-
-def force_at(force: Array, terms: int, s: float) -> float:
-    """Force of a closed contact at the place `s`, from its series."""
-    out = 0.0
-    for k in range(terms - 2, -1, -1):
-        out = out * s + force[k]
-    return out
-
-
-def press(laws: Laws, rigid: Rigid, terms: int, s: float) -> None:
-    """Make the forces at the place `s` those of the laws' branches."""
-    for q in range(rigid.n_held[0]):
-        r = rigid.held[q]
-        laws.offset[rigid.laws[r]] = force_at(rigid.force[r], terms, s)

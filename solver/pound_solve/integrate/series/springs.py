@@ -13,7 +13,7 @@ import numpy as np
 from pound_solve.integrate.kernels.allocation import coupled_pairs
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Rows
-from pound_solve.integrate.series.state import Rigid, Series, Springs
+from pound_solve.integrate.series.state import Series, Springs
 from pound_solve.numerics.types import Array
 
 
@@ -50,8 +50,9 @@ def allocate(n: int, rows: Rows, inputs: Array) -> Springs:
     )
 
 
-def add_up(linear: LinearSystem, laws: Laws, springs: Springs, rigid: Rigid) -> None:
-    """Add up the laws on their present branches; forces of rigid contacts vary (see `rigid`)."""
+def add_up(linear: LinearSystem, laws: Laws, series: Series) -> None:
+    """Add up the laws on their present branches; forces of rigid and of curved contacts are series."""
+    springs, rigid, curved = series.springs, series.rigid.number, series.curved.number
     values, moved, n = springs.rows.values, springs.inputs, 0
     for q in range(len(values)):
         values[q] = 0.0
@@ -60,7 +61,7 @@ def add_up(linear: LinearSystem, laws: Laws, springs: Springs, rigid: Rigid) -> 
         for j in range(len(moved)):
             moved[j, i] = linear.inputs[j, i]
     for i in range(len(laws.rule)):
-        k, offset = laws.stiffness[i], laws.offset[i] if rigid.number[i] < 0 else 0.0
+        k, offset = laws.stiffness[i], laws.offset[i] if rigid[i] < 0 and curved[i] < 0 else 0.0
         for q in range(springs.pair_pointers[i], springs.pair_pointers[i + 1]):
             values[springs.pair_places[q]] += k * springs.pair_values[q]
         for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):

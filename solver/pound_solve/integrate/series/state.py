@@ -15,6 +15,7 @@ class Lengths(Protocol):
     next: float  #: length to try next
     kinetic: float  #: most of v M v so far
     shortest: float  #: step
+    before: float  #: length that was next when a curved contact began to press; 0 if none did
     carried: int  #: terms of the present series that carry energy
 
 
@@ -148,6 +149,35 @@ class Rigid(NamedTuple):
     largest: Array
 
 
+class Curved(NamedTuple):
+    """The curved contacts, numbered among themselves (see `curved`).
+
+    Attributes
+    ----------
+    laws : ndarray, shape (n_curved,)
+    number : ndarray, shape (n_laws,)
+        Place of a law in `laws`, -1 for others.
+    numbers : ndarray, shape (n_curved, 5)
+        What `Rule.powers` gives on the present branch.
+    phase : ndarray, shape (n_curved,)
+        Whether a force acts.
+    power : ndarray, shape (n_curved, 2, TERMS + 1)
+        Coefficients of the powers of the overlap, of spring and dashpot.
+    force : ndarray, shape (n_curved, TERMS + 1)
+        Coefficients of the forces.
+    largest : ndarray, shape (n_curved,)
+        Largest force so far.
+    """
+
+    laws: Index
+    number: Index
+    numbers: Array
+    phase: Index
+    power: Array
+    force: Array
+    largest: Array
+
+
 class Series(NamedTuple):
     """The series of a step.
 
@@ -169,6 +199,7 @@ class Series(NamedTuple):
     springs : Springs
     massless : Massless
     rigid : Rigid
+    curved : Curved
     """
 
     motion: Array
@@ -182,3 +213,4 @@ class Series(NamedTuple):
     springs: Springs
     massless: Massless
     rigid: Rigid
+    curved: Curved

@@ -28,6 +28,7 @@ import numpy as np
 
 from pound_deck.schema import Spec
 from pound_solve.integrate.events import polynomial_roots
+from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import PAUSE
 from pound_solve.integrate.kernels.state import CHATTER, RUNAWAY, Scheme
@@ -40,14 +41,14 @@ from pound_solve.integrate.protocol import (
     Start,
     Stop,
     goals,
-    not_linear,
+    not_in_series,
     refuse_rigid,
     remedy,
     rounding_check,
 )
 from pound_solve.integrate.rigid.contacts import MasslessContact, RigidContacts
 from pound_solve.integrate.rigid.instants import RigidInstants
-from pound_solve.integrate.series import expansion, march, massless, rigid, springs, state
+from pound_solve.integrate.series import curved, expansion, march, massless, rigid, springs, state
 from pound_solve.integrate.series.massless import STIFFNESS
 from pound_solve.integrate.series.present import Present
 from pound_solve.integrate.tracker import Peaks
@@ -109,7 +110,11 @@ class Taylor(KernelEngine):
             springs=springs.allocate(system.size, self.laws.rows, self.linear.inputs),
             massless=self.massless,
             rigid=rigid.allocate(self.contacts, o, len(laws), terms),
+            curved=curved.allocate(np.array([s.law.curved for s in laws], bool), terms),
         )
+        for i in self.series.curved.laws.tolist():
+            law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
+            curved.enter(self.laws, self.rules, self.series.curved, i)
         self._hold()
         self.lengths: state.Lengths = record(state.Lengths)
         self.lengths.next, self.lengths.shortest = length, np.inf
@@ -215,9 +220,9 @@ def integrate(
         changes at one instant, too many steps, numbers beyond all bounds, or an interrupt.
     """
     begin = float(start.times[0])
-    if why := not_linear(system):
+    if why := not_in_series(system):
         refuse_rigid(system, start, "TAYLOR")
-        raise Stop("A505", begin, f"TAYLOR needs linear pieces, and {why}: AUTO takes steps")
+        raise Stop("A505", begin, f"TAYLOR finds no power series where {why}: AUTO takes steps")
     try:
         contacts = RigidContacts(system)
     except MasslessContact as err:

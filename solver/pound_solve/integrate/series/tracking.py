@@ -9,6 +9,20 @@ from pound_solve.integrate.events.protocol import LocatedEvent, none
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.series.curved import (
+    ACTIVE,
+    ASLEEP,
+    GAP,
+    PRESS_AGAIN,
+    PULLS,
+    SILENT,
+    SLEEP,
+    STOP_PULLING,
+    WAKE,
+    K,
+    touch,
+)
+from pound_solve.integrate.series.forces import copy_force, has_series
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.state import Series
 
@@ -16,13 +30,34 @@ from pound_solve.integrate.series.state import Series
 def parting(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
     """The instant at which closed rigid contact `i` would pull, before the place `end`, see `none`."""
     r, p = series.rigid.number[i], series.polynomial[POLYNOMIAL]
-    force, still = series.rigid.force[r], STILL * series.rigid.largest[r]
-    for k in range(terms + 1):
-        p[k] = -force[k] if k < terms - 1 else 0.0
+    still = STILL * series.rigid.largest[r]
+    copy_force(series, terms, i, -1.0, p)
     if p[0] > still:  # the force has jumped
         return LocatedEvent(i, 0, 0.0)
     at = first_rise(series.polynomial, terms, end, still)
     return LocatedEvent(i, 0, at) if at >= 0.0 else none(end)
+
+
+def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: int) -> LocatedEvent:
+    """The instant at which curved contact `i` begins or ceases to have a force, or the `first` event."""
+    curved, r = series.curved, series.curved.number[i]
+    phase, d, p = curved.phase[r], series.deformation[i], series.polynomial[POLYNOMIAL]
+    if curved.numbers[r, K] == 0.0:
+        return first
+    sign = 1.0 if phase == ASLEEP else -1.0
+    for k in range(terms + 1):
+        p[k] = sign * d[k]
+    p[0] -= sign * (laws.parameters[i, GAP] + touch(laws, i))
+    at = first_rise(series.polynomial, terms, first.time, 0.0)
+    if at >= 0.0 and (first.law < 0 or at < first.time):
+        first = LocatedEvent(i, WAKE if phase == ASLEEP else SLEEP, at)
+    if phase == SILENT or (phase == ACTIVE and curved.numbers[r, PULLS] == 0.0):
+        sign = 1.0 if phase == SILENT else -1.0
+        copy_force(series, terms, i, sign, p)
+        at = first_rise(series.polynomial, terms, first.time, STILL * curved.largest[r])
+        if at >= 0.0 and (first.law < 0 or at < first.time):
+            first = LocatedEvent(i, PRESS_AGAIN if phase == SILENT else STOP_PULLING, at)
+    return first
 
 
 def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: int) -> LocatedEvent:
@@ -44,7 +79,7 @@ def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: in
         at = first_rise(series.polynomial, terms, first.time, STILL * scale)
         if at >= 0.0 and (first.law < 0 or at < first.time):
             first = LocatedEvent(i, e, at)
-    return first
+    return phase_event(laws, series, terms, first, i) if series.curved.number[i] >= 0 else first
 
 
 def first_event(laws: Laws, series: Series, terms: int, h: float, end: float) -> LocatedEvent:
@@ -107,10 +142,8 @@ def track_laws(
             count_crest(laws, step, series, terms, h, end, t, first + i, -1)
         own = first + len(laws.rule) + i
         stiffness, damping = laws.stiffness[i], laws.damping[i] if laws.viscous[i] else 0.0
-        if is_held(series.rigid, i):
-            force_series = series.rigid.force[series.rigid.number[i]]
-            for k in range(terms + 1):
-                p[k] = force_series[k] if k < terms - 1 else 0.0
+        if has_series(series, i):
+            copy_force(series, terms, i, 1.0, p)
             count_crest(laws, step, series, terms, h, end, t, own, i)
             continue
         far *= abs(stiffness)

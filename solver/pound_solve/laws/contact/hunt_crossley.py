@@ -13,8 +13,9 @@ overlap,
 .. math:: v(\delta) = \sqrt{\frac{k\delta^{n+1}}{(n+1)\,m\,\varphi(d)}}, \qquad
           \varphi(d) = \frac{d - \ln(1 + d)}{d^2},
 
-if that is larger: no free impact gets there, so that none is changed and no smallest speed has to be
-chosen.  The damping then is :math:`d\sqrt{(n+1)\varphi k m}\;\delta^{(n-1)/2}\dot\delta`, as of
+if that is larger, on a branch of its own: no free impact gets there, so that none is changed and no
+smallest speed has to be chosen.  The damping then is
+:math:`d\sqrt{(n+1)\varphi k m}\;\delta^{(n-1)/2}\dot\delta`, as of
 POWER_LAW_DAMPED.  Where the bodies are pulled apart faster than :math:`v_0/d` the force is zero: it never
 pulls.
 """
@@ -46,25 +47,44 @@ from pound_solve.laws.contact.power import (
     stiffness_unit,
 )
 
+BEYOND = 2  #: branch of overlaps that no free impact reaches
+
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative; the internal variable is the approach speed."""
-    return (PRESSED if p[2] < 0.0 else OPEN), (0.0,)
+    return (BEYOND if p[2] < 0.0 else OPEN), (0.0,)
+
+
+def reach(p: Numbers, m: Numbers) -> float:
+    """Overlap that a free impact reaches; the slow damping is the larger one up to there."""
+    k, n, _, constant, slow = p[:5]
+    return (slow * m[0] / (constant * k)) ** (2.0 / (n + 1.0)) if constant > 0.0 else math.inf
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure, overlap = closure - gap."""
-    return linear(0.0, 0.0, above(p[2]) if at == OPEN else below(p[2]))
+    if at == OPEN:
+        return linear(0.0, 0.0, above(p[2]))
+    if m[0] == 0.0:  # all overlaps are beyond
+        return linear(0.0, 0.0, below(p[2]))
+    far = p[2] + reach(p, m)
+    if far == math.inf:
+        return linear(0.0, 0.0, below(p[2]))
+    return linear(0.0, 0.0, below(p[2]), above(far) if at == PRESSED else below(far))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, with the approach speed, or part."""
-    return (PRESSED, (max(v, 0.0),)) if at == OPEN else (OPEN, (0.0,))
+    """Touch, with the approach speed, go beyond the reach of a free impact and come back, or part."""
+    if at == OPEN:
+        return (PRESSED, (v,)) if v > 0.0 else (BEYOND, (0.0,))
+    if event == 1:
+        return (BEYOND if at == PRESSED else PRESSED), m
+    return OPEN, (0.0,)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy of the contact spring."""
-    return spring_energy(p[0], p[1], d - p[2]) if at == PRESSED else 0.0
+    return 0.0 if at == OPEN else spring_energy(p[0], p[1], d - p[2])
 
 
 def curve(
@@ -77,27 +97,37 @@ def curve(
     x = d - gap
     work = spring_energy(k, n, x) - spring_energy(k, n, d0 - gap)
     spring = spring_force(k, n, x)
-    c = drag(slow, n, x)
-    slope = drag_slope(k, n, mass, x, v, c)
-    if m[0] > 0.0 and constant * spring <= c * m[0]:
+    if at == PRESSED:
         c = constant * spring / m[0]
         slope = n * c * v / x if x > 0.0 else 0.0
+    else:
+        c = drag(slow, n, x)
+        slope = drag_slope(k, n, mass, x, v, c)
     force = spring + c * v
     if force <= 0.0:
         return 0.0, 0.0, 0.0, work
     return force, n * spring / x + slope, c, work
 
 
+def powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float, float]:
+    """Force as powers of the overlap, see `Rule`."""
+    k, n, _, constant, slow = p[:5]
+    if at == OPEN:
+        return 0.0, n, 0.0, n, 0.0
+    return (k, n, constant * k / m[0], n, 0.0) if at == PRESSED else (k, n, slow, 0.5 * (n - 1.0), 0.0)
+
+
 RULE = Rule(
     (
         *BranchKind.OPEN.named("open"),
-        *BranchKind.PRESSED.named("pressed"),
+        *BranchKind.PRESSED.named("pressed", "pressed, beyond"),
     ),
     start,
     branch,
     transition,
     recoverable,
     curve,
+    powers=powers,
     parameters=6,
     variables=1,
 )

@@ -64,6 +64,12 @@ def curve(
     return spring + c * v, stiffness + drag_slope(k, n, mass, x, v, c), c, work
 
 
+def powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float, float]:
+    """Force as powers of the overlap, see `Rule`."""
+    k, n, _, c = p[:4]
+    return (0.0 if at == OPEN else k), n, (c if at == APPROACH else 0.0), 0.5 * (n - 1.0), 0.0
+
+
 RULE = Rule(
     BRANCHES,
     start,
@@ -71,6 +77,7 @@ RULE = Rule(
     transition,
     recoverable,
     curve,
+    powers=powers,
     parameters=5,
     variables=0,
 )

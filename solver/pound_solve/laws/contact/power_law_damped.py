@@ -25,10 +25,12 @@ from pound_solve.laws.automaton import (
     Law,
     Numbers,
     Rule,
+    above,
+    below,
+    linear,
 )
 from pound_solve.laws.contact import constants, restitution
-from pound_solve.laws.contact.hunt_crossley import branch, recoverable, start, transition
-from pound_solve.laws.contact.kelvin_voigt import OPEN, TENSION, Built
+from pound_solve.laws.contact.kelvin_voigt import OPEN, PRESSED, TENSION, Built
 from pound_solve.laws.contact.power import (
     drag,
     drag_slope,
@@ -37,6 +39,26 @@ from pound_solve.laws.contact.power import (
     spring_force,
     stiffness_unit,
 )
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Open, or pressed where the gap is negative."""
+    return (PRESSED if p[2] < 0.0 else OPEN), ()
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Deformation is the closure, overlap = closure - gap."""
+    return linear(0.0, 0.0, above(p[2]) if at == OPEN else below(p[2]))
+
+
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Touch or part."""
+    return (PRESSED if at == OPEN else OPEN), m
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy of the contact spring."""
+    return 0.0 if at == OPEN else spring_energy(p[0], p[1], d - p[2])
 
 
 def curve(
@@ -57,6 +79,12 @@ def curve(
     return force, max(n * spring / x + drag_slope(k, n, mass, x, v, c), 0.0), c, work
 
 
+def powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float, float]:
+    """Force as powers of the overlap, see `Rule`."""
+    k, n, _, c, _, tension = p[:6]
+    return (0.0, n, 0.0, n, 0.0) if at == OPEN else (k, n, c, 0.5 * (n - 1.0), tension)
+
+
 RULE = Rule(
     (
         *BranchKind.OPEN.named("open"),
@@ -67,8 +95,9 @@ RULE = Rule(
     transition,
     recoverable,
     curve,
+    powers=powers,
     parameters=6,
-    variables=1,
+    variables=0,
 )
 
 

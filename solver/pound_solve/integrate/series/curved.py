@@ -1,0 +1,170 @@
+r"""Curved contacts in a power series: kernels.
+
+The force of a contact whose spring and dashpot grow with powers of the overlap (see `Rule.powers`),
+
+.. math:: f = k x^n + c x^q \dot x,
+
+has a power series wherever x is above zero.  That of a power :math:`w = x^n` follows from those of x,
+
+.. math:: w_k = \frac{1}{k x_0} \sum_{j=1}^{k} (n j - k + j)\, x_j\, w_{k-j},
+
+(Euler's recurrence), and with it the force of one term from the motion up to the next: no equation has to
+be solved.  The series converges up to the instant of touch, before or behind: steps shorten towards it in
+proportion to the time that is left, down to an overlap `TOUCH` whose force changes nothing.  Where the
+force would pull, and must not, there is none.
+
+References
+----------
+Knuth DE (1997), The Art of Computer Programming 2, 3rd edition, section 4.7 (powers of series).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.integrate.kernels.laws import internal, parameters
+from pound_solve.integrate.kernels.products import along, spread
+from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.series.state import Curved, Lengths, Series
+from pound_solve.laws.functions import Tables
+from pound_solve.numerics.types import Array, Flags
+
+ASLEEP, ACTIVE, SILENT = range(3)  #: no overlap to speak of; a force acts; it would pull, and is none
+TOUCH = 1e-12  #: overlap that counts as none, over the largest deformation
+RIGHT = 1e-10  #: share of the force that the last of its terms may be
+NEAR = 0.4  #: share of the time since touch that the first step after it is tried with
+WAKE, SLEEP, STOP_PULLING, PRESS_AGAIN = -1, -2, -3, -4  #: events beside those of the branch
+SPRING, DASHPOT = range(2)  #: rows of `Curved.power`
+K, N, C, Q, PULLS = range(5)  #: columns of `Curved.numbers`
+GAP = 2  #: of a contact, among its parameters
+
+
+def allocate(curved: Flags, terms: int) -> Curved:
+    """Lay out the `curved` ones of the laws for series of so many `terms`."""
+    laws = np.flatnonzero(curved)
+    number = np.full(len(curved), -1)
+    number[laws] = np.arange(len(laws))
+    return Curved(
+        laws=laws,
+        number=number,
+        numbers=np.zeros((len(laws), 5)),
+        phase=np.zeros(len(laws), np.int64),
+        power=np.zeros((len(laws), 2, terms)),
+        force=np.zeros((len(laws), terms)),
+        largest=np.zeros(len(laws)),
+    )
+
+
+def overlap(laws: Laws, i: int) -> float:
+    """Present overlap of contact `i`."""
+    x: float = laws.now.deformation[i] - laws.parameters[i, GAP]
+    return x
+
+
+def touch(laws: Laws, i: int) -> float:
+    """Overlap of contact `i` that counts as none."""
+    x: float = TOUCH * (laws.largest_deformation[i] + abs(laws.parameters[i, GAP]))
+    return x
+
+
+def enter(laws: Laws, rules: Tables, curved: Curved, i: int) -> None:
+    """Take over the branch that curved law `i` is on."""
+    r = curved.number[i]
+    found = rules.powers[laws.rule[i]](
+        parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
+    )
+    own = curved.numbers[r]
+    own[K], own[N], own[C], own[Q], own[PULLS] = found
+    x, v = overlap(laws, i), laws.now.rate[i]
+    if own[K] == 0.0 or x <= touch(laws, i):
+        curved.phase[r] = ASLEEP
+    elif own[PULLS] > 0.0 or own[K] * x ** own[N] + own[C] * x ** own[Q] * v >= 0.0:
+        curved.phase[r] = ACTIVE
+    else:
+        curved.phase[r] = SILENT
+    curved.force[r, :] = 0.0
+
+
+def power_term(n: float, x: float, d: Array, w: Array, k: int) -> float:
+    """Coefficient `k` of the power `n` of an overlap that starts at `x` and changes with the deformation
+    `d`; `w` holds those before it.
+    """
+    if k == 0:
+        first: float = x**n
+        return first
+    total = 0.0
+    for j in range(1, k + 1):
+        total += (n * j - (k - j)) * d[j] * w[k - j]
+    return total / (k * x)
+
+
+def force_term(own: Array, power: Array, x: float, d: Array, k: int, h: float) -> float:
+    """Coefficient `k` of the force of one contact, from those of its deformation `d` up to `k` + 1."""
+    spring, dashpot = power[SPRING], power[DASHPOT]
+    spring[k] = power_term(own[N], x, d, spring, k)
+    force: float = own[K] * spring[k]
+    if own[C] != 0.0:
+        dashpot[k] = power_term(own[Q], x, d, dashpot, k)
+        drag = 0.0
+        for j in range(k + 1):
+            drag += dashpot[j] * (k - j + 1) * d[k - j + 1]
+        force += own[C] * drag / h
+    return force
+
+
+def add_contacts(laws: Laws, series: Series, k: int, h: float, top: int, new: Array) -> None:
+    """Add the coefficients `k` of the contacts' forces to the right side `new` of the coefficients `k` + 2;
+    the inputs have `top` coefficients.
+    """
+    curved = series.curved
+    for r in range(len(curved.laws)):
+        if curved.phase[r] == ASLEEP:
+            continue
+        i = curved.laws[r]
+        d = series.deformation[i]
+        for m in range(0 if k == 0 else k + 1, k + 2):
+            d[m] = along(laws.rows, i, series.motion[m])
+            if m < top:
+                for j in range(series.inputs.shape[1]):
+                    d[m] += laws.inputs[i, j] * series.inputs[m, j]
+        x = d[0] - laws.parameters[i, GAP]
+        force = force_term(curved.numbers[r], curved.power[r], x, d, k, h)
+        curved.force[r, k] = force
+        if curved.phase[r] == ACTIVE:
+            spread(laws.rows, i, -h * h * force, new)
+
+
+def right_up_to(curved: Curved, terms: int, end: float) -> float:
+    """Part of a step, or multiple of it, up to which all forces are right, `end` at most."""
+    last = terms - 2
+    for r in range(len(curved.laws)):
+        if curved.phase[r] != ASLEEP:
+            most = 0.0
+            for k in range(last + 1):
+                most = max(most, abs(curved.force[r, k]))
+            tail = max(abs(curved.force[r, last]), abs(curved.force[r, last - 1]))
+            if not tail < np.inf:
+                return np.nan
+            if tail > 0.0:
+                end = min(end, (RIGHT * most / tail) ** (1.0 / last))
+    return end
+
+
+def change_phase(laws: Laws, curved: Curved, lengths: Lengths, i: int, event: int) -> None:
+    """Let contact `i` begin or cease to have a force."""
+    r = curved.number[i]
+    if event == WAKE:
+        curved.phase[r] = ACTIVE
+        lengths.before = max(lengths.before, lengths.next)
+        lengths.next = min(lengths.next, NEAR * overlap(laws, i) / abs(laws.now.rate[i]))
+    elif event == SLEEP:
+        curved.phase[r] = ASLEEP
+        lengths.next, lengths.before = max(lengths.next, lengths.before), 0.0
+    else:
+        curved.phase[r] = SILENT if event == STOP_PULLING else ACTIVE
+    curved.force[r, :] = 0.0
+
+
+def has_force(curved: Curved, i: int) -> bool:
+    """Whether law `i` is a curved contact that presses."""
+    return bool(curved.number[i] >= 0 and curved.phase[curved.number[i]] == ACTIVE)

@@ -1,0 +1,52 @@
+"""Forces that are a series of their own, of closed rigid contacts and of curved ones: kernels."""
+
+from __future__ import annotations
+
+from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.series.curved import ACTIVE, has_force
+from pound_solve.integrate.series.rigid import is_held
+from pound_solve.integrate.series.state import Series
+from pound_solve.numerics.types import Array
+
+
+def has_series(series: Series, i: int) -> bool:
+    """Whether the force of law `i` is a series of its own."""
+    return is_held(series.rigid, i) or has_force(series.curved, i)
+
+
+def copy_force(series: Series, terms: int, i: int, sign: float, out: Array) -> None:
+    """Put `sign` times the series of the force of law `i`, which has one, into `out`."""
+    rigid, curved = series.rigid.number[i], series.curved.number[i]
+    for k in range(terms + 1):
+        out[k] = 0.0
+    for k in range(terms - 1):
+        out[k] = sign * (series.rigid.force[rigid, k] if rigid >= 0 else series.curved.force[curved, k])
+
+
+def force_at(force: Array, terms: int, s: float) -> float:
+    """Force at the place `s` of a step with so many `terms`."""
+    out = 0.0
+    for k in range(terms - 2, -1, -1):
+        out = out * s + force[k]
+    return out
+
+
+def press(laws: Laws, series: Series, terms: int, s: float) -> None:
+    """Make the forces at the place `s` those of the laws' branches."""
+    rigid, curved = series.rigid, series.curved
+    for q in range(rigid.n_held[0]):
+        r = rigid.held[q]
+        laws.offset[rigid.laws[r]] = force_at(rigid.force[r], terms, s)
+    for r in range(len(curved.laws)):
+        laws.offset[curved.laws[r]] = (
+            force_at(curved.force[r], terms, s) if curved.phase[r] == ACTIVE else 0.0
+        )
+
+
+def count_largest(laws: Laws, series: Series) -> None:
+    """Count the present forces into the largest so far."""
+    rigid, curved = series.rigid, series.curved
+    for r in range(len(rigid.laws)):
+        rigid.largest[r] = max(rigid.largest[r], abs(laws.offset[rigid.laws[r]]))
+    for r in range(len(curved.laws)):
+        curved.largest[r] = max(curved.largest[r], abs(laws.offset[curved.laws[r]]))
