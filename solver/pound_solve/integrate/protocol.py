@@ -12,7 +12,7 @@ from pound_solve.integrate.tracker import Peaks
 from pound_solve.laws.automaton import State
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags
-from pound_solve.structure.elements.base import LawSpring
+from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
@@ -172,7 +172,8 @@ def not_in_series(system: ReducedSystem) -> str:
     laws, without_mass = system.structure.laws, light(system)
     curved = [i for i, s in enumerate(laws) if s.law.curved]
     for i in curved:
-        if laws[i].law.rule.powers is None or without_mass[i] or any(s.law.rigid for s in laws):
+        known = laws[i].law.rule.powers is not None or laws[i].role is Role.FRICTION
+        if not known or without_mass[i] or any(s.law.rigid for s in laws):
             return not_linear(system)
     return not_linear(system) if system.structure.corotational else ""
 

@@ -18,6 +18,7 @@ import numpy as np
 from pound_solve.integrate.kernels.products import multiply, spread
 from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Step
 from pound_solve.integrate.series.curved import add_contacts, right_up_to
+from pound_solve.integrate.series.friction import add_friction
 from pound_solve.integrate.series.massless import add_massless
 from pound_solve.integrate.series.rigid import hold
 from pound_solve.integrate.series.springs import add_product, deformation
@@ -108,6 +109,7 @@ def next_term(
         force = rate * laws.damping[law] * deformation(laws, series, k + 1, top, law)
         spread(laws.rows, law, -force, new)
     add_contacts(laws, series, k, h, top, new)
+    add_friction(laws, series, k, h, top, new)
     below = 1.0 / ((k + 1) * (k + 2))
     if linear.diagonal:
         for i in range(n):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.curved import ACTIVE, has_force
+from pound_solve.integrate.series.friction import rub, slides
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.state import Series
 from pound_solve.numerics.types import Array
@@ -11,16 +12,21 @@ from pound_solve.numerics.types import Array
 
 def has_series(series: Series, i: int) -> bool:
     """Whether the force of law `i` is a series of its own."""
-    return is_held(series.rigid, i) or has_force(series.curved, i)
+    return is_held(series.rigid, i) or has_force(series.curved, i) or slides(series.friction, i)
 
 
 def copy_force(series: Series, terms: int, i: int, sign: float, out: Array) -> None:
     """Put `sign` times the series of the force of law `i`, which has one, into `out`."""
-    rigid, curved = series.rigid.number[i], series.curved.number[i]
+    rigid, curved, friction = series.rigid.number[i], series.curved.number[i], series.friction.number[i]
     for k in range(terms + 1):
         out[k] = 0.0
     for k in range(terms - 1):
-        out[k] = sign * (series.rigid.force[rigid, k] if rigid >= 0 else series.curved.force[curved, k])
+        if rigid >= 0:
+            out[k] = sign * series.rigid.force[rigid, k]
+        elif curved >= 0:
+            out[k] = sign * series.curved.force[curved, k]
+        else:
+            out[k] = sign * series.friction.force[friction, k]
 
 
 def force_at(force: Array, terms: int, s: float) -> float:
@@ -31,8 +37,9 @@ def force_at(force: Array, terms: int, s: float) -> float:
     return out
 
 
-def press(laws: Laws, series: Series, terms: int, s: float) -> None:
+def press(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:
     """Make the forces at the place `s` those of the laws' branches."""
+    rub(laws, series, terms, s, h)
     rigid, curved = series.rigid, series.curved
     for q in range(rigid.n_held[0]):
         r = rigid.held[q]

@@ -42,6 +42,7 @@ from pound_solve.integrate.series.expansion import (
     next_term,
 )
 from pound_solve.integrate.series.forces import count_largest, press
+from pound_solve.integrate.series.friction import LIFT, side_of, slides, touching
 from pound_solve.integrate.series.massless import factorise, violated
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.springs import add_up, deformation
@@ -73,14 +74,18 @@ def add_law_losses(
     rules: Tables,
 ) -> None:
     """Add up the losses in the laws' dashpots and the contacts' impulses at one Gauss point."""
-    press(laws, series, terms, s)
+    press(laws, series, terms, s, h)
     for i in range(len(laws.rule)):
         drag, curved = laws.damping[i], series.curved.number[i]
         awake = curved >= 0 and series.curved.phase[curved] != ASLEEP
         pressed = laws.contact[i] and (laws.stiffness[i] != 0.0 or laws.offset[i] != 0.0)
-        if drag != 0.0 or moved or pressed or awake:
+        sliding = slides(series.friction, i)
+        if drag != 0.0 or moved or pressed or awake or sliding:
             d, v = law_at(series, terms, s, h, i)
             laws.trial.deformation[i], laws.trial.rate[i] = d, v
+            if sliding:
+                laws.entry_work[i] += weight * laws.offset[i] * v
+                continue
             lost = weight * v * (law_drag(laws, rules, i, d, v) if awake else drag * v)
             laws.dashpot_loss[i] += lost
             if laws.contact[i]:
@@ -129,10 +134,12 @@ def accept(laws: Laws, now: MotionState, series: Series, terms: int, h: float, e
         d, v = law_at(series, terms, end, h, i)
         if is_held(series.rigid, i):
             d, v = laws.entry_deformation[i], 0.0
+        if slides(series.friction, i):  # its work is added up
+            laws.entry_deformation[i] = d
         laws.now.deformation[i], laws.now.rate[i] = d, v
         laws.largest_deformation[i] = max(laws.largest_deformation[i], abs(d))
         laws.largest_rate[i] = max(laws.largest_rate[i], abs(v))
-    press(laws, series, terms, end)
+    press(laws, series, terms, end, h)
     count_largest(laws, series)
 
 
@@ -170,12 +177,23 @@ def change_branch(
     transition(laws, rules, law, event.event_index, d, v)
     if series.curved.number[law] >= 0:
         enter(laws, rules, series.curved, law)
+    if series.friction.number[law] >= 0:
+        side_of(laws, series.friction, law)
     force = law_force(laws, rules, law, d, v)
     if before != laws.branch[law]:
         log_transition(laws, buffers, run, law, before, t, force)
     run.events += 1
     run.fault = law
     run.stale = 1
+
+
+def change_friction(laws: Laws, buffers: Buffers, rules: Tables, series: Series, run: Run) -> None:
+    """Let friction follow the contacts that have touched or parted."""
+    for r in range(len(series.friction.laws)):
+        event = touching(laws, rules, series.friction, r)
+        if event >= 0:
+            law = series.friction.laws[r]
+            change_branch(laws, buffers, rules, series, run, run.time, LocatedEvent(law, event, 0.0))
 
 
 def change_branches(
@@ -190,6 +208,7 @@ def change_branches(
             own = event_of(laws, series, terms, h, min(event.time + AHEAD, end), i)
             if own.law >= 0 and own.event_index >= 0 and own.time <= event.time + instant / h:
                 change_branch(laws, buffers, rules, series, run, now, own)
+    change_friction(laws, buffers, rules, series, run)
 
 
 def count_instant(run: Run, h: float) -> None:
@@ -236,7 +255,8 @@ def settle(
     123-130.
     """
     held, now = series.massless, step.now
-    if len(held.unknown) == 0 and series.rigid.n_held[0] == 0 and len(series.curved.laws) == 0:
+    varying = series.rigid.n_held[0] + len(series.curved.laws) + len(series.friction.laws)
+    if len(held.unknown) + varying == 0:
         return DONE
     for _ in range(50 + 4 * len(laws.rule)):
         if not renew(linear, laws, series, run):
@@ -250,10 +270,10 @@ def settle(
             laws.now.rate[i] = deformation(laws, series, 1, len(coefs), i)
         law, event = violated(laws, held)
         if law < 0:
-            press(laws, series, 2, 0.0)
+            press(laws, series, 2, 0.0, 1.0)
             return DONE
         change_branch(laws, buffers, rules, series, run, run.time, LocatedEvent(law, event, 0.0))
-        run.stale = 1
+        change_friction(laws, buffers, rules, series, run)
     return CHATTER
 
 
@@ -333,6 +353,10 @@ def stride(
         if run.same_instant > 50 + 4 * len(laws.rule):
             run.fault = event.law
             return CHATTER
+        if event.event_index == LIFT:
+            r = series.friction.number[event.law]
+            series.friction.pressing[r] = not series.friction.pressing[r]
+            continue
         if event.event_index < 0:
             change_phase(laws, series.curved, lengths, event.law, event.event_index)
             continue

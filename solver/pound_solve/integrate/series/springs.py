@@ -51,8 +51,11 @@ def allocate(n: int, rows: Rows, inputs: Array) -> Springs:
 
 
 def add_up(linear: LinearSystem, laws: Laws, series: Series) -> None:
-    """Add up the laws on their present branches; forces of rigid and of curved contacts are series."""
-    springs, rigid, curved = series.springs, series.rigid.number, series.curved.number
+    """Add up the laws on their present branches.
+
+    The forces of rigid and of curved contacts, and of friction that slides, are series instead.
+    """
+    springs, rigid, curved, friction = series.springs, series.rigid, series.curved, series.friction
     values, moved, n = springs.rows.values, springs.inputs, 0
     for q in range(len(values)):
         values[q] = 0.0
@@ -61,7 +64,9 @@ def add_up(linear: LinearSystem, laws: Laws, series: Series) -> None:
         for j in range(len(moved)):
             moved[j, i] = linear.inputs[j, i]
     for i in range(len(laws.rule)):
-        k, offset = laws.stiffness[i], laws.offset[i] if rigid[i] < 0 and curved[i] < 0 else 0.0
+        k, offset, rubs = laws.stiffness[i], laws.offset[i], friction.number[i]
+        if rigid.number[i] >= 0 or curved.number[i] >= 0 or (rubs >= 0 and friction.side[rubs] != 0.0):
+            offset = 0.0
         for q in range(springs.pair_pointers[i], springs.pair_pointers[i + 1]):
             values[springs.pair_places[q]] += k * springs.pair_values[q]
         for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):

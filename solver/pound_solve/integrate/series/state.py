@@ -178,6 +178,38 @@ class Curved(NamedTuple):
     largest: Array
 
 
+class Friction(NamedTuple):
+    """The friction of contacts, numbered among itself (see `friction`).
+
+    Attributes
+    ----------
+    laws : ndarray, shape (n_friction,)
+    number : ndarray, shape (n_laws,)
+        Place of a law in `laws`, -1 for others.
+    normal : ndarray, shape (n_friction,)
+        The laws of the contacts.
+    side : ndarray, shape (n_friction,)
+        Direction of sliding, 1 or -1; 0 if it does not slide.
+    pressing : ndarray, shape (n_friction,)
+        Whether the contact presses; a sticky one may pull.
+    push : ndarray, shape (n_friction, TERMS + 1)
+        Coefficients of the normal forces.
+    force : ndarray, shape (n_friction, TERMS + 1)
+        Coefficients of the forces of what slides.
+    largest : ndarray, shape (n_friction,)
+        Largest normal force so far.
+    """
+
+    laws: Index
+    number: Index
+    normal: Index
+    side: Array
+    pressing: Flags
+    push: Array
+    force: Array
+    largest: Array
+
+
 class Series(NamedTuple):
     """The series of a step.
 
@@ -200,6 +232,7 @@ class Series(NamedTuple):
     massless : Massless
     rigid : Rigid
     curved : Curved
+    friction : Friction
     """
 
     motion: Array
@@ -214,3 +247,4 @@ class Series(NamedTuple):
     massless: Massless
     rigid: Rigid
     curved: Curved
+    friction: Friction

@@ -48,13 +48,14 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.rigid.contacts import MasslessContact, RigidContacts
 from pound_solve.integrate.rigid.instants import RigidInstants
-from pound_solve.integrate.series import curved, expansion, march, massless, rigid, springs, state
+from pound_solve.integrate.series import curved, expansion, friction, march, massless, rigid, springs, state
 from pound_solve.integrate.series.massless import STIFFNESS
 from pound_solve.integrate.series.present import Present
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.laws.automaton import BranchKind
 from pound_solve.numerics.record import record
 from pound_solve.numerics.types import Array
+from pound_solve.structure.elements.base import Role
 from pound_solve.structure.reduction import ReducedSystem
 
 MAX_STEPS = 5_000_000  #: that a run may come to
@@ -110,7 +111,12 @@ class Taylor(KernelEngine):
             springs=springs.allocate(system.size, self.laws.rows, self.linear.inputs),
             massless=self.massless,
             rigid=rigid.allocate(self.contacts, o, len(laws), terms),
-            curved=curved.allocate(np.array([s.law.curved for s in laws], bool), terms),
+            curved=curved.allocate(
+                np.array([s.law.curved and s.role is not Role.FRICTION for s in laws], bool), terms
+            ),
+            friction=friction.allocate(
+                self.laws.coupled, self.laws.normal[self.laws.coupled], len(laws), terms
+            ),
         )
         for i in self.series.curved.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
@@ -123,6 +129,8 @@ class Taylor(KernelEngine):
         """Integrate by series from event to event."""
         RigidInstants(Present(self), self.contacts).check_start()
         self.begin(march.march)
+        for i in self.series.friction.laws.tolist():
+            friction.side_of(self.laws, self.series.friction, i)
         ex = self.system.excitation
         ends, is_output = goals(self.system, self.times)
         pieces = ex.pieces_after(np.append(self.times[0], ends[:-1]))

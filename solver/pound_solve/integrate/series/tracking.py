@@ -23,6 +23,7 @@ from pound_solve.integrate.series.curved import (
     touch,
 )
 from pound_solve.integrate.series.forces import copy_force, has_series
+from pound_solve.integrate.series.friction import friction_event
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.state import Series
 
@@ -62,6 +63,8 @@ def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: 
 
 def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: int) -> LocatedEvent:
     """The first event of law `i` before the place `end`, in lengths of the step, see `none`."""
+    if series.friction.number[i] >= 0:
+        return friction_event(laws, series, terms, h, end, i)
     first, d, p = none(end), series.deformation, series.polynomial[POLYNOMIAL]
     for e in range(laws.n_events[i]):
         on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]

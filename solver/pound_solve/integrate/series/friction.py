@@ -1,0 +1,162 @@
+r"""Friction in a power series: kernels.
+
+A face that slides has the force :math:`\pm\mu_d N`, a series as that of the contact's force N; one that
+sticks is a linear spring.  Its limit :math:`\mu_s N` and the rate of that are series too, so that slip and
+stick (see `laws.contact.friction`) begin at first rises of polynomials, as all other branches.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
+from pound_solve.integrate.events.protocol import LocatedEvent, none
+from pound_solve.integrate.kernels.laws import curve, linear_force
+from pound_solve.integrate.kernels.products import spread
+from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.series.curved import ACTIVE
+from pound_solve.integrate.series.springs import deformation
+from pound_solve.integrate.series.state import Friction, Series
+from pound_solve.laws.automaton import PUSH, PUSH_RATE
+from pound_solve.laws.contact.friction import ANCHOR, MINUS, OPEN, PLUS, RELEASED
+from pound_solve.laws.functions import Tables
+from pound_solve.numerics.types import Array, Index
+
+LIFT = -5  #: event beside those of the branch: a sticky contact begins to pull, or to press again
+KT, MU, MUD = range(3)  #: among the parameters
+OVERDUE = 1e-9  #: share of its terms above which an event function has jumped, as the normal force has
+
+
+def allocate(laws: Index, normal: Index, n_laws: int, terms: int) -> Friction:
+    """Lay out the friction `laws` for series of so many `terms`.
+
+    The laws `normal` have the forces that press.
+    """
+    number = np.full(n_laws, -1)
+    number[laws] = np.arange(len(laws))
+    return Friction(
+        laws=laws,
+        number=number,
+        normal=normal,
+        side=np.zeros(len(laws)),
+        pressing=np.ones(len(laws), bool),
+        push=np.zeros((len(laws), terms)),
+        force=np.zeros((len(laws), terms)),
+        largest=np.zeros(len(laws)),
+    )
+
+
+def side_of(laws: Laws, friction: Friction, i: int) -> None:
+    """Take over the branch that friction law `i` is on."""
+    at = laws.branch[i]
+    friction.side[friction.number[i]] = 1.0 if at == PLUS else -1.0 if at == MINUS else 0.0
+
+
+def slides(friction: Friction, i: int) -> bool:
+    """Whether law `i` is friction that slides."""
+    return bool(friction.number[i] >= 0 and friction.side[friction.number[i]] != 0.0)
+
+
+def push_term(laws: Laws, series: Series, r: int, k: int, h: float, top: int) -> float:
+    """Coefficient `k` of the normal force of friction `r`; the inputs have `top` coefficients."""
+    j, curved = series.friction.normal[r], series.curved
+    own = curved.number[j]
+    if own >= 0:
+        force: float = curved.force[own, k] if curved.phase[own] == ACTIVE else 0.0
+        return force
+    linear: float = laws.stiffness[j] * deformation(laws, series, k, top, j)
+    if laws.damping[j] != 0.0:
+        linear += laws.damping[j] * (k + 1) / h * deformation(laws, series, k + 1, top, j)
+    return linear + laws.offset[j] if k == 0 else linear
+
+
+def add_friction(laws: Laws, series: Series, k: int, h: float, top: int, new: Array) -> None:
+    """Add the coefficients `k` of the forces of friction to the right side `new` of the coefficients
+    `k` + 2; the inputs have `top` coefficients.
+    """
+    friction = series.friction
+    for r in range(len(friction.laws)):
+        i = friction.laws[r]
+        if laws.branch[i] == OPEN:
+            continue
+        friction.push[r, k] = push_term(laws, series, r, k, h, top)
+        if friction.side[r] != 0.0:
+            share = friction.side[r] * laws.parameters[i, MUD] if friction.pressing[r] else 0.0
+            friction.force[r, k] = share * friction.push[r, k]
+            spread(laws.rows, i, -h * h * friction.force[r, k], new)
+
+
+def rub(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:
+    """Make the normal forces at the place `s` those of the friction laws, and the forces that follow."""
+    friction = series.friction
+    for r in range(len(friction.laws)):
+        i = friction.laws[r]
+        if laws.branch[i] == OPEN:
+            continue
+        push, rate = 0.0, 0.0
+        for k in range(terms - 2, -1, -1):
+            rate = rate * s + push
+            push = push * s + friction.push[r, k]
+        laws.internal[i, PUSH], laws.internal[i, PUSH_RATE] = max(push, 0.0), rate / h
+        friction.largest[r] = max(friction.largest[r], push)
+        if friction.side[r] != 0.0:
+            laws.offset[i] = friction.side[r] * laws.parameters[i, MUD] * max(push, 0.0)
+
+
+def touching(laws: Laws, rules: Tables, friction: Friction, r: int) -> int:
+    """The event of friction `r` that follows from a change of its contact, whose force it is told; -1 for
+    none.
+    """
+    i, j = friction.laws[r], friction.normal[r]
+    pressed = (laws.pressed_branches[i] >> laws.branch[j]) & 1
+    if bool(pressed) == (laws.branch[i] != OPEN):
+        return -1
+    d, v = laws.now.deformation[j], laws.now.rate[j]
+    push, rate = linear_force(laws, j, d, v), laws.stiffness[j] * v
+    if laws.curved[j]:
+        found = curve(laws, rules, j, d, v)
+        push, rate = found[0], found[1] * v
+    friction.pressing[r] = push >= 0.0
+    laws.internal[i, PUSH], laws.internal[i, PUSH_RATE] = max(push, 0.0), rate
+    return 0 if pressed else RELEASED
+
+
+def lift(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
+    """The instant at which the contact of friction `i` begins to pull, or to press again."""
+    friction, p = series.friction, series.polynomial[POLYNOMIAL]
+    r = friction.number[i]
+    sign = -1.0 if friction.pressing[r] else 1.0
+    for k in range(terms + 1):
+        p[k] = sign * friction.push[r, k] if k < terms - 1 else 0.0
+    at = first_rise(series.polynomial, terms, end, STILL * friction.largest[r])
+    return LocatedEvent(i, LIFT, at) if at >= 0.0 else none(end)
+
+
+def friction_event(laws: Laws, series: Series, terms: int, h: float, end: float, i: int) -> LocatedEvent:
+    """The first event of friction law `i` before the place `end`, see `none`."""
+    friction, d, p = series.friction, series.deformation, series.polynomial[POLYNOMIAL]
+    r, numbers = friction.number[i], laws.parameters[i]
+    if laws.branch[i] == OPEN:
+        return none(end)
+    first = lift(series, terms, end, i)
+    sliding, pressing = friction.side[r] != 0.0, 1.0 if friction.pressing[r] else 0.0
+    for e in range(1 if sliding else 2):
+        sign = friction.side[r] if sliding else 1.0 - 2.0 * e
+        for k in range(terms + 1):
+            p[k] = 0.0
+        if sliding:  # the slider would turn back
+            scale, share = laws.largest_rate[i], pressing * numbers[MUD] / numbers[KT]
+            for k in range(terms - 2):
+                p[k] = (k + 1) / h * (share * friction.push[r, k + 1] - sign * d[i, k + 1])
+        else:  # the spring reaches the limit
+            scale = numbers[KT] * laws.largest_deformation[i] + numbers[MU] * friction.largest[r]
+            for k in range(terms - 1):
+                p[k] = sign * numbers[KT] * d[i, k] - pressing * numbers[MU] * friction.push[r, k]
+            p[0] -= sign * numbers[KT] * laws.internal[i, ANCHOR]
+        if p[0] > OVERDUE * scale:
+            return LocatedEvent(i, e, 0.0)
+        at = first_rise(series.polynomial, terms, first.time, STILL * scale)
+        if at >= 0.0 and (first.law < 0 or at < first.time):
+            first = LocatedEvent(i, e, at)
+    return first
