@@ -73,6 +73,8 @@ SAFETY = 0.6  #: of the tolerance, that the next step aims at
 
 #: why no steps are taken
 LINEAR = "all laws are piecewise linear, so no time step is needed; stepping would cost more"
+SERIES = "all forces have power series between events, so no time step is needed; stepping would cost more"
+RIGID = "steps take no rigid contacts"
 GIVEN_UP = ("the most that are tried", "nor nearer than with far fewer")  #: why no shorter steps are tried
 
 
@@ -359,10 +361,11 @@ class StepRefinement:
 def by_series(
     system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: EnvelopeRecorder
 ) -> Outcome:
-    """Run TAYLOR."""
+    """Run TAYLOR, and state why."""
     from pound_solve.integrate.series import taylor  # where it is not needed it is not loaded
 
-    system.decisions.append(Decision("method", "TAYLOR", LINEAR))
+    rigid = any(s.law.rigid for s in system.structure.laws)
+    system.decisions.append(Decision("method", "TAYLOR", RIGID if rigid else SERIES))
     return taylor.integrate(system, start, monitored, {}, recorder)
 
 
@@ -401,7 +404,7 @@ def integrate(
     if not_linear(system):
         refuse_rigid(system, start, "AUTO")
     elif rigid and not has_series(system):
-        system.decisions.append(Decision("method", "EXACT", "steps take no rigid contacts"))
+        system.decisions.append(Decision("method", "EXACT", RIGID))
         return exact.integrate(system, start, monitored, {}, recorder)
     trial = ExactTrial(system, start, monitored, recorder, options["TOL"])
     series = cost_of_series(system, start)

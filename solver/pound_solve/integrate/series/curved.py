@@ -134,6 +134,14 @@ def add_contacts(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
             spread(laws.rows, i, -h * h * force, new)
 
 
+def any_awake(curved: Curved) -> bool:
+    """Whether any of the contacts has an overlap to speak of."""
+    awake = False
+    for r in range(len(curved.laws)):
+        awake = awake or curved.phase[r] != ASLEEP
+    return awake
+
+
 def right_up_to(curved: Curved, terms: int, end: float) -> float:
     """Part of a step, or multiple of it, up to which all forces are right, `end` at most."""
     last = terms - 2

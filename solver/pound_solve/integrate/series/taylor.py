@@ -1,8 +1,9 @@
 r"""TAYLOR: event-driven integration by power series, explicit, without a time step to choose.
 
 Between events the reduced system is linear, so the motion has a power series that converges however far;
-its coefficients follow one from another by products with the sparse K and C (see `expansion`).  A step goes
-as far as `expansion.TERMS` terms are right to rounding, some five radians of the fastest mode that takes
+its coefficients follow one from another by products with the sparse K and C (see `expansion`).  So do those
+of closed rigid contacts (`rigid`), of contacts whose force is a power of the overlap (`curved`), and of
+friction (`friction`), whose forces are series of their own.  A step goes as far as `expansion.TERMS` terms are right to rounding, some five radians of the fastest mode that takes
 part. Within it every event function and every quantity whose peak is kept is a polynomial, whose first
 rise and extremes are found with proof (see `events.polynomial_roots`).  Works are integrated by Gauss's
 rule, each on its own, so that the balance of energies remains a check.  Unknowns without mass follow the
