@@ -3,11 +3,11 @@ r"""TAYLOR: event-driven integration by power series, explicit, without a time s
 Between events the reduced system is linear, so the motion has a power series that converges however far;
 its coefficients follow one from another by products with the sparse K and C (see `expansion`).  So do those
 of closed rigid contacts (`rigid`), of contacts whose force is a power of the overlap (`curved`), and of
-friction (`friction`), whose forces are series of their own.  A step goes as far as `expansion.TERMS` terms are right to rounding, some five radians of the fastest mode that takes
-part. Within it every event function and every quantity whose peak is kept is a polynomial, whose first
-rise and extremes are found with proof (see `events.polynomial_roots`).  Works are integrated by Gauss's
-rule, each on its own, so that the balance of energies remains a check.  Unknowns without mass follow the
-others (see `massless`).
+friction (`friction`), whose forces are series of their own.  A step goes as far as `expansion.TERMS` terms
+are right to rounding, some five radians of the fastest mode that takes part.  Within it every event function
+and every quantity whose peak is kept is a polynomial, whose first rise and extremes are found with proof
+(see `events.polynomial_roots`).  Works are integrated by Gauss's rule, each on its own, so that the balance
+of energies remains a check.  Unknowns without mass follow the others (see `massless`).
 
 There is no decomposition into modes, and a step costs what its products cost: where EXACT has to decompose
 many unknowns, or many combinations of stiffnesses, TAYLOR is faster, and as exact.  Where the fastest mode
