@@ -68,7 +68,8 @@ def condensed(
     """
     if system.size > MAX_UNKNOWNS:
         why = f"{method} works on full matrices, and {system.size} unknowns are too many for them"
-        raise Stop("A505", float(start.times[0]), f"{why} ({MAX_UNKNOWNS} at most): NEWMARK takes them")
+        other = "TAYLOR" if any(s.law.rigid for s in system.structure.laws) else "NEWMARK"
+        raise Stop("A505", float(start.times[0]), f"{why} ({MAX_UNKNOWNS} at most): {other} takes them")
     small = condense(system)
     return (
         small.system,

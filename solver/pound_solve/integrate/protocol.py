@@ -185,6 +185,12 @@ def light(system: ReducedSystem) -> Flags:
     return np.asarray((system.law_rows[:, massless(system.mass)] != 0.0).any(axis=1))
 
 
+def without_steps(system: ReducedSystem) -> list[str]:
+    """Methods without a time step that take a reduced system."""
+    reasons = {"EXACT": not_linear(system), "TAYLOR": not_in_series(system)}
+    return [method for method, why in reasons.items() if not why]
+
+
 def remedy(system: ReducedSystem) -> str:
     """What to try where there are too many changes at one instant."""
     if any(s.law.rigid for s in system.structure.laws):  # which no method with steps takes

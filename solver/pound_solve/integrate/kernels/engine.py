@@ -21,7 +21,7 @@ from pound_solve.integrate.protocol import (
     Recorder,
     Start,
     Stop,
-    not_linear,
+    without_steps,
 )
 from pound_solve.integrate.protocol import RUNAWAY as GROWS
 from pound_solve.integrate.tracker import Peaks, ResponseTracker
@@ -208,8 +208,8 @@ class KernelEngine(ABC):
             text = f"laws change branch more than {most} times within one step, {last}"
         else:
             text = f"Newton's iterations find no equilibrium of {place}, however short the step"
-        exact = "" if not_linear(self.system) else ", or METHOD=EXACT"
-        return self.stop("A503", f"{text}; try a DT well below {self.dt:g}{exact}")
+        others = "".join(f", or METHOD={method}" for method in without_steps(self.system))
+        return self.stop("A503", f"{text}; try a DT well below {self.dt:g}{others}")
 
     def outcome(self) -> Outcome:
         """What the run gathered."""

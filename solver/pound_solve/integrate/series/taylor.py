@@ -4,10 +4,10 @@ Between events the reduced system is linear, so the motion has a power series th
 its coefficients follow one from another by products with the sparse K and C (see `expansion`).  So do those
 of closed rigid contacts (`rigid`), of contacts whose force is a power of the overlap (`curved`), and of
 friction (`friction`), whose forces are series of their own.  A step goes as far as `expansion.TERMS` terms
-are right to rounding, some five radians of the fastest mode that takes part.  Within it every event function
-and every quantity whose peak is kept is a polynomial, whose first rise and extremes are found with proof
-(see `events.polynomial_roots`).  Works are integrated by Gauss's rule, each on its own, so that the balance
-of energies remains a check.  Unknowns without mass follow the others (see `massless`).
+are right to rounding, some five radians of the fastest mode that takes part.  Within it every event
+function and every quantity whose peak is kept is a polynomial, whose first rise and extremes are found with
+proof (see `events.polynomial_roots`).  Works are integrated by Gauss's rule, each on its own, so that the
+balance of energies remains a check.  Unknowns without mass follow the others (see `massless`).
 
 There is no decomposition into modes, and a step costs what its products cost: where EXACT has to decompose
 many unknowns, or many combinations of stiffnesses, TAYLOR is faster, and as exact.  Where the fastest mode
@@ -43,6 +43,7 @@ from pound_solve.integrate.protocol import (
     Stop,
     goals,
     not_in_series,
+    not_linear,
     refuse_rigid,
     remedy,
     rounding_check,
@@ -171,7 +172,8 @@ class Taylor(KernelEngine):
         if steps > PAUSE // 2 and steps * self.dt > MAX_STEPS * done:
             count = f"some {steps * self.dt / done:.1g}" if done else "far too many"
             why = f"the fastest mode asks for {count} steps (now {self.lengths.next:.3g} long)"
-            raise self.stop("A502", f"{why}: EXACT or NEWMARK need not follow it")
+            others = ["EXACT"] * (not not_linear(self.system)) + ["NEWMARK"] * (not self.contacts.laws)
+            raise self.stop("A502", f"{why}, which {' and '.join(others)} need not follow")
 
     def trouble(self, why: int) -> Stop:
         """What the kernel came back for, in words."""

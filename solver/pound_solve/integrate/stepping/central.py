@@ -61,8 +61,7 @@ def integrate(
         raise Stop(
             "A505",
             0.0,
-            f"CENTRAL needs mass at {system.name(int(np.argmax(light)))}: "
-            "give it weight, or use EXACT or NEWMARK",
+            f"CENTRAL needs mass at {system.name(int(np.argmax(light)))}: give it weight, or use NEWMARK",
         )
     longest = limit(system, start.u)
     if options["DT"] > longest:
@@ -70,7 +69,7 @@ def integrate(
             "A502",
             0.0,
             f"the step {options['DT']:g} is above the stability limit {longest:.4g}; "
-            "EXACT needs no step, NEWMARK has no such limit",
+            "NEWMARK has no such limit",
         )
     stepper = Stepper(
         system, start, monitored, recorder, options, Scheme(0.0, 0.5), "CENTRAL, central differences"
