@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.products import multiply, spread
+from pound_solve.integrate.kernels.products import along, multiply, spread
 from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Step
 from pound_solve.integrate.series.curved import add_contacts, any_awake, right_up_to
 from pound_solve.integrate.series.friction import add_friction
@@ -82,19 +82,37 @@ def energy_of_term(linear: LinearSystem, series: Series, k: int, h: float) -> fl
     return energy
 
 
+def structural_forces(
+    linear: LinearSystem, series: Series, k: int, on_stiffness: float, on_damping: float, out: Array
+) -> None:
+    """Forces of structure and laws at the coefficients `k`, of its dashpots at those `k` + 1, times factors
+    and turned round; zero for unknowns without mass, which need none.
+    """
+    c, held, springs = series.motion, series.massless, series.springs
+    if len(held.unknown):
+        for i in held.unknown:
+            out[i] = 0.0
+        for r in range(len(held.heavy)):
+            i = held.heavy[r]
+            elastic = along(springs.rows, springs.number[i], c[k])
+            out[i] = -on_stiffness * elastic - on_damping * along(held.heavy_damping, r, c[k + 1])
+        return
+    multiply(linear.stiffness, c[k], series.stiffness_product)
+    add_product(springs, c[k], series.stiffness_product)
+    multiply(linear.damping, c[k + 1], series.damping_product)
+    for i in range(len(out)):
+        out[i] = -on_stiffness * series.stiffness_product[i] - on_damping * series.damping_product[i]
+
+
 def next_term(
     linear: LinearSystem, laws: Laws, step: Step, series: Series, k: int, h: float, top: int
 ) -> None:
     """Coefficients `k` + 2 of the unknowns from the two before (see the module's head)."""
-    c, new = series.motion, series.motion[k + 2]
+    new = series.motion[k + 2]
     n = len(new)
     springs = series.springs
-    multiply(linear.stiffness, c[k], series.stiffness_product)
-    add_product(springs, c[k], series.stiffness_product)
-    multiply(linear.damping, c[k + 1], series.damping_product)
     rate = h * (k + 1)
-    for i in range(n):
-        new[i] = -h * h * series.stiffness_product[i] - rate * series.damping_product[i]
+    structural_forces(linear, series, k, h * h, rate, new)
     if k == 0:
         for i in range(n):
             new[i] += h * h * springs.constant[i]

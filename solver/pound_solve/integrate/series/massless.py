@@ -67,8 +67,9 @@ def allocate(
     springs = weighted(touched[:, order], elastic[laws])
     return Massless(
         unknown=unknown,
-        stiffness=sparse_rows(stiffness[unknown]),
+        heavy=np.flatnonzero(linear.has_mass),
         damping=sparse_rows(damping[unknown]),
+        heavy_damping=sparse_rows(damping[linear.has_mass]),
         laws=laws,
         law_number=places,
         rows=rows,
@@ -79,7 +80,8 @@ def allocate(
         pair_places=pairs,
         pair_values=values,
         damped=np.zeros(len(first), bool),
-        any_damped=np.zeros(1, bool),
+        members=np.zeros((2, len(first)), np.int64),
+        counts=np.zeros(2, np.int64),
         factors=np.zeros((2, len(pattern.li))),
         pivots=np.ones((2, len(first))),
         matrix=np.zeros(len(column)),
@@ -110,10 +112,12 @@ def factorise(laws: Laws, held: Massless) -> int:
         dashpots between such unknowns alone, by C.
     """
     form(laws, held, DAMPING)
-    held.any_damped[0] = False
+    held.counts[DAMPING] = held.counts[STIFFNESS] = 0
     for i in range(len(held.unknown)):
         held.damped[i] = held.matrix[held.pattern.ap[i]] != 0.0
-        held.any_damped[0] = held.any_damped[0] or held.damped[i]
+        which = DAMPING if held.damped[i] else STIFFNESS
+        held.members[which, held.counts[which]] = i
+        held.counts[which] += 1
     for which in range(2):
         if which == STIFFNESS:
             form(laws, held, STIFFNESS)
@@ -135,63 +139,66 @@ def factorise(laws: Laws, held: Massless) -> int:
 def solve_order(held: Massless, which: int) -> None:
     """Solve in place for the unknowns of one order; the right sides of the others do not matter."""
     s, l, d, x = held.pattern, held.factors[which], held.pivots[which], held.right_side  # noqa: E741
-    n, damped = len(d), which == DAMPING
-    for j in range(n):
-        if held.damped[j] == damped:
-            t = x[j]
-            for y in range(s.lp[j], s.lp[j + 1]):
-                x[s.li[y]] -= l[y] * t
-    for j in range(n - 1, -1, -1):
-        if held.damped[j] == damped:
-            t = x[j] * d[j]
-            for y in range(s.lp[j], s.lp[j + 1]):
-                t -= l[y] * x[s.li[y]]
-            x[j] = t
+    members = held.members[which]
+    for q in range(held.counts[which]):
+        j = members[q]
+        t = x[j]
+        for y in range(s.lp[j], s.lp[j + 1]):
+            x[s.li[y]] -= l[y] * t
+    for q in range(held.counts[which] - 1, -1, -1):
+        j = members[q]
+        t = x[j] * d[j]
+        for y in range(s.lp[j], s.lp[j + 1]):
+            t -= l[y] * x[s.li[y]]
+        x[j] = t
 
 
-def balance(series: Series, k: int, top: int, n: int) -> float:
-    """Load less the forces of K and of the laws' springs at the coefficients `k`, on an unknown without
-    mass.
+def balance(series: Series, k: int, top: int, which: int) -> None:
+    """Right sides of the unknowns of one order: load less the forces of K and of the laws' springs at the
+    coefficients `k`.
     """
-    i, springs = series.massless.unknown[n], series.springs
-    left = load(springs, series, k, top, i) - along(series.massless.stiffness, n, series.motion[k])
-    if springs.number[i] >= 0:
-        left -= along(springs.rows, springs.number[i], series.motion[k])
-    return left
+    held, springs, c = series.massless, series.springs, series.motion[k]
+    members, x = held.members[which], held.right_side
+    for q in range(held.counts[which]):
+        x[members[q]] = -along(springs.rows, held.unknown[members[q]], c)
+    if k < top:
+        for q in range(held.counts[which]):
+            x[members[q]] += load(springs, series, k, top, held.unknown[members[q]])
 
 
 def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
     """Add the unknowns of order one to the coefficients `k` > 0."""
     held, c, x = series.massless, series.motion, series.massless.right_side
-    for n in range(len(x)):
-        if held.damped[n]:
-            x[n] = balance(series, k - 1, top, n) - k / h * along(held.damping, n, c[k])
+    members = held.members[DAMPING]
+    balance(series, k - 1, top, DAMPING)
+    for q in range(held.counts[DAMPING]):
+        x[members[q]] -= k / h * along(held.damping, members[q], c[k])
     for q in range(series.springs.n_dashpots[0]):
         i = series.springs.dashpots[q]
         if held.law_number[i] >= 0:
             force = k / h * laws.damping[i] * deformation(laws, series, k, top, i)
             spread(held.rows, held.law_number[i], -force, x)
     solve_order(held, DAMPING)
-    for n in range(len(x)):
-        if held.damped[n]:
-            c[k, held.unknown[n]] = x[n] * (h / k)
+    for q in range(held.counts[DAMPING]):
+        c[k, held.unknown[members[q]]] = x[members[q]] * (h / k)
 
 
 def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, top: int) -> None:
-    """Add the unknowns without mass to the coefficients `k` (see the module's head)."""
+    """Add the unknowns without mass to the coefficients `k` (see the module's head), where they are zero
+    for `k` > 1.
+    """
     held, c, x = series.massless, series.motion, series.massless.right_side
-    for n in range(len(x)):
-        i = held.unknown[n]
-        c[k, i] = step.now.displacement[i] if k == 0 and held.damped[n] else 0.0
-    if k > 0 and held.any_damped[0]:
+    if k < 2:
+        for n in range(len(x)):
+            i = held.unknown[n]
+            c[k, i] = step.now.displacement[i] if k == 0 and held.damped[n] else 0.0
+    if k > 0 and held.counts[DAMPING] > 0:
         add_damped(laws, series, k, h, top)
-    for n in range(len(x)):
-        if not held.damped[n]:
-            x[n] = balance(series, k, top, n)
+    balance(series, k, top, STIFFNESS)
     solve_order(held, STIFFNESS)
-    for n in range(len(x)):
-        if not held.damped[n]:
-            c[k, held.unknown[n]] = x[n]
+    members = held.members[STIFFNESS]
+    for q in range(held.counts[STIFFNESS]):
+        c[k, held.unknown[members[q]]] = x[members[q]]
 
 
 def violated(laws: Laws, held: Massless) -> tuple[int, int]:

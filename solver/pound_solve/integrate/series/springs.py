@@ -14,10 +14,11 @@ from pound_solve.integrate.kernels.allocation import coupled_pairs
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Rows
 from pound_solve.integrate.series.state import Series, Springs
+from pound_solve.numerics.matrices import Matrix, entries
 from pound_solve.numerics.types import Array
 
 
-def allocate(n: int, rows: Rows, inputs: Array) -> Springs:
+def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> Springs:
     """Lay out the products ``b b^T`` of the laws.
 
     Parameters
@@ -28,10 +29,16 @@ def allocate(n: int, rows: Rows, inputs: Array) -> Springs:
         Deformations of the laws over them.
     inputs : ndarray, shape (n_inputs, n)
         Loads of unit inputs.
+    stiffness : Matrix, shape (n, n), or None
+        K, if it is to be part of the sums.
     """
+    i, j, values = entries(np.zeros((0, 0)) if stiffness is None else stiffness)
+    every = np.arange(0 if stiffness is None else n)  # free bodies have a row, too
     own = [slice(a, b) for a, b in pairwise(rows.pointers.tolist())]
     one, other = coupled_pairs(rows.columns[x].astype(np.int64) for x in own)
-    keys, place = np.unique(one * n + other, return_inverse=True)
+    keys = np.unique(np.concatenate([one * n + other, i * n + j, every * n + every]))
+    place, fixed = np.searchsorted(keys, one * n + other), np.zeros(len(keys))
+    fixed[np.searchsorted(keys, i * n + j)] = values
     row, first = np.unique(keys // n, return_index=True)
     number = np.full(n, -1)
     number[row] = np.arange(len(row))
@@ -40,6 +47,7 @@ def allocate(n: int, rows: Rows, inputs: Array) -> Springs:
         row=row.astype(np.uint32),
         number=number,
         rows=Rows(np.append(first, len(keys)), (keys % n).astype(np.uint32), np.zeros(len(keys))),
+        stiffness=fixed,
         pair_pointers=np.cumsum([0, *map(len, squares)]),
         pair_places=place.astype(np.uint32),
         pair_values=np.concatenate([np.zeros(0), *squares]),
@@ -58,7 +66,7 @@ def add_up(linear: LinearSystem, laws: Laws, series: Series) -> None:
     springs, rigid, curved, friction = series.springs, series.rigid, series.curved, series.friction
     values, moved, n = springs.rows.values, springs.inputs, 0
     for q in range(len(values)):
-        values[q] = 0.0
+        values[q] = springs.stiffness[q]
     for i in range(len(springs.constant)):
         springs.constant[i] = linear.constant[i]
         for j in range(len(moved)):

@@ -25,11 +25,13 @@ class Springs(NamedTuple):
     Attributes
     ----------
     row : ndarray, shape (n_rows,)
-        Unknowns that laws hold.
+        Unknowns that laws hold; all, where some have no mass.
     number : ndarray, shape (n,)
         Place of an unknown in `row`, -1 for others.
     rows : Rows
-        Sum of ``k b b^T`` in these rows.
+        Sum of ``k b b^T`` in these rows, and K where some have no mass.
+    stiffness : ndarray, shape (n_entries,)
+        K in these rows, zero where all have mass.
     pair_pointers, pair_places, pair_values : ndarray
         Where the product ``b b^T`` of each law adds to it.
     constant : ndarray, shape (n,)
@@ -44,6 +46,7 @@ class Springs(NamedTuple):
     row: Place
     number: Index
     rows: Rows
+    stiffness: Array
     pair_pointers: Index
     pair_places: Place
     pair_values: Array
@@ -60,8 +63,10 @@ class Massless(NamedTuple):
     ----------
     unknown : ndarray, shape (n_massless,)
         Their places in the order of elimination.
-    stiffness, damping : Rows
-        Their rows of K and C over all unknowns.
+    heavy : ndarray, shape (n - n_massless,)
+        Those of the unknowns with mass.
+    damping, heavy_damping : Rows
+        Rows of C over all unknowns, of the former and of the latter.
     laws : ndarray, shape (n_holding,)
         The laws that hold one of them, ascending.
     law_number : ndarray, shape (n_laws,)
@@ -77,7 +82,10 @@ class Massless(NamedTuple):
         Where each of the laws adds to it.
     damped : ndarray, shape (n_massless,)
         Whether a dashpot resists an unknown on the present branches: its order is one, else zero.
-    any_damped : ndarray, shape (1,)
+    members : ndarray, shape (2, n_massless)
+        Rows `DAMPING` and `STIFFNESS`: those of order one and of order zero, ascending.
+    counts : ndarray, shape (2,)
+        How many these are.
     factors : ndarray, shape (2, n_entries of L)
         Rows `DAMPING` (of order one, ones for the others), `STIFFNESS` (of order zero, likewise).
     pivots : ndarray, shape (2, n_massless)
@@ -90,8 +98,9 @@ class Massless(NamedTuple):
     """
 
     unknown: Index
-    stiffness: Rows
+    heavy: Index
     damping: Rows
+    heavy_damping: Rows
     laws: Index
     law_number: Index
     rows: Rows
@@ -102,7 +111,8 @@ class Massless(NamedTuple):
     pair_places: Place
     pair_values: Array
     damped: Flags
-    any_damped: Flags
+    members: Index
+    counts: Index
     factors: Array
     pivots: Array
     matrix: Array

@@ -110,7 +110,12 @@ class Taylor(KernelEngine):
             polynomial=np.zeros(polynomial_roots.room(expansion.TERMS)),
             inverse=np.divide(1.0, m, out=np.zeros(system.size), where=m > 0.0),
             gauss=gauss,
-            springs=springs.allocate(system.size, self.laws.rows, self.linear.inputs),
+            springs=springs.allocate(
+                system.size,
+                self.laws.rows,
+                self.linear.inputs,
+                system.stiffness[np.ix_(o, o)] if len(self.massless.unknown) else None,
+            ),
             massless=self.massless,
             rigid=rigid.allocate(self.contacts, o, len(laws), terms),
             curved=curved.allocate(
