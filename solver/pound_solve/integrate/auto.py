@@ -47,7 +47,7 @@ from pound_solve.integrate.protocol import (
     rounding_check,
 )
 from pound_solve.integrate.tracker import Extreme, Peaks
-from pound_solve.numerics import jit
+from pound_solve.numerics.providers import provider
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.reduction import Decision, ReducedSystem
 
@@ -123,7 +123,7 @@ class Replay:
 
 def has_series(system: ReducedSystem) -> bool:
     """Return whether TAYLOR is applicable."""
-    return not not_in_series(system) and jit.available()
+    return not not_in_series(system) and provider().fast
 
 
 def cost_of_radian(system: ReducedSystem) -> float:
@@ -271,7 +271,7 @@ class StepRefinement:
         self.tol, self.length = tol, float(start.times[-1] - start.times[0])
         intervals = np.diff(goals(system, start.times)[0], prepend=start.times[0])
         self.h = self.aim = min(float(np.median(intervals)), self.length / 1000)
-        self.step_cost = costs.of_step(system) * (1 if jit.numba() else costs.INTERPRETED)
+        self.step_cost = costs.of_step(system) * (1 if provider().fast else costs.INTERPRETED)
         self.error = self.best = np.inf
         self.runs = self.events = self.stale = 0
         self.before: Comparison | None = None

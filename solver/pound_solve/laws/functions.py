@@ -25,7 +25,8 @@ from pound_solve.laws.automaton import (
     rate_independent,
     rate_power,
 )
-from pound_solve.numerics.jit import Function, compiled, numba
+from pound_solve.numerics.jit import Function
+from pound_solve.numerics.providers import provider
 from pound_solve.numerics.types import Array
 
 RowPart = Callable[[Array, int, int], Numbers]  #: numbers in a row of an array, from a place on
@@ -45,6 +46,61 @@ class Tables(NamedTuple):
     curve: tuple[CurveFunction, ...]
     power: tuple[PowerFunction, ...]
     powers: tuple[PowersFunction, ...]
+
+
+# what kernels call: the library compiled ahead of time has its own of these, see `ahead_of_time`
+
+
+def branch_of(rules: Tables, number: int, p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Branch of the rule of that number."""
+    return rules.branch[number](p, at, m)
+
+
+def transition_of(
+    rules: Tables, number: int, p: Numbers, at: int, m: Numbers, event: int, d: float, v: float
+) -> tuple[int, Numbers]:
+    """Transition of the rule of that number."""
+    return rules.transition[number](p, at, m, event, d, v)
+
+
+def recoverable_of(
+    rules: Tables, number: int, p: Numbers, at: int, m: Numbers, d: float, f: float
+) -> float:
+    """Recoverable energy of the rule of that number."""
+    return rules.recoverable[number](p, at, m, d, f)
+
+
+def curve_of(
+    rules: Tables, number: int, p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
+) -> tuple[float, float, float, float]:
+    """Curve of the rule of that number."""
+    return rules.curve[number](p, at, m, d0, d, v)
+
+
+def power_of(rules: Tables, number: int, p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
+    """Power of the rule of that number."""
+    return rules.power[number](p, at, m, d, v)
+
+
+def powers_of(
+    rules: Tables, number: int, p: Numbers, at: int, m: Numbers
+) -> tuple[float, float, float, float, float]:
+    """Powers of the rule of that number."""
+    return rules.powers[number](p, at, m)
+
+
+CALLS = (branch_of, transition_of, recoverable_of, curve_of, power_of, powers_of)  #: in the order of `Tables`
+
+_P, _M = f"UniTuple(f8, {PARAMETERS})", f"UniTuple(f8, {VARIABLES})"
+#: types of the functions, of numba
+SIGNATURES = (
+    f"UniTuple(f8, {3 + 3 * EVENTS})({_P}, i8, {_M})",
+    f"Tuple((i8, {_M}))({_P}, i8, {_M}, i8, f8, f8)",
+    f"f8({_P}, i8, {_M}, f8, f8)",
+    f"UniTuple(f8, 4)({_P}, i8, {_M}, f8, f8, f8)",
+    f"f8({_P}, i8, {_M}, f8, f8)",
+    f"UniTuple(f8, 5)({_P}, i8, {_M})",
+)
 
 
 def straight(
@@ -171,15 +227,12 @@ def functions(rule: Rule) -> tuple[Function, ...]:
             f"a rule has {rule.parameters} parameters and {rule.variables} internal variables: the kernels "
             f"have room for {PARAMETERS} and {VARIABLES}, see PARAMETERS and VARIABLES in {__name__}"
         )
-    # one more where both are as long: numba does not return from typing a function that indexes two tuples
-    # of one type, once with a number and once with a name
-    parameters = rule.parameters + (rule.parameters == rule.variables)
-    lengths = {"parameters": parameters, "variables": rule.variables}
+    lengths = {"parameters": rule.parameters, "variables": rule.variables}
 
     def adapted(template: Function, function: Function) -> Function:
         code = function.__code__
         name = f"{function.__module__}.{function.__qualname__}-{code.co_firstlineno}"
-        return bound(template, f"{name}-{parameters}-{rule.variables}", own=function, **lengths)
+        return bound(template, f"{name}-{rule.parameters}-{rule.variables}", own=function, **lengths)
 
     return (
         adapted(branch, rule.branch),
@@ -196,25 +249,12 @@ def functions(rule: Rule) -> tuple[Function, ...]:
 
 
 def tables(rules: Sequence[Rule]) -> Tables:
-    """Functions of the rules, compiled to be called by number.
+    """Functions of the rules, ready to be called by number.
 
     The last rule fills the tables up to a length that hardly a deck exceeds: numba compiles the kernels
     anew for every length.
     """
-    fast = numba()
-    signatures = [None] * len(Tables._fields)
-    if fast is not None:
-        t = fast.types
-        f8, i8 = t.float64, t.int64
-        p, m = t.UniTuple(f8, PARAMETERS), t.UniTuple(f8, VARIABLES)
-        signatures = [
-            t.UniTuple(f8, 3 + 3 * EVENTS)(p, i8, m),
-            t.Tuple((i8, m))(p, i8, m, i8, f8, f8),
-            f8(p, i8, m, f8, f8),
-            t.UniTuple(f8, 4)(p, i8, m, f8, f8, f8),
-            f8(p, i8, m, f8, f8),
-            t.UniTuple(f8, 5)(p, i8, m),
-        ]
     found = [functions(r) for r in rules]
     found += found[-1:] * (-len(found) % ROOM)
-    return Tables(*(tuple(compiled(f, s) for f in column) for column, s in zip(zip(*found), signatures)))
+    ready = provider().ready
+    return Tables(*(tuple(ready(f, s) for f in column) for column, s in zip(zip(*found), SIGNATURES)))

@@ -9,7 +9,7 @@ of the kernels' source: numba itself does not notice a change in a function that
 from __future__ import annotations
 
 import dis
-import hashlib
+import itertools
 import os
 import tempfile
 import types
@@ -17,34 +17,25 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from pound_solve.numerics.digest import digest
+
 Function = Callable[..., Any]
 
 
+COMPILING = "compiling the kernels, once for this version: some 40 s"
 SHORT = 700  #: bytes of bytecode up to which a function is inlined
-#: files of the kernels and of their dependencies
-KERNELS = (
-    "numerics/*.py",
-    "laws/**/*.py",
-    "structure/corotational.py",
-    "integrate/*.py",
-    "integrate/[!c]*/*.py",  # all methods but the closed forms, which numpy serves
-)
 FASTMATH = {"contract", "reassoc"}  #: reorderings of floating-point operations allowed in `loose` kernels
 
 
 def folder() -> Path:
     """Where compiled kernels are kept: the user's cache, or a temporary folder if that is read-only."""
-    program = Path(__file__).parents[1]
-    sources = sorted(p for pattern in KERNELS for p in program.glob(pattern))
-    key = hashlib.sha256(b"".join(p.read_bytes() for p in sources)).hexdigest()[:16]
     home = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    place = Path(home) / "pound-solve" / key
+    place = Path(home) / "pound-solve" / digest()
     try:
         place.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=place):
@@ -53,24 +44,9 @@ def folder() -> Path:
         return Path(tempfile.mkdtemp(prefix="pound-solve-"))
 
 
-def available() -> bool:
-    """Whether there is numba, which is not imported yet.
-
-    POUND_COMPILE=0 in the environment switches it off.
-    """
-    return os.environ.get("POUND_COMPILE") != "0" and find_spec("numba") is not None
-
-
-def missing() -> bool:
-    """Whether kernels run as Python because numba is not installed."""
-    return os.environ.get("POUND_COMPILE") != "0" and find_spec("numba") is None
-
-
 @cache
 def numba() -> Any:
-    """numba, with the cache folder set; None where it is not `available`."""
-    if not available():
-        return None
+    """numba, with the cache folder set; None where it cannot be imported."""
     try:
         import numba as found
     except ImportError:
@@ -113,6 +89,16 @@ def lighten(found: Any) -> None:
 
     library._optimize_final_module, library._finalize_final_module = optimise_outermost, emit_outermost
     engine.set_env = set_if_emitted
+
+
+def subscripts(function: Function) -> set[str]:
+    """Names of globals by which a function indexes."""
+    code = itertools.pairwise(dis.get_instructions(function))
+    return {
+        own.argval
+        for own, then in code
+        if own.opname == "LOAD_GLOBAL" and (then.opname == "BINARY_SUBSCR" or then.argrepr == "[]")
+    }
 
 
 def flat(function: Function) -> Function:
@@ -162,7 +148,7 @@ def compiled(
     ----------
     function : callable
         A kernel: numbers, tuples, arrays and other kernels only.
-    signature : numba signature or None
+    signature : numba signature, as text or not, or None
         Compile for these types at once, so that the function can be handed on as a value.
     inner : bool
         Only other kernels call it.
@@ -178,12 +164,13 @@ def compiled(
     if found is None:
         return function
     scope, flat = dict(function.__globals__), "flat" in vars(function)
+    indices = subscripts(function)
     for used in {i.argval for i in dis.get_instructions(function) if i.opname == "LOAD_GLOBAL"}:
         value = scope.get(used)
         if isinstance(value, types.FunctionType) and value.__module__.startswith("pound_solve"):
             scope[used] = compiled(value, inner=True, inline=flat or len(value.__code__.co_code) < SHORT)
-        elif type(value) is int:  # of a kind of its own each, for which numba would compile a callee anew
-            scope[used] = np.int64(value)
+        elif type(value) is int and used not in indices:  # a callee would be compiled anew for every int,
+            scope[used] = np.int64(value)  # while only by an int a tuple may be indexed at no cost
     twin = types.FunctionType(function.__code__, scope, function.__name__, function.__defaults__)
     twin.__qualname__, twin.__module__ = function.__qualname__, function.__module__
     # arrays belong to the caller of a kernel: they need not be counted, which would cost more than the work
@@ -196,3 +183,34 @@ def compiled(
     with compiling():
         out: Function = found.njit(*([] if signature is None else [signature]), **how)(twin)
     return out
+
+
+class Numba:
+    """Kernels that numba compiles, see `providers.Provider`.
+
+    Parameters
+    ----------
+    told : str
+        What a user has to know before every run.
+    """
+
+    fast = True
+
+    def __init__(self, told: str = "") -> None:
+        self._told = told
+
+    def ready(self, kernel: Function, signature: str = "") -> Function:
+        """See `providers.Provider`."""
+        if signature:
+            return compiled(kernel, signature)
+        own = compiled(kernel)
+
+        def call(*arguments: Any) -> Any:
+            with compiling():
+                return own(*arguments)
+
+        return call
+
+    def notice(self, kernel: Function) -> str:
+        """See `providers.Provider`."""
+        return "; ".join(filter(None, [self._told, COMPILING if cold(kernel) else ""]))

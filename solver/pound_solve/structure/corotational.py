@@ -37,8 +37,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pound_solve.numerics import jit
 from pound_solve.numerics.matrices import Matrix, by_rows, gathered
+from pound_solve.numerics.providers import provider
 from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.dofs import Dof
 
@@ -239,8 +239,7 @@ class CorotationalMembers:
     def actions(self, s: Array) -> Array:
         """`member_actions` at the quantities `s`, shape (n_times, n_members, 6)."""
         out = np.zeros((*s.shape[:2], 4))
-        with jit.compiling():
-            jit.compiled(member_actions)(self.p, np.ascontiguousarray(s), out)
+        provider().ready(member_actions)(self.p, np.ascontiguousarray(s), out)
         return out
 
     def shares(self, outputs: Sequence[tuple[int, str]]) -> tuple[Index, Array]:

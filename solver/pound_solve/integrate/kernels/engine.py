@@ -28,11 +28,9 @@ from pound_solve.integrate.tracker import Peaks, ResponseTracker
 from pound_solve.laws import functions
 from pound_solve.laws.automaton import BranchKind, State
 from pound_solve.laws.hysteresis import bilinear
-from pound_solve.numerics import jit
+from pound_solve.numerics.jit import Function
+from pound_solve.numerics.providers import provider
 from pound_solve.structure.reduction import ReducedSystem
-
-COMPILING = "compiling the kernels, once for this version: some 40 s"
-INTERPRETED = "steps are not compiled, some 100 times slower: pip install numba"
 
 
 class KernelEngine(ABC):
@@ -111,7 +109,7 @@ class KernelEngine(ABC):
     def checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
         """Self-checks of the run."""
 
-    def begin(self, advance: jit.Function) -> None:
+    def begin(self, advance: Function) -> None:
         """Note the contacts that are closed at the start, before a kernel advances."""
         laws, t = self.laws, float(self.times[0])
         for i, s in enumerate(self.springs):
@@ -124,18 +122,16 @@ class KernelEngine(ABC):
         for i in laws.coupled.tolist():
             law_kernels.couple(laws, self.rules, self.step.now.acceleration, i)
         law_kernels.hold_friction_limits(laws)
-        if jit.cold(advance):
-            self.recorder.trial(t, COMPILING)
-        elif jit.missing():
-            self.recorder.trial(t, INTERPRETED)
+        if told := provider().notice(advance):
+            self.recorder.trial(t, told)
 
-    def advance(self, kernel: jit.Function, *given: Any) -> None:
+    def advance(self, kernel: Function, *given: Any) -> None:
         """Let a kernel advance to the end, and take in what it keeps."""
-        compiled = jit.compiled(kernel)
+        ready = provider().ready(kernel)
         own = self.linear, self.laws, self.step, self.buffers, self.rules
         while True:
-            with np.errstate(all="ignore"), jit.compiling():  # a runaway is reported in words
-                why = compiled(*own, *given, self.accumulator.works, self.state)
+            with np.errstate(all="ignore"):  # a runaway is reported in words
+                why = ready(*own, *given, self.accumulator.works, self.state)
             self.fetch()
             if why == DONE:
                 return

@@ -7,7 +7,16 @@ import numpy as np
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import STIFFNESS, TURN, Laws
 from pound_solve.laws.automaton import PUSH, PUSH_RATE
-from pound_solve.laws.functions import PARAMETERS, VARIABLES, Tables, row
+from pound_solve.laws.functions import (
+    PARAMETERS,
+    VARIABLES,
+    Tables,
+    branch_of,
+    curve_of,
+    power_of,
+    row,
+    transition_of,
+)
 from pound_solve.numerics.types import Array
 
 parameters, internal = row(PARAMETERS), row(VARIABLES)  #: rows of arrays as tuples
@@ -15,7 +24,9 @@ parameters, internal = row(PARAMETERS), row(VARIABLES)  #: rows of arrays as tup
 
 def curve(laws: Laws, rules: Tables, i: int, d: float, v: float) -> tuple[float, float, float, float]:
     """Force of a curved law, its derivatives by `d` and `v`, and the work since the branch was entered."""
-    found: tuple[float, float, float, float] = rules.curve[laws.rule[i]](
+    found: tuple[float, float, float, float] = curve_of(
+        rules,
+        laws.rule[i],
         parameters(laws.parameters, i),
         laws.branch[i],
         internal(laws.internal, i),
@@ -40,8 +51,8 @@ def proportional_damping(laws: Laws, i: int, k: float) -> float:
 
 def enter_branch(laws: Laws, rules: Tables, i: int) -> None:
     """Take over the linear branch that law `i` is on, and its event functions."""
-    b = rules.branch[laws.rule[i]](
-        parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
+    b = branch_of(
+        rules, laws.rule[i], parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
     )
     laws.stiffness[i], laws.damping[i], laws.offset[i] = (
         b[0],
@@ -82,8 +93,14 @@ def drag(laws: Laws, rules: Tables, i: int, d: float, v: float) -> float:
         return dashpot
     if v == 0.0:
         return 0.0
-    power: float = rules.power[laws.rule[i]](
-        parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i), d, v
+    power: float = power_of(
+        rules,
+        laws.rule[i],
+        parameters(laws.parameters, i),
+        laws.branch[i],
+        internal(laws.internal, i),
+        d,
+        v,
     )
     return power / v + proportional_damping(laws, i, laws.stiffness[i]) * v
 
@@ -95,8 +112,15 @@ def transition(laws: Laws, rules: Tables, i: int, event: int, d: float, v: float
     if reversal and abs(d) > laws.internal[i, TURN]:
         laws.internal[i, TURN] = abs(d)
         laws.internal[i, STIFFNESS] = max(law_force(laws, rules, i, d, 0.0) / d, 0.0)
-    at, m = rules.transition[laws.rule[i]](
-        parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i), event, d, v
+    at, m = transition_of(
+        rules,
+        laws.rule[i],
+        parameters(laws.parameters, i),
+        laws.branch[i],
+        internal(laws.internal, i),
+        event,
+        d,
+        v,
     )
     laws.branch[i], laws.entry_deformation[i], laws.entry_work[i] = at, d, done
     for j in range(len(m)):

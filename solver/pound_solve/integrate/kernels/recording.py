@@ -7,7 +7,7 @@ from pound_solve.integrate.kernels.consistency import make_consistent, touches_m
 from pound_solve.integrate.kernels.laws import internal, law_force, law_work, parameters
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Buffers, Laws, LinearSystem, Run, Step
-from pound_solve.laws.functions import Tables
+from pound_solve.laws.functions import Tables, recoverable_of
 from pound_solve.numerics.cubic import cubic_peak
 
 #: steps, and steps times unknowns, after which Python may look whether the user wants to stop
@@ -100,8 +100,14 @@ def store_sample(
         d = laws.now.deformation[i]
         still = law_force(laws, rules, i, d, 0.0)
         buffers.force[at, i] = law_force(laws, rules, i, d, laws.now.rate[i]) if laws.viscous[i] else still
-        held = rules.recoverable[laws.rule[i]](
-            parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i), d, still
+        held = recoverable_of(
+            rules,
+            laws.rule[i],
+            parameters(laws.parameters, i),
+            laws.branch[i],
+            internal(laws.internal, i),
+            d,
+            still,
         )
         lost = law_work(laws, rules, i, d) - held
         size = max(abs(d), abs(laws.entry_deformation[i]))

@@ -26,7 +26,7 @@ from pound_solve.integrate.kernels.laws import internal, parameters
 from pound_solve.integrate.kernels.products import along, spread
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.state import Curved, Lengths, Series
-from pound_solve.laws.functions import Tables
+from pound_solve.laws.functions import Tables, powers_of
 from pound_solve.numerics.types import Array, Flags
 
 ASLEEP, ACTIVE, SILENT = range(3)  #: no overlap to speak of; a force acts; it would pull, and is none
@@ -70,8 +70,8 @@ def touch(laws: Laws, i: int) -> float:
 def enter(laws: Laws, rules: Tables, curved: Curved, i: int) -> None:
     """Take over the branch that curved law `i` is on."""
     r = curved.number[i]
-    found = rules.powers[laws.rule[i]](
-        parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
+    found = powers_of(
+        rules, laws.rule[i], parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
     )
     own = curved.numbers[r]
     own[K], own[N], own[C], own[Q], own[PULLS] = found

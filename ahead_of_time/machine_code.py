@@ -1,0 +1,111 @@
+"""Machine code of kernels, which numba makes as for the present process, but for a file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import llvmlite.binding as llvm
+from numba import typeof
+from numba.core.codegen import AOTCPUCodegen
+from numba.core.compiler_lock import global_compiler_lock
+
+from ahead_of_time.calls import Call
+from pound_solve.numerics import jit
+from pound_solve.numerics.library import BASE, CONTENTS
+
+WHOLE, REAL, ADDRESS = "i64", "double", "ptr"  #: LLVM's names of types of 64 bits
+
+
+def unoptimised(call: Call) -> tuple[Any, str]:
+    """A kernel with all that it calls, as a module of LLVM, and the name of its function there."""
+    types = tuple(typeof(value) for value in call.arguments)
+    made = jit.compiled(call.kernel, types, inner=True)
+    (own,) = made.overloads.values()
+    return own.library._final_module, own.fndesc.mangled_name
+
+
+def door(module: Any, kernel: str, name: str, n_cells: int) -> str:
+    """LLVM's text of a function that calls a kernel with the numbers of a `library.Block`.
+
+    Parameters
+    ----------
+    module : module of LLVM
+    kernel : str
+        Name of the kernel's function in it.
+    name : str
+        Of the door.
+    n_cells : int
+        Numbers in the block.
+
+    Raises
+    ------
+    ValueError
+        The kernel takes more or fewer.
+    """
+    result, exception, *given = [str(x.type) for x in module.get_function(kernel).arguments]
+    if len(given) != n_cells:
+        raise ValueError(f"{name} takes {len(given)} numbers, its block has {n_cells}")
+    lines = [
+        f'declare i32 @"{kernel}"({", ".join([result, exception, *given])})',
+        f"define i32 @{name}(ptr %cells, ptr %result) {{",
+        "%exception = alloca ptr",
+    ]
+    for n, kind in enumerate(given):
+        lines.append(f"%place{n} = getelementptr {WHOLE}, ptr %cells, {WHOLE} {n}")
+        if kind in (WHOLE, REAL, ADDRESS):
+            lines.append(f"%own{n} = load {kind}, ptr %place{n}")
+        else:
+            lines.append(f"%cell{n} = load {WHOLE}, ptr %place{n}")
+            lines.append(f"%own{n} = trunc {WHOLE} %cell{n} to {kind}")
+    arguments = ["ptr %result", "ptr %exception", *(f"{kind} %own{n}" for n, kind in enumerate(given))]
+    lines.append(f'%status = call i32 @"{kernel}"({", ".join(arguments)})')
+    return "\n".join([*lines, "ret i32 %status", "}"])
+
+
+def contents(calls: Sequence[Call], numbers: dict[str, int]) -> str:
+    """LLVM's text of the function that returns what a library holds, see `library.Library`."""
+    kernels = [" ".join(["kernel", call.kernel.__name__, *call.types]) for call in calls]
+    functions = [f"function {name}" for name in sorted(numbers, key=numbers.__getitem__)]
+    coded = "\n".join([*kernels, *functions]).encode() + b"\0"
+    letters = "".join(f"\\{byte:02x}" for byte in coded)
+    text = f'@text = constant [{len(coded)} x i8] c"{letters}"'
+    return f"{text}\ndefine ptr @{CONTENTS}() {{\nret ptr @text\n}}"
+
+
+class Machine:
+    """Makes machine code for the processors of a level, see `library`.
+
+    Parameters
+    ----------
+    level : str
+        A name of LLVM for processors but for `BASE`.
+    """
+
+    def __init__(self, level: str) -> None:
+        with jit.compiling():
+            self._codegen = AOTCPUCodegen(level, "" if level == BASE else level)
+
+    def code(self, name: str, source: str, kernel: Any = None) -> bytes:
+        """An object file with one function that is seen from outside.
+
+        Parameters
+        ----------
+        name : str
+            Of the function.
+        source : str
+            LLVM's text of it.
+        kernel : module of LLVM or None
+            What it calls.
+        """
+        with jit.compiling(), global_compiler_lock:
+            library = self._codegen.create_library(name)
+            if kernel is not None:
+                library.add_llvm_module(llvm.parse_bitcode(kernel.as_bitcode()))
+            library.add_llvm_module(llvm.parse_assembly(source))
+            module = library._final_module
+            for own in (*module.functions, *module.global_variables):
+                if not own.is_declaration and own.name != name:
+                    own.linkage = "internal"
+            made: bytes = library.emit_native_object()
+        return made

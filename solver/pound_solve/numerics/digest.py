@@ -1,0 +1,24 @@
+"""The version of the kernels' source, by which compiled code is known to belong to it."""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cache
+from pathlib import Path
+
+#: files of the kernels and of their dependencies
+KERNELS = (
+    "numerics/*.py",
+    "laws/**/*.py",
+    "structure/corotational.py",
+    "integrate/*.py",
+    "integrate/[!c]*/*.py",  # all methods but the closed forms, which numpy serves
+)
+
+
+@cache
+def digest() -> str:
+    """Digest of the source of all kernels."""
+    program = Path(__file__).parents[1]
+    sources = sorted(p for pattern in KERNELS for p in program.glob(pattern))
+    return hashlib.sha256(b"".join(p.read_bytes() for p in sources)).hexdigest()[:16]

@@ -1,0 +1,69 @@
+"""Kernels ready to be called: from the library compiled ahead of time, compiled by numba, or as Python.
+
+The first of the three that there is serves the whole process.  POUND_COMPILE=0 in the environment asks for
+the last.
+"""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+from importlib.util import find_spec
+from typing import Protocol
+
+from pound_solve.numerics import library
+from pound_solve.numerics.jit import Function, Numba
+
+INTERPRETED = "steps are not compiled, some 100 times slower: pip install numba"
+
+
+class Provider(Protocol):
+    """What makes kernels ready."""
+
+    @property
+    def fast(self) -> bool:
+        """Whether they run as compiled code."""
+        ...
+
+    def ready(self, kernel: Function, signature: str = "") -> Function:
+        """The kernel ready to be called; with a signature of numba, ready to be handed to kernels."""
+        ...
+
+    def notice(self, kernel: Function) -> str:
+        """What a user has to know before a run of this kernel; empty if nothing."""
+        ...
+
+
+class Interpreter:
+    """Kernels as Python.
+
+    Parameters
+    ----------
+    told : str
+        What a user has to know of it.
+    """
+
+    fast = False
+
+    def __init__(self, told: str) -> None:
+        self._told = told
+
+    def ready(self, kernel: Function, signature: str = "") -> Function:
+        """See `Provider`."""
+        return kernel
+
+    def notice(self, kernel: Function) -> str:
+        """See `Provider`."""
+        return self._told
+
+
+@cache
+def provider() -> Provider:
+    """What makes the kernels of this process ready."""
+    if os.environ.get("POUND_COMPILE") == "0":
+        return Interpreter("")
+    found = library.load(library.FOLDER)
+    if found is not None:
+        return found
+    told = library.REFUSED if library.present(library.FOLDER) else ""
+    return Numba(told) if find_spec("numba") else Interpreter("; ".join(filter(None, [told, INTERPRETED])))
