@@ -1,6 +1,7 @@
 # make example   run the paper's buildings under El Centro 1940 and show where the report is
 # make test      run the quick tests, without compiled code: two minutes on two cores
 # make test-all  run the other tests, with compiled code
+# make wheel     build the wheel of this platform, kernels compiled: dist/
 # make docs      build the site: build/site/index.html
 # All set up a virtual environment in $(VENV) first.
 
@@ -9,7 +10,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 OUT ?= build/example
 
-.PHONY: example test test-all lint manual docs clean
+.PHONY: example test test-all lint manual wheel docs clean
 
 $(VENV)/ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -32,6 +33,9 @@ lint: $(VENV)/ready
 
 manual: $(VENV)/ready   # rewrite the pages that the program makes
 	$(BIN)/python tests/refresh_manual.py
+
+wheel: $(VENV)/ready
+	HATCH_BUILD_HOOK_ENABLE_CUSTOM=1 $(BIN)/python -m build --wheel
 
 $(VENV)/ready-docs: $(VENV)/ready
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[docs]"

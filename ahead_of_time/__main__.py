@@ -1,37 +1,32 @@
-"""Compile the kernels: ``python -m ahead_of_time FOLDER`` puts a library for every level into a folder."""
+"""Compile the kernels: ``python -m ahead_of_time FOLDER`` puts their library into a folder."""
 
 from __future__ import annotations
 
 import argparse
 import os
-import platform
 from pathlib import Path
 
 from ahead_of_time import calls, dispatch
 from ahead_of_time.link import SUFFIX, link
-from ahead_of_time.machine_code import Machine, contents, door, unoptimised
+from ahead_of_time.machine_code import contents, door, machine_code, unoptimised
 from pound_solve.numerics.digest import digest
-from pound_solve.numerics.library import BASE, CONTENTS, STEM, WIDE, Block
-
-LEVELS = (BASE, WIDE) if platform.machine().lower() in ("x86_64", "amd64") else (BASE,)
+from pound_solve.numerics.library import CONTENTS, STEM, Block
 
 
-def build(folder: Path) -> list[Path]:
-    """Compile all kernels; return the paths of the libraries, one for every level."""
+def build(folder: Path) -> Path:
+    """Compile all kernels; return the path of their library."""
     numbers = dispatch.numbers()
     found = calls.observed(numbers)
     dispatch.put_in_place(dispatch.dispatchers(numbers))
-    kernels = {call.kernel.__name__: (call, *unoptimised(call)) for call in found}
-    paths = []
-    for level in LEVELS:
-        machine = Machine(level)
-        objects = {CONTENTS: machine.code(CONTENTS, contents(found, numbers))}
-        for name, (call, module, kernel) in kernels.items():
-            text = door(module, kernel, name, len(Block(call.arguments, numbers).cells))
-            objects[name] = machine.code(name, text, module)
-        paths.append(folder / f"{STEM}{digest()}-{level}{SUFFIX}")
-        link(objects, paths[-1])
-    return paths
+    objects = {CONTENTS: machine_code(CONTENTS, contents(found, numbers))}
+    for call in found:
+        name = call.kernel.__name__
+        module, kernel = unoptimised(call)
+        n_cells = len(Block(call.arguments, numbers).cells)
+        objects[name] = machine_code(name, door(module, kernel, name, n_cells), module)
+    path = folder / f"{STEM}{digest()}{SUFFIX}"
+    link(objects, path)
+    return path
 
 
 def main() -> None:
@@ -41,8 +36,7 @@ def main() -> None:
     folder = parser.parse_args().folder
     folder.mkdir(parents=True, exist_ok=True)
     os.environ["POUND_COMPILE"] = "0"  # the runs that are observed are of Python
-    for path in build(folder):
-        print(path)
+    print(build(folder))
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from numba.core.compiler_lock import global_compiler_lock
 
 from ahead_of_time.calls import Call
 from pound_solve.numerics import jit
-from pound_solve.numerics.library import BASE, CONTENTS
+from pound_solve.numerics.library import CONTENTS
 
 WHOLE, REAL, ADDRESS = "i64", "double", "ptr"  #: LLVM's names of types of 64 bits
 
@@ -20,7 +20,7 @@ WHOLE, REAL, ADDRESS = "i64", "double", "ptr"  #: LLVM's names of types of 64 bi
 def unoptimised(call: Call) -> tuple[Any, str]:
     """A kernel with all that it calls, as a module of LLVM, and the name of its function there."""
     types = tuple(typeof(value) for value in call.arguments)
-    made = jit.compiled(call.kernel, types, inner=True)
+    made: Any = jit.compiled(call.kernel, types, inner=True)
     (own,) = made.overloads.values()
     return own.library._final_module, own.fndesc.mangled_name
 
@@ -73,39 +73,29 @@ def contents(calls: Sequence[Call], numbers: dict[str, int]) -> str:
     return f"{text}\ndefine ptr @{CONTENTS}() {{\nret ptr @text\n}}"
 
 
-class Machine:
-    """Makes machine code for the processors of a level, see `library`.
+def machine_code(name: str, source: str, kernel: Any = None) -> bytes:
+    """An object file with one function that is seen from outside.
+
+    It is for any processor of the platform: for one that works on four numbers at once it is no faster, as
+    most loops have few turns.
 
     Parameters
     ----------
-    level : str
-        A name of LLVM for processors but for `BASE`.
+    name : str
+        Of the function.
+    source : str
+        LLVM's text of it.
+    kernel : module of LLVM or None
+        What it calls.
     """
-
-    def __init__(self, level: str) -> None:
-        with jit.compiling():
-            self._codegen = AOTCPUCodegen(level, "" if level == BASE else level)
-
-    def code(self, name: str, source: str, kernel: Any = None) -> bytes:
-        """An object file with one function that is seen from outside.
-
-        Parameters
-        ----------
-        name : str
-            Of the function.
-        source : str
-            LLVM's text of it.
-        kernel : module of LLVM or None
-            What it calls.
-        """
-        with jit.compiling(), global_compiler_lock:
-            library = self._codegen.create_library(name)
-            if kernel is not None:
-                library.add_llvm_module(llvm.parse_bitcode(kernel.as_bitcode()))
-            library.add_llvm_module(llvm.parse_assembly(source))
-            module = library._final_module
-            for own in (*module.functions, *module.global_variables):
-                if not own.is_declaration and own.name != name:
-                    own.linkage = "internal"
-            made: bytes = library.emit_native_object()
-        return made
+    with jit.compiling(), global_compiler_lock:
+        library = AOTCPUCodegen(name).create_library(name)
+        if kernel is not None:
+            library.add_llvm_module(llvm.parse_bitcode(kernel.as_bitcode()))
+        library.add_llvm_module(llvm.parse_assembly(source))
+        module = library._final_module
+        for own in (*module.functions, *module.global_variables):
+            if not own.is_declaration and own.name != name:
+                own.linkage = "internal"
+        made: bytes = library.emit_native_object()
+    return made

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from pound_solve.driver.run import Prepared, Request, execute
-from pound_solve.numerics import jit
+from pound_solve.numerics.providers import provider
 from pound_solve.results import Results
 
 Run = Callable[..., tuple[int, Results, Prepared]]
@@ -40,9 +40,9 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
 
 
 def needs_compiler(deck: Path) -> None:
-    """Skip the test where a deck would take minutes without the extra `fast`."""
-    if deck.parent.name == "frames" and jit.numba() is None:
-        pytest.skip("needs the extra `fast`")
+    """Skip the test where a deck would take minutes without compiled kernels."""
+    if deck.parent.name == "frames" and not provider().fast:
+        pytest.skip("kernels are not compiled")
 
 
 def needs_records(deck: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pound_solve.numerics import jit
+from kernels import FAST
 
 DECK = Path(__file__).parents[2] / "examples" / "07_row_of_three" / "row_of_three.inp"
 
@@ -50,9 +50,8 @@ def test_energies_balance_with_and_without_pounding(run):
         assert checks["largest energy residual over the largest energy"] < 1e-11
 
 
+@FAST
 def test_steps_come_near(run):
-    if jit.numba() is None:
-        pytest.skip("needs the extra `fast`")
     _, exact, _ = run(DECK)
     errors = []
     for h in (1e-3, 5e-4):

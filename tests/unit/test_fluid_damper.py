@@ -9,14 +9,12 @@ from scipy.special import gamma
 
 import pound_solve
 from decks import structure_of
+from kernels import FAST
 from pound_solve.laws.damper import fluid
-from pound_solve.numerics import jit
 from pound_solve.structure.assembly import AssemblyError
 from pound_solve.structure.elements.base import Role
 
 pytestmark = pytest.mark.full
-
-compiled = pytest.mark.skipif(jit.numba() is None, reason="numba is not installed")
 
 MASS = """UNITS kN m s
 GRAVITY 10
@@ -178,7 +176,7 @@ def independent(alpha, c, k, end, every, force=0.0, omega=0.0, play=0.0, limit=m
             t, y = t + 1e-13, y + 1e-13 * np.array(slope(t, y))
 
 
-@compiled
+@FAST
 @pytest.mark.parametrize(("alpha", "step"), [(0.3, 2e-6), (0.5, 4e-6), (1.5, 1.25e-5), (2.0, 1.25e-5)])
 def test_free_vibration(tmp_path, alpha, step):
     results = run(tmp_path, f"ALPHA={alpha}", k=40.0, end=2.0, method=f"NEWMARK DT={step}")
@@ -189,7 +187,7 @@ def test_free_vibration(tmp_path, alpha, step):
     assert residual(results) < 1e-8
 
 
-@compiled
+@FAST
 @pytest.mark.parametrize(("alpha", "step"), [(0.5, 4e-6), (2.0, 1.25e-5)])
 def test_vibration_under_a_sine(tmp_path, alpha, step):
     sine = "FORCES\n SINE 1 FX=6 OMEGA=5\n"
@@ -201,7 +199,7 @@ def test_vibration_under_a_sine(tmp_path, alpha, step):
     assert residual(results) < 1e-6
 
 
-@compiled
+@FAST
 @pytest.mark.parametrize("alpha", [0.2, 0.5, 1.0, 2.0])
 def test_energy_of_a_cycle(tmp_path, alpha):
     """Of a motion A sin(omega t) that the damper does not change, of a mass of 1E10:
@@ -224,7 +222,7 @@ def test_energy_of_a_cycle(tmp_path, alpha):
     assert row["plastic_work"] == pytest.approx(expected, rel=2e-7)
 
 
-@compiled
+@FAST
 @pytest.mark.parametrize("items", ["GAPX=0.06", "GAPX=0.06 ALPHA=0.5"])
 def test_vibration_through_a_play(tmp_path, items):
     alpha = 0.5 if "ALPHA" in items else 1.0

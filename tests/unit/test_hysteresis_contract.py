@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 import contract
 from contract import CLAUSES
+from kernels import NUMBA
 from paths import Walk, turning_points
 from pound_deck.schema import REQUIRED, Field, Spec
 from pound_solve.catalog import catalog
@@ -35,7 +36,6 @@ from pound_solve.laws.automaton import (
     on_spring,
 )
 from pound_solve.laws.hysteresis import bilinear
-from pound_solve.numerics import jit
 from samples import values
 
 pytestmark = pytest.mark.full
@@ -259,7 +259,7 @@ def test_a_long_history(law: Law, sample: dict[str, Any]) -> None:
 # ---------------------------------------------------------------------- compiled
 
 
-@pytest.mark.skipif(jit.numba() is None, reason="numba is not installed")
+@NUMBA
 @pytest.mark.parametrize("name", sorted(RULES))
 def test_compiled_functions_give_the_same_numbers(name: str) -> None:
     laws = [p.values[0] for p in UNEQUAL if p.id.startswith(f"{name} ")]

@@ -8,7 +8,8 @@ import pytest
 
 from pound_solve.cli.main import main
 from pound_solve.integrate.kernels import engine
-from pound_solve.numerics import jit
+from pound_solve.laws import functions
+from pound_solve.numerics.providers import INTERPRETED, Interpreter
 
 DECK = """UNITS kN m s
 NODES
@@ -27,35 +28,15 @@ ANALYSIS
 """
 
 
-@pytest.fixture
-def interpreted(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("POUND_COMPILE", "0")
-    for cached in (jit.numba, jit.compiled):
-        cached.cache_clear()
-
-
-@pytest.mark.parametrize(
-    ("cold", "missing", "told"),
-    [
-        (False, False, ""),
-        (True, False, f"pound-solve: {engine.COMPILING}\n"),
-        (False, True, f"pound-solve: {engine.INTERPRETED}\n"),
-    ],
-)
-@pytest.mark.usefixtures("interpreted")
+@pytest.mark.parametrize("told", ["", INTERPRETED])
 def test_what_a_run_waits_for(
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    cold: bool,
-    missing: bool,
-    told: str,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], told: str
 ) -> None:
-    monkeypatch.setattr(jit, "cold", lambda kernel: cold)
-    monkeypatch.setattr(jit, "missing", lambda: missing)
+    for module in (engine, functions):
+        monkeypatch.setattr(module, "provider", lambda: Interpreter(told))
     deck = tmp_path / "deck.inp"
     deck.write_text(DECK)
     assert main([str(deck)]) == 0
-    assert capsys.readouterr().err == told
+    assert capsys.readouterr().err == (f"pound-solve: {told}\n" if told else "")
     assert main([str(deck), "--quiet"]) == 0
     assert capsys.readouterr().err == ""

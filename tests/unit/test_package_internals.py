@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from kernels import NUMBA
 from pound_solve.loading.records.known import KNOWN
 from pound_solve.numerics import cubic, jit
 
@@ -19,7 +20,7 @@ ADVICE = {
 }
 
 
-@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
+@NUMBA
 @pytest.mark.parametrize("flag", ["_nrt", "forceinline", "no_cfunc_wrapper", "no_cpython_wrapper"])
 def test_numba_knows_the_flags_of_the_kernels(flag):
     from numba.core.cpu import CPUTargetOptions
@@ -27,7 +28,7 @@ def test_numba_knows_the_flags_of_the_kernels(flag):
     assert hasattr(CPUTargetOptions, flag), f"{flag}: {ADVICE['numba']}"
 
 
-@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
+@NUMBA
 def test_numba_keeps_its_settings_and_its_statistics_where_they_are_read():
     found = jit.numba()
     assert found.config.CACHE_DIR and type(found.config.OPT)(1), ADVICE["numba"]
@@ -42,7 +43,7 @@ def test_numba_keeps_its_settings_and_its_statistics_where_they_are_read():
     assert (sum(compiled.values()), sum(loaded.values())) == (1, 0), ADVICE["numba"]
 
 
-@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
+@NUMBA
 def test_numba_links_inner_kernels_without_emitting_them():
     """What `jit.lighten` replaces is there, and an inner kernel has no machine code of its own."""
     codegen = jit.numba().core.codegen

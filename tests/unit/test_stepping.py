@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 import pound_solve
+from kernels import FAST, NUMBA, interpreted
 from pound_solve.integrate import auto, condensed
 from pound_solve.integrate.events import within_step
 from pound_solve.integrate.kernels import allocation, products
@@ -128,33 +129,15 @@ def test_steps_without_cuts_go_to_the_same_drifts(tmp_path):
     assert cut[1] < 0.5 * uncut[1]  # the jump of the contact's dashpot is what the cuts are for
 
 
-@pytest.fixture
-def interpret(monkeypatch):
-    """Switch to kernels as Python, whose parts a test can replace."""
-
-    def switch():
-        monkeypatch.setenv("POUND_COMPILE", "0")
-        forget()
-        assert jit.numba() is None
-
-    def forget():
-        for cached in (jit.numba, jit.compiled):
-            cached.cache_clear()
-
-    yield switch
-    monkeypatch.undo()
-    forget()
-
-
-@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
+@FAST
 @pytest.mark.parametrize("method", ["NEWMARK DT=0.01", "HHT DT=0.01 EVENTS=STEPPED", "CENTRAL DT=4e-4"])
-def test_interpreted_kernels_give_the_same_numbers(tmp_path, interpret, method):
+def test_interpreted_kernels_give_the_same_numbers(tmp_path, method):
     hinge = "" if method.startswith("CENTRAL") else HINGED
     fast = run(tmp_path, method, hinge)
     kept = {name: fast.history(name) for name in fast.histories}
     fast.close()
-    interpret()
-    slow = run(tmp_path, method, hinge)
+    with interpreted():
+        slow = run(tmp_path, method, hinge)
     for name, values in kept.items():
         size = np.abs(values).max(initial=1e-300)
         assert np.abs(slow.history(name) - values).max(initial=0.0) < 1e-10 * size, name
@@ -341,7 +324,7 @@ def test_full_matrices_have_an_end(tmp_path, monkeypatch):
     assert found.status == "done" and took in ("TAYLOR", "NEWMARK")
 
 
-@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
+@NUMBA
 def test_decks_with_any_number_of_rules_share_one_compiled_version(tmp_path):
     for hinge in ("", HINGED, HINGED.replace("BILINEAR", "ELASTO_PLASTIC").replace("R=0.05 ", "")):
         run(tmp_path, "NEWMARK DT=0.01", hinge)
@@ -353,7 +336,7 @@ def test_decks_with_any_number_of_rules_share_one_compiled_version(tmp_path):
     )
 
 
-@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
+@NUMBA
 def test_a_kernel_is_cold_until_it_is_compiled(tmp_path, monkeypatch):
     monkeypatch.setattr(jit.numba().config, "CACHE_DIR", str(tmp_path))
     assert jit.cold(cubic.cubic_rise) and jit.cold(cubic.cubic_peak)
@@ -403,15 +386,15 @@ def test_a_contact_that_opens_and_closes_again_late_in_a_coarse_step(tmp_path):
     assert np.all(np.diff(collisions["t_start"]) > 1e-3)  # none returns at the instant when it opened
 
 
-def test_changes_at_one_instant_stop_with_time_place_and_what_helps(tmp_path, monkeypatch, interpret):
+def test_changes_at_one_instant_stop_with_time_place_and_what_helps(tmp_path, monkeypatch):
     """With an interpolation from where the contact has just opened it would close there again and again."""
 
     def at_start(laws, step, i, e):
         return within_step.event_value(laws, i, e, laws.now.deformation[i], laws.now.rate[i])[0]
 
     monkeypatch.setattr(locating, "value_at_start", at_start)
-    interpret()
-    told = bar(tmp_path, 0.05).message
+    with interpreted():
+        told = bar(tmp_path, 0.05).message
     assert told.startswith("A503 at t = 0.703") and "at one instant" in told
     assert "element 2 (KELVIN_VOIGT)" in told and "DT well below 0.05, or METHOD=EXACT" in told
 

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from kernels import FAST, interpreted
 from pound_deck.schema import REQUIRED, Spec
 from pound_solve.assess.law_test import has_loop, specimen
 from pound_solve.catalog import catalog
 from pound_solve.integrate.series import march, taylor
-from pound_solve.numerics import jit
 from samples import written
 from unit.test_laplace import SOIL
 from verification.cases import ROOT, Ran, run_deck, run_text
@@ -585,24 +585,14 @@ def test_a_run_returns_to_the_bit() -> None:
         assert repr(a.tables[table].tolist()) == repr(b.tables[table].tolist())
 
 
-@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
-def test_interpreted_kernels_give_the_same_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+@FAST
+def test_interpreted_kernels_give_the_same_numbers() -> None:
     deck = frames().replace("HISTORY 2", "HISTORY 0.7")
     fast = run_text(deck, None, "TAYLOR")
     assert len(fast.tables["collisions"]) > 0
-    with monkeypatch.context() as m:
-        m.setenv("POUND_COMPILE", "0")
-        forget()
-        assert jit.numba() is None
+    with interpreted():
         slow = run_text(deck, None, "TAYLOR")
-    forget()
     same(slow, fast, 1e-11)
-
-
-def forget() -> None:
-    """Ask again whether there is a compiler."""
-    for cached in (jit.numba, jit.compiled):
-        cached.cache_clear()
 
 
 def test_envelopes_see_the_jump_at_a_touch_between_two_outputs() -> None:
@@ -666,10 +656,7 @@ def test_changes_at_one_instant_are_told(monkeypatch: pytest.MonkeyPatch) -> Non
     stop.
     """
     monkeypatch.setattr(march, "INSTANT", 10.0)
-    with monkeypatch.context() as m:
-        m.setenv("POUND_COMPILE", "0")
-        forget()
+    with interpreted():
         r = run_text(storeys().replace("KX=500", "KX=500 FX=1 RULE=BILINEAR R=0.5"), None, "TAYLOR")
-    forget()
     assert r.message.startswith("A503") and "changes at one instant, the last in element" in r.message
     assert "EVENTS=STEPPED" in r.message and "DT" not in r.message

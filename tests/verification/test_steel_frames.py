@@ -14,14 +14,13 @@ from pathlib import Path
 
 import pytest
 
+from kernels import FAST
 from pound_solve import run
-from pound_solve.numerics import jit
 from verification.cases import ROOT
 
 pytestmark = pytest.mark.full
 
 FRAMES = ROOT / "examples" / "frames"
-COMPILED = pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
 
 
 @dataclass(frozen=True)
@@ -103,20 +102,20 @@ def test_two_storeys() -> None:
     compare("small", "steel_10x3", "SMALL", 1e-9, 1e-9, **SMALL)
 
 
-@COMPILED
+@FAST
 @pytest.mark.parametrize("case", ["10x3", "20x6"])
 def test_small_displacements(case: str) -> None:
     compare(case, f"steel_{case}", "SMALL", 1e-9, 1e-9)
 
 
-@COMPILED
+@FAST
 @pytest.mark.parametrize("case", ["10x3", "20x6"])
 def test_constant_axial_forces(case: str) -> None:
     """OpenSees takes the present axial forces, GEOMETRY PDELTA those under gravity: close, not equal."""
     compare(case, f"steel_{case}", "PDELTA", 3e-5, 4e-3)
 
 
-@COMPILED
+@FAST
 @pytest.mark.parametrize("case", ["10x3", "20x6"])
 def test_present_axial_forces(case: str) -> None:
     compare(case, f"steel_{case}", "PDELTA_VARYING", 1e-6, 3e-6)

@@ -89,7 +89,8 @@ def powers_of(
     return rules.powers[number](p, at, m)
 
 
-CALLS = (branch_of, transition_of, recoverable_of, curve_of, power_of, powers_of)  #: in the order of `Tables`
+#: these, in the order of `Tables`
+CALLS: tuple[Function, ...] = branch_of, transition_of, recoverable_of, curve_of, power_of, powers_of
 
 _P, _M = f"UniTuple(f8, {PARAMETERS})", f"UniTuple(f8, {VARIABLES})"
 #: types of the functions, of numba

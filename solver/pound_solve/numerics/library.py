@@ -19,11 +19,9 @@ from pound_solve.numerics.jit import Function
 from pound_solve.numerics.types import Array, Index
 
 FOLDER = Path(__file__).parent  #: where a wheel puts libraries
-STEM = "kernels-"  #: of a library's file; the digest of the source and a level follow
-#: levels: any processor of the platform; one of x86-64 that works on four numbers at once
-BASE, WIDE = "base", "x86-64-v3"
+STEM = "kernels-"  #: of a library's file; the digest of the source follows
 CONTENTS = "contents"  #: function in a library that returns what it holds, see `Library`
-REFUSED = "the compiled kernels are of another version of the program and not used: install it anew"
+REFUSED = "the compiled kernels here are not of this program and machine: install it anew"
 
 
 class Block:
@@ -148,21 +146,13 @@ class Library:
         return ""
 
 
-def levels() -> tuple[str, ...]:
-    """Levels of libraries that the processor can run, the best first."""
-    found: Any = np.show_config("dicts")
-    known = {*found["SIMD Extensions"]["baseline"], *found["SIMD Extensions"]["found"]}
-    return (WIDE, BASE) if "X86_V3" in known or {"AVX2", "FMA3"} <= known else (BASE,)
-
-
 def load(folder: Path) -> Library | None:
-    """The library of this version of the source for this processor; None where there is none."""
-    for level in levels():
-        for path in folder.glob(f"{STEM}{digest()}-{level}.*"):
-            try:
-                return Library(path)
-            except OSError:
-                continue
+    """The library of this version of the source; None where there is none that this machine can load."""
+    for path in folder.glob(f"{STEM}{digest()}.*"):
+        try:
+            return Library(path)
+        except OSError:
+            continue
     return None
 
 
