@@ -68,13 +68,14 @@ def fastest_rate(system: ReducedSystem) -> float:
 def fastest_decay(k: Matrix, c: Matrix) -> float:
     """Largest eigenvalue of ``K x = lambda C x``, by power iteration; infinite where C is singular."""
     try:
-        factor = Factor(c)
+        factor = None if isinstance(c, np.ndarray) else Factor(c)
+        rates = np.linalg.solve(c, k) if factor is None else k
     except np.linalg.LinAlgError:
         return np.inf
     x, found = np.cos(np.arange(c.shape[0]) ** 2.0), 0.0
     for _ in range(POWERS):
         x /= np.linalg.norm(x)
-        x = factor.solve(k @ x)
+        x = rates @ x if factor is None else factor.solve(k @ x)
         found = max(found, float(np.linalg.norm(x)))
     return found
 

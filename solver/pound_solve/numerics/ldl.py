@@ -18,6 +18,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_solve.numerics import ordering
+from pound_solve.numerics.matrices import MOST_DENSE
 from pound_solve.numerics.types import Array, Index
 
 Place = NDArray[np.uint32]  #: positions of entries: without a sign, so that none is counted from the end
@@ -60,8 +62,8 @@ def order(n: int, i: Index, j: Index) -> Index:
     i, j : ndarray, shape (n_pairs,)
         Which of the unknowns are coupled; each pair may come once or often.
     """
-    if n < 3:
-        return np.arange(n)
+    if n <= MOST_DENSE:
+        return _order_of_few(n, i, j)
     from scipy.sparse import csc_array
     from scipy.sparse.csgraph import reverse_cuthill_mckee
     from scipy.sparse.linalg import splu
@@ -73,12 +75,35 @@ def order(n: int, i: Index, j: Index) -> Index:
     a.setdiag(n + 1.0)  # the values do not matter: no pivot is ever exchanged
     symmetric = {"SymmetricMode": True}
     found = splu(a, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric)
-    line = reverse_cuthill_mckee(a, symmetric_mode=True).astype(np.int64)
-    line = np.stack([line, line[::-1]], axis=1).ravel()[:n]
+    line = from_both_ends(reverse_cuthill_mckee(a, symmetric_mode=True).astype(np.int64))
     banded = splu(a[line][:, line], permc_spec="NATURAL", diag_pivot_thresh=0.0, options=symmetric)
     if banded.L.nnz <= found.L.nnz + SPARE * n:
         return line
     return np.argsort(found.perm_c).astype(np.int64)
+
+
+def _order_of_few(n: int, i: Index, j: Index) -> Index:
+    """The same for few unknowns."""
+    near: list[set[int]] = [set() for _ in range(n)]
+    for a, b in zip(i.tolist(), j.tolist()):
+        if a != b:
+            near[a].add(b)
+            near[b].add(a)
+    line = from_both_ends(np.array(ordering.along_a_line(near), np.int64))
+    found = np.array(ordering.minimum_degree(near), np.int64)
+    return line if _fill(near, line) <= _fill(near, found) + SPARE * n else found
+
+
+def from_both_ends(line: Index) -> Index:
+    """A line's unknowns from its two ends in turn."""
+    return np.stack([line, line[::-1]], axis=1).ravel()[: len(line)]
+
+
+def _fill(near: Sequence[set[int]], order: Index) -> int:
+    """Entries of the factor in an order of elimination."""
+    place = np.argsort(order).tolist()
+    own = [{place[x] for x in near[k] if place[x] > column} for column, k in enumerate(order.tolist())]
+    return sum(map(len, filled(own)))
 
 
 def analyse(n: int, i: Index, j: Index) -> Pattern:

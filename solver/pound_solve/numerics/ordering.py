@@ -1,0 +1,62 @@
+"""Orders of elimination of a small symmetric matrix, from the neighbours of every unknown.
+
+Plain Python, because small decks do not import scipy, which takes longer than the orders.
+
+References
+----------
+Cuthill E, McKee J (1969), Reducing the bandwidth of sparse symmetric matrices, Proc. 24th Nat. Conf. ACM:
+157-172; Tinney WF, Walker JW (1967), Direct solutions of sparse network equations by optimally ordered
+triangular factorization, Proc. IEEE 55(11): 1801-1809.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+Neighbours = Sequence[set[int]]
+
+
+def levels(near: Neighbours, start: int) -> list[list[int]]:
+    """Unknowns by their distance from one of them, those with few neighbours first."""
+    out, seen = [[start]], {start}
+    while True:
+        further = []
+        for own in out[-1]:
+            fresh = sorted(near[own] - seen, key=lambda x: (len(near[x]), x))
+            seen.update(fresh)
+            further += fresh
+        if not further:
+            return out
+        out.append(further)
+
+
+def along_a_line(near: Neighbours) -> list[int]:
+    """Reverse Cuthill-McKee: level by level from one end of every component."""
+    order: list[int] = []
+    left = set(range(len(near)))
+    while left:
+        found = levels(near, min(left, key=lambda x: (len(near[x]), x)))
+        while True:  # a start that is farther away, until there is none
+            end = min(found[-1], key=lambda x: (len(near[x]), x))
+            again = levels(near, end)
+            if len(again) <= len(found):
+                break
+            found = again
+        own = [x for level in found for x in level]
+        left.difference_update(own)
+        order += own
+    return order[::-1]
+
+
+def minimum_degree(near: Neighbours) -> list[int]:
+    """Always the unknown next that the fewest of those left are coupled to, which it couples."""
+    graph = [set(own) for own in near]
+    left, order = set(range(len(graph))), []
+    while left:
+        own = min(left, key=lambda x: (len(graph[x]), x))
+        left.remove(own)
+        order.append(own)
+        for other in graph[own]:
+            graph[other] |= graph[own]
+            graph[other] -= {own, other}
+    return order
