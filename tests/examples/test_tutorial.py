@@ -20,7 +20,7 @@ from typing import Any
 import pytest
 
 from pound_solve.cli.main import main
-from pound_solve.integrate.kernels.engine import COMPILING
+from pound_solve.numerics.jit import COMPILING
 from pound_solve.results.contents import SECTIONS, TABLES
 
 pytestmark = pytest.mark.full

@@ -116,6 +116,39 @@ def test_every_law_gives_the_numbers_of_python(tmp_path: Path, method: str) -> N
     same(slow, fast, 1e-10)
 
 
+#: a column that turns, with a damper, against a stop that rubs
+TURNING = """UNITS kN m s
+GEOMETRY LARGE
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3
+ 3 0.2 3 FIX=XYR
+ELEMENTS
+ 1 COL 1 2
+ 2 STOP 2 3
+ 3 DAMP 2 3
+PROPS
+ COL FRAME E=2e8 A=0.01 I=1e-5
+ STOP CONTACT GAP=0.01 LAW=KELVIN_VOIGT K=1e5 E=0.7 MU=0.3 KT=1e4
+ DAMP DASHPOT CX=20 LAW=FLUID ALPHA=0.5
+WEIGHTS
+ 2 98.1
+INITIAL
+ 2 VX=1
+ANALYSIS
+ HISTORY 0.5 METHOD=NEWMARK DT=1e-3
+"""
+
+
+@pytest.mark.usefixtures("ahead")
+def test_members_that_turn_friction_and_dampers_give_the_numbers_of_python(tmp_path: Path) -> None:
+    fast = ran(TURNING, tmp_path / "library")
+    with interpreted():
+        slow = ran(TURNING, tmp_path / "python")
+    assert len(fast.table("collisions")) > 0
+    same(slow, fast, 1e-10)
+
+
 EXAMPLE = ROOT / "examples/01_two_oscillators/two_oscillators.inp"
 
 
