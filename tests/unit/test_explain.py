@@ -46,9 +46,8 @@ KINDS = {
         "yields": HINGES,
     },
 }
-#: libraries that are slow to import, and the kinds that need any; steps take numba too where it is on
+#: libraries that are slow to import, which no kind needs; but steps take numba where it is on
 NUMERICS = {"scipy", "numba", "llvmlite"}
-NEEDS = {"general history": {"scipy"}}
 #: the folders of the methods, and those that kinds of decks need
 FOLDERS = {"closed_form", "events", "kernels", "series", "stepping"}
 STEPS = {"events", "kernels", "stepping"}
@@ -98,7 +97,7 @@ def test_each_kind_of_deck_imports_what_it_needs_and_no_more(tmp_path, kind):
         assert f"Kind of problem: {kind}." in results.note("arrays")
         told = {part: (count, which) for part, count, which in results.table("imports").tolist()}
         held = {part for part, *_ in results.table("arrays").tolist()}
-    assert libraries(modules) & NUMERICS == NEEDS.get(kind, set())
+    assert not libraries(modules) & NUMERICS
     assert "matplotlib" not in libraries(modules)
     moving = "history" in kind
     assert engines(modules) == ENGINES.get(kind, set())
