@@ -20,6 +20,7 @@ from kernels import interpreted
 from pound_deck.schema import Spec
 from pound_solve.assess.law_test import has_loop, specimen
 from pound_solve.catalog import catalog
+from pound_solve.laws.automaton import Law
 from pound_solve.numerics import library
 from pound_solve.numerics.jit import Numba
 from pound_solve.numerics.library import Library
@@ -67,18 +68,22 @@ def ahead(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Library]:
     provider.cache_clear()
 
 
-def laws(linear: bool) -> list[Spec]:
-    """Hysteresis rules and contact laws of which a spring or a contact is made, all or the linear ones."""
+def laws(series: bool) -> list[Spec]:
+    """Hysteresis rules and contact laws that a spring or a contact has, all or those with series."""
     families = (catalog().family(name).values() for name in ("hysteresis", "contact"))
     found = (spec for family in families for spec in family if has_loop(spec))
-    return [spec for spec in found if not (linear and specimen(spec)[0].law.curved)]
+    return [spec for spec in found if not series or has_series(specimen(spec)[0].law)]
+
+
+def has_series(law: Law) -> bool:
+    return not law.curved or law.rule.powers is not None
 
 
 def shaken(method: str) -> str:
     """A deck of oscillators side by side, each with a law of its own."""
     nodes, elements, properties, weights = [], [], [], []
     for n, spec in enumerate(laws(method == "TAYLOR")):
-        a, b, card = 2 * n + 1, 2 * n + 2, specimen(spec)[1]
+        a, b, card = 2 * n + 1, 2 * n + 2, specimen(spec)[1].replace("GAP=0", "GAP=0.1")
         nodes.append(f" {a} {10 * n} 0 FIX=XYR\n {b} {10 * n + 3} 0 FIX=YR")
         elements.append(f" {a} S{n} {a} {b}")
         if spec.family == "hysteresis":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from collections.abc import Iterator
 from pathlib import Path
@@ -125,6 +126,15 @@ def test_functions_of_rules_become_numbers() -> None:
     assert block.types == ["<i81"] * len(tables)
     with pytest.raises(KeyError):
         Block([tables], {})
+
+
+def test_kernels_call_rules_by_functions_that_a_library_replaces() -> None:
+    fields = functions.Tables._fields
+    assert [call.__name__ for call in functions.CALLS] == [f"{field}_of" for field in fields]
+    assert len(functions.SIGNATURES) == len(fields)
+    program = Path(library.__file__).parents[1]
+    for path in program.glob("integrate/**/*.py"):
+        assert not re.search(r"rules\.\w+\[", path.read_text(encoding="utf-8")), path
 
 
 def test_arrays_with_gaps_are_refused() -> None:
