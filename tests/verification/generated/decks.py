@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import itertools
 import random
+import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from pound_deck.diagnostics import has_errors
-from pound_deck.reader import read_text
-from pound_solve.catalog import catalog
-from pound_solve.structure.assembly import AssemblyError, assemble
+from pound_solve.driver.prepare import DeckError, prepare
+from pound_solve.driver.request import Request
 from verification.generated import laws, motions
 
 E: Final = 27e6  #: modulus of elasticity of concrete [kN/m2]
@@ -186,12 +185,14 @@ class Deck:
         """Append columns and beams with their hinges, and the loads on the beams."""
         rng, n, storeys = self.rng, frame.number, len(frame.floors) - 1
         weight = frame.weight * sum(frame.bays) * storeys
-        shear = rng.uniform(0.12, 0.45) * weight / (len(frame.bays) + 1)
+        shear = rng.uniform(0.15, 0.6) * weight / (len(frame.bays) + 1)
         moment = 0.5 * shear * frame.floors[1]
+        # twice the fixed-end moment: gravity alone does not yield a beam
+        strength = max(0.8 * moment, frame.weight * max(frame.bays) ** 2 / 6.0)
         width = rng.uniform(0.3, 0.4) + 0.04 * storeys
         yields = rng.choice(("BOTH", "BOTH", "BOTH", "BEAMS", "COLUMNS", "NONE"))
         self._props(f"C{n}", width, width, moment if yields in ("BOTH", "COLUMNS") else 0.0)
-        self._props(f"B{n}", 0.3, width + 0.1, 0.8 * moment if yields in ("BOTH", "BEAMS") else 0.0)
+        self._props(f"B{n}", 0.3, width + 0.1, strength if yields in ("BOTH", "BEAMS") else 0.0)
         columns = len(frame.bays) + 1
         for floor in range(1, storeys + 1):
             for column in range(columns):
@@ -229,17 +230,17 @@ class Deck:
         return "\n".join(parts) + "\n"
 
 
-def refused(text: str) -> bool:
+def refused(text: str, records: Path | None) -> bool:
     """Whether the program refuses a deck before it runs, or no method takes what it combines: a rigid
     contact where something else is not linear in pieces.
     """
-    model, found, _ = read_text(text, catalog(), {})
-    if model is None or has_errors(found):
-        return True
-    try:
-        structure = assemble(model)
-    except AssemblyError:
-        return True
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "deck.inp")
+        path.write_text(text, encoding="utf-8")
+        try:
+            structure = prepare(Request(str(path), records=() if records is None else (records,))).structure
+        except DeckError:
+            return True
     rigid = any(s.law.rigid for s in structure.laws)
     return rigid and (bool(structure.corotational) or any(s.law.curved for s in structure.laws))
 
@@ -256,6 +257,6 @@ def deck(seed: int, records: Path | None = None) -> str:
     rng = random.Random(seed)
     for _ in range(MOST_DRAWS):
         text = Deck(rng, records).text(f"generated from seed {seed}")
-        if not refused(text):
+        if not refused(text, records):
             return text
     raise RuntimeError(f"seed {seed}: {MOST_DRAWS} draws were all refused")

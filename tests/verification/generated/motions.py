@@ -26,8 +26,8 @@ class Found(NamedTuple):
 
 
 def motion(rng: random.Random, length: float, records: Path | None) -> str:
-    """Line of EQUAKE of a motion that lasts a history [s]; its peak is 2 to 9 m/s2."""
-    peak = rng.uniform(2.0, 9.0)
+    """Line of EQUAKE of a motion that lasts a history [s]; its peak is 2 to 8 m/s2."""
+    peak = rng.uniform(2.0, 8.0)
     kind, number = rng.random(), rng.randrange(10**6)
     # all is drawn in any case: what follows in the deck is the same with records and without
     cycle, soil = rng.uniform(0.3, 1.2), rng.uniform(9.0, 25.0)
