@@ -33,6 +33,10 @@ GEOMETRY: Final = (*CONSTANT, *CONSTANT, "PDELTA_VARYING", "LARGE")
 STRAIGHT: Final = 0.4  #: share of decks in which all is linear in pieces, so that no method is ruled out
 SECTIONS: Final = ("NODES", "ELEMENTS", "PROPS", "WEIGHTS", "MEMBER_LOADS", "DAMPING", "DRIFT", "EQUAKE",
                    "OUTPUT", "ANALYSIS")  # fmt: skip
+STOREYS: Final = (1, 1, 2, 2, 3, 4, 6)
+BAYS: Final = (1, 1, 2, 3)
+#: deformations of rules, as that to the cap, are in yield deformations of members, five times a hinge's
+STRETCH: Final = 5.0
 MOST_DRAWS: Final = 200
 
 
@@ -115,7 +119,7 @@ class Deck:
         for frame in frames:
             self._build(frame)
         self.add("DAMPING", rng.choice(DAMPING))
-        length = float(rng.randint(4, 8))
+        length = float(rng.randint(4, 7))
         self.add("EQUAKE", motions.motion(rng, length, records))
         if rng.random() < 0.25:
             self.lines["DRIFT"] = []
@@ -134,8 +138,8 @@ class Deck:
         left = 0.0
         for number in range(1, count + 1):
             shift = 0.0 if equal else rng.uniform(-0.25, 0.25) * storey
-            floors = [0.0] + [first + shift + storey * i for i in range(rng.randint(1, 6))]
-            bays = [round(rng.uniform(4.0, 7.0), 1) for _ in range(rng.randint(1, 3))]
+            floors = [0.0] + [first + shift + storey * i for i in range(rng.choice(STOREYS))]
+            bays = [round(rng.uniform(4.0, 7.0), 1) for _ in range(rng.choice(BAYS))]
             frame = Frame(number, left, bays, [round(y, 3) for y in floors], rng.uniform(15.0, 40.0))
             frames.append(frame)
             left = round(frame.right + rng.choice((0.0, 0.005, 0.01, 0.02, 0.05)), 6)
@@ -217,7 +221,9 @@ class Deck:
         card = f"{label} FRAME E={E:g} A={width * depth:.4f} I={inertia:.6f}"
         if moment:
             length = 0.5 * depth
-            rule = laws.hysteresis(self.rng, moment, moment * length / (E * inertia), self.straight)
+            rule = laws.hysteresis(
+                self.rng, moment, STRETCH * moment * length / (E * inertia), self.straight
+            )
             card += f" LP={length:.3f} MI={moment:.4g} MJ={moment:.4g} {rule}"
         self.add("PROPS", card)
 
