@@ -24,8 +24,8 @@ def test_a_seed_gives_one_deck(texts: list[str]) -> None:
 
 def test_all_rules_and_contact_laws_of_the_catalog_occur() -> None:
     rng = random.Random(5)
-    hinges = "".join(laws.hysteresis(rng, 100.0, 0.01, False) for _ in range(800))
-    contacts = "".join(laws.contact(rng, 1e3, 1e-3, 1e6, False) for _ in range(800))
+    hinges = " ".join(laws.hysteresis(rng, 100.0, 0.01, False) for _ in range(800))
+    contacts = " ".join(laws.contact(rng, 1e3, 1e-3, 1e6, False) for _ in range(800))
     for family, item, text in (("hysteresis", "RULE", hinges), ("contact", "LAW", contacts)):
         wanted = {name for name, spec in catalog().family(family).items() if name != "ELASTIC"}
         assert set(re.findall(rf"{item}=(\w+)", text)) == wanted
