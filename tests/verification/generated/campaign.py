@@ -30,13 +30,13 @@ import numpy as np
 from verification.generated.answers import STEPS, Answer, answer, errors
 from verification.generated.decks import deck
 
-CHECK_LIMIT = 20.0  #: the same of a run that serves as reference
-LIMIT = 60.0  #: seconds that a run may take
+CHECK_LIMIT = 12.0  #: the same of a run that serves as reference
+LIMIT = 45.0  #: seconds that a run may take
 FIRST_STEP = 2e-3  #: of the halved steps [s]
 MOST_HALVINGS = 10
 SETTLED = 0.1  #: share of TOL within which two runs of halved steps agree
 SURE = 0.3  #: share of TOL that an independent answer may be uncertain by
-LADDER_SECONDS = 40.0  #: after which no shorter steps are tried
+LADDER_SECONDS = 20.0  #: after which no shorter steps are tried
 RIGID = "knows no rigid contact"  #: message of methods that take none
 MOST_TASKS = 300  #: of one worker: a new one has a clean memory
 

@@ -119,7 +119,7 @@ class Deck:
         for frame in frames:
             self._build(frame)
         self.add("DAMPING", rng.choice(DAMPING))
-        length = float(rng.randint(4, 7))
+        length = float(rng.randint(4, 6))
         self.add("EQUAKE", motions.motion(rng, length, records))
         if rng.random() < 0.25:
             self.lines["DRIFT"] = []
