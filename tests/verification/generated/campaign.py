@@ -31,12 +31,12 @@ from verification.generated.answers import STEPS, Answer, answer, errors
 from verification.generated.decks import deck
 
 CHECK_LIMIT = 12.0  #: the same of a run that serves as reference
-LIMIT = 45.0  #: seconds that a run may take
+LIMIT = 40.0  #: seconds that a run may take
 FIRST_STEP, SHORTER = 2e-3, 4  #: of the steps that are shortened [s], and how much each time
 MOST_RUNS = 6
 SETTLED = 0.2  #: share of TOL that a run of shorter steps may leave
 SURE = 0.3  #: share of TOL that an independent answer may be uncertain by
-LADDER_SECONDS = 20.0  #: after which no shorter steps are tried
+LADDER_SECONDS = 12.0  #: after which no shorter steps are tried
 RIGID = "knows no rigid contact"  #: message of methods that take none
 MOST_TASKS = 300  #: of one worker: a new one has a clean memory
 
@@ -54,7 +54,7 @@ class Worker:
             self._start()
         self.tasks += 1
         self.connection.send(task)
-        limit = self.limit if task[2] in ("AUTO", STEPS) else min(self.limit, CHECK_LIMIT)
+        limit = self.limit if task[2] == "AUTO" else min(self.limit, CHECK_LIMIT)
         if self.connection.poll(limit):
             try:
                 found: Answer = self.connection.recv()
