@@ -73,6 +73,14 @@ class Envelopes(Protocol):
         """Count in displacements that turn between those instants."""
         ...
 
+    def take(self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]) -> object:
+        """Count in samples; `s` are the inputs and their first two rates."""
+        ...
+
+    def peaks(self) -> tuple[Array, list[str]]:
+        """Largest and smallest accelerations of nodes and forces of members, and the kind of each."""
+        ...
+
     def blank(self) -> Self:
         """Return one that has seen nothing."""
         ...
