@@ -12,9 +12,9 @@ import pound_solve
 from pound_solve.integrate import auto, condensed
 from pound_solve.integrate.events import within_step
 from pound_solve.integrate.kernels import allocation, products
-from pound_solve.integrate.protocol import Outcome, Start, Stop
+from pound_solve.integrate.protocol import Stop
 from pound_solve.integrate.stepping import kernel, locating
-from pound_solve.integrate.tracker import Peaks
+from pound_solve.integrate.tracker import Collision, Peaks
 from pound_solve.laws import functions
 from pound_solve.laws.hysteresis import bilinear, imk_bilinear
 from pound_solve.numerics import cubic, jit, ldl
@@ -740,14 +740,124 @@ def test_the_dashpot_of_a_contact_does_not_hit_a_node_without_mass(tmp_path, met
     assert peak == pytest.approx(40.0 * u.max(), rel=1e-4)
 
 
+class Refinement(auto.StepRefinement):
+    """Runs that are made up."""
+
+    def __init__(self, tol, most=1.0, length=1.0, cost=0.0):
+        self.tol, self.asked, self.length, self.step_cost = tol, auto.RESPONSE, length, cost
+        self.h = self.aim = most
+        self.events = self.retries = 0
+        self.complete = None
+
+
 def test_auto_gives_up_what_would_cost_too_much():
-    """After a run that stopped: four times its cost for the time that it reached, over the whole length."""
-    figures = {"steps": 1000, "events": 900}  # the cost of 10 000 steps
-    start = Start(np.zeros(1), np.zeros(1), (), np.array([0.0, 1.0, 2.0]))
+    """After a run that stopped, where a quarter of its step is too short, and after some retries."""
+    steps = Refinement(1e-3, most=1e-3, length=2.0)
+    limit = auto.MAX_RETRY_COST / (4.0 * 2000)
+    for cost, hopeless in ((1.001 * limit, True), (0.999 * limit, False)):
+        steps.step_cost = cost
+        assert steps._hopeless() is hopeless
+    steps.retries = auto.MAX_SHORTER
+    assert not steps._hopeless()
+    steps.complete = "a run"
+    assert steps._hopeless()
+
+
+def differences(errors, signs=(1, 1, 1, 1)):
+    """Differences between runs of such errors, each with twice the steps of the one before."""
+    runs = np.array(errors) * np.array(signs[: len(errors)])
+    return [np.array([abs(b - a)]) for a, b in itertools.pairwise(runs)], [2.0] * (len(errors) - 1)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_the_estimate_of_auto_bounds_errors_that_fall_as_a_power_of_the_step(order):
+    for runs in (2, 3, 4):
+        errors = [0.1 / 2 ** (order * k) for k in range(runs)]
+        assert (
+            errors[-1] * (1 - 1e-12)
+            <= auto.error_left(*differences(errors))
+            <= 0.4 * errors[-2] + errors[-1]
+        )
+
+
+def test_the_estimate_of_auto_is_not_taken_in_by_two_runs_that_agree_by_chance():
+    """The second and third run are off by as much to the same side."""
+    errors = [0.10, 0.031, 0.03]
+    assert auto.error_left(*differences(errors)) > 0.015 > 10 * (errors[1] - errors[2])
+    # and errors that do not fall: the difference itself, however many more steps the last run takes
+    relative, _ = differences([0.05, -0.04, 0.05])
+    assert auto.error_left(relative, [4.0, 4.0]) == pytest.approx(0.09)
+
+
+def test_auto_wants_three_runs_and_steps_in_the_hardest_collision(tmp_path, monkeypatch):
+    """Made-up peaks agree from the first two runs on; within a tenth of TOL that is enough."""
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    for gap, lasts, runs in ((4e-3, 1.0, 3), (4e-4, 1.0, 2), (4e-3, 2e-3, 5)):
+        peaks = itertools.count()
+        value = lambda *given, gap=gap, peaks=peaks: (
+            np.array([1.0 + gap * 0.5 ** next(peaks)]),
+            np.ones(1),
+        )  # noqa: E731
+        monkeypatch.setattr(auto, "figures", value)
+        monkeypatch.setattr(auto, "hardest", lambda peaks, lasts=lasts: lasts)
+        found = run(tmp_path, "AUTO TOL=1e-2")
+        facts = dict(found.table("run").tolist())
+        assert int(facts["runs"]) == runs, (gap, lasts, facts["runs"])
+        assert estimate(found) <= 1e-2
+        found.close()
+
+
+def test_the_hardest_collision_is_that_of_the_largest_force():
     peaks = Peaks([], [], [], [], [])
-    stop = Stop("A503", 0.5, "", Outcome(peaks, figures, ()))
-    limit = auto.MAX_RETRY_COST / (4.0 * 10_000 * 4.0)
-    assert auto.hopeless(stop, start, 1.001 * limit)
-    assert not auto.hopeless(stop, start, 0.999 * limit)
-    assert auto.hopeless(Stop("A503", 0.0, "", Outcome(peaks, figures, ())), start, 1e-12)
-    assert not auto.hopeless(Stop("A503", 0.0, ""), start, 1.0)
+    assert auto.hardest(peaks) == np.inf
+    peaks.collisions += [Collision(0, 1.0, 0.1, 1.5, peak=3.0), Collision(1, 2.0, 0.1, 2.25, peak=4.0)]
+    assert auto.hardest(peaks) == 0.25
+    peaks.collisions.append(
+        Collision(1, 3.0, 0.1, peak=5.0)
+    )  # still closed: it is longer than what is seen
+    assert auto.hardest(peaks) == np.inf
+
+
+def test_auto_tries_other_steps_where_one_stops(tmp_path, monkeypatch):
+    """Steps that stop at once pass for their neighbours, and a whole run is kept where shorter ones stop."""
+    from pound_solve.integrate.stepping import newmark
+
+    real, tried = newmark.integrate, []
+
+    def stops(system, start, monitored, options, recorder):
+        tried.append(options["DT"])
+        if len(tried) in bad:
+            raise Stop("A503", 1e-6, "laws alternate")
+        return real(system, start, monitored, options, recorder)
+
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    monkeypatch.setattr(newmark, "integrate", stops)
+    bad = range(1, 4)
+    found = run(tmp_path, "AUTO TOL=1e-2")
+    assert found.status == "done" and estimate(found) <= 1e-2 and len(tried) > 5
+    assert tried[1] == pytest.approx(auto.NEARBY * tried[0])
+    found.close()
+    tried.clear()
+    bad = range(3, 100)
+    found = run(tmp_path, "AUTO TOL=1e-6")
+    assert found.status == "done" and len(tried) == 2 + 1 + auto.MAX_SHORTER
+    (check,) = [c for c in found.table("checks") if "estimated error" in c["check"]]
+    assert check["verdict"].startswith("look: not met") and "A503" in check["verdict"]
+
+
+def test_auto_converges_on_all_peaks_where_that_is_asked_for(tmp_path, monkeypatch):
+    """Accelerations and members' forces converge more slowly than drifts: they set the step."""
+    truth = run(tmp_path, "EXACT")
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    steps = {}
+    for asked in ("RESPONSE", "ALL"):
+        found = run(tmp_path, f"AUTO TOL=1e-2 PEAKS={asked}")
+        (check,) = [c for c in found.table("checks") if "estimated error" in c["check"]]
+        assert ("all peaks" in check["check"]) is (asked == "ALL")
+        told, steps[asked] = estimate(found), int(dict(found.table("run").tolist())["steps"])
+        if asked == "ALL":
+            for name, size in (("node/a", 2), ("member/force", 0)):
+                a, b = (np.abs(r.history(name)[..., : size or None]).max(axis=0) for r in (found, truth))
+                assert np.abs(a - b).max() <= told * b.max()
+        found.close()
+    assert steps["ALL"] > steps["RESPONSE"]

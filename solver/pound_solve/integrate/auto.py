@@ -521,8 +521,8 @@ SPEC = Spec(
             Kind.WORD,
             default=RESPONSE,
             words=(RESPONSE, ALL),
-            doc="peaks that TOL is for: RESPONSE drifts and contact forces; ALL also accelerations of nodes "
-            "and forces of members, of those that OUTPUT names",
+            doc="peaks that TOL is for: RESPONSE drifts and contact forces; ALL also accelerations "
+            "and forces of the nodes and members that OUTPUT names",
         ),
     ),
     impl=integrate,

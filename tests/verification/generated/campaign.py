@@ -30,8 +30,8 @@ import numpy as np
 from verification.generated.answers import STEPS, Answer, answer, errors
 from verification.generated.decks import deck
 
-CHECK_LIMIT = 12.0  #: the same of a run that serves as reference
-LIMIT = 40.0  #: seconds that a run may take
+CHECK_LIMIT = 10.0  #: the same of a run that serves as reference
+LIMIT = 30.0  #: seconds that a run may take
 FIRST_STEP, SHORTER = 2e-3, 4  #: of the steps that are shortened [s], and how much each time
 MOST_RUNS = 6
 SETTLED = 0.2  #: share of TOL that a run of shorter steps may leave

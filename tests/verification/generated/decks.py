@@ -29,11 +29,11 @@ DAMPING: Final = (
     "",
 )
 CONSTANT: Final = ("SMALL", "PDELTA", "PDELTA_MEMBER")  #: forms that keep members' stiffness
-GEOMETRY: Final = (*CONSTANT, *CONSTANT, "PDELTA_VARYING", "LARGE")
+GEOMETRY: Final = (*CONSTANT * 4, "PDELTA_VARYING", "LARGE")
 STRAIGHT: Final = 0.4  #: share of decks in which all is linear in pieces, so that no method is ruled out
 SECTIONS: Final = ("NODES", "ELEMENTS", "PROPS", "WEIGHTS", "MEMBER_LOADS", "DAMPING", "DRIFT", "EQUAKE",
                    "OUTPUT", "ANALYSIS")  # fmt: skip
-STOREYS: Final = (1, 1, 2, 2, 3, 4, 6)
+STOREYS: Final = (1, 1, 1, 2, 2, 3, 4, 6)
 BAYS: Final = (1, 1, 2, 3)
 #: deformations of rules, as that to the cap, are in yield deformations of members, five times a hinge's
 STRETCH: Final = 5.0
