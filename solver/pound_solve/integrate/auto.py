@@ -370,7 +370,9 @@ class StepRefinement:
         lasts = hardest(outcome.peaks)
         # the first two runs may agree by chance, and so may all that step over a collision
         sure = len(self.relative) > 1 and lasts >= RESOLVED * self.h
-        self.met = self.error <= (self.tol if sure else CERTAIN * self.tol)
+        if not sure and self.relative:
+            sure = float(self.relative[-1].max(initial=0.0)) <= CERTAIN * self.tol
+        self.met = sure and self.error <= self.tol
         if self.met or self.stale == MAX_STALE_RUNS or self._longest():
             return self._end(MOST if self._longest() else STALE)
         self._choose(lasts)

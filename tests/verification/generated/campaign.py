@@ -73,6 +73,7 @@ class Worker:
         self.process, self.tasks = context.Process(target=serve, args=(theirs,), daemon=True), 0
         self.process.start()
         theirs.close()
+        self.connection.recv()  # it is warm: kernels may have been compiled
 
     def end(self) -> None:
         """End the process."""
@@ -89,6 +90,7 @@ def serve(connection: Connection) -> None:
     warm.write_text(deck(1))
     for method, options in (("NEWMARK", {"dt": 0.01}), ("TAYLOR", {})):
         answer(warm, None, method, options)  # loads the kernels, so that no run's time contains that
+    connection.send(None)
     while True:
         try:
             task = connection.recv()
