@@ -773,16 +773,46 @@ def differences(errors, signs=(1, 1, 1, 1)):
 def test_the_estimate_of_auto_bounds_errors_that_fall_as_a_power_of_the_step(order):
     for runs in (2, 3, 4):
         errors = [0.1 / 2 ** (order * k) for k in range(runs)]
-        assert errors[-1] * (1 - 1e-12) <= auto.error_left(*differences(errors)) <= 2.0 * errors[-2]
+        error, doubt = auto.error_left(*differences(errors))
+        assert errors[-1] * (1 - 1e-12) <= error <= errors[-2]
+        assert doubt == (np.inf if runs == 2 else 0.0)
 
 
 def test_the_estimate_of_auto_is_not_taken_in_by_two_runs_that_agree_by_chance():
     """The second and third run are off by as much to the same side."""
     errors = [0.10, 0.031, 0.03]
-    assert auto.error_left(*differences(errors)) > 0.015 > 10 * (errors[1] - errors[2])
+    error, doubt = auto.error_left(*differences(errors))
+    assert doubt > 0.015 > 10 * error
     # and errors that do not fall: the difference itself, however many more steps the last run takes
     relative, _ = differences([0.05, -0.04, 0.05])
-    assert auto.error_left(relative, [4.0, 4.0]) == pytest.approx(0.09)
+    assert auto.error_left(relative, [4.0, 4.0])[0] == pytest.approx(0.09)
+
+
+def test_a_run_between_the_last_two_confirms_them_or_not(tmp_path, monkeypatch):
+    """Peaks agree better than expected: a run with a step in between, which is not the answer."""
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    monkeypatch.setattr(auto, "hardest", lambda peaks: np.inf)
+    for third, runs in ((1.001, 4), (1.08, 5)):
+        made_up, tried = iter([1.3, 1.0, 1.004, third, 1.0, 1.0, 1.0]), []
+
+        def value(*given, made_up=made_up):
+            return np.array([next(made_up)]), np.ones(1)
+
+        real = auto.StepRefinement.run
+
+        def follow(self, tried=tried, real=real):
+            tried.append(self.between or self.h)
+            return real(self)
+
+        with monkeypatch.context() as patch:
+            patch.setattr(auto, "figures", value)
+            patch.setattr(auto.StepRefinement, "run", follow)
+            found = run(tmp_path, "AUTO TOL=1e-2", every=0.05)
+        step = float(next(r["value"] for r in found.table("run") if r["item"] == "time step"))
+        assert tried[2] < tried[3] < tried[1] and len(tried) == runs, tried
+        assert step == pytest.approx(tried[2] if runs == 4 else tried[-1], rel=0.1)
+        assert estimate(found) <= 1e-2
+        found.close()
 
 
 def test_auto_wants_three_runs_and_steps_in_the_hardest_collision(tmp_path, monkeypatch):

@@ -4,13 +4,14 @@ EXACT needs no step, but piecewise linear laws, and every new combination of sti
 decomposition.  TAYLOR has no truncation error either; its steps resolve the fastest mode.  With NEWMARK the
 whole run is repeated with a shorter step until the peaks no longer change, or until shorter steps bring no
 improvement (a force that rings at a node without mass): if between two runs, of which the second takes r
-times the steps of the first, the peaks differ by :math:`\Delta`, the error left in the second is estimated
-as :math:`\Delta/(r-1)`, as if the method were of first order only.  It is of second order, so that the
-estimate is conservative where the peaks converge.  Where they do not yet, two runs may agree by chance.
-Hence an estimate does not fall faster from run to run than that of a method of second order; it is not
-below the difference itself where that falls more slowly than that of a method of first order; and it counts
-only from the third run on, and where the collision of the largest force lasts `RESOLVED` steps, unless two
-runs agree far better than TOL.
+times the steps of the first, a peak differs by :math:`\Delta`, the error left in the second is estimated as
+:math:`\Delta/(r-1)`, as if the method were of first order only; as :math:`\Delta/(r^{1.5}-1)` where the
+difference falls at least as fast from run to run.  The method is of second order, so that the estimate is
+conservative where the peaks converge.  Where they do not yet, two runs may agree by chance.  Hence the
+estimate is not below :math:`\Delta` where that falls more slowly than the error of a method of first order;
+and it counts only where the collision of the largest force lasts `RESOLVED` steps, and where a third run
+confirms it: the one before, if differences do not fall faster than the method explains, else one with a
+step between those of the two.  Two runs that agree far better than TOL need no other.
 
 The cost of TAYLOR is known in advance; that of EXACT depends on the events.  Where few laws change
 stiffness, and a handful of decompositions does not cost more than TAYLOR, EXACT starts with a small budget.
@@ -21,10 +22,10 @@ deck is always solved in the same way.
 
 The runs are compared by the largest and smallest value of every drift and by the peak force of every
 contact, each relative to the larger magnitude of its own, but at least to `FLOOR` times the largest of its
-kind: a contact that is hardly touched does not set the step.  Without drifts, by the deformations and
-forces of all springs in the same way, and by all displacements relative to the largest in their direction.
-With PEAKS=ALL, by the accelerations of the nodes and the forces of the members that OUTPUT names, too,
-relative to the largest of their kind.
+kind: a contact that is hardly touched does not set the step.  Without drifts, by the deformations of all
+springs in the same way, and by all displacements relative to the largest in their direction.  With
+PEAKS=ALL, by the accelerations of the nodes and the forces of the members that OUTPUT names, too, relative
+to the largest of their kind.
 """
 
 from __future__ import annotations
@@ -76,7 +77,8 @@ MAX_STALE_RUNS = 4  #: runs in a row that do not halve the error, after which sh
 SAFETY = 0.6  #: of the tolerance, that the next step aims at
 FLOOR = 0.05  #: share of the largest peak of its kind that a peak is measured against at least
 RESOLVED = 10.0  #: steps that the collision of the largest force takes at least
-SHORTEST = 1.0 / 8.0  #: of a step, that the next one is where that is not resolved
+SHORTEST, LONGEST = 1.0 / 8.0, 0.7  #: of a step, that the next one is: where that is not resolved, at most
+STEADY, FAST = 1.5, 3.0  #: powers of the step between which differences fall that the method explains
 CERTAIN = 0.1  #: share of the tolerance within which two runs do not agree by chance
 #: retries after runs that stopped, one after another, before and after one that was completed
 MAX_RETRIES, MAX_SHORTER = 10, 3
@@ -254,11 +256,8 @@ def figures(system: ReducedSystem, peaks: Peaks, replay: Replay, asked: str = RE
     force = np.array([max((c.peak for c in peaks.collisions if c.law == i), default=0.0) for i in contacts])
     parts = [measured(peaks.monitored, ["drift"] * len(peaks.monitored))]
     if not peaks.monitored:
-        springs = [
-            (d, f, s.unit) for d, f, s in zip(peaks.deformation, peaks.force, laws) if not s.role.collides
-        ]
-        for extremes in ([d for d, _, _ in springs], [f for _, f, _ in springs]):
-            parts.append(measured(extremes, [unit for _, _, unit in springs]))
+        springs = [(e, s.unit) for e, s in zip(peaks.deformation, laws) if not s.role.collides]
+        parts.append(measured([e for e, _ in springs], [unit for _, unit in springs]))
         direction = np.array([d for _, d in system.dofs])
         displacement = np.column_stack([np.ravel(replay.high), np.ravel(replay.low)])
         # hinges and uplift have directions of their own
@@ -279,7 +278,7 @@ def hardest(peaks: Peaks) -> float:
     return found.t_end - found.t_start
 
 
-def error_left(relative: Sequence[Array], ratios: Sequence[float]) -> float:
+def error_left(relative: Sequence[Array], ratios: Sequence[float]) -> tuple[float, float]:
     """Estimate the error left in the last of some runs.
 
     Parameters
@@ -288,14 +287,24 @@ def error_left(relative: Sequence[Array], ratios: Sequence[float]) -> float:
         Differences of the peaks between two runs, relative to their scales; those of the last two last.
     ratios : sequence of float
         Steps of the second over those of the first of them.
+
+    Returns
+    -------
+    error, doubt : float
+        The estimate; and what it would be if the peaks that differ less than the method explains, by their
+        differences before, had come nearer as its error does: infinite after two runs.
     """
-    left = relative[-1] / (ratios[-1] - 1.0)
-    if len(relative) > 1:
-        before = relative[-2] / (ratios[-2] - 1.0)
-        slow = left > before / ratios[-1]
-        left = np.maximum(left, before / ratios[-1] ** 2)
-        left[slow] = np.maximum(left, relative[-1])[slow]
-    return float(left.max(initial=0.0))
+    now, r = relative[-1], ratios[-1]
+    left = now / (r - 1.0)
+    if len(relative) < 2:
+        return float(left.max(initial=0.0)), np.inf
+    before, first = relative[-2], ratios[-2]
+    # differences, if the error were proportional to a power of the step
+    linear, steady, fast = (before * (1.0 - r**-p) / (first**p - 1.0) for p in (1.0, STEADY, FAST))
+    left = np.where(now > linear, np.maximum(left, now), left)
+    left = np.where(now <= steady, now / (r**STEADY - 1.0), left)
+    doubt = np.where(now < fast, before / (first - 1.0) / r**2, 0.0)
+    return float(left.max(initial=0.0)), float(doubt.max(initial=0.0))
 
 
 def stepped(system: ReducedSystem) -> Decision:
@@ -317,6 +326,12 @@ class StepRefinement:
         Estimate for the last run.
     met : bool
         Whether the last run meets the tolerance, and not by chance.
+    between : float
+        Step of a run that shall confirm the last one; 0 where none is needed [T].
+    interval : float
+        Usual interval between output times and corners of the excitation [T].
+    lasts : float
+        Duration of the hardest collision [T].
     steps, relative, ratios : list
         Steps of the runs that are compared; differences between two of them, relative to their scales;
         steps of the second over those of the first.
@@ -334,7 +349,8 @@ class StepRefinement:
         self.tol, self.asked = float(options["TOL"]), options.get("PEAKS", RESPONSE)
         self.length = float(start.times[-1] - start.times[0])
         intervals = np.diff(goals(system, start.times)[0], prepend=start.times[0])
-        self.h = self.aim = min(float(np.median(intervals)), self.length / 1000)
+        self.h = self.aim = self.interval = min(float(np.median(intervals)), self.length / 1000)
+        self.between, self.lasts = 0.0, np.inf
         self.step_cost = costs.of_step(system) * (1 if jit.numba() else costs.INTERPRETED)
         self.error = self.best = np.inf
         self.runs = self.events = self.stale = self.retries = 0
@@ -359,24 +375,43 @@ class StepRefinement:
         from pound_solve.integrate.stepping import newmark  # where no steps are taken it is not loaded
 
         replay = Replay(self.recorder)
-        options = {"DT": self.h, "BETA": 0.25, "GAMMA": 0.5}
+        options = {"DT": self.between or self.h, "BETA": 0.25, "GAMMA": 0.5}
         try:
             outcome = newmark.integrate(self.system, self.start, self.monitored, options, replay)
         except Stop as stop:
             return self._retry(stop, replay)
         self.runs, self.retries = self.runs + 1, 0
-        self.complete = outcome, replay
-        self._compare(outcome, replay)
-        lasts = hardest(outcome.peaks)
-        # the first two runs may agree by chance, and so may all that step over a collision
-        sure = len(self.relative) > 1 and lasts >= RESOLVED * self.h
-        if not sure and self.relative:
-            sure = float(self.relative[-1].max(initial=0.0)) <= CERTAIN * self.tol
-        self.met = sure and self.error <= self.tol
+        if self.between:
+            self._confirm(outcome, replay)
+        else:
+            self.complete = outcome, replay
+            self._compare(outcome, replay)
+            self.lasts = hardest(outcome.peaks)
         if self.met or self.stale == MAX_STALE_RUNS or self._longest():
             return self._end(MOST if self._longest() else STALE)
-        self._choose(lasts)
+        if not self.between:
+            self._choose()
         return None
+
+    def _confirm(self, outcome: Outcome, replay: Replay) -> None:
+        """Compare the last run with one of longer steps, whose peaks must not differ more either."""
+        peaks, scales = figures(self.system, outcome.peaks, replay, self.asked)
+        apart = np.abs(peaks - self.peaks) / np.where(scales > 0.0, scales, 1.0)
+        ratio = self.steps[-1] / outcome.figures["steps"]
+        self.between = 0.0
+        if ratio > 1.0:
+            self.error = max(self.error, float(apart.max(initial=0.0)) / (ratio - 1.0))
+            self.met = self.error <= self.tol
+            self.relative[-1] = np.maximum(self.relative[-1], apart)
+
+    def _middle(self) -> float:
+        """Step between those of the last two runs that differs from both; 0 where there is none."""
+        step = self.h * self.ratios[-1] ** 0.5
+        # output times cut the steps: so many are between two of them
+        last, middle, before = (
+            np.ceil(self.interval / h) for h in (self.h, step, self.h * self.ratios[-1])
+        )
+        return step if before < middle < last else 0.0
 
     def _longest(self) -> bool:
         """Whether a run with half the step would take more than `MAX_STEPS`."""
@@ -400,28 +435,40 @@ class StepRefinement:
         if self.steps and steps > self.steps[-1]:
             self.relative.append(np.abs(peaks - self.peaks) / np.where(scales > 0.0, scales, 1.0))
             self.ratios.append(steps / self.steps[-1])
-            self.error = error_left(self.relative, self.ratios)
+            self.error, doubt = error_left(self.relative, self.ratios)
+            self._judge(hardest(outcome.peaks) >= RESOLVED * self.h, doubt)
             self.stale = 0 if self.error < 0.5 * self.best else self.stale + 1
             self.best = min(self.best, self.error)
         self.steps.append(steps)
         self.peaks = peaks
 
-    def _choose(self, lasts: float) -> None:
-        """Choose the next step, after a run whose hardest collision lasts so long [T]."""
+    def _judge(self, resolved: bool, doubt: float) -> None:
+        """Judge whether the last run meets the tolerance, or whether one in between shall confirm that."""
+        certain = float(self.relative[-1].max(initial=0.0)) <= CERTAIN * self.tol
+        near = self.error <= self.tol and (resolved or certain)
+        self.met = near and (certain or doubt <= self.tol)
+        self.between = self._middle() if near and not self.met else 0.0
+
+    def _choose(self) -> None:
+        """Choose the next step."""
         likely = float(np.sqrt(SAFETY * self.tol / self.error)) if np.isfinite(self.error) else 0.5
-        resolved = 0.9 * lasts / RESOLVED
+        resolved = 0.9 * self.lasts / RESOLVED
         # where shorter steps do not help, as little as possible is spent on learning whether they will
         least = 0.25 if self.stale == 0 else 0.5
+        if resolved < self.h * least:
+            least = SHORTEST
         self.aim = min(self.h * likely, resolved)
-        self.h = float(
-            np.clip(self.aim, self.h * (SHORTEST if resolved < self.h * least else least), self.h / 2)
-        )
+        self.h = float(np.clip(self.aim, least * self.h, LONGEST * self.h))
         self.aim = min(self.aim, self.h)
 
     def _retry(self, stop: Stop, replay: Replay) -> Outcome | None:
         """Change the step after a run that stopped, or end with the last run that did not, or stop."""
         # A503 says nothing of the structure where the step is coarse, growth only if a finer step grows too
         coarse = stop.code == "A503" or (stop.code == "A504" and not self.steps)
+        if coarse and self.between:  # no run confirms the last one
+            self.between = 0.0
+            self._choose()
+            return None
         if coarse and not self._hopeless():
             begin = float(self.start.times[0])
             early = stop.t - begin < EARLY * self.length
