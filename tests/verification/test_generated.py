@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import random
 import re
+from pathlib import Path
 
 import pytest
 
 from pound_solve.catalog import catalog
-from verification.generated import decks, laws
+from pound_solve.numerics import jit
+from verification.generated import answers, campaign, decks, laws
 
 SEEDS = range(1, 61)
+SHORT = (0, 14)  #: seeds of decks that cost little
 
 
 @pytest.fixture(scope="module")
@@ -44,3 +47,50 @@ def test_decks_differ_in_what_matters(texts: list[str]) -> None:
         assert 0.03 < share < 0.97, (word, share)
     rows = {len(set(re.findall(r"^  (\d)000 ", text, re.MULTILINE))) for text in texts}
     assert rows == {2, 3}
+
+
+@pytest.mark.full
+@pytest.mark.skipif(jit.numba() is None, reason="needs the extra `fast`")
+def test_steps_of_auto_keep_their_tolerance_on_generated_decks(tmp_path: Path) -> None:
+    """Against TAYLOR, which has no truncation error, on decks that both solve."""
+    told = []
+    for seed in SHORT:
+        deck = tmp_path / f"{seed}.inp"
+        deck.write_text(decks.deck(seed), encoding="utf-8")
+        truth, own = (answers.answer(deck, None, method, {}) for method in ("TAYLOR", answers.STEPS))
+        if truth.status == own.status == "done" and own.met and own.claimed is not None:
+            error = answers.errors(own, truth)["auto"]
+            assert error <= own.claimed <= 1e-2, (seed, error, own.claimed)
+            told.append(seed)
+    assert len(told) >= 3, told
+
+
+def made_up(seed: int, **more: object) -> dict[str, object]:
+    """A row of a campaign."""
+    kinds = ("auto", "contact of own", "contact of largest", "acceleration", "member")
+    return {
+        "seed": seed, "mode": "AUTO", "tol": 1e-3, "status": "done", "message": "", "method": "NEWMARK",
+        "claimed": 5e-4, "met": True, "seconds": 2.0, "reference": "TAYLOR", "uncertain": 0.0,
+        "best": "TAYLOR", "best seconds": 1.0, "errors": dict.fromkeys(kinds, 4e-4),
+    } | more  # fmt: skip
+
+
+def test_outcomes_of_a_campaign() -> None:
+    above = {"errors": {"auto": 2e-3}}
+    for more, outcome in (
+        ({}, "right"),
+        (above, "above"),
+        (above | {"uncertain": 5e-4}, "unsure"),
+        (above | {"met": False}, "not met, told"),
+        ({"status": "stopped", "errors": {}, "best": ""}, "stopped, another method ends"),
+        ({"status": "timeout", "reference": ""}, "timeout, another method ends"),
+    ):
+        row = made_up(1, **more)
+        assert campaign.outcome(row) == outcome, more
+    assert campaign.outcome({"status": "stopped", "met": True}) == "stopped"
+    rows = [made_up(n, outcome="right", seconds=float(n)) for n in (1, 2, 3)]
+    said = campaign.summary(rows)
+    assert "| right | NEWMARK | 3 |" in said
+    assert "| error over TOL: auto | NEWMARK | 3 | 0.4 | 0.4 | 0.4 | 0.4 | 3, 2, 1 |" in said
+    assert "| cost over that of the best | NEWMARK | 3 | 2 | 2.8 | 3 | 3 | 3, 2, 1 |" in said
+    assert campaign.line(rows[0]).split()[:4] == ["1", "AUTO", "NEWMARK", "TOL"]
