@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 import pound_solve
-from pound_solve.integrate import auto, condensed
+from pound_solve.integrate import auto, condensed, costs
 from pound_solve.integrate.events import within_step
 from pound_solve.integrate.kernels import allocation, products
 from pound_solve.integrate.protocol import Stop
@@ -883,3 +883,14 @@ def test_auto_converges_on_all_peaks_where_that_is_asked_for(tmp_path, monkeypat
                 assert np.abs(a - b).max() <= told * b.max()
         found.close()
     assert steps["ALL"] > steps["RESPONSE"]
+
+
+def test_a_trial_ends_where_what_is_left_costs_more_than_another_method():
+    """Half of the other's cost is spent, at a rate that the budget allows."""
+    for done, other, ends in ((0.2, 0.4, True), (0.2, 1.0, False), (0.8, 0.4, False)):
+        budget = costs.Budget(0.0, 10.0, 2.0, 0.05, other=other)
+        if ends:
+            with pytest.raises(costs.CostlyError):
+                budget.charge(0.3, 10.0 * done, 0.0, 1)
+        else:
+            budget.charge(0.3, 10.0 * done, 0.0, 1)

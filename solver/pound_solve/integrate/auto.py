@@ -58,6 +58,7 @@ from pound_solve.structure.reduction import Decision, ReducedSystem
 
 # EXACT before any steps
 FIRST_BUDGET = 1.0  #: what it may cost: loading the kernels of steps costs as much
+KERNELS = 0.5  #: cost of loading the kernels of TAYLOR
 FIRST_CHECK = 0.3  #: share of that after which its progress is checked
 #: the same as a share of what TAYLOR would cost, if that is less, but not less than the other
 TRIAL_SHARE, LEAST_TRIAL = 0.25, 0.05
@@ -199,6 +200,7 @@ class ExactTrial:
         limits = {
             "DECOMPOSITIONS": self.ease * MAX_DECOMPOSITIONS,
             "PER_RADIAN": cost_of_radian(self.system),
+            "OTHER": other + KERNELS,
             "TRIAL": min(FIRST_CHECK * FIRST_BUDGET, max(LEAST_TRIAL, TRIAL_SHARE * other)),
         }
         return self.run(FIRST_BUDGET, limits)
