@@ -5,7 +5,7 @@ decomposition.  TAYLOR has no truncation error either; its steps resolve the fas
 whole run is repeated with a shorter step until the peaks no longer change, or until shorter steps bring no
 improvement (a force that rings at a node without mass): if between two runs, of which the second takes r
 times the steps of the first, a peak differs by :math:`\Delta`, the error left in the second is estimated as
-:math:`\Delta/(r-1)`, as if the method were of first order only; as :math:`\Delta/(r^{1.5}-1)` where the
+:math:`\Delta/(r-1)`, as if the method were of first order only; as :math:`\Delta/(r^{1.25}-1)` where the
 difference falls at least as fast from run to run.  The method is of second order, so that the estimate is
 conservative where the peaks converge.  Where they do not yet, two runs may agree by chance.  Hence the
 estimate is not below :math:`\Delta` where that falls more slowly than the error of a method of first order;
@@ -79,7 +79,7 @@ SAFETY = 0.6  #: of the tolerance, that the next step aims at
 FLOOR = 0.05  #: share of the largest peak of its kind that a peak is measured against at least
 RESOLVED = 10.0  #: steps that the collision of the largest force takes at least
 SHORTEST, LONGEST = 1.0 / 8.0, 0.7  #: of a step, that the next one is: where that is not resolved, at most
-STEADY, FAST = 1.5, 3.0  #: powers of the step between which differences fall that the method explains
+STEADY, FAST = 1.25, 3.0  #: powers of the step between which differences fall that the method explains
 CERTAIN = 0.1  #: share of the tolerance within which two runs do not agree by chance
 #: retries after runs that stopped, one after another, before and after one that was completed
 MAX_RETRIES, MAX_SHORTER = 10, 3
