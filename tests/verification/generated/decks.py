@@ -191,11 +191,13 @@ class Deck:
         weight = frame.weight * sum(frame.bays) * storeys
         shear = rng.uniform(0.15, 0.6) * weight / (len(frame.bays) + 1)
         moment = 0.5 * shear * frame.floors[1]
-        # twice the fixed-end moment: gravity alone does not yield a beam
-        strength = max(0.8 * moment, frame.weight * max(frame.bays) ** 2 / 6.0)
+        # twice the fixed-end moment: gravity alone yields neither a beam nor the columns of its joint
+        gravity = frame.weight * max(frame.bays) ** 2 / 6.0
+        strength = max(0.8 * moment, gravity)
+        moment = max(moment, gravity if self.gravity == "BEAMS" else 0.0)
         width = rng.uniform(0.3, 0.4) + 0.04 * storeys
         yields = rng.choice(("BOTH", "BOTH", "BOTH", "BEAMS", "COLUMNS", "NONE"))
-        self._props(f"C{n}", width, width, moment if yields in ("BOTH", "COLUMNS") else 0.0)
+        self._props(f"C{n}", width, width, moment if yields in ("BOTH", "COLUMNS") else 0.0, True)
         self._props(f"B{n}", 0.3, width + 0.1, strength if yields in ("BOTH", "BEAMS") else 0.0)
         columns = len(frame.bays) + 1
         for floor in range(1, storeys + 1):
@@ -215,14 +217,14 @@ class Deck:
                 if self.gravity == "BEAMS":
                     self.add("MEMBER_LOADS", f"{beam} WY={-frame.weight:.4g}")
 
-    def _props(self, label: str, width: float, depth: float, moment: float) -> None:
+    def _props(self, label: str, width: float, depth: float, moment: float, carries: bool = False) -> None:
         """Append a property set of members, with hinges where there is a yield moment."""
         inertia = 0.5 * width * depth**3 / 12.0
         card = f"{label} FRAME E={E:g} A={width * depth:.4f} I={inertia:.6f}"
         if moment:
             length = 0.5 * depth
             rule = laws.hysteresis(
-                self.rng, moment, STRETCH * moment * length / (E * inertia), self.straight
+                self.rng, moment, STRETCH * moment * length / (E * inertia), self.straight, carries
             )
             card += f" LP={length:.3f} MI={moment:.4g} MJ={moment:.4g} {rule}"
         self.add("PROPS", card)

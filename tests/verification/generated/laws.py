@@ -31,9 +31,15 @@ def _curved(spec: Spec) -> bool:
         return False
 
 
-def hysteresis(rng: random.Random, force: float, deformation: float, straight: bool) -> str:
-    """Items RULE and its own of a hinge or spring that yields at a force and a deformation."""
-    spec = rng.choice(choices("hysteresis", straight))
+def hysteresis(
+    rng: random.Random, force: float, deformation: float, straight: bool, carries: bool = False
+) -> str:
+    """Items RULE and its own of a hinge or spring that yields at a force and a deformation; `carries`
+    is for columns.
+    """
+    specs = choices("hysteresis", straight)
+    # columns on hinges with slack are a mechanism, which gravity overturns
+    spec = rng.choice([s for s in specs if not (carries and "SLACK" in s.sample)])
     words = [f"RULE={spec.name}", *_items(rng, spec, force, deformation)]
     if spec.field(WHOLE_LOSS) and rng.random() < 0.3:
         begin = rng.uniform(1.5, 4.0)
