@@ -13,7 +13,7 @@ from pound_solve.numerics import jit
 from verification.generated import answers, campaign, decks, laws
 
 SEEDS = range(1, 61)
-SHORT = (0, 14)  #: seeds of decks that cost little
+SHORT = (0, 14, 107, 114)  #: seeds of decks that cost little
 
 
 @pytest.fixture(scope="module")
