@@ -791,6 +791,7 @@ def test_the_estimate_of_auto_is_not_taken_in_by_two_runs_that_agree_by_chance()
 def test_a_run_between_the_last_two_confirms_them_or_not(tmp_path, monkeypatch):
     """Peaks agree better than expected: a run with a step in between, which is not the answer."""
     monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    monkeypatch.setattr(auto, "has_series", lambda system: False)
     monkeypatch.setattr(auto, "hardest", lambda peaks: np.inf)
     for third, runs in ((1.001, 4), (1.08, 5)):
         made_up, tried = iter([1.3, 1.0, 1.004, third, 1.0, 1.0, 1.0]), []
@@ -818,6 +819,7 @@ def test_a_run_between_the_last_two_confirms_them_or_not(tmp_path, monkeypatch):
 def test_auto_wants_three_runs_and_steps_in_the_hardest_collision(tmp_path, monkeypatch):
     """Made-up peaks; two that agree within a tenth of TOL are enough."""
     monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    monkeypatch.setattr(auto, "has_series", lambda system: False)
     for gap, lasts, runs in ((8e-3, 1.0, 3), (4e-4, 1.0, 2), (4e-2, 1e-4, 4)):
         made_up = ((np.array([1.0 + gap * 0.5**k]), np.ones(1)) for k in itertools.count())
         monkeypatch.setattr(auto, "figures", lambda *given, made_up=made_up: next(made_up))
@@ -853,6 +855,7 @@ def test_auto_tries_other_steps_where_one_stops(tmp_path, monkeypatch):
         return real(system, start, monitored, options, recorder)
 
     monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    monkeypatch.setattr(auto, "has_series", lambda system: False)
     monkeypatch.setattr(newmark, "integrate", stops)
     bad = range(1, 4)
     found = run(tmp_path, "AUTO TOL=1e-2")
@@ -871,6 +874,7 @@ def test_auto_converges_on_all_peaks_where_that_is_asked_for(tmp_path, monkeypat
     """Accelerations and members' forces converge more slowly than drifts: they set the step."""
     truth = run(tmp_path, "EXACT")
     monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    monkeypatch.setattr(auto, "has_series", lambda system: False)
     steps = {}
     for asked in ("RESPONSE", "ALL"):
         found = run(tmp_path, f"AUTO TOL=1e-2 PEAKS={asked}")
