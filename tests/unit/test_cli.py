@@ -260,3 +260,28 @@ def test_what_keeps_a_run_waiting_is_told_once_where_there_is_no_terminal(monkey
     lines = [line.strip() for line in stream.getvalue().split("\r")]
     once = ["" if quiet else "pound-solve: compiling the kernels"]
     assert lines == (["", "compiling the kernels", "", ""] if terminal and not quiet else once)
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_progress_tells_the_time_to_go_of_the_present_run(monkeypatch, terminal):
+    """AUTO runs the history again and again; a pipe gets few lines, at growing distances."""
+    stream, clock = io.StringIO(), iter([0.0, *range(1, 200)])
+    stream.isatty = lambda: terminal
+    monkeypatch.setattr(sys, "stderr", stream)
+    monkeypatch.setattr("time.monotonic", lambda: next(clock))
+    progress = Progress(False)
+    for t in [*range(1, 11), *(0.1 * k for k in range(1, 101))]:  # two runs, a second for each time
+        progress(t, 10.0, "")
+    progress.end()
+    said = stream.getvalue()
+    if terminal:
+        lines = [" ".join(x.split()) for x in said.split("\r") if x.strip()]
+        assert len(lines) == 110
+        assert lines[3] == "t = 4.0000 of 10 40.0 % 6 s to go"
+        assert lines[59] == "t = 5.0000 of 10 50.0 % run 2 50 s to go"
+    else:
+        lines = said.splitlines()
+        assert lines == [
+            "pound-solve: t = 1.1000 of 10 11.0 % run 2 89 s to go",
+            "pound-solve: t = 5.2000 of 10 52.0 % run 2 48 s to go",
+        ]

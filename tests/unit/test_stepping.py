@@ -10,12 +10,12 @@ from scipy.integrate import solve_ivp
 
 import pound_solve
 from kernels import FAST, NUMBA, interpreted
-from pound_solve.integrate import auto, condensed
+from pound_solve.integrate import auto, condensed, costs
 from pound_solve.integrate.events import within_step
 from pound_solve.integrate.kernels import allocation, products
-from pound_solve.integrate.protocol import Outcome, Start, Stop
+from pound_solve.integrate.protocol import Stop
 from pound_solve.integrate.stepping import kernel, locating
-from pound_solve.integrate.tracker import Peaks
+from pound_solve.integrate.tracker import Collision, Peaks
 from pound_solve.laws import functions
 from pound_solve.laws.hysteresis import bilinear, imk_bilinear
 from pound_solve.numerics import cubic, jit, ldl
@@ -723,14 +723,161 @@ def test_the_dashpot_of_a_contact_does_not_hit_a_node_without_mass(tmp_path, met
     assert peak == pytest.approx(40.0 * u.max(), rel=1e-4)
 
 
+class Refinement(auto.StepRefinement):
+    """Runs that are made up."""
+
+    def __init__(self, tol, most=1.0, length=1.0, cost=0.0):
+        self.tol, self.asked, self.length, self.step_cost = tol, auto.RESPONSE, length, cost
+        self.h = self.aim = most
+        self.events = self.retries = 0
+        self.complete = None
+
+
 def test_auto_gives_up_what_would_cost_too_much():
-    """After a run that stopped: four times its cost for the time that it reached, over the whole length."""
-    figures = {"steps": 1000, "events": 900}  # the cost of 10 000 steps
-    start = Start(np.zeros(1), np.zeros(1), (), np.array([0.0, 1.0, 2.0]))
+    """After a run that stopped, where a quarter of its step is too short, and after some retries."""
+    steps = Refinement(1e-3, most=1e-3, length=2.0)
+    limit = auto.MAX_RETRY_COST / (4.0 * 2000)
+    for cost, hopeless in ((1.001 * limit, True), (0.999 * limit, False)):
+        steps.step_cost = cost
+        assert steps._hopeless() is hopeless
+    steps.retries = auto.MAX_SHORTER
+    assert not steps._hopeless()
+    steps.complete = "a run"
+    assert steps._hopeless()
+
+
+def differences(errors, signs=(1, 1, 1, 1)):
+    """Differences between runs of such errors, each with twice the steps of the one before."""
+    runs = np.array(errors) * np.array(signs[: len(errors)])
+    return [np.array([abs(b - a)]) for a, b in itertools.pairwise(runs)], [2.0] * (len(errors) - 1)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_the_estimate_of_auto_bounds_errors_that_fall_as_a_power_of_the_step(order):
+    for runs in (2, 3, 4):
+        errors = [0.1 / 2 ** (order * k) for k in range(runs)]
+        error, doubt = auto.error_left(*differences(errors))
+        assert errors[-1] * (1 - 1e-12) <= error <= errors[-2]
+        assert doubt == (np.inf if runs == 2 else 0.0)
+
+
+def test_the_estimate_of_auto_is_not_taken_in_by_two_runs_that_agree_by_chance():
+    """The second and third run are off by as much to the same side."""
+    errors = [0.10, 0.031, 0.03]
+    error, doubt = auto.error_left(*differences(errors))
+    assert doubt > 0.015 > 10 * error
+    # and errors that do not fall: the difference itself, however many more steps the last run takes
+    relative, _ = differences([0.05, -0.04, 0.05])
+    assert auto.error_left(relative, [4.0, 4.0])[0] == pytest.approx(0.09)
+
+
+def test_a_run_between_the_last_two_confirms_them_or_not(tmp_path, monkeypatch):
+    """Peaks agree better than expected: a run with a step in between, which is not the answer."""
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    monkeypatch.setattr(auto, "has_series", lambda system: False)
+    monkeypatch.setattr(auto, "hardest", lambda peaks: np.inf)
+    for third, runs in ((1.001, 4), (1.08, 5)):
+        made_up, tried = iter([1.3, 1.0, 1.004, third, 1.0, 1.0, 1.0]), []
+
+        def value(*given, made_up=made_up):
+            return np.array([next(made_up)]), np.ones(1)
+
+        real = auto.StepRefinement.run
+
+        def follow(self, tried=tried, real=real):
+            tried.append(self.between or self.h)
+            return real(self)
+
+        with monkeypatch.context() as patch:
+            patch.setattr(auto, "figures", value)
+            patch.setattr(auto.StepRefinement, "run", follow)
+            found = run(tmp_path, "AUTO TOL=1e-2", every=0.05)
+        step = float(next(r["value"] for r in found.table("run") if r["item"] == "time step"))
+        assert tried[2] < tried[3] < tried[1] and len(tried) == runs, tried
+        assert step == pytest.approx(tried[2] if runs == 4 else tried[-1], rel=0.1)
+        assert estimate(found) <= 1e-2
+        found.close()
+
+
+def test_auto_wants_three_runs_and_steps_in_the_hardest_collision(tmp_path, monkeypatch):
+    """Made-up peaks; two that agree within a tenth of TOL are enough."""
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    monkeypatch.setattr(auto, "has_series", lambda system: False)
+    for gap, lasts, runs in ((8e-3, 1.0, 3), (4e-4, 1.0, 2), (4e-2, 1e-4, 4)):
+        made_up = ((np.array([1.0 + gap * 0.5**k]), np.ones(1)) for k in itertools.count())
+        monkeypatch.setattr(auto, "figures", lambda *given, made_up=made_up: next(made_up))
+        monkeypatch.setattr(auto, "hardest", lambda peaks, lasts=lasts: lasts)
+        found = run(tmp_path, "AUTO TOL=1e-2")
+        facts = dict(found.table("run").tolist())
+        assert int(facts["runs"]) == runs, (gap, lasts, facts["runs"])
+        assert estimate(found) <= 1e-2
+        found.close()
+
+
+def test_the_hardest_collision_is_that_of_the_largest_force():
     peaks = Peaks([], [], [], [], [])
-    stop = Stop("A503", 0.5, "", Outcome(peaks, figures, ()))
-    limit = auto.MAX_RETRY_COST / (4.0 * 10_000 * 4.0)
-    assert auto.hopeless(stop, start, 1.001 * limit)
-    assert not auto.hopeless(stop, start, 0.999 * limit)
-    assert auto.hopeless(Stop("A503", 0.0, "", Outcome(peaks, figures, ())), start, 1e-12)
-    assert not auto.hopeless(Stop("A503", 0.0, ""), start, 1.0)
+    assert auto.hardest(peaks) == np.inf
+    peaks.collisions += [Collision(0, 1.0, 0.1, 1.5, peak=3.0), Collision(1, 2.0, 0.1, 2.25, peak=4.0)]
+    assert auto.hardest(peaks) == 0.25
+    peaks.collisions.append(
+        Collision(1, 3.0, 0.1, peak=5.0)
+    )  # still closed: it is longer than what is seen
+    assert auto.hardest(peaks) == np.inf
+
+
+def test_auto_tries_other_steps_where_one_stops(tmp_path, monkeypatch):
+    """A step nearby follows one that stops at once; a whole run is kept where all shorter ones stop."""
+    from pound_solve.integrate.stepping import newmark
+
+    real, tried = newmark.integrate, []
+
+    def stops(system, start, monitored, options, recorder):
+        tried.append(options["DT"])
+        if len(tried) in bad:
+            raise Stop("A503", 1e-6, "laws alternate")
+        return real(system, start, monitored, options, recorder)
+
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    monkeypatch.setattr(auto, "has_series", lambda system: False)
+    monkeypatch.setattr(newmark, "integrate", stops)
+    bad = range(1, 4)
+    found = run(tmp_path, "AUTO TOL=1e-2")
+    assert found.status == "done" and estimate(found) <= 1e-2 and len(tried) > 4
+    assert tried[1] == pytest.approx(auto.NEARBY * tried[0])
+    found.close()
+    tried.clear()
+    bad = range(3, 100)
+    found = run(tmp_path, "AUTO TOL=1e-6")
+    assert found.status == "done" and len(tried) == 2 + 1 + auto.MAX_SHORTER
+    (check,) = [c for c in found.table("checks") if "estimated error" in c["check"]]
+    assert check["verdict"].startswith("look: not met") and "A503" in check["verdict"]
+
+
+def test_auto_converges_on_all_peaks_where_that_is_asked_for(tmp_path, monkeypatch):
+    """Accelerations and members' forces converge more slowly than drifts: they set the step."""
+    truth = run(tmp_path, "EXACT")
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    monkeypatch.setattr(auto, "has_series", lambda system: False)
+    steps = {}
+    for asked in ("RESPONSE", "ALL"):
+        found = run(tmp_path, f"AUTO TOL=1e-2 PEAKS={asked}")
+        (check,) = [c for c in found.table("checks") if "estimated error" in c["check"]]
+        assert ("all peaks" in check["check"]) is (asked == "ALL")
+        told, steps[asked] = estimate(found), int(dict(found.table("run").tolist())["steps"])
+        if asked == "ALL":
+            for name, size in (("node/a", 2), ("member/force", 0)):
+                a, b = (np.abs(r.history(name)[..., : size or None]).max(axis=0) for r in (found, truth))
+                assert np.abs(a - b).max() <= told * b.max()
+        found.close()
+    assert steps["ALL"] > steps["RESPONSE"]
+
+
+def test_a_trial_ends_where_what_is_left_costs_more_than_another_method():
+    """Half of the other's cost is spent, at a rate that the budget allows."""
+    for done, other, ends in ((0.2, 0.4, True), (0.2, 1.0, False), (0.8, 0.4, False)):
+        budget = costs.Budget(0.0, 10.0, 2.0, 0.05, other=other)
+        if ends:
+            with pytest.raises(costs.CostlyError):
+                budget.charge(0.3, 10.0 * done, 0.0, 1)
+        else:
+            budget.charge(0.3, 10.0 * done, 0.0, 1)

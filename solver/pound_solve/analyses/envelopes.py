@@ -80,6 +80,7 @@ class Envelopes:
         self.of_v, self.out_rate, _ = system.over(
             dofs.rows([(o.dofs, () if o.v_row is None else o.v_row.tolist()) for o in outputs])
         )
+        self.units = [o.unit for o in outputs]
         self.damped = bool(used_rows(self.of_v).any() or self.out_rate.any())
         self.constants = np.array([o.constant for o in outputs]) + constants
         self.shares = system.corotational.shares([(o.element, o.quantity) for o in outputs])
@@ -97,6 +98,16 @@ class Envelopes:
         other = copy.copy(self)
         other._clear()
         return other
+
+    def peaks(self) -> tuple[Array, list[str]]:
+        """Largest and smallest accelerations of the nodes, rotations apart, and forces of the members, and
+        the kind of each: those of a kind have one unit.
+        """
+        motion = self.node["a"]
+        whole = np.arange(3 * self.n_nodes) % 3 < 2
+        values = [motion.high[whole], motion.low[whole], self.output.high, self.output.low]
+        kinds = ["acceleration"] * int(whole.sum()) * 2 + self.units * 2
+        return np.concatenate(values), kinds
 
     def widen(self, other: Envelopes) -> None:
         """Count in what another one of the same quantities has seen."""

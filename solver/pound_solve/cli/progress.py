@@ -1,4 +1,4 @@
-"""The progress of a run: one line on a terminal, rewritten in place."""
+"""The progress of a run: one line on a terminal, rewritten in place; elsewhere a line now and then."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import time
 
 WIDTH = 69  #: characters of the line
 INTERVAL = 0.1  #: least time between two lines [s]
+QUIET = 20.0  #: time to the first line where there is no terminal, doubled from line to line [s]
 
 
 class StatusLine:
@@ -30,6 +31,11 @@ class StatusLine:
             self._told.add(text)
             print(f"pound-solve: {text}", file=sys.stderr, flush=True)
 
+    def note(self, text: str) -> None:
+        """Print a line where there is no terminal."""
+        if not self.live and not self.quiet:
+            print(f"pound-solve: {' '.join(text.split())}", file=sys.stderr, flush=True)
+
     def clear(self) -> None:
         """Blank the line and return to its start."""
         if self.live:
@@ -41,11 +47,16 @@ class Progress:
 
     A library that catches every exception also catches the `KeyboardInterrupt` raised within one of its
     calls; `interrupted` records it, and the next call raises it again.
+
+    A method may go through the history several times: where the time falls back, another run begins, and
+    the estimate of the time to go is that of this run alone.
     """
 
     def __init__(self, quiet: bool) -> None:
         self.line = StatusLine(quiet)
         self.began = self.shown = time.monotonic()
+        self.pause, self.first, self.reached, self.runs = QUIET, 0.0, 0.0, 1
+        self.told = self.began
         self.interrupted = False
         # Python permits signal handlers in the main thread only
         self.main = threading.current_thread() is threading.main_thread()
@@ -62,14 +73,26 @@ class Progress:
             self.interrupted = False
             raise KeyboardInterrupt
         now = time.monotonic()
+        if t < self.reached:
+            self.runs, self.began, self.first = self.runs + 1, now, t
+        self.reached = t
         if now - self.shown < INTERVAL and not doing:
             return
         self.shown = now
         if doing:
             self.line.tell(doing)
             return
-        left = (now - self.began) * (end / t - 1.0) if t > 0 else 0.0
-        self.line.show(f"t = {t:10.4f} of {end:g}   {100 * t / end:5.1f} %   {left:6.0f} s to go")
+        text = self._state(now, t, end)
+        self.line.show(text)
+        if now - self.told > self.pause:
+            self.told, self.pause = now, 2.0 * self.pause
+            self.line.note(text)
+
+    def _state(self, now: float, t: float, end: float) -> str:
+        """The time reached, the number of the run and the time that it will take, in words."""
+        ahead = (now - self.began) * (end - t) / (t - self.first) if t > self.first else 0.0
+        run = f"   run {self.runs}" if self.runs > 1 else ""
+        return f"t = {t:10.4f} of {end:g}   {100 * t / end:5.1f} %{run}   {ahead:6.0f} s to go"
 
     def end(self) -> None:
         """Clear the line and restore the signal handler."""

@@ -4,9 +4,14 @@ EXACT needs no step, but piecewise linear laws, and every new combination of sti
 decomposition.  TAYLOR has no truncation error either; its steps resolve the fastest mode.  With NEWMARK the
 whole run is repeated with a shorter step until the peaks no longer change, or until shorter steps bring no
 improvement (a force that rings at a node without mass): if between two runs, of which the second takes r
-times the steps of the first, the peaks differ by :math:`\Delta`, the error left in the second is estimated
-as :math:`\Delta/(r-1)`, as if the method were of first order only.  It is of second order, so that the
-estimate is conservative.
+times the steps of the first, a peak differs by :math:`\Delta`, the error left in the second is estimated as
+:math:`\Delta/(r-1)`, as if the method were of first order only; as :math:`\Delta/(r^{1.25}-1)` where the
+difference falls at least as fast from run to run.  The method is of second order, so that the estimate is
+conservative where the peaks converge.  Where they do not yet, two runs may agree by chance.  Hence the
+estimate is not below :math:`\Delta` where that falls more slowly than the error of a method of first order;
+and it counts only where the collision of the largest force lasts `RESOLVED` steps, and where a third run
+confirms it: the one before, if differences do not fall faster than the method explains, else one with a
+step between those of the two.  Two runs that agree far better than TOL need no other.
 
 The cost of TAYLOR is known in advance; that of EXACT depends on the events.  Where few laws change
 stiffness, and a handful of decompositions does not cost more than TAYLOR, EXACT starts with a small budget.
@@ -15,16 +20,17 @@ before each of these EXACT may cost as much as they do, if it would complete the
 Costs are counted from windows, decompositions, steps and unknowns (:mod:`.costs`), not measured, so that a
 deck is always solved in the same way.
 
-The runs are compared by the largest and smallest value of every drift, relative to the larger of the two
-(but at least a millionth of the largest drift: smaller values may be rounding, which never converges), and
-by the peak force of every contact, relative to itself (but at least a twentieth of the largest contact
-force); without drifts, by the deformations of all springs in the same way, and all displacements relative
-to the largest in their direction.
+The runs are compared by the largest and smallest value of every drift and by the peak force of every
+contact, each relative to the larger magnitude of its own, but at least to `FLOOR` times the largest of its
+kind: a contact that is hardly touched does not set the step.  Without drifts, by the deformations of all
+springs in the same way, and by all displacements relative to the largest in their direction.  With
+PEAKS=ALL, by the accelerations of the nodes and the forces of the members that OUTPUT names, too, relative
+to the largest of their kind.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -53,6 +59,7 @@ from pound_solve.structure.reduction import Decision, ReducedSystem
 
 # EXACT before any steps
 FIRST_BUDGET = 1.0  #: what it may cost: loading the kernels of steps costs as much
+KERNELS = 0.5  #: cost of loading the kernels of TAYLOR
 FIRST_CHECK = 0.3  #: share of that after which its progress is checked
 #: the same as a share of what TAYLOR would cost, if that is less, but not less than the other
 TRIAL_SHARE, LEAST_TRIAL = 0.25, 0.05
@@ -70,12 +77,25 @@ MAX_STEPS = 50_000_000  #: of one run
 MAX_RETRY_COST = 20.0  #: of a run that follows one that stopped
 MAX_STALE_RUNS = 4  #: runs in a row that do not halve the error, after which shorter steps are given up
 SAFETY = 0.6  #: of the tolerance, that the next step aims at
+FLOOR = 0.05  #: share of the largest peak of its kind that a peak is measured against at least
+RESOLVED = 10.0  #: steps that the collision of the largest force takes at least
+SHORTEST, LONGEST = 1.0 / 8.0, 0.7  #: of a step, that the next one is: where that is not resolved, at most
+STEADY, FAST = 1.25, 3.0  #: powers of the step between which differences fall that the method explains
+CERTAIN = 0.1  #: share of the tolerance within which two runs do not agree by chance
+#: retries after runs that stopped, one after another, before and after one that was completed
+MAX_RETRIES, MAX_SHORTER = 10, 3
+EARLY, NEARBY = (
+    0.01,
+    0.6,
+)  #: share of the run; where one stops before, another step is that share of its own
 
 #: why no steps are taken
 LINEAR = "all laws are piecewise linear, so no time step is needed; stepping would cost more"
 SERIES = "all forces have power series between events, so no time step is needed; stepping would cost more"
 RIGID = "steps take no rigid contacts"
-GIVEN_UP = ("the most that are tried", "nor nearer than with far fewer")  #: why no shorter steps are tried
+#: why no shorter steps are tried
+MOST, STALE = "the most that are tried", "nor nearer than with far fewer"
+RESPONSE, ALL = "RESPONSE", "ALL"  #: what TOL is for
 
 
 class Replay:
@@ -113,6 +133,14 @@ class Replay:
     def trial(self, t: float, doing: str = "") -> None:
         """Pass the progress of a trial on."""
         self.recorder.trial(t, doing)
+
+    def seen(self, system: ReducedSystem) -> tuple[Array, list[str]]:
+        """Peaks of the accelerations of nodes and of the forces of members, and the kind of each."""
+        own = self.recorder.envelopes.blank()
+        own.widen(self.envelopes)
+        for t, u, v, a, *_ in self.samples:
+            own.take(t, u, v, a, [system.excitation.values(t, order).T for order in range(3)])
+        return own.peaks()
 
     def pass_on(self) -> None:
         """Pass everything on to the recorder."""
@@ -175,6 +203,7 @@ class ExactTrial:
         limits = {
             "DECOMPOSITIONS": self.ease * MAX_DECOMPOSITIONS,
             "PER_RADIAN": cost_of_radian(self.system),
+            "OTHER": other + KERNELS,
             "TRIAL": min(FIRST_CHECK * FIRST_BUDGET, max(LEAST_TRIAL, TRIAL_SHARE * other)),
         }
         return self.run(FIRST_BUDGET, limits)
@@ -202,48 +231,95 @@ class ExactTrial:
         return outcome
 
 
-def figures(system: ReducedSystem, peaks: Peaks, replay: Replay) -> tuple[Array, Array]:
+class Peak(NamedTuple):
+    """Values that are compared between runs, and the scales of their differences."""
+
+    values: Array
+    scales: Array
+
+
+def measured(extremes: Sequence[Extreme], kinds: Sequence[str]) -> Peak:
+    """Extremes, each relative to its own size, but at least to `FLOOR` times the largest of its kind."""
+    values = np.array([(e.high, e.low) for e in extremes]).reshape(-1, 2)
+    size = np.abs(values).max(axis=1, initial=0.0)
+    return Peak(values.ravel(), np.repeat(_floored(size, np.array(kinds)), 2))
+
+
+def _floored(size: Array, kinds: Array, share: float = FLOOR) -> Array:
+    """Sizes, but at least a share of the largest of their kind."""
+    out = size.copy()
+    for kind in np.unique(kinds):
+        own = kinds == kind
+        out[own] = np.maximum(out[own], share * out[own].max())
+    return out
+
+
+def figures(system: ReducedSystem, peaks: Peaks, replay: Replay, asked: str = RESPONSE) -> Peak:
     """Return the peaks that are compared between runs, and the scales of their differences."""
     laws = system.structure.laws
     contacts = [i for i, s in enumerate(laws) if s.role.collides]
     force = np.array([max((c.peak for c in peaks.collisions if c.law == i), default=0.0) for i in contacts])
-    springs = [e for e, s in zip(peaks.deformation, laws) if not s.role.collides]
-    extremes: list[Extreme] = peaks.monitored or springs
-    values = np.array([(e.high, e.low) for e in extremes]).reshape(-1, 2)
-    size = np.repeat(np.abs(values).max(axis=1), 2)
+    parts = [measured(peaks.monitored, ["drift"] * len(peaks.monitored))]
     if not peaks.monitored:
+        springs = [(e, s.unit) for e, s in zip(peaks.deformation, laws) if not s.role.collides]
+        parts.append(measured([e for e, _ in springs], [unit for _, unit in springs]))
         direction = np.array([d for _, d in system.dofs])
         displacement = np.column_stack([np.ravel(replay.high), np.ravel(replay.low)])
         # hinges and uplift have directions of their own
-        most = {d: np.abs(displacement[direction == d]).max() for d in np.unique(direction).tolist()}
-        largest = np.array([most[d] for d in direction.tolist()])
-        values = np.concatenate([values, displacement])
-        size = np.append(size, np.repeat(largest, 2))
-    scales = [np.maximum(x, share * x.max(initial=0.0)) for x, share in ((size, 1e-6), (force, 0.05))]
-    return np.concatenate([np.ravel(values), force]), np.concatenate(scales)
+        largest = _floored(np.abs(displacement).max(axis=1), direction, 1.0)
+        parts.append(Peak(displacement.ravel(), np.repeat(largest, 2)))
+    if asked == ALL:
+        values, kinds = replay.seen(system)
+        parts.append(Peak(values, _floored(np.abs(values), np.array(kinds), 1.0)))
+    parts.append(Peak(force, _floored(force, np.zeros(len(force)))))
+    return Peak(*(np.concatenate(x) for x in zip(*parts)))
+
+
+def hardest(peaks: Peaks) -> float:
+    """Return how long the collision of the largest force lasts [T]; infinite without collisions."""
+    found = max(peaks.collisions, key=lambda c: c.peak, default=None)
+    if found is None or not found.t_end > found.t_start:  # it is still closed
+        return np.inf
+    return found.t_end - found.t_start
+
+
+def error_left(relative: Sequence[Array], ratios: Sequence[float]) -> tuple[float, float]:
+    """Estimate the error left in the last of some runs.
+
+    Parameters
+    ----------
+    relative : sequence of ndarray
+        Differences of the peaks between two runs, relative to their scales; those of the last two last.
+    ratios : sequence of float
+        Steps of the second over those of the first of them.
+
+    Returns
+    -------
+    error, doubt : float
+        The estimate; and what it would be if the peaks that differ less than the method explains, by their
+        differences before, had come nearer as its error does: infinite after two runs.
+    """
+    now, r = relative[-1], ratios[-1]
+    left = now / (r - 1.0)
+    if len(relative) < 2:
+        return float(left.max(initial=0.0)), np.inf
+    before, first = relative[-2], ratios[-2]
+    # differences, if the error were proportional to a power of the step
+    linear, steady, fast = (before * (1.0 - r**-p) / (first**p - 1.0) for p in (1.0, STEADY, FAST))
+    left = np.where(now > linear, np.maximum(left, now), left)
+    left = np.where(now <= steady, now / (r**STEADY - 1.0), left)
+    doubt = np.where(now < fast, before / (first - 1.0) / r**2, 0.0)
+    return float(left.max(initial=0.0)), float(doubt.max(initial=0.0))
 
 
 def stepped(system: ReducedSystem) -> Decision:
     """Return the decision that steps were taken."""
-    reason = not_linear(system) or "EXACT would cost more: too many unknowns or changes of stiffness"
+    reason = (
+        not_in_series(system)
+        or not_linear(system)
+        or "EXACT would cost more: too many unknowns or changes of stiffness"
+    )
     return Decision("method", "NEWMARK", f"{reason}; steps are shortened until the peaks converge")
-
-
-def hopeless(stop: Stop, start: Start, step_cost: float) -> bool:
-    """Return whether a run with a quarter of the step of one that stopped would cost more than
-    `MAX_RETRY_COST`.
-    """
-    begin, *_, end = start.times
-    done = stop.outcome.figures if stop.outcome else {"steps": 0, "events": 0}
-    cost = step_cost * (done["steps"] + costs.EVENT_STEPS * done["events"])
-    return bool(4.0 * cost * (end - begin) > MAX_RETRY_COST * (stop.t - begin))
-
-
-class Comparison(NamedTuple):
-    """A run with its figures, to compare the next one with."""
-
-    steps: int
-    peaks: Array
 
 
 class StepRefinement:
@@ -257,6 +333,17 @@ class StepRefinement:
         Step that is likely to meet the tolerance [T].
     error : float
         Estimate for the last run.
+    met : bool
+        Whether the last run meets the tolerance, and not by chance.
+    between : float
+        Step of a run that shall confirm the last one; 0 where none is needed [T].
+    interval : float
+        Usual interval between output times and corners of the excitation [T].
+    lasts : float
+        Duration of the hardest collision [T].
+    steps, relative, ratios : list
+        Steps of the runs that are compared; differences between two of them, relative to their scales;
+        steps of the second over those of the first.
     """
 
     def __init__(
@@ -265,16 +352,20 @@ class StepRefinement:
         start: Start,
         monitored: MonitoredOutputs,
         recorder: EnvelopeRecorder,
-        tol: float,
+        options: Mapping[str, Any],
     ) -> None:
         self.system, self.start, self.monitored, self.recorder = system, start, monitored, recorder
-        self.tol, self.length = tol, float(start.times[-1] - start.times[0])
+        self.tol, self.asked = float(options["TOL"]), options.get("PEAKS", RESPONSE)
+        self.length = float(start.times[-1] - start.times[0])
         intervals = np.diff(goals(system, start.times)[0], prepend=start.times[0])
-        self.h = self.aim = min(float(np.median(intervals)), self.length / 1000)
+        self.h = self.aim = self.interval = min(float(np.median(intervals)), self.length / 1000)
+        self.between, self.lasts = 0.0, np.inf
         self.step_cost = costs.of_step(system) * (1 if provider().fast else costs.INTERPRETED)
         self.error = self.best = np.inf
-        self.runs = self.events = self.stale = 0
-        self.before: Comparison | None = None
+        self.runs = self.events = self.stale = self.retries = 0
+        self.steps, self.relative, self.ratios = list[int](), list[Array](), list[float]()
+        self.peaks: Array = np.zeros(0)
+        self.met = False
         self.complete: tuple[Outcome, Replay] | None = None  # the last run that was completed
 
     def cost_ahead(self, most: float = np.inf) -> float:
@@ -293,49 +384,111 @@ class StepRefinement:
         from pound_solve.integrate.stepping import newmark  # where no steps are taken it is not loaded
 
         replay = Replay(self.recorder)
-        options = {"DT": self.h, "BETA": 0.25, "GAMMA": 0.5}
+        options = {"DT": self.between or self.h, "BETA": 0.25, "GAMMA": 0.5}
         try:
             outcome = newmark.integrate(self.system, self.start, self.monitored, options, replay)
         except Stop as stop:
-            self._retry(stop, replay)
-            return None
-        self.runs += 1
-        self.complete = outcome, replay
-        peaks, scales = figures(self.system, outcome.peaks, replay)
-        steps, self.events = outcome.figures["steps"], outcome.figures["events"]
-        if self._converged(steps, peaks, scales):
-            self.system.decisions.append(stepped(self.system))
-            replay.pass_on()
-            outcome.figures = {**outcome.figures, "runs": self.runs}
-            outcome.checks = self.checks(outcome, GIVEN_UP[self.stale == MAX_STALE_RUNS])
-            return outcome
-        self.before = Comparison(steps, peaks)
-        likely = float(np.sqrt(SAFETY * self.tol / self.error)) if np.isfinite(self.error) else 0.5
-        self.aim = self.h * likely
-        self.h = float(np.clip(self.aim, self.h / 4, self.h / 2))
-        self.aim = min(self.aim, self.h)
+            return self._retry(stop, replay)
+        self.runs, self.retries = self.runs + 1, 0
+        if self.between:
+            self._confirm(outcome, replay)
+        else:
+            self.complete = outcome, replay
+            self._compare(outcome, replay)
+            self.lasts = hardest(outcome.peaks)
+        if self.met or self.stale == MAX_STALE_RUNS or self._longest():
+            return self._end(MOST if self._longest() else STALE)
+        if not self.between:
+            self._choose()
         return None
 
-    def _converged(self, steps: int, peaks: Array, scales: Array) -> bool:
-        """Estimate the error of a run; return whether no shorter steps follow."""
-        if self.before is None or steps <= self.before.steps:
-            return False
-        relative = np.abs(peaks - self.before.peaks) / np.where(scales > 0.0, scales, 1.0)
-        self.error = float(relative.max(initial=0.0)) / (steps / self.before.steps - 1.0)
-        self.stale = 0 if self.error < 0.5 * self.best else self.stale + 1
-        self.best = min(self.best, self.error)
-        too_many = self.length / self.h * 2.0 > MAX_STEPS
-        return self.error <= self.tol or self.stale == MAX_STALE_RUNS or too_many
+    def _confirm(self, outcome: Outcome, replay: Replay) -> None:
+        """Compare the last run with one of longer steps, whose peaks must not differ more either."""
+        peaks, scales = figures(self.system, outcome.peaks, replay, self.asked)
+        apart = np.abs(peaks - self.peaks) / np.where(scales > 0.0, scales, 1.0)
+        ratio = self.steps[-1] / outcome.figures["steps"]
+        self.between = 0.0
+        if ratio > 1.0:
+            self.error = max(self.error, float(apart.max(initial=0.0)) / (ratio - 1.0))
+            self.met = self.error <= self.tol
+            self.relative[-1] = np.maximum(self.relative[-1], apart)
 
-    def _retry(self, stop: Stop, replay: Replay) -> None:
-        """Shorten the step after a run that stopped, or stop."""
+    def _middle(self) -> float:
+        """Step between those of the last two runs that differs from both; 0 where there is none."""
+        step = self.h * self.ratios[-1] ** 0.5
+        # output times cut the steps: so many are between two of them
+        last, middle, before = (
+            np.ceil(self.interval / h) for h in (self.h, step, self.h * self.ratios[-1])
+        )
+        return step if before < middle < last else 0.0
+
+    def _longest(self) -> bool:
+        """Whether a run with half the step would take more than `MAX_STEPS`."""
+        return self.length / self.h * 2.0 > MAX_STEPS
+
+    def _end(self, ended: str) -> Outcome:
+        """Hand on the last run that was completed; `ended` is why no shorter steps follow."""
+        assert self.complete is not None
+        outcome, replay = self.complete
+        self.system.decisions.append(stepped(self.system))
+        replay.pass_on()
+        outcome.figures = {**outcome.figures, "runs": self.runs}
+        outcome.checks = self.checks(outcome, ended)
+        return outcome
+
+    def _compare(self, outcome: Outcome, replay: Replay) -> None:
+        """Compare a run with the one before, and estimate its error."""
+        peaks, scales = figures(self.system, outcome.peaks, replay, self.asked)
+        steps, self.events = outcome.figures["steps"], outcome.figures["events"]
+        # output times cut the steps of both: runs of as many steps do not differ
+        if self.steps and steps > self.steps[-1]:
+            self.relative.append(np.abs(peaks - self.peaks) / np.where(scales > 0.0, scales, 1.0))
+            self.ratios.append(steps / self.steps[-1])
+            self.error, doubt = error_left(self.relative, self.ratios)
+            self._judge(hardest(outcome.peaks) >= RESOLVED * self.h, doubt)
+            self.stale = 0 if self.error < 0.5 * self.best else self.stale + 1
+            self.best = min(self.best, self.error)
+        self.steps.append(steps)
+        self.peaks = peaks
+
+    def _judge(self, resolved: bool, doubt: float) -> None:
+        """Judge whether the last run meets the tolerance, or whether one in between shall confirm that."""
+        certain = float(self.relative[-1].max(initial=0.0)) <= CERTAIN * self.tol
+        near = self.error <= self.tol and (resolved or certain)
+        self.met = near and (certain or doubt <= self.tol)
+        self.between = self._middle() if near and not self.met else 0.0
+
+    def _choose(self) -> None:
+        """Choose the next step."""
+        likely = float(np.sqrt(SAFETY * self.tol / self.error)) if np.isfinite(self.error) else 0.5
+        resolved = 0.9 * self.lasts / RESOLVED
+        # where shorter steps do not help, as little as possible is spent on learning whether they will
+        least = 0.25 if self.stale == 0 else 0.5
+        if resolved < self.h * least:
+            least = SHORTEST
+        self.aim = min(self.h * likely, resolved)
+        self.h = float(np.clip(self.aim, least * self.h, LONGEST * self.h))
+        self.aim = min(self.aim, self.h)
+
+    def _retry(self, stop: Stop, replay: Replay) -> Outcome | None:
+        """Change the step after a run that stopped, or end with the last run that did not, or stop."""
         # A503 says nothing of the structure where the step is coarse, growth only if a finer step grows too
-        coarse = stop.code == "A503" or (stop.code == "A504" and self.before is None)
-        if coarse and self.h > 1e-6 * self.length and not hopeless(stop, self.start, self.step_cost):
-            self.h, self.before = 0.25 * self.h, None
-            self.aim = self.h
-            self.events = max(self.events, stop.outcome.figures["events"] if stop.outcome else 0)
-            return
+        coarse = stop.code == "A503" or (stop.code == "A504" and not self.steps)
+        if coarse and self.between:  # no run confirms the last one
+            self.between = 0.0
+            self._choose()
+            return None
+        if coarse and not self._hopeless():
+            begin = float(self.start.times[0])
+            early = stop.t - begin < EARLY * self.length
+            # where laws alternate at the start a step nearby may pass; a far shorter one need not
+            self.h *= NEARBY if early or self.retries % 2 else 0.25
+            self.aim, self.retries = self.h, self.retries + 1
+            done = stop.outcome.figures["events"] if stop.outcome and not early else 0
+            self.events = max(self.events, done)
+            return None
+        if coarse and self.complete is not None:
+            return self._end(f"shorter ones stopped ({stop.code} at t = {stop.t:.6g})")
         self.system.decisions.append(stepped(self.system))
         if stop.code == "A506" and self.complete is not None:
             outcome, replay = self.complete
@@ -344,16 +497,21 @@ class StepRefinement:
         replay.pass_on()
         raise stop from None
 
+    def _hopeless(self) -> bool:
+        """Whether no other step is tried after a run that stopped: there were many, or a run with a quarter
+        of the step would cost more than `MAX_RETRY_COST`.
+        """
+        cost = self.step_cost * (4.0 * self.length / self.h + costs.EVENT_STEPS * self.events)
+        most = MAX_RETRIES if self.complete is None else MAX_SHORTER
+        return self.retries == most or self.h <= 1e-6 * self.length or cost > MAX_RETRY_COST
+
     def checks(self, outcome: Outcome, ended: str) -> list[tuple[str, str, str]]:
         """Return checks beyond those of a single run; `ended` is why no shorter steps follow."""
-        steps, met = outcome.figures["steps"], self.error <= self.tol
-        verdict = "met" if met else f"look: not met with {steps} steps, {ended}"
+        steps = outcome.figures["steps"]
+        verdict = "met" if self.met else f"look: not met with {steps} steps, {ended}"
+        what = "drifts and contact forces" if self.asked == RESPONSE else "all peaks"
         return [
-            (
-                f"estimated error of drifts and contact forces, TOL {self.tol:g}",
-                f"{self.error:.1e}",
-                verdict,
-            ),
+            (f"estimated error of {what}, TOL {self.tol:g}", f"{self.error:.1e}", verdict),
             *rounding_check(self.system.structure.laws, outcome.peaks),
         ]
 
@@ -381,7 +539,7 @@ def to_tolerance(
     """Repeat the run with shorter steps until the peaks converge, or EXACT costs less, or TAYLOR, which
     costs `series`.
     """
-    steps = StepRefinement(system, start, monitored, recorder, options["TOL"])
+    steps = StepRefinement(system, start, monitored, recorder, options)
     while True:
         if series <= max(SERIES_FIRST, steps.cost_ahead()):
             return by_series(system, start, monitored, recorder)
@@ -427,7 +585,15 @@ SPEC = Spec(
             default=1e-4,
             lo=1e-9,
             hi=0.1,
-            doc="largest error of drifts and contact forces as a share of their peaks, if steps are taken",
+            doc="largest error of the peaks as a share of them, if steps are taken",
+        ),
+        Field(
+            "PEAKS",
+            Kind.WORD,
+            default=RESPONSE,
+            words=(RESPONSE, ALL),
+            doc="peaks that TOL is for: RESPONSE drifts and contact forces; ALL also accelerations "
+            "and forces of the nodes and members that OUTPUT names",
         ),
     ),
     impl=integrate,

@@ -108,6 +108,8 @@ class Budget:
         Addition to `most` for each radian of the fastest mode.
     decompositions : float
         Modal decompositions, at most.
+    other : float
+        Cost of another method: once half of that is spent, what is left must not cost more.
     """
 
     def __init__(
@@ -118,10 +120,11 @@ class Budget:
         trial: float | None = None,
         per_radian: float = 0.0,
         decompositions: float = np.inf,
+        other: float = np.inf,
     ) -> None:
         self.begin, self.length, self.most, self.per_radian = begin, end - begin, most, per_radian
         self.trial = most if trial is None else trial
-        self.decompositions = decompositions
+        self.decompositions, self.other = decompositions, other
         self.cost = 0.0
 
     def charge(self, cost: float, t: float, spectral_radius: float, decompositions: int) -> None:
@@ -137,5 +140,6 @@ class Budget:
             raise CostlyError(self.cost, t)
         if self.cost > self.trial:
             whole = self.cost * self.length / max(t - self.begin, 1e-300)
-            if whole > self.most + self.per_radian * spectral_radius * self.length:
+            dear = self.cost > 0.5 * self.other and whole - self.cost > self.other
+            if dear or whole > self.most + self.per_radian * spectral_radius * self.length:
                 raise CostlyError(self.cost, t)

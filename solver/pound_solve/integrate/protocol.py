@@ -72,6 +72,14 @@ class Envelopes(Protocol):
         """Count in displacements that turn between those instants."""
         ...
 
+    def take(self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]) -> object:
+        """Count in samples; `s` are the inputs and their first two rates."""
+        ...
+
+    def peaks(self) -> tuple[Array, list[str]]:
+        """Largest and smallest accelerations of nodes and forces of members, and the kind of each."""
+        ...
+
     def blank(self) -> Self:
         """Return one that has seen nothing."""
         ...
@@ -169,13 +177,20 @@ def not_linear(system: ReducedSystem) -> str:
 
 def not_in_series(system: ReducedSystem) -> str:
     """Reason why the motion of a reduced system has no power series that is known; empty where it has."""
+    if system.structure.corotational:
+        return not_linear(system)
     laws, without_mass = system.structure.laws, light(system)
-    curved = [i for i, s in enumerate(laws) if s.law.curved]
-    for i in curved:
-        known = laws[i].law.rule.powers is not None or laws[i].role is Role.FRICTION
-        if not known or without_mass[i] or any(s.law.rigid for s in laws):
-            return not_linear(system)
-    return not_linear(system) if system.structure.corotational else ""
+    rigid = any(s.law.rigid for s in laws)
+    for s, massless_end in zip(laws, without_mass):
+        if s.law.curved:
+            law = f"the law {s.rule} of element {s.element} is curved"
+            if s.law.rule.powers is None and s.role is not Role.FRICTION:
+                return law
+            if rigid or massless_end:
+                return (
+                    f"{law} and {'stands beside rigid contacts' if rigid else 'meets a node without mass'}"
+                )
+    return ""
 
 
 def light(system: ReducedSystem) -> Flags:

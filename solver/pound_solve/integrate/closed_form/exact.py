@@ -83,6 +83,7 @@ class Exact(EventDrivenRun):
             options.get("TRIAL"),
             options.get("PER_RADIAN", 0.0),
             options.get("DECOMPOSITIONS", np.inf),
+            options.get("OTHER", np.inf),
         )
         self.subsystems = Subsystems(system, self.rows, recorder.shown)
         self.largest = np.zeros((2, len(self.subsystems.rows.rows)))
