@@ -1,4 +1,4 @@
-"""Marks of tests that need compiled kernels, and the switch to kernels as Python."""
+"""Marks of tests that need compiled kernels, and the switches to kernels as Python and to steps alone."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 import pytest
 
+from pound_solve.integrate import auto
 from pound_solve.numerics.jit import Numba
 from pound_solve.numerics.providers import provider
 
@@ -23,3 +24,9 @@ def interpreted() -> Iterator[None]:
         assert not provider().fast
         yield
     provider.cache_clear()
+
+
+def steps_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keep AUTO from EXACT and TAYLOR."""
+    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    monkeypatch.setattr(auto, "has_series", lambda system: False)

@@ -263,7 +263,7 @@ def test_a_long_history(law: Law, sample: dict[str, Any]) -> None:
 @pytest.mark.parametrize("name", sorted(RULES))
 def test_compiled_functions_give_the_same_numbers(name: str) -> None:
     laws = [p.values[0] for p in UNEQUAL if p.id.startswith(f"{name} ")]
-    branch, transition, recoverable, curve, power = (f[0] for f in functions.tables([laws[0].rule]))
+    branch, transition, recoverable, curve, power, _ = (f[0] for f in functions.tables([laws[0].rule]))
     for law in laws:
         rule = law.rule
         p = law.p + (0.0,) * (functions.PARAMETERS - rule.parameters)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 import pound_solve
-from kernels import FAST, NUMBA, interpreted
+from kernels import FAST, NUMBA, interpreted, steps_alone
 from pound_solve.integrate import auto, condensed, costs
 from pound_solve.integrate.events import within_step
 from pound_solve.integrate.kernels import allocation, products
@@ -148,7 +148,7 @@ def test_auto_keeps_its_tolerance_and_its_estimate_holds(tmp_path, monkeypatch, 
     exact = run(tmp_path, "AUTO")
     assert "EXACT" in exact.table("scene")["decision"].tolist()
     truth, closed = figures(exact), exact.table("contact_summary")["closures"][0]
-    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    steps_alone(monkeypatch)
     found = run(tmp_path, f"AUTO TOL={tol}")
     assert found.table("contact_summary")["closures"][0] == closed
     assert error_against(found, truth) <= estimate(found) <= tol
@@ -169,14 +169,14 @@ def error_against(results, truth):
 def test_auto_learns_nothing_from_two_runs_with_the_same_steps(tmp_path, monkeypatch):
     """Output times cut the steps of both: a difference of zero between them is no accuracy."""
     truth = figures(run(tmp_path, "EXACT"))
-    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    steps_alone(monkeypatch)
     found = run(tmp_path, "AUTO TOL=1e-3", every=0.004)
     assert error_against(found, truth) <= estimate(found) <= 1e-3
 
 
 def test_auto_gives_up_where_shorter_steps_bring_nothing(tmp_path, monkeypatch):
     """A peak that differs by a tenth from run to run, as a force that rings does."""
-    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    steps_alone(monkeypatch)
     rings = itertools.cycle((1.0, 1.1))
     monkeypatch.setattr(auto, "figures", lambda *given: (np.array([next(rings)]), np.ones(1)))
     found = run(tmp_path, "AUTO TOL=1e-2")
@@ -186,7 +186,7 @@ def test_auto_gives_up_where_shorter_steps_bring_nothing(tmp_path, monkeypatch):
 
 
 def test_auto_keeps_its_last_whole_run_when_it_is_interrupted(tmp_path, monkeypatch):
-    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    steps_alone(monkeypatch)
     runs = []
 
     class Interrupted(auto.Replay):
@@ -214,7 +214,7 @@ def test_an_interrupt_between_two_runs_ends_with_a_report(tmp_path, monkeypatch)
     def interrupt(*given):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    steps_alone(monkeypatch)
     monkeypatch.setattr(auto, "figures", interrupt)
     found = run(tmp_path, "AUTO TOL=1e-3")
     assert found.status == "stopped" and found.message.startswith("A506 at t = 0 s: interrupted")
@@ -303,7 +303,7 @@ def seen(row, values, t):
 
 def test_auto_hands_on_the_envelopes_of_its_last_run_alone(tmp_path, monkeypatch):
     """They are those of NEWMARK with the step that it came to, and no coarser run is left in them."""
-    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
+    steps_alone(monkeypatch)
     found = run(tmp_path, "AUTO TOL=1e-3", "")
     step = next(r["value"] for r in found.table("run") if r["item"] == "time step")
     alone = run(tmp_path, f"NEWMARK DT={step}", "")
@@ -773,8 +773,7 @@ def test_the_estimate_of_auto_is_not_taken_in_by_two_runs_that_agree_by_chance()
 
 def test_a_run_between_the_last_two_confirms_them_or_not(tmp_path, monkeypatch):
     """Peaks agree better than expected: a run with a step in between, which is not the answer."""
-    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
-    monkeypatch.setattr(auto, "has_series", lambda system: False)
+    steps_alone(monkeypatch)
     monkeypatch.setattr(auto, "hardest", lambda peaks: np.inf)
     for third, runs in ((1.001, 4), (1.08, 5)):
         made_up, tried = iter([1.3, 1.0, 1.004, third, 1.0, 1.0, 1.0]), []
@@ -801,8 +800,7 @@ def test_a_run_between_the_last_two_confirms_them_or_not(tmp_path, monkeypatch):
 
 def test_auto_wants_three_runs_and_steps_in_the_hardest_collision(tmp_path, monkeypatch):
     """Made-up peaks; two that agree within a tenth of TOL are enough."""
-    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
-    monkeypatch.setattr(auto, "has_series", lambda system: False)
+    steps_alone(monkeypatch)
     for gap, lasts, runs in ((8e-3, 1.0, 3), (4e-4, 1.0, 2), (4e-2, 1e-4, 4)):
         made_up = ((np.array([1.0 + gap * 0.5**k]), np.ones(1)) for k in itertools.count())
         monkeypatch.setattr(auto, "figures", lambda *given, made_up=made_up: next(made_up))
@@ -837,8 +835,7 @@ def test_auto_tries_other_steps_where_one_stops(tmp_path, monkeypatch):
             raise Stop("A503", 1e-6, "laws alternate")
         return real(system, start, monitored, options, recorder)
 
-    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
-    monkeypatch.setattr(auto, "has_series", lambda system: False)
+    steps_alone(monkeypatch)
     monkeypatch.setattr(newmark, "integrate", stops)
     bad = range(1, 4)
     found = run(tmp_path, "AUTO TOL=1e-2")
@@ -856,8 +853,7 @@ def test_auto_tries_other_steps_where_one_stops(tmp_path, monkeypatch):
 def test_auto_converges_on_all_peaks_where_that_is_asked_for(tmp_path, monkeypatch):
     """Accelerations and members' forces converge more slowly than drifts: they set the step."""
     truth = run(tmp_path, "EXACT")
-    monkeypatch.setattr(auto, "not_linear", lambda system: "steps are asked for")
-    monkeypatch.setattr(auto, "has_series", lambda system: False)
+    steps_alone(monkeypatch)
     steps = {}
     for asked in ("RESPONSE", "ALL"):
         found = run(tmp_path, f"AUTO TOL=1e-2 PEAKS={asked}")

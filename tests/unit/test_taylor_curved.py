@@ -107,6 +107,16 @@ def test_a_free_impact_gives_back_what_is_asked(law: str, e: float) -> None:
 
 
 @full
+@pytest.mark.parametrize("law", ["HERTZ", "JANKOWSKI", "HUNT_CROSSLEY"])
+def test_a_contact_without_a_gap(law: str) -> None:
+    """It is touched at the start, where nothing has moved yet."""
+    e = 1.0 if law == "HERTZ" else 0.5
+    card = f"LAW={law} K=3e4" + ("" if law == "HERTZ" else " E=0.5")
+    r = run_text(BALL.format(card=card, vt=0.0).replace("GAP=0.02", "GAP=0"))
+    assert r.status == "done" and -r.v[-1, 0, 0] == pytest.approx(0.7 * e, rel=1e-10)
+
+
+@full
 def test_tension_holds_until_the_overlap_is_gone() -> None:
     r = ball("LAW=POWER_LAW_DAMPED K=3e4 E=0.4 TENSION=YES")
     assert -r.v[-1, 0, 0] == pytest.approx(0.28, rel=1e-10)

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import pound_solve
+from kernels import steps_alone
 from pound_solve.assess import scenes, stability
 from pound_solve.assess.scenes import case as scene_case
 from pound_solve.assess.scenes import contact, hysteresis, linear
 from pound_solve.catalog import catalog
 from pound_solve.cli.main import main
-from pound_solve.integrate import auto
 
 pytestmark = pytest.mark.full
 
@@ -225,7 +225,7 @@ def test_steps_that_do_not_resolve_the_motion_are_told(tmp_path):
 
 
 def test_auto_says_how_good_it_is_rather_than_its_steps(tmp_path, monkeypatch):
-    monkeypatch.setattr(auto, "not_linear", lambda scene: "steps are asked for")
+    steps_alone(monkeypatch)
     deck = tmp_path / "pair.inp"
     spec = catalog().family("contact")["KELVIN_VOIGT"]
     k = 1e3 * scene_case.STOREY

@@ -92,6 +92,7 @@ EARLY, NEARBY = (
 #: why no steps are taken
 LINEAR = "all laws are piecewise linear, so no time step is needed; stepping would cost more"
 SERIES = "all forces have power series between events, so no time step is needed; stepping would cost more"
+DEAR = "EXACT would cost more: too many unknowns or changes of stiffness"
 RIGID = "steps take no rigid contacts"
 #: why no shorter steps are tried
 MOST, STALE = "the most that are tried", "nor nearer than with far fewer"
@@ -314,11 +315,7 @@ def error_left(relative: Sequence[Array], ratios: Sequence[float]) -> tuple[floa
 
 def stepped(system: ReducedSystem) -> Decision:
     """Return the decision that steps were taken."""
-    reason = (
-        not_in_series(system)
-        or not_linear(system)
-        or "EXACT would cost more: too many unknowns or changes of stiffness"
-    )
+    reason = not_in_series(system) or not_linear(system) or DEAR
     return Decision("method", "NEWMARK", f"{reason}; steps are shortened until the peaks converge")
 
 

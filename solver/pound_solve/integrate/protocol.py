@@ -187,9 +187,8 @@ def not_in_series(system: ReducedSystem) -> str:
             if s.law.rule.powers is None and s.role is not Role.FRICTION:
                 return law
             if rigid or massless_end:
-                return (
-                    f"{law} and {'stands beside rigid contacts' if rigid else 'meets a node without mass'}"
-                )
+                where = "stands beside rigid contacts" if rigid else "meets a node without mass"
+                return f"{law} and {where}"
     return ""
 
 

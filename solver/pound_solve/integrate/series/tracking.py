@@ -18,6 +18,7 @@ from pound_solve.integrate.series.curved import (
     SILENT,
     SLEEP,
     STOP_PULLING,
+    TOUCH,
     WAKE,
     K,
     touch,
@@ -45,10 +46,14 @@ def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: 
     phase, d, p = curved.phase[r], series.deformation[i], series.polynomial[POLYNOMIAL]
     if curved.numbers[r, K] == 0.0:
         return first
-    sign = 1.0 if phase == ASLEEP else -1.0
+    sign, overlap = 1.0, touch(laws, i)
+    if phase == ASLEEP:  # where nothing has moved yet, the step tells how far
+        overlap = max(overlap, TOUCH * size(series.deformation, i, terms))
+    else:
+        sign = -1.0
     for k in range(terms + 1):
         p[k] = sign * d[k]
-    p[0] -= sign * (laws.parameters[i, GAP] + touch(laws, i))
+    p[0] -= sign * (laws.parameters[i, GAP] + overlap)
     at = first_rise(series.polynomial, terms, first.time, 0.0)
     if at >= 0.0 and (first.law < 0 or at < first.time):
         first = LocatedEvent(i, WAKE if phase == ASLEEP else SLEEP, at)
