@@ -563,6 +563,8 @@ def integrate(
         return exact.integrate(system, start, monitored, {}, recorder)
     trial = ExactTrial(system, start, monitored, recorder, options["TOL"])
     series = cost_of_series(system, start)
+    if series + provider().loading <= SERIES_FIRST:
+        return by_series(system, start, monitored, recorder)
     if (outcome := trial.first(series)) is not None:
         return outcome
     if rigid:

@@ -25,6 +25,11 @@ class Provider(Protocol):
         """Whether they run as compiled code."""
         ...
 
+    @property
+    def loading(self) -> float:
+        """Seconds that a process takes to load it, about."""
+        ...
+
     def ready(self, kernel: Function, signature: str = "") -> Function:
         """The kernel ready to be called; with a signature of numba, ready to be handed to kernels."""
         ...
@@ -43,7 +48,7 @@ class Interpreter:
         What a user has to know of it.
     """
 
-    fast = False
+    fast, loading = False, 0.0
 
     def __init__(self, told: str) -> None:
         self._told = told
