@@ -11,6 +11,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+import pound_solve
+from kernels import interpreted
 from pound_solve.laws import functions
 from pound_solve.laws.hysteresis import bilinear
 from pound_solve.numerics import jit, library, providers
@@ -18,6 +20,8 @@ from pound_solve.numerics.digest import KERNELS, digest
 from pound_solve.numerics.library import REFUSED, Block
 from pound_solve.numerics.providers import INTERPRETED, Interpreter, provider
 from pound_solve.numerics.record import record
+
+DECK = Path(__file__).parents[2] / "examples/01_two_oscillators/two_oscillators.inp"
 
 
 def kernel(x: float) -> float:
@@ -140,3 +144,9 @@ def test_kernels_call_rules_by_functions_that_a_library_replaces() -> None:
 def test_arrays_with_gaps_are_refused() -> None:
     with pytest.raises(TypeError, match="without gaps"):
         Block([np.zeros((3, 4))[:, 1]], {})
+
+
+def test_the_report_says_how_kernels_run(tmp_path: Path) -> None:
+    with interpreted():
+        results = pound_solve.run(DECK, out=tmp_path)
+    assert dict(results.table("run_figures").tolist())["kernels"] == "as Python, which was asked for"

@@ -194,7 +194,7 @@ class Numba:
         What a user has to know before every run.
     """
 
-    fast, loading = True, 1.0
+    name, fast, loading = "compiled by numba", True, 1.0
 
     def __init__(self, told: str = "") -> None:
         self._told = told

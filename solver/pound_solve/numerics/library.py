@@ -113,7 +113,7 @@ class Library:
         The platform's loader does not take it.
     """
 
-    fast, loading = True, 0.0
+    name, fast, loading = "compiled, from the library of the wheel", True, 0.0
 
     def __init__(self, path: Path) -> None:
         self._library = ctypes.CDLL(str(path))

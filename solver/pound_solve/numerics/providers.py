@@ -21,6 +21,11 @@ class Provider(Protocol):
     """What makes kernels ready."""
 
     @property
+    def name(self) -> str:
+        """How kernels run, for the report."""
+        ...
+
+    @property
     def fast(self) -> bool:
         """Whether they run as compiled code."""
         ...
@@ -52,6 +57,7 @@ class Interpreter:
 
     def __init__(self, told: str) -> None:
         self._told = told
+        self.name = f"as Python; {told}" if told else "as Python, which was asked for"
 
     def ready(self, kernel: Function, signature: str = "") -> Function:
         """See `Provider`."""

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from pound_solve.numerics.providers import provider
 from pound_solve.results.columns import ITEM, VALUE
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Row, Stage, Table
@@ -19,6 +20,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
     yield "solve seconds", f"{run.solve_seconds:.4f}"
     yield "solve seconds, CPU", f"{run.cpu_seconds:.4f}"
     yield "total seconds", f"{time.perf_counter() - run.began:.4f}"
+    yield "kernels", provider().name
     yield "pound-solve", __version__
     yield "Python, numpy", f"{platform.python_version()}, {np.__version__}"
 
