@@ -236,3 +236,32 @@ def test_a_joint_that_snaps_through_is_named() -> None:
     assert r.message.startswith("A501 at t = "), r.message
     assert "node 3 ux has no mass, and its stiffness has become negative: it snaps through" in r.message
     assert len(r.time) > 2
+
+
+def test_the_force_of_a_contact_that_meets_a_node_without_mass() -> None:
+    """Its dashpot takes the node's speed away at touch: the force then is that of the spring behind it."""
+    deck = """UNITS N m s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=YR
+ 2 0.5 0 FIX=YR
+ELEMENTS
+ 1 K 1 2
+ 2 STOP 2
+PROPS
+ K SPRING KX=1000
+ STOP CONTACT GAP=0.1 ANGLE=0 LAW=KELVIN_VOIGT K=1E5 C=5000
+WEIGHTS
+ 1 1
+INITIAL
+ 1 VX=2
+ 2 VX=2
+OUTPUT
+ EVERY=0.01
+ANALYSIS
+ HISTORY 0.3 FROM=REST METHOD={method}
+"""
+    taylor, exact = (run_text(deck.format(method=m)) for m in ("TAYLOR", "EXACT"))
+    one, other = (r.tables["collisions"]["peak_force"] for r in (taylor, exact))
+    assert one == pytest.approx(other, rel=1e-9)
+    assert one[0] < 100.0  # the dashpot alone would have 10 000 at the speed of touch

@@ -48,6 +48,8 @@ class Case:
     right : callable or None
         Displacements ux of the nodes of OUTPUT at some times, shape (n_times, n_nodes), in closed form; or
         the result of `compared` for them.
+    inexact : float
+        What the closed form leaves out, as a share of the largest displacement.
     compared : callable
         Quantity that is compared with the right one: of times and displacements, shape (n_times, n_nodes).
     like : tuple of str and float
@@ -66,6 +68,7 @@ class Case:
     step: float = STEP
     within: float = 0.02
     right: Callable[[Array], Array] | None = None
+    inexact: float = 0.0
     compared: Callable[[Array, Array], Array] = every
     like: tuple[str, float] = ("", 1.0)
     files: Mapping[str, str] = field(default_factory=dict)

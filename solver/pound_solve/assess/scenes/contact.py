@@ -253,7 +253,10 @@ class _Contacts:
         lost, wall = 0.2 * (1.0 + (float(restitution[1]) if restitution else 1.0)), self.law(bodies=1)
         text = OBLIQUE.format(law=wall)
         right = None if self.spec.name in OWN_LOSS else lambda t, v=1.0 - lost: np.array([v])
-        yield self.case("friction", "oblique impact", text, step=1e-4, right=right, compared=last_speed)
+        # the tangential spring, of limited stiffness, takes a little of the impulse
+        yield self.case(
+            "friction", "oblique impact", text, step=1e-4, right=right, inexact=2e-3, compared=last_speed
+        )
 
     def bouncing(self) -> Iterator[Case]:
         """A ball that comes to rest, and one that lies there."""

@@ -179,7 +179,8 @@ def change_branch(
         enter(laws, rules, series.curved, law)
     if series.friction.number[law] >= 0:
         side_of(laws, series.friction, law)
-    force = law_force(laws, rules, law, d, v)
+    # the rate of what has no mass jumps, and with it the force of its dashpot
+    force = law_force(laws, rules, law, d, 0.0 if series.massless.law_number[law] >= 0 else v)
     if before != laws.branch[law]:
         log_transition(laws, buffers, run, law, before, t, force)
     run.events += 1
