@@ -42,7 +42,7 @@ import numpy as np
 
 from pound_solve.analyses.history import RESIDUAL
 from pound_solve.assess.scenes import cases
-from pound_solve.assess.scenes.case import METHOD, STEP, Case, every
+from pound_solve.assess.scenes.case import METHOD, STEP, STOREY, Case, every
 from pound_solve.assess.scenes.linear import KICK, one
 from pound_solve.catalog import catalog
 from pound_solve.driver import run
@@ -52,7 +52,9 @@ from pound_solve.results import Results
 STEPLESS: Final = ("EXACT", "TAYLOR")  #: methods whose only error is rounding
 EXACT_WITHIN, AUTO_WITHIN = 1e-6, 2e-3  #: errors allowed, as shares of the largest value
 FASTER: Final = 1.5  #: factor on the allowed error of forces, in which fast modes have a larger share
-NOTHING_BESIDE: Final = 1e-9  #: share of the largest spring force below which a contact force is rounding
+NOTHING_BESIDE: Final = (
+    1e-9  #: share of the largest force of a storey below which that of a contact is rounding
+)
 NUDGE: Final = 1e-6  #: share of the allowed error by which masses are changed
 LIMIT: Final = 180.0  #: seconds after which a case counts as endless
 SETTLED: Final = 1e-3  #: share by which a reference by steps may still change when they are quartered
@@ -352,7 +354,8 @@ def forces(found: Found, right: Found, within: float) -> Offs:
     if found.f.shape == right.f.shape:
         out["spring forces"] = shares(found.f, right.f), FASTER * within
     if found.blows.shape == right.blows.shape:
-        size = np.maximum(np.abs(right.blows), NOTHING_BESIDE * np.abs(right.f).max(initial=0.0))
+        storey = STOREY * float(np.abs(right.u).max(initial=0.0))
+        size = np.maximum(np.abs(right.blows), NOTHING_BESIDE * storey)
         out[f"{PEAKS}contact forces"] = parts(found.blows, right.blows, 0.05, size), FASTER * within
     return out
 
