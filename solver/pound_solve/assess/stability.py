@@ -354,10 +354,15 @@ def forces(found: Found, right: Found, within: float) -> Offs:
     if found.f.shape == right.f.shape:
         out["spring forces"] = shares(found.f, right.f), FASTER * within
     if found.blows.shape == right.blows.shape:
-        storey = STOREY * float(np.abs(right.u).max(initial=0.0))
-        size = np.maximum(np.abs(right.blows), NOTHING_BESIDE * storey)
-        out[f"{PEAKS}contact forces"] = parts(found.blows, right.blows, 0.05, size), FASTER * within
+        out[f"{PEAKS}contact forces"] = blows(found, right), FASTER * within
     return out
+
+
+def blows(found: Found, right: Found) -> Array:
+    """Errors of the largest contact forces, of which those that are rounding have none."""
+    storey = STOREY * float(np.abs(right.u).max(initial=0.0))
+    size = np.maximum(np.abs(right.blows), ROUNDING * storey)
+    return parts(found.blows, right.blows, 0.05, size)
 
 
 def promised(found: Found, right: Found, within: float) -> Offs:
@@ -365,7 +370,7 @@ def promised(found: Found, right: Found, within: float) -> Offs:
     swings = np.abs(right.swings).max(axis=1, keepdims=True, initial=0.0)
     return {
         f"{PEAKS}deformations": (parts(found.swings, right.swings, 1e-6, swings), within),
-        f"{PEAKS}contact forces": (parts(found.blows, right.blows, 0.05), within),
+        f"{PEAKS}contact forces": (blows(found, right), within),
     }
 
 
