@@ -52,9 +52,7 @@ from pound_solve.results import Results
 STEPLESS: Final = ("EXACT", "TAYLOR")  #: methods whose only error is rounding
 EXACT_WITHIN, AUTO_WITHIN = 1e-6, 2e-3  #: errors allowed, as shares of the largest value
 FASTER: Final = 1.5  #: factor on the allowed error of forces, in which fast modes have a larger share
-NOTHING_BESIDE: Final = (
-    1e-9  #: share of the largest force of a storey below which that of a contact is rounding
-)
+ROUNDING: Final = 1e-9  #: share of the force of a storey below which that of a contact counts as none
 NUDGE: Final = 1e-6  #: share of the allowed error by which masses are changed
 LIMIT: Final = 180.0  #: seconds after which a case counts as endless
 SETTLED: Final = 1e-3  #: share by which a reference by steps may still change when they are quartered
