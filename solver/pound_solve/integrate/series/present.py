@@ -9,7 +9,7 @@ import numpy as np
 from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import log_transition
-from pound_solve.integrate.protocol import Stop
+from pound_solve.integrate.protocol import STILL, Stop, light
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.types import Array
 
@@ -58,6 +58,22 @@ class Present:
         """Return the exception that ends the run here."""
         return self.engine.stop(code, why)
 
+    def turn_back(self) -> None:
+        """Let laws leave their branches whose rates an impact has turned, those apart that hold unknowns
+        without mass: their rates are not known yet (see `march.settle`).
+        """
+        laws, held = self.engine.laws, light(self.system)
+        for _ in range(2 * len(laws.rule)):
+            on_d, on_v, constant = laws.events.transpose(2, 0, 1)
+            d, v = laws.now.deformation[:, None], laws.now.rate[:, None]
+            size = np.abs(on_d) * self.largest[0][:, None] + np.abs(on_v) * self.largest[1][:, None]
+            value = on_d * d + on_v * v + constant
+            overdue = (on_v != 0.0) & ~held[:, None] & (value > STILL * (size + np.abs(constant)))
+            if not overdue.any():
+                return
+            law, event = (int(x[0]) for x in np.nonzero(overdue))
+            self.transition(law, event, float(d[law, 0]), float(v[law, 0]))
+
     def hand_back(self) -> None:
         """Let the run go on from here."""
         laws, now, order = self.engine.laws, self.engine.step.now, self.engine.order
@@ -65,4 +81,5 @@ class Present:
         laws.largest_deformation[:], laws.largest_rate[:] = self.largest
         inputs = self.system.excitation.value(self.t, 1)
         laws.now.rate[:] = self.system.law_rows @ self.v + self.system.law_inputs @ inputs
+        self.turn_back()
         self.engine.state.stale = 1
