@@ -50,6 +50,7 @@ from pound_solve.integrate.protocol import (
     not_in_series,
     not_linear,
     refuse_rigid,
+    rigid_contact,
     rounding_check,
 )
 from pound_solve.integrate.tracker import Extreme, Peaks
@@ -84,10 +85,8 @@ STEADY, FAST = 1.25, 3.0  #: powers of the step between which differences fall t
 CERTAIN = 0.1  #: share of the tolerance within which two runs do not agree by chance
 #: retries after runs that stopped, one after another, before and after one that was completed
 MAX_RETRIES, MAX_SHORTER = 10, 3
-EARLY, NEARBY = (
-    0.01,
-    0.6,
-)  #: share of the run; where one stops before, another step is that share of its own
+#: share of the run; where one stops before, another step is that share of its own
+EARLY, NEARBY = 0.01, 0.6
 
 #: why no steps are taken
 LINEAR = "all laws are piecewise linear, so no time step is needed; stepping would cost more"
@@ -401,8 +400,7 @@ class StepRefinement:
 
     def _confirm(self, outcome: Outcome, replay: Replay) -> None:
         """Compare the last run with one of longer steps, whose peaks must not differ more either."""
-        peaks, scales = figures(self.system, outcome.peaks, replay, self.asked)
-        apart = np.abs(peaks - self.peaks) / np.where(scales > 0.0, scales, 1.0)
+        apart = self._apart(*figures(self.system, outcome.peaks, replay, self.asked))
         ratio = self.steps[-1] / outcome.figures["steps"]
         self.between = 0.0
         if ratio > 1.0:
@@ -439,7 +437,7 @@ class StepRefinement:
         steps, self.events = outcome.figures["steps"], outcome.figures["events"]
         # output times cut the steps of both: runs of as many steps do not differ
         if self.steps and steps > self.steps[-1]:
-            self.relative.append(np.abs(peaks - self.peaks) / np.where(scales > 0.0, scales, 1.0))
+            self.relative.append(self._apart(peaks, scales))
             self.ratios.append(steps / self.steps[-1])
             self.error, doubt = error_left(self.relative, self.ratios)
             self._judge(hardest(outcome.peaks) >= RESOLVED * self.h, doubt)
@@ -447,6 +445,10 @@ class StepRefinement:
             self.best = min(self.best, self.error)
         self.steps.append(steps)
         self.peaks = peaks
+
+    def _apart(self, peaks: Array, scales: Array) -> Array:
+        """Differences of a run's peaks from the last ones, relative to their scales."""
+        return np.asarray(np.abs(peaks - self.peaks) / np.where(scales > 0.0, scales, 1.0))
 
     def _judge(self, resolved: bool, doubt: float) -> None:
         """Judge whether the last run meets the tolerance, or whether one in between shall confirm that."""
@@ -519,8 +521,8 @@ def by_series(
     """Run TAYLOR, and state why."""
     from pound_solve.integrate.series import taylor  # where it is not needed it is not loaded
 
-    rigid = any(s.law.rigid for s in system.structure.laws)
-    system.decisions.append(Decision("method", "TAYLOR", RIGID if rigid else SERIES))
+    reason = SERIES if rigid_contact(system) is None else RIGID
+    system.decisions.append(Decision("method", "TAYLOR", reason))
     return taylor.integrate(system, start, monitored, {}, recorder)
 
 
@@ -555,7 +557,7 @@ def integrate(
     recorder: EnvelopeRecorder,
 ) -> Outcome:
     """Choose a method, state why, and run it."""
-    rigid = any(s.law.rigid for s in system.structure.laws)
+    rigid = rigid_contact(system) is not None
     if not_linear(system):
         refuse_rigid(system, start, "AUTO")
     elif rigid and not has_series(system):

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pound_solve.integrate.protocol import LawValues, MonitoredOutputs, Recorder, Start, Stop
+from pound_solve.integrate.protocol import LawValues, MonitoredOutputs, Recorder, Start, Stop, rigid_contact
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.condensation import Condensed, condense
 from pound_solve.structure.reduction import ReducedSystem
@@ -68,7 +68,7 @@ def condensed(
     """
     if system.size > MAX_UNKNOWNS:
         why = f"{method} works on full matrices, and {system.size} unknowns are too many for them"
-        other = "TAYLOR" if any(s.law.rigid for s in system.structure.laws) else "NEWMARK"
+        other = "NEWMARK" if rigid_contact(system) is None else "TAYLOR"
         raise Stop("A505", float(start.times[0]), f"{why} ({MAX_UNKNOWNS} at most): {other} takes them")
     small = condense(system)
     return (

@@ -18,6 +18,7 @@ from pound_solve.structure.reduction import ReducedSystem
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
 SHARP = 1e-2  #: share of a spring's largest force that rounding may make
 RUNAWAY = "the motion grows without bound: its energy {:.3g} is far above what was put in"
+CHANGES, CHANGES_PER_LAW = 50, 4  #: of branch at one instant, at most, and more for each law
 CHATTER = "{} changes at one instant, the last in element {} ({}) to {!r}: try {}"
 INTERRUPTED = "interrupted by the user; what was computed up to then is kept"
 
@@ -175,12 +176,17 @@ def not_linear(system: ReducedSystem) -> str:
     return "" if curved is None else f"the law {curved.rule} of element {curved.element} is curved"
 
 
+def rigid_contact(system: ReducedSystem) -> LawSpring | None:
+    """The first rigid contact of a reduced system, which no method with steps takes."""
+    return next((s for s in system.structure.laws if s.law.rigid), None)
+
+
 def not_in_series(system: ReducedSystem) -> str:
     """Reason why the motion of a reduced system has no power series that is known; empty where it has."""
     if system.structure.corotational:
         return not_linear(system)
     laws, without_mass = system.structure.laws, light(system)
-    rigid = any(s.law.rigid for s in laws)
+    rigid = rigid_contact(system) is not None
     for s, massless_end in zip(laws, without_mass):
         if s.law.curved:
             law = f"the law {s.rule} of element {s.element} is curved"
@@ -207,7 +213,7 @@ def without_steps(system: ReducedSystem) -> list[str]:
 
 def remedy(system: ReducedSystem) -> str:
     """What to try where there are too many changes at one instant."""
-    if any(s.law.rigid for s in system.structure.laws):  # which no method with steps takes
+    if rigid_contact(system) is not None:
         return "LAWs with a stiffness for the rigid contacts"
     return "NEWMARK EVENTS=STEPPED"  # which passes over the changes
 
@@ -234,7 +240,7 @@ def refuse_rigid(system: ReducedSystem, start: Start, method: str) -> None:
     """Raise Stop where a reduced system has rigid contacts and the method knows none, or none where the
     reduced system is not linear between events: that no method does.
     """
-    rigid = next((s for s in system.structure.laws if s.law.rigid), None)
+    rigid = rigid_contact(system)
     if rigid is None:
         return
     contact = f"{rigid.rule} of element {rigid.element}"

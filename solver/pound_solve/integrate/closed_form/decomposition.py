@@ -255,7 +255,7 @@ class Decomposer:
         """From ``G f = B M^-1 (p - C v - K u) - x''``, see `rigid.contacts` and `held_space`."""
         assert propagator.u_p is not None and propagator.v_p is not None  # of all that is held
         at = np.array([self.rigid.laws.index(i) for i in held], np.intp)
-        inverse = np.linalg.pinv(self.rigid.delassus[np.ix_(at, at)], rcond=1e-12)
+        inverse = self.rigid.inverse(at)
         x = inverse @ self.rigid.velocity_change[np.ix_(unknowns, at)].T
         on_p = -x @ (k @ propagator.u_p + c @ propagator.v_p)
         on_p[:, : len(unknowns)] += x

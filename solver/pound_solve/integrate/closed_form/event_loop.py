@@ -11,6 +11,8 @@ import numpy as np
 from pound_solve.integrate.energy import EnergyAccumulator
 from pound_solve.integrate.events.functions import RowSet
 from pound_solve.integrate.protocol import (
+    CHANGES,
+    CHANGES_PER_LAW,
     CHATTER,
     RUNAWAY,
     MonitoredOutputs,
@@ -24,8 +26,6 @@ from pound_solve.integrate.tracker import ResponseTracker
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import ReducedSystem
-
-CHANGES, CHANGES_PER_LAW = 50, 4  #: of branch at one instant, at most, and more for each law
 
 
 class EventDrivenRun(ABC):

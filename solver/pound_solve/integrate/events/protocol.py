@@ -28,6 +28,12 @@ class LocatedEvent(NamedTuple):
     time: float
 
 
+def earlier(first: LocatedEvent, law: int, event_index: int, at: float) -> LocatedEvent:
+    """The `first` event, or one of `law` at the time `at`, not negative, if that is before."""
+    sooner = at >= 0.0 and (first.law < 0 or at < first.time)
+    return LocatedEvent(law, event_index, at) if sooner else first
+
+
 def none(end: float) -> LocatedEvent:
     """No event up to the time `end`: law -1, for compiled code, which needs one type."""
     return LocatedEvent(-1, -1, end)

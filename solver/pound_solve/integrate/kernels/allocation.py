@@ -166,6 +166,13 @@ def linear_system(
     )
 
 
+def places(chosen: Index, count: int) -> Index:
+    """Place of each of `count` things among the `chosen` ones, -1 for others."""
+    out = np.full(count, -1)
+    out[chosen] = np.arange(len(chosen))
+    return out
+
+
 def places_in_pattern(rows: Rows, own: Layout) -> tuple[Index, ldl.Place, Array]:
     """Where each law's ``b b^T`` adds to A: pointers, positions in its pattern, products."""
     pairs: list[list[tuple[int, float]]] = [[] for _ in own.joins]

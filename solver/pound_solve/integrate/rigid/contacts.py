@@ -31,7 +31,7 @@ import numpy as np
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.matrices import dense, least_squares
 from pound_solve.numerics.modes import massless
-from pound_solve.numerics.types import Array, Flags
+from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
 ROUNDING = 1e-12  #: share of its terms below which an acceleration is rounding
@@ -187,5 +187,9 @@ class RigidContacts:
         """
         out, at = np.zeros(len(held)), np.flatnonzero(held)
         free = self.free_accelerations(branches, u, v, inputs)[0]
-        out[at] = np.linalg.pinv(self.delassus[np.ix_(at, at)], rcond=1e-12) @ free[at]
+        out[at] = self.inverse(at) @ free[at]
         return out
+
+    def inverse(self, at: Index) -> Array:
+        """Inverse of G over the contacts `at`; those with dependent rows share evenly."""
+        return np.asarray(np.linalg.pinv(self.delassus[np.ix_(at, at)], rcond=ROUNDING), float)

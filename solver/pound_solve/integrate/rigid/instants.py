@@ -16,7 +16,7 @@ from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.reduction import ReducedSystem
 
 SLOW = 1e-6  #: share of a contact's fastest rate below which an approach has no rebound
-LOST = 4.0  #: height of a hop that is lost in rounding, over that rounding
+LOST = 4.0  #: rise of a rebound that is lost in rounding, over that rounding
 OVERLAP = 1e-10  #: share of its terms beyond which a deformation overlaps at the start
 
 
@@ -126,8 +126,8 @@ class RigidInstants:
     def _slow(self, inputs: Array) -> Array:
         """Rates up to which an approach has no rebound, shape (n_rigid,).
 
-        The last of the hops by which a body comes to rest are lost in the rounding of its deformation: a
-        approach at v, with the restitution e, leads to one of the height (e v)^2 / 2a, a being the
+        The last rebounds of a body that comes to rest are lost in the rounding of its deformation: after
+        an approach at v, with the restitution e, it rises by (e v)^2 / 2a, a being the
         acceleration that brings the body back.
         """
         x, run = self.contacts, self.run

@@ -22,18 +22,20 @@ from __future__ import annotations
 
 import numpy as np
 
+from pound_solve.integrate.kernels.allocation import places
 from pound_solve.integrate.kernels.laws import internal, parameters
-from pound_solve.integrate.kernels.products import along, spread
+from pound_solve.integrate.kernels.products import spread
 from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.series.springs import deformation
 from pound_solve.integrate.series.state import Curved, Lengths, Series
 from pound_solve.laws.functions import Tables, powers_of
 from pound_solve.numerics.types import Array, Flags
 
-ASLEEP, ACTIVE, SILENT = range(3)  #: no overlap to speak of; a force acts; it would pull, and is none
+APART, PRESSED, RELEASED = range(3)  #: no overlap to speak of; a force acts; it would pull, and is none
 TOUCH = 1e-12  #: overlap that counts as none, over the largest deformation
 RIGHT = 1e-10  #: share of the force that the last of its terms may be
 NEAR = 0.4  #: share of the time since touch that the first step after it is tried with
-WAKE, SLEEP, STOP_PULLING, PRESS_AGAIN = -1, -2, -3, -4  #: events beside those of the branch
+TOUCHES, PARTS, RELEASES, PRESSES_AGAIN = -1, -2, -3, -4  #: events beside those of the branch
 SPRING, DASHPOT = range(2)  #: rows of `Curved.power`
 K, N, C, Q, PULLS = range(5)  #: columns of `Curved.numbers`
 GAP = 2  #: of a contact, among its parameters
@@ -42,11 +44,9 @@ GAP = 2  #: of a contact, among its parameters
 def allocate(curved: Flags, terms: int) -> Curved:
     """Lay out the `curved` ones of the laws for series of so many `terms`."""
     laws = np.flatnonzero(curved)
-    number = np.full(len(curved), -1)
-    number[laws] = np.arange(len(laws))
     return Curved(
         laws=laws,
-        number=number,
+        number=places(laws, len(curved)),
         numbers=np.zeros((len(laws), 5)),
         phase=np.zeros(len(laws), np.int64),
         power=np.zeros((len(laws), 2, terms)),
@@ -77,11 +77,11 @@ def enter(laws: Laws, rules: Tables, curved: Curved, i: int) -> None:
     own[K], own[N], own[C], own[Q], own[PULLS] = found
     x, v = overlap(laws, i), laws.now.rate[i]
     if own[K] == 0.0 or x <= touch(laws, i):
-        curved.phase[r] = ASLEEP
+        curved.phase[r] = APART
     elif own[PULLS] > 0.0 or own[K] * x ** own[N] + own[C] * x ** own[Q] * v >= 0.0:
-        curved.phase[r] = ACTIVE
+        curved.phase[r] = PRESSED
     else:
-        curved.phase[r] = SILENT
+        curved.phase[r] = RELEASED
     curved.force[r, :] = 0.0
 
 
@@ -118,35 +118,32 @@ def add_contacts(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
     """
     curved = series.curved
     for r in range(len(curved.laws)):
-        if curved.phase[r] == ASLEEP:
+        if curved.phase[r] == APART:
             continue
         i = curved.laws[r]
         d = series.deformation[i]
         for m in range(0 if k == 0 else k + 1, k + 2):
-            d[m] = along(laws.rows, i, series.motion[m])
-            if m < top:
-                for j in range(series.inputs.shape[1]):
-                    d[m] += laws.inputs[i, j] * series.inputs[m, j]
+            d[m] = deformation(laws, series, m, top, i)
         x = d[0] - laws.parameters[i, GAP]
         force = force_term(curved.numbers[r], curved.power[r], x, d, k, h)
         curved.force[r, k] = force
-        if curved.phase[r] == ACTIVE:
+        if curved.phase[r] == PRESSED:
             spread(laws.rows, i, -h * h * force, new)
 
 
-def any_awake(curved: Curved) -> bool:
+def any_overlap(curved: Curved) -> bool:
     """Whether any of the contacts has an overlap to speak of."""
-    awake = False
+    overlaps = False
     for r in range(len(curved.laws)):
-        awake = awake or curved.phase[r] != ASLEEP
-    return awake
+        overlaps = overlaps or curved.phase[r] != APART
+    return overlaps
 
 
 def right_up_to(curved: Curved, terms: int, end: float) -> float:
     """Part of a step, or multiple of it, up to which all forces are right, `end` at most."""
     last = terms - 2
     for r in range(len(curved.laws)):
-        if curved.phase[r] != ASLEEP:
+        if curved.phase[r] != APART:
             most = 0.0
             for k in range(last + 1):
                 most = max(most, abs(curved.force[r, k]))
@@ -161,18 +158,18 @@ def right_up_to(curved: Curved, terms: int, end: float) -> float:
 def change_phase(laws: Laws, curved: Curved, lengths: Lengths, i: int, event: int) -> None:
     """Let contact `i` begin or cease to have a force."""
     r = curved.number[i]
-    if event == WAKE:
-        curved.phase[r] = ACTIVE
+    if event == TOUCHES:
+        curved.phase[r] = PRESSED
         lengths.before = max(lengths.before, lengths.next)
         lengths.next = min(lengths.next, NEAR * overlap(laws, i) / abs(laws.now.rate[i]))
-    elif event == SLEEP:
-        curved.phase[r] = ASLEEP
+    elif event == PARTS:
+        curved.phase[r] = APART
         lengths.next, lengths.before = max(lengths.next, lengths.before), 0.0
     else:
-        curved.phase[r] = SILENT if event == STOP_PULLING else ACTIVE
+        curved.phase[r] = RELEASED if event == RELEASES else PRESSED
     curved.force[r, :] = 0.0
 
 
 def has_force(curved: Curved, i: int) -> bool:
     """Whether law `i` is a curved contact that presses."""
-    return bool(curved.number[i] >= 0 and curved.phase[curved.number[i]] == ACTIVE)
+    return bool(curved.number[i] >= 0 and curved.phase[curved.number[i]] == PRESSED)

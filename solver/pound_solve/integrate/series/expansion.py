@@ -17,7 +17,7 @@ import numpy as np
 
 from pound_solve.integrate.kernels.products import along, multiply, spread
 from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Step
-from pound_solve.integrate.series.curved import add_contacts, any_awake, right_up_to
+from pound_solve.integrate.series.curved import add_contacts, any_overlap, right_up_to
 from pound_solve.integrate.series.friction import add_friction
 from pound_solve.integrate.series.massless import add_massless
 from pound_solve.integrate.series.rigid import hold
@@ -189,7 +189,7 @@ def expand(
         enough = terms > top and own + last <= SMALL * SMALL * most
         if enough and right_up_to(series.curved, terms, 1.0) == 1.0:
             break
-    if any_awake(series.curved):  # their losses follow powers of the overlap
+    if any_overlap(series.curved):  # their losses follow powers of the overlap
         lengths.carried = terms + CHECK
     if not own + last < np.inf:
         return terms, np.nan

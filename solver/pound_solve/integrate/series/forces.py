@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pound_solve.integrate.kernels.state import Laws
-from pound_solve.integrate.series.curved import ACTIVE, has_force
+from pound_solve.integrate.series.curved import PRESSED, has_force
 from pound_solve.integrate.series.friction import rub, slides
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.state import Series
@@ -46,7 +46,7 @@ def press(laws: Laws, series: Series, terms: int, s: float, h: float) -> None:
         laws.offset[rigid.laws[r]] = force_at(rigid.force[r], terms, s)
     for r in range(len(curved.laws)):
         laws.offset[curved.laws[r]] = (
-            force_at(curved.force[r], terms, s) if curved.phase[r] == ACTIVE else 0.0
+            force_at(curved.force[r], terms, s) if curved.phase[r] == PRESSED else 0.0
         )
 
 

@@ -10,12 +10,13 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
-from pound_solve.integrate.events.protocol import LocatedEvent, none
+from pound_solve.integrate.events.protocol import LocatedEvent, earlier, none
+from pound_solve.integrate.kernels.allocation import places
 from pound_solve.integrate.kernels.laws import curve, linear_force
 from pound_solve.integrate.kernels.products import spread
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.protocol import STILL
-from pound_solve.integrate.series.curved import ACTIVE
+from pound_solve.integrate.series.curved import PRESSED
 from pound_solve.integrate.series.springs import deformation
 from pound_solve.integrate.series.state import Friction, Series
 from pound_solve.laws.automaton import PUSH, PUSH_RATE
@@ -33,11 +34,9 @@ def allocate(laws: Index, normal: Index, n_laws: int, terms: int) -> Friction:
 
     The laws `normal` have the forces that press.
     """
-    number = np.full(n_laws, -1)
-    number[laws] = np.arange(len(laws))
     return Friction(
         laws=laws,
-        number=number,
+        number=places(laws, n_laws),
         normal=normal,
         side=np.zeros(len(laws)),
         pressing=np.ones(len(laws), bool),
@@ -63,7 +62,7 @@ def push_term(laws: Laws, series: Series, r: int, k: int, h: float, top: int) ->
     j, curved = series.friction.normal[r], series.curved
     own = curved.number[j]
     if own >= 0:
-        force: float = curved.force[own, k] if curved.phase[own] == ACTIVE else 0.0
+        force: float = curved.force[own, k] if curved.phase[own] == PRESSED else 0.0
         return force
     linear: float = laws.stiffness[j] * deformation(laws, series, k, top, j)
     if laws.damping[j] != 0.0:
@@ -130,7 +129,7 @@ def lift(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
     for k in range(terms + 1):
         p[k] = sign * friction.push[r, k] if k < terms - 1 else 0.0
     at = first_rise(series.polynomial, terms, end, STILL * friction.largest[r])
-    return LocatedEvent(i, LIFT, at) if at >= 0.0 else none(end)
+    return earlier(none(end), i, LIFT, at)
 
 
 def friction_event(laws: Laws, series: Series, terms: int, h: float, end: float, i: int) -> LocatedEvent:
@@ -157,6 +156,5 @@ def friction_event(laws: Laws, series: Series, terms: int, h: float, end: float,
         if p[0] > OVERDUE * scale:
             return LocatedEvent(i, e, 0.0)
         at = first_rise(series.polynomial, terms, first.time, STILL * scale)
-        if at >= 0.0 and (first.law < 0 or at < first.time):
-            first = LocatedEvent(i, e, at)
+        first = earlier(first, i, e, at)
     return first

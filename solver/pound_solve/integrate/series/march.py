@@ -29,7 +29,8 @@ from pound_solve.integrate.kernels.state import (
     Step,
 )
 from pound_solve.integrate.kernels.work import load_on_nodes, support_power
-from pound_solve.integrate.series.curved import ASLEEP, change_phase, enter
+from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW
+from pound_solve.integrate.series.curved import APART, change_phase, enter
 from pound_solve.integrate.series.expansion import (
     CHECK,
     GROW,
@@ -77,16 +78,16 @@ def add_law_losses(
     press(laws, series, terms, s, h)
     for i in range(len(laws.rule)):
         drag, curved = laws.damping[i], series.curved.number[i]
-        awake = curved >= 0 and series.curved.phase[curved] != ASLEEP
+        overlaps = curved >= 0 and series.curved.phase[curved] != APART
         pressed = laws.contact[i] and (laws.stiffness[i] != 0.0 or laws.offset[i] != 0.0)
         sliding = slides(series.friction, i)
-        if drag != 0.0 or moved or pressed or awake or sliding:
+        if drag != 0.0 or moved or pressed or overlaps or sliding:
             d, v = law_at(series, terms, s, h, i)
             laws.trial.deformation[i], laws.trial.rate[i] = d, v
             if sliding:
                 laws.entry_work[i] += weight * laws.offset[i] * v
                 continue
-            lost = weight * v * (law_drag(laws, rules, i, d, v) if awake else drag * v)
+            lost = weight * v * (law_drag(laws, rules, i, d, v) if overlaps else drag * v)
             laws.dashpot_loss[i] += lost
             if laws.contact[i]:
                 works.contact += lost
@@ -259,7 +260,7 @@ def settle(
     varying = series.rigid.n_held[0] + len(series.curved.laws) + len(series.friction.laws)
     if len(held.unknown) + varying == 0:
         return DONE
-    for _ in range(50 + 4 * len(laws.rule)):
+    for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
         if not renew(linear, laws, series, run):
             return LOOSE
         begin_series(linear, laws, step, series, coefs, begin, 1.0)
@@ -269,7 +270,7 @@ def settle(
         for i in held.laws:
             laws.now.deformation[i] = deformation(laws, series, 0, len(coefs), i)
             laws.now.rate[i] = deformation(laws, series, 1, len(coefs), i)
-        law, event = violated(laws, held)
+        law, event = violated(laws, held.laws)
         if law < 0:
             press(laws, series, 2, 0.0, 1.0)
             return DONE
@@ -351,7 +352,7 @@ def stride(
             continue
         run.time = t + at * h
         count_instant(run, h)
-        if run.same_instant > 50 + 4 * len(laws.rule):
+        if run.same_instant > CHANGES + CHANGES_PER_LAW * len(laws.rule):
             run.fault = event.law
             return CHATTER
         if event.event_index == LIFT:

@@ -19,7 +19,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.allocation import Layout, coupled_pairs, places_in_pattern, sparse_rows
+from pound_solve.integrate.kernels.allocation import (
+    Layout,
+    coupled_pairs,
+    places,
+    places_in_pattern,
+    sparse_rows,
+)
 from pound_solve.integrate.kernels.products import along, spread
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import STILL
@@ -28,7 +34,7 @@ from pound_solve.integrate.series.state import Massless, Series
 from pound_solve.numerics import ldl
 from pound_solve.numerics.ldl import factor
 from pound_solve.numerics.matrices import Matrix, at, by_rows, diagonal, entries, used_rows, weighted
-from pound_solve.numerics.types import Array
+from pound_solve.numerics.types import Array, Index
 
 DAMPING, STIFFNESS = range(2)  #: rows of `Massless.factors`
 
@@ -61,8 +67,6 @@ def allocate(
     rows = sparse_rows(touched[:, order])
     own = Layout(order, place, pattern, column, np.ones(len(laws), bool), position)
     pointers, pairs, values = places_in_pattern(rows, own)
-    places = np.full(law_rows.shape[0], -1)
-    places[laws] = np.arange(len(laws))
     lower = pattern.ai.astype(np.int64)
     springs = weighted(touched[:, order], elastic[laws])
     return Massless(
@@ -71,7 +75,7 @@ def allocate(
         damping=sparse_rows(damping[unknown]),
         heavy_damping=sparse_rows(damping[linear.has_mass]),
         laws=laws,
-        law_number=places,
+        law_number=places(laws, law_rows.shape[0]),
         rows=rows,
         pattern=pattern,
         column=column,
@@ -201,12 +205,11 @@ def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, top: 
         c[k, held.unknown[members[q]]] = x[members[q]]
 
 
-def violated(laws: Laws, held: Massless) -> tuple[int, int]:
-    """The first law at fault and its event: its rate has jumped, and an event function that depends on it
-    is above zero; -1 where there is none.
+def violated(laws: Laws, which: Index) -> tuple[int, int]:
+    """The first of some laws at fault and its event: its rate has jumped, and an event function that
+    depends on it is above zero; -1 where there is none.
     """
-    for n in range(len(held.laws)):
-        i = held.laws[n]
+    for i in which:
         d, v = laws.now.deformation[i], laws.now.rate[i]
         for e in range(laws.n_events[i]):
             on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]

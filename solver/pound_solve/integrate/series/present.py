@@ -9,9 +9,10 @@ import numpy as np
 from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import log_transition
-from pound_solve.integrate.protocol import STILL, Stop, light
+from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW, Stop
+from pound_solve.integrate.series.massless import violated
 from pound_solve.laws.automaton import Branch
-from pound_solve.numerics.types import Array
+from pound_solve.numerics.types import Array, Index
 
 
 class Present:
@@ -58,28 +59,23 @@ class Present:
         """Return the exception that ends the run here."""
         return self.engine.stop(code, why)
 
-    def turn_back(self) -> None:
-        """Let laws leave their branches whose rates an impact has turned, those apart that hold unknowns
-        without mass: their rates are not known yet (see `march.settle`).
-        """
-        laws, held = self.engine.laws, light(self.system)
-        for _ in range(2 * len(laws.rule)):
-            on_d, on_v, constant = laws.events.transpose(2, 0, 1)
-            d, v = laws.now.deformation[:, None], laws.now.rate[:, None]
-            size = np.abs(on_d) * self.largest[0][:, None] + np.abs(on_v) * self.largest[1][:, None]
-            value = on_d * d + on_v * v + constant
-            overdue = (on_v != 0.0) & ~held[:, None] & (value > STILL * (size + np.abs(constant)))
-            if not overdue.any():
+    def turn_back(self, which: Index) -> None:
+        """Let those of some laws leave their branches whose rates an impact has turned."""
+        now, laws = self.engine.laws.now, self.engine.laws
+        for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
+            law, event = violated(laws, which)
+            if law < 0:
                 return
-            law, event = (int(x[0]) for x in np.nonzero(overdue))
-            self.transition(law, event, float(d[law, 0]), float(v[law, 0]))
+            self.transition(law, event, float(now.deformation[law]), float(now.rate[law]))
 
-    def hand_back(self) -> None:
-        """Let the run go on from here."""
+    def hand_back(self, known: Index) -> None:
+        """Let the run go on from here; the rates of the laws `known` do not depend on unknowns without
+        mass, which `march.settle` looks after.
+        """
         laws, now, order = self.engine.laws, self.engine.step.now, self.engine.order
         now.displacement[:], now.velocity[:] = self.u[order], self.v[order]
         laws.largest_deformation[:], laws.largest_rate[:] = self.largest
         inputs = self.system.excitation.value(self.t, 1)
         laws.now.rate[:] = self.system.law_rows @ self.v + self.system.law_inputs @ inputs
-        self.turn_back()
+        self.turn_back(known)
         self.engine.state.stale = 1

@@ -15,21 +15,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.allocation import places
 from pound_solve.integrate.kernels.state import Laws
-from pound_solve.integrate.rigid.contacts import ROUNDING, RigidContacts
+from pound_solve.integrate.rigid.contacts import RigidContacts
+from pound_solve.integrate.series.springs import deformation
 from pound_solve.integrate.series.state import Rigid, Series
 from pound_solve.numerics.types import Flags, Index
 
 
 def allocate(contacts: RigidContacts, order: Index, n_laws: int, terms: int) -> Rigid:
     """Lay out the rigid contacts for series of so many `terms`, the unknowns in an `order`."""
-    n = len(contacts.laws)
-    number = np.full(n_laws, -1)
-    number[contacts.laws] = np.arange(n)
+    n, laws = len(contacts.laws), np.array(contacts.laws, np.int64)
     return Rigid(
-        laws=np.array(contacts.laws, np.int64),
-        number=number,
+        laws=laws,
+        number=places(laws, n_laws),
         gap=contacts.gap,
         velocity_change=np.ascontiguousarray(contacts.velocity_change[order].T),
         held=np.zeros(n, np.int64),
@@ -46,8 +45,7 @@ def take_over(rigid: Rigid, contacts: RigidContacts, held: Flags) -> None:
     """Take over which contacts are closed."""
     at = np.flatnonzero(held)
     rigid.is_held[:], rigid.n_held[0], rigid.held[: len(at)] = held, len(at), at
-    inverse = np.linalg.pinv(contacts.delassus[np.ix_(at, at)], rcond=ROUNDING)
-    rigid.inverse[: len(at), : len(at)] = inverse
+    rigid.inverse[: len(at), : len(at)] = contacts.inverse(at)
     rigid.force[:] = 0.0
 
 
@@ -65,11 +63,7 @@ def hold(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
     n = rigid.n_held[0]
     for q in range(n):
         r = rigid.held[q]
-        law = rigid.laws[r]
-        off = along(laws.rows, law, c)
-        if k < top:
-            for j in range(series.inputs.shape[1]):
-                off += laws.inputs[law, j] * series.inputs[k, j]
+        off = deformation(laws, series, k, top, rigid.laws[r])
         rigid.violation[q] = off - rigid.gap[r] if k == 0 else off
     for q in range(n):
         r, x = rigid.held[q], 0.0

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from pound_solve.integrate.kernels.allocation import coupled_pairs
+from pound_solve.integrate.kernels.allocation import coupled_pairs, places
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Rows
 from pound_solve.integrate.series.state import Series, Springs
@@ -40,12 +40,10 @@ def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> Spr
     place, fixed = np.searchsorted(keys, one * n + other), np.zeros(len(keys))
     fixed[np.searchsorted(keys, i * n + j)] = values
     row, first = np.unique(keys // n, return_index=True)
-    number = np.full(n, -1)
-    number[row] = np.arange(len(row))
     squares = [np.outer(rows.values[x], rows.values[x]).ravel() for x in own]
     return Springs(
         row=row.astype(np.uint32),
-        number=number,
+        number=places(row, n),
         rows=Rows(np.append(first, len(keys)), (keys % n).astype(np.uint32), np.zeros(len(keys))),
         stiffness=fixed,
         pair_pointers=np.cumsum([0, *map(len, squares)]),

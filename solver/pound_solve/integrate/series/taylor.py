@@ -33,7 +33,7 @@ from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import PAUSE
 from pound_solve.integrate.kernels.state import CHATTER, RUNAWAY, Scheme
-from pound_solve.integrate.protocol import CHATTER as CHANGES
+from pound_solve.integrate.protocol import CHATTER as CHATTERS
 from pound_solve.integrate.protocol import RUNAWAY as GROWS
 from pound_solve.integrate.protocol import (
     MonitoredOutputs,
@@ -159,7 +159,7 @@ class Taylor(KernelEngine):
             instants.open_pulled()
         except ArithmeticError as err:
             raise self.stop("A503", str(err)) from None
-        present.hand_back()
+        present.hand_back(np.flatnonzero(self.massless.law_number < 0))
         self.state.events += 1
         self._hold(instants.rounding)
 
@@ -192,7 +192,7 @@ class Taylor(KernelEngine):
             fault = int(self.state.fault)
             s, at = self.springs[fault], self.laws.branch[fault]
             what = (int(self.state.same_instant), s.element, s.rule, s.law.rule.branches[at].name)
-            return self.stop("A503", CHANGES.format(*what, remedy(self.system)))
+            return self.stop("A503", CHATTERS.format(*what, remedy(self.system)))
         return super().trouble(why)
 
     def _loose(self) -> str:

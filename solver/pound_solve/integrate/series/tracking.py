@@ -5,21 +5,21 @@ polynomials, whose first rise and extremes are isolated with proof (`events.poly
 from __future__ import annotations
 
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise, highest, size
-from pound_solve.integrate.events.protocol import LocatedEvent, none
+from pound_solve.integrate.events.protocol import LocatedEvent, earlier, none
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.series.curved import (
-    ACTIVE,
-    ASLEEP,
+    APART,
     GAP,
-    PRESS_AGAIN,
+    PARTS,
+    PRESSED,
+    PRESSES_AGAIN,
     PULLS,
-    SILENT,
-    SLEEP,
-    STOP_PULLING,
+    RELEASED,
+    RELEASES,
     TOUCH,
-    WAKE,
+    TOUCHES,
     K,
     touch,
 )
@@ -37,7 +37,7 @@ def parting(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
     if p[0] > still:  # the force has jumped
         return LocatedEvent(i, 0, 0.0)
     at = first_rise(series.polynomial, terms, end, still)
-    return LocatedEvent(i, 0, at) if at >= 0.0 else none(end)
+    return earlier(none(end), i, 0, at)
 
 
 def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: int) -> LocatedEvent:
@@ -47,7 +47,7 @@ def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: 
     if curved.numbers[r, K] == 0.0:
         return first
     sign, overlap = 1.0, touch(laws, i)
-    if phase == ASLEEP:  # where nothing has moved yet, the step tells how far
+    if phase == APART:  # where nothing has moved yet, the step tells how far
         overlap = max(overlap, TOUCH * size(series.deformation, i, terms))
     else:
         sign = -1.0
@@ -55,14 +55,12 @@ def phase_event(laws: Laws, series: Series, terms: int, first: LocatedEvent, i: 
         p[k] = sign * d[k]
     p[0] -= sign * (laws.parameters[i, GAP] + overlap)
     at = first_rise(series.polynomial, terms, first.time, 0.0)
-    if at >= 0.0 and (first.law < 0 or at < first.time):
-        first = LocatedEvent(i, WAKE if phase == ASLEEP else SLEEP, at)
-    if phase == SILENT or (phase == ACTIVE and curved.numbers[r, PULLS] == 0.0):
-        sign = 1.0 if phase == SILENT else -1.0
+    first = earlier(first, i, TOUCHES if phase == APART else PARTS, at)
+    if phase == RELEASED or (phase == PRESSED and curved.numbers[r, PULLS] == 0.0):
+        sign = 1.0 if phase == RELEASED else -1.0
         copy_force(series, terms, i, sign, p)
         at = first_rise(series.polynomial, terms, first.time, STILL * curved.largest[r])
-        if at >= 0.0 and (first.law < 0 or at < first.time):
-            first = LocatedEvent(i, PRESS_AGAIN if phase == SILENT else STOP_PULLING, at)
+        first = earlier(first, i, PRESSES_AGAIN if phase == RELEASED else RELEASES, at)
     return first
 
 
@@ -85,8 +83,7 @@ def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: in
                 p[k] += on_v * (k + 1) / h * d[i, k + 1]
         scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i] + abs(constant)
         at = first_rise(series.polynomial, terms, first.time, STILL * scale)
-        if at >= 0.0 and (first.law < 0 or at < first.time):
-            first = LocatedEvent(i, e, at)
+        first = earlier(first, i, e, at)
     return phase_event(laws, series, terms, first, i) if series.curved.number[i] >= 0 else first
 
 

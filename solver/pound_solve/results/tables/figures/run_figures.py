@@ -8,7 +8,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from pound_solve.numerics.providers import provider
 from pound_solve.results.columns import ITEM, VALUE
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Row, Stage, Table
@@ -17,6 +16,8 @@ from pound_solve.version import __version__
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """Times of this run, and versions."""
+    from pound_solve.numerics.providers import provider  # which reading a report does not need
+
     yield "solve seconds", f"{run.solve_seconds:.4f}"
     yield "solve seconds, CPU", f"{run.cpu_seconds:.4f}"
     yield "total seconds", f"{time.perf_counter() - run.began:.4f}"
