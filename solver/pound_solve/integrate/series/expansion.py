@@ -25,7 +25,7 @@ from pound_solve.integrate.series.springs import add_product, deformation
 from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.numerics.jit import flat, loose
 from pound_solve.numerics.ldl import solve
-from pound_solve.numerics.types import Array
+from pound_solve.numerics.types import Array, Index
 
 TERMS = 32  #: of a series, at most
 CHECK = 4  #: terms after which it is seen whether they suffice
@@ -210,9 +210,9 @@ def derived(k: int, order: int, h: float) -> float:
     return out
 
 
-def evaluate(series: Series, terms: int, s: float, h: float, order: int, out: Array) -> None:
-    """Derivative of an order of the motion at the place `s`."""
-    c, n = series.motion, len(out)
+def evaluate(c: Array, terms: int, s: float, h: float, order: int, out: Array) -> None:
+    """Derivative of an order of a motion with coefficients `c` at the place `s`."""
+    n = len(out)
     for i in range(n):
         out[i] = 0.0
     k = terms
@@ -235,6 +235,16 @@ def evaluate(series: Series, terms: int, s: float, h: float, order: int, out: Ar
             for i in range(n):
                 out[i] = out[i] * s + f0 * c[k, i]
             k -= 1
+
+
+def evaluate_some(c: Array, which: Index, terms: int, s: float, h: float, order: int, out: Array) -> None:
+    """Derivative of an order of some unknowns at the place `s`."""
+    for i in range(len(which)):
+        out[i] = 0.0
+    for k in range(terms, order - 1, -1):
+        factor = derived(k, order, h)
+        for i in range(len(which)):
+            out[i] = out[i] * s + factor * c[k, which[i]]
 
 
 def law_at(series: Series, terms: int, s: float, h: float, i: int) -> tuple[float, float]:

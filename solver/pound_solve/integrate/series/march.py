@@ -38,6 +38,7 @@ from pound_solve.integrate.series.expansion import (
     begin_series,
     dot,
     evaluate,
+    evaluate_some,
     expand,
     law_at,
     next_term,
@@ -45,6 +46,7 @@ from pound_solve.integrate.series.expansion import (
 from pound_solve.integrate.series.forces import count_largest, press
 from pound_solve.integrate.series.friction import LIFT, side_of, slides, touching
 from pound_solve.integrate.series.massless import factorise, violated
+from pound_solve.integrate.series.modal import from_modes, renew_modes, take_in_modes
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.springs import add_up, deformation
 from pound_solve.integrate.series.state import Lengths, Series
@@ -96,41 +98,64 @@ def add_law_losses(
                 works.damping += lost
 
 
+def work_put_in(linear: LinearSystem, series: Series, terms: int, end: float, top: int) -> float:
+    """Work of the loads on the nodes over the step to `end`: their series times those of the velocities."""
+    put, power = 0.0, 1.0
+    for k in range(1, terms + 1):
+        power *= end
+        put += power * dot(linear.constant, series.motion[k])
+        for j in range(series.inputs.shape[1]):
+            share, own, further = dot(linear.inputs[j], series.motion[k]), 0.0, power
+            for m in range(min(top, terms)):
+                own += series.inputs[m, j] * further * k / (k + m)
+                further *= end
+            put += share * own
+    return put
+
+
 @flat
 def add_works(
     linear: LinearSystem, laws: Laws, step: Step, series: Series, coefs: Array, begin: float, terms: int,
     carried: int, h: float, end: float, works: Works, rules: Tables,
 ) -> None:  # fmt: skip
-    """Add up the works over the step to `end`, by Gauss's rule."""
-    moved, trial = len(linear.support_damping) > 0, step.trial
-    put = 0.0
+    """Add up the works over the step to `end`, but for those of the loads by Gauss's rule."""
+    moved, trial, damped = len(linear.support_damping) > 0, step.trial, series.damped
+    for k in range(1, terms + 1):
+        for i in range(len(damped.unknown)):
+            damped.motion[k, i] = series.motion[k, damped.unknown[i]]
+    put = 0.0 if moved else work_put_in(linear, series, terms, end, len(coefs))
     rule = min(carried, TERMS) // CHECK
     for g in range(2 * (rule + 1)):
         weight, s = series.gauss[rule, 0, g] * end * h, series.gauss[rule, 1, g] * end
-        evaluate(series, terms, s, h, 1, trial.velocity)
-        multiply(linear.damping, trial.velocity, step.product)
-        works.damping += weight * dot(trial.velocity, step.product)
-        evaluate_inputs(coefs, begin + s * h, trial.inputs, trial.input_rates)
+        evaluate(damped.motion, terms, s, h, 1, damped.velocity)
+        multiply(damped.damping, damped.velocity, damped.force)
+        works.damping += weight * dot(damped.velocity, damped.force)
+        if moved:
+            evaluate_inputs(coefs, begin + s * h, trial.inputs, trial.input_rates)
         add_law_losses(laws, series, terms, s, h, weight, moved, works, rules)
         if moved:
-            evaluate(series, terms, s, h, 0, trial.displacement)
-            evaluate(series, terms, s, h, 2, trial.acceleration)
+            for order in range(3):
+                out = (
+                    trial.displacement
+                    if order == 0
+                    else trial.velocity
+                    if order == 1
+                    else trial.acceleration
+                )
+                evaluate(series.motion, terms, s, h, order, out)
             given, lost = support_power(linear, laws, trial, laws.trial, laws.members.trial)
             put += weight * given
             works.damping += weight * lost
             for i in range(len(trial.velocity)):
                 put += weight * load_on_nodes(linear, trial.inputs, i) * trial.velocity[i]
-        else:
-            form_load(linear, trial.inputs, trial.load)
-            put += weight * dot(trial.load, trial.velocity)
     works.input += put
     works.gross_input += abs(put)
 
 
 def accept(laws: Laws, now: MotionState, series: Series, terms: int, h: float, end: float) -> None:
     """Make the place `end` the present."""
-    evaluate(series, terms, end, h, 0, now.displacement)
-    evaluate(series, terms, end, h, 1, now.velocity)
+    evaluate(series.motion, terms, end, h, 0, now.displacement)
+    evaluate(series.motion, terms, end, h, 1, now.velocity)
     for i in range(len(laws.rule)):
         d, v = law_at(series, terms, end, h, i)
         if is_held(series.rigid, i):
@@ -146,7 +171,6 @@ def accept(laws: Laws, now: MotionState, series: Series, terms: int, h: float, e
 
 @flat
 def store_looks(
-    trial: MotionState,
     buffers: Buffers,
     series: Series,
     terms: int,
@@ -161,10 +185,7 @@ def store_looks(
     for look in range(LOOKS):
         s, at = look * end / LOOKS, run.shown
         for j in range(3):
-            out = trial.displacement if j == 0 else trial.velocity if j == 1 else trial.acceleration
-            evaluate(series, terms if look else j, s, h, j, out)
-            for i in range(len(buffers.which)):
-                buffers.shown[at, j, i] = out[buffers.which[i]]
+            evaluate_some(series.motion, buffers.which, terms if look else j, s, h, j, buffers.shown[at, j])
         buffers.shown_time[at] = t + s * h
         run.shown += 1
 
@@ -227,6 +248,7 @@ def renew(linear: LinearSystem, laws: Laws, series: Series, run: Run) -> bool:
     held = series.massless
     if run.stale:
         add_up(linear, laws, series)
+        renew_modes(laws, series)
         fault = factorise(laws, held) if len(held.unknown) else -1
         if fault >= 0:
             run.fault = held.unknown[fault]
@@ -302,7 +324,7 @@ def take(
     track_outputs(linear, laws, step, series, terms, h, end, t, len(coefs))
     track_laws(laws, step, series, terms, h, end, t, len(linear.monitored_constants))
     if end > 0.0:
-        store_looks(step.trial, buffers, series, terms, h, end, run, t)
+        store_looks(buffers, series, terms, h, end, run, t)
         add_works(
             linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, end, works, rules
         )
@@ -372,6 +394,29 @@ def stride(
     return DONE
 
 
+def reach(
+    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
+    lengths: Lengths, coefs: Array, begin: float, goal: float, pause: int, works: Works, run: Run,
+) -> int:  # fmt: skip
+    """Take the motion to a goal, in modes or by steps; return DONE, or what is wrong."""
+    if run.steps < pause and take_in_modes(
+        linear, laws, step, buffers, series, lengths, coefs, begin, goal, works, run
+    ):
+        return DONE
+    from_modes(laws, series.modal, step)
+    series.modal.is_present[0] = 0
+    why = stride(
+        linear, laws, step, buffers, rules, series, lengths, coefs, begin, goal, pause, works, run
+    )  # fmt: skip
+    if why == DONE:
+        multiply(linear.mass, step.now.velocity, step.product)
+        kinetic = 0.5 * dot(step.now.velocity, step.product)
+        if runs_away(kinetic, run.initial_energy, works.gross_input):
+            run.initial_energy = kinetic
+            return RUNAWAY
+    return why
+
+
 def sample(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
     coefs: Array, begin: float, works: Works, run: Run,
@@ -399,7 +444,7 @@ def march(
     """Integrate to the last goal, or until Python must look at something (see
     `stepping.kernel.advance`).
     """
-    pause, now = next_pause(step, run), step.now
+    pause = next_pause(step, run)
     while run.goal < len(goals):
         goal = run.goal
         begin, piece = breaks[pieces[goal]], coefs[pieces[goal]]
@@ -409,7 +454,7 @@ def march(
         why = settle(linear, laws, step, buffers, rules, series, piece, run.time - begin, run)
         if why != DONE:
             return why
-        why = stride(
+        why = reach(
             linear,
             laws,
             step,
@@ -426,13 +471,9 @@ def march(
         )
         if why != DONE:
             return why
-        multiply(linear.mass, now.velocity, step.product)
-        kinetic = 0.5 * dot(now.velocity, step.product)
-        if runs_away(kinetic, run.initial_energy, works.gross_input):
-            run.initial_energy = kinetic
-            return RUNAWAY
         run.goal += 1
         if outputs[goal]:
+            from_modes(laws, series.modal, step)
             sample(linear, laws, step, buffers, rules, series, piece, begin, works, run)
             if run.kept == len(buffers.time):
                 return FULL

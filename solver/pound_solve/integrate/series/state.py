@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
-from pound_solve.integrate.kernels.state import Rows
+from pound_solve.integrate.kernels.state import Product, Rows
 from pound_solve.numerics.ldl import Pattern, Place
 from pound_solve.numerics.types import Array, Flags, Index
 
@@ -17,6 +17,7 @@ class Lengths(Protocol):
     shortest: float  #: step
     before: float  #: length that was next when a curved contact began to press; 0 if none did
     carried: int  #: terms of the present series that carry energy
+    in_modes: int  #: intervals that were taken in modes
 
 
 class Springs(NamedTuple):
@@ -220,6 +221,114 @@ class Friction(NamedTuple):
     largest: Array
 
 
+class Damped(NamedTuple):
+    """The unknowns that the structure's dashpots act on.
+
+    Attributes
+    ----------
+    unknown : ndarray, shape (n_damped,)
+    damping : Product
+        C among them.
+    motion : ndarray, shape (TERMS + 1, n_damped)
+        Scratch: their coefficients, their velocities and the forces on them.
+    velocity, force : ndarray, shape (n_damped,)
+    """
+
+    unknown: Index
+    damping: Product
+    motion: Array
+    velocity: Array
+    force: Array
+
+
+class Modal(NamedTuple):
+    """Parts of the structure in modes, and tables of one length of interval (see `modal_tables`).
+
+    Parts come one after the other along the first axis, padded to the size of the largest; x has
+    `2 n_modes + 2 n_inputs` numbers.
+
+    Attributes
+    ----------
+    length : ndarray, shape (1,)
+        Of the interval; 0 where there are no tables.
+    is_present : ndarray, shape (1,)
+        Whether the present motion is in `modes`.
+    serves : ndarray, shape (1,)
+        Whether the laws are on branches as stiff as those of the tables.
+    stiffness : ndarray, shape (n_laws,)
+        Of these.
+    counts : ndarray, shape (n_parts, 4)
+        Unknowns, modes, followed quantities, unknowns that envelopes look at.
+    unknowns : ndarray, shape (n_parts, n)
+        Their places in the order of elimination.
+    to_modes, from_modes : ndarray, shape (n_parts, 2, 2 n_modes, n) and (n_parts, 2, n, 2 n_modes)
+        Real, then imaginary parts of the modes from displacements and velocities, and these from them.
+    held : ndarray, shape (n_parts, 2 n_modes, n)
+        Where the modes come to rest under constant loads.
+    growth : ndarray, shape (n_parts, 2 n_cells + 1, 2, n_modes)
+        Real and imaginary parts of the free modes' factors at the ends and the middles of the cells.
+    steady : ndarray, shape (n_parts, 2 n_modes, 2 n_inputs)
+        Straight lines of the modes at the start of the interval, on its inputs.
+    bend : ndarray, shape (n_parts, n_modes)
+        Distance of a free mode of size one from its chord over a cell, at most.
+    followed : ndarray, shape (n_parts, n_followed)
+        Numbers of what is followed: deformations of the laws, then monitored outputs.
+    place : ndarray, shape (n_parts, n_all_followed)
+        Where a part has each of these, -1 where it has not.
+    turn : ndarray, shape (n_parts, 2, n_modes)
+        Real and imaginary parts of the eigenvalues times the length of a cell.
+    share : ndarray, shape (n_parts, n_followed, n_modes)
+        How much of it a mode makes at most.
+    rows : ndarray, shape (n_parts, n_followed, n_x)
+        These on x.
+    damping_work, input_work, constant_work : ndarray
+        Works over the interval on x, shape (n_parts, n_x, n_x), (n_parts, 2 n_inputs, n_x), (n_parts, n_x).
+    shown : ndarray, shape (n_parts, n_shown)
+        Numbers of the unknowns that envelopes look at.
+    motion : ndarray, shape (n_parts, 3, n_shown, n_x)
+        Their displacements, velocities and accelerations on x.
+    modes, rest : ndarray, shape (n_parts, 2 n_modes)
+        The modes, and where they come to rest under the constant loads.
+    offset : ndarray, shape (n_followed,)
+        Of the followed quantities at rest there.
+    x, departure, term, values, apart : ndarray
+        Scratch: x of every part at the ends and middles of the cells; distance of its free modes from
+        chords; what they add to a term; the followed quantities at the ends of the cells, shape
+        (n_cells + 1, n_all_followed), and their distance from chords.
+    """
+
+    length: Array
+    is_present: Index
+    serves: Index
+    stiffness: Array
+    counts: Index
+    unknowns: Index
+    to_modes: Array
+    from_modes: Array
+    held: Array
+    growth: Array
+    steady: Array
+    bend: Array
+    followed: Index
+    place: Index
+    turn: Array
+    share: Array
+    rows: Array
+    damping_work: Array
+    input_work: Array
+    constant_work: Array
+    shown: Index
+    motion: Array
+    modes: Array
+    rest: Array
+    offset: Array
+    x: Array
+    departure: Array
+    term: Array
+    values: Array
+    apart: Array
+
+
 class Series(NamedTuple):
     """The series of a step.
 
@@ -243,6 +352,8 @@ class Series(NamedTuple):
     rigid : Rigid
     curved : Curved
     friction : Friction
+    damped : Damped
+    modal : Modal
     """
 
     motion: Array
@@ -258,3 +369,5 @@ class Series(NamedTuple):
     rigid: Rigid
     curved: Curved
     friction: Friction
+    damped: Damped
+    modal: Modal

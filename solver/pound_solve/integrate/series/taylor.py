@@ -9,9 +9,10 @@ function and every quantity whose peak is kept is a polynomial, whose first rise
 proof (see `events.polynomial_roots`).  Works are integrated by Gauss's rule, each on its own, so that the
 balance of energies remains a check.  Unknowns without mass follow the others (see `massless`).
 
-There is no decomposition into modes, and a step costs what its products cost: where EXACT has to decompose
-many unknowns, or many combinations of stiffnesses, TAYLOR is faster, and as exact.  Where the fastest mode
-is far above the motion (a stiff node with little mass, a strong dashpot), it takes many steps.
+Elastic time without contact is taken in modes, from goal to goal (`modal`).  Elsewhere a step costs what
+its products cost: where EXACT has to decompose many unknowns, or many combinations of stiffnesses, TAYLOR
+is faster, and as exact.  Where the fastest mode is far above the motion (a stiff node with little mass, a
+strong dashpot), it takes many steps.
 
 References
 ----------
@@ -29,6 +30,7 @@ import numpy as np
 
 from pound_deck.schema import Spec
 from pound_solve.integrate.events import polynomial_roots
+from pound_solve.integrate.kernels import allocation
 from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import PAUSE
@@ -50,11 +52,22 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.rigid.contacts import MasslessContact, RigidContacts
 from pound_solve.integrate.rigid.instants import RigidInstants
-from pound_solve.integrate.series import curved, expansion, friction, march, massless, rigid, springs, state
+from pound_solve.integrate.series import (
+    curved,
+    expansion,
+    friction,
+    march,
+    massless,
+    modal_tables,
+    rigid,
+    springs,
+    state,
+)
 from pound_solve.integrate.series.massless import STIFFNESS
 from pound_solve.integrate.series.present import Present
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.laws.automaton import BranchKind
+from pound_solve.numerics.matrices import used_rows
 from pound_solve.numerics.record import record
 from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import Role
@@ -124,6 +137,10 @@ class Taylor(KernelEngine):
             friction=friction.allocate(
                 self.laws.coupled, self.laws.normal[self.laws.coupled], len(laws), terms
             ),
+            damped=self._damped(terms),
+            modal=modal_tables.allocate(
+                system, self.laws.stiffness, monitored, self._intervals(), np.argsort(o), self.buffers.which
+            ),
         )
         for i in self.series.curved.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
@@ -131,6 +148,23 @@ class Taylor(KernelEngine):
         self._hold()
         self.lengths: state.Lengths = record(state.Lengths)
         self.lengths.next, self.lengths.shortest = length, np.inf
+
+    def _damped(self, terms: int) -> state.Damped:
+        """The unknowns that dashpots act on, in the order of elimination."""
+        unknown = np.flatnonzero(used_rows(self.system.damping[self.order]))
+        own = self.order[unknown]
+        n = len(unknown)
+        matrix = allocation.product(self.system.damping[np.ix_(own, own)])
+        return state.Damped(unknown, matrix, np.zeros((terms, n)), np.zeros(n), np.zeros(n))
+
+    def _intervals(self) -> Array:
+        """Times between which intervals may be taken in modes; none where more acts than modes know."""
+        laws, linear = self.laws, self.linear
+        others = len(self.massless.unknown) + len(self.contacts.laws) + len(linear.support_damping)
+        acts_else = laws.curved.any() or laws.inputs.any() or linear.monitored_inputs.any()
+        if others or acts_else or len(laws.coupled):
+            return np.zeros(1)
+        return np.concatenate([self.times[:1], goals(self.system, self.times)[0]])
 
     def integrate(self) -> None:
         """Integrate by series from event to event."""
@@ -210,7 +244,8 @@ class Taylor(KernelEngine):
         shortest = float(self.lengths.shortest)
         return {
             "method": self.name,
-            "series": int(self.state.steps),
+            "series": int(self.state.steps - self.lengths.in_modes),
+            **({"intervals in modes": in_modes} if (in_modes := int(self.lengths.in_modes)) else {}),
             **({"shortest series": f"{shortest:.4g}"} if np.isfinite(shortest) else {}),
             "events": int(self.state.events),
         }

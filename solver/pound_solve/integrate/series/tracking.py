@@ -134,33 +134,40 @@ def track_outputs(
         count_crest(laws, step, series, terms, h, end, t, i, -1)
 
 
+def track_law(
+    laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t: float, first: int, i: int
+) -> None:
+    """Count the deformation and the force of law `i` up to `end` into the peaks, from peak `first` on."""
+    extremes, d, p = step.extremes, series.deformation, series.polynomial[POLYNOMIAL]
+    begin, far = d[i, 0], size(d, i, terms)
+    if begin + far > extremes.high[first + i] or begin - far < extremes.low[first + i]:
+        for k in range(terms + 1):
+            p[k] = d[i, k]
+        count_crest(laws, step, series, terms, h, end, t, first + i, -1)
+    own = first + len(laws.rule) + i
+    stiffness, damping = laws.stiffness[i], laws.damping[i] if laws.viscous[i] else 0.0
+    if has_series(series, i):
+        copy_force(series, terms, i, 1.0, p)
+        count_crest(laws, step, series, terms, h, end, t, own, i)
+        return
+    far *= abs(stiffness)
+    high = extremes.high[own]
+    if laws.contact[i]:
+        high = min(high, laws.peak_force[i])
+    force = laws.offset[i] + stiffness * begin
+    if damping != 0.0 or force + far > high or force - far < extremes.low[own]:
+        for k in range(terms + 1):
+            p[k] = stiffness * d[i, k]
+        p[0] += laws.offset[i]
+        if damping != 0.0:
+            for k in range(terms):
+                p[k] += damping * (k + 1) / h * d[i, k + 1]
+        count_crest(laws, step, series, terms, h, end, t, own, i)
+
+
 def track_laws(
     laws: Laws, step: Step, series: Series, terms: int, h: float, end: float, t: float, first: int
 ) -> None:
     """Count deformations and forces of the laws up to `end` into the peaks, from peak `first` on."""
-    extremes, d, p = step.extremes, series.deformation, series.polynomial[POLYNOMIAL]
     for i in range(len(laws.rule)):
-        begin, far = d[i, 0], size(d, i, terms)
-        if begin + far > extremes.high[first + i] or begin - far < extremes.low[first + i]:
-            for k in range(terms + 1):
-                p[k] = d[i, k]
-            count_crest(laws, step, series, terms, h, end, t, first + i, -1)
-        own = first + len(laws.rule) + i
-        stiffness, damping = laws.stiffness[i], laws.damping[i] if laws.viscous[i] else 0.0
-        if has_series(series, i):
-            copy_force(series, terms, i, 1.0, p)
-            count_crest(laws, step, series, terms, h, end, t, own, i)
-            continue
-        far *= abs(stiffness)
-        high = extremes.high[own]
-        if laws.contact[i]:
-            high = min(high, laws.peak_force[i])
-        force = laws.offset[i] + stiffness * begin
-        if damping != 0.0 or force + far > high or force - far < extremes.low[own]:
-            for k in range(terms + 1):
-                p[k] = stiffness * d[i, k]
-            p[0] += laws.offset[i]
-            if damping != 0.0:
-                for k in range(terms):
-                    p[k] += damping * (k + 1) / h * d[i, k + 1]
-            count_crest(laws, step, series, terms, h, end, t, own, i)
+        track_law(laws, step, series, terms, h, end, t, first, i)

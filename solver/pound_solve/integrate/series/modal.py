@@ -1,0 +1,357 @@
+r"""Kernels of TAYLOR: intervals in modes, where it is certain that nothing happens.
+
+Where no contact is closed and all laws are on branches as stiff as at the start, the motion over an
+interval between two goals is known in closed form (`modal_tables`).  An interval is taken so where no event
+lies in it; else it is taken by series from unknown to unknown.
+
+A followed quantity is :math:`y = \mathrm{Re}\sum_j \rho_j c_j e^{\lambda_j t}` and a straight line.  From
+the chord between two places a time :math:`\tau` apart it departs by
+
+.. math:: |y - y_\text{chord}| \le \sum_j |\rho_j|\,|c_j| \min\bigl(2, \tfrac18|\lambda_j\tau|^2\bigr)
+
+at most, for no mode grows: :math:`|c_j e^{\lambda_j t}| \le |c_j|` bounds a mode and the ends of its chord,
+and :math:`\tau^2/8` times the second derivative its distance from that.  Where this lets an event or a peak
+lie in a cell, the power series of that quantity alone over that cell, of the terms
+:math:`\rho_j c_j (\lambda_j\tau)^k/k!`, decides as in a step by series.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.integrate.energy import Works
+from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL
+from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.state import Buffers, Laws, LinearSystem, Run, Step
+from pound_solve.integrate.series.expansion import CHECK, TERMS, dot, expand_inputs
+from pound_solve.integrate.series.state import Lengths, Modal, Series
+from pound_solve.integrate.series.tracking import count_crest, event_of, track_law
+from pound_solve.integrate.tracker import Extremes
+from pound_solve.numerics.jit import loose
+from pound_solve.numerics.types import Array
+
+SAME = 1e-11  #: share by which intervals of one length may differ: the clock is rounded
+ROUNDING = 1e-16  #: share of the terms of a series that is rounding
+UNKNOWNS, MODES, FOLLOWED, SHOWN = range(4)  #: columns of `Modal.counts`
+DISPLACEMENT, VELOCITY = range(2)  #: rows of `Modal.to_modes` and `Modal.from_modes`
+
+
+@loose
+def product(a: Array, x: Array, rows: int, columns: int, out: Array, before: float) -> None:
+    """Product of a matrix with a vector, of so many rows and columns, and `before` times what was there."""
+    for i in range(rows):
+        total = before * out[i]
+        for j in range(columns):
+            total += a[i, j] * x[j]
+        out[i] = total
+
+
+def renew_modes(laws: Laws, series: Series) -> None:
+    """See whether modes serve on the present branches, and where these come to rest."""
+    modal = series.modal
+    modal.serves[0] = 0
+    if modal.length[0] == 0.0:
+        return
+    for i in range(len(laws.rule)):
+        if laws.stiffness[i] != modal.stiffness[i] or laws.damping[i] != 0.0:
+            return
+    modal.serves[0] = 1
+    for i in range(len(modal.offset)):
+        modal.offset[i] = 0.0
+    for b in range(len(modal.counts)):
+        n, twice = modal.counts[b, UNKNOWNS], 2 * modal.counts[b, MODES]
+        load, rest = modal.x[b, 0], modal.rest[b]
+        for i in range(n):
+            load[i] = series.springs.constant[modal.unknowns[b, i]]
+        product(modal.held[b], load, twice, n, rest, 0.0)
+        for i in range(modal.counts[b, FOLLOWED]):
+            at = modal.followed[b, i]
+            for j in range(twice):
+                modal.offset[at] += modal.rows[b, i, j] * rest[j]
+
+
+def to_modes(modal: Modal, step: Step) -> None:
+    """Take the present motion over into the modes."""
+    now = step.now
+    for b in range(len(modal.counts)):
+        n, twice = modal.counts[b, UNKNOWNS], 2 * modal.counts[b, MODES]
+        for kind in range(2):
+            motion = now.displacement if kind == DISPLACEMENT else now.velocity
+            for i in range(n):
+                modal.x[b, 0, i] = motion[modal.unknowns[b, i]]
+            product(modal.to_modes[b, kind], modal.x[b, 0], twice, n, modal.modes[b], kind)
+    modal.is_present[0] = 1
+
+
+def from_modes(laws: Laws, modal: Modal, step: Step) -> None:
+    """Take the motion over from the modes, if it is there."""
+    if not modal.is_present[0]:
+        return
+    now = step.now
+    for b in range(len(modal.counts)):
+        n, twice = modal.counts[b, UNKNOWNS], 2 * modal.counts[b, MODES]
+        for kind in range(2):
+            out = now.displacement if kind == DISPLACEMENT else now.velocity
+            product(modal.from_modes[b, kind], modal.modes[b], n, twice, modal.x[b, 0], 0.0)
+            for i in range(n):
+                out[modal.unknowns[b, i]] = modal.x[b, 0, i]
+    for i in range(len(laws.rule)):
+        d, v = along(laws.rows, i, now.displacement), along(laws.rows, i, now.velocity)
+        laws.now.deformation[i], laws.now.rate[i] = d, v
+        laws.largest_deformation[i] = max(laws.largest_deformation[i], abs(d))
+        laws.largest_rate[i] = max(laws.largest_rate[i], abs(v))
+
+
+def start_interval(modal: Modal, inputs: Array) -> None:
+    """Find x at the ends and the middles of all cells."""
+    n_inputs, places = inputs.shape[1], modal.growth.shape[1]
+    for b in range(len(modal.counts)):
+        count, x = modal.counts[b, MODES], modal.x[b]
+        for place in range(places):
+            for j in range(n_inputs):
+                later = inputs[1, j] * place / (places - 1)
+                x[place, 2 * count + j], x[place, 2 * count + n_inputs + j] = (
+                    inputs[0, j] + later,
+                    inputs[1, j],
+                )
+        for i in range(2 * count):
+            x[0, i] = modal.modes[b, i] - modal.rest[b, i]
+            for j in range(2 * n_inputs):
+                x[0, i] -= modal.steady[b, i, j] * x[0, 2 * count + j]
+        for place in range(1, places):
+            re, im = modal.growth[b, place, 0], modal.growth[b, place, 1]
+            for j in range(count):
+                x[place, j] = re[j] * x[0, j] - im[j] * x[0, count + j]
+                x[place, count + j] = re[j] * x[0, count + j] + im[j] * x[0, j]
+
+
+def follow(linear: LinearSystem, modal: Modal, n_inputs: int) -> None:
+    """Find the followed quantities at the ends of all cells, and how far they depart from chords."""
+    n_followed, outputs, ends = len(modal.offset), len(linear.monitored_constants), len(modal.values)
+    for i in range(n_followed):
+        modal.apart[i] = 0.0
+        constant = modal.offset[i]
+        if i >= n_followed - outputs:
+            constant += linear.monitored_constants[i - n_followed + outputs]
+        for end in range(ends):
+            modal.values[end, i] = constant
+    for b in range(len(modal.counts)):
+        count, x = modal.counts[b, MODES], modal.x[b]
+        size = 2 * (count + n_inputs)
+        for j in range(count):
+            free = np.sqrt(x[0, j] * x[0, j] + x[0, count + j] * x[0, count + j])
+            modal.departure[b, j] = modal.bend[b, j] * free
+        for i in range(modal.counts[b, FOLLOWED]):
+            at, row = modal.followed[b, i], modal.rows[b, i, :size]
+            modal.apart[at] += dot(modal.share[b, i, :count], modal.departure[b, :count])
+            for end in range(ends):
+                modal.values[end, at] += dot(row, x[2 * end, :size])
+
+
+def bounds(modal: Modal, cell: int, i: int) -> tuple[float, float]:
+    """Bounds of a followed quantity over a cell."""
+    begin, end = modal.values[cell, i], modal.values[cell + 1, i]
+    return min(begin, end) - modal.apart[i], max(begin, end) + modal.apart[i]
+
+
+@loose
+def next_powers(re: Array, im: Array, turn: Array, share: float) -> tuple[float, float]:
+    """Multiply complex numbers by the `turn` of each times a share; return their real sum, and the sum of
+    their sizes.
+    """
+    total, sizes = 0.0, 0.0
+    for j in range(len(re)):
+        real = (re[j] * turn[0, j] - im[j] * turn[1, j]) * share
+        im[j] = (re[j] * turn[1, j] + im[j] * turn[0, j]) * share
+        re[j] = real
+        total += real
+        sizes += abs(real) + abs(im[j])
+    return total, sizes
+
+
+def expand_in_cell(modal: Modal, cell: int, i: int, n_inputs: int, p: Array) -> int:
+    """Power series of a followed quantity over a cell; return its highest power, 0 if that is too high."""
+    for k in range(TERMS + 1):
+        p[k] = 0.0
+    p[0], terms = modal.values[cell, i], CHECK
+    for b in range(len(modal.counts)):
+        at, count = modal.place[b, i], modal.counts[b, MODES]
+        if at < 0:
+            continue
+        row, x, later = modal.rows[b, at], modal.x[b, 2 * cell], modal.x[b, 2 * cell + 2]
+        for j in range(2 * count, 2 * (count + n_inputs)):
+            p[1] += row[j] * (later[j] - x[j])
+        re, im, turn = modal.term[0], modal.term[1], modal.turn[b]
+        first, fastest = abs(p[0]), 0.0
+        for j in range(count):
+            re[j] = row[j] * x[j] + row[count + j] * x[count + j]
+            im[j] = row[j] * x[count + j] - row[count + j] * x[j]
+            first += abs(re[j]) + abs(im[j])
+            fastest = max(fastest, abs(turn[0, j]) + abs(turn[1, j]))
+        k, tail = 0, first
+        while tail > ROUNDING * first or k < fastest:
+            k += 1
+            if k > TERMS:
+                return 0
+            term, tail = next_powers(re[:count], im[:count], turn, 1.0 / k)
+            p[k] += term
+        terms = max(terms, k)
+    return terms
+
+
+def may_change(laws: Laws, modal: Modal, cell: int, i: int) -> bool:
+    """Whether the bounds let law `i` leave its branch within a cell; they do not know its rate."""
+    low, high = bounds(modal, cell, i)
+    for e in range(laws.n_events[i]):
+        on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
+        if on_v != 0.0 or (on_d != 0.0 and not max(on_d * low, on_d * high) + constant <= 0.0):
+            return True
+    return False
+
+
+def is_quiet(laws: Laws, series: Series, n_inputs: int) -> bool:
+    """Whether no law leaves its branch within the interval for certain."""
+    modal = series.modal
+    cells = len(modal.values) - 1
+    h = modal.length[0] / cells
+    for cell in range(cells):
+        for i in range(len(laws.rule)):
+            if may_change(laws, modal, cell, i):
+                terms = expand_in_cell(modal, cell, i, n_inputs, series.deformation[i])
+                if terms == 0 or event_of(laws, series, terms, h, 1.0, i).law >= 0:
+                    return False
+    return True
+
+
+def exceeds(extremes: Extremes, i: int, low: float, high: float) -> bool:
+    """Whether bounds let a tracked quantity exceed its peaks."""
+    return not (high <= extremes.high[i] and low >= extremes.low[i])
+
+
+def count_ends(
+    modal: Modal, extremes: Extremes, i: int, at: int, k: float, constant: float, t: float
+) -> None:
+    """Count ``k y + constant`` at the ends of the cells into peak `at`, y being followed quantity `i`: what
+    cells hold beyond is then seldom more.
+    """
+    cells = len(modal.values) - 1
+    for end in range(cells + 1):
+        value, when = k * modal.values[end, i] + constant, t + end * modal.length[0] / cells
+        if value > extremes.high[at]:
+            extremes.high[at], extremes.t_high[at] = value, when
+        if value < extremes.low[at]:
+            extremes.low[at], extremes.t_low[at] = value, when
+
+
+def count_peaks(
+    linear: LinearSystem, laws: Laws, step: Step, series: Series, n_inputs: int, t: float
+) -> bool:
+    """Count what exceeds the peaks within the interval; False if its series is not known."""
+    modal, n_laws, outputs = series.modal, len(laws.rule), len(linear.monitored_constants)
+    cells, extremes = len(modal.values) - 1, step.extremes
+    h = modal.length[0] / cells
+    for i in range(n_laws):
+        k, offset = laws.stiffness[i], laws.offset[i]
+        count_ends(modal, extremes, i, outputs + i, 1.0, 0.0, t)
+        count_ends(modal, extremes, i, outputs + n_laws + i, k, offset, t)
+    for i in range(outputs):
+        count_ends(modal, extremes, n_laws + i, i, 1.0, 0.0, t)
+    for cell in range(cells):
+        for i in range(n_laws):
+            low, high = bounds(modal, cell, i)
+            k, offset = laws.stiffness[i], laws.offset[i]
+            least, most = min(k * low, k * high) + offset, max(k * low, k * high) + offset
+            force = outputs + n_laws + i
+            if exceeds(extremes, outputs + i, low, high) or exceeds(extremes, force, least, most):
+                terms = expand_in_cell(modal, cell, i, n_inputs, series.deformation[i])
+                if terms == 0:
+                    return False
+                track_law(laws, step, series, terms, h, 1.0, t + cell * h, outputs, i)
+        for i in range(outputs):
+            low, high = bounds(modal, cell, n_laws + i)
+            if exceeds(extremes, i, low, high):
+                p = series.polynomial[POLYNOMIAL]
+                terms = expand_in_cell(modal, cell, n_laws + i, n_inputs, p)
+                if terms == 0:
+                    return False
+                count_crest(laws, step, series, terms, h, 1.0, t + cell * h, i, -1)
+    return True
+
+
+def add_interval_works(modal: Modal, n_inputs: int, works: Works) -> None:
+    """Add up the works over the interval."""
+    put = 0.0
+    for b in range(len(modal.counts)):
+        first, x = 2 * modal.counts[b, MODES], modal.x[b, 0]
+        size = first + 2 * n_inputs
+        for i in range(size):  # of a symmetric form one half
+            half = dot(modal.damping_work[b, i, :i], x[:i])
+            works.damping += x[i] * (2.0 * half + modal.damping_work[b, i, i] * x[i])
+        for i in range(2 * n_inputs):
+            put += x[first + i] * dot(modal.input_work[b, i, :size], x[:size])
+        put += dot(modal.constant_work[b, :size], x[:size])
+    works.input += put
+    works.gross_input += abs(put)
+
+
+def show(modal: Modal, buffers: Buffers, run: Run, n_inputs: int) -> None:
+    """Keep the motion at the starts and the middles of the cells for the envelopes."""
+    looks = modal.growth.shape[1] - 1
+    if len(buffers.which) == 0:
+        return
+    for look in range(looks):
+        buffers.shown_time[run.shown + look] = run.time + modal.length[0] * look / looks
+    for b in range(len(modal.counts)):
+        first, x, rest = 2 * modal.counts[b, MODES], modal.x[b], modal.rest[b]
+        size = first + 2 * n_inputs
+        for i in range(modal.counts[b, SHOWN]):
+            at, still = modal.shown[b, i], dot(modal.motion[b, 0, i, :first], rest[:first])
+            for kind in range(3):
+                row = modal.motion[b, kind, i, :size]
+                for look in range(looks):
+                    value = dot(row, x[look, :size])
+                    buffers.shown[run.shown + look, kind, at] = value + (still if kind == 0 else 0.0)
+    run.shown += looks
+
+
+def advance_modes(modal: Modal, n_inputs: int) -> None:
+    """Take the modes to the end of the interval."""
+    for b in range(len(modal.counts)):
+        twice, out = 2 * modal.counts[b, MODES], modal.modes[b]
+        x = modal.x[b, modal.growth.shape[1] - 1]
+        for i in range(twice):
+            out[i] = x[i] + modal.rest[b, i]
+            for j in range(2 * n_inputs):
+                out[i] += modal.steady[b, i, j] * x[twice + j]
+
+
+def take_in_modes(
+    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, series: Series, lengths: Lengths,
+    coefs: Array, begin: float, goal: float, works: Works, run: Run,
+) -> bool:  # fmt: skip
+    """Take the interval up to a goal in modes; False where that is not certain to be right.
+
+    The motion stays in the modes, see `from_modes`.
+    """
+    modal, n_inputs = series.modal, series.inputs.shape[1]
+    if run.stale or not modal.serves[0] or run.shown + modal.growth.shape[1] > len(buffers.shown_time):
+        return False
+    h = modal.length[0]
+    if abs(goal - run.time - h) > SAME * h:
+        return False
+    if not modal.is_present[0]:
+        to_modes(modal, step)
+    expand_inputs(series, coefs, run.time - begin, h)
+    start_interval(modal, series.inputs)
+    follow(linear, modal, n_inputs)
+    if not is_quiet(laws, series, n_inputs):
+        return False
+    if not count_peaks(linear, laws, step, series, n_inputs, run.time):
+        return False
+    add_interval_works(modal, n_inputs, works)
+    show(modal, buffers, run, n_inputs)
+    advance_modes(modal, n_inputs)
+    run.time = goal
+    run.steps += 1
+    lengths.in_modes += 1
+    return True

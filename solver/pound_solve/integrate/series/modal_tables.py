@@ -1,0 +1,245 @@
+r"""Tables of intervals in modes: what `modal` multiplies with, for one length h of interval.
+
+On the branches on which a run starts, the parts of the structure that only contacts join have complex modes
+of their own, :math:`\dot q_i = \lambda_i q_i + F_i s(t)`.  Under inputs that are straight lines over the
+interval, :math:`s = \sigma_0 + \sigma_1 t/h`, each is a free motion and a straight line,
+
+.. math:: q_i = c_i\,e^{\lambda_i t} - \frac{F_i}{\lambda_i}\Bigl(\sigma_0 + \frac{\sigma_1}{\lambda_i h}
+          + \sigma_1\frac th\Bigr),
+
+so that all at a place of the interval is a product of a table with :math:`x = (\mathrm{Re}\,c,
+\mathrm{Im}\,c, \sigma_0, \sigma_1)`, and the works are quadratic forms of x.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.integrate import costs
+from pound_solve.integrate.protocol import MonitoredOutputs
+from pound_solve.integrate.series.modal import SAME
+from pound_solve.integrate.series.state import Modal
+from pound_solve.numerics.graph import components
+from pound_solve.numerics.matrices import dense, used_rows
+from pound_solve.numerics.types import Array, Complex, Index
+from pound_solve.structure.reduction import ReducedSystem
+
+MOST_UNKNOWNS = 80  #: of a part
+MOST_CONDITION = 3e3  #: of its modes
+WORTH = 10.0  #: radians of the fastest mode in an interval from which on it pays: two steps by series
+FEW = 50  #: intervals of one length for which tables do not pay
+STRIDE = 5.0  #: radians of the fastest mode in a cell, at most, as in a step by series
+FEWEST = 4  #: cells
+START = np.zeros(1)  #: of an interval
+PANEL, POINTS = 8.0, 16  #: radians that Gauss's rule with so many points integrates to rounding
+
+
+def usual(times: Array) -> float:
+    """Length of most of the intervals between some times; 0 where few have the same."""
+    if len(times) <= FEW:
+        return 0.0
+    lengths = np.sort(np.diff(times))
+    ends = np.flatnonzero(np.diff(lengths, append=np.inf) > SAME * lengths) + 1
+    counts = np.diff(ends, prepend=0)
+    most = int(np.argmax(counts))
+    return float(lengths[ends[most] - 1]) if counts[most] > FEW else 0.0
+
+
+class Part:
+    """A part of the structure over intervals of one length.
+
+    Parameters
+    ----------
+    system : ReducedSystem
+    stiffness : ndarray, shape (n_laws,)
+        Of the laws [F/L].
+    monitored : ndarray, shape (n_monitored, n)
+    unknowns : ndarray of int
+    length : float
+
+    Attributes
+    ----------
+    followed : ndarray of int
+        Which it moves of the deformations of the laws and the monitored outputs.
+    rows : ndarray of complex, shape (n_followed, n_modes)
+        These on the modes.
+
+    Raises
+    ------
+    numpy.linalg.LinAlgError
+        The modes do not span the motion, or a mode is not held or grows.
+    """
+
+    def __init__(
+        self, system: ReducedSystem, stiffness: Array, monitored: Array, unknowns: Index, length: float
+    ) -> None:
+        # where modes do not pay they are not loaded
+        from pound_solve.integrate.closed_form.modal_propagator import ModalPropagator
+        from pound_solve.integrate.closed_form.state_space import state_space
+
+        self.unknowns, self.length, block = unknowns, length, np.ix_(unknowns, unknowns)
+        laws, outputs = dense(system.law_rows[:, unknowns]), monitored[:, unknowns]
+        k = dense(system.stiffness[block]) + (laws.T * stiffness) @ laws
+        self.damping, self.inputs = dense(system.damping[block]), system.inputs[unknowns]
+        self.constant = system.constant[unknowns]
+        self.modes = ModalPropagator(state_space(dense(system.mass[block]), self.damping, k), self.inputs)
+        self.rate = self.modes.eigenvalues
+        size = np.abs(self.rate)
+        loose = size.min() < 1e-9 * size.max() or self.rate.real.max() > 1e-12 * size.max()
+        if loose or self.modes.condition > MOST_CONDITION:
+            raise np.linalg.LinAlgError
+        unit, none = np.eye(self.inputs.shape[1]), np.zeros(len(unknowns))
+        forcing = np.array([self.modes.forcing(s[None], none)[0] for s in unit]).T
+        self.steady = -forcing.reshape(len(self.rate), len(unit)) / self.rate[:, None]
+        self.held = -self.modes.load_forcing(np.eye(len(unknowns))).T / self.rate[:, None]
+        rows = np.vstack([laws, outputs])
+        self.followed = np.flatnonzero(rows.any(axis=1))
+        self.rows = rows[self.followed] @ self.modes.u_q
+
+    def table(self, rows: Complex, places: Array, order: int = 0) -> Array:
+        """Derivative of an order, 0 or 1, of some rows at places in [0, 1] of the interval, on x, shape
+        (n_places, n_rows, n_x).
+        """
+        free = (rows * self.rate**order) * np.exp(self.rate * self.length * places[:, None])[:, None]
+        start, slope = rows @ self.steady, rows @ (self.steady / (self.rate * self.length)[:, None])
+        grown = slope + start * places[:, None, None]
+        if order:
+            start, grown = 0.0 * start, np.broadcast_to(start / self.length, grown.shape)
+        first = np.broadcast_to(start, grown.shape)
+        return np.concatenate([free.real, -free.imag, first.real, grown.real], axis=2)
+
+    def works(self) -> tuple[Array, Array, Array]:
+        """Work lost in dashpots as ``x^T D x``, and put in as ``sigma^T P x + w x``."""
+        panels = int(np.ceil(np.abs(self.rate).max() * self.length / PANEL))
+        points, weights = np.polynomial.legendre.leggauss(POINTS)
+        places = ((np.arange(panels)[:, None] + 0.5 + 0.5 * points) / panels).ravel()
+        shares = np.tile(0.5 * self.length / panels * weights, panels)
+        damped = used_rows(self.damping)
+        c, v = self.damping[np.ix_(damped, damped)], self.modes.v_q
+        velocity = self.table(v[damped], places)
+        force = shares[:, None, None] * (c @ velocity)
+        lost = np.tensordot(velocity, force, axes=([0, 1], [0, 1]))
+        power = shares[:, None, None] * self.table(self.inputs.T @ v, places)
+        put = np.vstack([power.sum(axis=0), (places[:, None, None] * power).sum(axis=0)])
+        start, end = self.table(self.constant[None] @ self.modes.u_q, np.array([0.0, 1.0]))[:, 0]
+        return lost, put, end - start
+
+
+def parts_of(system: ReducedSystem, stiffness: Array, monitored: Array, length: float) -> list[Part]:
+    """The parts that only contacts join; none where modes do not serve or do not pay."""
+    straight = system.excitation.coefs.shape[1] <= 2
+    if not straight or length == 0.0 or costs.fastest_rate(system) * length < WORTH:
+        return []
+    laws = zip(system.structure.laws, dense(system.law_rows))
+    groups = [np.flatnonzero(row) for s, row in laws if not s.role.collides]
+    label = components(system.size, (system.mass, system.damping, system.stiffness), groups)
+    members = [np.flatnonzero(label == x) for x in np.unique(label)]
+    if max(map(len, members)) > MOST_UNKNOWNS:
+        return []
+    try:
+        return [Part(system, stiffness, monitored, unknowns, length) for unknowns in members]
+    except np.linalg.LinAlgError:
+        return []
+
+
+def allocate(
+    system: ReducedSystem, stiffness: Array, monitored: MonitoredOutputs, times: Array, place: Index,
+    shown: Index,
+) -> Modal:  # fmt: skip
+    """Lay out the tables of all parts, one after the other.
+
+    Parameters
+    ----------
+    system : ReducedSystem
+    stiffness : ndarray, shape (n_laws,)
+        Of the laws on the branches on which the run starts [F/L].
+    monitored : MonitoredOutputs
+    times : ndarray
+        At which the run must arrive.
+    place : ndarray of int, shape (n,)
+        Of the unknowns in the order of elimination.
+    shown : ndarray of int
+        Unknowns that the envelopes look at, in that order.
+    """
+    length, outputs = usual(times), monitored.rows
+    parts = parts_of(system, stiffness, outputs, length)
+    seen = [np.flatnonzero(np.isin(shown, place[p.unknowns])) for p in parts]
+    n_inputs, n_followed = system.inputs.shape[1], len(stiffness) + len(outputs)
+    counts = [(len(p.unknowns), len(p.rate), len(p.followed), len(s)) for p, s in zip(parts, seen)]
+    n, q, r, w = np.max([(0, 0, 0, 0), *counts], axis=0).tolist()
+    b, size = len(parts), 2 * q + 2 * n_inputs
+    fastest = max((float(np.abs(p.rate).max()) for p in parts), default=0.0)
+    cells = max(FEWEST, int(np.ceil(fastest * length / STRIDE)))
+    places = 2 * cells + 1
+    out = Modal(
+        length=np.array([length if parts else 0.0]),
+        is_present=np.zeros(1, np.int64),
+        serves=np.zeros(1, np.int64),
+        stiffness=stiffness.copy(),
+        counts=np.array(counts, np.int64).reshape(b, 4),
+        unknowns=np.zeros((b, n), np.int64),
+        to_modes=np.zeros((b, 2, 2 * q, n)),
+        from_modes=np.zeros((b, 2, n, 2 * q)),
+        held=np.zeros((b, 2 * q, n)),
+        growth=np.zeros((b, places, 2, q)),
+        steady=np.zeros((b, 2 * q, 2 * n_inputs)),
+        bend=np.zeros((b, q)),
+        followed=np.zeros((b, r), np.int64),
+        place=np.full((b, n_followed), -1),
+        turn=np.zeros((b, 2, q)),
+        share=np.zeros((b, r, q)),
+        rows=np.zeros((b, r, size)),
+        damping_work=np.zeros((b, size, size)),
+        input_work=np.zeros((b, 2 * n_inputs, size)),
+        constant_work=np.zeros((b, size)),
+        shown=np.zeros((b, w), np.int64),
+        motion=np.zeros((b, 3, w, size)),
+        modes=np.zeros((b, 2 * q)),
+        rest=np.zeros((b, 2 * q)),
+        offset=np.zeros(n_followed),
+        x=np.zeros((b, places, size)),
+        departure=np.zeros((b, q)),
+        term=np.zeros((2, q)),
+        values=np.zeros((cells + 1, n_followed)),
+        apart=np.zeros(n_followed),
+    )
+    for i, (p, own) in enumerate(zip(parts, seen)):
+        fill(out, i, p, own, place[p.unknowns], shown[own])
+    return out
+
+
+def fill(out: Modal, b: int, part: Part, seen: Index, unknowns: Index, shown: Index) -> None:
+    """Fill in the tables of part `b`; `seen` are the numbers of the `shown` of its `unknowns`."""
+    modes, rate = part.modes, part.rate
+    h, steady = part.length, part.steady
+
+    def put(array: NDArray[Any], values: NDArray[Any]) -> None:
+        array[b][tuple(map(slice, values.shape))] = values
+
+    put(out.unknowns, unknowns)
+    one = np.eye(len(unknowns))
+    to_modes = modes.state_of(one, 0.0 * one), modes.state_of(0.0 * one, one)
+    put(out.to_modes, np.array([np.vstack([x.real, x.imag]) for x in to_modes]))
+    put(out.from_modes, np.array([np.hstack([x.real, -x.imag]) for x in (modes.u_q, modes.v_q)]))
+    put(out.held, np.vstack([part.held.real, part.held.imag]))
+    cells = len(out.values) - 1
+    growth = np.exp(rate * h * np.linspace(0.0, 1.0, 2 * cells + 1)[:, None])
+    put(out.growth, np.stack([growth.real, growth.imag], axis=1))
+    start = np.hstack([steady, steady / (rate * h)[:, None]])
+    put(out.steady, np.vstack([start.real, start.imag]))
+    put(out.bend, np.minimum(2.0, (np.abs(rate) * h / cells) ** 2 / 8.0))
+    put(out.followed, part.followed)
+    out.place[b, part.followed] = np.arange(len(part.followed))
+    put(out.turn, np.array([rate.real, rate.imag]) * h / cells)
+    put(out.share, np.abs(part.rows))
+    put(out.rows, part.table(part.rows, START)[0])
+    for array, values in zip((out.damping_work, out.input_work, out.constant_work), part.works()):
+        put(array, values)
+    put(out.shown, seen)
+    chosen = np.searchsorted(unknowns, shown, sorter=np.argsort(unknowns))
+    own = np.argsort(unknowns)[chosen]
+    motion = (modes.u_q[own], 0), (modes.v_q[own], 0), (modes.v_q[own], 1)
+    put(out.motion, np.concatenate([part.table(rows, START, order) for rows, order in motion]))
