@@ -235,7 +235,7 @@ def test_table_of_convergence_is_what_the_methods_do(tmp_path):
 def test_table_of_taylor_is_what_it_does(tmp_path):
     """The same series and events; differences to EXACT, which are rounding, up to ten times the table's."""
     rows = table("theory-integration.md", "taylor")
-    for name, unknowns, series, events, drifts, forces in rows[:3]:
+    for name, unknowns, series, in_modes, events, drifts, forces in rows[:3]:
         deck, _, n = name.partition(" n=")
         found = []
         for method in ("EXACT", "TAYLOR"):
@@ -247,6 +247,7 @@ def test_table_of_taylor_is_what_it_does(tmp_path):
                 found.append((extremes, contacts["peak_force"]))
         assert (figures["unknowns"], figures["events"]) == (unknowns, events)
         assert int(figures["series"]) == pytest.approx(int(series), rel=0.01)
+        assert int(figures.get("intervals in modes", 0)) == pytest.approx(int(in_modes), rel=0.01)
         (drift, force), (other, peak) = found
         assert (np.abs(other - drift).max(axis=0) / np.abs(drift).max(axis=0)).max() < 10 * float(drifts)
         assert (np.abs(peak - force) / force).max() < 10 * float(forces)

@@ -145,7 +145,10 @@ def test_no_error_gathers_over_thousands_of_periods(every: float, v: float) -> N
     assert np.abs(off).max() < 2e-11  # 2e4 radians, known to 2e-12
     assert r.check() < 1e-11
     steps = int(item(r, "series"))
-    assert w * 2 / 6 < steps < w * 2 / (3 if every < 1 else 4)
+    if every < 0.01:  # in modes
+        assert steps < 100
+    else:
+        assert w * 2 / 6 < steps < w * 2 / (3 if every < 1 else 4)
 
 
 def test_growth_that_a_negative_stiffness_leaves_free() -> None:
