@@ -190,10 +190,10 @@ def seconds_for(target, points):
     return math.exp(y[-1] + slope * (goal - x[-1])) if slope < 0 else math.inf, True
 
 
-def at_equal_error(answers, reference):
-    """Lines: what each method needs for the errors of EQUAL, and for both."""
+def at_equal_error(answers, reference, equal=EQUAL):
+    """Lines: what each method needs for the errors of `equal`, and for both."""
     row = "{:34} {:>16} {:>16} {:>8}".format
-    yield row("CPU s at equal error", *(f"{kind} {e:g}" for kind, e in EQUAL.items()), "ratio")
+    yield row("CPU s at equal error", *(f"{kind} {e:g}" for kind, e in equal.items()), "ratio")
     for method in dict.fromkeys(a.method for a in answers if a is not reference):
         runs = sorted((a for a in answers if a.method == method and a.sane and a.dt), key=lambda a: -a.dt)
         if len(runs) < 2:
@@ -201,7 +201,7 @@ def at_equal_error(answers, reference):
         told = [errors(a, reference) for a in runs]
         found = [
             seconds_for(e, [(own[kind], a.seconds) for own, a in zip(told, runs)])
-            for kind, e in EQUAL.items()
+            for kind, e in equal.items()
         ]
         cells = [f"{s:.3g}{' *' if beyond else ''}" for s, beyond in found]
         yield row(method, *cells, f"{max(s for s, _ in found) / reference.seconds:.3g}")
