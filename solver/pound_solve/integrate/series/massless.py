@@ -29,6 +29,7 @@ from pound_solve.integrate.kernels.allocation import (
 from pound_solve.integrate.kernels.products import along, spread
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.series.smooth import Q, dashpot_rest
 from pound_solve.integrate.series.springs import deformation, load
 from pound_solve.integrate.series.state import Massless, Series
 from pound_solve.numerics import ldl
@@ -158,8 +159,8 @@ def solve_order(held: Massless, which: int) -> None:
 
 
 def balance(series: Series, k: int, top: int, which: int) -> None:
-    """Right sides of the unknowns of one order: load less the forces of K and of the laws' springs at the
-    coefficients `k`.
+    """Right sides of the unknowns of one order: load less the forces of K, of the laws' springs and what
+    tangents leave at the coefficients `k`.
     """
     held, springs, c = series.massless, series.springs, series.motion[k]
     members, x = held.members[which], held.right_side
@@ -168,6 +169,11 @@ def balance(series: Series, k: int, top: int, which: int) -> None:
     if k < top:
         for q in range(held.counts[which]):
             x[members[q]] += load(springs, series, k, top, held.unknown[members[q]])
+    smooth = series.smooth
+    for r in range(len(smooth.laws)):
+        n = held.law_number[smooth.laws[r]]
+        if n >= 0:
+            spread(held.rows, n, -smooth.numbers[r, Q] * smooth.rest[r, k], x)
 
 
 def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
@@ -182,6 +188,10 @@ def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
         if held.law_number[i] >= 0:
             force = k / h * laws.damping[i] * deformation(laws, series, k, top, i)
             spread(held.rows, held.law_number[i], -force, x)
+    for r in range(len(series.smooth.laws)):
+        n = held.law_number[series.smooth.laws[r]]
+        if n >= 0:
+            spread(held.rows, n, -dashpot_rest(laws, series.smooth, r, k - 1, h), x)
     solve_order(held, DAMPING)
     for q in range(held.counts[DAMPING]):
         c[k, held.unknown[members[q]]] = x[members[q]] * (h / k)

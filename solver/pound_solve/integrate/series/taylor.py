@@ -2,8 +2,8 @@ r"""TAYLOR: event-driven integration by power series, explicit, without a time s
 
 Between events the reduced system is linear, so the motion has a power series that converges however far;
 its coefficients follow one from another by products with the sparse K and C (see `expansion`).  So do those
-of closed rigid contacts (`rigid`), of contacts whose force is a power of the overlap (`curved`), and of
-friction (`friction`), whose forces are series of their own.  A step goes as far as `expansion.TERMS` terms
+of closed rigid contacts (`rigid`), of contacts whose force is a power of the overlap (`curved`), of smooth
+hysteresis (`smooth`), and of friction (`friction`), whose forces are series of their own.  A step goes as far as `expansion.TERMS` terms
 are right to rounding, some five radians of the fastest mode that takes part.  Within it every event
 function and every quantity whose peak is kept is a polynomial, whose first rise and extremes are found with
 proof (see `events.polynomial_roots`).  Works are integrated by Gauss's rule, each on its own, so that the
@@ -50,7 +50,17 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.rigid.contacts import MasslessContact, RigidContacts
 from pound_solve.integrate.rigid.instants import RigidInstants
-from pound_solve.integrate.series import curved, expansion, friction, march, massless, rigid, springs, state
+from pound_solve.integrate.series import (
+    curved,
+    expansion,
+    friction,
+    march,
+    massless,
+    rigid,
+    smooth,
+    springs,
+    state,
+)
 from pound_solve.integrate.series.massless import STIFFNESS
 from pound_solve.integrate.series.present import Present
 from pound_solve.integrate.tracker import Peaks
@@ -96,6 +106,7 @@ class Taylor(KernelEngine):
             expansion.TERMS + 1,
             expansion.TERMS // expansion.CHECK + 1,
         )
+        is_smooth = np.array([s.law.rule.smooth is not None for s in laws], bool)
         gauss = np.zeros((rules, 2, 2 * rules))
         for i in range(rules):
             count = 2 * (i + 1)
@@ -119,11 +130,13 @@ class Taylor(KernelEngine):
             massless=self.massless,
             rigid=rigid.allocate(self.contacts, o, len(laws), terms),
             curved=curved.allocate(
-                np.array([s.law.curved and s.role is not Role.FRICTION for s in laws], bool), terms
+                np.array([s.law.curved and s.role is not Role.FRICTION for s in laws], bool) & ~is_smooth,
+                terms,
             ),
             friction=friction.allocate(
                 self.laws.coupled, self.laws.normal[self.laws.coupled], len(laws), terms
             ),
+            smooth=smooth.allocate(is_smooth, terms),
         )
         for i in self.series.curved.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
