@@ -26,6 +26,7 @@ from pound_solve.integrate.kernels.allocation import (
     places_in_pattern,
     sparse_rows,
 )
+from pound_solve.integrate.kernels.laws import linear_force
 from pound_solve.integrate.kernels.products import along, spread
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import STILL
@@ -218,13 +219,18 @@ def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, top: 
 def violated(laws: Laws, which: Index) -> tuple[int, int]:
     """The first of some laws at fault and its event: its rate has jumped, and an event function that
     depends on it is above zero; -1 where there is none.
+
+    A rate that the rounding of its force leaves to a dashpot counts as none: at rest there is no other.
     """
     for i in which:
-        d, v = laws.now.deformation[i], laws.now.rate[i]
+        d, v, c = laws.now.deformation[i], laws.now.rate[i], laws.damping[i]
+        largest = laws.largest_rate[i]
+        if c > 0.0:
+            largest = max(largest, abs(linear_force(laws, i, d, 0.0)) / c)
         for e in range(laws.n_events[i]):
             on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
             if on_v != 0.0:
-                scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i]
+                scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * largest
                 if on_d * d + on_v * v + constant > STILL * (scale + abs(constant)):
                     return i, e
     return -1, -1
