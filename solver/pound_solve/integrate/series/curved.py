@@ -150,7 +150,7 @@ def right_part(force: Array, terms: int, end: float) -> float:
     return min(end, (RIGHT * most / tail) ** (1.0 / last)) if tail > 0.0 else end
 
 
-def right_up_to(curved: Curved, terms: int, end: float) -> float:
+def contacts_right_up_to(curved: Curved, terms: int, end: float) -> float:
     """Part of a step, or multiple of it, up to which all forces are right, `end` at most."""
     for r in range(len(curved.laws)):
         if curved.phase[r] != APART:

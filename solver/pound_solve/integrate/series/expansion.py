@@ -17,12 +17,11 @@ import numpy as np
 
 from pound_solve.integrate.kernels.products import along, multiply, spread
 from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Step
-from pound_solve.integrate.series import curved, smooth
-from pound_solve.integrate.series.curved import add_contacts, any_overlap
+from pound_solve.integrate.series.curved import add_contacts, any_overlap, contacts_right_up_to
 from pound_solve.integrate.series.friction import add_friction
 from pound_solve.integrate.series.massless import add_massless
 from pound_solve.integrate.series.rigid import hold
-from pound_solve.integrate.series.smooth import add_rests, find_rests
+from pound_solve.integrate.series.smooth import add_rests, find_rests, smooth_right_up_to
 from pound_solve.integrate.series.springs import add_product, deformation
 from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.numerics.jit import flat, loose
@@ -162,7 +161,8 @@ def begin_series(
 
 def right_up_to(series: Series, terms: int, end: float) -> float:
     """Part of a step, or multiple of it, up to which forces that are series are right, `end` at most."""
-    return smooth.right_up_to(series.smooth, terms, curved.right_up_to(series.curved, terms, end))
+    end = contacts_right_up_to(series.curved, terms, end)
+    return smooth_right_up_to(series.smooth, terms, end)
 
 
 @flat

@@ -191,7 +191,7 @@ def defect(smooth: Smooth, r: int, terms: int, s: float) -> float:
     return lacks / max(abs(x), abs(share[0])) if lacks > 0.0 else lacks
 
 
-def right_up_to(smooth: Smooth, terms: int, end: float) -> float:
+def smooth_right_up_to(smooth: Smooth, terms: int, end: float) -> float:
     """Part of a step, or multiple of it, up to which the forces are right, `end` at most.
 
     A power that begins with a high term is not seen before that: it is looked at at the end, too.
