@@ -40,6 +40,7 @@ BENDS = -6  #: event beside those of the branch: the series goes on with another
 UNSEEN = 1e-14  #: share of the force at w = y that a power left out may make
 ZERO = 0.1 * PAST  #: share of y below which w is none
 LACKING = 1e-13  #: share of w that terms of the power which are cut off may make
+CREEP = 100.0  #: times y that a law would move in the run, at a rate that others are measured against
 BITS = 7  #: of the largest whole power that is multiplied: beyond, w is near y before it is seen
 W, Y, N, A, B, Q, SLOPE = range(7)  #: columns of `Smooth.numbers`
 
@@ -61,6 +62,15 @@ def allocate(smooth: Flags, terms: int) -> Smooth:
         rest=np.zeros((n, terms)),
         force=np.zeros((n, terms)),
     )
+
+
+def count_creep(laws: Laws, smooth: Smooth, length: float) -> None:
+    """Measure rates against such as move the laws in the `length` of the run: laws at rest would reverse
+    with the rounding of the others' rates for ever.
+    """
+    for r in range(len(smooth.laws)):
+        i, creep = smooth.laws[r], CREEP * abs(smooth.numbers[r, Y]) / length
+        laws.largest_rate[i] = max(laws.largest_rate[i], creep)
 
 
 def is_product(n: float) -> bool:
@@ -173,7 +183,7 @@ def dashpot_rest(laws: Laws, smooth: Smooth, r: int, k: int, h: float) -> float:
 
 
 def add_rests(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> None:
-    """Add the coefficients `k` of what tangents leave to the right side `new` of the coefficients `k` + 2."""
+    """Add the coefficients `k` of what the tangents leave to the right side `new` of those `k` + 2."""
     for r in range(len(smooth.laws)):
         rest = smooth.numbers[r, Q] * smooth.rest[r, k] + dashpot_rest(laws, smooth, r, k, h)
         spread(laws.rows, smooth.laws[r], -h * h * rest, new)

@@ -3,11 +3,12 @@ r"""TAYLOR: event-driven integration by power series, explicit, without a time s
 Between events the reduced system is linear, so the motion has a power series that converges however far;
 its coefficients follow one from another by products with the sparse K and C (see `expansion`).  So do those
 of closed rigid contacts (`rigid`), of contacts whose force is a power of the overlap (`curved`), of smooth
-hysteresis (`smooth`), and of friction (`friction`), whose forces are series of their own.  A step goes as far as `expansion.TERMS` terms
-are right to rounding, some five radians of the fastest mode that takes part.  Within it every event
-function and every quantity whose peak is kept is a polynomial, whose first rise and extremes are found with
-proof (see `events.polynomial_roots`).  Works are integrated by Gauss's rule, each on its own, so that the
-balance of energies remains a check.  Unknowns without mass follow the others (see `massless`).
+hysteresis (`smooth`) and of friction (`friction`), whose forces are series of their own.  A step goes as
+far as `expansion.TERMS` terms are right to rounding, some five radians of the fastest mode that takes part.
+Within it every event function and every quantity whose peak is kept is a polynomial, whose first rise and
+extremes are found with proof (see `events.polynomial_roots`).  Works are integrated by Gauss's rule, each
+on its own, so that the balance of energies remains a check.  Unknowns without mass follow the others (see
+`massless`).
 
 There is no decomposition into modes, and a step costs what its products cost: where EXACT has to decompose
 many unknowns, or many combinations of stiffnesses, TAYLOR is faster, and as exact.  Where the fastest mode
@@ -141,6 +142,8 @@ class Taylor(KernelEngine):
         for i in self.series.curved.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
             curved.enter(self.laws, self.rules, self.series.curved, i)
+        smooth.linearise(self.laws, self.rules, self.series.smooth)
+        smooth.count_creep(self.laws, self.series.smooth, length)
         self._hold()
         self.lengths: state.Lengths = record(state.Lengths)
         self.lengths.next, self.lengths.shortest = length, np.inf
