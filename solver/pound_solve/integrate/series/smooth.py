@@ -178,8 +178,9 @@ def find_rests(laws: Laws, series: Series, k: int, top: int) -> None:
 
 def dashpot_rest(laws: Laws, smooth: Smooth, r: int, k: int, h: float) -> float:
     """Coefficient `k` of what the tangent leaves of the dashpot of smooth law `r`."""
-    rest: float = laws.tangent_damping[smooth.laws[r]] * (k + 1) / h * smooth.rest[r, k + 1]
-    return smooth.numbers[r, Q] * rest
+    rate = (k + 1) / h * smooth.rest[r, k + 1]
+    force: float = laws.tangent_damping[smooth.laws[r]] * smooth.numbers[r, Q] * rate
+    return force
 
 
 def add_rests(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> None:
@@ -196,9 +197,9 @@ def defect(smooth: Smooth, r: int, terms: int, s: float) -> float:
     for k in range(terms - 1, -1, -1):
         x = x * s + share[k]
         power = power * s + smooth.power[r, k]
-    whole: float = (x if is_product(own[N]) else max(x, 0.0)) ** own[N]
-    lacks = max(abs(own[A]), abs(own[B])) * abs(whole - power) * abs(x - share[0])
-    return lacks / max(abs(x), abs(share[0])) if lacks > 0.0 else lacks
+    whole = (x if is_product(own[N]) else max(x, 0.0)) ** own[N]
+    lacks: float = max(abs(own[A]), abs(own[B])) * abs(whole - power) * abs(x - share[0])
+    return lacks if lacks == 0.0 else lacks / max(abs(x), abs(share[0]))
 
 
 def smooth_right_up_to(smooth: Smooth, terms: int, end: float) -> float:
