@@ -233,6 +233,15 @@ def test_newmark_converges_to_hinges_without_mass(rule: str, damping: str, load:
     assert near < 1e-3 * np.abs(r.u).max() and far > 9.0 * near
 
 
+def test_a_frame_at_rest_stays_there() -> None:
+    """Under its loads, where rounding leaves rates that change their signs."""
+    deck = hinged(TANGENT, load="").replace("RULE=BILINEAR R=0.05", "RULE=RAMBERG_OSGOOD N=5")
+    r = run_text(deck.replace("HISTORY 2", "HISTORY 0.2"), None, "TAYLOR")
+    assert r.status == "done", r.message
+    assert next(x["value"] for x in r.tables["run"] if x["item"] == "events") == "0"
+    assert np.abs(r.v).max() < 1e-12
+
+
 @pytest.mark.parametrize("name", SMOOTH)
 def test_the_differential_equation_is_that_of_the_curve(name: str) -> None:
     """Its tangent, and what is left of it a little further on, along a path with reversals."""

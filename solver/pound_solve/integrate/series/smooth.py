@@ -85,7 +85,7 @@ def linearise(laws: Laws, rules: Tables, smooth: Smooth) -> None:
     for r in range(len(smooth.laws)):
         i, own = smooth.laws[r], smooth.numbers[r]
         d = laws.now.deformation[i]
-        force = curve(laws, rules, i, d, 0.0)[0]
+        force, tangent, _, _ = curve(laws, rules, i, d, 0.0)
         own[W], own[Y], own[N], own[A], own[B], k, own[Q] = smooth_of(
             rules,
             laws.rule[i],
@@ -102,8 +102,7 @@ def linearise(laws: Laws, rules: Tables, smooth: Smooth) -> None:
             smooth.bent[r] = x > 0.75 * near
             smooth.low[r] = 0.5 * near if smooth.bent[r] else -near
             smooth.high[r] = np.inf if smooth.bent[r] else near
-        power = x**n if smooth.bent[r] else 0.0
-        own[SLOPE] = (1.0 + own[A] * power) / (1.0 + own[B] * power)
+        own[SLOPE] = (tangent - k) / own[Q] if smooth.bent[r] else 1.0
         laws.stiffness[i] = k + own[Q] * own[SLOPE]
         laws.damping[i] = proportional_damping(laws, i, laws.stiffness[i])
         laws.offset[i] = force - laws.stiffness[i] * d
@@ -164,12 +163,8 @@ def find_rests(laws: Laws, series: Series, k: int, top: int) -> None:
         if k == 0:
             continue
         take_term(laws, series, r, k - 1, top)
-        own, power, part, d = (
-            smooth.numbers[r],
-            smooth.power[r],
-            smooth.part[r],
-            series.deformation[smooth.laws[r]],
-        )
+        own, d = smooth.numbers[r], series.deformation[smooth.laws[r]]
+        power, part = smooth.power[r], smooth.part[r]
         total = 0.0
         for j in range(1, k):
             total += (k - j) * power[j] * (own[A] * d[k - j] - own[B] * part[k - j])
