@@ -10,9 +10,10 @@ from the coefficients k of all others:
     K_{ZZ}\, c_{Z,k} &= p_{Z,k} - K_{ZH}\, c_{H,k} - K_{ZR}\, c_{R,k}
 
 H, R and Z being the unknowns of order two, one and zero; dashpots of laws are part of C, tangents of laws
-on order zero part of :math:`K_{ZZ}`.  Which order an unknown has depends on the branches of the laws, so
-both matrices are factorised again when one of these changes.  :math:`c_{Z,0}` is solved for in every step:
-no error adds up.
+on order zero part of :math:`K_{ZZ}`; what tangents leave of smooth laws (see `smooth`) is part of f, and
+known.  Which order an unknown has depends on the branches of the laws, so both matrices are factorised
+again when one of these changes, and with tangents that do in every step.  :math:`c_{Z,0}` is solved for in
+every step: no error adds up.
 """
 
 from __future__ import annotations
