@@ -273,7 +273,7 @@ def test_all_methods_that_locate_events_take_it(tmp_path):
     [
         (
             "EXACT",
-            "EXACT needs linear pieces, and the law COULOMB of element 1 is curved: AUTO takes steps",
+            "EXACT needs linear pieces, and the law COULOMB of element 1 is curved: TAYLOR takes it",
         ),
         ("NEWMARK DT=1E-4 EVENTS=STEPPED", "friction (element 1) needs steps with EVENTS=LOCATED"),
     ],

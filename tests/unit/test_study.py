@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from kernels import steps_alone
 from pound_solve.assess import advice, study
 from pound_solve.assess.advice import Reference, StudyError, Trial
 from pound_solve.assess.study import Plan
@@ -211,7 +212,8 @@ def test_another_method_gives_the_reference_where_the_first_cannot_follow(tmp_pa
     ]
 
 
-def test_where_exact_cannot_go_the_tolerances_of_auto_are_met(tmp_path):
+def test_where_exact_cannot_go_the_tolerances_of_auto_are_met(tmp_path, monkeypatch):
+    steps_alone(monkeypatch)
     two = write(tmp_path, OTHERS[2])
     deck = Path(two.deck)
     curved = "RULE=BOUC_WEN N=2 FX=100 KX="

@@ -621,7 +621,6 @@ def test_envelopes_see_the_jump_at_a_touch_between_two_outputs() -> None:
             ("LAW=KELVIN_VOIGT K=1000", "LAW=RUBBER_BUMPER K=1000"),
             "the law RUBBER_BUMPER of element 2 is curved",
         ),
-        (("KX=w^2", "KX=w^2 FX=3 RULE=BOUC_WEN N=2"), "the law BOUC_WEN of element 1 is curved"),
     ],
 )
 def test_what_it_cannot_take_is_refused_in_words(change: tuple[str, str], told: str) -> None:

@@ -190,9 +190,10 @@ def not_in_series(system: ReducedSystem) -> str:
     for s, massless_end in zip(laws, without_mass):
         if s.law.curved:
             law = f"the law {s.rule} of element {s.element} is curved"
-            if s.law.rule.powers is None and s.role is not Role.FRICTION:
+            smooth = s.law.rule.smooth is not None
+            if s.law.rule.powers is None and not smooth and s.role is not Role.FRICTION:
                 return law
-            if rigid or massless_end:
+            if rigid or (massless_end and not smooth):
                 where = "stands beside rigid contacts" if rigid else "meets a node without mass"
                 return f"{law} and {where}"
     return ""

@@ -19,6 +19,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 EVENTS = 3  #: most event functions of a branch
+PAST = 1e-12  #: share of its scale up to which the variable of a smooth rule has come to zero
 PUSH, PUSH_RATE = 0, 1  #: internal variables of a law with normal-force coupling: normal force and its rate
 
 Numbers = tuple[float, ...]
@@ -32,6 +33,8 @@ EnergyFunction = Callable[[Numbers, int, Numbers, float, float], float]
 CurveFunction = Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]]
 PowerFunction = Callable[[Numbers, int, Numbers, float, float], float]
 PowersFunction = Callable[[Numbers, int, Numbers], tuple[float, float, float, float, float]]
+SmoothNumbers = tuple[float, float, float, float, float, float, float]
+SmoothFunction = Callable[[Numbers, int, Numbers, float, float], SmoothNumbers]
 
 NEVER = (0.0, 0.0, -1.0)  #: the event function of an event that never occurs
 # event functions of a change of sign of the rate
@@ -137,6 +140,11 @@ class Rule:
         ``powers(p, at, m) -> (k, n, c, q, pulls)``: the force of a pressed contact with a `curve` is
         ``k x^n + c x^q v`` at the overlap ``x = d - p[2]``, and, unless `pulls` is above zero, nothing
         where that would pull.  None: it is not of this kind.
+    smooth : callable or None
+        ``smooth(p, at, m, d, f) -> (w, y, n, a, b, k, q)``: on from the deformation `d`, where the force is
+        `f`, that of a rule with a `curve` is ``k d + q w`` and a constant, where
+        ``dw/dd = (1 + a x^n) / (1 + b x^n)``, ``x = w / y``.  Where `x` falls to zero the numbers change;
+        what is left of it there, up to `PAST`, is rounding.  None: it is not of this kind.
     parameters, variables : int
         How many numbers ``p`` and ``m`` have.
     """
@@ -149,6 +157,7 @@ class Rule:
     curve: CurveFunction | None = None
     power: PowerFunction | None = None
     powers: PowersFunction | None = None
+    smooth: SmoothFunction | None = None
     parameters: int = field(kw_only=True)
     variables: int = field(kw_only=True)
 

@@ -21,6 +21,8 @@ from pound_solve.laws.automaton import (
     PowerFunction,
     PowersFunction,
     Rule,
+    SmoothFunction,
+    SmoothNumbers,
     TransitionFunction,
     rate_independent,
     rate_power,
@@ -46,6 +48,7 @@ class Tables(NamedTuple):
     curve: tuple[CurveFunction, ...]
     power: tuple[PowerFunction, ...]
     powers: tuple[PowersFunction, ...]
+    smooth: tuple[SmoothFunction, ...]
 
 
 # what kernels call: the library compiled ahead of time has its own of these, see `ahead_of_time`
@@ -89,8 +92,23 @@ def powers_of(
     return rules.powers[number](p, at, m)
 
 
+def smooth_of(
+    rules: Tables, number: int, p: Numbers, at: int, m: Numbers, d: float, f: float
+) -> SmoothNumbers:
+    """Smooth curve of the rule of that number."""
+    return rules.smooth[number](p, at, m, d, f)
+
+
 #: these, in the order of `Tables`
-CALLS: tuple[Function, ...] = branch_of, transition_of, recoverable_of, curve_of, power_of, powers_of
+CALLS: tuple[Function, ...] = (
+    branch_of,
+    transition_of,
+    recoverable_of,
+    curve_of,
+    power_of,
+    powers_of,
+    smooth_of,
+)
 
 _P, _M = f"UniTuple(f8, {PARAMETERS})", f"UniTuple(f8, {VARIABLES})"
 #: types of the functions, of numba
@@ -101,6 +119,7 @@ SIGNATURES = (
     f"UniTuple(f8, 4)({_P}, i8, {_M}, f8, f8, f8)",
     f"f8({_P}, i8, {_M}, f8, f8)",
     f"UniTuple(f8, 5)({_P}, i8, {_M})",
+    f"UniTuple(f8, 7)({_P}, i8, {_M}, f8, f8)",
 )
 
 
@@ -114,6 +133,11 @@ def straight(
 def no_powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float, float]:
     """Stand in for the powers of a rule that has none."""
     return 0.0, 1.0, 0.0, 1.0, 0.0
+
+
+def not_smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
+    """Stand in for the smooth curve of a rule that has none."""
+    return 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0
 
 
 def missing(*_: Any) -> Any:
@@ -214,6 +238,12 @@ def powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float,
     return found
 
 
+def smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
+    """Smooth curve of a rule."""
+    found: SmoothNumbers = own(p[:parameters], at, m[:variables], d, f)
+    return found
+
+
 @cache
 def functions(rule: Rule) -> tuple[Function, ...]:
     """Functions of a rule in the order of `Tables`, each for the lengths `PARAMETERS` and `VARIABLES`.
@@ -246,6 +276,7 @@ def functions(rule: Rule) -> tuple[Function, ...]:
         if rule.power is None
         else adapted(power, rule.power),
         no_powers if rule.powers is None else adapted(powers, rule.powers),
+        not_smooth if rule.smooth is None else adapted(smooth, rule.smooth),
     )
 
 

@@ -51,6 +51,7 @@ from pound_solve.integrate.protocol import (
     refuse_rigid,
     remedy,
     rounding_check,
+    without_steps,
 )
 from pound_solve.integrate.rigid.contacts import MasslessContact
 from pound_solve.integrate.rigid.instants import RigidInstants
@@ -361,7 +362,8 @@ def integrate(
     """
     if why := not_linear(system):
         refuse_rigid(system, start, "EXACT")
-        why = f"EXACT needs linear pieces, and {why}: AUTO takes steps"
+        other = "TAYLOR takes it" if "TAYLOR" in without_steps(system) else "AUTO takes steps"
+        why = f"EXACT needs linear pieces, and {why}: {other}"
         raise Stop("A505", float(start.times[0]), why)
     system, start, monitored, recorder = condensed(system, start, monitored, recorder, "EXACT")
     try:

@@ -139,19 +139,22 @@ def any_overlap(curved: Curved) -> bool:
     return overlaps
 
 
-def right_up_to(curved: Curved, terms: int, end: float) -> float:
+def right_part(force: Array, terms: int, end: float) -> float:
+    """Part of a step, or multiple of it, up to which the series of a force is right, `end` at most."""
+    last, most = terms - 2, 0.0
+    for k in range(last + 1):
+        most = max(most, abs(force[k]))
+    tail = max(abs(force[last]), abs(force[last - 1]))
+    if not tail < np.inf:
+        return np.nan
+    return min(end, (RIGHT * most / tail) ** (1.0 / last)) if tail > 0.0 else end
+
+
+def contacts_right_up_to(curved: Curved, terms: int, end: float) -> float:
     """Part of a step, or multiple of it, up to which all forces are right, `end` at most."""
-    last = terms - 2
     for r in range(len(curved.laws)):
         if curved.phase[r] != APART:
-            most = 0.0
-            for k in range(last + 1):
-                most = max(most, abs(curved.force[r, k]))
-            tail = max(abs(curved.force[r, last]), abs(curved.force[r, last - 1]))
-            if not tail < np.inf:
-                return np.nan
-            if tail > 0.0:
-                end = min(end, (RIGHT * most / tail) ** (1.0 / last))
+            end = right_part(curved.force[r], terms, end)
     return end
 
 

@@ -17,10 +17,11 @@ import numpy as np
 
 from pound_solve.integrate.kernels.products import along, multiply, spread
 from pound_solve.integrate.kernels.state import MASS, Laws, LinearSystem, Step
-from pound_solve.integrate.series.curved import add_contacts, any_overlap, right_up_to
+from pound_solve.integrate.series.curved import add_contacts, any_overlap, contacts_right_up_to
 from pound_solve.integrate.series.friction import add_friction
 from pound_solve.integrate.series.massless import add_massless
 from pound_solve.integrate.series.rigid import hold
+from pound_solve.integrate.series.smooth import add_rests, find_rests, smooth_right_up_to
 from pound_solve.integrate.series.springs import add_product, deformation
 from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.numerics.jit import flat, loose
@@ -128,6 +129,7 @@ def next_term(
         spread(laws.rows, law, -force, new)
     add_contacts(laws, series, k, h, top, new)
     add_friction(laws, series, k, h, top, new)
+    add_rests(laws, series.smooth, k, h, new)
     below = 1.0 / ((k + 1) * (k + 2))
     if linear.diagonal:
         for i in range(n):
@@ -137,6 +139,7 @@ def next_term(
             new[i] *= below
         solve(linear.pattern, step.factors[MASS], step.pivots[MASS], new)
     hold(laws, series, k + 2, h, top)
+    find_rests(laws, series, k + 2, top)
     if len(series.massless.unknown):
         add_massless(laws, step, series, k + 2, h, top)
 
@@ -151,8 +154,15 @@ def begin_series(
         c[0, i], c[1, i] = now.displacement[i], h * now.velocity[i]
     for k in range(2):
         hold(laws, series, k, h, top)
+        find_rests(laws, series, k, top)
         if len(series.massless.unknown):
             add_massless(laws, step, series, k, h, top)
+
+
+def right_up_to(series: Series, terms: int, end: float) -> float:
+    """Part of a step, or multiple of it, up to which forces that are series are right, `end` at most."""
+    end = contacts_right_up_to(series.curved, terms, end)
+    return smooth_right_up_to(series.smooth, terms, end)
 
 
 @flat
@@ -187,9 +197,10 @@ def expand(
         if own + last > QUIET * most:
             lengths.carried = terms + CHECK
         enough = terms > top and own + last <= SMALL * SMALL * most
-        if enough and right_up_to(series.curved, terms, 1.0) == 1.0:
+        if enough and right_up_to(series, terms, 1.0) == 1.0:
             break
-    if any_overlap(series.curved):  # their losses follow powers of the overlap
+    # losses follow powers of the overlap, and forces at supports those of smooth laws
+    if any_overlap(series.curved) or len(series.smooth.laws):
         lengths.carried = terms + CHECK
     if not own + last < np.inf:
         return terms, np.nan
@@ -199,7 +210,7 @@ def expand(
         end = min(end, (SMALL * SMALL * most / own) ** (0.5 / terms))
     if last > 0.0:
         end = min(end, (SMALL * SMALL * most / last) ** (0.5 / (terms - 1)))
-    return terms, right_up_to(series.curved, terms, end)
+    return terms, right_up_to(series, terms, end)
 
 
 def derived(k: int, order: int, h: float) -> float:

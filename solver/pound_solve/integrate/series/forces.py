@@ -1,4 +1,4 @@
-"""Forces that are a series of their own, of closed rigid contacts and of curved ones: kernels."""
+"""Forces that are a series of their own, of closed rigid contacts, curved ones and smooth laws: kernels."""
 
 from __future__ import annotations
 
@@ -12,12 +12,14 @@ from pound_solve.numerics.types import Array
 
 def has_series(series: Series, i: int) -> bool:
     """Whether the force of law `i` is a series of its own."""
-    return is_held(series.rigid, i) or has_force(series.curved, i) or slides(series.friction, i)
+    own = is_held(series.rigid, i) or has_force(series.curved, i) or slides(series.friction, i)
+    return own or series.smooth.number[i] >= 0
 
 
 def copy_force(series: Series, terms: int, i: int, sign: float, out: Array) -> None:
     """Put `sign` times the series of the force of law `i`, which has one, into `out`."""
     rigid, curved, friction = series.rigid.number[i], series.curved.number[i], series.friction.number[i]
+    smooth = series.smooth.number[i]
     for k in range(terms + 1):
         out[k] = 0.0
     for k in range(terms - 1):
@@ -25,6 +27,8 @@ def copy_force(series: Series, terms: int, i: int, sign: float, out: Array) -> N
             out[k] = sign * series.rigid.force[rigid, k]
         elif curved >= 0:
             out[k] = sign * series.curved.force[curved, k]
+        elif smooth >= 0:
+            out[k] = sign * series.smooth.force[smooth, k]
         else:
             out[k] = sign * series.friction.force[friction, k]
 

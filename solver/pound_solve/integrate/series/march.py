@@ -8,7 +8,7 @@ from pound_solve.integrate.energy import Works, runs_away
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.integrate.kernels.consistency import make_consistent
 from pound_solve.integrate.kernels.laws import drag as law_drag
-from pound_solve.integrate.kernels.laws import law_force, transition
+from pound_solve.integrate.kernels.laws import law_force, linearise_law, transition
 from pound_solve.integrate.kernels.products import evaluate_inputs, form_load, multiply
 from pound_solve.integrate.kernels.recording import (
     log_transition,
@@ -48,6 +48,7 @@ from pound_solve.integrate.series.friction import LIFT, side_of, slides, touchin
 from pound_solve.integrate.series.massless import factorise, violated
 from pound_solve.integrate.series.modal import from_modes, renew_modes, take_in_modes
 from pound_solve.integrate.series.rigid import is_held
+from pound_solve.integrate.series.smooth import BENDS, bend, linearise
 from pound_solve.integrate.series.springs import add_up, deformation
 from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.integrate.series.tracking import event_of, first_event, track_laws, track_outputs
@@ -86,6 +87,9 @@ def add_law_losses(
         if drag != 0.0 or moved or pressed or overlaps or sliding:
             d, v = law_at(series, terms, s, h, i)
             laws.trial.deformation[i], laws.trial.rate[i] = d, v
+            if series.smooth.number[i] >= 0:
+                linearise_law(laws, rules, i, d, v)
+                drag = laws.damping[i]
             if sliding:
                 laws.entry_work[i] += weight * laws.offset[i] * v
                 continue
@@ -241,12 +245,13 @@ def count_instant(run: Run, h: float) -> None:
     run.last_event = run.time
 
 
-def renew(linear: LinearSystem, laws: Laws, series: Series, run: Run) -> bool:
-    """Take over the branches of the laws after a change; False where they leave an unknown without mass
-    loose, which `run.fault` names.
+def renew(linear: LinearSystem, laws: Laws, rules: Tables, series: Series, run: Run) -> bool:
+    """Take over the branches of the laws after a change, and the tangents of smooth ones; False where they
+    leave an unknown without mass loose, which `run.fault` names.
     """
     held = series.massless
     if run.stale:
+        linearise(laws, rules, series.smooth)
         add_up(linear, laws, series)
         renew_modes(laws, series)
         fault = factorise(laws, held) if len(held.unknown) else -1
@@ -280,10 +285,10 @@ def settle(
     """
     held, now = series.massless, step.now
     varying = series.rigid.n_held[0] + len(series.curved.laws) + len(series.friction.laws)
-    if len(held.unknown) + varying == 0:
+    if len(held.unknown) + varying + len(series.smooth.laws) == 0:
         return DONE
     for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
-        if not renew(linear, laws, series, run):
+        if not renew(linear, laws, rules, series, run):
             return LOOSE
         begin_series(linear, laws, step, series, coefs, begin, 1.0)
         next_term(linear, laws, step, series, 0, 1.0, len(coefs))
@@ -329,6 +334,8 @@ def take(
             linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, end, works, rules
         )
         accept(laws, step.now, series, terms, h, end)
+        if len(series.smooth.laws):
+            run.stale = 1
     run.steps += 1
 
 
@@ -352,7 +359,7 @@ def stride(
         h = step_length(lengths, t, left)
         if h == 0.0:
             return SHORT
-        if not renew(linear, laws, series, run):
+        if not renew(linear, laws, rules, series, run):
             return LOOSE
         terms, fit = expand(linear, laws, step, series, lengths, coefs, t - begin, h)
         if not fit >= CUT:  # what is known of the motion from terms far too large misleads
@@ -380,6 +387,9 @@ def stride(
         if event.event_index == LIFT:
             r = series.friction.number[event.law]
             series.friction.pressing[r] = not series.friction.pressing[r]
+            continue
+        if event.event_index == BENDS:
+            bend(laws, series.smooth, lengths, event.law)
             continue
         if event.event_index < 0:
             change_phase(laws, series.curved, lengths, event.law, event.event_index)

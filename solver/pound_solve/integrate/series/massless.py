@@ -10,9 +10,10 @@ from the coefficients k of all others:
     K_{ZZ}\, c_{Z,k} &= p_{Z,k} - K_{ZH}\, c_{H,k} - K_{ZR}\, c_{R,k}
 
 H, R and Z being the unknowns of order two, one and zero; dashpots of laws are part of C, tangents of laws
-on order zero part of :math:`K_{ZZ}`.  Which order an unknown has depends on the branches of the laws, so
-both matrices are factorised again when one of these changes.  :math:`c_{Z,0}` is solved for in every step:
-no error adds up.
+on order zero part of :math:`K_{ZZ}`; what tangents leave of smooth laws (see `smooth`) is part of f, and
+known.  Which order an unknown has depends on the branches of the laws, so both matrices are factorised
+again when one of these changes, and with tangents that do in every step.  :math:`c_{Z,0}` is solved for in
+every step: no error adds up.
 """
 
 from __future__ import annotations
@@ -26,9 +27,11 @@ from pound_solve.integrate.kernels.allocation import (
     places_in_pattern,
     sparse_rows,
 )
+from pound_solve.integrate.kernels.laws import linear_force
 from pound_solve.integrate.kernels.products import along, spread
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import STILL
+from pound_solve.integrate.series.smooth import Q, dashpot_rest
 from pound_solve.integrate.series.springs import deformation, load
 from pound_solve.integrate.series.state import Massless, Series
 from pound_solve.numerics import ldl
@@ -158,8 +161,8 @@ def solve_order(held: Massless, which: int) -> None:
 
 
 def balance(series: Series, k: int, top: int, which: int) -> None:
-    """Right sides of the unknowns of one order: load less the forces of K and of the laws' springs at the
-    coefficients `k`.
+    """Right sides of the unknowns of one order: load less the forces of K, of the laws' springs and what
+    tangents leave at the coefficients `k`.
     """
     held, springs, c = series.massless, series.springs, series.motion[k]
     members, x = held.members[which], held.right_side
@@ -168,6 +171,11 @@ def balance(series: Series, k: int, top: int, which: int) -> None:
     if k < top:
         for q in range(held.counts[which]):
             x[members[q]] += load(springs, series, k, top, held.unknown[members[q]])
+    smooth = series.smooth
+    for r in range(len(smooth.laws)):
+        n = held.law_number[smooth.laws[r]]
+        if n >= 0:
+            spread(held.rows, n, -smooth.numbers[r, Q] * smooth.rest[r, k], x)
 
 
 def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
@@ -182,6 +190,10 @@ def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
         if held.law_number[i] >= 0:
             force = k / h * laws.damping[i] * deformation(laws, series, k, top, i)
             spread(held.rows, held.law_number[i], -force, x)
+    for r in range(len(series.smooth.laws)):
+        n = held.law_number[series.smooth.laws[r]]
+        if n >= 0:
+            spread(held.rows, n, -dashpot_rest(laws, series.smooth, r, k - 1, h), x)
     solve_order(held, DAMPING)
     for q in range(held.counts[DAMPING]):
         c[k, held.unknown[members[q]]] = x[members[q]] * (h / k)
@@ -208,13 +220,18 @@ def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, top: 
 def violated(laws: Laws, which: Index) -> tuple[int, int]:
     """The first of some laws at fault and its event: its rate has jumped, and an event function that
     depends on it is above zero; -1 where there is none.
+
+    A rate that the rounding of its force leaves to a dashpot counts as none: at rest there is no other.
     """
     for i in which:
-        d, v = laws.now.deformation[i], laws.now.rate[i]
+        d, v, c = laws.now.deformation[i], laws.now.rate[i], laws.damping[i]
+        largest = laws.largest_rate[i]
+        if c > 0.0:
+            largest = max(largest, abs(linear_force(laws, i, d, 0.0)) / c)
         for e in range(laws.n_events[i]):
             on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
             if on_v != 0.0:
-                scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i]
+                scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * largest
                 if on_d * d + on_v * v + constant > STILL * (scale + abs(constant)):
                     return i, e
     return -1, -1

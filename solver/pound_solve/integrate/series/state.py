@@ -221,6 +221,39 @@ class Friction(NamedTuple):
     largest: Array
 
 
+class Smooth(NamedTuple):
+    """The smooth laws, numbered among themselves (see `smooth`).
+
+    Attributes
+    ----------
+    laws : ndarray, shape (n_smooth,)
+    number : ndarray, shape (n_laws,)
+        Place of a law in `laws`, -1 for others.
+    numbers : ndarray, shape (n_smooth, 7)
+        w, y, n, a, b and q of `Rule.smooth`, and dw/dd, at the start of the step.
+    bent : ndarray, shape (n_smooth,)
+        Whether the power is seen.
+    low, high : ndarray, shape (n_smooth,)
+        Range of w/y in which the series holds.
+    share : ndarray, shape (n_smooth, 2 BITS, TERMS + 1)
+        Coefficients of w/y, and of its powers on the way to n.
+    power, part, rest, force : ndarray, shape (n_smooth, TERMS + 1)
+        Coefficients of p and w, of what the tangent leaves of w, and of the forces.
+    """
+
+    laws: Index
+    number: Index
+    numbers: Array
+    bent: Flags
+    low: Array
+    high: Array
+    share: Array
+    power: Array
+    part: Array
+    rest: Array
+    force: Array
+
+
 class Damped(NamedTuple):
     """The unknowns that the structure's dashpots act on.
 
@@ -352,6 +385,7 @@ class Series(NamedTuple):
     rigid : Rigid
     curved : Curved
     friction : Friction
+    smooth : Smooth
     damped : Damped
     modal : Modal
     """
@@ -369,5 +403,6 @@ class Series(NamedTuple):
     rigid: Rigid
     curved: Curved
     friction: Friction
+    smooth: Smooth
     damped: Damped
     modal: Modal

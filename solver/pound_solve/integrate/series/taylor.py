@@ -2,12 +2,13 @@ r"""TAYLOR: event-driven integration by power series, explicit, without a time s
 
 Between events the reduced system is linear, so the motion has a power series that converges however far;
 its coefficients follow one from another by products with the sparse K and C (see `expansion`).  So do those
-of closed rigid contacts (`rigid`), of contacts whose force is a power of the overlap (`curved`), and of
-friction (`friction`), whose forces are series of their own.  A step goes as far as `expansion.TERMS` terms
-are right to rounding, some five radians of the fastest mode that takes part.  Within it every event
-function and every quantity whose peak is kept is a polynomial, whose first rise and extremes are found with
-proof (see `events.polynomial_roots`).  Works are integrated by Gauss's rule, each on its own, so that the
-balance of energies remains a check.  Unknowns without mass follow the others (see `massless`).
+of closed rigid contacts (`rigid`), of contacts whose force is a power of the overlap (`curved`), of smooth
+hysteresis (`smooth`) and of friction (`friction`), whose forces are series of their own.  A step goes as
+far as `expansion.TERMS` terms are right to rounding, some five radians of the fastest mode that takes part.
+Within it every event function and every quantity whose peak is kept is a polynomial, whose first rise and
+extremes are found with proof (see `events.polynomial_roots`).  Works are integrated by Gauss's rule, each
+on its own, so that the balance of energies remains a check.  Unknowns without mass follow the others (see
+`massless`).
 
 Elastic time without contact is taken in modes, from goal to goal (`modal`).  Elsewhere a step costs what
 its products cost: where EXACT has to decompose many unknowns, or many combinations of stiffnesses, TAYLOR
@@ -60,6 +61,7 @@ from pound_solve.integrate.series import (
     massless,
     modal_tables,
     rigid,
+    smooth,
     springs,
     state,
 )
@@ -109,6 +111,7 @@ class Taylor(KernelEngine):
             expansion.TERMS + 1,
             expansion.TERMS // expansion.CHECK + 1,
         )
+        is_smooth = np.array([s.law.rule.smooth is not None for s in laws], bool)
         gauss = np.zeros((rules, 2, 2 * rules))
         for i in range(rules):
             count = 2 * (i + 1)
@@ -132,11 +135,13 @@ class Taylor(KernelEngine):
             massless=self.massless,
             rigid=rigid.allocate(self.contacts, o, len(laws), terms),
             curved=curved.allocate(
-                np.array([s.law.curved and s.role is not Role.FRICTION for s in laws], bool), terms
+                np.array([s.law.curved and s.role is not Role.FRICTION for s in laws], bool) & ~is_smooth,
+                terms,
             ),
             friction=friction.allocate(
                 self.laws.coupled, self.laws.normal[self.laws.coupled], len(laws), terms
             ),
+            smooth=smooth.allocate(is_smooth, terms),
             damped=self._damped(terms),
             modal=modal_tables.allocate(
                 system, self.laws.stiffness, monitored, self._intervals(), np.argsort(o), self.buffers.which
@@ -145,6 +150,8 @@ class Taylor(KernelEngine):
         for i in self.series.curved.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
             curved.enter(self.laws, self.rules, self.series.curved, i)
+        smooth.linearise(self.laws, self.rules, self.series.smooth)
+        smooth.count_creep(self.laws, self.series.smooth, length)
         self._hold()
         self.lengths: state.Lengths = record(state.Lengths)
         self.lengths.next, self.lengths.shortest = length, np.inf

@@ -26,6 +26,7 @@ from pound_solve.integrate.series.curved import (
 from pound_solve.integrate.series.forces import copy_force, has_series
 from pound_solve.integrate.series.friction import friction_event
 from pound_solve.integrate.series.rigid import is_held
+from pound_solve.integrate.series.smooth import bend_event
 from pound_solve.integrate.series.state import Series
 
 
@@ -84,6 +85,8 @@ def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: in
         scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i] + abs(constant)
         at = first_rise(series.polynomial, terms, first.time, STILL * scale)
         first = earlier(first, i, e, at)
+    if series.smooth.number[i] >= 0:
+        return bend_event(series, terms, first, i)
     return phase_event(laws, series, terms, first, i) if series.curved.number[i] >= 0 else first
 
 

@@ -39,12 +39,14 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
+    PAST,
     REVERSAL_DOWN,
     REVERSAL_UP,
     BranchKind,
     Law,
     Numbers,
     Rule,
+    SmoothNumbers,
     linear,
     rate_independent,
 )
@@ -234,6 +236,16 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return k * (0.5 * r * (d - end) * (d + end) + (1.0 - r) * (before - done))
 
 
+def smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
+    """Differential equation of z, see `Rule`."""
+    k, r, n, beta = p[0], p[3], p[4], p[5]
+    s = 1.0 if at == LOADING else -1.0
+    z = (f / k - r * d) / (1.0 - r)
+    if s * z > -PAST * yields(p, -s):
+        return z, s * yields(p, s), n, -1.0, 0.0, r * k, (1.0 - r) * k
+    return z, -s * yields(p, -s), n, 2.0 * beta - 1.0, 0.0, r * k, (1.0 - r) * k
+
+
 RULE = Rule(
     BranchKind.ELASTIC.named("loading", "unloading"),
     start,
@@ -242,6 +254,7 @@ RULE = Rule(
     recoverable,
     curve,
     rate_independent,
+    smooth=smooth,
     parameters=9,
     variables=3,
 )

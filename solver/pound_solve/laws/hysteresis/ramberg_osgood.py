@@ -40,6 +40,7 @@ from pound_solve.laws.automaton import (
     Law,
     Numbers,
     Rule,
+    SmoothNumbers,
     linear,
     rate_independent,
 )
@@ -191,6 +192,14 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return back * fy / k
 
 
+def smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
+    """Elastic part of the deformation from the origin of the curve, see `Rule`."""
+    k, fy, n, alpha = p[0], p[1], p[3], p[4]
+    c, _, f1 = origin(m)
+    s = 1.0 if at == LOADING else -1.0
+    return (f - f1) / k, s * c * fy / k, n - 1.0, 0.0, alpha * n, 0.0, k
+
+
 RULE = Rule(
     BranchKind.ELASTIC.named("loading", "unloading"),
     start,
@@ -199,6 +208,7 @@ RULE = Rule(
     recoverable,
     curve,
     rate_independent,
+    smooth=smooth,
     parameters=5,
     variables=16,
 )

@@ -1,0 +1,235 @@
+r"""Smooth hysteresis in a power series: kernels.
+
+The tangent of a smooth rule depends on a power of a part w of its deformation (see `Rule.smooth`),
+
+.. math:: f = k d + q w + f_0, \qquad (1 + b p)\,\dot w = (1 + a p)\,\dot d, \qquad p = (w/y)^n .
+
+On a branch, and on one side of w = 0, the force therefore has a power series, of which Leibniz's rule gives
+
+.. math:: w_k = \frac{1 + a p_0}{1 + b p_0}\,d_k + r_k, \qquad
+          k\,(1 + b p_0)\,r_k = \sum_{j=1}^{k-1} (k - j)\,p_j\,(a\,d_{k-j} - b\,w_{k-j}) .
+
+The first part is the tangent at the start of the step, a spring as of any law (see `springs`), among the
+unknowns without mass, too.  The rest :math:`q r_k` follows from the motion up to k - 1: a known force.
+Dashpots in proportion to the tangent have forces in proportion to the rate of f, so a rest as well.  Every
+step begins with the closed form of the law, so that no error adds up.
+
+The series of p is a product where n is a whole number.  Where it is not, it follows from that of w (see
+`curved`), which converges up to w = 0 only: around that the power is left out as long as it changes the
+force by less than `UNSEEN`, and steps lengthen from there on in proportion to w.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
+from pound_solve.integrate.events.protocol import LocatedEvent, earlier
+from pound_solve.integrate.kernels.allocation import places
+from pound_solve.integrate.kernels.laws import curve, internal, parameters, proportional_damping
+from pound_solve.integrate.kernels.products import spread
+from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.series.curved import NEAR, power_term, right_part
+from pound_solve.integrate.series.springs import deformation
+from pound_solve.integrate.series.state import Lengths, Series, Smooth
+from pound_solve.laws.automaton import PAST
+from pound_solve.laws.functions import Tables, smooth_of
+from pound_solve.numerics.types import Array, Flags
+
+BENDS = -6  #: event beside those of the branch: the series goes on with another power
+UNSEEN = 1e-14  #: share of the force at w = y that a power left out may make
+ZERO = 0.1 * PAST  #: share of y below which w is none
+LACKING = 1e-13  #: share of w that terms of the power which are cut off may make
+CREEP = 100.0  #: times y that a law would move in the run, at a rate that others are measured against
+BITS = 7  #: of the largest whole power that is multiplied: beyond, w is near y before it is seen
+W, Y, N, A, B, Q, SLOPE = range(7)  #: columns of `Smooth.numbers`
+
+
+def allocate(smooth: Flags, terms: int) -> Smooth:
+    """Lay out the `smooth` ones of the laws for series of so many `terms`."""
+    laws = np.flatnonzero(smooth)
+    n = len(laws)
+    return Smooth(
+        laws=laws,
+        number=places(laws, len(smooth)),
+        numbers=np.zeros((n, 7)),
+        bent=np.zeros(n, bool),
+        low=np.zeros(n),
+        high=np.zeros(n),
+        share=np.zeros((n, 2 * BITS, terms)),
+        power=np.zeros((n, terms)),
+        part=np.zeros((n, terms)),
+        rest=np.zeros((n, terms)),
+        force=np.zeros((n, terms)),
+    )
+
+
+def count_creep(laws: Laws, smooth: Smooth, length: float) -> None:
+    """Measure rates against such as move the laws in the `length` of the run: laws at rest would reverse
+    with the rounding of the others' rates for ever.
+    """
+    for r in range(len(smooth.laws)):
+        i, creep = smooth.laws[r], CREEP * abs(smooth.numbers[r, Y]) / length
+        laws.largest_rate[i] = max(laws.largest_rate[i], creep)
+
+
+def is_product(n: float) -> bool:
+    """Whether a power is found by multiplication."""
+    return n == np.floor(n) and n < 2.0**BITS
+
+
+def linearise(laws: Laws, rules: Tables, smooth: Smooth) -> None:
+    """Put the present tangents in the place of the smooth laws' branches, and see how far their series
+    hold.
+    """
+    for r in range(len(smooth.laws)):
+        i, own = smooth.laws[r], smooth.numbers[r]
+        d = laws.now.deformation[i]
+        force, tangent, _, _ = curve(laws, rules, i, d, 0.0)
+        own[W], own[Y], own[N], own[A], own[B], k, own[Q] = smooth_of(
+            rules,
+            laws.rule[i],
+            parameters(laws.parameters, i),
+            laws.branch[i],
+            internal(laws.internal, i),
+            d,
+            force,
+        )
+        x, n, most = own[W] / own[Y], own[N], max(abs(own[A]), abs(own[B]))
+        smooth.low[r], smooth.high[r], smooth.bent[r] = 0.0 if x > ZERO else -np.inf, np.inf, most > 0.0
+        if most > 0.0 and not is_product(n):
+            near = (UNSEEN * (n + 1.0) / most) ** (1.0 / (n + 1.0))
+            smooth.bent[r] = x > 0.75 * near
+            smooth.low[r] = 0.5 * near if smooth.bent[r] else -near
+            smooth.high[r] = np.inf if smooth.bent[r] else near
+        own[SLOPE] = (tangent - k) / own[Q] if smooth.bent[r] else 1.0
+        laws.stiffness[i] = k + own[Q] * own[SLOPE]
+        laws.damping[i] = proportional_damping(laws, i, laws.stiffness[i])
+        laws.offset[i] = force - laws.stiffness[i] * d
+
+
+def product_term(a: Array, b: Array, k: int) -> float:
+    """Coefficient `k` of the product of two series."""
+    total = 0.0
+    for j in range(k + 1):
+        total += a[j] * b[k - j]
+    return total
+
+
+def whole_power_term(share: Array, n: int, k: int) -> float:
+    """Coefficient `k` of the power `n` of the series in the first row of `share`, by squares and products
+    that fill the other rows.
+    """
+    bit, row = 1, 0
+    while 2 * bit <= n:
+        bit *= 2
+    while bit > 1:
+        bit //= 2
+        share[row + 1, k] = product_term(share[row], share[row], k)
+        row += 1
+        if n & bit:
+            share[row + 1, k] = product_term(share[row], share[0], k)
+            row += 1
+    power: float = share[row, k]
+    return power
+
+
+def take_term(laws: Laws, series: Series, r: int, k: int, top: int) -> None:
+    """Take in the coefficient `k` of the motion: that of the force of smooth law `r`, and of the power."""
+    smooth, i = series.smooth, series.smooth.laws[r]
+    own, share, d = smooth.numbers[r], smooth.share[r], deformation(laws, series, k, top, i)
+    series.deformation[i, k] = d
+    smooth.force[r, k] = laws.stiffness[i] * d + own[Q] * smooth.rest[r, k]
+    smooth.part[r, k] = own[SLOPE] * d + smooth.rest[r, k]
+    if k == 0:
+        smooth.force[r, 0] += laws.offset[i]
+        smooth.part[r, 0] = own[W] + own[SLOPE] * (d - laws.now.deformation[i])
+    share[0, k] = smooth.part[r, k] / own[Y]
+    if not smooth.bent[r]:
+        smooth.power[r, k] = 0.0
+    elif is_product(own[N]):
+        smooth.power[r, k] = whole_power_term(share, int(own[N]), k)
+    else:
+        smooth.power[r, k] = power_term(own[N], share[0, 0], share[0], smooth.power[r], k)
+
+
+def find_rests(laws: Laws, series: Series, k: int, top: int) -> None:
+    """Find the coefficients `k` of what the tangents leave of the smooth laws, from the motion up to
+    `k` - 1; the inputs have `top` coefficients.
+    """
+    smooth = series.smooth
+    for r in range(len(smooth.laws)):
+        smooth.rest[r, k] = 0.0
+        if k == 0:
+            continue
+        take_term(laws, series, r, k - 1, top)
+        own, d = smooth.numbers[r], series.deformation[smooth.laws[r]]
+        power, part = smooth.power[r], smooth.part[r]
+        total = 0.0
+        for j in range(1, k):
+            total += (k - j) * power[j] * (own[A] * d[k - j] - own[B] * part[k - j])
+        smooth.rest[r, k] = total / (k * (1.0 + own[B] * power[0]))
+
+
+def dashpot_rest(laws: Laws, smooth: Smooth, r: int, k: int, h: float) -> float:
+    """Coefficient `k` of what the tangent leaves of the dashpot of smooth law `r`."""
+    rate = (k + 1) / h * smooth.rest[r, k + 1]
+    force: float = laws.tangent_damping[smooth.laws[r]] * smooth.numbers[r, Q] * rate
+    return force
+
+
+def add_rests(laws: Laws, smooth: Smooth, k: int, h: float, new: Array) -> None:
+    """Add the coefficients `k` of what the tangents leave to the right side `new` of those `k` + 2."""
+    for r in range(len(smooth.laws)):
+        rest = smooth.numbers[r, Q] * smooth.rest[r, k] + dashpot_rest(laws, smooth, r, k, h)
+        spread(laws.rows, smooth.laws[r], -h * h * rest, new)
+
+
+def defect(smooth: Smooth, r: int, terms: int, s: float) -> float:
+    """What w/y lacks at the place `s` for the power's series, which is cut off, as a share of it."""
+    own, share = smooth.numbers[r], smooth.share[r, 0]
+    x, power = 0.0, 0.0
+    for k in range(terms - 1, -1, -1):
+        x = x * s + share[k]
+        power = power * s + smooth.power[r, k]
+    whole = (x if is_product(own[N]) else max(x, 0.0)) ** own[N]
+    lacks: float = max(abs(own[A]), abs(own[B])) * abs(whole - power) * abs(x - share[0])
+    return lacks if lacks == 0.0 else lacks / max(abs(x), abs(share[0]))
+
+
+def smooth_right_up_to(smooth: Smooth, terms: int, end: float) -> float:
+    """Part of a step, or multiple of it, up to which the forces are right, `end` at most.
+
+    A power that begins with a high term is not seen before that: it is looked at at the end, too.
+    """
+    for r in range(len(smooth.laws)):
+        end = right_part(smooth.force[r], terms, end)
+        if smooth.bent[r]:
+            at = min(end, 1.0)
+            lacks = defect(smooth, r, terms, at)
+            if not lacks <= LACKING:
+                end = at * (LACKING / lacks) ** (1.0 / terms)
+    return end
+
+
+def bend_event(series: Series, terms: int, first: LocatedEvent, i: int) -> LocatedEvent:
+    """The instant at which smooth law `i` goes on with another power, or the `first` event."""
+    smooth, p = series.smooth, series.polynomial[POLYNOMIAL]
+    r = smooth.number[i]
+    for sign in (-1.0, 1.0):
+        limit = smooth.low[r] if sign < 0.0 else smooth.high[r]
+        if abs(limit) < np.inf:
+            for k in range(terms):
+                p[k] = sign * smooth.share[r, 0, k]
+            p[0] -= sign * limit
+            p[terms] = 0.0
+            first = earlier(first, i, BENDS, first_rise(series.polynomial, terms, first.time, 0.0))
+    return first
+
+
+def bend(laws: Laws, smooth: Smooth, lengths: Lengths, i: int) -> None:
+    """Choose the length of the first step of smooth law `i` whose power is seen."""
+    r = smooth.number[i]
+    if smooth.high[r] < np.inf:
+        far = smooth.high[r] * abs(smooth.numbers[r, Y])
+        lengths.next = min(lengths.next, NEAR * far / abs(laws.now.rate[i]))
