@@ -43,6 +43,7 @@ WITHIN = {
         "kernels",
         "events",
         "condensed",
+        "propagators",
         "stepping",
         "series",
         "closed_form",

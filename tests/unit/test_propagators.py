@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from pound_solve.integrate.closed_form.decomposition import make_propagator
-from pound_solve.integrate.closed_form.modal_propagator import ModalPropagator
-from pound_solve.integrate.closed_form.propagator import gauss
-from pound_solve.integrate.closed_form.series_propagator import SeriesPropagator
-from pound_solve.integrate.closed_form.state_space import Mechanism, state_space
+from pound_solve.integrate.propagators.base import gauss
+from pound_solve.integrate.propagators.modal import ModalPropagator
+from pound_solve.integrate.propagators.series import SeriesPropagator
+from pound_solve.integrate.propagators.state_space import Mechanism, state_space
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
 

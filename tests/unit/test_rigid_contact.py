@@ -14,7 +14,7 @@ from pound_solve.analyses import static
 from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.catalog import catalog
 from pound_solve.integrate.closed_form.decomposition import make_propagator
-from pound_solve.integrate.closed_form.state_space import held_space, state_space
+from pound_solve.integrate.propagators.state_space import held_space, state_space
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.rigid.contacts import RigidContacts
 from pound_solve.integrate.rigid.instants import LOST, SLOW

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from pound_solve.integrate.closed_form.decomposition import make_propagator
-from pound_solve.integrate.closed_form.modal_propagator import ModalPropagator
-from pound_solve.integrate.closed_form.series_propagator import SeriesPropagator
 from pound_solve.integrate.closed_form.work_integrals import Work, WorkIntegrals
+from pound_solve.integrate.propagators.modal import ModalPropagator
+from pound_solve.integrate.propagators.series import SeriesPropagator
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
 from unit.test_propagators import KINDS, loads, massless, subsystem

@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.closed_form.modal_propagator import ModalPropagator
-from pound_solve.integrate.closed_form.propagator import Propagator, real_rows
-from pound_solve.integrate.closed_form.series_propagator import SeriesPropagator
-from pound_solve.integrate.closed_form.state_space import Mechanism, held_space, state_space
 from pound_solve.integrate.closed_form.work_integrals import WorkIntegrals
 from pound_solve.integrate.events.functions import RowSet
+from pound_solve.integrate.propagators.base import Propagator, real_rows
+from pound_solve.integrate.propagators.modal import ModalPropagator
+from pound_solve.integrate.propagators.series import SeriesPropagator
+from pound_solve.integrate.propagators.state_space import Mechanism, held_space, state_space
 from pound_solve.integrate.rigid.contacts import RigidContacts
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.types import Array, Flags, Index

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.closed_form.propagator import real_parts
 from pound_solve.integrate.closed_form.subsystems import Subsystem, Subsystems
+from pound_solve.integrate.propagators.base import real_parts
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Index

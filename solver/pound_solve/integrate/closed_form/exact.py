@@ -1,7 +1,7 @@
 r"""EXACT: event-driven integration without a time step.
 
 Between events (a spring yields or unloads, a contact closes or opens) the reduced system is linear and its
-motion under piecewise-polynomial excitation is known in closed form (:mod:`.propagator`).
+motion under piecewise-polynomial excitation is known in closed form (:mod:`~pound_solve.integrate.propagators.base`).
 Only the event times remain to be found: event functions are sampled in cells whose length follows from
 bounds of their curvature (:mod:`.search`), bracketed by value and by slope (two crossings within one step
 of the grid), and polished to the last digits (:mod:`..events.grid`).  Peaks of drifts, spring deformations
@@ -32,12 +32,12 @@ from pound_solve.integrate.closed_form.event_loop import EventDrivenRun
 from pound_solve.integrate.closed_form.grid_samples import GridSamples
 from pound_solve.integrate.closed_form.recording import DeferredSamples, EnvelopeSamples
 from pound_solve.integrate.closed_form.search import SURE, Search
-from pound_solve.integrate.closed_form.series_propagator import SeriesPropagator
-from pound_solve.integrate.closed_form.state_space import Mechanism
 from pound_solve.integrate.closed_form.subsystems import Subsystems
 from pound_solve.integrate.closed_form.windows import Window, Windows
 from pound_solve.integrate.condensed import condensed
 from pound_solve.integrate.events.functions import EventFunctions, GridEvent, monitored_functions
+from pound_solve.integrate.propagators.series import SeriesPropagator
+from pound_solve.integrate.propagators.state_space import Mechanism
 from pound_solve.integrate.protocol import (
     INTERRUPTED,
     STILL,

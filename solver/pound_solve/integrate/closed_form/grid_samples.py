@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_solve.integrate.closed_form.dense_output import DenseOutput, direct_response
-from pound_solve.integrate.closed_form.propagator import TERMS, real_parts, real_rows
 from pound_solve.integrate.closed_form.subsystems import Subsystem
+from pound_solve.integrate.propagators.base import TERMS, real_parts, real_rows
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Flags, Index
 

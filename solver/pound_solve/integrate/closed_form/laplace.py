@@ -26,11 +26,11 @@ from pound_solve.integrate.closed_form.event_loop import EventDrivenRun
 from pound_solve.integrate.closed_form.hermite import SampledMotion, SampledRows, simpson
 from pound_solve.integrate.closed_form.laplace_transform import DynamicStiffness, LaplaceTransform
 from pound_solve.integrate.closed_form.search import SURE
-from pound_solve.integrate.closed_form.state_space import Mechanism
 from pound_solve.integrate.condensed import condensed
 from pound_solve.integrate.energy import law_values
 from pound_solve.integrate.events import grid
 from pound_solve.integrate.events.functions import EventFunctions, monitored_functions
+from pound_solve.integrate.propagators.state_space import Mechanism
 from pound_solve.integrate.protocol import (
     INTERRUPTED,
     MonitoredOutputs,

@@ -28,7 +28,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pound_solve.integrate.closed_form.state_space import StateSpace, state_space
+from pound_solve.integrate.propagators.state_space import StateSpace, state_space
 from pound_solve.numerics import phi
 from pound_solve.numerics.types import Array, Complex
 from pound_solve.structure.reduction import ReducedSystem

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from pound_solve.integrate import costs
 from pound_solve.integrate.closed_form.decomposition import Decomposer, Decomposition
-from pound_solve.integrate.closed_form.modal_propagator import ModalPropagator
 from pound_solve.integrate.events.functions import RowSet
+from pound_solve.integrate.propagators.modal import ModalPropagator
 from pound_solve.integrate.rigid.contacts import RigidContacts
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.graph import components

@@ -22,8 +22,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.closed_form.modal_propagator import ModalPropagator
-from pound_solve.integrate.closed_form.propagator import Propagator, gauss, powers
+from pound_solve.integrate.propagators.base import Propagator, gauss, powers
+from pound_solve.integrate.propagators.modal import ModalPropagator
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import phi, polynomial
 from pound_solve.numerics.types import Array, Complex

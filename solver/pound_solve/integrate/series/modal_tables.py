@@ -82,8 +82,8 @@ class Part:
         self, system: ReducedSystem, stiffness: Array, monitored: Array, unknowns: Index, length: float
     ) -> None:
         # where modes do not pay they are not loaded
-        from pound_solve.integrate.closed_form.modal_propagator import ModalPropagator
-        from pound_solve.integrate.closed_form.state_space import state_space
+        from pound_solve.integrate.propagators.modal import ModalPropagator
+        from pound_solve.integrate.propagators.state_space import state_space
 
         self.unknowns, self.length, block = unknowns, length, np.ix_(unknowns, unknowns)
         laws, outputs = dense(system.law_rows[:, unknowns]), monitored[:, unknowns]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.closed_form.propagator import TERMS, Propagator, gauss
-from pound_solve.integrate.closed_form.state_space import StateSpace
+from pound_solve.integrate.propagators.base import TERMS, Propagator, gauss
+from pound_solve.integrate.propagators.state_space import StateSpace
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array
 

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.closed_form.state_space import StateSpace
+from pound_solve.integrate.propagators.state_space import StateSpace
 from pound_solve.numerics.types import Array
 
 TERMS = 22  #: of a Taylor series over 1 / (spectral radius): 1/22! is 1e-21

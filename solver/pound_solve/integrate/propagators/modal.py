@@ -22,8 +22,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.integrate.closed_form.propagator import TERMS, Propagator, powers
-from pound_solve.integrate.closed_form.state_space import StateSpace
+from pound_solve.integrate.propagators.base import TERMS, Propagator, powers
+from pound_solve.integrate.propagators.state_space import StateSpace
 from pound_solve.numerics import phi, polynomial
 from pound_solve.numerics.types import Array, Complex, Index
 
