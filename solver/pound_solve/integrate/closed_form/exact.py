@@ -1,7 +1,7 @@
 r"""EXACT: event-driven integration without a time step.
 
 Between events (a spring yields or unloads, a contact closes or opens) the reduced system is linear and its
-motion under piecewise-polynomial excitation is known in closed form (:mod:`~pound_solve.integrate.propagators.base`).
+motion under piecewise-polynomial excitation is known in closed form (see `propagators`).
 Only the event times remain to be found: event functions are sampled in cells whose length follows from
 bounds of their curvature (:mod:`.search`), bracketed by value and by slope (two crossings within one step
 of the grid), and polished to the last digits (:mod:`..events.grid`).  Peaks of drifts, spring deformations
