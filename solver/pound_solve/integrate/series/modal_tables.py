@@ -170,6 +170,8 @@ def allocate(
         Unknowns that the envelopes look at, in that order.
     """
     length, outputs = usual(times), monitored.rows
+    open_ = np.array([not s.role.collides for s in system.structure.laws], bool)
+    stiffness = stiffness * open_  # parts have modes of their own while all contacts are open
     parts = parts_of(system, stiffness, outputs, length)
     seen = [np.flatnonzero(np.isin(shown, place[p.unknowns])) for p in parts]
     n_inputs, n_followed = system.inputs.shape[1], len(stiffness) + len(outputs)
@@ -183,7 +185,7 @@ def allocate(
         length=np.array([length if parts else 0.0]),
         is_present=np.zeros(1, np.int64),
         serves=np.zeros(1, np.int64),
-        stiffness=stiffness.copy(),
+        stiffness=stiffness,
         counts=np.array(counts, np.int64).reshape(b, 4),
         unknowns=np.zeros((b, n), np.int64),
         to_modes=np.zeros((b, 2, 2 * q, n)),
