@@ -263,7 +263,8 @@ def test_a_long_history(law: Law, sample: dict[str, Any]) -> None:
 @pytest.mark.parametrize("name", sorted(RULES))
 def test_compiled_functions_give_the_same_numbers(name: str) -> None:
     laws = [p.values[0] for p in UNEQUAL if p.id.startswith(f"{name} ")]
-    branch, transition, recoverable, curve, power, _ = (f[0] for f in functions.tables([laws[0].rule]))
+    compiled = functions.tables([laws[0].rule])
+    branch, transition, recoverable, curve, power, _, smooth = (f[0] for f in compiled)
     for law in laws:
         rule = law.rule
         p = law.p + (0.0,) * (functions.PARAMETERS - rule.parameters)
@@ -280,6 +281,9 @@ def test_compiled_functions_give_the_same_numbers(name: str) -> None:
             if rule.curve is not None:
                 expected = rule.curve(law.p, at, own, d0, d, 0.0)
                 assert curve(p, at, m, d0, d, 0.0) == pytest.approx(expected, rel=1e-12, abs=1e-13)
+            if rule.smooth is not None:
+                expected = rule.smooth(law.p, at, own, d, f)
+                assert smooth(p, at, m, d, f) == pytest.approx(expected, rel=1e-12, abs=1e-13)
             if n + 1 < len(walk.visits) and walk.visits[n + 1][0] is not state:
                 for way in range(len(law.branch(state).events)):
                     there, memory = transition(p, at, m, way, d, 0.0)
