@@ -10,6 +10,7 @@ import numpy as np
 
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.laws.automaton import State
+from pound_solve.numerics.matrices import used_rows
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.elements.base import LawSpring, Role
@@ -203,7 +204,7 @@ def light(system: ReducedSystem) -> Flags:
     """Which laws hold an unknown without mass, whose velocity may jump, shape (n_laws,): the force of their
     dashpots is only known when the velocities have settled.
     """
-    return np.asarray((system.law_rows[:, massless(system.mass)] != 0.0).any(axis=1))
+    return used_rows(system.law_rows[:, np.flatnonzero(massless(system.mass))])
 
 
 def without_steps(system: ReducedSystem) -> list[str]:

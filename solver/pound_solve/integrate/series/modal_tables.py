@@ -27,7 +27,7 @@ from pound_solve.numerics.matrices import dense, used_rows
 from pound_solve.numerics.types import Array, Complex, Index
 from pound_solve.structure.reduction import ReducedSystem
 
-MOST_UNKNOWNS = 80  #: of a part
+MOST_UNKNOWNS = 200  #: of a part
 MOST_CONDITION = 3e3  #: of its modes
 WORTH = 10.0  #: radians of the fastest mode in an interval from which on it pays: two steps by series
 FEW = 50  #: intervals of one length for which tables do not pay
@@ -61,7 +61,7 @@ class Part:
     system : ReducedSystem
     stiffness : ndarray, shape (n_laws,)
         Of the laws [F/L].
-    monitored : ndarray, shape (n_monitored, n)
+    monitored : Matrix, shape (n_monitored, n)
     unknowns : ndarray of int
     length : float
 
@@ -86,9 +86,9 @@ class Part:
         from pound_solve.integrate.propagators.state_space import state_space
 
         self.unknowns, self.length, block = unknowns, length, np.ix_(unknowns, unknowns)
-        laws, outputs = dense(system.law_rows[:, unknowns]), monitored[:, unknowns]
+        laws, outputs = (dense(rows[:, unknowns]) for rows in (system.law_rows, monitored))
         k = dense(system.stiffness[block]) + (laws.T * stiffness) @ laws
-        self.damping, self.inputs = dense(system.damping[block]), system.inputs[unknowns]
+        self.damping, self.inputs = (dense(a) for a in (system.damping[block], system.inputs[unknowns]))
         self.constant = system.constant[unknowns]
         self.modes = ModalPropagator(state_space(dense(system.mass[block]), self.damping, k), self.inputs)
         self.rate = self.modes.eigenvalues
@@ -169,7 +169,7 @@ def allocate(
     shown : ndarray of int
         Unknowns that the envelopes look at, in that order.
     """
-    length, outputs = usual(times), monitored.rows
+    length, outputs = usual(times), dense(monitored.rows)
     open_ = np.array([not s.role.collides for s in system.structure.laws], bool)
     stiffness = stiffness * open_  # parts have modes of their own while all contacts are open
     parts = parts_of(system, stiffness, outputs, length)
