@@ -27,7 +27,7 @@ from pound_solve.numerics.digest import digest
 Function = Callable[..., Any]
 
 
-COMPILING = "compiling the kernels, once for this version: some 40 s"
+COMPILING = "compiling the kernels, once for this version: about a minute"
 SHORT = 700  #: bytes of bytecode up to which a function is inlined
 FASTMATH = {"contract", "reassoc"}  #: reorderings of floating-point operations allowed in `loose` kernels
 
