@@ -78,6 +78,16 @@ from pound_solve.structure.reduction import ReducedSystem
 MAX_STEPS = 5_000_000  #: that a run may come to
 
 
+def gauss_rules(rules: int) -> Array:
+    """Weights and points on (0, 1) of Gauss's rules with 2, 4 ... points, see `state.Series`."""
+    gauss = np.zeros((rules, 2, 2 * rules))
+    for i in range(rules):
+        count = 2 * (i + 1)
+        places, weights = np.polynomial.legendre.leggauss(count)
+        gauss[i, :, :count] = 0.5 * weights, 0.5 * (1.0 + places)
+    return gauss
+
+
 class Taylor(KernelEngine):
     """One run; see the module's head."""
 
@@ -112,11 +122,6 @@ class Taylor(KernelEngine):
             expansion.TERMS // expansion.CHECK + 1,
         )
         is_smooth = np.array([s.law.rule.smooth is not None for s in laws], bool)
-        gauss = np.zeros((rules, 2, 2 * rules))
-        for i in range(rules):
-            count = 2 * (i + 1)
-            places, weights = np.polynomial.legendre.leggauss(count)
-            gauss[i, :, :count] = 0.5 * weights, 0.5 * (1.0 + places)
         self.series = state.Series(
             motion=np.zeros((terms, system.size)),
             stiffness_product=np.zeros(system.size),
@@ -125,7 +130,7 @@ class Taylor(KernelEngine):
             inputs=np.zeros((terms, system.inputs.shape[1])),
             polynomial=np.zeros(polynomial_roots.room(expansion.TERMS)),
             inverse=np.divide(1.0, m, out=np.zeros(system.size), where=m > 0.0),
-            gauss=gauss,
+            gauss=gauss_rules(rules),
             springs=springs.allocate(
                 system.size,
                 self.laws.rows,
