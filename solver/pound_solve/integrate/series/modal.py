@@ -22,6 +22,7 @@ import numpy as np
 from pound_solve.integrate.energy import Works
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL
 from pound_solve.integrate.kernels.products import along
+from pound_solve.integrate.kernels.recording import count_extreme
 from pound_solve.integrate.kernels.state import Buffers, Laws, LinearSystem, Run, Step
 from pound_solve.integrate.series.expansion import CHECK, TERMS, dot, expand_inputs
 from pound_solve.integrate.series.state import Lengths, Modal, Series
@@ -229,18 +230,15 @@ def exceeds(extremes: Extremes, i: int, low: float, high: float) -> bool:
 
 
 def count_ends(
-    modal: Modal, extremes: Extremes, i: int, at: int, k: float, constant: float, t: float
+    laws: Laws, step: Step, modal: Modal, i: int, at: int, k: float, constant: float, t: float
 ) -> None:
     """Count ``k y + constant`` at the ends of the cells into peak `at`, y being followed quantity `i`: what
     cells hold beyond is then seldom more.
     """
     cells = len(modal.values) - 1
     for end in range(cells + 1):
-        value, when = k * modal.values[end, i] + constant, t + end * modal.length[0] / cells
-        if value > extremes.high[at]:
-            extremes.high[at], extremes.t_high[at] = value, when
-        if value < extremes.low[at]:
-            extremes.low[at], extremes.t_low[at] = value, when
+        when = t + end * modal.length[0] / cells
+        count_extreme(laws, step, -1, at, k * modal.values[end, i] + constant, when)
 
 
 def count_peaks(
@@ -252,10 +250,10 @@ def count_peaks(
     h = modal.length[0] / cells
     for i in range(n_laws):
         k, offset = laws.stiffness[i], laws.offset[i]
-        count_ends(modal, extremes, i, outputs + i, 1.0, 0.0, t)
-        count_ends(modal, extremes, i, outputs + n_laws + i, k, offset, t)
+        count_ends(laws, step, modal, i, outputs + i, 1.0, 0.0, t)
+        count_ends(laws, step, modal, i, outputs + n_laws + i, k, offset, t)
     for i in range(outputs):
-        count_ends(modal, extremes, n_laws + i, i, 1.0, 0.0, t)
+        count_ends(laws, step, modal, n_laws + i, i, 1.0, 0.0, t)
     for cell in range(cells):
         for i in range(n_laws):
             low, high = bounds(modal, cell, i)

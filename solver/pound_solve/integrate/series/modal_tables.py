@@ -246,7 +246,7 @@ def fill(out: Modal, b: int, part: Part, seen: Index, unknowns: Index, shown: In
     for array, values in zip((out.damping_work, out.input_work, out.constant_work), part.works()):
         put(array, values)
     put(out.shown, seen)
-    chosen = np.searchsorted(unknowns, shown, sorter=np.argsort(unknowns))
-    own = np.argsort(unknowns)[chosen]
+    order = np.argsort(unknowns)
+    own = order[np.searchsorted(unknowns, shown, sorter=order)]
     motion = (modes.u_q[own], 0), (modes.v_q[own], 0), (modes.v_q[own], 1)
     put(out.motion, np.concatenate([part.table(rows, START, order) for rows, order in motion]))
