@@ -459,6 +459,16 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "Name the .h5 file of a run of the same structure that ended or had a SAVE time, written by the "
         "same version of the program; its path is relative to the deck's folder.",
     ),
+    "R407": (
+        "a file that is read and written",
+        "An output file has the name of the deck, of an included file, of a record, or of a partial result "
+        "that RESTART names. Rename one of them, or give another folder with -o.",
+    ),
+    "R408": (
+        "the saved state is of another deck",
+        "A history goes on only with the structure, loads, damping and motion it began with. Give them "
+        "the values of the first run. NEW=MOTION lets another motion follow: its time begins at zero.",
+    ),
     "A501": (
         "unstable structure",
         "The stiffness matrix is singular: some node can move without resistance. The message names"
@@ -482,10 +492,20 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "method does not suit the model",
         "The chosen METHOD cannot solve this model. The message states why, and which can.",
     ),
-    "A506": ("interrupted", "The run was stopped by the user. Results up to that time are kept."),
+    "A506": (
+        "interrupted",
+        "The user or the system ended the run by a signal. Results up to that time are kept. They replace "
+        "no older ones: then they stay in the file whose name ends in .partial.h5.",
+    ),
     "A507": (
         "static analysis does not converge",
         "No equilibrium was found. Loads may exceed the strength, or a contact may be all that "
         "supports a part.",
+    ),
+    "A508": (
+        "disk full",
+        "The disk has no room for the results. What was written before is kept. It replaces no older "
+        "results: then it stays in the file whose name ends in .partial.h5. Make room, give another folder "
+        "with -o, or store less (OUTPUT EVERY, NODES, MEMBERS).",
     ),
 }

@@ -52,6 +52,8 @@ WITHIN = {
     "results": (
         "schema",
         "form",
+        "safe_file",
+        "place",
         "words",
         "columns",
         "study_record",
@@ -64,7 +66,17 @@ WITHIN = {
         "reader",
         "page",
     ),
-    "driver": ("request", "overrides", "loading", "preflight", "prepare", "sequence", "run"),
+    "driver": (
+        "request",
+        "identity",
+        "outputs",
+        "overrides",
+        "loading",
+        "preflight",
+        "prepare",
+        "sequence",
+        "run",
+    ),
 }
 #: who may import a library, as paths below the two packages
 ONLY_IN = {

@@ -231,7 +231,7 @@ def test_a_killed_run_says_so_first(tmp_path: Path) -> None:
     with Results.open(tmp_path / "k.h5") as results:
         text = render(results)
     assert "THE ANALYSIS DID NOT COMPLETE" in text
-    assert "killed or is still running" in text
+    assert "The run was killed" in text
     assert "no time history" in text
 
 

@@ -106,7 +106,7 @@ def test_a_table_is_replaced(writer: Writer, tmp_path: Path) -> None:
     with Results.open(tmp_path / "out.h5") as results:
         assert results.table("size").tolist() == [("c", "3")]
         assert len(results.table("checks")) == 0
-        assert results.status == "running"
+        assert results.status == "killed"
 
 
 @pytest.mark.parametrize(
@@ -213,7 +213,7 @@ def test_a_killed_run_leaves_a_readable_file(tmp_path: Path, kill: bool) -> None
     with Results.open(path) as results:
         count = len(results.time)
         assert count >= 100 * written[-1]
-        assert results.status == "running"
+        assert results.status == "killed"
         assert len(results.table("nodes")) == len(sample.rows()["nodes"])
         whole = sample.block(0, count)
         for name in results.histories:
@@ -225,7 +225,7 @@ def test_chunks_hold_a_block_of_all_columns(done: Results) -> None:
     with h5py.File(done.path) as file:
         assert file["history/node/u"].chunks == (BLOCK, len(sample.NODES), 3)
         assert file["history/node/u"].dtype == np.float64
-        assert list(file.attrs["format_version"]) == [1, 0]
+        assert list(file.attrs["format_version"]) == [1, 1]
         assert file.attrs["filetype"] == "pound-solve results"
 
 

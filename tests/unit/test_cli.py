@@ -12,12 +12,15 @@ from pathlib import Path
 import pytest
 
 from pound_solve import run
+from pound_solve.cli.interruption import Interruption
 from pound_solve.cli.main import main
 from pound_solve.cli.progress import Progress
 from pound_solve.driver.run import DeckError
 from pound_solve.report.deck_reference import vocabulary
-from pound_solve.results import Results
+from pound_solve.results import Results, ResultsError
 from pound_solve.results.contents import SECTIONS
+from pound_solve.results.place import partial
+from pound_solve.results.safe_file import RESERVE
 
 DECK = """TITLE  A mass between two walls
 UNITS  kN m s
@@ -180,35 +183,63 @@ def start(deck):
 
 def wait_for_rows(process: subprocess.Popen, path: Path):
     """Wait until some blocks of histories are on disk, however long the kernels take to compile."""
-    while not path.exists() or path.stat().st_size <= 150_000:
+    while not path.exists() or path.stat().st_size <= 150_000 + RESERVE:
         assert process.poll() is None
         time.sleep(0.05)
 
 
 @pytest.mark.full
-def test_a_killed_run_leaves_what_it_had_written(deck):
-    process = start(deck)
-    wait_for_rows(process, deck.with_suffix(".h5"))
+def test_a_killed_run_leaves_what_it_had_written_beside_the_older_results(deck):
+    main([str(deck), "--quiet"])
+    whole = [deck.with_suffix(suffix).read_bytes() for suffix in (".h5", ".rpt")]
+    process, own = start(deck), partial(deck.with_suffix(".h5"))
+    wait_for_rows(process, own)
+    with pytest.raises(ResultsError, match="in use by another program"):
+        Results.open(own)
     process.kill()
     process.communicate()
-    results = Results.open(deck.with_suffix(".h5"))
-    assert results.status == "running"
-    assert len(results.time) >= 256 and len(results.history("node/u")) == len(results.time)
-    assert main(["report", str(deck.with_suffix(".h5"))]) == 0
+    with Results.open(own) as results:
+        assert results.status == "killed"
+        assert len(results.time) >= 256 and len(results.history("node/u")) == len(results.time)
+    assert main(["report", str(own)]) == 0
+    assert [deck.with_suffix(suffix).read_bytes() for suffix in (".h5", ".rpt")] == whole
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 @pytest.mark.full
-def test_an_interrupted_run_ends_with_its_results_and_status_1(deck):
+def test_an_interrupted_run_ends_with_its_results_and_status_1(deck, number):
     process = start(deck)
-    wait_for_rows(process, deck.with_suffix(".h5"))
-    process.send_signal(signal.SIGINT)
+    wait_for_rows(process, partial(deck.with_suffix(".h5")))
+    process.send_signal(number)
     _, err = process.communicate()
     assert process.returncode == 1
+    assert f"{number.name}: the run ends with what it has".encode() in err
     assert b"A506 at t = " in err and b"Traceback" not in err
-    results = Results.open(deck.with_suffix(".h5"))
-    assert results.status == "stopped" and {"node_envelope", "contact_summary"} <= set(results.tables)
+    with Results.open(deck.with_suffix(".h5")) as results:
+        assert results.status == "stopped" and {"node_envelope", "contact_summary"} <= set(results.tables)
     assert deck.with_suffix(".rpt").exists()
+
+
+def test_a_second_signal_ends_the_process_at_once(monkeypatch):
+    monkeypatch.setattr(os, "_exit", sys.exit)
+    with pytest.raises(KeyboardInterrupt), Interruption() as interruption:
+        os.kill(os.getpid(), signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt):  # a library may have kept the first one back
+        interruption.check()
+    interruption.check()
+    with pytest.raises(SystemExit, match="130"), interruption:
+        os.kill(os.getpid(), signal.SIGINT)
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="signals")
+def test_a_signal_that_the_caller_ignores_stays_ignored():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with Interruption():
+            os.kill(os.getpid(), signal.SIGHUP)
+    finally:
+        signal.signal(signal.SIGHUP, before)
 
 
 def test_export_writes_tables_and_histories(deck, capsys):

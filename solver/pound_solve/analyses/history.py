@@ -61,6 +61,13 @@ SPEC = Spec(
             default="",
             doc="results file (.h5) whose saved state this history goes on from",
         ),
+        Field(
+            "NEW",
+            Kind.WORD,
+            default="NOTHING",
+            words=("NOTHING", "MOTION"),
+            doc="what may differ from the run that saved the state; with a new MOTION, time begins at zero",
+        ),
     ),
 )
 

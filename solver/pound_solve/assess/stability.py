@@ -151,7 +151,7 @@ def solve(deck: str, files: Mapping[str, str]) -> Found:
             (Path(folder) / name).write_text(text, encoding="utf-8")
         try:
             request = run.Request(str(path))  # no report is printed, which is half of a short run
-            _, results = run.solve(run.prepare(request), request.path(".h5"), None, began, request)
+            results = run.solve(run.prepare(request), request.path(".h5"), None, began, request)
         except run.DeckError as err:
             text = str(err)
             return found(stop=text) if REFUSED.search(text) else found(wrong=f"unclear refusal: {text}")

@@ -35,9 +35,9 @@ from pound_solve.assess.advice import (
 from pound_solve.catalog import catalog
 from pound_solve.driver import run as driver
 from pound_solve.driver.overrides import with_method
-from pound_solve.results import Results, Writer
+from pound_solve.results import Results
+from pound_solve.results.place import partial, put_in_place
 from pound_solve.results.schema import Stage
-from pound_solve.version import __version__
 
 Report = Callable[[str], None]
 
@@ -293,11 +293,10 @@ class _Bench:
             if time.perf_counter() - began > longest:
                 raise TooLong
 
-        status, results = driver.solve(ready, self.path, monitored, began, self.request)
-        with results:
-            if status != driver.DONE:
-                if results.message.startswith("A506"):
-                    raise KeyboardInterrupt
+        with driver.solve(ready, self.path, monitored, began, self.request) as results:
+            if results.message.startswith("A506"):
+                raise KeyboardInterrupt
+            if results.message:
                 return 0.0, Trial(method, setting, stopped=results.message)
             figures, took = dict(results.table("run").tolist()), dict(results.table("run_figures").tolist())
             name = figures["method"].split(",")[0]
@@ -363,12 +362,12 @@ def peaks(results: Results) -> Peaks:
 
 
 def write(study: Study, ready: driver.Prepared, path: Path) -> Results:
-    """Write a study as a results file, and open it."""
-    model = ready.model
+    """Write the results file and the report of a study, and open the former."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    with Writer(path, title=model.title, units=model.units, program_version=__version__) as writer:
-        for name, text in model.files.items():
+    with driver.writer_of(ready, partial(path)) as writer:
+        for name, text in ready.model.files.items():
             writer.text(Path(name).name, text)
         writer.tables(Stage.STUDY, study)
         writer.finish("done")
-    return Results.open(path)
+        writer.close()
+        return Results.open(put_in_place(path, driver.report_of(partial(path)), whole=True))

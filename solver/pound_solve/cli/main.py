@@ -12,6 +12,7 @@ from pathlib import Path
 
 from pound_solve.cli import verbs
 from pound_solve.cli.common import MISTAKES, STOPPED, complain
+from pound_solve.cli.interruption import Interruption
 from pound_solve.modules import modules_below
 from pound_solve.version import __version__
 
@@ -50,7 +51,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     # slower with several
     for name in THREADS:
         os.environ.setdefault(name, "1")
-    return _status(args.execute, args)
+    with Interruption() as args.interruption:
+        return _status(args.execute, args)
 
 
 def _misspelt(words: Sequence[str]) -> bool:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import signal
 import sys
-import threading
 import time
+from collections.abc import Callable
 
 WIDTH = 69  #: characters of the line
 INTERVAL = 0.1  #: least time between two lines [s]
@@ -43,35 +42,28 @@ class StatusLine:
 
 
 class Progress:
-    """Progress of an analysis, at most ten lines a second, and its interruption.
-
-    A library that catches every exception also catches the `KeyboardInterrupt` raised within one of its
-    calls; `interrupted` records it, and the next call raises it again.
+    """Progress of an analysis, at most ten lines a second.
 
     A method may go through the history several times: where the time falls back, another run begins, and
     the estimate of the time to go is that of this run alone.
+
+    Parameters
+    ----------
+    quiet : bool
+        Show nothing.
+    check : callable
+        Called before anything is shown; it may raise `KeyboardInterrupt`.
     """
 
-    def __init__(self, quiet: bool) -> None:
-        self.line = StatusLine(quiet)
+    def __init__(self, quiet: bool, check: Callable[[], None] = lambda: None) -> None:
+        self.line, self._check = StatusLine(quiet), check
         self.began = self.shown = time.monotonic()
         self.pause, self.first, self.reached, self.runs = QUIET, 0.0, 0.0, 1
         self.told = self.began
-        self.interrupted = False
-        # Python permits signal handlers in the main thread only
-        self.main = threading.current_thread() is threading.main_thread()
-        if self.main:
-            self.before = signal.signal(signal.SIGINT, self._interrupt)
-
-    def _interrupt(self, *_: object) -> None:
-        self.interrupted = True
-        raise KeyboardInterrupt
 
     def __call__(self, t: float, end: float, doing: str) -> None:
         """Show the time `t` of `end` and an estimate of the time to go, or what the run is `doing`."""
-        if self.interrupted:
-            self.interrupted = False
-            raise KeyboardInterrupt
+        self._check()
         now = time.monotonic()
         if t < self.reached:
             self.runs, self.began, self.first = self.runs + 1, now, t
@@ -95,7 +87,5 @@ class Progress:
         return f"t = {t:10.4f} of {end:g}   {100 * t / end:5.1f} %{run}   {ahead:6.0f} s to go"
 
     def end(self) -> None:
-        """Clear the line and restore the signal handler."""
-        if self.main:
-            signal.signal(signal.SIGINT, self.before)
+        """Clear the line."""
         self.line.clear()

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
+
+import numpy as np
 
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
+from pound_solve.driver.identity import MOTION, differences
 from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import METRE, LoadingContext, Motion
@@ -16,6 +20,8 @@ from pound_solve.loading.records.base import RecordError
 from pound_solve.numerics.types import Array
 from pound_solve.results import Results, ResultsError
 from pound_solve.version import __version__
+
+MOST: Final = 6  #: differences from a saved run that are named
 
 
 def context(model: Model, request: Request) -> LoadingContext:
@@ -67,22 +73,50 @@ def _built(card: Card, surroundings: LoadingContext, found: list[Diagnostic]) ->
         return None
 
 
-def saved_state(model: Model, request: Request, found: list[Diagnostic]) -> dict[str, Array]:
-    """State of the results file that a history goes on from; read before the file may be written anew."""
+def saved_state(
+    model: Model, request: Request, own: Mapping[str, str], found: list[Diagnostic]
+) -> dict[str, Array]:
+    """State of the results file that a history goes on from.
+
+    Parameters
+    ----------
+    own : mapping of str to str
+        `identity` of this deck.
+    found : list of Diagnostic
+        Gets what keeps the state from being used.
+    """
     for card in model.analyses:
-        if card.spec.name != "HISTORY" or not card["RESTART"]:
-            continue
-        path = Path(request.deck).parent / card["RESTART"]
-        try:
-            with Results.open(path) as results:
-                state, version = results.restart(), results.program_version
-        except ResultsError as err:
-            found.append(Diagnostic("R406", str(err), card.place("RESTART")))
-            return {}
-        if not state:
-            found.append(Diagnostic("R406", f"{path} holds no state to go on from", card.place("RESTART")))
-        elif version.split(".")[:2] != __version__.split(".")[:2]:  # the variables of laws may differ
-            message = f"{path} was written by version {version}, this is {__version__}: run its deck again"
-            found.append(Diagnostic("R406", message, card.place("RESTART")))
-        return state
+        if card.spec.name == "HISTORY" and card["RESTART"]:
+            return _taken_up(card, Path(request.deck).parent / card["RESTART"], own, found)
+        if card.spec.name == "HISTORY" and card["NEW"] != "NOTHING":
+            found.append(Diagnostic("R406", "NEW stands beside RESTART only", card.place("NEW")))
     return {}
+
+
+def _taken_up(card: Card, path: Path, own: Mapping[str, str], found: list[Diagnostic]) -> dict[str, Array]:
+    """State of a results file; its time is zero where another motion begins."""
+    place, message, hint = card.place("RESTART"), "", ""
+    try:
+        with Results.open(path) as results:
+            state, saved, version = results.restart(), results.identity(), results.program_version
+    except ResultsError as err:
+        found.append(Diagnostic("R406", str(err), place))
+        return {}
+    if not state:
+        message = f"{path} holds no state to go on from"
+    elif version.split(".")[:2] != __version__.split(".")[:2]:  # the variables of laws may differ
+        message = f"{path} was written by version {version}, this is {__version__}: run its deck again"
+    if message:
+        found.append(Diagnostic("R406", message, place))
+        return {}
+    differ = dict(differences(own, saved))
+    if card["NEW"] == "MOTION":
+        state["time"] = np.zeros(1)
+        differ = {name: what for name, what in differ.items() if not name.startswith(MOTION)}
+    elif differ and all(name.startswith(MOTION) for name in differ):
+        hint = "write NEW=MOTION beside RESTART if another earthquake follows the first"
+    for name, what in list(differ.items())[:MOST]:
+        found.append(Diagnostic("R408", f"{name} is not that of {path}: {what}", place, hint))
+    if len(differ) > MOST:
+        found.append(Diagnostic("R408", f"and {len(differ) - MOST} other parts", place, hint))
+    return state

@@ -10,6 +10,8 @@ from pound_deck.model import Model
 from pound_deck.reader import read_deck
 from pound_solve.catalog import catalog
 from pound_solve.driver import loading
+from pound_solve.driver.identity import identity
+from pound_solve.driver.outputs import overwritten
 from pound_solve.driver.overrides import overridden
 from pound_solve.driver.preflight import preflight
 from pound_solve.driver.request import Request
@@ -31,7 +33,11 @@ class DeckError(Exception):
 
 @dataclass(frozen=True)
 class Prepared:
-    """A deck that is read and checked, its motions, its forces in time and its assembled structure."""
+    """A deck that is read and checked, its motions, its forces in time and its assembled structure.
+
+    `identity` is what a state saved by its run belongs to; `saved` is the state that its history goes on
+    from, or empty.
+    """
 
     model: Model
     motions: tuple[Motion, ...]
@@ -39,6 +45,7 @@ class Prepared:
     structure: Structure
     warnings: tuple[Diagnostic, ...]
     files: Mapping[str, str]
+    identity: Mapping[str, str]
     saved: Mapping[str, Array] = field(default_factory=dict)
 
 
@@ -66,10 +73,12 @@ def prepare(request: Request) -> Prepared:
         found += preflight(structure)
     except AssemblyError as err:
         found += err.diagnostics
-    saved = loading.saved_state(model, request, found)
+    found += overwritten(model, request, context)
+    own = identity(model, motions, forces)
+    saved = loading.saved_state(model, request, own, found)
     if has_errors(found) or structure is None:
         raise DeckError(found, files)
-    return Prepared(model, tuple(motions), tuple(forces), structure, tuple(found), files, saved)
+    return Prepared(model, tuple(motions), tuple(forces), structure, tuple(found), files, own, saved)
 
 
 def _assembled(model: Model, motions: Sequence[Motion]) -> Structure:

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
+from typing import Final
 
 from pound_solve.driver.prepare import DeckError, Prepared, prepare
 from pound_solve.driver.request import Request
 from pound_solve.driver.sequence import AnalysisSequence, Progress
 from pound_solve.results import Results, Writer
+from pound_solve.results.place import partial, put_in_place
 from pound_solve.version import __version__
 
 __all__ = (
     "DONE",
+    "FILES",
     "MISTAKES",
     "STOPPED",
     "DeckError",
@@ -21,10 +24,14 @@ __all__ = (
     "Request",
     "execute",
     "prepare",
+    "report_of",
     "solve",
+    "writer_of",
 )
 
-DONE, STOPPED, MISTAKES = 0, 1, 2  #: exit statuses; 3 (files) is the command line's own
+DONE, STOPPED, MISTAKES, FILES = range(4)  #: exit statuses
+#: messages of runs that did not come to an end of their own: interrupted, refused, without room on the disk
+BROKEN_OFF: Final = ("A505", "A506", "A508")
 
 
 def execute(request: Request, progress: Progress | None = None) -> tuple[int, Results, Prepared]:
@@ -33,38 +40,47 @@ def execute(request: Request, progress: Progress | None = None) -> tuple[int, Re
     Returns
     -------
     status : int
-        `DONE`, or `STOPPED` when an analysis ended early (what was computed is kept).
+        `DONE`, or `STOPPED` when an analysis ended early (what was computed is kept), or `FILES` when the
+        disk was full.
     results : Results
-        The results file, opened.
+        The results file, opened.  A run that was broken off replaces no older results; then the file has
+        the name `partial`.
     prepared : Prepared
         The model and its warnings.
 
     Raises
     ------
     DeckError, OSError
-        See `prepare`; or an output file cannot be written.
+        See `prepare`.
+    ResultsError
+        An output file cannot be written.
     """
     began = time.perf_counter()
     ready = prepare(request)
-    if request.out is not None:
-        request.out.mkdir(parents=True, exist_ok=True)
-    status, results = solve(ready, request.path(".h5"), progress, began, request)
-    from pound_solve.report.text import render
+    path = request.path(".h5")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with writer_of(ready, partial(path)) as writer:
+        message = analyse(ready, writer, progress, began, request)
+        path = put_in_place(path, report_of(partial(path)), whole=not message.startswith(BROKEN_OFF))
+    status = FILES if message.startswith("A508") else STOPPED if message else DONE
+    return status, Results.open(path), ready
 
-    request.path(".rpt").write_text(render(results), encoding="ascii", newline="\n")
-    return status, results, ready
+
+def writer_of(ready: Prepared, path: Path) -> Writer:
+    """Writer of a results file of a prepared deck."""
+    return Writer(path, title=ready.model.title, units=ready.model.units, program_version=__version__)
 
 
-def solve(
-    ready: Prepared, path: Path, progress: Progress | None, began: float, request: Request
-) -> tuple[int, Results]:
-    """Run the analyses of a prepared deck into a results file.
+def analyse(
+    ready: Prepared, writer: Writer, progress: Progress | None, began: float, request: Request
+) -> str:
+    """Run the analyses of a prepared deck and complete their results file.
 
     Parameters
     ----------
     ready : Prepared
-    path : Path
-        The results file.
+    writer : Writer
+        It is closed in the end.
     progress : callable or None
     began : float
         Reading of `time.perf_counter` from which the total time counts.
@@ -73,13 +89,27 @@ def solve(
 
     Returns
     -------
-    status : int
-        `DONE` or `STOPPED`.
-    results : Results
-        The file, opened.
+    str
+        Number and text of the message that says why the analyses stopped; empty if they did not.
     """
-    model = ready.model
-    with Writer(path, title=model.title, units=model.units, program_version=__version__) as writer:
-        message = AnalysisSequence(ready, request, writer, progress, began).run()
-        writer.finish("stopped" if message else "done", message)
-    return (STOPPED if message else DONE), Results.open(path)
+    message = AnalysisSequence(ready, request, writer, progress, began).run()
+    writer.finish("stopped" if message else "done", message)
+    writer.close()
+    return message
+
+
+def solve(
+    ready: Prepared, path: Path, progress: Progress | None, began: float, request: Request
+) -> Results:
+    """Run the analyses of a prepared deck into a file, without a report; parameters as of `analyse`."""
+    with writer_of(ready, path) as writer:
+        analyse(ready, writer, progress, began, request)
+    return Results.open(path)
+
+
+def report_of(path: Path) -> str:
+    """Report of a results file."""
+    from pound_solve.report.text import render
+
+    with Results.open(path) as results:
+        return render(results)

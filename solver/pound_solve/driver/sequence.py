@@ -20,6 +20,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.results import Writer
 from pound_solve.results.contents import layout_of, values_of
 from pound_solve.results.record import RunRecord
+from pound_solve.results.safe_file import NoRoomError
 from pound_solve.results.schema import Stage
 from pound_solve.results.words import text_of
 from pound_solve.structure.diaphragms import diaphragm_collisions
@@ -58,13 +59,25 @@ class AnalysisSequence:
             diaphragm_collisions(ready.structure),
         )
         self.record.stored = writer.stored
-        self.output = HistoryWriter(self.record, writer, progress)
+        self.output = HistoryWriter(self.record, writer, progress, ready.identity)
 
     def run(self) -> str:
         """Run everything the deck asks for; return why it stopped, or nothing."""
-        self._input()
+        try:
+            try:
+                return self._analyses()
+            finally:
+                self._write(Stage.END)
+                if self.explain:
+                    self._write(Stage.EXPLAIN)
+        except NoRoomError:
+            return "A508 no room on the disk; what was written before is kept"
+
+    def _analyses(self) -> str:
+        """Run one analysis after the other; return why they stopped, or nothing."""
         doing = "static analysis"
         try:
+            self._input()
             state = self._static()
             for name, analysis in (
                 ("MODAL", self._modal),
@@ -84,10 +97,6 @@ class AnalysisSequence:
             return f"{err.code} at t = {err.t:.9g} {self.record.model.units.time}: {err}"
         except KeyboardInterrupt:
             return f"A506 {doing}: {INTERRUPTED}"
-        finally:
-            self._write(Stage.END)
-            if self.explain:
-                self._write(Stage.EXPLAIN)
         return ""
 
     def _cards(self, name: str) -> list[Card]:
@@ -160,10 +169,15 @@ class HistoryWriter:
     record : RunRecord
     writer : Writer
     progress : callable or None
+    identity : mapping of str to str
+        What a saved state belongs to.
     """
 
-    def __init__(self, record: RunRecord, writer: Writer, progress: Progress | None) -> None:
+    def __init__(
+        self, record: RunRecord, writer: Writer, progress: Progress | None, identity: Mapping[str, str]
+    ) -> None:
         self.record, self.writer, self._progress = record, writer, progress
+        self._identity = identity
 
     def start(self, items: RecordedItems) -> None:
         """Create the histories."""
@@ -177,7 +191,7 @@ class HistoryWriter:
 
     def save(self, state: Mapping[str, Array]) -> None:
         """Store the state that a later run can be taken up from."""
-        self.writer.restart(state)
+        self.writer.restart(state, self._identity)
 
     def progress(self, t: float, end: float, doing: str) -> None:
         """Tell the user."""

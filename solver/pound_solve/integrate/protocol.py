@@ -21,7 +21,7 @@ SHARP = 1e-2  #: share of a spring's largest force that rounding may make
 RUNAWAY = "the motion grows without bound: its energy {:.3g} is far above what was put in"
 CHANGES, CHANGES_PER_LAW = 50, 4  #: of branch at one instant, at most, and more for each law
 CHATTER = "{} changes at one instant, the last in element {} ({}) to {!r}: try {}"
-INTERRUPTED = "interrupted by the user; what was computed up to then is kept"
+INTERRUPTED = "interrupted; what was computed up to then is kept"
 
 
 @dataclass(frozen=True)

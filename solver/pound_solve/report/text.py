@@ -82,6 +82,8 @@ def _banner(results: Results) -> Iterator[str]:
     for line in textwrap.wrap(_plain(results.title), WIDTH - 2):
         yield " " + line
     yield f" Units: force {_plain(units.force)}, length {_plain(units.length)}, time {_plain(units.time)}"
+    if results.digest:
+        yield f" Results {results.digest}"
     yield "=" * WIDTH
     yield from ("", "")
 
@@ -93,8 +95,10 @@ def _warning(results: Results) -> Iterator[str]:
     head = "THE ANALYSIS DID NOT COMPLETE"
     if results.status == "stopped":
         why = results.message or "No reason was recorded."
+    elif results.status == "killed":
+        why = "The run was killed, or its machine stopped; no reason is recorded."
     else:
-        why = "The program was killed or is still running; no place and no reason are recorded."
+        why = "The run may still go on."
     if math.isnan(results.last_time):
         scope = "There is no time history; only what is printed below was computed."
     else:

@@ -42,6 +42,9 @@ SECTIONS: Final = tuple((section.heading, tuple(t.name for t in own)) for sectio
 #: Every table by name, in the order of the report.
 TABLES: Final[Mapping[str, Table[Any]]] = MappingProxyType({t.name: t for _, own in _PARTS for t in own})
 
+#: Tables that differ between two runs of the same deck.
+OF_THE_DAY: Final = frozenset(t.name for section, own in _PARTS if section.of_the_day for t in own)
+
 #: Every history by its path below ``/history``, ``time`` first.
 HISTORIES: Final[Mapping[str, History]] = MappingProxyType(
     {h.name: h for _, h in _found(History, _MODULES)}

@@ -6,7 +6,10 @@ import re
 from typing import Final
 
 FILETYPE: Final = "pound-solve results"
-FORMAT_VERSION: Final = (1, 0)  #: major: old readers fail; minor: something was added
+FORMAT_VERSION: Final = (1, 1)  #: major: old readers fail; minor: something was added
+IDENTITY: Final = (
+    "identity"  #: name of the text in the group of the saved state that says what it belongs to
+)
 STATUSES: Final = ("done", "stopped")  #: how a run ends; before that its file says "running"
 
 

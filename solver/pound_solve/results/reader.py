@@ -5,6 +5,7 @@ All that a reader needs stands in the file; `pound_solve.results.contents` lists
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Self
@@ -16,7 +17,16 @@ from numpy.typing import NDArray
 from pound_deck.model import Units
 from pound_solve.numerics.types import Array
 from pound_solve.results.contents import HISTORIES, TABLES
-from pound_solve.results.form import FILETYPE, FORMAT_VERSION, ResultsError, escape, reason, unescape
+from pound_solve.results.form import (
+    FILETYPE,
+    FORMAT_VERSION,
+    IDENTITY,
+    ResultsError,
+    escape,
+    reason,
+    unescape,
+)
+from pound_solve.results.safe_file import in_use
 
 
 class Results:
@@ -64,7 +74,11 @@ class Results:
         self.title: str = _plain(attrs["title"])
         force, length, time = (_plain(u) for u in attrs["units"])
         self.units = Units(force, length, time, given=True)
-        self.status: str = _plain(attrs["status"])  #: ``done``, ``stopped`` or ``running``
+        #: ``done``, ``stopped``, ``running``, or ``killed`` where it says so but nobody writes it any more
+        self.status: str = _plain(attrs["status"])
+        if self.status == "running" and not in_use(self.path):
+            self.status = "killed"
+        self.digest: str = _plain(attrs.get("digest", ""))  #: of what the file holds but the run's times
         self.message: str = _plain(attrs["message"])  #: where and why the analysis stopped, else empty
         self._datasets: dict[str, h5py.Dataset] = {}
         self._file["history"].visititems(self._collect)
@@ -175,7 +189,12 @@ class Results:
     def restart(self) -> dict[str, Array]:
         """State that a later run can be taken up from; empty where the file has none."""
         group = self._file.get("restart", {})
-        return {name: np.asarray(group[name], float) for name in group}
+        return {name: np.asarray(group[name], float) for name in group if name != IDENTITY}
+
+    def identity(self) -> dict[str, str]:
+        """What that state belongs to: parts of the deck and their values; empty where the file has none."""
+        group = self._file.get("restart", {})
+        return dict(json.loads(group[IDENTITY].asstr()[()])) if IDENTITY in group else {}
 
     def _table(self, name: str) -> h5py.Dataset:
         return _find(self._file["tables"], name, "table", name, self.tables)

@@ -99,10 +99,13 @@ class Section:
         The report prints it in capitals.
     place : int
         Sections stand in the order of their places; steps of ten leave room for new ones.
+    of_the_day : bool
+        Its tables differ between two runs of the same deck.
     """
 
     heading: str
     place: int
+    of_the_day: bool = False
 
 
 def no_remark(record: object) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from hashlib import blake2b
 from numbers import Integral, Real
 from pathlib import Path
 from types import TracebackType
@@ -13,16 +15,17 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.results.contents import HISTORIES, TABLES, tables_at
+from pound_solve.results.contents import HISTORIES, OF_THE_DAY, TABLES, tables_at
 from pound_solve.results.form import (
     FILETYPE,
     FORMAT_VERSION,
+    IDENTITY,
     STATUSES,
     ResultsError,
     escape,
-    reason,
     storable,
 )
+from pound_solve.results.safe_file import NoRoomError, SafeFile, undisturbed
 from pound_solve.results.schema import Column, HistoryLayout, Layout, Stage
 
 if TYPE_CHECKING:
@@ -41,13 +44,14 @@ _DTYPES: Final = {"int": np.dtype("i8"), "text": _TEXT}
 class Writer:
     """Write a results file while the analysis goes on.
 
-    The file is flushed after every call: a killed run leaves all but its last block.  Leaving the context
-    with an exception finishes the file as ``stopped``; otherwise the caller must call :meth:`finish` first.
+    What a call writes stands in the file when it returns: a killed run leaves all but its last block, and
+    so does one whose disk is full.  Leaving the context with an exception finishes the file as ``stopped``;
+    otherwise the caller must call :meth:`finish` first.
 
     Parameters
     ----------
     path : str or Path
-        File to write; an old one is replaced.
+        File to write; an old one is replaced.  Until the context is left, no other run may write it.
     title : str
         Title of the deck.
     units : Units
@@ -58,20 +62,31 @@ class Writer:
     Raises
     ------
     ResultsError
-        The file cannot be created.
+        The file cannot be created, or another run writes it.  Every other call raises `NoRoomError` where
+        the disk is full: what was written before stands.
     """
 
     def __init__(self, path: str | Path, *, title: str, units: Units, program_version: str) -> None:
         try:
-            # Format 1.8 holds attributes above 64 kB (labels of large models); later formats mark a file as
-            # open for writing, and a killed run would then leave one that no program opens.
-            Path(path).unlink(missing_ok=True)  # a reader that still holds the old file keeps it
-            self._file = h5py.File(path, "w", libver=("v108", "v108"))
+            self._disk = SafeFile(Path(path))
         except OSError as err:
-            raise ResultsError(f"{path}: cannot be written: {reason(err)}") from err
+            raise ResultsError(f"{path}: cannot be written: {err.strerror}") from err
         self._units = units
         self._history: dict[str, h5py.Dataset] = {}
         self._layout: dict[str, tuple[int, ...]] = {}
+        self._digests: dict[str, blake2b] = {}
+        try:
+            with undisturbed():
+                self._start(title, units, program_version)
+        except NoRoomError:
+            self._disk.remove()
+            raise
+
+    def _start(self, title: str, units: Units, program_version: str) -> None:
+        """Write the head of the file."""
+        # Format 1.8 holds attributes above 64 kB (labels of large models); later formats mark a file as
+        # open for writing, and a killed run would then leave one that no program opens.
+        self._file = h5py.File(self._disk, "w", libver=("v108", "v108"))
         self._file.attrs.update(
             {
                 "filetype": FILETYPE,
@@ -81,11 +96,12 @@ class Writer:
                 "units": [units.force, units.length, units.time],
                 "status": "running",
                 "message": "",
+                "digest": "",
             }
         )
         for group in ("input", "tables", "history"):
             self._file.create_group(group)
-        self._file.flush()
+        self._commit()
 
     def __enter__(self) -> Self:
         return self
@@ -93,24 +109,39 @@ class Writer:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if not self._file:
-            return
-        if kind is not None and self._file.attrs["status"] == "running":
-            self.finish("stopped", f"{kind.__name__}: {error}")
-        self.close()
+        try:
+            if self._file and kind is not None and self._file.attrs["status"] == "running":
+                self.finish("stopped", f"{kind.__name__}: {error}")
+            self.close()
+        finally:
+            self._disk.close()
 
     def close(self) -> None:
-        """Close the file."""
-        self._file.close()
+        """Close the file; others may read it now, and write it when the context is left."""
+        if self._file:
+            with undisturbed():
+                self._file.close()
+                self._disk.commit()
+                self._disk.end()
+
+    def _commit(self) -> None:
+        """Have the disk hold what was written, or be as before."""
+        self._file.flush()
+        try:
+            self._disk.commit()
+        except NoRoomError:
+            self._file.close()
+            self._disk.forget()
+            self._file = h5py.File(self._disk, "r+", libver=("v108", "v108"))
+            self._history = {
+                name: self._file["history"][name] for name in self._history if name in self._file["history"]
+            }
+            raise
 
     def text(self, name: str, text: str) -> None:
         """Store a text below ``/input``, as the deck by its file name; it replaces one of that name."""
-        key = escape(name)
-        group = self._file["input"]
-        if key in group:
-            del group[key]
-        group.create_dataset(key, data=storable(text), dtype=_TEXT)
-        self._file.flush()
+        self._put("input", escape(name), storable(text), {})
+        self._digest(f"input/{name}").update(text.encode("utf-8", "replace"))
 
     def table(self, name: str, rows: Iterable[Sequence[Any]], note: str | None = None) -> None:
         """Store a table; it replaces one of that name.
@@ -144,15 +175,30 @@ class Writer:
         data = np.empty(len(records), dtype)
         for column, values in zip(columns, zip(*records)):
             data[column.name] = _checked(name, column, values)
-        group = self._file["tables"]
-        if name in group:
-            del group[name]
-        dataset = group.create_dataset(name, data=data)
-        dataset.attrs["title"] = TABLES[name].title
-        dataset.attrs["note"] = storable(note or "")
-        dataset.attrs["columns"] = [c.name for c in columns]
-        dataset.attrs["units"] = [self._units.text(c.unit) for c in columns]
-        self._file.flush()
+        attributes = {
+            "title": TABLES[name].title,
+            "note": storable(note or ""),
+            "columns": [c.name for c in columns],
+            "units": [self._units.text(c.unit) for c in columns],
+        }
+        self._put("tables", name, data, attributes)
+        if name not in OF_THE_DAY:
+            self._digest(f"tables/{name}").update(repr([note, data.tolist()]).encode("utf-8", "replace"))
+
+    def _put(self, group: str, name: str, data: NDArray[Any] | str, attributes: Mapping[str, Any]) -> None:
+        """Store an array or a text in a group; it replaces one of that name."""
+        with undisturbed():
+            place = self._file.require_group(group)
+            if name in place:
+                del place[name]
+            dtype = _TEXT if isinstance(data, str) else None
+            place.create_dataset(name, data=data, dtype=dtype).attrs.update(attributes)
+            self._commit()
+
+    def _digest(self, name: str) -> blake2b:
+        """A new digest of one part of the file."""
+        self._digests[name] = blake2b(digest_size=16)
+        return self._digests[name]
 
     def tables(self, stage: Stage, record: RunRecord | StudyRecord) -> None:
         """Store all tables of a stage that have something to tell.
@@ -183,12 +229,13 @@ class Writer:
         """
         if self._layout:
             raise ValueError("the histories are started already")
-        self._create("time", HistoryLayout((), {"unit": "T"}))
-        for name, own in layout.items():
-            if name == "time" or name not in HISTORIES:
-                raise ValueError(f"no history {name!r} in HISTORIES")
-            self._create(name, HistoryLayout(*own))
-        self._file.flush()
+        with undisturbed():
+            self._create("time", HistoryLayout((), {"unit": "T"}))
+            for name, own in layout.items():
+                if name == "time" or name not in HISTORIES:
+                    raise ValueError(f"no history {name!r} in HISTORIES")
+                self._create(name, HistoryLayout(*own))
+            self._commit()
 
     def _create(self, name: str, layout: HistoryLayout) -> None:
         shape = tuple(layout.shape)
@@ -212,6 +259,7 @@ class Writer:
                 texts = np.array([storable(str(v)) for v in np.atleast_1d(items)], dtype=object)
                 dataset.attrs.create(key, texts, dtype=_TEXT)
         self._history[name] = dataset
+        self._digest(f"history/{name}").update(repr(sorted(attributes.items())).encode("utf-8", "replace"))
 
     def stored(self, name: str) -> NDArray[np.float64]:
         """Rows of a history so far, shape (n_times, \\*row).
@@ -245,27 +293,32 @@ class Writer:
         for name, values in arrays.items():
             if values.shape != (n, *self._layout[name]):
                 raise ValueError(f"history {name!r}: shape {values.shape}, not {(n, *self._layout[name])}")
-        for name, dataset in self._history.items():
-            dataset.resize(len(dataset) + n, axis=0)
-            dataset[len(dataset) - n :] = arrays[name]
-        self._file.flush()
+        with undisturbed():
+            for name, dataset in self._history.items():
+                dataset.resize(len(dataset) + n, axis=0)
+                dataset[len(dataset) - n :] = arrays[name]
+            self._commit()
+        for name in self._history:
+            self._digests[f"history/{name}"].update(np.ascontiguousarray(arrays[name]).data)
 
-    def restart(self, state: Mapping[str, NDArray[Any]]) -> None:
-        """Store the state that a later run can be taken up from; it replaces an earlier one."""
-        if "restart" in self._file:
-            del self._file["restart"]
-        group = self._file.create_group("restart")
+    def restart(self, state: Mapping[str, NDArray[Any]], identity: Mapping[str, str]) -> None:
+        """Store the state that a later run can be taken up from, and the identity of what it belongs to; it
+        replaces an earlier one.
+        """
+        self._put("restart", IDENTITY, storable(json.dumps(identity)), {})
         for name, values in state.items():
-            group.create_dataset(name, data=np.asarray(values, float))
-        self._file.flush()
+            self._put("restart", name, np.asarray(values, float), {})
 
     def finish(self, status: str, message: str = "") -> None:
         """Say how the analysis ended: ``done``, or ``stopped`` with a message that says where and why."""
         if status not in STATUSES:
             raise ValueError(f"status {status!r} is none of {', '.join(STATUSES)}")
-        self._file.attrs["status"] = status
-        self._file.attrs["message"] = storable(message)
-        self._file.flush()
+        parts = [f"{name} {own.hexdigest()}" for name, own in sorted(self._digests.items())]
+        with undisturbed():
+            self._file.attrs["status"] = status
+            self._file.attrs["message"] = storable(message)
+            self._file.attrs["digest"] = blake2b("\n".join(parts).encode(), digest_size=8).hexdigest()
+            self._commit()
 
 
 def _complete(name: str, layout: HistoryLayout) -> dict[str, Any]:

@@ -20,10 +20,14 @@ def execute(args: argparse.Namespace) -> int:
     """Print the report."""
     from pound_solve.report.text import render
     from pound_solve.results import Results, ResultsError
+    from pound_solve.results.place import digest_of
 
     try:
         with Results.open(args.results) as results:
             sys.stdout.write(render(results, limit=0 if args.all else None))
+            beside = results.path.with_suffix(".rpt")
+            if digest_of(beside) not in ("", results.digest):
+                common.complain(f"warning: {beside} is the report of another run")
     except ResultsError as err:
         return common.complain(str(err))
     return common.DONE

@@ -36,7 +36,7 @@ def execute(args: argparse.Namespace) -> int:
     from pound_solve.report.text import render as report
     from pound_solve.results import ResultsError
 
-    request, progress = common.request(args), Progress(args.quiet)
+    request, progress = common.request(args), Progress(args.quiet, args.interruption.check)
     try:
         status, results, ready = run.execute(request, progress)
     except run.DeckError as err:
@@ -45,8 +45,7 @@ def execute(args: argparse.Namespace) -> int:
     except ResultsError as err:
         return common.complain(str(err))
     except Exception:
-        if progress.interrupted:  # a library caught the interrupt and failed later
-            raise KeyboardInterrupt from None
+        args.interruption.check()  # a library caught the interrupt and failed later
         raise
     progress.end()
     if ready.warnings and not args.quiet:
@@ -54,12 +53,14 @@ def execute(args: argparse.Namespace) -> int:
     with results:
         if not args.quiet:
             _warn_of_checks(results)
-        if status == common.STOPPED:
+        if status != common.DONE:
             common.complain(f"stopped: {results.message}")
         if args.explain:
             print(report(results, only=("scene", "size", "arrays", "imports")))
         if not args.quiet:
-            print(f"{request.path('.rpt')}\n{request.path('.h5')}")
+            print(f"{results.path.with_suffix('.rpt')}\n{results.path}")
+        if results.path != request.path(".h5"):
+            common.complain(f"{request.path('.h5')} is that of an earlier run")
     return status
 
 

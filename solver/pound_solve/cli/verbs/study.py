@@ -97,9 +97,7 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
     if found.warning:
         common.complain(f"warning: {found.warning}")
     with results:
-        text = report(results)
-        request.path(".study.rpt").write_text(text, encoding="ascii", newline="\n")
-        print(text)
+        print(report(results))
         print(f"{found.sentence}\n{request.path('.study.rpt')}\n{request.path('.study.h5')}")
         if args.picture:
             plot.draw_into(results, "study", args.picture)
@@ -142,7 +140,7 @@ def _stability(args: argparse.Namespace) -> int:
         near = f"--family {args.family} has" if args.family else "there are"
         text = f"{near} no scenes with the law {args.law}: see pound-solve list"
         return common.complain(text, common.MISTAKES)
-    progress, rows = Progress(quiet=False), []
+    progress, rows = Progress(False, args.interruption.check), []
     for row in stability.matrix(families, chosen):
         rows.append(row)
         doing = f"{len(rows)} of {runs}: {row.case.scene} {row.case.law}"

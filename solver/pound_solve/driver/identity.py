@@ -1,0 +1,59 @@
+"""What a saved state belongs to: everything of a deck that the motion depends on, in words that compare."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from pound_deck.model import Card, Model
+from pound_solve.loading.forces.base import Force
+from pound_solve.loading.motions.base import Motion
+
+MOTION = "motion"  #: first word of what another earthquake changes
+
+
+def identity(model: Model, motions: Sequence[Motion], forces: Sequence[Force]) -> dict[str, str]:
+    """Structure and loading of a deck: for each part its name and its values, all digits of them."""
+    return dict(_parts(model, motions, forces))
+
+
+def _parts(model: Model, motions: Sequence[Motion], forces: Sequence[Force]) -> Iterator[tuple[str, str]]:
+    units = model.units
+    yield "UNITS", f"{units.force} {units.length} {units.time}"
+    yield "GRAVITY", repr(model.gravity)
+    yield "GEOMETRY and MASS", f"{model.geometry} {model.mass}"
+    for node in model.nodes.values():
+        slaved = " ".join(f"{k}={v}" for k, v in sorted(node.slaved.items()))
+        yield f"node {node.id}", f"x={node.x!r} y={node.y!r} FIX={node.fixed} {slaved}".strip()
+    for e in model.elements.values():
+        yield f"element {e.id}", f"{e.prop} {e.i} {e.j}"
+    for label, card in model.props.items():
+        yield f"property set {label}", _values(card)
+    named = {"WEIGHTS": model.weights, "LOADS": model.loads, "MEMBER_LOADS": model.member_loads}
+    for name, cards in {**named, "DAMPING": model.damping}.items():
+        for number, card in enumerate(cards, 1):
+            yield f"line {number} of {name}", _values(card)
+    digests = [m.info.get("sha256", "") for m in motions] + [f.info.get("sha256", "") for f in forces]
+    for number, card in enumerate((*model.equake, *model.forces), 1):
+        yield f"{MOTION} {number}", _values(card, leave_out="FILE")
+    yield f"{MOTION}s' records", " ".join(map(str, digests))
+
+
+def _values(card: Card, leave_out: str = "") -> str:
+    """Kind and values of a card."""
+    values = (f"{k}={_text(v)}" for k, v in card.values.items() if k != leave_out and v is not None)
+    return " ".join((card.spec.name, *values))
+
+
+def _text(value: object) -> str:
+    """A value with all its digits and without blanks."""
+    return ",".join(map(_text, value)) if isinstance(value, tuple) else str(value).replace(" ", "_")
+
+
+def differences(own: Mapping[str, str], saved: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Parts that differ, each with what is here and what was saved."""
+    for name in dict.fromkeys((*own, *saved)):
+        here, there = own.get(name, ""), saved.get(name, "")
+        if here != there:
+            a, b = here.split(), there.split()
+            news, olds = [x for x in a if x not in b], [x for x in b if x not in a]
+            yield name, f"{' '.join(news) or 'nothing'} here, {' '.join(olds) or 'nothing'} there"

@@ -1,0 +1,62 @@
+"""Where results go: beside the older ones while the run goes on, into their place when it has ended.
+
+A run writes ``model.partial.h5``.  When it has ended, its results file and its report are complete, and
+only then they take the names ``model.h5`` and ``model.rpt``.  What stood there before holds until then,
+whatever happens to the run.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+from pound_solve.results.form import ResultsError
+
+_DIGEST = re.compile(r"^ Results [0-9a-f]+$", re.MULTILINE)
+
+
+def partial(path: Path) -> Path:
+    """Name of an output file while its run goes on."""
+    return path.with_name(f"{path.stem}.partial{path.suffix}")
+
+
+def put_in_place(results: Path, report: str, whole: bool) -> Path:
+    """Write the report of a run that has ended, and give both files their names.
+
+    Parameters
+    ----------
+    results : Path
+        Name that the results file takes; it still has its name `partial`.
+    report : str
+    whole : bool
+        Whether the run came to an end of its own; one that was broken off replaces no older results.
+
+    Returns
+    -------
+    Path
+        Where the results file is now; its report stands beside it.
+
+    Raises
+    ------
+    ResultsError
+        The report cannot be written, or another program holds one of the older files.
+    """
+    own, text = partial(results), results.with_suffix(".rpt")
+    try:
+        partial(text).write_text(report, encoding="ascii", newline="\n")
+        if not whole and (results.exists() or text.exists()):
+            return own
+        for path in (results, text):
+            os.replace(partial(path), path)
+    except OSError as err:
+        raise ResultsError(f"{err.filename}: {err.strerror}; the results of this run are in {own}") from err
+    return results
+
+
+def digest_of(report: Path) -> str:
+    """Digest of the results that a report was made from; empty where it has none."""
+    found = (
+        _DIGEST.search(report.read_text(encoding="ascii", errors="replace")) if report.is_file() else None
+    )
+    return found[0].split()[-1] if found else ""

@@ -1,0 +1,247 @@
+"""The file that HDF5 writes into: what it writes reaches the disk in whole transactions, or not at all.
+
+HDF5 does not survive a write that fails: its own tables no longer agree, and closing the file ends the
+process.  Here no write of its fails.  Writes are kept in pages of memory until `SafeFile.commit`, which
+first makes room at the end of the file, where a full disk shows itself, and only then lays the pages down.
+A file whose disk is full therefore stands as the last commit left it.
+
+Some room stays reserved behind the data until the file is closed, so that the end of a run on a full disk
+can still be told.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Final
+
+from pound_solve.results.form import ResultsError
+
+try:
+    import fcntl
+except ImportError:  # Windows, whose open files no other program can rename or remove
+    fcntl = None  # type: ignore[assignment]
+
+PAGE: Final = 2**15  #: bytes kept together
+RESERVE: Final = 4 * PAGE  #: room held behind the data
+
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """Hold signals back: an exception raised amid a write of HDF5 would count as a write that failed."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM, signal.SIGHUP})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+class NoRoomError(ResultsError):
+    """The disk has no room for what is to be written; what stands in the file is whole."""
+
+
+class BusyError(ResultsError):
+    """Another program writes the file."""
+
+
+class SafeFile:
+    """A new file that one program writes, for the driver ``fileobj`` of h5py.
+
+    The file is locked, so that a second writer is refused and readers are told that it is in use.
+
+    Parameters
+    ----------
+    path : Path
+        File to write; an old one that nobody writes is replaced.
+
+    Raises
+    ------
+    BusyError
+        Another program writes the file.
+    NoRoomError
+        The disk has no room for the reserve.
+    OSError
+        The file cannot be created.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._disk = _locked(path)
+        self._pages: dict[int, bytearray] = {}
+        self._place = 0
+        self._size = self._committed = self._room = 0
+        self._reserve = RESERVE
+        self._disk.truncate(0)
+        try:
+            self._make_room(RESERVE)
+        except NoRoomError:
+            self.remove()
+            raise
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        """Move to a place, see `io.IOBase.seek`."""
+        self._place = offset + (self._size if whence == os.SEEK_END else 0)
+        return self._place
+
+    def tell(self) -> int:
+        """The place."""
+        return self._place
+
+    def readinto(self, buffer: memoryview) -> int:
+        """Fill a buffer with what stands at the place, zeros behind the end."""
+        at, done = self._place, 0
+        while done < len(buffer):
+            number, inside = divmod(at + done, PAGE)
+            part = min(PAGE - inside, len(buffer) - done)
+            buffer[done : done + part] = self._page(number)[inside : inside + part]
+            done += part
+        self._place += done
+        return done
+
+    def read(self, count: int) -> bytes:
+        """What stands at the place."""
+        out = bytearray(count)
+        self.readinto(memoryview(out))
+        return bytes(out)
+
+    def write(self, data: memoryview) -> int:
+        """Keep data that belongs to the place."""
+        at, done = self._place, 0
+        while done < len(data):
+            number, inside = divmod(at + done, PAGE)
+            part = min(PAGE - inside, len(data) - done)
+            page = self._pages.get(number)
+            if page is None:
+                page = self._pages[number] = bytearray(self._page(number))
+            page[inside : inside + part] = data[done : done + part]
+            done += part
+        self._place += done
+        self._size = max(self._size, self._place)
+        return done
+
+    def truncate(self, size: int) -> int:
+        """Set where the data end."""
+        self._size = size
+        return size
+
+    def flush(self) -> None:
+        """Do nothing: `commit` writes."""
+
+    def _page(self, number: int) -> bytes | bytearray:
+        """One page as it was last written."""
+        if number in self._pages:
+            return self._pages[number]
+        start = number * PAGE
+        if start >= self._committed:
+            return bytes(PAGE)
+        self._disk.seek(start)
+        return self._disk.read(PAGE).ljust(PAGE, b"\0")
+
+    def commit(self) -> None:
+        """Write all that was kept.
+
+        Raises
+        ------
+        NoRoomError
+            The disk is full: nothing was written, and all that was kept is forgotten.
+        """
+        try:
+            self._make_room(self._size + self._reserve)
+        except NoRoomError:
+            self._reserve = 0  # what is left to be told may use it
+            self.forget()
+            raise
+        for number in sorted(
+            self._pages, reverse=True
+        ):  # the head of the file, which tells of the rest, last
+            self._disk.seek(number * PAGE)
+            self._disk.write(self._pages[number])
+        self._pages.clear()
+        self._committed = self._size
+
+    def forget(self) -> None:
+        """Return to the last commit."""
+        self._pages.clear()
+        self._size = self._committed
+
+    def _make_room(self, size: int) -> None:
+        """Have the disk hold room up to a size."""
+        if size <= self._room:
+            return
+        try:
+            _allocate(self._disk, self._room, size - self._room)
+        except OSError as err:
+            self._disk.truncate(self._room)
+            if err.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
+                raise NoRoomError(f"{self.path}: no room on the disk") from err
+            raise
+        self._room = size
+
+    def end(self) -> None:
+        """Give the reserve back; from here on others may read the file, not write it."""
+        self._disk.truncate(self._committed)
+        self._room = self._committed
+        if fcntl is not None:
+            fcntl.flock(self._disk, fcntl.LOCK_SH)
+
+    def remove(self) -> None:
+        """Close the file and remove it."""
+        self.close()
+        self.path.unlink()
+
+    def close(self) -> None:
+        """Close the file and give it free."""
+        self._disk.close()
+
+
+def in_use(path: Path) -> bool:
+    """Whether a program writes the file; True where that cannot be told."""
+    if fcntl is None:
+        return True
+    with path.open("rb") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except OSError:
+            return True
+    return False
+
+
+def _locked(path: Path) -> IO[bytes]:
+    """The file at a path, opened and locked."""
+    while True:
+        disk = path.open("ab", 0)  # creates it where there is none
+        disk.close()
+        disk = path.open("r+b", 0)
+        if fcntl is None:
+            return disk
+        try:
+            fcntl.flock(disk, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as err:
+            disk.close()
+            raise BusyError(
+                f"{path}: another run writes it; wait for it, or give another folder with -o"
+            ) from err
+        except OSError:  # a file system without locks
+            return disk
+        try:
+            if os.path.samestat(os.fstat(disk.fileno()), path.stat()):
+                return disk
+        except FileNotFoundError:
+            pass
+        disk.close()  # the run that held it has ended and moved it away in the meantime
+
+
+def _allocate(disk: IO[bytes], start: int, count: int) -> None:
+    """Have the disk hold room for some bytes from a place on."""
+    if hasattr(os, "posix_fallocate"):
+        os.posix_fallocate(disk.fileno(), start, count)
+    else:
+        disk.seek(start)
+        disk.write(bytes(count))

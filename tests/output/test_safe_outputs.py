@@ -1,0 +1,221 @@
+"""Results are never lost: older ones stand until the new ones are complete, on a full disk too."""
+
+import errno
+import os
+import shutil
+
+import pytest
+
+import pound_solve
+from pound_solve.cli.main import main
+from pound_solve.driver.run import DeckError
+from pound_solve.results import Results, ResultsError, Writer, safe_file
+from pound_solve.results.place import digest_of, partial
+
+DECK = """UNITS N m s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 1 0 FIX=YR
+ELEMENTS
+ 1 S 1 2
+PROPS
+ S SPRING KX=200 FX={strength} RULE=BILINEAR R=0.1
+WEIGHTS
+ 2 2
+INITIAL
+ 2 VX=2
+{motion}ANALYSIS
+ HISTORY {end} METHOD=EXACT {more}
+OUTPUT
+ EVERY=0.001
+"""
+QUAKE = "EQUAKE\n SINE AMPLITUDE={a} PERIOD=0.5 DURATION=1\n"
+
+
+def write(folder, name="model", end=1.0, more="", strength=10, motion=""):
+    deck = folder / f"{name}.inp"
+    deck.write_text(DECK.format(end=end, more=more, strength=strength, motion=motion))
+    return deck
+
+
+def bytes_of(deck):
+    return [deck.with_suffix(suffix).read_bytes() for suffix in (".h5", ".rpt")]
+
+
+@pytest.fixture
+def small_disk(monkeypatch):
+    """A disk with room for some bytes of each results file."""
+
+    def limit(size):
+        allocate = safe_file._allocate
+
+        def bounded(disk, start, count):
+            if start + count > size:
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+            allocate(disk, start, count)
+
+        monkeypatch.setattr(safe_file, "_allocate", bounded)
+
+    return limit
+
+
+@pytest.mark.parametrize("size", [0, *range(safe_file.RESERVE, safe_file.RESERVE + 400_000, 16_001)])
+def test_a_full_disk_ends_in_words_with_a_readable_file(tmp_path, small_disk, capsys, size):
+    deck = write(tmp_path)
+    small_disk(size)
+    status, told = main([str(deck), "--quiet"]), capsys.readouterr().err
+    if status == 0:
+        assert size > safe_file.RESERVE + 100_000 and not told
+        return
+    assert status == 3 and "no room on the disk" in told and "fault" not in told
+    if deck.with_suffix(".h5").exists():
+        with Results.open(deck.with_suffix(".h5")) as results:
+            assert results.status == "stopped" and results.message.startswith("A508")
+            for name in results.histories:
+                assert len(results.history(name)) == len(results.time)
+    else:
+        assert size < safe_file.RESERVE + 40_000
+
+
+def test_a_run_without_room_leaves_the_older_results(tmp_path, small_disk):
+    deck = write(tmp_path)
+    pound_solve.run(deck).close()
+    whole = bytes_of(deck)
+    small_disk(safe_file.RESERVE + 80_000)
+    with pound_solve.run(deck) as results:
+        assert results.path == partial(deck.with_suffix(".h5"))
+        assert results.message.startswith("A508") and len(results.tables) > 3
+    assert bytes_of(deck) == whole
+
+
+def test_the_histories_up_to_a_full_disk_are_those_of_the_whole_run(tmp_path, small_disk):
+    whole, deck = pound_solve.run(write(tmp_path, "whole")), write(tmp_path)
+    small_disk(safe_file.RESERVE + 250_000)
+    with pound_solve.run(deck) as part:
+        assert 0 < len(part.time) < len(whole.time)
+        for name in part.histories:
+            assert (part.history(name) == whole.history(name)[: len(part.time)]).all()
+
+
+def test_two_runs_at_one_output(tmp_path, capsys):
+    deck = write(tmp_path)
+    pound_solve.run(deck).close()
+    whole = bytes_of(deck)
+    results = Results.open(deck.with_suffix(".h5"))
+    with Writer(partial(deck.with_suffix(".h5")), title="", units=results.units, program_version="0"):
+        assert main([str(deck)]) == 3
+        assert "another run writes it" in capsys.readouterr().err
+    assert bytes_of(deck) == whole
+    assert main([str(deck), "--quiet"]) == 0
+
+
+def test_an_open_file_that_is_being_written_and_one_whose_run_was_killed(tmp_path):
+    path = tmp_path / "a.h5"
+    units = pound_solve.run(write(tmp_path)).units
+    writer = Writer(path, title="", units=units, program_version="0")
+    with writer, pytest.raises(ResultsError, match="in use by another program"):
+        Results.open(path)
+    assert Results.open(path).status == "killed"
+
+
+def test_report_and_results_tell_that_they_belong_together(tmp_path, capsys):
+    deck, other = write(tmp_path), write(tmp_path, "other", strength=11)
+    with pound_solve.run(deck) as results, pound_solve.run(other) as others:
+        assert results.digest == digest_of(deck.with_suffix(".rpt"))
+        assert others.digest == digest_of(other.with_suffix(".rpt")) != results.digest
+    before = results.digest
+    with pound_solve.run(deck) as again:
+        assert again.digest == before  # what differs from run to run is not part of it
+    assert main(["report", str(deck.with_suffix(".h5"))]) == 0
+    assert not capsys.readouterr().err
+    shutil.copy(other.with_suffix(".rpt"), deck.with_suffix(".rpt"))
+    assert main(["report", str(deck.with_suffix(".h5"))]) == 0
+    assert "is the report of another run" in capsys.readouterr().err
+
+
+def test_an_open_older_result_stays_readable(tmp_path):
+    deck = write(tmp_path)
+    with pound_solve.run(deck) as first:
+        own = first.history("node/u")
+        pound_solve.run(write(tmp_path, strength=5)).close()
+        assert (first.history("node/u") == own).all()
+
+
+@pytest.mark.parametrize("suffix", [".h5", ".rpt", ".partial.rpt"])
+def test_the_deck_is_never_an_output(tmp_path, suffix):
+    deck = write(tmp_path).rename(tmp_path / f"model{suffix}")
+    text = deck.read_text()
+    with pytest.raises(DeckError, match="R407"):
+        pound_solve.run(deck)
+    assert deck.read_text() == text
+
+
+def test_a_record_is_never_an_output(tmp_path):
+    record = tmp_path / "model.rpt"
+    record.write_text("\n".join("0.1" for _ in range(100)))
+    deck = write(
+        tmp_path, motion='EQUAKE\n RECORD FILE="model.rpt" FORMAT=COLUMNS DT=0.01 COLUMN=1 UNIT=G\n'
+    )
+    text = record.read_text()
+    with pytest.raises(DeckError, match=r"(?s)R407.*model\.rpt is both read and written"):
+        pound_solve.run(deck)
+    assert record.read_text() == text
+
+
+def test_a_restart_in_place_takes_the_older_results_and_replaces_them(tmp_path):
+    whole = pound_solve.run(write(tmp_path, "whole", end=2, more="SAVE=1"))
+    deck = write(tmp_path, end=1)
+    pound_solve.run(deck).close()
+    with pound_solve.run(write(tmp_path, end=2, more='RESTART="model.h5"')) as results:
+        late = whole.time >= 1
+        assert (results.history("node/u") == whole.history("node/u")[late]).all()
+
+
+def test_a_refused_restart_in_place_leaves_the_older_results(tmp_path):
+    deck = write(tmp_path)
+    pound_solve.run(deck).close()
+    whole = bytes_of(deck)
+    with pound_solve.run(write(tmp_path, end=0.5, more='RESTART="model.h5"')) as results:
+        assert results.message.startswith("A505")
+    assert bytes_of(deck) == whole
+
+
+def test_a_restart_from_its_own_partial_results_is_refused(tmp_path):
+    deck = write(tmp_path)
+    pound_solve.run(deck).path.rename(tmp_path / "model.partial.h5")
+    with pytest.raises(DeckError, match="R407"):
+        pound_solve.run(write(tmp_path, end=2, more='RESTART="model.partial.h5"'))
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"strength": 12}, r"property set S is not that of .*FX=12.0 here, FX=10.0 there"),
+        ({"motion": QUAKE.format(a=1)}, r"(?s)motion 1 is not that of .*NEW=MOTION"),
+    ],
+)
+def test_a_state_of_another_deck_is_refused_and_the_difference_named(tmp_path, change, words):
+    pound_solve.run(write(tmp_path, "first")).close()
+    with pytest.raises(DeckError, match=words):
+        pound_solve.run(write(tmp_path, end=2, more='RESTART="first.h5"', **change))
+
+
+def test_another_earthquake_follows_from_time_zero(tmp_path):
+    first = pound_solve.run(write(tmp_path, "first", motion=QUAKE.format(a=1)))
+    more = 'RESTART="first.h5" NEW=MOTION'
+    second = pound_solve.run(write(tmp_path, more=more, motion=QUAKE.format(a=3)))
+    assert second.time[0] == 0 and second.time[-1] == 1
+    assert second.history("node/u")[0] == pytest.approx(first.history("node/u")[-1], abs=1e-15)
+    # the same as one long motion with the second after the first
+    both = (
+        "EQUAKE\n SINE AMPLITUDE=1 PERIOD=0.5 DURATION=1\n SINE AMPLITUDE=3 PERIOD=0.5 DURATION=1 START=1\n"
+    )
+    whole = pound_solve.run(write(tmp_path, "whole", end=2, more="SAVE=1", motion=both))
+    late = whole.time >= 1
+    assert second.history("node/u") == pytest.approx(whole.history("node/u")[late], abs=1e-12)
+
+
+def test_a_new_motion_without_a_restart_is_a_mistake(tmp_path):
+    with pytest.raises(DeckError, match="NEW stands beside RESTART only"):
+        pound_solve.run(write(tmp_path, more="NEW=MOTION"))
