@@ -218,7 +218,7 @@ def run(
     Stop
         Too many rows would be stored.
     ReductionError, RestartError
-        There is nothing to integrate, or the saved state is of another structure.
+        There is nothing to integrate, or the history ends before the saved state begins.
     """
     end = float(card["T"])
     if card["FROM"] == "REST":
@@ -293,7 +293,7 @@ def _integrate(
         recorder.flush()
         here = _state(recorder, parts[-1])
         if recorder.reached == saved:
-            save(here.arrays(system.structure))
+            save(here.arrays())
         start = restart.resume(here, system, np.append(here.t, times[times > here.t]))
 
 

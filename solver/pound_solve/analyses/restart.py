@@ -16,13 +16,12 @@ from pound_solve.integrate.protocol import Outcome, Start
 from pound_solve.integrate.tracker import Extreme, Peaks
 from pound_solve.laws.automaton import State
 from pound_solve.numerics.types import Array
-from pound_solve.structure.dofs import label
 from pound_solve.structure.reduction import ReducedSystem
 from pound_solve.structure.structure import Structure
 
 
 class RestartError(Exception):
-    """The saved state is of another structure."""
+    """The history ends before the saved state begins."""
 
 
 @dataclass(frozen=True)
@@ -49,8 +48,8 @@ class Saved:
     works: Array
     first: Array
 
-    def arrays(self, structure: Structure) -> dict[str, Array]:
-        """The state as arrays for a file, with what it belongs to."""
+    def arrays(self) -> dict[str, Array]:
+        """The state as arrays for a file."""
         longest = max((len(s[3]) for s in self.states), default=0)
         return {
             "time": np.array([self.t]),
@@ -63,28 +62,11 @@ class Saved:
             "memory": np.array(
                 [(*s[3], *[0.0] * (longest - len(s[3]))) for s in self.states], float
             ).reshape(len(self.states), longest),
-            "freedoms": np.array(structure.dofs.free, float).reshape(-1, 2),
         }
 
 
 def load(arrays: Mapping[str, Array], structure: Structure) -> Saved:
-    """Return the state that `Saved.arrays` laid out.
-
-    Raises
-    ------
-    RestartError
-        It is not that of this structure.
-    """
-    own = np.array(structure.dofs.free, float).reshape(-1, 2)
-    if arrays["freedoms"].shape != own.shape or np.any(arrays["freedoms"] != own):
-        strange = set(map(tuple, own.tolist())) ^ set(map(tuple, arrays["freedoms"].tolist()))
-        names = ", ".join(sorted(label((int(a), int(b))) for a, b in strange)[:4]) or "their order"
-        raise RestartError(f"the saved state is of a structure with other unknowns: {names}")
-    if len(arrays["branch"]) != len(structure.laws):
-        raise RestartError(
-            f"the saved state has {len(arrays['branch'])} springs and contacts with memory, "
-            f"the structure has {len(structure.laws)}"
-        )
+    """Return the state that `Saved.arrays` laid out, of the same structure."""
     states = tuple(
         (int(at), entry[0], entry[1], tuple(memory[: len(s.law.start()[3])]))
         for s, at, entry, memory in zip(
