@@ -8,9 +8,10 @@ from typing import Final
 
 from pound_solve.driver.prepare import DeckError, Prepared, prepare
 from pound_solve.driver.request import Request
-from pound_solve.driver.sequence import AnalysisSequence, Progress
+from pound_solve.driver.sequence import NO_ROOM, AnalysisSequence, Progress
 from pound_solve.results import Results, Writer
 from pound_solve.results.place import partial, put_in_place
+from pound_solve.results.safe_file import NoRoomError
 from pound_solve.version import __version__
 
 __all__ = (
@@ -93,7 +94,11 @@ def analyse(
         Number and text of the message that says why the analyses stopped; empty if they did not.
     """
     message = AnalysisSequence(ready, request, writer, progress, began).run()
-    writer.finish("stopped" if message else "done", message)
+    try:
+        writer.finish("stopped" if message else "done", message)
+    except NoRoomError:  # what is reserved is free from now on
+        message = message or NO_ROOM
+        writer.finish("stopped", message)
     writer.close()
     return message
 

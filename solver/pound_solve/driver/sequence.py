@@ -26,6 +26,7 @@ from pound_solve.results.words import text_of
 from pound_solve.structure.diaphragms import diaphragm_collisions
 from pound_solve.structure.reduction_checks import ReductionError
 
+NO_ROOM = "A508 no room on the disk; what was written before is kept"
 #: told the time reached, the time to reach, and what keeps the run waiting there, if anything
 Progress: TypeAlias = Callable[[float, float, str], None]
 
@@ -71,7 +72,7 @@ class AnalysisSequence:
                 if self.explain:
                     self._write(Stage.EXPLAIN)
         except NoRoomError:
-            return "A508 no room on the disk; what was written before is kept"
+            return NO_ROOM
 
     def _analyses(self) -> str:
         """Run one analysis after the other; return why they stopped, or nothing."""

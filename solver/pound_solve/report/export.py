@@ -17,7 +17,8 @@ def export_csv(results: Results, folder: str | Path) -> list[Path]:
     """Write ``<table>.csv`` and ``history_<name>.csv`` files.
 
     Heads hold the units in brackets.  Numbers have all their digits; a number that is missing is an empty
-    cell.  Texts are UTF-8.
+    cell.  Texts are UTF-8; one that a spreadsheet would take for a formula
+    begins with an apostrophe.
 
     Parameters
     ----------
@@ -67,8 +68,19 @@ def _write(path: Path, heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> P
 
 
 def _head(name: str, unit: str) -> str:
-    return f"{name} [{unit}]" if unit not in ("", "-") else name
+    return str(_cell(f"{name} [{unit}]" if unit not in ("", "-") else name))
 
 
 def _cell(value: Any) -> Any:
+    """A value as a cell; a text that a spreadsheet would compute gets an apostrophe in front."""
+    if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t", "\r")) and not _number(value):
+        return "'" + value
     return "" if isinstance(value, float) and math.isnan(value) else value
+
+
+def _number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return text == "-"
+    return True

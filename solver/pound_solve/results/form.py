@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import re
-from typing import Final
+from collections.abc import Mapping
+from hashlib import blake2b
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
 
 FILETYPE: Final = "pound-solve results"
 FORMAT_VERSION: Final = (1, 1)  #: major: old readers fail; minor: something was added
+DIGEST: Final = "digest"  #: name of the attribute by which a part is known to be as it was written
+DIGEST_OF_THE_DAY: Final = "digest_of_the_day"  #: the same of what differs between two runs of a deck
 IDENTITY: Final = (
     "identity"  #: name of the text in the group of the saved state that says what it belongs to
 )
@@ -32,6 +39,35 @@ def escape(name: str) -> str:
 def unescape(key: str) -> str:
     """The path that `escape` turned into that name."""
     return key.replace("%2E", ".").replace("%2F", "/").replace("%25", "%")
+
+
+def digest_of(attributes: Mapping[str, Any], data: NDArray[Any] | str | None = None) -> blake2b:
+    """Digest of a dataset, by which a reader sees that it is as it was written.
+
+    Parameters
+    ----------
+    attributes : mapping
+        Texts, numbers, and arrays of them.
+    data : ndarray or str, optional
+        Left out: that of the attributes, to be updated with the bytes of numbers.
+    """
+    own = {
+        key: [v.decode() if isinstance(v, bytes) else str(v) for v in np.atleast_1d(attributes[key])]
+        for key in sorted(attributes)
+        if key not in (DIGEST, DIGEST_OF_THE_DAY)
+    }
+    out = blake2b(storable(repr(own)).encode(), digest_size=8)
+    if isinstance(data, str):
+        out.update(storable(data).encode())
+    elif data is not None:
+        out.update(storable(repr(data.tolist())).encode() if data.dtype.names else data.tobytes())
+    return out
+
+
+def digest_of_file(parts: Mapping[str, str]) -> str:
+    """Digest of a results file from those of its datasets, by their paths."""
+    told = "\n".join(f"{name} {own}" for name, own in sorted(parts.items()))
+    return blake2b(told.encode(), digest_size=8).hexdigest()
 
 
 def reason(err: OSError) -> str:

@@ -6,9 +6,10 @@ All that a reader needs stands in the file; `pound_solve.results.contents` lists
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import wraps
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Concatenate, Final, ParamSpec, Self, TypeVar
 
 import h5py
 import numpy as np
@@ -18,15 +19,48 @@ from pound_deck.model import Units
 from pound_solve.numerics.types import Array
 from pound_solve.results.contents import HISTORIES, TABLES
 from pound_solve.results.form import (
+    DIGEST,
+    DIGEST_OF_THE_DAY,
     FILETYPE,
     FORMAT_VERSION,
     IDENTITY,
     ResultsError,
+    digest_of,
+    digest_of_file,
     escape,
     reason,
     unescape,
 )
 from pound_solve.results.safe_file import in_use
+
+#: what h5py and numpy raise on a file that is not as it was written
+DAMAGE: Final = (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError, AttributeError)
+
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
+_D = TypeVar("_D", str, NDArray[Any])
+
+
+class NoSuchPartError(ResultsError, KeyError):
+    """The file has no table, history or text of that name."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+def _sound(method: Callable[Concatenate[Results, _P], _T]) -> Callable[Concatenate[Results, _P], _T]:
+    """The method, which says that the file is damaged where it cannot be read."""
+
+    @wraps(method)
+    def read(self: Results, /, *args: _P.args, **kwargs: _P.kwargs) -> _T:
+        try:
+            return method(self, *args, **kwargs)
+        except ResultsError:
+            raise
+        except DAMAGE as err:
+            raise self._damaged(err) from err
+
+    return read
 
 
 class Results:
@@ -40,7 +74,8 @@ class Results:
     Raises
     ------
     ResultsError
-        There is no such file, or it is not a results file that this version reads.
+        There is no such file, or it is not a results file that this version reads.  All reading raises this
+        where the file is damaged.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -56,7 +91,7 @@ class Results:
         except ResultsError:
             self.close()
             raise
-        except (KeyError, ValueError, TypeError, OSError) as err:
+        except DAMAGE as err:
             self.close()
             raise ResultsError(f"{path}: damaged results file: {err}") from err
 
@@ -78,12 +113,25 @@ class Results:
         self.status: str = _plain(attrs["status"])
         if self.status == "running" and not in_use(self.path):
             self.status = "killed"
-        self.digest: str = _plain(attrs.get("digest", ""))  #: of what the file holds but the run's times
+        self.digest: str = _plain(attrs.get(DIGEST, ""))  #: of what the file holds but the run's times
         self.message: str = _plain(attrs["message"])  #: where and why the analysis stopped, else empty
         self._datasets: dict[str, h5py.Dataset] = {}
         self._file["history"].visititems(self._collect)
         # A kill amid a flush may leave histories of different lengths: what all of them have, holds.
         self._length = min((len(d) for d in self._datasets.values()), default=0)
+        if self.digest and self.digest != digest_of_file(self._parts()):
+            raise self._damaged("parts are missing or not as they were written")
+
+    def _parts(self) -> dict[str, str]:
+        """Digests that the file gives of its parts, by their paths."""
+        out: dict[str, str] = {}
+
+        def take(name: str, item: h5py.Dataset | h5py.Group) -> None:
+            if DIGEST in item.attrs:
+                out[name] = _plain(item.attrs[DIGEST])
+
+        self._file.visititems(take)
+        return out
 
     def _collect(self, name: str, item: h5py.Dataset | h5py.Group) -> None:
         if isinstance(item, h5py.Dataset):
@@ -105,18 +153,21 @@ class Results:
         self.close()
 
     @property
+    @_sound
     def tables(self) -> tuple[str, ...]:
         """Names of the tables in the file, in the order of the report."""
         stored = self._file["tables"]
         return (*(n for n in TABLES if n in stored), *(n for n in stored if n not in TABLES))
 
     @property
+    @_sound
     def histories(self) -> tuple[str, ...]:
         """Names of the histories in the file, ``time`` first."""
         known = [n for n in HISTORIES if n in self._datasets]
         return (*known, *(n for n in self._datasets if n not in HISTORIES))
 
     @property
+    @_sound
     def texts(self) -> tuple[str, ...]:
         """Names of the texts below ``/input``."""
         return tuple(unescape(key) for key in self._file["input"])
@@ -131,17 +182,20 @@ class Results:
         """Last instant of the histories [T]; NaN where there is none."""
         return float(self._datasets["time"][self._length - 1]) if self._length else float("nan")
 
+    @_sound
     def text(self, name: str) -> str:
         """Text below ``/input``; KeyError where there is none of that name."""
-        dataset = _find(self._file["input"], escape(name), "text", name, self.texts)
-        return str(dataset.asstr()[()])
+        dataset = self._find(self._file["input"], escape(name), "text", name, self.texts)
+        return self._as_written(name, dataset, str(dataset.asstr()[()]))
 
+    @_sound
     def holds(self, name: str) -> bool:
         """Whether the history of that name has an instant, or else the table of that name a row."""
         if name in self._datasets:
             return self._length > 0
         return name in self.tables and len(self._table(name)) > 0
 
+    @_sound
     def table(self, name: str) -> NDArray[Any]:
         """Table as structured array, texts as str; KeyError where the file has none of that name."""
         stored = self._table(name)[()]
@@ -151,23 +205,27 @@ class Results:
         for field, kind in zip(stored.dtype.names, fields):
             column = stored[field]
             out[field] = [_plain(v) for v in column] if kind.kind == "O" else column
-        return out
+        return self._as_written(name, self._table(name), out)
 
+    @_sound
     def table_units(self, name: str) -> dict[str, str]:
         """Unit of every column of a table, in the deck's units."""
         attrs = self._table(name).attrs
         return {_plain(c): _plain(u) for c, u in zip(attrs["columns"], attrs["units"])}
 
+    @_sound
     def note(self, name: str) -> str:
         """Remark of this run on a table, or an empty text."""
         note: str = _plain(self._table(name).attrs["note"])
         return note
 
+    @_sound
     def history(self, name: str) -> Array:
         """History, shape (nt, \\*row); KeyError where the file has none of that name."""
         out: Array = self._dataset(name)[: self._length]
-        return out
+        return self._as_written(name, self._dataset(name), out)
 
+    @_sound
     def labels(self, name: str) -> tuple[str, ...]:
         """Label of every number of a history's row, row by row (``100 ux`` for node histories)."""
         attrs = self._dataset(name).attrs
@@ -176,31 +234,62 @@ class Results:
             return labels
         return tuple(f"{node} {label}" for node in attrs["nodes"] for label in labels)
 
+    @_sound
     def history_units(self, name: str) -> tuple[str, ...]:
         """Unit of every number of a history's row, in the deck's units; in the order of `labels`."""
         attrs = self._dataset(name).attrs
         return tuple(_plain(v) for v in attrs["unit"]) * (len(attrs["nodes"]) if "nodes" in attrs else 1)
 
+    @_sound
     def attributes(self, name: str) -> dict[str, list[Any]]:
         """All attributes of a history (``nodes``, ``element``, ``quantity``, ...), each as a list."""
         attrs = self._dataset(name).attrs
         return {key: [_plain(v) for v in np.atleast_1d(attrs[key])] for key in attrs}
 
+    @_sound
     def restart(self) -> dict[str, Array]:
         """State that a later run can be taken up from; empty where the file has none."""
         group = self._file.get("restart", {})
         return {name: np.asarray(group[name], float) for name in group if name != IDENTITY}
 
+    @_sound
     def identity(self) -> dict[str, str]:
         """What that state belongs to: parts of the deck and their values; empty where the file has none."""
         group = self._file.get("restart", {})
-        return dict(json.loads(group[IDENTITY].asstr()[()])) if IDENTITY in group else {}
+        if IDENTITY not in group:
+            return {}
+        text = self._as_written(IDENTITY, group[IDENTITY], str(group[IDENTITY].asstr()[()]))
+        return dict(json.loads(text))
 
     def _table(self, name: str) -> h5py.Dataset:
-        return _find(self._file["tables"], name, "table", name, self.tables)
+        return self._find(self._file["tables"], name, "table", name, self.tables)
+
+    def _find(
+        self, group: Mapping[str, Any], key: str, kind: str, name: str, existing: tuple[str, ...]
+    ) -> h5py.Dataset:
+        """A dataset of this file."""
+        if key not in group:
+            raise NoSuchPartError(
+                f"no {kind} {name!r} in this file; it has: {', '.join(existing) or 'none'}"
+            )
+        dataset: h5py.Dataset = group[key]
+        if dataset.external or dataset.is_virtual or dataset.file.filename != self._file.filename:
+            raise self._damaged(f"{name} is in another file")
+        return dataset
+
+    def _as_written(self, name: str, dataset: h5py.Dataset, data: _D) -> _D:
+        """The data of a dataset, if they are those that were written."""
+        attrs = dataset.attrs
+        told = attrs.get(DIGEST, attrs.get(DIGEST_OF_THE_DAY))
+        if told is not None and _plain(told) != digest_of(attrs, data).hexdigest():
+            raise self._damaged(f"{name} is not as it was written")
+        return data
+
+    def _damaged(self, why: object) -> ResultsError:
+        return ResultsError(f"{self.path}: damaged results file: {why}")
 
     def _dataset(self, name: str) -> h5py.Dataset:
-        return _find(self._datasets, name, "history", name, self.histories)
+        return self._find(self._datasets, name, "history", name, self.histories)
 
 
 def is_hdf5(path: str | Path) -> bool:
@@ -213,12 +302,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, bytes):
         return value.decode("utf-8", "replace")
     return value.item() if isinstance(value, np.generic) else value
-
-
-def _find(
-    group: Mapping[str, Any], key: str, kind: str, name: str, existing: tuple[str, ...]
-) -> h5py.Dataset:
-    if key not in group:
-        raise KeyError(f"no {kind} {name!r} in this file; it has: {', '.join(existing) or 'none'}")
-    dataset: h5py.Dataset = group[key]
-    return dataset

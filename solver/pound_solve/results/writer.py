@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from hashlib import blake2b
 from numbers import Integral, Real
 from pathlib import Path
 from types import TracebackType
@@ -17,11 +16,15 @@ from numpy.typing import NDArray
 
 from pound_solve.results.contents import HISTORIES, OF_THE_DAY, TABLES, tables_at
 from pound_solve.results.form import (
+    DIGEST,
+    DIGEST_OF_THE_DAY,
     FILETYPE,
     FORMAT_VERSION,
     IDENTITY,
     STATUSES,
     ResultsError,
+    digest_of,
+    digest_of_file,
     escape,
     storable,
 )
@@ -74,7 +77,7 @@ class Writer:
         self._units = units
         self._history: dict[str, h5py.Dataset] = {}
         self._layout: dict[str, tuple[int, ...]] = {}
-        self._digests: dict[str, blake2b] = {}
+        self._digests = dict[str, Any]()  # of the parts, by their paths
         try:
             with undisturbed():
                 self._start(title, units, program_version)
@@ -96,7 +99,7 @@ class Writer:
                 "units": [units.force, units.length, units.time],
                 "status": "running",
                 "message": "",
-                "digest": "",
+                DIGEST: "",
             }
         )
         for group in ("input", "tables", "history"):
@@ -141,7 +144,6 @@ class Writer:
     def text(self, name: str, text: str) -> None:
         """Store a text below ``/input``, as the deck by its file name; it replaces one of that name."""
         self._put("input", escape(name), storable(text), {})
-        self._digest(f"input/{name}").update(text.encode("utf-8", "replace"))
 
     def table(self, name: str, rows: Iterable[Sequence[Any]], note: str | None = None) -> None:
         """Store a table; it replaces one of that name.
@@ -182,8 +184,6 @@ class Writer:
             "units": [self._units.text(c.unit) for c in columns],
         }
         self._put("tables", name, data, attributes)
-        if name not in OF_THE_DAY:
-            self._digest(f"tables/{name}").update(repr([note, data.tolist()]).encode("utf-8", "replace"))
 
     def _put(self, group: str, name: str, data: NDArray[Any] | str, attributes: Mapping[str, Any]) -> None:
         """Store an array or a text in a group; it replaces one of that name."""
@@ -192,13 +192,14 @@ class Writer:
             if name in place:
                 del place[name]
             dtype = _TEXT if isinstance(data, str) else None
-            place.create_dataset(name, data=data, dtype=dtype).attrs.update(attributes)
+            sums = np.ndim(data) > 0 and np.size(data) > 0  # HDF5 keeps them for chunks of an array only
+            dataset = place.create_dataset(name, data=data, dtype=dtype, fletcher32=sums)
+            own = digest_of(attributes, data)
+            dataset.attrs.update(attributes)
+            dataset.attrs[DIGEST_OF_THE_DAY if name in OF_THE_DAY else DIGEST] = own.hexdigest()
             self._commit()
-
-    def _digest(self, name: str) -> blake2b:
-        """A new digest of one part of the file."""
-        self._digests[name] = blake2b(digest_size=16)
-        return self._digests[name]
+        if name not in OF_THE_DAY:
+            self._digests[f"{group}/{name}"] = own
 
     def tables(self, stage: Stage, record: RunRecord | StudyRecord) -> None:
         """Store all tables of a stage that have something to tell.
@@ -250,6 +251,7 @@ class Writer:
             maxshape=(None, *shape),
             chunks=(min(BLOCK, max(WIDEST // math.prod(shape), 1)), *shape),
             dtype="f8",
+            fletcher32=True,
         )
         for key, value in attributes.items():
             items = np.asarray(value)
@@ -259,7 +261,7 @@ class Writer:
                 texts = np.array([storable(str(v)) for v in np.atleast_1d(items)], dtype=object)
                 dataset.attrs.create(key, texts, dtype=_TEXT)
         self._history[name] = dataset
-        self._digest(f"history/{name}").update(repr(sorted(attributes.items())).encode("utf-8", "replace"))
+        self._digests[f"history/{name}"] = digest_of(attributes)
 
     def stored(self, name: str) -> NDArray[np.float64]:
         """Rows of a history so far, shape (n_times, \\*row).
@@ -313,11 +315,13 @@ class Writer:
         """Say how the analysis ended: ``done``, or ``stopped`` with a message that says where and why."""
         if status not in STATUSES:
             raise ValueError(f"status {status!r} is none of {', '.join(STATUSES)}")
-        parts = [f"{name} {own.hexdigest()}" for name, own in sorted(self._digests.items())]
+        parts = {name: own.hexdigest() for name, own in self._digests.items()}
         with undisturbed():
+            for name, dataset in self._history.items():
+                dataset.attrs[DIGEST] = parts[f"history/{name}"]
             self._file.attrs["status"] = status
             self._file.attrs["message"] = storable(message)
-            self._file.attrs["digest"] = blake2b("\n".join(parts).encode(), digest_size=8).hexdigest()
+            self._file.attrs[DIGEST] = digest_of_file(parts)
             self._commit()
 
 
