@@ -10,7 +10,7 @@ import pytest
 
 from output import sample
 from pound_solve.report.export import export_csv
-from pound_solve.results import Results
+from pound_solve.results import Results, Writer
 from pound_solve.results.contents import TABLES
 
 
@@ -52,3 +52,15 @@ def test_histories(done: Results, files: dict[str, list[list[str]]]) -> None:
 
 def test_again(done: Results, tmp_path: Path) -> None:
     assert export_csv(done, tmp_path) == export_csv(done, tmp_path)
+
+
+def test_no_text_of_a_deck_is_a_formula_of_a_spreadsheet(tmp_path: Path) -> None:
+    with Writer(tmp_path / "f.h5", title="t", units=sample.UNITS, program_version="0") as writer:
+        texts = ["=1+2", "@x", "-2", "-cmd|' /C calc'!A0", "+a", "plain"]
+        writer.table("size", [(text, "-") for text in texts])
+        writer.finish("done")
+    with Results.open(tmp_path / "f.h5") as results:
+        paths = export_csv(results, tmp_path)
+    with paths[0].open(encoding="utf-8") as file:
+        cells = [row[0] for row in csv.reader(file)][1:]
+    assert cells == ["'=1+2", "'@x", "-2", "'-cmd|' /C calc'!A0", "'+a", "plain"]

@@ -256,3 +256,12 @@ def test_numbers_at_the_axes_of_a_study_do_not_touch(tmp_path: Path, seconds: tu
             shown.sort(key=lambda ends: ends[0])
             assert len(shown) >= 2
             assert all(a[1] < b[0] for a, b in pairwise(shown))
+
+
+def test_names_of_a_deck_are_no_formulas(tmp_path: Path) -> None:
+    deck = alone(tmp_path, drift='DRIFT\n "cost $x_1$ and $\\frac" 1 2\n').with_suffix(".inp")
+    deck.write_text("TITLE $\\badcommand in $ and $\n" + deck.read_text())
+    with pound_solve.run(deck) as results:
+        for name in ("envelopes", "frame"):
+            plot.draw_into(results, name, tmp_path / f"{name}.svg")
+    assert "cost $x_1$ and $\\frac" in (tmp_path / "envelopes.svg").read_text()

@@ -316,3 +316,12 @@ def test_progress_tells_the_time_to_go_of_the_present_run(monkeypatch, terminal)
             "pound-solve: t = 1.1000 of 10 11.0 % run 2 89 s to go",
             "pound-solve: t = 5.2000 of 10 52.0 % run 2 48 s to go",
         ]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="shell")
+def test_closed_streams_are_no_fault(deck):
+    bad = deck.with_name("bad.inp")
+    bad.write_text("NODES\n 1 x\n")
+    for name, status in ((deck, 0), (bad, 2)):
+        line = f"{sys.executable} -m pound_solve {name} >&- 2>&-"
+        assert subprocess.run(["sh", "-c", line], env=os.environ).returncode == status

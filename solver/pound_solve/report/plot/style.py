@@ -69,8 +69,21 @@ def save(picture: Any, path: Path) -> None:
     """Write a picture, whose file's ending names the format; equal numbers give equal bytes."""
     import matplotlib
 
+    _literal(picture)
     with matplotlib.rc_context({"svg.hashsalt": "pound-solve", "svg.fonttype": "none"}):
         dated = {"Date": None} if path.suffix == ".svg" else None
         if path.suffix == ".pdf":
             dated = {"CreationDate": None}
         picture.savefig(path, dpi=150, metadata=dated)
+
+
+def _literal(picture: Any) -> None:
+    """Have names of a deck drawn as they are: dollar signs mean formulas in numbers of log axes only."""
+    from matplotlib.text import Text
+
+    for text in picture.findobj(Text):
+        text.set_parse_math(False)
+    for axis in (axis for axes in picture.axes for axis in (axes.xaxis, axes.yaxis)):
+        if axis.get_scale() == "log":
+            for label in axis.get_ticklabels(which="both"):
+                label.set_parse_math(True)
