@@ -459,6 +459,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "Name the .h5 file of a run of the same structure that ended or had a SAVE time, written by the "
         "same version of the program; its path is relative to the deck's folder.",
     ),
+    "R407": (
+        "record contradicts its header (warning)",
+        "The samples are used as they stand. The file may have been edited, scaled or cut, or its header "
+        "may belong to the record before processing. Compare it with the agency's file.",
+    ),
     "A501": (
         "unstable structure",
         "The stiffness matrix is singular: some node can move without resistance. The message names"
