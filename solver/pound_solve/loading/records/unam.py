@@ -60,7 +60,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     if not names or not len(names) == len(steps) == len(counts):
         raise RecordError(
             "R402",
-            f"the header names {len(names)} channels, {len(steps)} steps and {len(counts)} counts of samples",
+            f"the header has {len(names)} channels, {len(steps)} steps and {len(counts)} counts of samples",
         )
     thinned = _value(entries, _THINNED)
     if thinned not in ("", "1"):
