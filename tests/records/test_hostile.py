@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from agency_files import afad, cosmos, csmip, esm, knet, smc, unam
+from pound_solve.driver.run import DeckError, Request, prepare
 from pound_solve.loading.motions import record
 from pound_solve.loading.motions.base import LoadingContext
 from pound_solve.loading.records import formats
@@ -266,3 +267,47 @@ def test_a_million_samples() -> None:
         warnings.simplefilter("error")
         raw = formats()["AUTO"].impl.read(knet(readings.tolist(), length="10000", peak=peak), {})
     assert len(raw.values) == 1_000_000 and raw.notes == ()
+
+
+DECK = """UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=YR
+ELEMENTS
+ 1 C 1 2
+PROPS
+ C SPRING KX=4000
+WEIGHTS
+ 2 98.1
+EQUAKE
+ RECORD "motion.dat" {items}
+ANALYSIS
+ HISTORY 0.1 METHOD=EXACT
+"""
+
+
+@pytest.mark.parametrize(
+    ("data", "items", "code", "column", "words"),
+    [
+        (knet(peak="90.0").encode(), "SCALE=80", "R407", 9, "a peak of 90 CM/S2, the samples have 12.68"),
+        (knet(peak="12.681").encode(), "", None, 0, ""),
+        (csmip().encode(), "COMPONENT=N45E", "R405", 32, "no component 'N45E'"),
+        (csmip().partition("points of veloc")[0].encode()[:-60], "", "R403", 9, "motion.dat: "),
+        (b"\x1f\x8b\x08\0\0", "", "R402", 9, "motion.dat: the file is a gzip archive"),
+        (b"0 0\n1 341.7\n2 0\n", "", "R404", 2, "0.348 g if the samples were in CM/S2"),
+    ],
+)
+def test_a_deck_tells_its_place(
+    tmp_path: Path, data: bytes, items: str, code: str | None, column: int, words: str
+) -> None:
+    (tmp_path / "motion.dat").write_bytes(data)
+    deck = tmp_path / "deck.inp"
+    deck.write_text(DECK.format(items=items))
+    try:
+        found = list(prepare(Request(str(deck))).warnings)
+    except DeckError as error:
+        found = list(error.diagnostics)
+    assert [d.code for d in found] == ([code] if code else []), found
+    for told in found:
+        assert (told.span.line, told.span.column) == (12, column)
+        assert words in told.message

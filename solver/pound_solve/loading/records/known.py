@@ -208,7 +208,10 @@ def load(path: Path) -> tuple[str, str]:
         data = path.read_bytes()
     except OSError as error:
         raise RecordError("R401", f"{path}: {error.strerror or error}") from error
-    refuse_binary(data)
+    try:
+        refuse_binary(data)
+    except RecordError as error:
+        raise error.within(path.name) from None
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
