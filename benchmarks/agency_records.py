@@ -97,8 +97,8 @@ def main(names):
             beside = "  ".join(f"{p} {d:.1e} step {s:g}" for p, d, s in differences(raw, others))
             component = raw.component.partition(",")[0]
             print(
-                f"{path.name:44.44s} {raw.format:7s} {component:12s} {len(raw.values):7d} {raw.dt or 0.0:7g} s  "
-                f"peak {peak:.7g} {raw.unit}, header {raw.peak or '-'}  {beside}"
+                f"{path.name:44.44s} {raw.format:7s} {component:12s} {len(raw.values):7d} "
+                f"{raw.dt or 0.0:7g} s  peak {peak:.7g} {raw.unit}, header {raw.peak or '-'}  {beside}"
             )
             for note in raw.notes:
                 print(f"{'':44s} {note}")
