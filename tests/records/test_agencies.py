@@ -284,3 +284,15 @@ class TestContradictions:
         (note,) = read("ESM", esm(DURATION_S="0.200")).notes
         assert note == "the header gives a length of 0.2 s, the samples last 0.1 s"
         assert read("ESM", esm(DURATION_S="0.095")).notes == ()
+
+
+@pytest.mark.parametrize("n", [2, 3, 7, 8, 9, 15, 16, 17, 100])
+def test_any_number_of_samples(n: int) -> None:
+    rng = np.random.default_rng(n)
+    values = rng.uniform(-999, 999, n)
+    assert read("SMC", smc(values.tolist())).values == pytest.approx(values, rel=5.1e-5)
+    assert read("COSMOS", cosmos_part(values.tolist())).values == pytest.approx(values, abs=5.1e-6)
+    assert read("ESM", esm(values.tolist())).values == pytest.approx(values, abs=5.1e-7)
+    readings = rng.integers(-9999999, 9999999, n)
+    raw = read("KNET", knet(readings.tolist(), "1(gal)/1000", length=str(n / 100), peak=""))
+    assert raw.values == pytest.approx((readings - readings.mean()) / 1000, rel=1e-12, abs=1e-9)

@@ -289,7 +289,13 @@ ANALYSIS
 @pytest.mark.parametrize(
     ("data", "items", "code", "column", "words"),
     [
-        (knet(peak="90.0").encode(), "SCALE=80", "R407", 9, "a peak of 90 CM/S2, the samples have 12.68"),
+        (
+            knet(peak="90.0").encode(),
+            "SCALE=80",
+            "R407",
+            9,
+            "motion.dat: the header gives a peak of 90 CM/S2, the samples have 12.68",
+        ),
         (knet(peak="12.681").encode(), "", None, 0, ""),
         (csmip().encode(), "COMPONENT=N45E", "R405", 32, "no component 'N45E'"),
         (csmip().partition("points of veloc")[0].encode()[:-60], "", "R403", 9, "motion.dat: "),

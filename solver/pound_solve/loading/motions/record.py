@@ -7,6 +7,7 @@ record, and after the cut, the acceleration is zero.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -69,6 +70,7 @@ def samples(card_values: Mapping[str, Any], context: LoadingContext) -> RecordSa
         t, values = _window(raw.t, raw.values, start, duration)
     except RecordError as error:
         raise error.within(path.name) from None
+    raw = replace(raw, notes=tuple(f"{path.name}: {note}" for note in raw.notes))
     return RecordSamples(t * float(card_values.get("TSCALE", 1.0)), values, raw, path, digest)
 
 
