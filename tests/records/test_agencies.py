@@ -82,6 +82,10 @@ class TestSmc:
         assert (raw.dt, raw.unit, raw.component, raw.declared) == (0.005, "CM/S2", "360", 20)
         assert raw.title[0] == "2 CORRECTED ACCELEROGRAM"
 
+    def test_peak_below_zero(self) -> None:
+        raw = read("SMC", smc([-x for x in SAMPLES], peak=900.5))
+        assert float(raw.peak) == -1019.12350 and raw.notes == ()
+
     def test_vertical(self) -> None:
         assert read("SMC", smc(tilt=0, azimuth=-32768)).component == "UP"
         assert read("SMC", smc(azimuth=-32768)).component == ""
@@ -148,6 +152,10 @@ class TestCosmos:
         assert len(read("COSMOS", both).values) == 20
         assert "quantity" in refused("R402", "COSMOS", cosmos_part(SAMPLES, "cm/sec(05)", "velocity"))
 
+    @pytest.mark.parametrize("end", ["/&  ----------  End of data for channel  1", ""])
+    def test_ends(self, end: str) -> None:
+        assert len(read("COSMOS", cosmos().replace("End-of-data for Chan  1", end)).values) == 20
+
     def test_no_step(self) -> None:
         assert "62nd real" in refused(
             "R402", "COSMOS", cosmos_part(SAMPLES).replace("     5.000000", "  -999.000000")
@@ -203,6 +211,7 @@ class TestKnet:
         assert "line 11" in refused("R402", "KNET", knet(rate="0Hz"))
         assert "line 12" in refused("R402", "KNET", knet(length="long"))
         assert "200" in refused("R403", "KNET", knet(length="2"))
+        assert read("KNET", knet(rate="200Hz", length="0.5")).dt == 0.005
 
 
 class TestEsm:
@@ -236,6 +245,7 @@ class TestSideBySide:
                 raw = read(format, FILES[format](), COMPONENT=wanted)
                 assert raw.values == pytest.approx([x / 2**k for x in SAMPLES], abs=5.1e-5)
                 assert (raw.component, raw.unit, raw.declared) == (name, "CM/S2", 20)
+                assert raw.notes == ()
         assert names[2] in refused("R405", format, FILES[format](), COMPONENT="X")
 
     def test_first_horizontal_one(self, format: str, names: tuple[str, ...]) -> None:
