@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import warnings
 from pathlib import Path
 from typing import Any
@@ -111,6 +112,21 @@ def test_damaged_files_are_read_in_order_or_refused(format: str) -> None:
 def test_files_of_nothing(format: str, text: str) -> None:
     with pytest.raises(RecordError):
         formats()[format].impl.read(text, {})
+
+
+@pytest.mark.parametrize("format", FILES)
+@pytest.mark.parametrize(
+    "long", ["9" * 100000 + "x", "1 acc pts " + "units=" * 20000, "(" * 100000, "1." * 50000]
+)
+def test_one_endless_line(format: str, long: str) -> None:
+    # patterns that try all ways to part such a line take minutes
+    lines = FILES[format].splitlines()
+    for place in (0, len(lines) // 2):
+        text = "\n".join([*lines[:place], long, *lines[place:]])
+        for name in (format, "AUTO"):
+            # a title may be long; what matters is that an answer comes
+            with contextlib.suppress(RecordError):
+                assert in_order(formats()[name].impl.read(text, {}))
 
 
 @pytest.mark.parametrize(

@@ -25,6 +25,7 @@ _NUMBERS: Final = re.compile(
 _SAMPLES: Final = re.compile(
     r"\s*(\d+) +(.{3,20}?) *pts.*units\s*=\s*([^(,]*)\(\s*(\d+)\s*\).*=\s*\(\d+[IFE](\d+)", re.IGNORECASE
 )
+_LONGEST: Final = 200  # characters of a line that announces numbers; damaged ones can be a whole file
 _END: Final = re.compile(r"\s*(?:end-of-data|/&)", re.IGNORECASE)
 #: units of accelerations by their code, with the factor from samples to `RawRecord.unit`
 _UNITS: Final = {
@@ -88,7 +89,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     if not blocks:
         raise RecordError("R402", "no line '(Format v01.20 with 13 text lines)'", "leave FORMAT out")
     block = blocks[choose([b.component for b in blocks], options.get("COMPONENT"))]
-    headings = [(k, m) for k, line in enumerate(block.lines) if (m := _SAMPLES.match(line))]
+    headings = [(k, m) for k, line in enumerate(block.lines) if (m := _SAMPLES.match(line[:_LONGEST]))]
     at, samples = next(((k, m) for k, m in headings if "accel" in m[2].lower()), (0, None))
     if not samples:
         raise RecordError(
@@ -105,7 +106,9 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
             "get the file in physical units (.V1 or .V2)",
         )
     rest = block.lines[at + 1 :]
-    stop = next((k for k, line in enumerate(rest) if _END.match(line) or _SAMPLES.match(line)), len(rest))
+    stop = next(
+        (k for k, line in enumerate(rest) if _END.match(line) or _SAMPLES.match(line[:_LONGEST])), len(rest)
+    )
     values, _ = parse(fixed(rest[:stop], int(samples[5][:3]) or 1), row + 1)
     step, length, peak = (block.reals[k] for k in (_STEP, _LENGTH, _PEAK))
     return RawRecord(
@@ -140,7 +143,7 @@ def _blocks(lines: list[str]) -> Iterator[_Block]:
         found = {
             m[1].lower(): " ".join(fixed(part[k + 1 : k + 1 + int(m[2][:3])], int(m[3][:3]) or 1)).split()
             for k, line in enumerate(part)
-            if (m := _NUMBERS.match(line))
+            if (m := _NUMBERS.match(line[:_LONGEST]))
         }
         integers, reals = found.get("integer", []), found.get("real", [])
         if len(integers) <= _AZIMUTH or len(reals) <= _PEAK:

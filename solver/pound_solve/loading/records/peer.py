@@ -14,7 +14,7 @@ from pound_solve.loading.records.base import Format, RawRecord, RecordError
 from pound_solve.loading.records.header import count, positive, unit
 from pound_solve.loading.records.text import parse
 
-_REAL: Final = r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[ED][+-]?\d+)?)"
+_REAL: Final = r"([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[ED][+-]?\d+)?)"
 _NEW: Final = re.compile(rf"NPTS\s*=\s*(\d+)\s*,?\s*DT\s*=\s*{_REAL}", re.IGNORECASE)
 _OLD: Final = re.compile(rf"^\s*(\d+)[\s,]+{_REAL}[\s,]+NPTS\s*,\s*DT\b", re.IGNORECASE)
 _QUANTITY: Final = re.compile(r"\b(VELOCITY|DISPLACEMENT)\s+TIME", re.IGNORECASE)

@@ -25,7 +25,7 @@ _BEYOND: Final = 1e30  # far above every unit and instrument, far below where su
 _OTHER_SEPARATORS: Final = str.maketrans(";\t", "  ")
 _D_EXPONENT: Final = str.maketrans("Dd", "EE")
 _EXPONENT: Final = r"(?:[EeDd][+-]?\d+)?"
-_NUMBER: Final = re.compile(rf"[+-]?(?:\d+\.?\d*|\.\d+){_EXPONENT}")
+_NUMBER: Final = re.compile(rf"[+-]?(?:\d+(?:\.\d*)?|\.\d+){_EXPONENT}")
 # only numbers with a point can be glued, lest a date such as 1940-05-18 pass for three of them
 _POINTED: Final = rf"(?:\d+\.\d*|\.\d+){_EXPONENT}"
 _GLUED: Final = re.compile(rf"[+-]?{_POINTED}(?:[+-]{_POINTED})+")
