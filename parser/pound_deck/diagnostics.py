@@ -469,6 +469,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "A history goes on only with the structure, loads, damping and motion it began with. Give them "
         "the values of the first run. NEW=MOTION lets another motion follow: its time begins at zero.",
     ),
+    "R409": (
+        "record contradicts its header (warning)",
+        "The samples are used as they stand. The file may have been edited, scaled or cut, or its header "
+        "may belong to the record before processing. Compare it with the agency's file.",
+    ),
     "A501": (
         "unstable structure",
         "The stiffness matrix is singular: some node can move without resistance. The message names"

@@ -153,8 +153,6 @@ def shared_numbers() -> list[tuple[str, int, float, float, float]]:
 @pytest.mark.parametrize(("label", "npts", "dt", "pga", "t_pga"), shared_numbers())
 def test_shared_records(label: str, npts: int, dt: float, pga: float, t_pga: float) -> None:
     file, _, component = label.partition(" ")
-    if file.endswith(".smc"):
-        pytest.skip("SMC files are not read")
     card: dict[str, Any] = {"FILE": file}
     if "_gal_" in file:
         card |= {"DT": 0.01, "UNIT": "GAL"}

@@ -50,6 +50,7 @@ def motions(model: Model, surroundings: LoadingContext, found: list[Diagnostic])
         found += [
             Diagnostic("R404", w, card.span, severity="warning") for w in motion.info.get("warnings", ())
         ]
+        _tell(card, motion.info, found)
         ways = {"XYR"[d] for d in motion.directions}
         for node in motion.supports or ():
             if not ways & set(model.nodes[node].fixed):
@@ -61,7 +62,19 @@ def motions(model: Model, surroundings: LoadingContext, found: list[Diagnostic])
 
 def forces(model: Model, surroundings: LoadingContext, found: list[Diagnostic]) -> list[Force]:
     """Forces in time of all FORCES cards."""
-    return [force for card in model.forces if (force := _built(card, surroundings, found)) is not None]
+    out: list[Force] = []
+    for card in model.forces:
+        force: Force | None = _built(card, surroundings, found)
+        if force is not None:
+            _tell(card, force.info, found)
+            out.append(force)
+    return out
+
+
+def _tell(card: Card, info: Mapping[str, Any], found: list[Diagnostic]) -> None:
+    """Warn where the record of a card contradicts its header."""
+    notes = info.get("notes", ())
+    found += [Diagnostic("R409", n, card.place("FILE"), severity="warning") for n in notes]
 
 
 def _built(card: Card, surroundings: LoadingContext, found: list[Diagnostic]) -> Any:

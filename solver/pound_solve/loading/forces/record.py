@@ -18,7 +18,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Force:
     """Force of a RECORD card; raises as `motions.record.samples` does."""
     found = record.samples(card_values, context)
     info = {"kind": SPEC.name, "name": str(card_values["FILE"]), "dt": record.step(found.raw)}
-    return finish(card_values, found.lines, info | {"sha256": found.sha256})
+    return finish(card_values, found.lines, info | {"sha256": found.sha256, "notes": found.raw.notes})
 
 
 SPEC: Final = Spec(

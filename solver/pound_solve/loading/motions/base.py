@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -67,6 +68,8 @@ METRE: Final[Mapping[str, float]] = MappingProxyType(
 
 Closed = tuple[Callable[[], Piecewise], Callable[[], Piecewise]]
 _STRONG, _WEAK = 3.0, 0.001  # [g]
+_USUAL: Final = 0.3  # [g], the middle of what damages buildings
+_PER_METRE: Final = {"M/S2": 1.0, "CM/S2": 100.0, "GAL": 100.0, "MM/S2": 1000.0}
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +93,12 @@ class LoadingContext:
     search_path: tuple[Path, ...] = ()
     duration: float = 0.0
 
+    def per_unit(self, unit: str) -> float:
+        """Acceleration [L/T^2] of one ``G``, ``M/S2``, ``CM/S2``, ``GAL``, ``MM/S2`` or ``DECK``."""
+        if unit == "DECK":
+            return 1.0
+        return self.gravity if unit == "G" else self.metre / _PER_METRE[unit]
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion:
@@ -107,7 +116,8 @@ class Motion:
         Of the ground at t = 0.
     info : mapping
         For the report: ``kind name file format component npts dt unit scale start duration pga t_pga
-        pgv pgd sha256 warnings`` and items of the kind's own.
+        pgv pgd sha256 warnings notes`` and items of the kind's own; `warnings` doubt the size of the
+        motion, `notes` tell where a file contradicts its header.
     closed : pair of callables, or None
         Make velocity and displacement, where the kind has a closed form; they are not kept, because few
         decks request them.
@@ -219,9 +229,8 @@ def finish(
     strength = abs(pga) / context.gravity
     # a factor of zero is a motion switched off on purpose; a rotation is no share of gravity
     if scale != 0 and bare.direction != "R" and not _WEAK <= strength <= _STRONG:
-        warnings.append(
-            f"peak ground acceleration is {strength:.3g} g; check the unit of the record and SCALE"
-        )
+        other = _likely_unit(strength, str(info.get("unit") or ""), context)
+        warnings.append(f"peak ground acceleration is {strength:.3g} g; {other}check UNIT and SCALE")
     peaks = {
         "scale": scale,
         "duration": acceleration.end,
@@ -231,6 +240,18 @@ def finish(
         "pgd": abs(bare.displacement().peak()[1]),
     }
     return replace(bare, info={**_BLANK, **peaks, **info, "warnings": tuple(warnings)})
+
+
+def _likely_unit(strength: float, unit: str, context: LoadingContext) -> str:
+    """The unit that would make a peak [g] out of bounds usual, as words for the warning, or nothing."""
+    if not unit or strength == 0:
+        return ""
+    peaks = {
+        other: strength * context.per_unit(other) / context.per_unit(unit)
+        for other in ("G", "M/S2", "CM/S2", "MM/S2")
+    }
+    other, peak = min(peaks.items(), key=lambda item: abs(math.log(item[1] / _USUAL)))
+    return f"it would be {peak:.3g} g if the samples were in {other}: " if _WEAK <= peak <= _STRONG else ""
 
 
 def _check_wave(motion: Motion) -> None:

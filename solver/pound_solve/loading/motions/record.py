@@ -7,6 +7,7 @@ record, and after the cut, the acceleration is zero.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -20,7 +21,6 @@ from pound_solve.loading.records.known import find, known, load
 from pound_solve.numerics.types import Array
 
 _UNITS: Final = ("G", "M/S2", "CM/S2", "GAL", "MM/S2", "DECK")
-_PER_METRE: Final = {"M/S2": 1.0, "CM/S2": 100.0, "GAL": 100.0, "MM/S2": 1000.0}
 
 
 class RecordSamples(NamedTuple):
@@ -70,6 +70,7 @@ def samples(card_values: Mapping[str, Any], context: LoadingContext) -> RecordSa
         t, values = _window(raw.t, raw.values, start, duration)
     except RecordError as error:
         raise error.within(path.name) from None
+    raw = replace(raw, notes=tuple(f"{path.name}: {note}" for note in raw.notes))
     return RecordSamples(t * float(card_values.get("TSCALE", 1.0)), values, raw, path, digest)
 
 
@@ -85,7 +86,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
         )
         raise RecordError("R405", message, "write UNIT=DECK: radians per time squared", "DIRECTION")
     scale = float(card_values.get("SCALE", 1.0))
-    factor = _factor(unit, context) * scale
+    factor = context.per_unit(unit) * scale
     if unit == "G" and abs(abs(scale) / context.gravity - 1.0) < 0.01:
         warnings.append(f"SCALE={scale:g} is gravity, by which samples in G are multiplied anyway")
     shipped = known(name)
@@ -111,6 +112,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
             "tscale": float(card_values.get("TSCALE", 1.0)),
             "sha256": found.sha256,
             "warnings": warnings,
+            "notes": raw.notes,
         },
     )
 
@@ -119,16 +121,9 @@ def _unit(raw: RawRecord, wanted: str | None) -> tuple[str, list[str]]:
     """Unit of the samples, and warnings about it."""
     if wanted is None:
         return raw.unit or "G", []
-    if raw.unit and _PER_METRE.get(raw.unit) != _PER_METRE.get(wanted):
+    if raw.unit and raw.unit != {"GAL": "CM/S2"}.get(wanted, wanted):
         return wanted, [f"the file says that it is in {raw.unit}; UNIT={wanted} of the deck is used"]
     return wanted, []
-
-
-def _factor(unit: str, context: LoadingContext) -> float:
-    """Factor from samples to [L/T^2]."""
-    if unit == "DECK":
-        return 1.0
-    return context.gravity if unit == "G" else context.metre / _PER_METRE[unit]
 
 
 def _window(t: Array, a: Array, start: float, duration: float | None) -> tuple[Array, Array]:

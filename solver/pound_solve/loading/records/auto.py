@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from pound_deck.schema import Spec
-from pound_solve.loading.records import columns, formats, geonet
+from pound_solve.loading.records import columns, foreign, formats, header
 from pound_solve.loading.records.base import Format, RawRecord, RecordError, head
 
 
@@ -26,6 +26,8 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     if not text.strip():
         raise RecordError("R402", "the file is empty")
     start = head(text)
+    if foe := foreign.unread(start):
+        raise foe
     known = formats()
     for spec in sorted(known.values(), key=lambda s: (s.impl.greedy, s.name)):
         if spec.impl.sniff(start):
@@ -52,6 +54,6 @@ SPEC: Final = Spec(
     "record",
     "AUTO",
     "recognised by its content",
-    columns.FIELDS + geonet.FIELDS,
+    columns.FIELDS + header.FIELDS,
     impl=Format(sniff, read),
 )

@@ -6,13 +6,14 @@ Codes of :class:`RecordError`:
 R401   the record is not found
 R402   the file cannot be read: format not recognised, no finite number, times in disorder
 R403   the file holds another number of values than it declares
+R404   a value is beyond any record
 R405   an item of the card is missing, or does not fit the file
 ====== ===================================================================================
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -21,6 +22,10 @@ import numpy as np
 from pound_solve.numerics.types import Array
 
 HEAD: Final = 4096  #: characters that a sniffer sees at most
+LEAST: Final = (
+    1e-9  #: bounds of steps, rates and factors of headers: beyond them, a number is no such thing
+)
+MOST: Final = 1e9
 
 
 class RecordError(Exception):
@@ -73,6 +78,10 @@ class RawRecord:
         Name of the component, or empty.
     title : tuple of str
         Text at the head of the file.
+    peak, length : str
+        Largest acceleration [`unit`] and length [s] as the file's header prints them, or empty.
+    notes : tuple of str
+        Where the samples contradict the header; `checked` fills it.
     format : str
         Name of the format where it was recognised by content, else empty.
     """
@@ -84,6 +93,9 @@ class RawRecord:
     declared: int | None = None
     component: str = ""
     title: tuple[str, ...] = ()
+    peak: str = ""
+    length: str = ""
+    notes: tuple[str, ...] = ()
     format: str = ""
 
     @property
@@ -95,12 +107,13 @@ class RawRecord:
         return self.dt * np.arange(len(self.values), dtype=np.float64)
 
     def checked(self) -> RawRecord:
-        """Itself, once count and times are found in order; every reader ends with this.
+        """Itself with `notes`, once count and times are found in order; every reader ends with this.
 
         Raises
         ------
         RecordError
-            R402 fewer than two samples or times that do not increase, R403 wrong count.
+            R402 fewer than two samples, a step out of all bounds or times that do not increase, R403 wrong
+            count.
         """
         n = len(self.values)
         if self.declared is not None and n != self.declared:
@@ -111,6 +124,8 @@ class RawRecord:
             )
         if n < 2:
             raise RecordError("R402", f"the file holds {n} samples; a record needs two at least")
+        if self.dt is not None and not LEAST <= self.dt <= MOST:
+            raise RecordError("R402", f"the step is {self.dt:g} s, not from {LEAST:g} to {MOST:g} s")
         if self.times is not None and (stuck := np.flatnonzero(np.diff(self.times) <= 0)).size:
             k = int(stuck[0])
             before, after = self.times[k : k + 2]
@@ -119,11 +134,31 @@ class RawRecord:
                 f"sample {k + 2} is at time {after:g}, not after sample {k + 1} at {before:g}",
                 "if the first column is no time, give DT= and COLUMN=",
             )
-        return self
+        return replace(self, notes=tuple(self._contradictions()))
+
+    def _contradictions(self) -> Iterator[str]:
+        """Peak and length of the samples where they are not those that the header prints."""
+        if self.peak:
+            stated, found = abs(float(self.peak)), float(np.abs(self.values).max())
+            # agencies print samples with five digits and take the peak before that
+            if abs(found - stated) > _last_place(self.peak) + 1e-4 * stated:
+                yield f"the header gives a peak of {stated:g} {self.unit}, the samples have {found:g}"
+        if self.length:
+            stated, step = abs(float(self.length)), float(self.t[1] - self.t[0])
+            found = float(self.t[-1] - self.t[0]) + step
+            # some count samples, some the steps between them, some what an approximate clock gave
+            if abs(found - stated) > _last_place(self.length) + 2 * step:
+                yield f"the header gives a length of {stated:g} s, the samples last {found:g} s"
 
     def named(self, format: str) -> RawRecord:
         """The same samples, marked as recognised as that format."""
         return replace(self, format=format)
+
+
+def _last_place(printed: str) -> float:
+    """What one more in the last place of a printed number adds to it."""
+    mantissa, _, exponent = printed.upper().replace("D", "E").partition("E")
+    return float(10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2])))
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,9 +13,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from pound_deck.schema import Field, Kind, Spec
+from pound_deck.schema import Spec
 from pound_solve.loading.records.base import Format, RawRecord, RecordError
-from pound_solve.loading.records.text import parse
+from pound_solve.loading.records.header import FIELDS, choose, positive
+from pound_solve.loading.records.text import fixed, parse
 from pound_solve.numerics.types import Array
 
 _OPENING: Final = re.compile(r"\b(?:un)?corrected accelerogram\b", re.IGNORECASE)
@@ -23,15 +24,6 @@ _COMPONENT: Final = re.compile(r"^\s*Component\s+(\S+)", re.IGNORECASE)
 _READING: Final = re.compile(r"in units of\s+([\d.]+)\s*mm/s", re.IGNORECASE)
 _TEXT, _INTEGERS, _REALS = 16, 4, 6
 _WIDTH: Final = 8
-
-FIELDS: Final = (
-    Field(
-        "COMPONENT",
-        Kind.TEXT,
-        default=None,
-        doc="1, 2, 3 or the name in the file such as N28W or UP; left out: 1",
-    ),
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,11 +40,7 @@ class _Block:
 
     def numbers(self, start: int, stop: int | None = None) -> Array:
         """Numbers of some of the lines; columns of eight characters, which need no blank between."""
-        rows = [
-            " ".join(line[k : k + _WIDTH] for k in range(0, len(line.rstrip()), _WIDTH))
-            for line in self.lines[start:stop]
-        ]
-        return parse(rows, self.first + start)[0]
+        return parse(fixed(self.lines[start:stop], _WIDTH), self.first + start)[0]
 
 
 def sniff(head: str) -> bool:
@@ -68,7 +56,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     ----------
     text : str
     options : mapping
-        ``COMPONENT``: number from 1, name, or None for the first.
+        ``COMPONENT``: number from 1, name, or None for the first horizontal one.
 
     Raises
     ------
@@ -80,7 +68,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
         raise RecordError(
             "R402", "no line 'Corrected accelerogram' or 'Uncorrected accelerogram' in the file"
         )
-    block = _choose(blocks, options.get("COMPONENT"))
+    block = blocks[choose([b.component for b in blocks], options.get("COMPONENT"))]
     body = _TEXT + _INTEGERS + _REALS
     if len(block.lines) <= body:
         raise RecordError("R403", f"the file ends in the header of component {block.component or 1}")
@@ -109,8 +97,9 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
         )
     title = tuple(stripped for line in block.lines[:_TEXT] if (stripped := line.strip()))
     reading = _READING.search(" ".join(title))
+    factor = positive(reading[1], "the unit of the readings", block.first) if reading else 1.0
     return RawRecord(
-        numbers[:acceleration] * float(reading[1] if reading else 1.0),
+        numbers[:acceleration] * factor,
         dt=dt,
         unit="MM/S2",
         declared=acceleration,
@@ -125,20 +114,6 @@ def _blocks(lines: list[str]) -> Iterator[_Block]:
     starts = [k for k, line in enumerate(lines) if _OPENING.search(line)]
     for start, stop in zip(starts, [*starts[1:], len(lines)]):
         yield _Block(lines[start:stop], start + 1)
-
-
-def _choose(blocks: list[_Block], wanted: object) -> _Block:
-    """Block of a component given by number or name."""
-    if wanted is None:
-        return blocks[0]
-    name = str(wanted).strip().upper()
-    if name.isdigit() and 1 <= int(name) <= len(blocks):
-        return blocks[int(name) - 1]
-    for block in blocks:
-        if block.component.upper() == name:
-            return block
-    there = ", ".join(f"{k} {block.component}" for k, block in enumerate(blocks, 1))
-    raise RecordError("R405", f"no component '{wanted}' in the file", f"there are {there}")
 
 
 SPEC: Final = Spec(

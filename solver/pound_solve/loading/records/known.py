@@ -16,6 +16,7 @@ from types import MappingProxyType
 from typing import Final
 
 from pound_solve.loading.records.base import RecordError
+from pound_solve.loading.records.foreign import refuse_binary
 
 _EXTRA: Final = 'pip install "pound-solve[records]"'
 _EL_CENTRO: Final = "ground_motions/data/imperialValley_elCentro_1940/"
@@ -201,12 +202,16 @@ def load(path: Path) -> tuple[str, str]:
     Raises
     ------
     RecordError
-        R401 where the file cannot be opened.
+        R401 where the file cannot be opened, R402 where it is no text.
     """
     try:
         data = path.read_bytes()
     except OSError as error:
         raise RecordError("R401", f"{path}: {error.strerror or error}") from error
+    try:
+        refuse_binary(data)
+    except RecordError as error:
+        raise error.within(path.name) from None
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -11,29 +11,21 @@ from typing import Any, Final
 
 from pound_deck.schema import Spec
 from pound_solve.loading.records.base import Format, RawRecord, RecordError
+from pound_solve.loading.records.header import count, positive, unit
 from pound_solve.loading.records.text import parse
 
-_REAL: Final = r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[ED][+-]?\d+)?)"
+_REAL: Final = r"([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[ED][+-]?\d+)?)"
 _NEW: Final = re.compile(rf"NPTS\s*=\s*(\d+)\s*,?\s*DT\s*=\s*{_REAL}", re.IGNORECASE)
 _OLD: Final = re.compile(rf"^\s*(\d+)[\s,]+{_REAL}[\s,]+NPTS\s*,\s*DT\b", re.IGNORECASE)
 _QUANTITY: Final = re.compile(r"\b(VELOCITY|DISPLACEMENT)\s+TIME", re.IGNORECASE)
 _UNIT: Final = re.compile(r"UNITS?\s+OF\s+([A-Z]+(?:/[A-Z0-9^*/]+)?)", re.IGNORECASE)
 _HEADER_LINES: Final = 12
-_UNITS: Final = {
-    "G": "G",
-    **dict.fromkeys(
-        ("M/S2", "M/S^2", "M/S**2", "M/S/S", "M/SEC2", "M/SEC^2", "M/SEC**2", "M/SEC/SEC"), "M/S2"
-    ),
-    **dict.fromkeys(
-        ("CM/S2", "CM/S^2", "CM/S**2", "CM/S/S", "CM/SEC2", "CM/SEC^2", "CM/SEC**2", "CM/SEC/SEC"), "CM/S2"
-    ),
-}
 
 
-def _counts(line: str) -> tuple[int, float] | None:
-    """NPTS and DT [s] of a header line, or None."""
+def _counts(line: str) -> tuple[str, str] | None:
+    """NPTS and DT of a header line as they are written, or None."""
     match = _NEW.search(line) or _OLD.search(line)
-    return (int(match[1]), float(match[2].upper().replace("D", "E"))) if match else None
+    return (match[1], match[2]) if match else None
 
 
 def sniff(head: str) -> bool:
@@ -57,21 +49,19 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
         raise RecordError(
             "R402", "no line with NPTS and DT at the head of the file", "leave FORMAT out, or try COLUMNS"
         )
-    npts, dt = counts
-    if dt <= 0:
-        raise RecordError("R402", f"line {row + 1}: the step DT is {dt:g} s, not above zero")
+    npts, dt = count(counts[0], "NPTS", row + 1), positive(counts[1], "the step DT [s]", row + 1)
     title = tuple(stripped for part in lines[:row] if (stripped := part.strip()))
     about = " ".join(title)
     if wrong := _QUANTITY.search(about):
         raise RecordError(
             "R402", f"the file holds a {wrong[1].lower()}, not an acceleration", "take its .AT2 companion"
         )
-    unit = _UNIT.search(about)
+    stated = _UNIT.search(about)
     values, _ = parse(lines[row + 1 :], row + 2)
     return RawRecord(
         values,
         dt=dt,
-        unit=_UNITS.get(unit[1].upper()) if unit else None,
+        unit=unit(stated[1]) if stated else None,
         declared=npts,
         component=title[1].rsplit(",", 1)[-1].strip() if len(title) > 1 and "," in title[1] else "",
         title=title,

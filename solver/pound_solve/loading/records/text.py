@@ -2,6 +2,10 @@
 
 Old Fortran programs write exponents with a D, leave no blank before a minus sign in fixed columns, and
 print asterisks where a number does not fit.  The first two are read right, the third is an error.
+
+Spreadsheets of many countries write a comma for the decimal point.  Where blanks, tabs or semicolons part
+the numbers, such commas are read as points.  Where nothing but commas stands between digits, a file cannot
+say which of them part numbers: it is refused once a fraction such as ``,05`` shows that some do not.
 """
 
 from __future__ import annotations
@@ -17,12 +21,17 @@ from pound_solve.loading.records.base import RecordError
 from pound_solve.numerics.types import Array
 
 _SEPARATORS: Final = str.maketrans(",;\t", "   ")
+_BEYOND: Final = 1e30  # far above every unit and instrument, far below where sums overflow
+_OTHER_SEPARATORS: Final = str.maketrans(";\t", "  ")
 _D_EXPONENT: Final = str.maketrans("Dd", "EE")
 _EXPONENT: Final = r"(?:[EeDd][+-]?\d+)?"
-_NUMBER: Final = re.compile(rf"[+-]?(?:\d+\.?\d*|\.\d+){_EXPONENT}")
+_NUMBER: Final = re.compile(rf"[+-]?(?:\d+(?:\.\d*)?|\.\d+){_EXPONENT}")
 # only numbers with a point can be glued, lest a date such as 1940-05-18 pass for three of them
 _POINTED: Final = rf"(?:\d+\.\d*|\.\d+){_EXPONENT}"
 _GLUED: Final = re.compile(rf"[+-]?{_POINTED}(?:[+-]{_POINTED})+")
+# a comma that is no decimal one has no digit before it or none after it
+_PARTING: Final = re.compile(r"(?<!\d),|,(?!\d)")
+_FRACTION: Final = re.compile(r"\d+,0\d+")
 # no numbers, but they stand where numbers should: such a line is data gone wrong, not a title
 _SPOILT: Final = r"[+-]?(?:nan|inf|infinity)|\*+"
 _NUMERIC: Final = re.compile(rf"{_NUMBER.pattern}|{_GLUED.pattern}|{_SPOILT}", re.IGNORECASE)
@@ -77,13 +86,15 @@ def parse(lines: Sequence[str], first: int = 1) -> tuple[Array, list[int]]:
     Raises
     ------
     RecordError
-        R402 with the number of a line that holds anything but finite numbers, or for no numbers.
+        R402 with the number of a line that holds anything but finite numbers or commas that may be decimal
+        ones, or for no numbers; R404 for a number from 1e30 on.
     """
+    lines = _decimal_points(lines, first)
     rows = [line.translate(_SEPARATORS).split() for line in lines]
     try:
         values = np.array(list(chain.from_iterable(rows)), dtype=np.float64)
         # Python takes 1_000 for a number, a record never means it
-        clean = bool(np.isfinite(values).all()) and not any("_" in line for line in lines)
+        clean = bool((np.abs(values) < _BEYOND).all()) and not any("_" in line for line in lines)
     except ValueError:
         clean = False
     if not clean:
@@ -94,6 +105,30 @@ def parse(lines: Sequence[str], first: int = 1) -> tuple[Array, list[int]]:
     return values, [len(row) for row in rows]
 
 
+def fixed(lines: Sequence[str], width: int) -> list[str]:
+    """The same lines with a blank between columns of `width` characters, which need none in Fortran."""
+    return [" ".join(line[k : k + width] for k in range(0, len(line.rstrip()), width)) for line in lines]
+
+
+def _decimal_points(lines: Sequence[str], first: int) -> Sequence[str]:
+    """The same lines with points for decimal commas; R402 where it is open which commas are decimal."""
+    if not any("," in line for line in lines) or any("." in line for line in lines):
+        return lines
+    words = [line.translate(_OTHER_SEPARATORS).split() for line in lines]
+    if any(_PARTING.search(word) for row in words for word in row):
+        return lines
+    if any(len(row) > 1 for row in words) and all(word.count(",") <= 1 for row in words for word in row):
+        return [line.replace(",", ".") for line in lines]
+    for number, line in enumerate(lines, first):
+        if shown := _FRACTION.search(line):
+            raise RecordError(
+                "R402",
+                f"line {number}: '{shown[0]}' may be a decimal comma",
+                "write decimal points; if the comma parts two numbers, put a blank after each comma",
+            )
+    return lines
+
+
 def _patient(row: list[str], number: int) -> list[str]:
     """Words of one line as numbers that ``float`` takes, glued ones parted, or R402."""
     out = []
@@ -102,6 +137,8 @@ def _patient(row: list[str], number: int) -> list[str]:
         for part in parts:
             plain = part.translate(_D_EXPONENT)
             if not _NUMBER.fullmatch(part) or not np.isfinite(float(plain)):
-                raise RecordError("R402", f"line {number}: '{part}' is not a finite number")
+                raise RecordError("R402", f"line {number}: '{part[:30]}' is not a finite number")
+            if abs(float(plain)) >= _BEYOND:
+                raise RecordError("R404", f"line {number}: '{part[:30]}' is beyond any record")
             out.append(plain)
     return out

@@ -1,0 +1,151 @@
+"""What agencies' files have in common: numbers and units in their headers, the choice of a component."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Final
+
+from pound_deck.schema import Field, Kind
+from pound_solve.loading.records.base import LEAST, MOST, RecordError
+from pound_solve.loading.records.text import parse
+from pound_solve.numerics.types import Array
+
+FIELDS: Final = (
+    Field(
+        "COMPONENT",
+        Kind.TEXT,
+        default=None,
+        doc="1, 2, 3 or the name in the file such as N28W, 90 or UP; left out: the first horizontal one",
+    ),
+)
+
+# longer ones would neither be a header's nor fit a number of the machine
+_INTEGER: Final = re.compile(r"\d{1,9}")
+_REAL: Final = re.compile(r"[+-]?(?:\d{1,12}\.?\d{0,12}|\.\d{1,12})(?:E[+-]?\d{1,2})?")
+_DIVISION: Final = re.compile(r"/S(?:EC)?/S(?:EC)?\b")
+_SQUARE: Final = re.compile(r"/S(?:EC)?(?:\*\*|\^)?2")
+_VERTICAL: Final = frozenset(("UP", "DOWN", "VERT", "V", "Z", "U-D", "UD"))
+_UNITS: Final = {"G": "G", "GAL": "CM/S2", "M/S2": "M/S2", "CM/S2": "CM/S2", "MM/S2": "MM/S2"}
+
+
+def count(word: str, what: str, line: int) -> int:
+    """Number of things that a header states.
+
+    Parameters
+    ----------
+    word : str
+    what : str
+        Name of the number, for the message.
+    line : int
+        1-based line of the file, for the message.
+
+    Raises
+    ------
+    RecordError
+        R402 for anything but an integer of at most nine digits.
+    """
+    if not _INTEGER.fullmatch(word.strip()):
+        raise RecordError("R402", f"line {line}: {what} is '{word.strip()[:20]}', not a whole number")
+    return int(word)
+
+
+def printed(word: str) -> str:
+    """A word of a header as ``float`` takes it, empty where it is no number."""
+    plain = word.strip().upper().replace("D", "E")
+    return plain if _REAL.fullmatch(plain) else ""
+
+
+def positive(word: str, what: str, line: int) -> float:
+    """Quantity that a header states and that is above zero, such as a step or a rate.
+
+    Parameters
+    ----------
+    word, what, line
+        As for `count`.
+
+    Raises
+    ------
+    RecordError
+        R402 for anything but a number from 1e-9 to 1e9.
+    """
+    plain = printed(word)
+    if not plain or not LEAST <= float(plain) <= MOST:
+        raise RecordError(
+            "R402", f"line {line}: {what} is '{word.strip()[:20]}', not a number from {LEAST:g} to {MOST:g}"
+        )
+    return float(plain)
+
+
+def unit(words: str) -> str | None:
+    """Unit of acceleration as `RawRecord.unit` names it, from the ways in which files write it.
+
+    Parameters
+    ----------
+    words : str
+        Such as ``cm/sec2``, ``CM/SEC/SEC``, ``M/S**2``, ``g`` or ``Gal``.
+
+    Returns
+    -------
+    str or None
+        None where it is none of the known ones.
+    """
+    plain = words.strip().rstrip(".").upper()
+    return _UNITS.get(_SQUARE.sub("/S2", _DIVISION.sub("/S2", plain)))
+
+
+def choose(names: Sequence[str], wanted: object) -> int:
+    """0-based place of the component that a card asks for.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Components of the file in their order; one at least.
+    wanted : object
+        Number from 1, name, or None for the first that is not vertical.
+
+    Raises
+    ------
+    RecordError
+        R405, which lists the components.
+    """
+    if wanted is None:
+        return next((k for k, there in enumerate(names) if there.upper() not in _VERTICAL), 0)
+    name = str(wanted).strip().upper()
+    if _INTEGER.fullmatch(name) and 1 <= int(name) <= len(names):
+        return int(name) - 1
+    for k, there in enumerate(names):
+        if there.upper() == name:
+            return k
+    listed = ", ".join(f"{k} {there}" for k, there in enumerate(names, 1))
+    raise RecordError("R405", f"no component '{wanted}' in the file", f"there are {listed}", "COMPONENT")
+
+
+def side_by_side(lines: Sequence[str], first: int, names: Sequence[str], k: int) -> Array:
+    """Samples of one of the components that stand side by side.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        A row of numbers for each sample.
+    first : int
+        Line number of ``lines[0]``, for messages.
+    names : sequence of str
+        Components, from left to right.
+    k : int
+        0-based place of the one that is asked for.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+
+    Raises
+    ------
+    RecordError
+        R402 for a row that holds another number of samples.
+    """
+    values, counts = parse(lines, first)
+    for number, found in enumerate(counts, first):
+        if found not in (0, len(names)):
+            raise RecordError("R402", f"line {number}: {found} numbers, not {len(names)}")
+    return values.reshape(-1, len(names))[:, k].copy()
