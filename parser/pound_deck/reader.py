@@ -12,8 +12,9 @@ from pound_deck.checks import run_checks
 from pound_deck.diagnostics import Diagnostic, Mistake, has_errors, hints, suggest
 from pound_deck.expressions import Definition, Expression, Step, Value, resolve
 from pound_deck.model import Model, Span
-from pound_deck.outline import NAMES, Outline
+from pound_deck.outline import Outline
 from pound_deck.schema import Catalog
+from pound_deck.sections import NAMES
 from pound_deck.source import Line, Source
 
 Reading = tuple[Model | None, list[Diagnostic], dict[str, str]]
