@@ -17,7 +17,7 @@ MAX_INCLUDES: Final = 1000
 MAX_LINE: Final = 100_000
 
 _COMMENT: Final = re.compile(r""""[^"]*"|'[^']*'|(!)""")
-_INCLUDE: Final = re.compile(r"\s*INCLUDE(?![\w.])\s*(?!=)(.*)", re.IGNORECASE | re.DOTALL)
+INCLUDE: Final = re.compile(r"\s*INCLUDE(?![\w.])\s*(?!=)(.*)", re.IGNORECASE | re.DOTALL)
 _FILE_NAME: Final = re.compile(r"""("[^"\n]+"|'[^'\n]+'|[^\s"']+)\s*""")
 _PAGE: Final = re.compile(r"\s*<(!doctype|html|head|\?xml)", re.IGNORECASE)
 
@@ -72,11 +72,11 @@ class Source:
         """Logical lines of a text; `path` names the files being read, outermost first."""
         self.files[name] = text
         out: list[Line] = []
-        for line in self._logical(name, text):
-            include = _INCLUDE.match(line.text)
+        for line in self.logical(name, text):
+            include = INCLUDE.match(line.text)
             if include:
                 out += self._include(line, include[1], path)
-            elif line.text.strip().upper() == "END":
+            elif is_end(line.text):
                 break
             elif len(line.text) > MAX_LINE:
                 self._error("P110", f"a card of {len(line.text)} characters is too long", line.span)
@@ -84,10 +84,11 @@ class Source:
                 out.append(line)
         return out
 
-    def _logical(self, name: str, text: str) -> Iterator[Line]:
+    def logical(self, name: str, text: str) -> Iterator[Line]:
+        """Logical lines of one text, INCLUDE and END among them."""
         start, pending = 0, ""
         for number, raw in enumerate(text.split("\n"), 1):
-            code = _without_comment(raw)
+            code = without_comment(raw)
             if not code or code.isspace():
                 # blank and comment lines may stand inside a continued card; columns need the line end
                 pending += "\n" if pending else ""
@@ -162,7 +163,13 @@ class Source:
         self.report.append(Diagnostic(code, message, span, hint))
 
 
-def _without_comment(raw: str) -> str:
+def is_end(text: str) -> bool:
+    """Whether a logical line ends its file."""
+    return text.strip().upper() == "END"
+
+
+def without_comment(raw: str) -> str:
+    """A line up to the exclamation mark that starts its comment."""
     if "!" not in raw:
         return raw
     mark = next((m.start() for m in _COMMENT.finditer(raw) if m[1]), len(raw))
