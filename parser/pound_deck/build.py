@@ -33,7 +33,7 @@ def build(
     report: list[Diagnostic],
 ) -> tuple[Model, list[Card]]:
     """Model of all that could be bound, and every card in it."""
-    units = _units(outline.single.get("UNITS"), report)
+    units = units_of(outline.single.get("UNITS"), report)
     heads = [row.items[0] for row in outline.sections["PROPS"] if row.items]
     binder = Binder(Values(catalog, params, frozenset(_plain_labels(heads)), units), report)
     bound = {name: _section(name, outline, binder) for name in NAMES}
@@ -201,7 +201,8 @@ def _single(name: str, outline: Outline, binder: Binder) -> Any:
     return card[name] if card else None
 
 
-def _units(row: Row | None, report: list[Diagnostic]) -> Units:
+def units_of(row: Row | None, report: list[Diagnostic]) -> Units:
+    """Units of the UNITS card; the default ones without it, or where it has mistakes."""
     if row is None or row.items is None:
         return Units()
     steps = _lone_steps(row.items[1:])

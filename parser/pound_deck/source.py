@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -51,10 +51,13 @@ class Source:
         What is wrong with the files.
     files : dict of str to str
         Texts by the name in spans; line ends are ``\\n``.
+    unsaved : mapping of str to str
+        Texts of an editor by real path, read in place of these files.
     """
 
     report: list[Diagnostic] = field(default_factory=list)
     files: dict[str, str] = field(default_factory=dict)
+    unsaved: Mapping[str, str] = field(default_factory=dict)
     _bytes: int = 0
     _includes: int = 0
 
@@ -128,6 +131,9 @@ class Source:
         return []
 
     def _load(self, name: str, here: Span) -> str:
+        text = self.unsaved.get(os.path.realpath(name)) if self.unsaved else None
+        if text is not None:
+            return self.decode(name, text.encode("utf-8", "surrogatepass"), here)
         with open(name, "rb") as stream:
             # one byte more than allowed: distinguishes a deck that is too large from one that just fits
             return self.decode(name, stream.read(MAX_BYTES - self._bytes + 1), here)
