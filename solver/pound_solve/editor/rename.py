@@ -1,0 +1,111 @@
+"""Rename nodes, elements, property sets and PARAMs, where that leaves the meaning of the deck as it is."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Final
+
+from pound_deck.expressions import RESERVED
+from pound_deck.model import Span
+from pound_solve.editor.names import Mention, at, definitions, mentions
+from pound_solve.editor.reading import Reading, read
+
+Edits = list[tuple[Span, str]]
+
+_WORD: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*")
+
+
+class RenameError(Exception):
+    """What is at the place cannot get that name; the text says why."""
+
+
+def renamable(reading: Reading, place: Span) -> Span | None:
+    """The name at a place, where it can be replaced."""
+    here = at(mentions(reading), place)
+    return here.span if here and here.plain else None
+
+
+def rename(reading: Reading, path: str, place: Span, new: str) -> Edits:
+    """Places of a name and what to write there.
+
+    Parameters
+    ----------
+    reading : Reading
+        The deck.
+    path : str
+        Its file.
+    place : Span
+        Where the name stands.
+    new : str
+        The other name.
+
+    Raises
+    ------
+    RenameError
+        The name is not replaceable everywhere, the other name is taken or none, or the deck would mean
+        something else.
+    """
+    unread = next((row for _, row in reading.rows if row.items is None), None)
+    if unread:
+        raise RenameError(f"line {unread.span.line} of {unread.span.file} has a mistake of syntax")
+    found = mentions(reading)
+    here = at(found, place)
+    if here is None or not here.plain:
+        raise RenameError("no name of a node, element, property set or PARAM stands here")
+    if not definitions(found, here):
+        raise RenameError(f"{here.sort} {here.key} is not defined")
+    same = [m for m in found if m.sort == here.sort and here.key in m.keys]
+    for m in same:
+        if not m.plain:
+            raise RenameError(f"an expression or a range names it, too: {m.span}")
+    text, key = _checked(new, here)
+    if any(m.sort == here.sort and key in m.keys for m in found):
+        raise RenameError(f"there is a {here.sort} {key} already")
+    edits = [(m.span, text) for m in same]
+    _verify(reading, path, found, same, key, edits)
+    return edits
+
+
+def applied(files: Mapping[str, str], edits: Iterable[tuple[Span, str]]) -> dict[str, str]:
+    """Texts with edits, each within a line."""
+    lines = {name: text.split("\n") for name, text in files.items()}
+    for span, text in sorted(set(edits), key=lambda e: (e[0].line, e[0].column), reverse=True):
+        line = lines[span.file][span.line - 1]
+        lines[span.file][span.line - 1] = line[: span.column - 1] + text + line[span.end - 1 :]
+    return {name: "\n".join(texts) for name, texts in lines.items()}
+
+
+def _checked(new: str, here: Mention) -> tuple[str, int | str]:
+    """The text to write, and the name that it is."""
+    new = new.strip()
+    if here.sort in ("node", "element"):
+        if not new.isascii() or not new.isdecimal() or not 0 < int(new[:20]) < 10**15:
+            raise RenameError("a number from 1 on is needed")
+        return new, int(new)
+    word = _WORD.fullmatch(new) and new.upper() not in RESERVED
+    if word or (here.sort == "property set" and new.isascii() and new.isdecimal()):
+        return new, new.upper()
+    if here.sort == "property set" and new and not set(new) & set("\"'\n\r!"):
+        return f'"{new}"', new.upper()
+    what = "a word that starts with a letter" if here.sort == "PARAM" else "a word, a number or a text"
+    raise RenameError(f"{new[:60]} is no name for it: {what} is needed")
+
+
+def _verify(
+    reading: Reading,
+    path: str,
+    before: Sequence[Mention],
+    same: Sequence[Mention],
+    key: int | str,
+    edits: Edits,
+) -> None:
+    """Read the edited deck: all must be named as before, but for the new name."""
+    texts = applied(reading.files, edits)
+    unsaved = {os.path.realpath(name): text for name, text in texts.items()}
+    after = mentions(read(path, reading.catalog, unsaved))
+    renamed = set(map(id, same))
+    expected = [(m.sort, (key,) if id(m) in renamed else m.keys, m.defines) for m in before]
+    if [(m.sort, m.keys, m.defines) for m in after] != expected:
+        raise RenameError("with that name the deck would mean something else")
