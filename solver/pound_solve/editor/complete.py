@@ -114,7 +114,8 @@ def _first(reading: Reading, section: str) -> list[Suggestion]:
 
 def _within(reading: Reading, section: str, typed: str) -> list[Suggestion]:
     """An item of a line, or its value."""
-    pieces = _PIECE.findall(_TIGHT.sub("=", typed))
+    typed = _TIGHT.sub("=", typed)
+    pieces = _PIECE.findall(typed)
     current = pieces.pop() if pieces and not typed[-1:].isspace() else ""
     words = [
         (name.upper(), value) if eq else ("", name)

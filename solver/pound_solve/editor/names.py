@@ -75,9 +75,9 @@ def mentions(reading: Reading) -> list[Mention]:
 
 
 def at(found: Sequence[Mention], place: Span) -> Mention | None:
-    """The shortest mention at a place, which a column before a name and one behind it belong to."""
+    """The shortest mention at a place; of a PARAM that stands for another name, that of the PARAM."""
     here = [m for m in found if m.holds(place)]
-    return min(here, key=lambda m: m.span.end - m.span.column, default=None)
+    return min(here, key=lambda m: (m.span.end - m.span.column, not m.plain), default=None)
 
 
 def definitions(found: Sequence[Mention], of: Mention) -> list[Mention]:

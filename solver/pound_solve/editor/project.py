@@ -30,7 +30,8 @@ class Project:
 
     records: tuple[Path, ...] = ()
     texts: dict[str, str] = field(default_factory=dict)
-    _said: dict[str, Found] = field(default_factory=dict)
+    _said: dict[str, Found] = field(default_factory=dict)  # by deck
+    _told: Found = field(default_factory=dict)
     _decks: dict[str, str] = field(default_factory=dict)
     _readings: dict[str, Reading] = field(default_factory=dict)
 
@@ -44,6 +45,7 @@ class Project:
     def drop(self, path: str) -> None:
         """Forget a file that the editor has closed."""
         self.texts.pop(path, None)
+        self._told.pop(path, None)
         self._decks.clear()
         self._readings.clear()
 
@@ -82,7 +84,7 @@ class Project:
                 yield other
 
     def check(self, path: str) -> Found:
-        """Mistakes of all decks that a file belongs to; what has none any more has an empty list."""
+        """Mistakes of the decks that a file belongs to: in this file, and in others where they are new."""
         decks = {self.deck(p) for p in self.texts}
         own = self.deck(path) if path in self.texts else ""
         changed = {deck for deck in decks if deck == own or path in self._said.get(deck, {})}
@@ -91,7 +93,10 @@ class Project:
             touched |= set(self._said.get(deck, {}))
             self._said[deck] = self._diagnosed(deck)
             touched |= set(self._said[deck])
-        return {name: self._of_file(name) for name in sorted(touched)}
+        now = {name: self._of_file(name) for name in sorted(touched)}
+        news = {name: found for name, found in now.items() if name == path or found != self._told.get(name)}
+        self._told.update(now)
+        return news
 
     def _diagnosed(self, deck: str) -> Found:
         try:

@@ -14,6 +14,7 @@ from pound_solve.editor.reading import Reading, read
 
 Edits = list[tuple[Span, str]]
 
+_KEYWORDS: Final = ("TO", "BY")  #: of a range: a label of that name stands in quotes
 _WORD: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*")
 
 
@@ -84,7 +85,7 @@ def _checked(new: str, here: Mention) -> tuple[str, int | str]:
         if not new.isascii() or not new.isdecimal() or not 0 < int(new[:20]) < 10**15:
             raise RenameError("a number from 1 on is needed")
         return new, int(new)
-    word = _WORD.fullmatch(new) and new.upper() not in RESERVED
+    word = _WORD.fullmatch(new) and new.upper() not in (RESERVED if here.sort == "PARAM" else _KEYWORDS)
     if word or (here.sort == "property set" and new.isascii() and new.isdecimal()):
         return new, new.upper()
     if here.sort == "property set" and new and not set(new) & set("\"'\n\r!"):

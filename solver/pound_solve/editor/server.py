@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -112,6 +113,11 @@ def path_of(uri: str) -> str:
     return os.path.realpath(path if path else os.path.basename(uri.partition(":")[2]) or "deck.inp")
 
 
+def _is_fault(record: logging.LogRecord) -> bool:
+    """Whether an entry of the log is more than a rename that was refused, which the editor shows itself."""
+    return not (record.exc_info and isinstance(record.exc_info[1], JsonRpcException))
+
+
 def server(records: tuple[Path, ...] = ()) -> DeckServer:
     """Return a server with all its features.
 
@@ -120,6 +126,7 @@ def server(records: tuple[Path, ...] = ()) -> DeckServer:
     records : tuple of Path
         Folders where records are looked for, after the deck's own.
     """
+    logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_fault)
     out = DeckServer(records)
     _documents(out)
     _help(out)
