@@ -77,6 +77,10 @@ WITHIN = {
         "diagnose",
         "project",
         "server",
+        "words",
+        "textmate",
+        "notepad",
+        "kate",
     ),
     "driver": ("request", "overrides", "loading", "preflight", "prepare", "sequence", "run"),
 }
