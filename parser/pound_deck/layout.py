@@ -108,12 +108,8 @@ def layout(text: str, name: str = "deck.inp") -> tuple[str | None, list[Diagnost
         return None, source.report
     raw = text.split("\n")
     new = [without_comment(r).rstrip() for r in raw]
-    for line in lines:
-        if "\n" not in line.text:
-            new[line.number - 1] = line.text.strip()
-    for block in _blocks(rows):
-        for at, code in _in_columns(block):
-            new[at] = code
+    for at, code in (*_stripped(lines), *(line for block in _blocks(rows) for line in _in_columns(block))):
+        new[at] = code
     headings = {row.line.number - 1 for row in rows if row.word in NAMES}
     end = lines[-1].number if lines and is_end(lines[-1].text) else len(raw)
     body = "\n".join([*_with_comments(raw[:end], new, headings), *raw[end:]]).rstrip("\n")
@@ -125,6 +121,11 @@ def _up_to_end(lines: Iterable[Line]) -> Iterator[Line]:
         yield line
         if is_end(line.text):
             return
+
+
+def _stripped(lines: Iterable[Line]) -> Iterator[tuple[int, str]]:
+    """Index and text of each line that is a card of its own."""
+    return ((line.number - 1, line.text.strip()) for line in lines if "\n" not in line.text)
 
 
 def _blocks(rows: Iterable[Row]) -> Iterator[list[_Cells]]:

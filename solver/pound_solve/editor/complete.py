@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import chain, combinations, islice
+from itertools import combinations, islice
 from typing import Final
 
 from pound_deck.expressions import FUNCTIONS
@@ -14,10 +14,18 @@ from pound_deck.sections import CARDS, FAMILIES, NAMES, SECTIONS
 from pound_deck.source import without_comment
 from pound_solve.editor.fields import Fields, fields
 from pound_solve.editor.hover import describe, explain
-from pound_solve.editor.names import Mention, mentions
+from pound_solve.editor.names import SORTS, Mention, mentions
 from pound_solve.editor.reading import Reading
 
 MOST: Final = 1000  #: nodes or elements
+_CARDS: Final = frozenset(spec.name for spec in CARDS)
+_NUMBERS: Final = (
+    Kind.REAL,
+    Kind.INT,
+    Kind.NODE,
+    Kind.NODES,
+    Kind.ELEMENTS,
+)  #: kinds that take expressions
 _PIECE: Final = re.compile(r"""(?:"[^"]*"?|'[^']*'?|[^\s"'])+""")
 _TIGHT: Final = re.compile(r"\s*=\s*")
 _OPEN: Final = re.compile(r"""[^"']*("[^"]*|'[^']*)$""")
@@ -114,30 +122,32 @@ def _first(reading: Reading, section: str) -> list[Suggestion]:
 
 def _within(reading: Reading, section: str, typed: str) -> list[Suggestion]:
     """An item of a line, or its value."""
-    typed = _TIGHT.sub("=", typed)
-    pieces = _PIECE.findall(typed)
-    current = pieces.pop() if pieces and not typed[-1:].isspace() else ""
-    words = [
-        (name.upper(), value) if eq else ("", name)
-        for name, eq, value in (p.partition("=") for p in pieces)
-    ]
+    words, current = _pieces(typed)
     card = words[0][1].upper() if words and not words[0][0] else ""
+    name, equal, _ = current.partition("=")
     if card == "PARAM":
-        return list(_numbers(reading)) if "=" in current or typed.rstrip().endswith("=") else []
-    if any(card == spec.name for spec in CARDS):
+        return list(_numbers(reading)) if equal else []
+    if card in _CARDS:
         section = ""
     elif not section:
         return []
-    known = fields([*words], section, reading.catalog, reading.params)
-    name, equal, _ = current.partition("=")
+    known = fields(words, section, reading.catalog, reading.params)
     if equal:
-        f = known.known.get(name.upper())
-        return list(_values(f, reading)) if f else list(_numbers(reading))
+        return list(_values(known.known.get(name.upper()), reading))
     if len(words) <= known.kind_at:
         return _kinds(known, reading) if len(words) == known.kind_at and known.family else []
     named = any(name for name, _ in words)
     f = None if named else known.next()
-    return [*(_values(f, reading) if f else ()), *_items(known, words, reading)]
+    return [*_values(f, reading), *_items(known, words, reading)]
+
+
+def _pieces(typed: str) -> tuple[list[tuple[str, str]], str]:
+    """Whole items of half a line, and the one that is begun."""
+    typed = _TIGHT.sub("=", typed)
+    pieces = _PIECE.findall(typed)
+    current = pieces.pop() if pieces and not typed[-1:].isspace() else ""
+    parted = (piece.partition("=") for piece in pieces)
+    return [(name.upper(), value) if equal else ("", name) for name, equal, value in parted], current
 
 
 def _kinds(known: Fields, reading: Reading) -> list[Suggestion]:
@@ -154,29 +164,30 @@ def _items(known: Fields, words: Iterable[tuple[str, str]], reading: Reading) ->
         yield Suggestion(f"{f.name}=", "item", f"{f.doc}{unit}", explain(f, reading.units))
 
 
-def _values(f: Field, reading: Reading) -> Iterator[Suggestion]:
+def _values(f: Field | None, reading: Reading) -> Iterator[Suggestion]:
     """Values of a field."""
+    if f is None:
+        return
     for word in f.words if f.kind is not Kind.FLAGS else ():
         yield Suggestion(word, "word", f.doc)
-    match f.kind:
-        case Kind.FAMILY:
-            for spec in reading.catalog.family(f.family).values():
-                yield Suggestion(spec.name, "kind", spec.title, describe(spec))
-        case Kind.FLAGS:
-            letters = f.words[0]
-            sets = chain.from_iterable(combinations(letters, n) for n in range(1, len(letters) + 1))
-            yield from (Suggestion("".join(some), "word", f.doc) for some in sets)
-        case Kind.NODE | Kind.NODES:
-            yield from _names(reading, "node")
-        case Kind.ELEMENTS:
-            yield from _names(reading, "element")
-        case Kind.PROP | Kind.PROPS:
-            yield from _names(reading, "property set")
-        case Kind.TEXT:
-            texts = {name: v for name, v in reading.params.items() if isinstance(v, str)}
-            yield from (Suggestion(_written(reading, name), "name", f'"{v}"') for name, v in texts.items())
-    if f.kind in (Kind.REAL, Kind.INT, Kind.NODE, Kind.NODES, Kind.ELEMENTS):
+    if f.kind is Kind.FAMILY:
+        for spec in reading.catalog.family(f.family).values():
+            yield Suggestion(spec.name, "kind", spec.title, describe(spec))
+    elif f.kind is Kind.FLAGS:
+        yield from (Suggestion(letters, "word", f.doc) for letters in _flags(f.words[0]))
+    elif f.kind is Kind.TEXT:
+        texts = {name: v for name, v in reading.params.items() if isinstance(v, str)}
+        yield from (Suggestion(_written(reading, name), "name", f'"{v}"') for name, v in texts.items())
+    elif f.kind in SORTS:
+        yield from _names(reading, SORTS[f.kind])
+    if f.kind in _NUMBERS:
         yield from _numbers(reading)
+
+
+def _flags(letters: str) -> Iterator[str]:
+    """Every set of letters."""
+    for n in range(1, len(letters) + 1):
+        yield from map("".join, combinations(letters, n))
 
 
 def _names(reading: Reading, sort: str) -> Iterator[Suggestion]:

@@ -11,6 +11,7 @@ from pound_deck.schema import Catalog, Field, Kind, Spec
 from pound_deck.sections import CARDS, FAMILIES, SECTIONS
 
 Words = Sequence[tuple[str, str]]  #: items as (upper-case name or nothing, text)
+Params = Mapping[str, Value | None]  #: values by upper-case name
 
 _OWN: Final = {spec.name: spec for spec in SECTIONS}
 _CARDS: Final = {spec.name: spec for spec in CARDS}
@@ -51,9 +52,7 @@ class Fields:
         return places[taken] if 0 <= taken < len(places) else None
 
 
-def fields(
-    words: Words, section: str, catalog: Catalog, params: Mapping[str, Value | None] | None = None
-) -> Fields:
+def fields(words: Words, section: str, catalog: Catalog, params: Params | None = None) -> Fields:
     """Fields of a line.
 
     Parameters
@@ -66,37 +65,42 @@ def fields(
     params : mapping of str to value, optional
         A PARAM may name a member of a family.
     """
-    first = words[0][1].upper() if words else ""
-    if not section:
-        spec, family, kind_at = _CARDS.get(first), "", 0
-    elif section in _OWN:
-        spec, family, kind_at = _OWN[section], "", -1
-    else:
-        family, kind_at = FAMILIES[section], 1 if section == "PROPS" else 0
-        word = words[kind_at][1] if len(words) > kind_at and not words[kind_at][0] else ""
-        spec = member(word, family, catalog, params or {})
+    known_params = params or {}
+    spec, family, kind_at = _kind(words, section, catalog, known_params)
     known = {f.name: f for f in spec.fields} if spec else {}
-    chosen = {}
-    for name, text in _given(words, spec, kind_at):
-        f = known.get(name)
-        if f and f.kind is Kind.FAMILY:
-            for word in text.split(","):
-                law = member(word, f.family, catalog, params or {})
-                if law:
-                    chosen[word.upper()] = law
-                    known |= {g.name: g for g in law.fields if g.name not in known}
-    for f in [f for f in known.values() if f.kind is Kind.FAMILY and isinstance(f.default, str)]:
-        law = catalog.family(f.family).get(str(f.default))
-        if law and f.name not in {name for name, _ in words}:
-            known |= {g.name: g for g in law.fields if g.name not in known}
-    names = [name for name, _ in _given(words, spec, kind_at)]
+    given = _given(words, spec, kind_at)
+    chosen = _chosen(given, known, catalog, known_params)
     kind = Field("KIND", Kind.FAMILY, doc=f"kind of {family}", family=family) if family else None
     before = ((kind,), (LABEL, kind))[kind_at] if kind_at >= 0 else ()
-    matched = (*before[: len(words)], *(known.get(name) for name in names))
+    matched = (*before[: len(words)], *(known.get(name) for name, _ in given))
     return Fields(spec, family, kind_at, known, matched, chosen)
 
 
-def member(word: str, family: str, catalog: Catalog, params: Mapping[str, Value | None]) -> Spec | None:
+def _kind(words: Words, section: str, catalog: Catalog, params: Params) -> tuple[Spec | None, str, int]:
+    """Spec of a line, its family, and the index of the item that names it."""
+    if not section:
+        return _CARDS.get(words[0][1].upper() if words else ""), "", 0
+    if section in _OWN:
+        return _OWN[section], "", -1
+    family, at = FAMILIES[section], 1 if section == "PROPS" else 0
+    word = words[at][1] if len(words) > at and not words[at][0] else ""
+    return member(word, family, catalog, params), family, at
+
+
+def _chosen(given: Words, known: dict[str, Field], catalog: Catalog, params: Params) -> dict[str, Spec]:
+    """Members of families that a line chooses; their fields, and those of defaults, join `known`."""
+    texts = {f.name: f.default for f in known.values() if isinstance(f.default, str)} | dict(given)
+    out = {}
+    for f in [f for f in known.values() if f.kind is Kind.FAMILY]:
+        for word in texts.get(f.name, "").split(","):
+            law = member(word, f.family, catalog, params)
+            if law:
+                out[word.upper()] = law
+                known |= {g.name: g for g in law.fields if g.name not in known}
+    return out
+
+
+def member(word: str, family: str, catalog: Catalog, params: Params) -> Spec | None:
     """Member of a family by its name, by its old code, or by a PARAM that holds either."""
     members, text = catalog.family(family), word.strip("\"'").upper()
     value = params.get(text) if text not in members else None

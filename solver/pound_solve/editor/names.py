@@ -17,7 +17,8 @@ from pound_solve.editor.reading import Reading
 
 Sort = Literal["node", "element", "property set", "PARAM"]
 
-_SORTS: Final[dict[Kind, Sort]] = {
+#: what the kinds name that name something
+SORTS: Final[dict[Kind, Sort]] = {
     Kind.NODE: "node",
     Kind.NODES: "node",
     Kind.ELEMENTS: "element",
@@ -106,7 +107,7 @@ def _of_row(row: Row, section: str, reading: Reading, values: Values) -> Iterato
 
 def _of_item(item: Item, f: Field, section: str, values: Values, reading: Reading) -> Iterator[Mention]:
     own = _DEFINES.get((section, f.name))
-    sort = own or _SORTS.get(f.kind)
+    sort = own or SORTS.get(f.kind)
     for part in item.parts:
         if sort:
             yield from _named(part, sort, f.name, own is not None, values)

@@ -48,10 +48,22 @@ def rename(reading: Reading, path: str, place: Span, new: str) -> Edits:
         The name is not replaceable everywhere, the other name is taken or none, or the deck would mean
         something else.
     """
+    found = mentions(reading)
+    same = _same(reading, found, place)
+    here = same[0]
+    text, key = _checked(new, here)
+    if any(m.sort == here.sort and key in m.keys for m in found):
+        raise RenameError(f"there is a {here.sort} {key} already")
+    edits = [(m.span, text) for m in same]
+    _verify(reading, path, found, same, key, edits)
+    return edits
+
+
+def _same(reading: Reading, found: Sequence[Mention], place: Span) -> list[Mention]:
+    """All mentions of what stands at a place, each replaceable."""
     unread = next((row for _, row in reading.rows if row.items is None), None)
     if unread:
         raise RenameError(f"line {unread.span.line} of {unread.span.file} has a mistake of syntax")
-    found = mentions(reading)
     here = at(found, place)
     if here is None or not here.plain:
         raise RenameError("no name of a node, element, property set or PARAM stands here")
@@ -61,12 +73,7 @@ def rename(reading: Reading, path: str, place: Span, new: str) -> Edits:
     for m in same:
         if not m.plain:
             raise RenameError(f"an expression or a range names it, too: {m.span}")
-    text, key = _checked(new, here)
-    if any(m.sort == here.sort and key in m.keys for m in found):
-        raise RenameError(f"there is a {here.sort} {key} already")
-    edits = [(m.span, text) for m in same]
-    _verify(reading, path, found, same, key, edits)
-    return edits
+    return same
 
 
 def applied(files: Mapping[str, str], edits: Iterable[tuple[Span, str]]) -> dict[str, str]:
@@ -82,16 +89,24 @@ def _checked(new: str, here: Mention) -> tuple[str, int | str]:
     """The text to write, and the name that it is."""
     new = new.strip()
     if here.sort in ("node", "element"):
-        if not new.isascii() or not new.isdecimal() or not 0 < int(new[:20]) < 10**15:
-            raise RenameError("a number from 1 on is needed")
-        return new, int(new)
-    word = _WORD.fullmatch(new) and new.upper() not in (RESERVED if here.sort == "PARAM" else _KEYWORDS)
-    if word or (here.sort == "property set" and new.isascii() and new.isdecimal()):
+        if new.isascii() and new.isdecimal() and 0 < int(new[:20]) < 10**15:
+            return new, int(new)
+        raise RenameError("a number from 1 on is needed")
+    if here.sort == "property set":
+        return _label(new), new.upper()
+    if _WORD.fullmatch(new) and new.upper() not in RESERVED:
         return new, new.upper()
-    if here.sort == "property set" and new and not set(new) & set("\"'\n\r!"):
-        return f'"{new}"', new.upper()
-    what = "a word that starts with a letter" if here.sort == "PARAM" else "a word, a number or a text"
-    raise RenameError(f"{new[:60]} is no name for it: {what} is needed")
+    raise RenameError(f"{new[:60]} is no name for a PARAM: a word that starts with a letter is needed")
+
+
+def _label(new: str) -> str:
+    """Label of a property set as a deck writes it."""
+    word = _WORD.fullmatch(new) and new.upper() not in _KEYWORDS
+    if word or (new.isascii() and new.isdecimal()):
+        return new
+    if new and not set(new) & set("\"'\n\r!"):
+        return f'"{new}"'
+    raise RenameError(f"{new[:60]} is no name for a property set: a word, a number or a text is needed")
 
 
 def _verify(

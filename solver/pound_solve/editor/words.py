@@ -48,18 +48,15 @@ class Words:
 def words() -> Words:
     """Return the words of the catalog."""
     every = (*CARDS, *SECTIONS, *specs())
-    begins = {family for section, family in FAMILIES.items() if section != "PROPS"}
-    kinds = {s.name for s in specs() if s.family in begins}
-    elements = {s.name for s in specs() if s.family == "element"}
-    members = {s.name for s in specs() if s.family not in {*FAMILIES.values()}}
     fields = [f for spec in every for f in spec.fields]
     choices = {w for f in fields if f.kind in (Kind.WORD, Kind.REAL) for w in f.words}
+    begins = {*FAMILIES.values()} - {"element"}
     return Words(
         _sorted(NAMES),
         _sorted(spec.name for spec in CARDS),
-        _sorted(elements),
-        _sorted(kinds),
-        _sorted(members),
+        _sorted(s.name for s in specs() if s.family == "element"),
+        _sorted(s.name for s in specs() if s.family in begins),
+        _sorted(s.name for s in specs() if s.family not in {"element", *begins}),
         _sorted(f.name for f in fields),
         _sorted(choices),
         _sorted(FUNCTIONS),
