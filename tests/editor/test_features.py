@@ -2,6 +2,7 @@
 
 import pytest
 
+from pound_solve.editor import diagnose
 from pound_solve.editor.complete import complete
 from pound_solve.editor.definition import define, references
 from pound_solve.editor.hover import hover
@@ -214,3 +215,21 @@ def test_outline_has_sections_with_their_lines(at):
         ("UNITS", "N mm s"),
         ("MASS", "LUMPED"),
     ]
+
+
+UNUSED = DECK.replace("RULE=BILINEAR  R=0.1", "")  # a strength that an elastic rule does not use
+
+
+def test_the_structure_is_left_out_of_a_deck_with_many_nodes(monkeypatch):
+    codes = [d.code for d in diagnose.diagnose("/deck.inp", {"/deck.inp": UNUSED})[0]]
+    assert "P330" in codes
+    monkeypatch.setattr(diagnose, "MANY", 5)  # one less than the deck has
+    fewer = [d.code for d in diagnose.diagnose("/deck.inp", {"/deck.inp": UNUSED})[0]]
+    assert fewer == [code for code in codes if code != "P330"]
+
+
+def test_errors_come_first_where_there_are_too_many_messages():
+    bad = DECK.replace("NODES\n", "NODES\n" + "".join(f"   {k}  0 0\n" for k in range(200, 350)))
+    found, _ = diagnose.diagnose("/deck.inp", {"/deck.inp": bad + "   HISTORY T=oops\n"})
+    assert len(found) == diagnose.MOST
+    assert [d.severity for d in found] == ["error"] + ["warning"] * (diagnose.MOST - 1)
