@@ -8,6 +8,7 @@ from pathlib import Path
 from pound_deck.diagnostics import messages_page
 from pound_solve.assess.law_test import AXES, has_loop, picture
 from pound_solve.catalog import specs
+from pound_solve.editor import kate, notepad, textmate
 from pound_solve.report.deck_reference import deck_page
 from pound_solve.results.page import results_page
 from verification import cases
@@ -61,7 +62,22 @@ def loops() -> None:
         write(f"pictures/{name}", text)
 
 
-PARTS = {part.__name__: part for part in (messages, reference, results, loops, verification)}
+def editors() -> dict[str, str]:
+    """Highlighting of decks, by file name."""
+    return {
+        "editor/vscode/pound-deck.tmLanguage.json": textmate.text(),
+        "editor/pound-deck.udl.xml": notepad.text(),
+        "editor/pound-deck.xml": kate.text(),
+    }
+
+
+def highlighting() -> None:
+    """The highlighting of decks in editors."""
+    for name, text in editors().items():
+        write(name, text)
+
+
+PARTS = {part.__name__: part for part in (messages, reference, results, loops, highlighting, verification)}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)

@@ -12,24 +12,12 @@ from pound_deck.cards import Item, Row
 from pound_deck.diagnostics import Diagnostic, Mistake, hints, mistake
 from pound_deck.expressions import Expression, Step, Value
 from pound_deck.model import Card, Element, Model, Node, Span, Units
-from pound_deck.outline import FAMILIES, NAMES, Outline
-from pound_deck.schema import Catalog, Field, Kind, Spec
-from pound_deck.sections import SECTIONS
+from pound_deck.outline import Outline
+from pound_deck.schema import Catalog
+from pound_deck.sections import CARDS, FAMILIES, NAMES, SECTIONS
 from pound_deck.values import Values
 
-_SPECS: Final = {spec.name: spec for spec in SECTIONS}
-_GRAVITY: Final = Field("GRAVITY", Kind.REAL, "L/T^2", doc="acceleration", above=0, positional=True)
-_MASS: Final = Field(
-    "MASS", Kind.WORD, doc="mass matrix of members", words=("LUMPED", "CONSISTENT"), positional=True
-)
-_GEOMETRY: Final = Field(
-    "GEOMETRY",
-    Kind.WORD,
-    doc="what displacements do to equilibrium",
-    words=("SMALL", "PDELTA", "PDELTA_MEMBER", "PDELTA_VARYING", "LARGE"),
-    codes={"SMALL": 0, "PDELTA": 1, "LARGE": 2},
-    positional=True,
-)
+_SPECS: Final = {spec.name: spec for spec in (*SECTIONS, *CARDS)}
 _LENGTHS: Final = {"M": 9.81, "MM": 9810.0, "CM": 981.0, "FT": 32.174, "IN": 386.09}
 _ALIKE: Final = 0.01  #: relative difference up to which two values of gravity count as equal
 _QUANTITIES: Final = ("force", "length", "time")  #: whose units UNITS names
@@ -45,13 +33,13 @@ def build(
     report: list[Diagnostic],
 ) -> tuple[Model, list[Card]]:
     """Model of all that could be bound, and every card in it."""
-    units = _units(outline.single.get("UNITS"), report)
+    units = units_of(outline.single.get("UNITS"), report)
     heads = [row.items[0] for row in outline.sections["PROPS"] if row.items]
     binder = Binder(Values(catalog, params, frozenset(_plain_labels(heads)), units), report)
     bound = {name: _section(name, outline, binder) for name in NAMES}
-    gravity = _single(Spec("card", "GRAVITY", "gravity", (_GRAVITY,)), outline, binder)
-    mass = _single(Spec("card", "MASS", "mass of members", (_MASS,)), outline, binder)
-    geometry = _single(Spec("card", "GEOMETRY", "displacements", (_GEOMETRY,)), outline, binder)
+    gravity = _single("GRAVITY", outline, binder)
+    mass = _single("MASS", outline, binder)
+    geometry = _single("GEOMETRY", outline, binder)
     output = bound["OUTPUT"] or (_default_output(),)
     nodes = _nodes(bound["NODES"], report)
     elements = _elements(bound["ELEMENTS"], report)
@@ -205,15 +193,16 @@ def _once(
         table[key] = value
 
 
-def _single(spec: Spec, outline: Outline, binder: Binder) -> Any:
-    row = outline.single.get(spec.name)
+def _single(name: str, outline: Outline, binder: Binder) -> Any:
+    row = outline.single.get(name)
     if row is None or row.items is None:
         return None
-    card = binder.card(spec, row.items[1:], row.span)
-    return card[spec.name] if card else None
+    card = binder.card(_SPECS[name], row.items[1:], row.span)
+    return card[name] if card else None
 
 
-def _units(row: Row | None, report: list[Diagnostic]) -> Units:
+def units_of(row: Row | None, report: list[Diagnostic]) -> Units:
+    """Units of the UNITS card; the default ones without it, or where it has mistakes."""
     if row is None or row.items is None:
         return Units()
     steps = _lone_steps(row.items[1:])

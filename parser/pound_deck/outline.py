@@ -12,19 +12,9 @@ from pound_deck.diagnostics import Diagnostic, closest, hints, suggest
 from pound_deck.expressions import RESERVED, Definition, Expression
 from pound_deck.model import Span
 from pound_deck.schema import Catalog
-from pound_deck.sections import SECTIONS
+from pound_deck.sections import CARDS, FAMILIES, NAMES, SINGLE
 
-#: sections whose lines are cards of a family of the solver
-FAMILIES: Final = {
-    "PROPS": "element",
-    "DAMPING": "damping",
-    "EQUAKE": "motion",
-    "FORCES": "force",
-    "ANALYSIS": "analysis",
-}
-NAMES: Final = (*(spec.name for spec in SECTIONS), *FAMILIES)  #: of all sections
-_SINGLE: Final = ("TITLE", "UNITS", "GRAVITY", "MASS", "GEOMETRY")  #: cards that stand once, anywhere
-_KEYWORDS: Final = (*NAMES, *_SINGLE, "PARAM", "INCLUDE", "END")
+_KEYWORDS: Final = (*NAMES, *(spec.name for spec in CARDS))
 
 
 @dataclass(slots=True)
@@ -48,13 +38,13 @@ class Outline:
         """Put a row where it belongs."""
         if row.word in NAMES:
             self._open(row)
-        elif row.word in _SINGLE:
+        elif row.word in SINGLE:
             if row.word in self.single:
                 self._error("P237", f"{row.word} is given twice", row.span, "take one of them out")
             self.single.setdefault(row.word, row)
         elif row.word == "PARAM":
             self._define(row)
-        elif row.items and row.items[0].name in (*_SINGLE, "PARAM"):
+        elif row.items and row.items[0].name in (*SINGLE, "PARAM"):
             name = row.items[0].name
             self._error(
                 "P209", f"{name} is no named item", row.items[0].name_span, f"write {name} without ="
@@ -86,7 +76,7 @@ class Outline:
         items = row.items or ()
         if not _like_a_heading(items) or row.word in self.definitions or row.word in self.lost:
             return False
-        meant = closest(row.word, (*NAMES, *_SINGLE))
+        meant = closest(row.word, (*NAMES, *SINGLE))
         family = FAMILIES.get(self._section or "", "")
         kinds = self.catalog.family(family) if family != "element" else {}
         if row.word in kinds or closest(row.word, kinds) or (not meant and len(items) == 2):

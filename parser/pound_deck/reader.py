@@ -12,14 +12,20 @@ from pound_deck.checks import run_checks
 from pound_deck.diagnostics import Diagnostic, Mistake, has_errors, hints, suggest
 from pound_deck.expressions import Definition, Expression, Step, Value, resolve
 from pound_deck.model import Model, Span
-from pound_deck.outline import NAMES, Outline
+from pound_deck.outline import Outline
 from pound_deck.schema import Catalog
+from pound_deck.sections import NAMES
 from pound_deck.source import Line, Source
 
 Reading = tuple[Model | None, list[Diagnostic], dict[str, str]]
 
 
-def read_deck(path: str, catalog: Catalog, overrides: Mapping[str, str] | None = None) -> Reading:
+def read_deck(
+    path: str,
+    catalog: Catalog,
+    overrides: Mapping[str, str] | None = None,
+    unsaved: Mapping[str, str] | None = None,
+) -> Reading:
     """Read and check a deck.
 
     Parameters
@@ -30,6 +36,8 @@ def read_deck(path: str, catalog: Catalog, overrides: Mapping[str, str] | None =
         Every Spec that PROPS, DAMPING, EQUAKE, FORCES and ANALYSIS may hold.
     overrides : mapping of str to str
         Texts that replace PARAM values, by name in any case.
+    unsaved : mapping of str to str
+        Texts of an editor by real path, read in place of these files.
 
     Returns
     -------
@@ -45,7 +53,7 @@ def read_deck(path: str, catalog: Catalog, overrides: Mapping[str, str] | None =
     OSError
         The deck cannot be read.
     """
-    source = Source()
+    source = Source(unsaved=unsaved or {})
     lines = source.read(str(path))
     with _no_collection():
         return _read(source, lines, catalog, overrides or {})

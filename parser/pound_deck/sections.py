@@ -1,8 +1,8 @@
-"""Specs of the deck's own sections: the lines that are not a plug-in family of the solver.
+"""Names of a deck's sections and cards, and the Specs of those that are not a plug-in family of the solver.
 
 NODES, ELEMENTS, WEIGHTS, LOADS, MEMBER_LOADS, INITIAL, DRIFT and OUTPUT have one kind of line each, given
 here.  PROPS, DAMPING, EQUAKE, FORCES and ANALYSIS hold cards of the families ``element``, ``damping``,
-``motion``, ``force`` and ``analysis``.
+``motion``, ``force`` and ``analysis``.  TITLE, UNITS and the other `CARDS` stand in no section.
 """
 
 from __future__ import annotations
@@ -174,3 +174,57 @@ SECTIONS: Final = (
         ),
     ),
 )
+
+#: sections whose lines are cards of a family of the solver
+FAMILIES: Final = {
+    "PROPS": "element",
+    "DAMPING": "damping",
+    "EQUAKE": "motion",
+    "FORCES": "force",
+    "ANALYSIS": "analysis",
+}
+NAMES: Final = (*(spec.name for spec in SECTIONS), *FAMILIES)  #: of all sections
+#: cards that stand anywhere
+CARDS: Final = (
+    Spec("card", "TITLE", "heading of the report"),
+    Spec("card", "UNITS", "names of the units of force, length and time"),
+    Spec(
+        "card",
+        "GRAVITY",
+        "gravity",
+        (Field("GRAVITY", Kind.REAL, "L/T^2", doc="acceleration", above=0, positional=True),),
+    ),
+    Spec(
+        "card",
+        "MASS",
+        "mass of members",
+        (
+            Field(
+                "MASS",
+                Kind.WORD,
+                doc="mass matrix of members",
+                words=("LUMPED", "CONSISTENT"),
+                positional=True,
+            ),
+        ),
+    ),
+    Spec(
+        "card",
+        "GEOMETRY",
+        "displacements",
+        (
+            Field(
+                "GEOMETRY",
+                Kind.WORD,
+                doc="what displacements do to equilibrium",
+                words=("SMALL", "PDELTA", "PDELTA_MEMBER", "PDELTA_VARYING", "LARGE"),
+                codes={"SMALL": 0, "PDELTA": 1, "LARGE": 2},
+                positional=True,
+            ),
+        ),
+    ),
+    Spec("card", "PARAM", "names for numbers or texts: PARAM name = value"),
+    Spec("card", "INCLUDE", "reads another file here"),
+    Spec("card", "END", "ends the file"),
+)
+SINGLE: Final = tuple(spec.name for spec in CARDS[:5])  #: cards that stand once

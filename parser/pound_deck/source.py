@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -17,7 +17,7 @@ MAX_INCLUDES: Final = 1000
 MAX_LINE: Final = 100_000
 
 _COMMENT: Final = re.compile(r""""[^"]*"|'[^']*'|(!)""")
-_INCLUDE: Final = re.compile(r"\s*INCLUDE(?![\w.])\s*(?!=)(.*)", re.IGNORECASE | re.DOTALL)
+INCLUDE: Final = re.compile(r"\s*INCLUDE(?![\w.])\s*(?!=)(.*)", re.IGNORECASE | re.DOTALL)
 _FILE_NAME: Final = re.compile(r"""("[^"\n]+"|'[^'\n]+'|[^\s"']+)\s*""")
 _PAGE: Final = re.compile(r"\s*<(!doctype|html|head|\?xml)", re.IGNORECASE)
 
@@ -51,10 +51,13 @@ class Source:
         What is wrong with the files.
     files : dict of str to str
         Texts by the name in spans; line ends are ``\\n``.
+    unsaved : mapping of str to str
+        Texts of an editor by real path, read in place of these files.
     """
 
     report: list[Diagnostic] = field(default_factory=list)
     files: dict[str, str] = field(default_factory=dict)
+    unsaved: Mapping[str, str] = field(default_factory=dict)
     _bytes: int = 0
     _includes: int = 0
 
@@ -72,11 +75,11 @@ class Source:
         """Logical lines of a text; `path` names the files being read, outermost first."""
         self.files[name] = text
         out: list[Line] = []
-        for line in self._logical(name, text):
-            include = _INCLUDE.match(line.text)
+        for line in self.logical(name, text):
+            include = INCLUDE.match(line.text)
             if include:
                 out += self._include(line, include[1], path)
-            elif line.text.strip().upper() == "END":
+            elif is_end(line.text):
                 break
             elif len(line.text) > MAX_LINE:
                 self._error("P110", f"a card of {len(line.text)} characters is too long", line.span)
@@ -84,10 +87,11 @@ class Source:
                 out.append(line)
         return out
 
-    def _logical(self, name: str, text: str) -> Iterator[Line]:
+    def logical(self, name: str, text: str) -> Iterator[Line]:
+        """Logical lines of one text, INCLUDE and END among them."""
         start, pending = 0, ""
         for number, raw in enumerate(text.split("\n"), 1):
-            code = _without_comment(raw)
+            code = without_comment(raw)
             if not code or code.isspace():
                 # blank and comment lines may stand inside a continued card; columns need the line end
                 pending += "\n" if pending else ""
@@ -127,6 +131,9 @@ class Source:
         return []
 
     def _load(self, name: str, here: Span) -> str:
+        text = self.unsaved.get(os.path.realpath(name)) if self.unsaved else None
+        if text is not None:
+            return self.decode(name, text.encode("utf-8", "surrogatepass"), here)
         with open(name, "rb") as stream:
             # one byte more than allowed: distinguishes a deck that is too large from one that just fits
             return self.decode(name, stream.read(MAX_BYTES - self._bytes + 1), here)
@@ -162,7 +169,13 @@ class Source:
         self.report.append(Diagnostic(code, message, span, hint))
 
 
-def _without_comment(raw: str) -> str:
+def is_end(text: str) -> bool:
+    """Whether a logical line ends its file."""
+    return text.strip().upper() == "END"
+
+
+def without_comment(raw: str) -> str:
+    """A line up to the exclamation mark that starts its comment."""
     if "!" not in raw:
         return raw
     mark = next((m.start() for m in _COMMENT.finditer(raw) if m[1]), len(raw))

@@ -59,7 +59,13 @@ def prepare(request: Request) -> Prepared:
     OSError
         The deck cannot be read.
     """
-    model, diagnostics, files = read_deck(request.deck, catalog(), request.params)
+    return assembled(request, *read_deck(request.deck, catalog(), request.params, request.unsaved))
+
+
+def assembled(
+    request: Request, model: Model | None, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]
+) -> Prepared:
+    """Read the records of a deck that was read, and assemble the structure; see `prepare`."""
     if model is None or has_errors(diagnostics):
         raise DeckError(diagnostics, files)
     found = list(diagnostics)

@@ -25,6 +25,8 @@ class Request:
         Replace METHOD, DT and TOL of every HISTORY.
     explain : bool
         Put what the run imports, compiles and holds into the results.
+    unsaved : mapping of str to str
+        Texts of an editor by real path, read in place of these files.
     """
 
     deck: str
@@ -35,6 +37,7 @@ class Request:
     dt: float | None = None
     tol: float | None = None
     explain: bool = False
+    unsaved: Mapping[str, str] = field(default_factory=dict)
 
     def path(self, suffix: str) -> Path:
         """Path of an output file."""

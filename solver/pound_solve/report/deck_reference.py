@@ -192,10 +192,11 @@ def usage(spec: Spec) -> str:
 
 
 def _row(f: Field) -> tuple[str, str, str, str, str]:
-    return f.name, f.unit, _default(f), takes(f), f.doc
+    return f.name, f.unit, default(f), takes(f), f.doc
 
 
-def _default(f: Field) -> str:
+def default(f: Field) -> str:
+    """What an item that is left out takes; ``must`` where it must stand."""
     if f.default is REQUIRED:
         return "must"
     values = f.default if isinstance(f.default, tuple) else (f.default,)

@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 
 from pound_solve.cli import common
+
+if TYPE_CHECKING:
+    from pound_deck.diagnostics import Diagnostic
+    from pound_solve.driver.prepare import Prepared
 
 SUMMARY = "report all mistakes of a deck without running it"
 
@@ -14,23 +21,46 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     common.add_deck(parser)
     common.add_method(parser)
+    parser.add_argument("--json", action="store_true", help="print the result as JSON, for programs")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Prepare the deck and print its warnings and its size."""
-    from pound_deck.diagnostics import render
     from pound_solve.driver import run
 
     try:
         ready = run.prepare(common.request(args))
     except run.DeckError as err:
-        print(err, file=sys.stderr)
+        if args.json:
+            _print_json(args.deck, err.diagnostics, None)
+        else:
+            print(err, file=sys.stderr)
         return common.MISTAKES
+    size = {
+        "nodes": len(ready.model.nodes),
+        "elements": len(ready.model.elements),
+        "unknowns": ready.structure.n_free,
+    }
+    if args.json:
+        _print_json(args.deck, ready.warnings, size)
+    else:
+        _print(args.deck, ready, size)
+    return common.DONE
+
+
+def _print(deck: str, ready: Prepared, size: Mapping[str, int]) -> None:
+    from pound_deck.diagnostics import render
+
     if ready.warnings:
         print(render(ready.warnings, ready.files), file=sys.stderr)
-    model, n = ready.model, ready.structure.n_free
+    n = size["unknowns"]
     print(
-        f"{args.deck}: no mistakes; {len(model.nodes)} nodes, {len(model.elements)} elements, "
+        f"{deck}: no mistakes; {size['nodes']} nodes, {size['elements']} elements, "
         f"{n} unknown{'s' * (n != 1)}"
     )
-    return common.DONE
+
+
+def _print_json(deck: str, found: Iterable[Diagnostic], size: Mapping[str, int] | None) -> None:
+    from pound_solve.report.machine_readable import mistakes
+
+    print(json.dumps(mistakes(deck, found, size), indent=1))

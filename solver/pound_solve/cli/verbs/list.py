@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 
 from pound_solve.cli import common
 
@@ -18,10 +19,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "method",
     )
     parser.add_argument("name", nargs="?", help="one member: its items")
+    parser.add_argument("--json", action="store_true", help="print everything as JSON, for programs")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Print the list."""
+    if args.json:
+        from pound_solve.report.machine_readable import vocabulary_of_decks
+
+        print(json.dumps(vocabulary_of_decks(), indent=1))
+        return common.DONE
     from pound_solve.report.deck_reference import listing
 
     try:

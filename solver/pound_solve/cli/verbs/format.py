@@ -1,0 +1,58 @@
+"""``pound-solve format``: put the items of a deck into columns."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import sys
+from pathlib import Path
+
+from pound_solve.cli import common
+
+SUMMARY = "put the items of a deck into columns; values, comments and meaning stay"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("deck", type=Path, help="input deck; it is rewritten unless -o is given")
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
+        "--check", action="store_true", help="write nothing; exit status 1 if the deck would change"
+    )
+    where.add_argument("-o", "--out", type=Path, metavar="FILE", help="write here in place of the deck")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Lay out the deck and write it, unless it has mistakes of syntax."""
+    from pound_deck.diagnostics import render
+    from pound_deck.layout import arranged
+
+    data = args.deck.read_bytes()
+    new, found, files = arranged(str(args.deck), data)
+    if found:
+        print(render(found, files), file=sys.stderr)
+    if new is None:
+        return common.complain(f"{args.deck} has mistakes: it is left as it is", common.MISTAKES)
+    if args.check:
+        print(f"{args.deck}: {'is in columns' if new == data else 'would change'}")
+        return common.DONE if new == data else common.STOPPED
+    if args.out or new != data:
+        _write(args.out or args.deck, new)
+    return common.DONE
+
+
+def _write(path: Path, data: bytes) -> None:
+    """Write a file beside it and rename that, so that no interruption leaves half a deck."""
+    real = Path(os.path.realpath(path))  # of a link, what it leads to
+    beside = real.with_name(f".{real.name}.{os.getpid()}")
+    try:
+        with beside.open("xb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        if real.exists():
+            shutil.copymode(real, beside)
+        beside.replace(real)
+    finally:
+        beside.unlink(missing_ok=True)

@@ -1,0 +1,21 @@
+"""Go to definition, and all places that name the same."""
+
+from __future__ import annotations
+
+from pound_deck.model import Span
+from pound_solve.editor.names import at, definitions, mentions
+from pound_solve.editor.reading import Reading
+
+
+def define(reading: Reading, place: Span) -> list[Span]:
+    """Where what stands at a place is defined; a node of a range is defined by the range."""
+    found = mentions(reading)
+    here = at(found, place)
+    return [m.span for m in definitions(found, here)] if here else []
+
+
+def references(reading: Reading, place: Span) -> list[Span]:
+    """Every place that names what stands at a place, its definition among them."""
+    found = mentions(reading)
+    here = at(found, place)
+    return [m.span for m in found if here and m.sort == here.sort and here.key in m.keys]
