@@ -104,7 +104,10 @@ class Exact(EventDrivenRun):
 
     def run(self) -> Outcome:  # noqa: D102
         self.tracker.begin(self.system, self.t, self.u, self.v, self.branches)
-        self.rigid.check_start()
+        try:
+            self.rigid.begin()
+        except ArithmeticError as err:
+            raise self.stop("A503", str(err)) from None
         self._update_subsystems()
         self._sample_now()
         cursor = 0

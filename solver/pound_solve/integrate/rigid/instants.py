@@ -84,8 +84,24 @@ class RigidInstants:
         """Which rigid contacts are closed, shape (n_rigid,)."""
         return np.array([self.run.branches[i].held for i in self.contacts.laws], bool)
 
-    def check_start(self) -> None:
-        """Stop where rigid bodies overlap at the start."""
+    def begin(self) -> bool:
+        """Stop where rigid bodies overlap at the start; let those that are closed there strike, stay
+        together or part, as their velocities and forces have it, and return whether there are any.
+
+        Raises
+        ------
+        ArithmeticError
+            The impacts do not end, or the forces are not found.
+        """
+        self._check_overlap()
+        if not self._held().any():
+            return False
+        self.impact()
+        self.open_pulled()
+        return True
+
+    def _check_overlap(self) -> None:
+        """Stop where rigid bodies overlap."""
         x, run = self.contacts, self.run
         d = x.rows @ run.u + x.inputs @ self._inputs()[0]
         size = np.abs(x.rows) @ np.abs(run.u) + x.gap

@@ -24,7 +24,7 @@ Taylor methods, Experimental Mathematics 14: 99-117.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -180,8 +180,8 @@ class Taylor(KernelEngine):
 
     def integrate(self) -> None:
         """Integrate by series from event to event."""
-        RigidInstants(Present(self), self.contacts).check_start()
         self.begin(march.march)
+        self._at_instant(RigidInstants.begin)
         for i in self.series.friction.laws.tolist():
             friction.side_of(self.laws, self.series.friction, i)
         ex = self.system.excitation
@@ -194,19 +194,29 @@ class Taylor(KernelEngine):
         """Let rigid contacts strike, close or part; stop where there is no going on."""
         if why != march.STRIKE:
             raise self.trouble(why)
-        present, law = Present(self), int(self.state.fault)
+        self._at_instant(self._strike)
+        self.state.events += 1
+
+    def _strike(self, instants: RigidInstants) -> bool:
+        """Let the rigid contact at fault strike, or part."""
+        present, law = instants.run, int(self.state.fault)
+        if present.branches[law].held:
+            present.transition(law, 0, float(self.laws.now.deformation[law]), float(self.laws.now.rate[law]))
+        else:
+            instants.impact()
+        instants.open_pulled()
+        return True
+
+    def _at_instant(self, happens: Callable[[RigidInstants], bool]) -> None:
+        """Let something happen to the rigid contacts, and go on from there where it does."""
+        present = Present(self)
         instants = RigidInstants(present, self.contacts)
         try:
-            if present.branches[law].held:
-                d, v = float(self.laws.now.deformation[law]), float(self.laws.now.rate[law])
-                present.transition(law, 0, d, v)
-            else:
-                instants.impact()
-            instants.open_pulled()
+            if not happens(instants):
+                return
         except ArithmeticError as err:
             raise self.stop("A503", str(err)) from None
         present.hand_back(np.flatnonzero(self.massless.law_number < 0))
-        self.state.events += 1
         self._hold(instants.rounding)
 
     def _hold(self, rounding: Array | float = 0.0) -> None:
