@@ -266,7 +266,9 @@ def test_any_row_of_masses_finds_its_equilibrium(seed: int, n: int) -> None:
     lines += [f" C0 CONTACT GAP={gaps.tolist()[0]!r} ANGLE=180 LAW=LAGRANGE", f"WEIGHTS\n 1 TO {n} 1"]
     lines += ["LOADS", *(f" {i + 1} {p!r} 0" for i, p in enumerate(load.tolist()))]
     state = static.solve(structure_of("\n".join(lines)))
-    rows = np.array([-np.eye(n)[0], *(np.eye(n)[i] - np.eye(n)[i + 1] for i in range(n - 1)), np.eye(n)[-1]])
+    rows = np.array(
+        [-np.eye(n)[0], *(np.eye(n)[i] - np.eye(n)[i + 1] for i in range(n - 1)), np.eye(n)[-1]]
+    )
     expected = least_energy(np.diag(ground), load, rows, gaps)
     assert state.u == pytest.approx(expected, abs=1e-12)
 

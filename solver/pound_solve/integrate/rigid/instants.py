@@ -43,6 +43,12 @@ class RigidRun(Protocol):
         """Present branches of all laws."""
         ...
 
+    def law_forces(self, d: Array, v: Array) -> Array:
+        """Forces of all laws on their present branches at deformations `d` and rates `v`, (n_laws,) each;
+        zero for rigid contacts.
+        """
+        ...
+
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
         """Let a law leave its branch at deformation `d` and rate `v`."""
         ...
@@ -147,7 +153,7 @@ class RigidInstants:
         acceleration that brings the body back.
         """
         x, run = self.contacts, self.run
-        pressing = np.maximum(x.free_accelerations(run.branches, run.u, run.v, inputs)[0], 0.0)
+        pressing = np.maximum(x.free_accelerations(run.law_forces, run.u, run.v, inputs)[0], 0.0)
         lost = LOST * STILL * (run.largest[0, x.laws] + x.gap)
         rebound, e = np.sqrt(2.0 * pressing * lost), x.restitution
         own = np.divide(rebound, e, out=np.zeros(len(e)), where=e > 0.0)
@@ -178,7 +184,7 @@ class RigidInstants:
         if not held.any():
             return
         s = self._inputs()
-        free, size = x.free_accelerations(run.branches, run.u, run.v, s)
+        free, size = x.free_accelerations(run.law_forces, run.u, run.v, s)
         size = size + spectral_radius * (np.abs(x.rows) @ np.abs(run.v))
         force = x.plastic_impulses(free, held)
         parting = held & (force == 0.0) & (free - x.delassus @ force < -ROUNDING * size)

@@ -201,7 +201,9 @@ class Taylor(KernelEngine):
         """Let the rigid contact at fault strike, or part."""
         present, law = instants.run, int(self.state.fault)
         if present.branches[law].held:
-            present.transition(law, 0, float(self.laws.now.deformation[law]), float(self.laws.now.rate[law]))
+            present.transition(
+                law, 0, float(self.laws.now.deformation[law]), float(self.laws.now.rate[law])
+            )
         else:
             instants.impact()
         instants.open_pulled()
@@ -209,14 +211,15 @@ class Taylor(KernelEngine):
 
     def _at_instant(self, happens: Callable[[RigidInstants], bool]) -> None:
         """Let something happen to the rigid contacts, and go on from there where it does."""
-        present = Present(self)
+        present = Present(self, self.series)
         instants = RigidInstants(present, self.contacts)
         try:
             if not happens(instants):
                 return
         except ArithmeticError as err:
             raise self.stop("A503", str(err)) from None
-        present.hand_back(np.flatnonzero(self.massless.law_number < 0))
+        known = (self.massless.law_number < 0) & (self.series.friction.number < 0)
+        present.hand_back(np.flatnonzero(known))
         self._hold(instants.rounding)
 
     def _hold(self, rounding: Array | float = 0.0) -> None:
