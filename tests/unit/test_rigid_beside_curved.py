@@ -1,6 +1,4 @@
-"""Rigid contacts beside curved laws and friction, by TAYLOR: closed forms, and SciPy's integrator from event
-to event.
-"""
+"""Rigid contacts beside curved laws and friction, by TAYLOR: closed forms, and SciPy between events."""
 
 from __future__ import annotations
 

@@ -303,8 +303,8 @@ class EquilibriumPath:
         return next((event for event, at, reversal in ahead if at == 0.0 and not reversal), None)
 
     def _arguments(self, u: Array, factor: float) -> tuple[Array, Array]:
-        """What the event functions of each law depend on, its deformation or, of a closed rigid contact, its
-        force, shape (n_laws,), and the sums of the absolute terms.
+        """What the event functions of each law depend on, shape (n_laws,), and the sums of its absolute
+        terms: its deformation or, of a closed rigid contact, its force.
         """
         now, size = self.deformations(u, factor), self._terms(u)
         if len(self.ties):

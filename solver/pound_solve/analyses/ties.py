@@ -47,13 +47,13 @@ class Ties:
             others = np.arange(len(rows)) != i
             left[others] -= np.outer(left[others, j], left[i])
             followers.append(j)
-        at, own = np.flatnonzero(left.any(axis=1)), np.setdiff1d(np.arange(n), followers)
-        i, j = np.nonzero(left[at][:, own])
+        left, own = left[left.any(axis=1)], np.setdiff1d(np.arange(n), followers)
+        of, on = np.nonzero(left[:, own])
         self.basis = gathered(
             (n, n),
-            np.append(own, np.array(followers, np.intp)[i]),
-            np.append(own, own[j]),
-            np.append(np.ones(len(own)), -left[at][i, own[j]]),
+            np.append(own, np.array(followers, np.intp)[of]),
+            np.append(own, own[on]),
+            np.append(np.ones(len(own)), -left[of, own[on]]),
         )
 
     def __len__(self) -> int:
