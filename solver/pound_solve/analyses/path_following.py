@@ -18,8 +18,8 @@ releases suddenly (it fractures) is redistributed to the others at constant cont
 segments are curved: Newton's method finds their points, and the events are bracketed.
 
 A closed rigid contact ties its nodes (see `ties`); its event is its force that falls to zero.  Where a
-mechanism is loaded, what stands at an event towards which it moves (a contact that touches) changes first:
-a body that lies on the ground is held by it.
+mechanism is loaded, a contact that touches and towards which it moves closes first: a body that lies on the
+ground is held by it.
 
 References
 ----------
@@ -46,6 +46,7 @@ from pound_solve.structure.dofs import label
 from pound_solve.structure.structure import Structure
 
 NOISE = 1e-12  #: share of its terms below which a rate is rounding
+SOLVED = 1e-14  #: share of the fastest rate, both times the root of their stiffness, that is rounding
 JUMP = 1e-12  #: share of its terms above which a force has changed at once
 NEAR = 1e-13  #: share of its terms below which an event is reached
 INCREMENTS = 20  #: Newton steps to the first mark, at least, where laws are curved
@@ -147,6 +148,7 @@ class EquilibriumPath:
         self.corotational = structure.corotational.on(slice(n))
         self.curved = len(self.corotational) > 0 or any(s.law.curved for s in self.laws)
         self.branches = [s.law.branch(x) for s, x in zip(self.laws, self.states)]
+        self._root = scaling(structure.initial_stiffness[:n, :n])
         self._lost = np.zeros(n)  # forces that laws have released, not yet redistributed
         self._most = float(np.abs(applied).max(initial=0.0))
         self._longest = self._stride = np.inf
@@ -273,15 +275,13 @@ class EquilibriumPath:
                     best, found = at, j
         if np.isfinite(best) and not np.isfinite(self._longest):
             self._longest = self._stride = best / INCREMENTS
-        for event, at, _ in self._events(rate, noise):
+        for event, at in self._events(rate, noise):
             if at < best:
                 best, found = at, event
         return du, rise, best, found
 
-    def _events(self, rate: Array, noise: Array) -> Iterator[tuple[PathEvent, float, bool]]:
-        """Events that lie ahead at these rates of what they depend on: their distances, and whether they
-        are reversals.
-        """
+    def _events(self, rate: Array, noise: Array) -> Iterator[tuple[PathEvent, float]]:
+        """Events that lie ahead at these rates of what they depend on, and their distances."""
         now, size = self._arguments(self.u, self.factor)
         for i, (branch, x, v, least, terms) in enumerate(
             zip(self.branches, now.tolist(), rate.tolist(), noise.tolist(), size.tolist())
@@ -289,18 +289,17 @@ class EquilibriumPath:
             for n, (a, b, c) in enumerate(branch.events):
                 if a == 0.0:
                     if b * v > abs(b) * least:
-                        yield PathEvent(i, n), 0.0, True
+                        yield PathEvent(i, n), 0.0
                 elif a * v > abs(a) * least:
                     off = a * x + c
                     reached = off > -NEAR * (abs(a) * terms + abs(c))
-                    yield PathEvent(i, n), 0.0 if reached else -off / (a * v), False
+                    yield PathEvent(i, n), 0.0 if reached else -off / (a * v)
 
     def _blocking(self, motion: Array) -> PathEvent | None:
-        """The first event at this point that a motion of a mechanism runs into, if there is one."""
+        """The first contact that touches and that a motion of a mechanism runs into, if there is one."""
         rate, noise = self.rows @ motion, NOISE * (np.abs(self.rows) @ np.abs(motion))
-        rate[self.ties.laws] = 0.0
-        ahead = self._events(rate, noise)
-        return next((event for event, at, reversal in ahead if at == 0.0 and not reversal), None)
+        rate[[not s.role.collides or b.held for s, b in zip(self.laws, self.branches)]] = 0.0
+        return next((event for event, at in self._events(rate, noise) if at == 0.0), None)
 
     def _arguments(self, u: Array, factor: float) -> tuple[Array, Array]:
         """What the event functions of each law depend on, shape (n_laws,), and the sums of its absolute
@@ -330,12 +329,14 @@ class EquilibriumPath:
         du, rise = self._linear(u, stiffness, self._lost, 0.0 if self._lost.any() else self.sign)
         rate = self.rows @ du - self.lead * rise
         terms = np.abs(self.rows) @ np.abs(du) + np.abs(self.lead * rise)
+        fastest = float(np.abs(du / self._root).max(initial=0.0))
+        noise = np.maximum(NOISE * terms, SOLVED * fastest * (np.abs(self.rows) @ self._root))
         if at := list(self.ties.laws):
             k, push = self._stiffness(u, stiffness), self._push(stiffness)
             rate[at] = self.ties.forces(self._lost + rise * push - k @ du)
             most = np.abs(self._lost) + np.abs(rise * push) + np.abs(k) @ np.abs(du)
-            terms[at] = self.ties.magnitudes(most)
-        return du, rise, rate, NOISE * terms
+            noise[at] = NOISE * self.ties.magnitudes(most)
+        return du, rise, rate, noise
 
     def _move(self, u: Array, factor: float) -> None:
         self.applied = self.applied + (factor - self.factor) * self.load
