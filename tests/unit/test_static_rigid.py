@@ -359,3 +359,12 @@ def test_modes_after_statics_keep_closed_contacts_closed() -> None:
     text = LEANING.format(load=8.0, yields="") + "ANALYSIS\n MODAL AFTER=STATIC\n"
     found = run_text("UNITS N m s\nGRAVITY 1\n" + text).column("modes", "omega")
     assert len(found) == 1 and found[0] == pytest.approx(np.sqrt(150.0 / 5.0), rel=1e-13)
+
+
+@BOTH
+def test_a_contact_that_statics_leaves_at_its_gap_does_not_overlap(method: str) -> None:
+    """The rounding of its deformation is that of the loads on the rest."""
+    text = LEANING.replace("GAP=0.02", "GAP=0").format(load=8.0, yields="")
+    text = text.replace("PROPS\n", " 4 W 2\nPROPS\n W CONTACT GAP=0 ANGLE=180 LAW=LAGRANGE\n")
+    r = run_text("UNITS N m s\nGRAVITY 1\n" + text + "ANALYSIS\n HISTORY 0.1\n", method=method)
+    assert r.status == "done" and np.ptp(r.u[:, :, 0], axis=0).max() < 1e-15

@@ -110,8 +110,8 @@ class RigidInstants:
         """Stop where rigid bodies overlap."""
         x, run = self.contacts, self.run
         d = x.rows @ run.u + x.inputs @ self._inputs()[0]
-        size = np.abs(x.rows) @ np.abs(run.u) + x.gap
-        for i in np.flatnonzero(d - x.gap > OVERLAP * size).tolist():
+        size = OVERLAP * (np.abs(x.rows) @ np.abs(run.u) + x.gap) + STILL * np.abs(run.u).max(initial=0.0)
+        for i in np.flatnonzero(d - x.gap > size).tolist():
             s = run.system.structure.laws[x.laws[i]]
             why = f"the rigid contact {s.element} ({s.rule}) overlaps by {d[i] - x.gap[i]:.3g} at the start"
             raise run.stop("A505", why)
