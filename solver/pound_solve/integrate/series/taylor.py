@@ -259,7 +259,10 @@ class Taylor(KernelEngine):
         fault, held = int(self.state.fault), self.massless
         name, n = self.system.name(int(self.order[fault])), int(np.flatnonzero(held.unknown == fault)[0])
         if held.damped[n]:
-            return f"{name} has no mass, and only dashpots to others without mass resist it: give it weight"
+            whole = massless.undamped(self.laws, held)
+            names = [self.system.name(i) for i in sorted(self.order[held.unknown[whole]].tolist())]
+            joints = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else name
+            return f"{joints} have no mass, and only dashpots to each other resist them: give one weight"
         if held.pivots[STIFFNESS, n] < 0.0:
             return f"{name} has no mass, and its stiffness has become negative: it snaps through"
         return f"{name} has no mass and nothing holds it"
