@@ -35,6 +35,7 @@ from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
 ROUNDING = 1e-12  #: share of its terms below which an acceleration is rounding
+SPREAD = 0.1  #: share of the largest displacement that counts as a term of all
 MAX_IMPACTS = 100_000  #: at one instant
 MAX_PIVOTS = 10_000
 
@@ -186,9 +187,11 @@ class RigidContacts:
                 -system.law_rows.T @ force,
             ]
         )
-        # bodies that move as one cancel in K u, their rounding does not
+        # bodies that move as one cancel in K u, their rounding does not; that of a static state is of the
+        # size of the largest displacement
+        u = np.abs(u) + SPREAD * np.abs(u).max(initial=0.0)
         sums = np.abs(terms[:2]).sum(axis=0) + abs(system.law_rows).T @ np.abs(force)
-        sums = sums + abs(system.damping) @ np.abs(v) + abs(system.stiffness) @ np.abs(u)
+        sums = sums + abs(system.damping) @ np.abs(v) + abs(system.stiffness) @ u
         size = np.abs(self.velocity_change).T @ sums
         return self.velocity_change.T @ terms.sum(axis=0) + self.inputs @ inputs[2], size
 

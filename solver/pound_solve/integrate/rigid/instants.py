@@ -92,19 +92,23 @@ class RigidInstants:
 
     def begin(self) -> bool:
         """Stop where rigid bodies overlap at the start; let those that are closed there strike, stay
-        together or part, as their velocities and forces have it, and return whether there are any.
+        together or part, as their velocities and forces have it, and return whether there are rigid bodies.
+
+        Their deformations have the rounding of the static displacements.
 
         Raises
         ------
         ArithmeticError
             The impacts do not end, or the forces are not found.
         """
+        run, laws = self.run, self.contacts.laws
         self._check_overlap()
-        if not self._held().any():
-            return False
-        self.impact()
-        self.open_pulled()
-        return True
+        farthest = np.abs(run.u).max(initial=0.0)
+        run.largest[0, laws] = np.maximum(run.largest[0, laws], farthest)
+        if self._held().any():
+            self.impact()
+            self.open_pulled()
+        return bool(laws)
 
     def _check_overlap(self) -> None:
         """Stop where rigid bodies overlap."""
