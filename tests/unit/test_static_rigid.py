@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from decks import solved, structure_of
+from decks import scene_of, solved, structure_of
 from pound_solve.analyses import static
 from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.analyses.ties import Ties
+from pound_solve.integrate.rigid.contacts import ROUNDING, RigidContacts, linear_forces
 from pound_solve.numerics.types import Array
 from verification.cases import run_text
 
@@ -368,3 +369,34 @@ def test_a_contact_that_statics_leaves_at_its_gap_does_not_overlap(method: str) 
     text = text.replace("PROPS\n", " 4 W 2\nPROPS\n W CONTACT GAP=0 ANGLE=180 LAW=LAGRANGE\n")
     r = run_text("UNITS N m s\nGRAVITY 1\n" + text + "ANALYSIS\n HISTORY 0.1\n", method=method)
     assert r.status == "done" and np.ptp(r.u[:, :, 0], axis=0).max() < 1e-15
+
+
+def test_rounding_of_a_static_state_is_no_force() -> None:
+    """Under gravity a body's place across is rounding of its settlement, and so is the spring's force."""
+    system = scene_of("""UNITS N m s
+GRAVITY 10
+NODES
+ 1 0 0 FIX=R
+ELEMENTS
+ 1 S 1
+ 2 C 1
+PROPS
+ S SPRING KX=1E6 KY=1E3
+ C CONTACT GAP=0 ANGLE=0 LAW=LAGRANGE
+WEIGHTS
+ 1 20
+LOADS
+ 1 0 -20
+INITIAL
+ 1 UX=-1 UY=-1
+EQUAKE
+ SINE AMPLITUDE=1 PERIOD=1
+ANALYSIS
+ HISTORY 1
+""")
+    contacts = RigidContacts(system)
+    forces = linear_forces([s.branch(s.law.start()) for s in system.structure.laws])
+    u = np.array([-3e-18, -0.02])
+    inputs = np.zeros((3, system.inputs.shape[1]))
+    free, size = contacts.free_accelerations(forces, u, np.zeros(2), inputs)
+    assert free == pytest.approx([1.5e-12], rel=1e-12) and abs(free[0]) < ROUNDING * size[0]

@@ -220,11 +220,10 @@ ANALYSIS
 @pytest.mark.parametrize("law", ["LINEAR K={k!r}", "KELVIN_VOIGT K={k!r} C={c!r}", "HERTZ K={k!r}"])
 @pytest.mark.parametrize("mud", ["", "MUD=0.25"])
 def test_twins_touch_stick_slip_and_part_at_one_instant(law: str, mud: str) -> None:
-    """Two, or three, contacts with friction side by side are one that is twice, or three times, as stiff."""
+    """Two or three contacts with friction side by side are one that is twice, or three times, as stiff."""
     k, c, kt = 6000.0, 6.0, 3000.0
     one = run_text(TWINS.format(last=2, law=law.format(k=6 * k, c=6 * c), mud=mud, kt=6 * kt))
-    slips = one.column("spring_envelope", "yield_events") if "spring_envelope" in one.tables else None
-    assert one.status == "done" and len(one.tables["collisions"]) > 1, (one.message, slips)
+    assert one.status == "done" and len(one.tables["collisions"]) > 1, one.message
     for count in (2, 3):
         share = 6 // count
         own = law.format(k=share * k, c=share * c)
