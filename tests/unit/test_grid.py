@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -139,3 +140,22 @@ def test_two_turns_within_one_cell_are_seen(first: float, second: float, share: 
     found = grid.first_rise(t, value.copy(), slope, np.full((1, 1, 1), 1e-12), evaluate)
     assert found is not None
     assert abs(g(found[0])) < 1e-9 and rate(found[0]) > 0.0
+
+
+@pytest.mark.parametrize("rounding", [0.0, 1e-16, 1e-13, 1e-11])
+def test_what_falls_from_zero_rises_where_it_comes_back(rounding: float) -> None:
+    """As a contact that has parted: its rate at the start is rounding, and has any sign."""
+    back = 0.6
+
+    def g(x: Array) -> Array:
+        return np.asarray(rounding * x - x * x * (back - x))
+
+    def rate(x: Array) -> Array:
+        return np.asarray(rounding - 2.0 * back * x + 3.0 * x * x)
+
+    def evaluate(n: int, segment: int, cell: int, x: float) -> tuple[float, float]:
+        return float(g(np.array(x))), float(rate(np.array(x)))
+
+    t = np.array([[0.0, 0.8, 1.6]])
+    found = grid.first_rise(t, g(t)[None], rate(t)[None], np.full((1, 1, 1), 1e-12), evaluate)
+    assert found is not None and found.time == pytest.approx(back, rel=1e-9)

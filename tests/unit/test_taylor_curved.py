@@ -192,3 +192,42 @@ def test_what_is_no_power_is_refused_in_words() -> None:
     r = run_text(PAIR.format(card="LAW=RUBBER_BUMPER K=2E6 E=0.5"), None, "TAYLOR")
     assert r.status == "stopped"
     assert r.message.startswith("A505 at t = 0 s: TAYLOR finds no power series where the law RUBBER_BUMPER")
+
+
+TWINS = """UNITS N m s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=R
+ELEMENTS
+ 1 K 1
+ 2 TO {last} HIT 1
+PROPS
+ K SPRING KX=900 KY=400
+ HIT CONTACT GAP=0.01 ANGLE=-90 LAW={law} MU=0.4 {mud} KT={kt!r}
+WEIGHTS
+ 1 2
+INITIAL
+ 1 VX=0.9 VY=-0.5
+FORCES
+ TABLE 1 0 -60 POINTS=0,1,9,1
+OUTPUT
+ EVERY=0.01
+ANALYSIS
+ HISTORY 0.6 FROM=REST METHOD=TAYLOR
+"""
+
+
+@pytest.mark.parametrize("law", ["LINEAR K={k!r}", "KELVIN_VOIGT K={k!r} C={c!r}", "HERTZ K={k!r}"])
+@pytest.mark.parametrize("mud", ["", "MUD=0.25"])
+def test_twins_touch_stick_slip_and_part_at_one_instant(law: str, mud: str) -> None:
+    """Two or three contacts with friction side by side are one that is twice, or three times, as stiff."""
+    k, c, kt = 6000.0, 6.0, 3000.0
+    one = run_text(TWINS.format(last=2, law=law.format(k=6 * k, c=6 * c), mud=mud, kt=6 * kt))
+    assert one.status == "done" and len(one.tables["collisions"]) > 1, one.message
+    for count in (2, 3):
+        share = 6 // count
+        own = law.format(k=share * k, c=share * c)
+        many = run_text(TWINS.format(last=1 + count, law=own, mud=mud, kt=share * kt))
+        assert many.status == "done", many.message
+        assert many.u == pytest.approx(one.u, abs=1e-12)
+        assert many.check() < 1e-12

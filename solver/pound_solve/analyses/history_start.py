@@ -7,12 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from pound_solve.integrate.protocol import Start
-from pound_solve.laws.automaton import State, consistent, drive
+from pound_solve.laws.automaton import Law, State, consistent, drive
 from pound_solve.numerics.matrices import least_squares, used_columns, used_rows, weighted
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import ReducedSystem
 from pound_solve.structure.structure import Structure
+
+ROUNDING = 1e-12  #: share of a deformation by which a rigid contact may be short of its gap
 
 
 def initial(structure: Structure) -> tuple[Array, Array]:
@@ -47,12 +49,20 @@ def begin(
     after = system.law_rows @ u0 + system.law_inputs @ system.excitation.value(0.0)
     rates = system.law_rows @ v0 + system.law_inputs @ system.excitation.value(0.0, 1)
     led = tuple(
-        consistent(s.law, drive(s.law, x, d0, d1) if d0 != d1 else x, d1, rate)
+        _led(s.law, x, d0, d1, rate)
         for s, x, d0, d1, rate in zip(
             structure.laws, states, before.tolist(), after.tolist(), rates.tolist()
         )
     )
     return Start(u0, v0, led, times)
+
+
+def _led(law: Law, state: State, d0: float, d1: float, rate: float) -> State:
+    """State of a law that is led from the deformation `d0` to `d1`, where it has a rate."""
+    if law.rigid:  # it stays closed where it is not pulled open, and takes its force from the motion
+        closed = law.branch(state).held and d1 - law.p[2] >= -ROUNDING * max(abs(d0), law.p[2])
+        return law.transition(law.start(), 0, d1) if closed else law.start()
+    return consistent(law, drive(law, state, d0, d1) if d0 != d1 else state, d1, rate)
 
 
 def _lead_massless(system: ReducedSystem, u: Array, pushed: Array) -> None:

@@ -123,8 +123,11 @@ def natural_modes(structure: Structure, wanted: int | None) -> list[Mode]:
     """
     n, sought = structure.n_free, 12 if wanted is None else wanted
     vibration = structure.vibration(sought)
+    ground = structure.ground[:, :n]
     total = moving_mass(
-        structure.initial_stiffness[:n, :n], structure.mass[:n, :n], structure.ground[:, :n]
+        structure.tied(structure.initial_stiffness),
+        structure.tied(structure.mass),
+        ground if structure.basis is None else ground @ structure.basis,
     )
     c = structure.initial_damping[:n, :n]
     out = []
@@ -133,7 +136,7 @@ def natural_modes(structure: Structure, wanted: int | None) -> list[Mode]:
         damping = float(shape @ c @ shape) / (2 * w) if w > 0 else float("nan")
         row = [w, w / (2 * np.pi), 2 * np.pi / w if w > 0 else float("inf"), 100 * damping]
         for d in range(2):
-            gamma = float(shape @ structure.ground[d, :n])
+            gamma = float(shape @ ground[d])
             gamma = 0.0 if gamma**2 < 1e-20 * total[d] else gamma  # rounding of a mode that takes no part
             row += [gamma, gamma**2, 100 * gamma**2 / float(total[d]) if total[d] > 0 else 0.0]
         out.append(Mode(i + 1, *row))

@@ -17,6 +17,10 @@ definite (Murty 1974: the least-index pivots of a linear complementarity problem
 releases suddenly (it fractures) is redistributed to the others at constant control.  With a curved law the
 segments are curved: Newton's method finds their points, and the events are bracketed.
 
+A closed rigid contact ties its nodes (see `ties`); its event is its force that falls to zero.  Where a
+mechanism is loaded, a contact that touches and towards which it moves closes first: a body that lies on the
+ground is held by it.
+
 References
 ----------
 Batoz JL, Dhatt G (1979), Incremental displacement algorithms for nonlinear problems, Int. J. Numer. Methods
@@ -28,19 +32,21 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from pound_solve.analyses.ties import Ties
 from pound_solve.laws.automaton import State
 from pound_solve.numerics.matrices import Matrix, bordered, by_rows, dense, gathered, scaled, used_rows
 from pound_solve.numerics.modes import Held, scaling
-from pound_solve.numerics.types import Array
+from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.dofs import label
 from pound_solve.structure.structure import Structure
 
 NOISE = 1e-12  #: share of its terms below which a rate is rounding
+SOLVED = 1e-14  #: share of the fastest rate, both times the root of their stiffness, that is rounding
 JUMP = 1e-12  #: share of its terms above which a force has changed at once
 NEAR = 1e-13  #: share of its terms below which an event is reached
 INCREMENTS = 20  #: Newton steps to the first mark, at least, where laws are curved
@@ -49,11 +55,17 @@ MOST_RETURNS = 5  #: of all laws to the same branches at one point
 
 
 class InstabilityError(Exception):
-    """No further equilibrium: a mechanism, named by its worst DOF; `code` is the number of the message."""
+    """No further equilibrium: a mechanism, named by its worst DOF; `code` is the number of the message.
 
-    def __init__(self, why: str, code: str = "A501") -> None:
+    Attributes
+    ----------
+    motion : ndarray, shape (n_free,), or None
+        How a mechanism moves under its load.
+    """
+
+    def __init__(self, why: str, code: str = "A501", motion: Array | None = None) -> None:
         super().__init__(why)
-        self.code = code
+        self.code, self.motion = code, motion
 
 
 class Mark(NamedTuple):
@@ -136,9 +148,11 @@ class EquilibriumPath:
         self.corotational = structure.corotational.on(slice(n))
         self.curved = len(self.corotational) > 0 or any(s.law.curved for s in self.laws)
         self.branches = [s.law.branch(x) for s, x in zip(self.laws, self.states)]
+        self._root = scaling(structure.initial_stiffness[:n, :n])
         self._lost = np.zeros(n)  # forces that laws have released, not yet redistributed
         self._most = float(np.abs(applied).max(initial=0.0))
         self._longest = self._stride = np.inf
+        self.ties = self._closed()
 
     def deformations(self, u: Array, factor: float) -> Array:
         """Deformation of every law, shape (n_laws,)."""
@@ -197,14 +211,10 @@ class EquilibriumPath:
         held = law.force(self.states[i], d)[0]
         self.states[i] = law.transition(self.states[i], event.event, d)
         self.branches[i] = law.branch(self.states[i])
-        if self.branches[i].held:
-            raise InstabilityError(
-                f"the rigid contact {self.laws[i].element} ({self.laws[i].rule}) closes, and statics "
-                "gives it no force: use HISTORY FROM=REST, or a LAW with a stiffness",
-                "A507",
-            )
         released = held - law.force(self.states[i], d)[0]
-        if abs(released) > JUMP * (abs(held) + abs(law.p[0]) * float(self._terms(self.u)[i])):
+        if law.rigid:  # it opens without force
+            self.ties = self._closed()
+        elif abs(released) > JUMP * (abs(held) + abs(law.p[0]) * float(self._terms(self.u)[i])):
             self._lost = self._lost + released * self.rows[i]
         self.changes += 1
         if self.changes > MOST_CHANGES:
@@ -243,14 +253,18 @@ class EquilibriumPath:
             return None
         du, rise, best, found = self._ahead(())
         share = min(best, 1.0)
-        self._move(self.u + share * du, self.factor + share * rise)
         self._lost = (1.0 - share) * self._lost
+        self._move(self.u + share * du, self.factor + share * rise)
         return found if isinstance(found, PathEvent) and best < 1.0 else None
 
     def _ahead(self, marks: Sequence[Mark]) -> tuple[Array, float, float, PathEvent | int | None]:
         """Rates of displacements and load factor, distance to the first mark or event, and which it is."""
-        d = self.deformations(self.u, self.factor)
-        du, rise, rate, noise = self.rates(self.u, self.factor)
+        try:
+            du, rise, rate, noise = self.rates(self.u, self.factor)
+        except InstabilityError as err:
+            if err.motion is None or (event := self._blocking(err.motion)) is None:
+                raise
+            return 0.0 * self.u, 0.0, 0.0, event
         best = np.inf
         found: PathEvent | int | None = None
         for j, (row, share, value) in enumerate(marks):
@@ -261,33 +275,75 @@ class EquilibriumPath:
                     best, found = at, j
         if np.isfinite(best) and not np.isfinite(self._longest):
             self._longest = self._stride = best / INCREMENTS
-        for i, (branch, di, vi, least, size) in enumerate(
-            zip(self.branches, d.tolist(), rate.tolist(), noise.tolist(), self._terms(self.u).tolist())
-        ):
-            for n, (a, b, c) in enumerate(branch.events):
-                if a == 0.0:  # a reversal
-                    if b * vi <= abs(b) * least:
-                        continue
-                    at = 0.0
-                elif a * vi <= abs(a) * least:
-                    continue
-                else:
-                    now = a * di + c
-                    at = 0.0 if now > -NEAR * (abs(a) * size + abs(c)) else -now / (a * vi)
-                if at < best:
-                    best, found = at, PathEvent(i, n)
+        for event, at in self._events(rate, noise):
+            if at < best:
+                best, found = at, event
         return du, rise, best, found
 
+    def _events(self, rate: Array, noise: Array) -> Iterator[tuple[PathEvent, float]]:
+        """Events that lie ahead at these rates of what they depend on, and their distances."""
+        now, size = self._arguments(self.u, self.factor)
+        for i, (branch, x, v, least, terms) in enumerate(
+            zip(self.branches, now.tolist(), rate.tolist(), noise.tolist(), size.tolist())
+        ):
+            for n, (a, b, c) in enumerate(branch.events):
+                if a == 0.0:
+                    if b * v > abs(b) * least:
+                        yield PathEvent(i, n), 0.0
+                elif a * v > abs(a) * least:
+                    off = a * x + c
+                    reached = off > -NEAR * (abs(a) * terms + abs(c))
+                    yield PathEvent(i, n), 0.0 if reached else -off / (a * v)
+
+    def _blocking(self, motion: Array) -> PathEvent | None:
+        """The first contact that touches and that a motion of a mechanism runs into, if there is one."""
+        rate, noise = self.rows @ motion, NOISE * (np.abs(self.rows) @ np.abs(motion))
+        rate[[not s.role.collides or b.held for s, b in zip(self.laws, self.branches)]] = 0.0
+        return next((event for event, at in self._events(rate, noise) if at == 0.0), None)
+
+    def _arguments(self, u: Array, factor: float) -> tuple[Array, Array]:
+        """What the event functions of each law depend on, shape (n_laws,), and the sums of its absolute
+        terms: its deformation or, of a closed rigid contact, its force.
+        """
+        now, size = self.deformations(u, factor), self._terms(u)
+        if len(self.ties):
+            now[self.ties.laws], size[self.ties.laws] = self._reactions(u, factor)
+        return now, size
+
+    def _reactions(self, u: Array, factor: float) -> tuple[Array, Array]:
+        """Forces of the closed rigid contacts, shape (n_closed,), and the magnitudes of their terms."""
+        rest, terms = self._rest(u, factor)
+        known = np.array([self.branches[i].force0 for i in self.ties.laws])
+        return known - self.ties.forces(rest + self._lost), self.ties.magnitudes(terms)
+
+    def _closed(self) -> Ties:
+        """Ties of the rigid contacts that are closed."""
+        held = np.array([i for i, b in enumerate(self.branches) if b.held], np.intp)
+        return Ties(held, dense(self.rows[held]))
+
     def rates(self, u: Array, factor: float) -> tuple[Array, float, Array, Array]:
-        """Rates of displacements, load factor and deformations, and the rounding errors of the last."""
+        """Rates of displacements, load factor and what events depend on (see `_arguments`), and the
+        rounding errors of the last.
+        """
         stiffness = self.forces(self.deformations(u, factor))[1]
         du, rise = self._linear(u, stiffness, self._lost, 0.0 if self._lost.any() else self.sign)
         rate = self.rows @ du - self.lead * rise
-        return du, rise, rate, NOISE * (np.abs(self.rows) @ np.abs(du) + np.abs(self.lead * rise))
+        terms = np.abs(self.rows) @ np.abs(du) + np.abs(self.lead * rise)
+        fastest = float(np.abs(du / self._root).max(initial=0.0))
+        noise = np.maximum(NOISE * terms, SOLVED * fastest * (np.abs(self.rows) @ self._root))
+        if at := list(self.ties.laws):
+            k, push = self._stiffness(u, stiffness), self._push(stiffness)
+            rate[at] = self.ties.forces(self._lost + rise * push - k @ du)
+            most = np.abs(self._lost) + np.abs(rise * push) + np.abs(k) @ np.abs(du)
+            noise[at] = NOISE * self.ties.magnitudes(most)
+        return du, rise, rate, noise
 
     def _move(self, u: Array, factor: float) -> None:
         self.applied = self.applied + (factor - self.factor) * self.load
         self.u, self.factor = u, factor
+        for i, force in zip(self.ties.laws, self._reactions(u, factor)[0].tolist() if self.ties else ()):
+            self.states[i] = (*self.states[i][:3], (force,))
+            self.branches[i] = self.laws[i].law.branch(self.states[i])
         self._here.clear()
         self._most = max(self._most, float(np.abs(self.applied).max(initial=0.0)))
 
@@ -334,11 +390,11 @@ class EquilibriumPath:
 
     def _values(self, u: Array, factor: float, marks: Sequence[Mark]) -> list[float]:
         """Functions that rise to zero at marks, then at events of all laws; rounding counts as zero."""
-        d = self.deformations(u, factor)
+        now_at, sizes = self._arguments(u, factor)
         _, _, rate, noise = self.rates(u, factor)
         out = [float(row @ u) + share * factor - value for row, share, value in marks]
         for branch, di, vi, least, size in zip(
-            self.branches, d.tolist(), rate.tolist(), noise.tolist(), self._terms(u).tolist()
+            self.branches, now_at.tolist(), rate.tolist(), noise.tolist(), sizes.tolist()
         ):
             for a, b, c in branch.events:
                 reversal = a == 0.0
@@ -358,7 +414,7 @@ class EquilibriumPath:
         last = np.inf
         for _ in range(15):
             rest, size = self._rest(u, factor)
-            error = _share(rest, size)
+            error = _share(self.ties.along(rest), size)
             if not np.isfinite(error):
                 return None
             try:
@@ -387,10 +443,22 @@ class EquilibriumPath:
     def _linear(self, u: Array, stiffness: Array, force: Array, go: float) -> tuple[Array, float]:
         """Change of displacements and load factor for a `force` and a change `go` of the control."""
         k = self._stiffness(u, stiffness)
-        push = self.load + self.rows.T @ (stiffness * self.lead)
-        if self.control is None:
-            return solve(self.structure, k, force + go * push, push), go
-        return controlled(k, push, self.control, force, go)
+        along = self.ties.along
+        k, push, force = self.ties.among(k), along(self._push(stiffness)), along(force)
+        try:
+            if self.control is None:
+                x, rise = solve(self.structure, k, force + go * push, push), go
+            else:
+                x, rise = controlled(k, push, along(self.control), force, go)
+        except InstabilityError as err:
+            if err.motion is not None:
+                err.motion = self.ties.whole(err.motion)
+            raise
+        return self.ties.whole(x), rise
+
+    def _push(self, stiffness: Array) -> Array:
+        """Force per load factor, that of the deformations applied with it included, shape (n_free,)."""
+        return np.asarray(self.load + self.rows.T @ (stiffness * self.lead))
 
 
 def _share(rest: Array, size: Array) -> float:
@@ -419,7 +487,8 @@ def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
         own = dense(structure.law_rows[:, [first]]).ravel()
         touched = any(s.role.collides and x != 0.0 for s, x in zip(structure.laws, own))
         hint = ": only an open contact could; HISTORY FROM=REST lets it come down" if touched else ""
-        raise InstabilityError(f"{name_of(structure, first)} is loaded, but nothing holds it{hint}")
+        why = f"{name_of(structure, first)} is loaded, but nothing holds it{hint}"
+        raise InstabilityError(why, motion=np.where(loose, load, 0.0))
     at, u = np.flatnonzero(held), np.zeros(len(load))
     if not len(at):
         return u
@@ -438,11 +507,19 @@ def solve(structure: Structure, k: Matrix, load: Array, usual: Array) -> Array:
         raise InstabilityError(
             f"the loaded structure is a mechanism, worst at {name_of(structure, int(worst))} "
             "(or parts of it are so much stiffer than others that it looks like one: END1, END2 "
-            "or SLAVED make parts rigid)"
+            "or SLAVED make parts rigid)",
+            motion=_placed(root * (whole.slack @ along), at, len(load)),
         )
     # an unloaded mechanism (a free diaphragm) stays where it is
     u[at] = root * whole.solve(push)
     return u
+
+
+def _placed(x: Array, at: Index, n: int) -> Array:
+    """Values at some of `n` places, zeros elsewhere, shape (n,)."""
+    out = np.zeros(n)
+    out[at] = x
+    return out
 
 
 def _largest(motion: Array) -> int:

@@ -79,8 +79,9 @@ def solve(structure: Structure) -> StaticState:
         return state
     pad = np.zeros(len(structure.dofs.moved))
     axial = structure.axial(np.append(state.u, pad))
-    k = tangent(structure, state)
-    factor = buckling(k, tangent(structure.stressed(axial), state) - k)
+    path = resumed(structure, state)
+    k, pressed = path.tangent(), resumed(structure.stressed(axial), state).tangent()
+    factor = buckling(path.ties.among(k), path.ties.among(pressed - k))
     if factor <= 1.0:
         raise InstabilityError(
             f"the structure buckles: its buckling load factor is {factor:.6g}, which is below 1"
@@ -113,17 +114,19 @@ def loaded(structure: Structure) -> StaticState:
     return StaticState(path.u, tuple(path.states), path.changes)
 
 
-def tangent(structure: Structure, state: StaticState) -> Matrix:
-    """Tangent stiffness of the unknowns in that state, shape (n_free, n_free)."""
+def resumed(structure: Structure, state: StaticState) -> EquilibriumPath:
+    """The path that stands in that state."""
     nothing = np.zeros(structure.n_free)
-    return EquilibriumPath(structure, state.u, state.states, nothing, nothing).tangent()
+    return EquilibriumPath(structure, state.u, state.states, nothing, nothing)
 
 
 def after(structure: Structure, state: StaticState) -> Structure:
-    """The structure whose initial stiffness is the tangent one of that state (for MODAL AFTER=STATIC)."""
-    initial = structure.initial_stiffness
-    k = initial - structure.framed(initial) + structure.framed(tangent(structure, state))
-    return replace(structure, initial_stiffness=k)
+    """The structure whose initial stiffness is the tangent one of that state, and in whose modes closed
+    rigid contacts stay closed (for MODAL AFTER=STATIC).
+    """
+    initial, path = structure.initial_stiffness, resumed(structure, state)
+    k = initial - structure.framed(initial) + structure.framed(path.tangent())
+    return replace(structure, initial_stiffness=k, basis=path.ties.basis if len(path.ties) else None)
 
 
 def buckling(k: Matrix, geometric: Matrix) -> float:

@@ -558,11 +558,13 @@ def integrate(
 ) -> Outcome:
     """Choose a method, state why, and run it."""
     rigid = rigid_contact(system) is not None
-    if not_linear(system):
+    if rigid:
         refuse_rigid(system, start, "AUTO")
-    elif rigid and not has_series(system):
-        system.decisions.append(Decision("method", "EXACT", RIGID))
-        return exact.integrate(system, start, monitored, {}, recorder)
+        if not_linear(system):
+            return by_series(system, start, monitored, recorder)
+        if not has_series(system):
+            system.decisions.append(Decision("method", "EXACT", RIGID))
+            return exact.integrate(system, start, monitored, {}, recorder)
     trial = ExactTrial(system, start, monitored, recorder, options["TOL"])
     series = cost_of_series(system, start)
     if series + provider().loading <= SERIES_FIRST:

@@ -187,16 +187,17 @@ def not_in_series(system: ReducedSystem) -> str:
     if system.structure.corotational:
         return not_linear(system)
     laws, without_mass = system.structure.laws, light(system)
-    rigid = rigid_contact(system) is not None
+    rigid = {s.element for s in laws if s.law.rigid}
     for s, massless_end in zip(laws, without_mass):
         if s.law.curved:
             law = f"the law {s.rule} of element {s.element} is curved"
-            smooth = s.law.rule.smooth is not None
-            if s.law.rule.powers is None and not smooth and s.role is not Role.FRICTION:
+            smooth, rubs = s.law.rule.smooth is not None, s.role is Role.FRICTION
+            if s.law.rule.powers is None and not smooth and not rubs:
                 return law
-            if rigid or (massless_end and not smooth):
-                where = "stands beside rigid contacts" if rigid else "meets a node without mass"
-                return f"{law} and {where}"
+            if massless_end and not smooth:
+                return f"{law} and meets a node without mass"
+            if rubs and s.element in rigid:
+                return f"{law} and rubs where a rigid contact presses"
     return ""
 
 
@@ -239,20 +240,23 @@ def rounding_check(
 
 
 def refuse_rigid(system: ReducedSystem, start: Start, method: str) -> None:
-    """Raise Stop where a reduced system has rigid contacts and the method knows none, or none where the
-    reduced system is not linear between events: that no method does.
+    """Raise Stop where a reduced system has rigid contacts and the method does not take them there; no
+    method does where the motion has no power series.
     """
     rigid = rigid_contact(system)
     if rigid is None:
         return
     contact = f"{rigid.rule} of element {rigid.element}"
-    if why := not_linear(system):
+    if not (methods := without_steps(system)):
         other = "another GEOMETRY" if system.structure.corotational else "laws that are linear in pieces"
-        told = f"no method takes a rigid contact, which {contact} is, where {why}"
+        told = f"no method takes a rigid contact, which {contact} is, where {not_in_series(system)}"
         cure = f"give the contact a LAW with a stiffness, or choose {other}"
+    elif method in ("AUTO", "EXACT", "TAYLOR"):
+        return
     else:
         told = f"{method} knows no rigid contact, and {contact} is one"
-        cure = "TAYLOR and EXACT take it, or a LAW with a stiffness"
+        takes = "TAYLOR and EXACT take" if "EXACT" in methods else "TAYLOR takes"
+        cure = f"{takes} it, or a LAW with a stiffness"
     raise Stop("A505", float(start.times[0]), f"{told}: {cure}")
 
 

@@ -56,6 +56,8 @@ class Structure:
     parts : mapping of int to Parts
         Contributions of every element, by its number.
     damping_texts : list of (Card, str)
+    basis : Matrix, shape (n_free, n_free), or None
+        Z where modes are sought among the motions u = Z u alone, see `tied`.
     """
 
     model: Model
@@ -77,6 +79,7 @@ class Structure:
     self_weight: bool
     parts: dict[int, Parts]
     damping_texts: list[tuple[Card, str]] = field(default_factory=list)
+    basis: Matrix | None = None
 
     @property
     def n_free(self) -> int:
@@ -97,8 +100,13 @@ class Structure:
         """Its `count` slowest modes, or more; None: all."""
         if "free_vibration" in self.__dict__:
             return self.free_vibration
-        n = self.n_free
-        return modes.solve(self.initial_stiffness[:n, :n], self.mass[:n, :n], count)
+        found = modes.solve(self.tied(self.initial_stiffness), self.tied(self.mass), count)
+        return found if self.basis is None else replace(found, shapes=self.basis @ found.shapes)
+
+    def tied(self, k: Matrix) -> Matrix:
+        """The part of a matrix over all columns that modes are made of, shape (n_free, n_free)."""
+        own = k[: self.n_free, : self.n_free]
+        return own if self.basis is None else self.basis.T @ own @ self.basis
 
     def axial(self, u: Array) -> Array:
         """Axial forces of the members of `geometric` at displacements `u` of all columns [F]."""

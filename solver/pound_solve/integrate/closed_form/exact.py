@@ -53,7 +53,7 @@ from pound_solve.integrate.protocol import (
     rounding_check,
     without_steps,
 )
-from pound_solve.integrate.rigid.contacts import MasslessContact
+from pound_solve.integrate.rigid.contacts import MasslessContact, linear_forces
 from pound_solve.integrate.rigid.instants import RigidInstants
 from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import Decision, ReducedSystem
@@ -104,7 +104,10 @@ class Exact(EventDrivenRun):
 
     def run(self) -> Outcome:  # noqa: D102
         self.tracker.begin(self.system, self.t, self.u, self.v, self.branches)
-        self.rigid.check_start()
+        try:
+            self.rigid.begin()
+        except ArithmeticError as err:
+            raise self.stop("A503", str(err)) from None
         self._update_subsystems()
         self._sample_now()
         cursor = 0
@@ -231,6 +234,10 @@ class Exact(EventDrivenRun):
             rows = list(self.subsystems.reaction_row.values())
             self.largest[0, rows] = np.maximum(self.largest[0, rows], self.rigid.rounding)
         self._update_subsystems()
+
+    def law_forces(self, d: Array, v: Array) -> Array:
+        """Forces of all laws at deformations and rates (see `RigidRun`)."""
+        return linear_forces(self.branches)(d, v)
 
     def take_impact(self, put_in: float, lost: Array) -> None:
         """Count the works of an impact of rigid contacts (see `RigidRun`)."""

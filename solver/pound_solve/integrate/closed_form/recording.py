@@ -14,7 +14,7 @@ from pound_solve.integrate.closed_form.subsystems import Subsystems
 from pound_solve.integrate.energy import law_values
 from pound_solve.integrate.events import grid
 from pound_solve.integrate.protocol import LawValues, Recorder
-from pound_solve.integrate.rigid.contacts import RigidContacts
+from pound_solve.integrate.rigid.contacts import RigidContacts, linear_forces
 from pound_solve.laws.automaton import Branch, State
 from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.reduction import ReducedSystem
@@ -47,7 +47,7 @@ class DeferredSamples:
             excitation = self.system.excitation
             s = np.stack([excitation.values(t, order) for order in range(3)])
             for i in range(len(t)):
-                now = self.rigid.forces(held, branches, u[:, i], v[:, i], s[:, i])
+                now = self.rigid.forces(held, linear_forces(branches), u[:, i], v[:, i], s[:, i])
                 laws.force[self.rigid.laws, i] = now
         self._waiting.append((t, u, v, a, laws, entries))
 

@@ -18,6 +18,7 @@ from pound_solve.integrate.tracker import Peak
 from pound_solve.numerics.cubic import cubic_peak
 from pound_solve.numerics.types import Array, Flags
 
+SHALLOW = 1e-9  #: share of its steepest slope below which a function that starts at zero may fall first
 #: value and slope of function n in some segment and cell at time t
 Evaluate = Callable[[int, int, int, float], tuple[float, float]]
 ValueAndSlope = Callable[[float], tuple[float, float]]  #: of one function in one cell
@@ -135,7 +136,7 @@ def first_rise(t: Array, g: Array, slope: Array, tol: Array, evaluate: Evaluate)
                 high = top
             elif g[n, k, j] == 0.0:
                 # at the very start its slope may be rounding: it may fall first
-                if k == j == 0 and not slope[n, 0, 0] > STILL * np.abs(slope[n]).max():
+                if k == j == 0 and not slope[n, 0, 0] > SHALLOW * np.abs(slope[n]).max():
                     low = _dip(own, low, high)
                 if low == t[k, j]:
                     return Rise(low, n, k, j)  # it rises from the start, however slowly

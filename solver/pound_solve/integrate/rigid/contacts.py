@@ -24,7 +24,7 @@ Applications, CISM 302: 1-82, Springer.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -35,8 +35,18 @@ from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
 ROUNDING = 1e-12  #: share of its terms below which an acceleration is rounding
+SPREAD = 0.1  #: share of the largest displacement that counts as a term of all
 MAX_IMPACTS = 100_000  #: at one instant
 MAX_PIVOTS = 10_000
+
+
+LawForces = Callable[[Array, Array], Array]
+
+
+def linear_forces(branches: Sequence[Branch]) -> LawForces:
+    """Forces of laws on linear branches, from their deformations and rates, shape (n_laws,) each."""
+    k, c, f0 = np.array([(b.stiffness, b.damping, b.force0) for b in branches]).reshape(-1, 3).T
+    return lambda d, v: np.asarray(k * d + c * v + f0)
 
 
 class MasslessContact(Exception):
@@ -149,23 +159,25 @@ class RigidContacts:
         return impulse + plastic, lost + 0.5 * plastic * rates, rates - self.delassus @ plastic
 
     def free_accelerations(
-        self, branches: Sequence[Branch], u: Array, v: Array, inputs: Array
+        self, law_forces: LawForces, u: Array, v: Array, inputs: Array
     ) -> tuple[Array, Array]:
         """Return the second rates of the deformations without contact forces, and the magnitude of their
         terms, (n_rigid,) each: a share of the magnitude is rounding.
 
         Parameters
         ----------
-        branches : sequence of Branch
-            Of all laws.
+        law_forces : callable
+            The forces of all laws at their deformations and rates, (n_laws,) each; those of rigid contacts
+            are zero.
         u, v : ndarray, shape (n,)
         inputs : ndarray, shape (3, n_inputs)
             Inputs and their first two derivatives.
         """
         system = self.system
-        k, c, f0 = np.array([(b.stiffness, b.damping, b.force0) for b in branches]).reshape(-1, 3).T
-        force = k * (system.law_rows @ u + system.law_inputs @ inputs[0])
-        force += c * (system.law_rows @ v + system.law_inputs @ inputs[1]) + f0
+        force = law_forces(
+            system.law_rows @ u + system.law_inputs @ inputs[0],
+            system.law_rows @ v + system.law_inputs @ inputs[1],
+        )
         terms = np.array(
             [
                 system.inputs @ inputs[0],
@@ -175,18 +187,20 @@ class RigidContacts:
                 -system.law_rows.T @ force,
             ]
         )
-        # bodies that move as one cancel in K u, their rounding does not
+        # bodies that move as one cancel in K u, their rounding does not; that of a static state is of the
+        # size of the largest displacement
+        u = np.abs(u) + SPREAD * np.abs(u).max(initial=0.0)
         sums = np.abs(terms[:2]).sum(axis=0) + abs(system.law_rows).T @ np.abs(force)
-        sums = sums + abs(system.damping) @ np.abs(v) + abs(system.stiffness) @ np.abs(u)
+        sums = sums + abs(system.damping) @ np.abs(v) + abs(system.stiffness) @ u
         size = np.abs(self.velocity_change).T @ sums
         return self.velocity_change.T @ terms.sum(axis=0) + self.inputs @ inputs[2], size
 
-    def forces(self, held: Flags, branches: Sequence[Branch], u: Array, v: Array, inputs: Array) -> Array:
+    def forces(self, held: Flags, law_forces: LawForces, u: Array, v: Array, inputs: Array) -> Array:
         """Return the forces of the contacts that are `held` closed, shape (n_rigid,); parameters as of
         `free_accelerations`.
         """
         out, at = np.zeros(len(held)), np.flatnonzero(held)
-        free = self.free_accelerations(branches, u, v, inputs)[0]
+        free = self.free_accelerations(law_forces, u, v, inputs)[0]
         out[at] = self.inverse(at) @ free[at]
         return out
 

@@ -43,6 +43,12 @@ class RigidRun(Protocol):
         """Present branches of all laws."""
         ...
 
+    def law_forces(self, d: Array, v: Array) -> Array:
+        """Forces of all laws on their present branches at deformations `d` and rates `v`, (n_laws,) each;
+        zero for rigid contacts.
+        """
+        ...
+
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
         """Let a law leave its branch at deformation `d` and rate `v`."""
         ...
@@ -84,12 +90,32 @@ class RigidInstants:
         """Which rigid contacts are closed, shape (n_rigid,)."""
         return np.array([self.run.branches[i].held for i in self.contacts.laws], bool)
 
-    def check_start(self) -> None:
-        """Stop where rigid bodies overlap at the start."""
+    def begin(self) -> bool:
+        """Stop where rigid bodies overlap at the start; let those that are closed there strike, stay
+        together or part, as their velocities and forces have it, and return whether there are rigid bodies.
+
+        Their deformations have the rounding of the static displacements.
+
+        Raises
+        ------
+        ArithmeticError
+            The impacts do not end, or the forces are not found.
+        """
+        run, laws = self.run, self.contacts.laws
+        self._check_overlap()
+        farthest = np.abs(run.u).max(initial=0.0)
+        run.largest[0, laws] = np.maximum(run.largest[0, laws], farthest)
+        if self._held().any():
+            self.impact()
+            self.open_pulled()
+        return bool(laws)
+
+    def _check_overlap(self) -> None:
+        """Stop where rigid bodies overlap."""
         x, run = self.contacts, self.run
         d = x.rows @ run.u + x.inputs @ self._inputs()[0]
-        size = np.abs(x.rows) @ np.abs(run.u) + x.gap
-        for i in np.flatnonzero(d - x.gap > OVERLAP * size).tolist():
+        size = OVERLAP * (np.abs(x.rows) @ np.abs(run.u) + x.gap) + STILL * np.abs(run.u).max(initial=0.0)
+        for i in np.flatnonzero(d - x.gap > size).tolist():
             s = run.system.structure.laws[x.laws[i]]
             why = f"the rigid contact {s.element} ({s.rule}) overlaps by {d[i] - x.gap[i]:.3g} at the start"
             raise run.stop("A505", why)
@@ -131,7 +157,7 @@ class RigidInstants:
         acceleration that brings the body back.
         """
         x, run = self.contacts, self.run
-        pressing = np.maximum(x.free_accelerations(run.branches, run.u, run.v, inputs)[0], 0.0)
+        pressing = np.maximum(x.free_accelerations(run.law_forces, run.u, run.v, inputs)[0], 0.0)
         lost = LOST * STILL * (run.largest[0, x.laws] + x.gap)
         rebound, e = np.sqrt(2.0 * pressing * lost), x.restitution
         own = np.divide(rebound, e, out=np.zeros(len(e)), where=e > 0.0)
@@ -162,7 +188,7 @@ class RigidInstants:
         if not held.any():
             return
         s = self._inputs()
-        free, size = x.free_accelerations(run.branches, run.u, run.v, s)
+        free, size = x.free_accelerations(run.law_forces, run.u, run.v, s)
         size = size + spectral_radius * (np.abs(x.rows) @ np.abs(run.v))
         force = x.plastic_impulses(free, held)
         parting = held & (force == 0.0) & (free - x.delassus @ force < -ROUNDING * size)

@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from pound_solve.integrate.kernels.state import Laws
-from pound_solve.integrate.series.curved import PRESSED, has_force
-from pound_solve.integrate.series.friction import rub, slides
+from pound_solve.integrate.series.curved import PRESSED, enter, has_force
+from pound_solve.integrate.series.friction import rub, side_of, slides
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.state import Series
+from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array
+
+
+def take_over(laws: Laws, rules: Tables, series: Series, i: int) -> None:
+    """Take over the branch that law `i` has gone to, where its force is a series."""
+    if series.curved.number[i] >= 0:
+        enter(laws, rules, series.curved, i)
+    if series.friction.number[i] >= 0:
+        side_of(laws, series.friction, i)
 
 
 def has_series(series: Series, i: int) -> bool:

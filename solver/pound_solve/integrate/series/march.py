@@ -30,7 +30,7 @@ from pound_solve.integrate.kernels.state import (
 )
 from pound_solve.integrate.kernels.work import load_on_nodes, support_power
 from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW
-from pound_solve.integrate.series.curved import APART, change_phase, enter
+from pound_solve.integrate.series.curved import APART, change_phase
 from pound_solve.integrate.series.expansion import (
     CHECK,
     GROW,
@@ -43,8 +43,8 @@ from pound_solve.integrate.series.expansion import (
     law_at,
     next_term,
 )
-from pound_solve.integrate.series.forces import count_largest, press
-from pound_solve.integrate.series.friction import LIFT, side_of, slides, touching
+from pound_solve.integrate.series.forces import count_largest, press, take_over
+from pound_solve.integrate.series.friction import LIFT, slides, touching
 from pound_solve.integrate.series.massless import factorise, violated
 from pound_solve.integrate.series.modal import from_modes, renew_modes, take_in_modes
 from pound_solve.integrate.series.rigid import is_held
@@ -201,10 +201,7 @@ def change_branch(
     law = event.law
     before, d, v = laws.branch[law], laws.now.deformation[law], laws.now.rate[law]
     transition(laws, rules, law, event.event_index, d, v)
-    if series.curved.number[law] >= 0:
-        enter(laws, rules, series.curved, law)
-    if series.friction.number[law] >= 0:
-        side_of(laws, series.friction, law)
+    take_over(laws, rules, series, law)
     # the rate of what has no mass jumps, and with it the force of its dashpot
     force = law_force(laws, rules, law, d, 0.0 if series.massless.law_number[law] >= 0 else v)
     if before != laws.branch[law]:
@@ -288,6 +285,7 @@ def settle(
     if len(held.unknown) + varying + len(series.smooth.laws) == 0:
         return DONE
     for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
+        change_friction(laws, buffers, rules, series, run)
         if not renew(linear, laws, rules, series, run):
             return LOOSE
         begin_series(linear, laws, step, series, coefs, begin, 1.0)
@@ -302,7 +300,6 @@ def settle(
             press(laws, series, 2, 0.0, 1.0)
             return DONE
         change_branch(laws, buffers, rules, series, run, run.time, LocatedEvent(law, event, 0.0))
-        change_friction(laws, buffers, rules, series, run)
     return CHATTER
 
 

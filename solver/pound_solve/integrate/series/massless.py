@@ -36,10 +36,21 @@ from pound_solve.integrate.series.springs import deformation, load
 from pound_solve.integrate.series.state import Massless, Series
 from pound_solve.numerics import ldl
 from pound_solve.numerics.ldl import factor
-from pound_solve.numerics.matrices import Matrix, at, by_rows, diagonal, entries, used_rows, weighted
+from pound_solve.numerics.matrices import (
+    Matrix,
+    at,
+    by_rows,
+    diagonal,
+    entries,
+    scaled,
+    used_rows,
+    weighted,
+)
+from pound_solve.numerics.modes import scaling, softest
 from pound_solve.numerics.types import Array, Index
 
 DAMPING, STIFFNESS = range(2)  #: rows of `Massless.factors`
+TAKES_PART = 1e-6  #: share of the largest component of a motion above which an unknown takes part
 
 
 def allocate(
@@ -141,6 +152,18 @@ def factorise(laws: Laws, held: Massless) -> int:
         for i in range(len(held.unknown)):
             held.pivots[which, i] = 1.0 / held.pivots[which, i]
     return -1
+
+
+def undamped(laws: Laws, held: Massless) -> Index:
+    """Numbers of the unknowns of order one that move where their dashpots do not resist: of the motion that
+    is resisted least.
+    """
+    form(laws, held, DAMPING)
+    c = np.zeros((len(held.unknown), len(held.unknown)))
+    c[held.pattern.ai, held.column] = c[held.column, held.pattern.ai] = held.matrix
+    at = np.flatnonzero(held.damped)
+    motion = softest(scaled(c[np.ix_(at, at)], scaling(c[np.ix_(at, at)])))[1]
+    return np.asarray(at[np.abs(motion) > TAKES_PART * np.abs(motion).max()], np.int64)
 
 
 def solve_order(held: Massless, which: int) -> None:

@@ -10,8 +10,10 @@ from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import log_transition
 from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW, Stop
+from pound_solve.integrate.series.forces import take_over
 from pound_solve.integrate.series.massless import violated
-from pound_solve.laws.automaton import Branch
+from pound_solve.integrate.series.state import Series
+from pound_solve.laws.automaton import PUSH, Branch
 from pound_solve.numerics.types import Array, Index
 
 
@@ -22,10 +24,12 @@ class Present:
     ----------
     engine : KernelEngine
         Its kernel has returned, and its transitions are taken in.
+    series : Series
     """
 
-    def __init__(self, engine: KernelEngine) -> None:
-        self.engine, self.system, self.tracker = engine, engine.system, engine.tracker
+    def __init__(self, engine: KernelEngine, series: Series) -> None:
+        self.engine, self.series = engine, series
+        self.system, self.tracker = engine.system, engine.tracker
         now, laws, back = engine.step.now, engine.laws, np.argsort(engine.order)
         self.t = float(engine.state.time)
         self.u, self.v = now.displacement[back], now.velocity[back]
@@ -37,12 +41,24 @@ class Present:
         """Present branches of all laws."""
         return self._branches
 
+    def law_forces(self, d: Array, v: Array) -> Array:
+        """Forces of all laws at deformations and rates (see `RigidRun`)."""
+        laws, rules, out = self.engine.laws, self.engine.rules, np.zeros(len(d))
+        coupled = self.series.friction.laws.tolist()
+        for i in [i for i in range(len(d)) if i not in coupled] + coupled:  # the forces that press first
+            if i in coupled:
+                laws.internal[i, PUSH] = max(out[laws.normal[i]], 0.0)
+            if self.series.rigid.number[i] < 0:
+                out[i] = law_kernels.law_force(laws, rules, i, d[i], v[i])
+        return out
+
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
         """Let a law leave its branch at deformation `d` and rate `v`."""
         own, laws = self.engine, self.engine.laws
         before = int(laws.branch[law])
         laws.now.deformation[law], laws.now.rate[law] = d, v
         law_kernels.transition(laws, own.rules, law, event_index, d, v)
+        take_over(laws, own.rules, self.series, law)
         log_transition(laws, own.buffers, own.state, law, before, self.t, 0.0)
         own.fetch_transitions()
         self._branches[law] = own.springs[law].branch(own.law_state(law))

@@ -24,7 +24,7 @@ Taylor methods, Experimental Mathematics 14: 99-117.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -180,8 +180,8 @@ class Taylor(KernelEngine):
 
     def integrate(self) -> None:
         """Integrate by series from event to event."""
-        RigidInstants(Present(self), self.contacts).check_start()
         self.begin(march.march)
+        self._at_instant(RigidInstants.begin)
         for i in self.series.friction.laws.tolist():
             friction.side_of(self.laws, self.series.friction, i)
         ex = self.system.excitation
@@ -194,19 +194,32 @@ class Taylor(KernelEngine):
         """Let rigid contacts strike, close or part; stop where there is no going on."""
         if why != march.STRIKE:
             raise self.trouble(why)
-        present, law = Present(self), int(self.state.fault)
+        self._at_instant(self._strike)
+        self.state.events += 1
+
+    def _strike(self, instants: RigidInstants) -> bool:
+        """Let the rigid contact at fault strike, or part."""
+        present, law = instants.run, int(self.state.fault)
+        if present.branches[law].held:
+            present.transition(
+                law, 0, float(self.laws.now.deformation[law]), float(self.laws.now.rate[law])
+            )
+        else:
+            instants.impact()
+        instants.open_pulled()
+        return True
+
+    def _at_instant(self, happens: Callable[[RigidInstants], bool]) -> None:
+        """Let something happen to the rigid contacts, and go on from there where it does."""
+        present = Present(self, self.series)
         instants = RigidInstants(present, self.contacts)
         try:
-            if present.branches[law].held:
-                d, v = float(self.laws.now.deformation[law]), float(self.laws.now.rate[law])
-                present.transition(law, 0, d, v)
-            else:
-                instants.impact()
-            instants.open_pulled()
+            if not happens(instants):
+                return
         except ArithmeticError as err:
             raise self.stop("A503", str(err)) from None
-        present.hand_back(np.flatnonzero(self.massless.law_number < 0))
-        self.state.events += 1
+        known = (self.massless.law_number < 0) & (self.series.friction.number < 0)
+        present.hand_back(np.flatnonzero(known))
         self._hold(instants.rounding)
 
     def _hold(self, rounding: Array | float = 0.0) -> None:
@@ -246,7 +259,10 @@ class Taylor(KernelEngine):
         fault, held = int(self.state.fault), self.massless
         name, n = self.system.name(int(self.order[fault])), int(np.flatnonzero(held.unknown == fault)[0])
         if held.damped[n]:
-            return f"{name} has no mass, and only dashpots to others without mass resist it: give it weight"
+            whole = massless.undamped(self.laws, held)
+            names = [self.system.name(i) for i in sorted(self.order[held.unknown[whole]].tolist())]
+            joints = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else name
+            return f"{joints} have no mass, and only dashpots to each other resist them: give one weight"
         if held.pivots[STIFFNESS, n] < 0.0:
             return f"{name} has no mass, and its stiffness has become negative: it snaps through"
         return f"{name} has no mass and nothing holds it"

@@ -38,17 +38,20 @@ OPEN, PRESSED = 0, 1
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open."""
-    return OPEN, ()
+    return OPEN, (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
-    """Open up to the gap; pressed until the force falls below zero."""
-    return linear(0.0, 0.0, above(p[2]) if at == OPEN else below(0.0))
+    """Open up to the gap; pressed until the force falls below zero.
+
+    The internal variable is the force in a static state; a history has forces of its own.
+    """
+    return linear(0.0, m[0], above(p[2]) if at == OPEN else below(0.0))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch or part."""
-    return (PRESSED if at == OPEN else OPEN), m
+    return (PRESSED if at == OPEN else OPEN), (0.0,)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -66,7 +69,7 @@ RULE = Rule(
     transition,
     recoverable,
     parameters=3,
-    variables=0,
+    variables=1,
 )
 
 

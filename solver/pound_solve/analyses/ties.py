@@ -1,0 +1,80 @@
+r"""Closed rigid contacts in statics: ties of the unknowns, and the forces that hold them.
+
+With the rows B of the closed contacts, rates of displacement obey :math:`B\dot u = 0`.  Of each row one
+unknown follows the others, :math:`u = Z u`, and equilibrium along the motions that are left is
+
+.. math:: Z^T K Z\,\dot u = Z^T p, \qquad B^T \dot r = p - K\dot u
+
+The forces r of contacts with dependent rows are shared evenly: of all solutions the one of least norm.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.numerics.matrices import Matrix, gathered
+from pound_solve.numerics.types import Array, Index
+
+DEPENDENT = 1e-12  #: share of a row that is left of one that depends on others
+
+
+class Ties:
+    """What closed rigid contacts do to the unknowns.
+
+    Parameters
+    ----------
+    laws : ndarray of int, shape (n_closed,)
+    rows : ndarray, shape (n_closed, n)
+        Deformations from the unknowns.
+
+    Attributes
+    ----------
+    laws : ndarray of int, shape (n_closed,)
+    basis : Matrix, shape (n, n)
+        Z; its columns for the unknowns that follow are zero.
+    """
+
+    def __init__(self, laws: Index, rows: Array) -> None:
+        self.laws, n = laws, rows.shape[1]
+        self._forces = np.linalg.pinv(rows.T, rcond=DEPENDENT)
+        left, followers = rows.copy(), list[int]()
+        for i, row in enumerate(rows):
+            j = int(np.argmax(np.abs(left[i])))
+            if np.abs(left[i, j]) <= DEPENDENT * np.abs(row).max():
+                left[i] = 0.0
+                continue
+            left[i] /= left[i, j]
+            others = np.arange(len(rows)) != i
+            left[others] -= np.outer(left[others, j], left[i])
+            followers.append(j)
+        left, own = left[left.any(axis=1)], np.setdiff1d(np.arange(n), followers)
+        of, on = np.nonzero(left[:, own])
+        self.basis = gathered(
+            (n, n),
+            np.append(own, np.array(followers, np.intp)[of]),
+            np.append(own, own[on]),
+            np.append(np.ones(len(own)), -left[of, own[on]]),
+        )
+
+    def __len__(self) -> int:
+        return len(self.laws)
+
+    def among(self, matrix: Matrix) -> Matrix:
+        """A matrix of the unknowns, shape (n, n), along the motions that are left: Z^T A Z."""
+        return self.basis.T @ matrix @ self.basis if len(self) else matrix
+
+    def along(self, force: Array) -> Array:
+        """Forces on the unknowns, shape (n,), along the motions that are left."""
+        return np.asarray(self.basis.T @ force) if len(self) else force
+
+    def whole(self, u: Array) -> Array:
+        """Motions of all unknowns, shape (n,) or (n, count)."""
+        return np.asarray(self.basis @ u) if len(self) else u
+
+    def forces(self, rest: Array) -> Array:
+        """Forces of the contacts, shape (n_closed,), that balance the force `rest` on the unknowns."""
+        return np.asarray(self._forces @ rest)
+
+    def magnitudes(self, terms: Array) -> Array:
+        """Magnitudes of those forces' terms for the absolute `terms` of the forces on the unknowns."""
+        return np.asarray(np.abs(self._forces) @ terms)
