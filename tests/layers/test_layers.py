@@ -47,6 +47,8 @@ WITHIN = {
         "stepping",
         "series",
         "closed_form",
+        "convergence",
+        "trial",
         "auto",
     ),
     "results": (
