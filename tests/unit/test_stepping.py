@@ -813,6 +813,9 @@ def test_the_hardest_collision_is_that_of_the_largest_force():
     assert compared.hardest(peaks) == np.inf
     peaks.collisions += [Collision(0, 1.0, 0.1, 1.5, peak=3.0), Collision(1, 2.0, 0.1, 2.25, peak=4.0)]
     assert compared.hardest(peaks) == 0.25
+    for rises, lasts in ((0.0, 0.25), (0.001, 0.0125), (0.0625, 0.125), (0.125, 0.25), (0.2, 0.25)):
+        peaks.collisions[1].t_peak = 2.0 + rises
+        assert compared.hardest(peaks) == pytest.approx(lasts)
     peaks.collisions.append(
         Collision(1, 3.0, 0.1, peak=5.0)
     )  # still closed: it is longer than what is seen

@@ -21,6 +21,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import ReducedSystem
 
 FLOOR = 0.05  #: share of the largest peak of its kind that a peak is measured against at least
+BRIEF = 0.05  #: share of a collision below which it is not asked how fast its force rises
 RESPONSE, ALL = "RESPONSE", "ALL"  #: what TOL is for
 
 
@@ -69,8 +70,14 @@ def figures(system: ReducedSystem, peaks: Peaks, replay: Replay, asked: str = RE
 
 
 def hardest(peaks: Peaks) -> float:
-    """Return how long the collision of the largest force lasts [T]; infinite without collisions."""
+    """Return how long the collision of the largest force lasts [T], or twice the time in which that rises
+    where this is less; infinite without collisions.
+
+    A long collision may reach its peak early, by a mode that is faster than the whole: steps have to follow
+    that.  A force that is largest at once jumps, by a dashpot, which a located event resolves.
+    """
     found = max(peaks.collisions, key=lambda c: c.peak, default=None)
     if found is None or not found.t_end > found.t_start:  # it is still closed
         return np.inf
-    return found.t_end - found.t_start
+    lasts, rises = found.t_end - found.t_start, found.t_peak - found.t_start
+    return min(lasts, max(2.0 * rises, BRIEF * lasts)) if rises > 0.0 else lasts
