@@ -899,7 +899,7 @@ def test_trials_of_exact_cost_a_third_of_the_whole_at_most(tmp_path, monkeypatch
     monkeypatch.setattr(refinement.StepRefinement, "least_cost", least_cost)
     found = run(tmp_path, "AUTO TOL=1e-5")
     assert found.status == "done" and len(others) > 3 and spent
-    assert sum(spent) <= 0.5 * (others[-1] + trial.provider().loading) * (1 + 1e-12)
+    assert sum(spent) <= 0.5 * (others[-1] + trial.REST + trial.provider().loading) * (1 + 1e-12)
 
 
 def cost_of_series(tmp_path, monkeypatch, text):

@@ -1,9 +1,9 @@
 """EXACT within a budget: what AUTO spends on trying it is at most a third of the whole.
 
-What a trial has cost is lost where it does not end.  So all of them together cost no more than half of
-what the other methods do (`SHARE`): the loading of their kernels, the runs with steps that were made,
-and the one that follows, or the run of TAYLOR.  A trial ends early where, at the rate so far, the run
-would cost more.
+What a trial has cost is lost where it does not end.  So all of them together cost no more than half
+(`SHARE`) of what is certain to be needed without them: the rest of the program, the loading of kernels,
+the runs with steps that were made, and the one that follows, or the run of TAYLOR.  A trial ends early
+where, at the rate so far, the run would cost more.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from pound_solve.numerics.providers import provider
 from pound_solve.structure.reduction import ReducedSystem
 
 SHARE = 0.5  #: of what the other methods cost, that all trials may cost
+REST = 0.5  #: cost of the rest of the program: to load it, to read the deck, to write the results
 CHECK = 0.2  #: share of a trial's budget after which its progress is checked
 EXPECTED_DECOMPOSITIONS = 12  #: of all unknowns together, that a run is assumed to need
 #: decompositions that a trial may make (where combinations of stiffnesses do not return, more will come),
@@ -66,7 +67,7 @@ class ExactTrial:
         """Return its run, or None where all trials would cost more than a share of what the `others` do,
         which still have to load their kernels.
         """
-        budget = SHARE * (others + provider().loading) - self.spent
+        budget = SHARE * (others + provider().loading + REST) - self.spent
         if self.cost >= budget:
             return None
         replay, decisions = Replay(self.recorder), self.system.decisions

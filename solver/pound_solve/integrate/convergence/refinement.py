@@ -30,6 +30,7 @@ MAX_RETRY_COST = 20.0  #: of a run that follows one that stopped
 MAX_STALE_RUNS = 6  #: runs in a row that do not halve the error, after which shorter steps are given up
 AIM = 0.6  #: share of the tolerance that the next step aims at
 RESOLVED = 10.0  #: steps that the collision of the largest force takes at least
+FIRST = 0.5  #: the second step over the first, where collisions are resolved
 SHORTEST, LONGEST = 1.0 / 8.0, 0.7  #: of a step, that the next one is: where that is not resolved, at most
 #: retries after runs that stopped, one after another, before and after one that was completed
 MAX_RETRIES, MAX_SHORTER = 10, 3
@@ -90,8 +91,13 @@ class StepRefinement:
         return self.cost_of_run(self.aim)
 
     def least_cost(self) -> float:
-        """Return what all runs cost together at least: those that were made, and the next one."""
-        return self.spent + self.cost_of_run(self.h)
+        """Return what all runs cost together at least: those that were made, and the next one; of one run
+        there is no estimate, so that a second with half the step follows the first.
+        """
+        ahead = self.cost_of_run(self.h)
+        if not self.steps:
+            ahead += self.cost_of_run(FIRST * self.h)
+        return self.spent + ahead
 
     def run(self) -> Outcome | None:
         """Run once; return the outcome if no run follows, else None with the next step chosen.
