@@ -48,6 +48,8 @@ WITHIN = {
         "stepping",
         "series",
         "closed_form",
+        "convergence",
+        "trial",
         "auto",
     ),
     "results": (

@@ -18,11 +18,13 @@ PRODUCTS = 1.5e-6  #: matrix products of a decomposition, over the square of its
 MODES = 8e-9  #: modes of a decomposition, over the cube of its unknowns
 STEP, STEP_UNKNOWN = 3e-7, 2.5e-8  #: a compiled step of NEWMARK, and each of its unknowns, twice for a law
 TAYLOR_STEP, TAYLOR_UNKNOWN = 9e-6, 5.5e-8  #: a step of TAYLOR, and each of its unknowns and laws
+TAYLOR_SMOOTH = 2.5e-6  #: each of its smooth laws
+REVERSALS = 0.25  #: of a smooth law in an interval between two goals: each ends a step of TAYLOR
+MODES_STEPS = 2.0  #: steps of TAYLOR that an interval in modes costs as much as
 TAYLOR_RADIANS = 5.0  #: of the fastest mode in a step of TAYLOR
 EVENT_STEPS = 10  #: steps that a located event costs as much as
 POWERS = 30  #: iterations to the fastest decay
 INTERPRETED = 100  #: cost of an interpreted step over that of a compiled one
-RADIAN_STEPS = 5  #: steps of NEWMARK that follow the fastest mode through a radian
 
 
 def of_decomposition(n: int) -> float:
@@ -35,9 +37,15 @@ def of_step(system: ReducedSystem) -> float:
     return STEP + STEP_UNKNOWN * (system.size + 2 * len(system.structure.laws))
 
 
+def smooth_laws(system: ReducedSystem) -> int:
+    """Return how many laws are smooth curves."""
+    return sum(s.law.rule.smooth is not None for s in system.structure.laws)
+
+
 def of_series_step(system: ReducedSystem) -> float:
     """Return the cost of a compiled step of TAYLOR."""
-    return TAYLOR_STEP + TAYLOR_UNKNOWN * (system.size + len(system.structure.laws))
+    unknowns = system.size + len(system.structure.laws)
+    return TAYLOR_STEP + TAYLOR_UNKNOWN * unknowns + TAYLOR_SMOOTH * smooth_laws(system)
 
 
 def fastest_rate(system: ReducedSystem) -> float:
@@ -80,11 +88,6 @@ def fastest_decay(k: Matrix, c: Matrix) -> float:
     return found
 
 
-def of_series_radian(system: ReducedSystem) -> float:
-    """Return the cost of following a reduced system by TAYLOR for a radian of its fastest mode."""
-    return of_series_step(system) / TAYLOR_RADIANS
-
-
 class CostlyError(Exception):
     """A run exceeds its budget; `cost` brought it to time `t`."""
 
@@ -101,15 +104,11 @@ class Budget:
     begin, end : float
         Times of the run [T].
     most : float
-        Cost of the whole run at the present rate, at most.
+        Cost of the whole run, at most.
     trial : float or None
-        Cost after which that is checked first (None: `most`).
-    per_radian : float
-        Addition to `most` for each radian of the fastest mode.
+        Cost after which it is checked whether the whole, at the rate so far, exceeds that (None: `most`).
     decompositions : float
         Modal decompositions, at most.
-    other : float
-        Cost of another method: once half of that is spent, what is left must not cost more.
     """
 
     def __init__(
@@ -118,17 +117,14 @@ class Budget:
         end: float,
         most: float = np.inf,
         trial: float | None = None,
-        per_radian: float = 0.0,
         decompositions: float = np.inf,
-        other: float = np.inf,
     ) -> None:
-        self.begin, self.length, self.most, self.per_radian = begin, end - begin, most, per_radian
-        self.trial = most if trial is None else trial
-        self.decompositions, self.other = decompositions, other
+        self.begin, self.length, self.most = begin, end - begin, most
+        self.trial, self.decompositions = most if trial is None else trial, decompositions
         self.cost = 0.0
 
-    def charge(self, cost: float, t: float, spectral_radius: float, decompositions: int) -> None:
-        """Add a cost at time `t`.
+    def charge(self, cost: float, t: float, decompositions: int) -> None:
+        """Add a cost at time `t`, of a run that has made so many `decompositions`.
 
         Raises
         ------
@@ -136,10 +132,7 @@ class Budget:
             The budget is exceeded, or will be at the present rate.
         """
         self.cost += cost
-        if decompositions > self.decompositions:
+        whole = self.cost * self.length / max(t - self.begin, 1e-300)
+        dear = self.cost > self.most or (self.cost > self.trial and whole > self.most)
+        if dear or decompositions > self.decompositions:
             raise CostlyError(self.cost, t)
-        if self.cost > self.trial:
-            whole = self.cost * self.length / max(t - self.begin, 1e-300)
-            dear = self.cost > 0.5 * self.other and whole - self.cost > self.other
-            if dear or whole > self.most + self.per_radian * spectral_radius * self.length:
-                raise CostlyError(self.cost, t)

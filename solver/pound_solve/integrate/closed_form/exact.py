@@ -82,9 +82,7 @@ class Exact(EventDrivenRun):
             float(start.times[-1]),
             options.get("COST", np.inf),
             options.get("TRIAL"),
-            options.get("PER_RADIAN", 0.0),
             options.get("DECOMPOSITIONS", np.inf),
-            options.get("OTHER", np.inf),
         )
         self.subsystems = Subsystems(system, self.rows, recorder.shown)
         self.largest = np.zeros((2, len(self.subsystems.rows.rows)))
@@ -118,7 +116,7 @@ class Exact(EventDrivenRun):
     def _charge(self, cost: float) -> None:
         """Add a cost to the run's."""
         decompositions = len(self.subsystems.decompositions)
-        self.budget.charge(cost, self.t, self.subsystems.spectral_radius, decompositions)
+        self.budget.charge(cost, self.t, decompositions)
 
     def _update_subsystems(self) -> None:
         """Form the subsystems of the present branches and their event functions."""
@@ -357,8 +355,8 @@ def integrate(
 ) -> Outcome:
     """Integrate a reduced system exactly; see the module's head.
 
-    AUTO limits the costs (see `costs.Budget`) by the options COST, TRIAL, PER_RADIAN and DECOMPOSITIONS;
-    no deck sets them.
+    AUTO limits the costs (see `costs.Budget`) by the options COST, TRIAL and DECOMPOSITIONS; no deck sets
+    them.
 
     Raises
     ------

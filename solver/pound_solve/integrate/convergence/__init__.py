@@ -1,0 +1,1 @@
+"""Runs that are repeated with shorter steps until their peaks converge."""

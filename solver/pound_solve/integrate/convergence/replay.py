@@ -1,0 +1,62 @@
+"""A run whose samples may not count: they are kept, and passed on if it is the final one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pound_solve.integrate.protocol import EnvelopeRecorder, LawValues
+from pound_solve.numerics.types import Array, Flags
+from pound_solve.structure.reduction import ReducedSystem
+
+
+class Replay:
+    """Keeps the samples of a run, to pass them on if it is the final one; knows the extremes of u.
+
+    Of the motion between the samples only the envelopes are kept.
+    """
+
+    def __init__(self, recorder: EnvelopeRecorder) -> None:
+        self.recorder, self.samples = recorder, list[tuple[Any, ...]]()
+        self.envelopes = recorder.envelopes.blank()
+        self.high: Array | float = -np.inf
+        self.low: Array | float = np.inf
+
+    def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
+        """Take some samples (see `Recorder`)."""
+        self.samples.append((t, u, v, a, laws, works))
+        self.high = np.maximum(self.high, u.max(axis=1))
+        self.low = np.minimum(self.low, u.min(axis=1))
+        self.recorder.trial(float(t[-1]))
+
+    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+        """Take the motion between samples (see `Recorder`)."""
+        self.envelopes.between(t, u, v, a, apart)
+
+    def stationary(self, t: Array, u: Array) -> None:
+        """Take displacements at stationary points (see `Recorder`)."""
+        self.envelopes.stationary(t, u)
+
+    @property
+    def shown(self) -> Flags:
+        """Which unknowns `between` needs (see `Recorder`)."""
+        return self.recorder.shown
+
+    def trial(self, t: float, doing: str = "") -> None:
+        """Pass the progress of a trial on."""
+        self.recorder.trial(t, doing)
+
+    def seen(self, system: ReducedSystem) -> tuple[Array, list[str]]:
+        """Peaks of the accelerations of nodes and of the forces of members, and the kind of each."""
+        own = self.recorder.envelopes.blank()
+        own.widen(self.envelopes)
+        for t, u, v, a, *_ in self.samples:
+            own.take(t, u, v, a, [system.excitation.values(t, order).T for order in range(3)])
+        return own.peaks()
+
+    def pass_on(self) -> None:
+        """Pass everything on to the recorder."""
+        self.recorder.envelopes.widen(self.envelopes)
+        for sample in self.samples:
+            self.recorder.keep(*sample)

@@ -1,0 +1,88 @@
+"""EXACT within a budget: what AUTO spends on trying it is at most a third of the whole.
+
+What a trial has cost is lost where it does not end.  So all of them together cost no more than half
+(`SHARE`) of what is certain to be needed without them: the rest of the program, the loading of kernels,
+the runs with steps that were made, and the one that follows, or the run of TAYLOR.  A trial ends early
+where, at the rate so far, the run would cost more.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.integrate import condensed, costs
+from pound_solve.integrate.closed_form import exact
+from pound_solve.integrate.convergence.replay import Replay
+from pound_solve.integrate.protocol import EnvelopeRecorder, MonitoredOutputs, Outcome, Start, Stop
+from pound_solve.numerics.providers import provider
+from pound_solve.structure.reduction import ReducedSystem
+
+SHARE = 0.5  #: of what the other methods cost, that all trials may cost
+REST = 0.5  #: cost of the rest of the program: to load it, to read the deck, to write the results
+CHECK = 0.2  #: share of a trial's budget after which its progress is checked
+EXPECTED_DECOMPOSITIONS = 12  #: of all unknowns together, that a run is assumed to need
+#: decompositions that a trial may make (where combinations of stiffnesses do not return, more will come),
+#: and laws from which on it is not the first thing that is tried (combinations seldom return); both for the
+#: tolerance REFERENCE_TOL: for a smaller one they grow with the root, as the steps do
+MAX_DECOMPOSITIONS, MAX_LAWS, REFERENCE_TOL = 40, 12, 1e-3
+LEAST_OF_MANY = 1.0  #: what a run with more laws is assumed to cost at least
+
+
+class ExactTrial:
+    """Trials of EXACT.
+
+    Parameters
+    ----------
+    refused : str
+        Why EXACT does not serve; empty where it does.
+
+    Attributes
+    ----------
+    cost : float
+        Least cost of the whole run, as far as known.
+    spent : float
+        Cost of all trials.
+    """
+
+    def __init__(
+        self,
+        system: ReducedSystem,
+        start: Start,
+        monitored: MonitoredOutputs,
+        recorder: EnvelopeRecorder,
+        tol: float,
+        refused: str,
+    ) -> None:
+        self.system, self.start, self.monitored, self.recorder = system, start, monitored, recorder
+        self.ease, self.spent = max(REFERENCE_TOL / tol, 1.0) ** 0.5, 0.0
+        laws = len(system.structure.laws)
+        count = min(1 + laws, EXPECTED_DECOMPOSITIONS)
+        self.cost = max(
+            count * costs.of_decomposition(system.size), LEAST_OF_MANY * (laws > self.ease * MAX_LAWS)
+        )
+        if refused or system.size > condensed.MAX_UNKNOWNS:
+            self.cost = np.inf
+
+    def run(self, others: float) -> Outcome | None:
+        """Return its run, or None where all trials would cost more than a share of what the `others` do,
+        which still have to load their kernels.
+        """
+        budget = SHARE * (others + provider().loading + REST) - self.spent
+        if self.cost >= budget:
+            return None
+        replay, decisions = Replay(self.recorder), self.system.decisions
+        known = len(decisions)
+        limits = {"COST": budget, "TRIAL": CHECK * budget, "DECOMPOSITIONS": self.ease * MAX_DECOMPOSITIONS}
+        try:
+            outcome = exact.integrate(self.system, self.start, self.monitored, limits, replay)
+        except costs.CostlyError as err:
+            del decisions[known:]
+            begin, *_, end = self.start.times
+            self.spent += err.cost
+            self.cost = err.cost * ((end - begin) / (err.t - begin) if err.t > begin else 1.0)
+            return None
+        except Stop:
+            replay.pass_on()
+            raise
+        replay.pass_on()
+        return outcome
