@@ -56,6 +56,7 @@ from pound_solve.integrate.protocol import (
 from pound_solve.integrate.tracker import Extreme, Peaks
 from pound_solve.numerics.providers import provider
 from pound_solve.numerics.types import Array, Flags
+from pound_solve.structure.elements.base import Role
 from pound_solve.structure.reduction import Decision, ReducedSystem
 
 # EXACT before any steps
@@ -72,6 +73,7 @@ MAX_DECOMPOSITIONS, MAX_LAWS, REFERENCE_TOL = 40, 12, 1e-3
 # EXACT and TAYLOR before a run with steps
 LATER_BUDGET = 4.0  #: times the cost of that run, where shorter steps are to come
 LATER_CHECK = 0.1  #: share of the budget after which the progress of EXACT is checked
+MAX_SERIES = 500_000  #: steps of TAYLOR, where dampers that hardly move may ask for more than is foreseen
 SERIES_FIRST = 1.0  #: cost up to which TAYLOR is taken before any steps: it has no error to be estimated
 # runs with steps
 MAX_STEPS = 50_000_000  #: of one run
@@ -517,13 +519,26 @@ class StepRefinement:
 
 def by_series(
     system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: EnvelopeRecorder
-) -> Outcome:
-    """Run TAYLOR, and state why."""
+) -> Outcome | None:
+    """Run TAYLOR, and state why; None where dampers that hardly move ask for too many steps."""
     from pound_solve.integrate.series import taylor  # where it is not needed it is not loaded
 
     reason = SERIES if rigid_contact(system) is None else RIGID
-    system.decisions.append(Decision("method", "TAYLOR", reason))
-    return taylor.integrate(system, start, monitored, {}, recorder)
+    decisions, known = system.decisions, len(system.decisions)
+    decisions.append(Decision("method", "TAYLOR", reason))
+    if all(s.role is not Role.DAMPER for s in system.structure.laws):
+        return taylor.integrate(system, start, monitored, {}, recorder)
+    replay = Replay(recorder)
+    try:
+        outcome = taylor.integrate(system, start, monitored, {"STEPS": MAX_SERIES}, replay)
+    except Stop as stop:
+        if stop.code == "A502":
+            del decisions[known:]
+            return None
+        replay.pass_on()
+        raise
+    replay.pass_on()
+    return outcome
 
 
 def to_tolerance(
@@ -541,7 +556,9 @@ def to_tolerance(
     steps = StepRefinement(system, start, monitored, recorder, options)
     while True:
         if series <= max(SERIES_FIRST, steps.cost_ahead()):
-            return by_series(system, start, monitored, recorder)
+            if (outcome := by_series(system, start, monitored, recorder)) is not None:
+                return outcome
+            series = np.inf
         budget = steps.cost_ahead(LATER_BUDGET)
         if (outcome := trial.run(budget, {"TRIAL": LATER_CHECK * budget})) is not None:
             return outcome
@@ -566,11 +583,13 @@ def integrate(
     trial = ExactTrial(system, start, monitored, recorder, options["TOL"])
     series = cost_of_series(system, start)
     if series + provider().loading <= SERIES_FIRST:
-        return by_series(system, start, monitored, recorder)
+        if (outcome := by_series(system, start, monitored, recorder)) is not None:
+            return outcome
+        series = np.inf
     if (outcome := trial.first(series)) is not None:
         return outcome
-    if rigid:
-        return by_series(system, start, monitored, recorder)
+    if rigid and (outcome := by_series(system, start, monitored, recorder)) is not None:
+        return outcome
     return to_tolerance(system, start, monitored, options, recorder, trial, series)
 
 

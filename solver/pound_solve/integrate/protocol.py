@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Protocol, Self
 import numpy as np
 
 from pound_solve.integrate.tracker import Peaks
-from pound_solve.laws.automaton import State
+from pound_solve.laws.automaton import BranchKind, State
 from pound_solve.numerics.matrices import used_rows
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags
@@ -191,10 +191,12 @@ def not_in_series(system: ReducedSystem) -> str:
     for s, massless_end in zip(laws, without_mass):
         if s.law.curved:
             law = f"the law {s.rule} of element {s.element} is curved"
-            smooth = s.law.rule.smooth is not None
+            smooth, damper = s.law.rule.smooth is not None, s.role is Role.DAMPER
             if s.law.rule.powers is None and not smooth and s.role is not Role.FRICTION:
                 return law
-            if rigid or (massless_end and not smooth):
+            if damper and massless_end and s.branch(s.law.start()).kind is BranchKind.OPEN:
+                return f"{law}, has a play and meets a node without mass"
+            if rigid or (massless_end and not smooth and not damper):
                 where = "stands beside rigid contacts" if rigid else "meets a node without mass"
                 return f"{law} and {where}"
     return ""

@@ -52,6 +52,8 @@ from pound_solve.integrate.series.smooth import BENDS, bend, linearise
 from pound_solve.integrate.series.springs import add_up, deformation
 from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.integrate.series.tracking import event_of, first_event, track_laws, track_outputs
+from pound_solve.integrate.series.viscous import TURNS, settled
+from pound_solve.integrate.series.viscous import linearise as linearise_dampers
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.jit import flat
 from pound_solve.numerics.types import Array, Flags, Index
@@ -83,6 +85,7 @@ def add_law_losses(
         drag, curved = laws.damping[i], series.curved.number[i]
         overlaps = curved >= 0 and series.curved.phase[curved] != APART
         pressed = laws.contact[i] and (laws.stiffness[i] != 0.0 or laws.offset[i] != 0.0)
+        overlaps = overlaps or series.viscous.number[i] >= 0
         sliding = slides(series.friction, i)
         if drag != 0.0 or moved or pressed or overlaps or sliding:
             d, v = law_at(series, terms, s, h, i)
@@ -252,6 +255,7 @@ def renew(linear: LinearSystem, laws: Laws, rules: Tables, series: Series, run: 
     held = series.massless
     if run.stale:
         linearise(laws, rules, series.smooth)
+        linearise_dampers(laws, rules, series.viscous)
         add_up(linear, laws, series)
         renew_modes(laws, series)
         fault = factorise(laws, held) if len(held.unknown) else -1
@@ -285,7 +289,7 @@ def settle(
     """
     held, now = series.massless, step.now
     varying = series.rigid.n_held[0] + len(series.curved.laws) + len(series.friction.laws)
-    if len(held.unknown) + varying + len(series.smooth.laws) == 0:
+    if len(held.unknown) + varying + len(series.smooth.laws) + len(series.viscous.laws) == 0:
         return DONE
     for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
         if not renew(linear, laws, rules, series, run):
@@ -297,6 +301,9 @@ def settle(
         for i in held.laws:
             laws.now.deformation[i] = deformation(laws, series, 0, len(coefs), i)
             laws.now.rate[i] = deformation(laws, series, 1, len(coefs), i)
+        if not settled(laws, series.viscous, now.velocity):
+            run.stale = 1
+            continue
         law, event = violated(laws, held.laws)
         if law < 0:
             press(laws, series, 2, 0.0, 1.0)
@@ -334,7 +341,7 @@ def take(
             linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, end, works, rules
         )
         accept(laws, step.now, series, terms, h, end)
-        if len(series.smooth.laws):
+        if len(series.smooth.laws) + len(series.viscous.laws):
             run.stale = 1
     run.steps += 1
 
@@ -361,6 +368,10 @@ def stride(
             return SHORT
         if not renew(linear, laws, rules, series, run):
             return LOOSE
+        if len(series.viscous.light):
+            why = settle(linear, laws, step, buffers, rules, series, coefs, t - begin, run)
+            if why != DONE:
+                return why
         terms, fit = expand(linear, laws, step, series, lengths, coefs, t - begin, h)
         if not fit >= CUT:  # what is known of the motion from terms far too large misleads
             lengths.next = h * (fit if fit > SHRINK else SHRINK)
@@ -390,6 +401,9 @@ def stride(
             continue
         if event.event_index == BENDS:
             bend(laws, series.smooth, lengths, event.law)
+            continue
+        if event.event_index == TURNS:
+            run.stale = 1
             continue
         if event.event_index < 0:
             change_phase(laws, series.curved, lengths, event.law, event.event_index)
