@@ -24,6 +24,7 @@ from pound_solve.integrate.series.rigid import hold
 from pound_solve.integrate.series.smooth import add_rests, find_rests, smooth_right_up_to
 from pound_solve.integrate.series.springs import add_product, deformation
 from pound_solve.integrate.series.state import Lengths, Series
+from pound_solve.integrate.series.strings import add_strings
 from pound_solve.integrate.series.viscous import add_drags, drags_right_up_to, find_drags
 from pound_solve.numerics.jit import flat, loose
 from pound_solve.numerics.ldl import solve
@@ -132,6 +133,7 @@ def next_term(
     add_friction(laws, series, k, h, top, new)
     add_rests(laws, series.smooth, k, h, new)
     add_drags(laws, series.viscous, k, h, new)
+    add_strings(laws, series, k, h, top, new)
     below = 1.0 / ((k + 1) * (k + 2))
     if linear.diagonal:
         for i in range(n):
@@ -206,7 +208,8 @@ def expand(
         if enough and right_up_to(series, terms, 1.0) == 1.0:
             break
     # losses follow powers of the overlap and of the rate, and forces at supports those of smooth laws
-    if any_overlap(series.curved) or len(series.smooth.laws) + len(series.viscous.laws):
+    others = len(series.smooth.laws) + len(series.viscous.laws) + len(series.strings.force)
+    if any_overlap(series.curved) or others:
         lengths.carried = terms + CHECK
     if not own + last < np.inf:
         return terms, np.nan

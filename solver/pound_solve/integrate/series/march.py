@@ -51,6 +51,7 @@ from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.smooth import BENDS, bend, linearise
 from pound_solve.integrate.series.springs import add_up, deformation
 from pound_solve.integrate.series.state import Lengths, Series
+from pound_solve.integrate.series.strings import string_power
 from pound_solve.integrate.series.tracking import event_of, first_event, track_laws, track_outputs
 from pound_solve.integrate.series.viscous import TURNS, settled
 from pound_solve.integrate.series.viscous import linearise as linearise_dampers
@@ -140,6 +141,7 @@ def add_works(
         if moved:
             evaluate_inputs(coefs, begin + s * h, trial.inputs, trial.input_rates)
         add_law_losses(laws, series, terms, s, h, weight, moved, works, rules)
+        put += weight * string_power(laws, series, terms, s, h)
         if moved:
             for order in range(3):
                 out = (

@@ -282,6 +282,20 @@ class Viscous(NamedTuple):
     force: Array
 
 
+class Strings(NamedTuple):
+    """The members with P-Delta by the present axial force (see `strings`).
+
+    Attributes
+    ----------
+    axial, across, force : ndarray, shape (n_members, TERMS + 1)
+        Coefficients of the axial forces, the displacements across and the forces there.
+    """
+
+    axial: Array
+    across: Array
+    force: Array
+
+
 class Damped(NamedTuple):
     """The unknowns that the structure's dashpots act on.
 
@@ -415,6 +429,7 @@ class Series(NamedTuple):
     friction : Friction
     smooth : Smooth
     viscous : Viscous
+    strings : Strings
     damped : Damped
     modal : Modal
     """
@@ -434,5 +449,6 @@ class Series(NamedTuple):
     friction: Friction
     smooth: Smooth
     viscous: Viscous
+    strings: Strings
     damped: Damped
     modal: Modal

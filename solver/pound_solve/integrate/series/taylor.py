@@ -64,6 +64,7 @@ from pound_solve.integrate.series import (
     smooth,
     springs,
     state,
+    strings,
     viscous,
 )
 from pound_solve.integrate.series.massless import STIFFNESS
@@ -151,6 +152,7 @@ class Taylor(KernelEngine):
             ),
             smooth=smooth.allocate(is_smooth, terms),
             viscous=viscous.allocate(dampers, self.massless.law_number >= 0, terms),
+            strings=strings.allocate(len(self.laws.members.parameters), terms),
             damped=self._damped(terms),
             modal=modal_tables.allocate(
                 system, self.laws.stiffness, monitored, self._intervals(), np.argsort(o), self.buffers.which
@@ -177,7 +179,12 @@ class Taylor(KernelEngine):
     def _intervals(self) -> Array:
         """Times between which intervals may be taken in modes; none where more acts than modes know."""
         laws, linear = self.laws, self.linear
-        others = len(self.massless.unknown) + len(self.contacts.laws) + len(linear.support_damping)
+        others = (
+            len(laws.members.parameters)
+            + len(self.massless.unknown)
+            + len(self.contacts.laws)
+            + len(linear.support_damping)
+        )
         acts_else = laws.curved.any() or laws.inputs.any() or linear.monitored_inputs.any()
         if others or acts_else or len(laws.coupled):
             return np.zeros(1)

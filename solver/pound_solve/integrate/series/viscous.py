@@ -124,7 +124,7 @@ def add_drags(laws: Laws, viscous: Viscous, k: int, h: float, new: Array) -> Non
 
 
 def drags_right_up_to(viscous: Viscous, terms: int, end: float) -> float:
-    """Part of a step, or multiple of it, up to which forces are right, and rates without mass, `end` at most."""
+    """Part of a step, or multiple of it, up to which all is right that steps go on with, `end` at most."""
     for r in range(len(viscous.laws)):
         if viscous.fast[r]:
             end = right_part(viscous.force[r], terms, end)
