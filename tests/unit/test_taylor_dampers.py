@@ -240,6 +240,19 @@ def test_newmark_converges_to_braced_frames(alpha: float, items: str) -> None:
     assert near < 1e-3 * np.abs(r.u).max() and far > 6.0 * near
 
 
+def test_supports_that_move_apart() -> None:
+    """What they put in through a damper that ends at one of them."""
+    text = deck("ALPHA=0.5 FX=1.2", "thrown", np.inf, 1.0).replace(" 2 DAMP 1", " 2 DAMP 2 1")
+    text = text.replace(" 1 BACK 1\n", " 1 BACK 3 1\n").replace(
+        " 1 0 0 FIX=YR\n", " 1 0 0 FIX=YR\n 2 1 0 FIX=XYR\n 3 2 0 FIX=XYR\n"
+    )
+    text = text.replace(
+        "INITIAL",
+        "EQUAKE\n SINE AMPLITUDE=4 PERIOD=0.5 SUPPORTS=2\n SINE AMPLITUDE=3 PERIOD=0.7 SUPPORTS=3\nINITIAL",
+    )
+    assert run_taylor(text).check() < 1e-11
+
+
 def test_a_play_at_a_node_without_mass_is_refused_in_words() -> None:
     r = run_text(deck("ALPHA=0.5 GAPX=0.01", "thrown", LINK, 1.0))
     assert r.status == "stopped"

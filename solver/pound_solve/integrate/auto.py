@@ -526,7 +526,7 @@ def by_series(
     reason = SERIES if rigid_contact(system) is None else RIGID
     decisions, known = system.decisions, len(system.decisions)
     decisions.append(Decision("method", "TAYLOR", reason))
-    if all(s.role is not Role.DAMPER for s in system.structure.laws):
+    if not any(s.role is Role.DAMPER and s.law.curved for s in system.structure.laws):
         return taylor.integrate(system, start, monitored, {}, recorder)
     replay = Replay(recorder)
     try:

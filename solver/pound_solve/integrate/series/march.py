@@ -86,18 +86,18 @@ def add_law_losses(
         drag, curved = laws.damping[i], series.curved.number[i]
         overlaps = curved >= 0 and series.curved.phase[curved] != APART
         pressed = laws.contact[i] and (laws.stiffness[i] != 0.0 or laws.offset[i] != 0.0)
-        overlaps = overlaps or series.viscous.number[i] >= 0
+        curves = overlaps or series.viscous.number[i] >= 0
         sliding = slides(series.friction, i)
-        if drag != 0.0 or moved or pressed or overlaps or sliding:
+        if drag != 0.0 or moved or pressed or curves or sliding:
             d, v = law_at(series, terms, s, h, i)
             laws.trial.deformation[i], laws.trial.rate[i] = d, v
-            if series.smooth.number[i] >= 0:
+            if series.smooth.number[i] >= 0 or (moved and series.viscous.number[i] >= 0):
                 linearise_law(laws, rules, i, d, v)
                 drag = laws.damping[i]
             if sliding:
                 laws.entry_work[i] += weight * laws.offset[i] * v
                 continue
-            lost = weight * v * (law_drag(laws, rules, i, d, v) if overlaps else drag * v)
+            lost = weight * v * (law_drag(laws, rules, i, d, v) if curves else drag * v)
             laws.dashpot_loss[i] += lost
             if laws.contact[i]:
                 works.contact += lost
