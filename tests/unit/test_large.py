@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk, ellipkinc
 
 from decks import structure_of
+from kernels import FAST
 from pound_solve import run
 from pound_solve.analyses import static
 from pound_solve.analyses.equilibrium import SupportReactions
@@ -445,6 +446,13 @@ def test_hinges_yield_and_turn_back_within_the_steps(kind, tmp_path):
 def test_exact_says_that_it_cannot_and_auto_takes_steps(tmp_path):
     with results(FRAME.format(kind="LARGE", method="EXACT"), tmp_path, "e") as r:
         assert r.status == "stopped" and "GEOMETRY LARGE" in r.message and "AUTO" in r.message
-    with results(FRAME.format(kind="PDELTA_VARYING", method="AUTO TOL=1E-2"), tmp_path, "a") as r:
+    with results(FRAME.format(kind="LARGE", method="AUTO TOL=1E-2"), tmp_path, "a") as r:
         assert r.status == "done", r.message
-        assert any("GEOMETRY PDELTA_VARYING" in row["why"] for row in r.table("scene"))
+        assert any("GEOMETRY LARGE" in row["why"] for row in r.table("scene"))
+
+
+@FAST
+def test_auto_takes_series_of_strings(tmp_path):
+    with results(FRAME.format(kind="PDELTA_VARYING", method="AUTO"), tmp_path, "a") as r:
+        assert r.status == "done", r.message
+        assert any(row["value"].startswith("TAYLOR") for row in r.table("run"))

@@ -24,6 +24,7 @@ from pound_solve.integrate import costs
 from pound_solve.integrate.closed_form import exact
 from pound_solve.integrate.convergence.compared import ALL, RESPONSE
 from pound_solve.integrate.convergence.refinement import StepRefinement
+from pound_solve.integrate.convergence.replay import Replay
 from pound_solve.integrate.protocol import (
     EnvelopeRecorder,
     MonitoredOutputs,
@@ -40,8 +41,10 @@ from pound_solve.integrate.trial import ExactTrial
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.providers import provider
 from pound_solve.numerics.types import Array
+from pound_solve.structure.elements.base import Role
 from pound_solve.structure.reduction import Decision, ReducedSystem
 
+MAX_SERIES = 500_000  #: steps of TAYLOR, where dampers that hardly move may ask for more than is foreseen
 SERIES_FIRST = 1.0  #: cost up to which TAYLOR is taken before any steps: it has no error to be estimated
 
 #: why no steps are taken
@@ -92,14 +95,37 @@ def stepped(system: ReducedSystem) -> Decision:
 
 
 def by_series(
-    system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: EnvelopeRecorder
+    system: ReducedSystem,
+    start: Start,
+    monitored: MonitoredOutputs,
+    recorder: EnvelopeRecorder,
+    **options: Any,
 ) -> Outcome:
     """Run TAYLOR, and state why."""
     from pound_solve.integrate.series import taylor  # where it is not needed it is not loaded
 
     reason = SERIES if rigid_contact(system) is None else RIGID
     system.decisions.append(Decision("method", "TAYLOR", reason))
-    return taylor.integrate(system, start, monitored, {}, recorder)
+    return taylor.integrate(system, start, monitored, options, recorder)
+
+
+def by_few_series(
+    system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: EnvelopeRecorder
+) -> Outcome | None:
+    """Run TAYLOR; None where dampers that hardly move ask for too many steps."""
+    if not any(s.role is Role.DAMPER and s.law.curved for s in system.structure.laws):
+        return by_series(system, start, monitored, recorder)
+    replay, known = Replay(recorder), len(system.decisions)
+    try:
+        outcome = by_series(system, start, monitored, replay, STEPS=MAX_SERIES)
+    except Stop as stop:
+        if stop.code == "A502":
+            del system.decisions[known:]
+            return None
+        replay.pass_on()
+        raise
+    replay.pass_on()
+    return outcome
 
 
 def by_trial(trial: ExactTrial, others: float) -> Outcome | None:
@@ -126,7 +152,9 @@ def to_tolerance(
     steps = StepRefinement(system, start, monitored, recorder, options)
     while True:
         if series <= max(SERIES_FIRST, steps.cost_ahead()):
-            return by_series(system, start, monitored, recorder)
+            if (outcome := by_few_series(system, start, monitored, recorder)) is not None:
+                return outcome
+            series = np.inf
         if (outcome := by_trial(trial, steps.least_cost())) is not None:
             return outcome
         try:
@@ -157,10 +185,17 @@ def integrate(
             return exact.integrate(system, start, monitored, {}, recorder)
     series = cost_of_series(system, start)
     if series + provider().loading <= SERIES_FIRST:
-        return by_series(system, start, monitored, recorder)
+        if (outcome := by_few_series(system, start, monitored, recorder)) is not None:
+            return outcome
+        series = np.inf
     trial = ExactTrial(system, start, monitored, recorder, options["TOL"], not_linear(system))
-    if rigid or series <= SERIES_FIRST:
+    if rigid:
         return by_trial(trial, series) or by_series(system, start, monitored, recorder)
+    if series <= SERIES_FIRST:
+        outcome = by_trial(trial, series) or by_few_series(system, start, monitored, recorder)
+        if outcome is not None:
+            return outcome
+        series = np.inf
     return to_tolerance(system, start, monitored, options, recorder, trial, series)
 
 

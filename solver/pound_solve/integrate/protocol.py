@@ -9,10 +9,11 @@ from typing import Any, NamedTuple, Protocol, Self
 import numpy as np
 
 from pound_solve.integrate.tracker import Peaks
-from pound_solve.laws.automaton import State
+from pound_solve.laws.automaton import BranchKind, State
 from pound_solve.numerics.matrices import used_rows
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags
+from pound_solve.structure.corotational import ACROSS, KIND, QUANTITIES, STRING
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
@@ -184,21 +185,41 @@ def rigid_contact(system: ReducedSystem) -> LawSpring | None:
 
 def not_in_series(system: ReducedSystem) -> str:
     """Reason why the motion of a reduced system has no power series that is known; empty where it has."""
-    if system.structure.corotational:
+    rigid = rigid_contact(system) is not None
+    if system.structure.corotational and (rigid or not has_strings(system)):
         return not_linear(system)
+    if own := light_string(system):
+        return f"the P-Delta force of element {own} acts on a node without mass"
     laws, without_mass = system.structure.laws, light(system)
-    rigid = {s.element for s in laws if s.law.rigid}
+    pressing = {s.element for s in laws if s.law.rigid}
     for s, massless_end in zip(laws, without_mass):
         if s.law.curved:
             law = f"the law {s.rule} of element {s.element} is curved"
             smooth, rubs = s.law.rule.smooth is not None, s.role is Role.FRICTION
             if s.law.rule.powers is None and not smooth and not rubs:
                 return law
-            if massless_end and not smooth:
+            if s.role is Role.DAMPER:
+                if rigid:
+                    return f"{law} and stands beside rigid contacts"
+                if massless_end and s.branch(s.law.start()).kind is BranchKind.OPEN:
+                    return f"{law}, has a play and meets a node without mass"
+            elif massless_end and not smooth:
                 return f"{law} and meets a node without mass"
-            if rubs and s.element in rigid:
+            if rubs and s.element in pressing:
                 return f"{law} and rubs where a rigid contact presses"
     return ""
+
+
+def has_strings(system: ReducedSystem) -> bool:
+    """Whether all members that change their stiffness are strings (see `structure.corotational`)."""
+    return bool((system.corotational.p[:, KIND] == STRING).all())
+
+
+def light_string(system: ReducedSystem) -> int:
+    """The first member whose string moves an unknown without mass across; 0 for none."""
+    members = system.corotational
+    across = used_rows(members.rows[ACROSS::QUANTITIES][:, np.flatnonzero(massless(system.mass))])
+    return next((c.element for c, is_light in zip(members.own, across) if is_light), 0)
 
 
 def light(system: ReducedSystem) -> Flags:

@@ -139,7 +139,8 @@ class Rule:
     powers : callable or None
         ``powers(p, at, m) -> (k, n, c, q, pulls)``: the force of a pressed contact with a `curve` is
         ``k x^n + c x^q v`` at the overlap ``x = d - p[2]``, and, unless `pulls` is above zero, nothing
-        where that would pull.  None: it is not of this kind.
+        where that would pull.  That of a damper on a branch that is not linear is ``k |v|^n``; `k` has the
+        sign of the rate there.  None: it is not of this kind.
     smooth : callable or None
         ``smooth(p, at, m, d, f) -> (w, y, n, a, b, k, q)``: on from the deformation `d`, where the force is
         `f`, that of a rule with a `curve` is ``k d + q w`` and a constant, where

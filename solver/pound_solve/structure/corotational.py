@@ -43,6 +43,7 @@ from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.dofs import Dof
 
 QUANTITIES = 6
+AXIAL, ACROSS = 0, 3  #: among them
 #: columns of the parameters; KNN, KNT, KTT are k_z, SHARE_I the weight of I's rotation in the member's
 KIND, LENGTH, END1, END2, SHARE_I, KNN, KNT, KTT, N0, T0 = range(10)
 STRING, COROTATIONAL = 0.0, 1.0  #: kinds

@@ -24,6 +24,8 @@ from pound_solve.integrate.series.rigid import hold
 from pound_solve.integrate.series.smooth import add_rests, find_rests, smooth_right_up_to
 from pound_solve.integrate.series.springs import add_product, deformation
 from pound_solve.integrate.series.state import Lengths, Series
+from pound_solve.integrate.series.strings import add_strings
+from pound_solve.integrate.series.viscous import add_drags, drags_right_up_to, find_drags
 from pound_solve.numerics.jit import flat, loose
 from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array, Index
@@ -130,6 +132,8 @@ def next_term(
     add_contacts(laws, series, k, h, top, new)
     add_friction(laws, series, k, h, top, new)
     add_rests(laws, series.smooth, k, h, new)
+    add_drags(laws, series.viscous, k, h, new)
+    add_strings(laws, series, k, h, top, new)
     below = 1.0 / ((k + 1) * (k + 2))
     if linear.diagonal:
         for i in range(n):
@@ -140,6 +144,7 @@ def next_term(
         solve(linear.pattern, step.factors[MASS], step.pivots[MASS], new)
     hold(laws, series, k + 2, h, top)
     find_rests(laws, series, k + 2, top)
+    find_drags(laws, series, k + 1, h, top)
     if len(series.massless.unknown):
         add_massless(laws, step, series, k + 2, h, top)
 
@@ -155,6 +160,8 @@ def begin_series(
     for k in range(2):
         hold(laws, series, k, h, top)
         find_rests(laws, series, k, top)
+        if k == 1:
+            find_drags(laws, series, 0, h, top)
         if len(series.massless.unknown):
             add_massless(laws, step, series, k, h, top)
 
@@ -162,7 +169,8 @@ def begin_series(
 def right_up_to(series: Series, terms: int, end: float) -> float:
     """Part of a step, or multiple of it, up to which forces that are series are right, `end` at most."""
     end = contacts_right_up_to(series.curved, terms, end)
-    return smooth_right_up_to(series.smooth, terms, end)
+    end = smooth_right_up_to(series.smooth, terms, end)
+    return drags_right_up_to(series.viscous, terms, end)
 
 
 @flat
@@ -199,8 +207,9 @@ def expand(
         enough = terms > top and own + last <= SMALL * SMALL * most
         if enough and right_up_to(series, terms, 1.0) == 1.0:
             break
-    # losses follow powers of the overlap, and forces at supports those of smooth laws
-    if any_overlap(series.curved) or len(series.smooth.laws):
+    # losses follow powers of the overlap and of the rate, and forces at supports those of smooth laws
+    others = len(series.smooth.laws) + len(series.viscous.laws) + len(series.strings.force)
+    if any_overlap(series.curved) or others:
         lengths.carried = terms + CHECK
     if not own + last < np.inf:
         return terms, np.nan

@@ -1,4 +1,5 @@
-"""Forces that are a series of their own, of closed rigid contacts, curved ones and smooth laws: kernels."""
+"""Forces that are a series of their own, of closed rigid contacts, curved ones, smooth laws
+and dampers: kernels."""
 
 from __future__ import annotations
 
@@ -7,6 +8,7 @@ from pound_solve.integrate.series.curved import PRESSED, enter, has_force
 from pound_solve.integrate.series.friction import rub, side_of, slides
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.state import Series
+from pound_solve.integrate.series.viscous import is_fast
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.types import Array
 
@@ -22,13 +24,13 @@ def take_over(laws: Laws, rules: Tables, series: Series, i: int) -> None:
 def has_series(series: Series, i: int) -> bool:
     """Whether the force of law `i` is a series of its own."""
     own = is_held(series.rigid, i) or has_force(series.curved, i) or slides(series.friction, i)
-    return own or series.smooth.number[i] >= 0
+    return own or series.smooth.number[i] >= 0 or is_fast(series.viscous, i)
 
 
 def copy_force(series: Series, terms: int, i: int, sign: float, out: Array) -> None:
     """Put `sign` times the series of the force of law `i`, which has one, into `out`."""
     rigid, curved, friction = series.rigid.number[i], series.curved.number[i], series.friction.number[i]
-    smooth = series.smooth.number[i]
+    smooth, viscous = series.smooth.number[i], series.viscous.number[i]
     for k in range(terms + 1):
         out[k] = 0.0
     for k in range(terms - 1):
@@ -38,6 +40,8 @@ def copy_force(series: Series, terms: int, i: int, sign: float, out: Array) -> N
             out[k] = sign * series.curved.force[curved, k]
         elif smooth >= 0:
             out[k] = sign * series.smooth.force[smooth, k]
+        elif viscous >= 0:
+            out[k] = sign * series.viscous.force[viscous, k]
         else:
             out[k] = sign * series.friction.force[friction, k]
 

@@ -51,7 +51,10 @@ from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.smooth import BENDS, bend, linearise
 from pound_solve.integrate.series.springs import add_up, deformation
 from pound_solve.integrate.series.state import Lengths, Series
+from pound_solve.integrate.series.strings import string_power
 from pound_solve.integrate.series.tracking import event_of, first_event, track_laws, track_outputs
+from pound_solve.integrate.series.viscous import TURNS, settled
+from pound_solve.integrate.series.viscous import linearise as linearise_dampers
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.jit import flat
 from pound_solve.numerics.types import Array, Flags, Index
@@ -83,17 +86,18 @@ def add_law_losses(
         drag, curved = laws.damping[i], series.curved.number[i]
         overlaps = curved >= 0 and series.curved.phase[curved] != APART
         pressed = laws.contact[i] and (laws.stiffness[i] != 0.0 or laws.offset[i] != 0.0)
+        curves = overlaps or series.viscous.number[i] >= 0
         sliding = slides(series.friction, i)
-        if drag != 0.0 or moved or pressed or overlaps or sliding:
+        if drag != 0.0 or moved or pressed or curves or sliding:
             d, v = law_at(series, terms, s, h, i)
             laws.trial.deformation[i], laws.trial.rate[i] = d, v
-            if series.smooth.number[i] >= 0:
+            if series.smooth.number[i] >= 0 or (moved and series.viscous.number[i] >= 0):
                 linearise_law(laws, rules, i, d, v)
                 drag = laws.damping[i]
             if sliding:
                 laws.entry_work[i] += weight * laws.offset[i] * v
                 continue
-            lost = weight * v * (law_drag(laws, rules, i, d, v) if overlaps else drag * v)
+            lost = weight * v * (law_drag(laws, rules, i, d, v) if curves else drag * v)
             laws.dashpot_loss[i] += lost
             if laws.contact[i]:
                 works.contact += lost
@@ -137,6 +141,7 @@ def add_works(
         if moved:
             evaluate_inputs(coefs, begin + s * h, trial.inputs, trial.input_rates)
         add_law_losses(laws, series, terms, s, h, weight, moved, works, rules)
+        put += weight * string_power(laws, series, terms, s, h)
         if moved:
             for order in range(3):
                 out = (
@@ -249,6 +254,7 @@ def renew(linear: LinearSystem, laws: Laws, rules: Tables, series: Series, run: 
     held = series.massless
     if run.stale:
         linearise(laws, rules, series.smooth)
+        linearise_dampers(laws, rules, series.viscous)
         add_up(linear, laws, series)
         renew_modes(laws, series)
         fault = factorise(laws, held) if len(held.unknown) else -1
@@ -282,7 +288,7 @@ def settle(
     """
     held, now = series.massless, step.now
     varying = series.rigid.n_held[0] + len(series.curved.laws) + len(series.friction.laws)
-    if len(held.unknown) + varying + len(series.smooth.laws) == 0:
+    if len(held.unknown) + varying + len(series.smooth.laws) + len(series.viscous.laws) == 0:
         return DONE
     for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
         change_friction(laws, buffers, rules, series, run)
@@ -295,6 +301,9 @@ def settle(
         for i in held.laws:
             laws.now.deformation[i] = deformation(laws, series, 0, len(coefs), i)
             laws.now.rate[i] = deformation(laws, series, 1, len(coefs), i)
+        if not settled(laws, series.viscous, now.velocity):
+            run.stale = 1
+            continue
         law, event = violated(laws, held.laws)
         if law < 0:
             press(laws, series, 2, 0.0, 1.0)
@@ -331,7 +340,7 @@ def take(
             linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, end, works, rules
         )
         accept(laws, step.now, series, terms, h, end)
-        if len(series.smooth.laws):
+        if len(series.smooth.laws) + len(series.viscous.laws):
             run.stale = 1
     run.steps += 1
 
@@ -358,6 +367,10 @@ def stride(
             return SHORT
         if not renew(linear, laws, rules, series, run):
             return LOOSE
+        if len(series.viscous.light):
+            why = settle(linear, laws, step, buffers, rules, series, coefs, t - begin, run)
+            if why != DONE:
+                return why
         terms, fit = expand(linear, laws, step, series, lengths, coefs, t - begin, h)
         if not fit >= CUT:  # what is known of the motion from terms far too large misleads
             lengths.next = h * (fit if fit > SHRINK else SHRINK)
@@ -387,6 +400,9 @@ def stride(
             continue
         if event.event_index == BENDS:
             bend(laws, series.smooth, lengths, event.law)
+            continue
+        if event.event_index == TURNS:
+            run.stale = 1
             continue
         if event.event_index < 0:
             change_phase(laws, series.curved, lengths, event.law, event.event_index)

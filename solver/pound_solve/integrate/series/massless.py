@@ -199,6 +199,11 @@ def balance(series: Series, k: int, top: int, which: int) -> None:
         n = held.law_number[smooth.laws[r]]
         if n >= 0:
             spread(held.rows, n, -smooth.numbers[r, Q] * smooth.rest[r, k], x)
+    viscous = series.viscous
+    for r in range(len(viscous.laws)):
+        n = held.law_number[viscous.laws[r]]
+        if n >= 0 and viscous.fast[r]:
+            spread(held.rows, n, -viscous.rest[r, k], x)
 
 
 def add_damped(laws: Laws, series: Series, k: int, h: float, top: int) -> None:

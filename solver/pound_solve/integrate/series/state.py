@@ -254,6 +254,48 @@ class Smooth(NamedTuple):
     force: Array
 
 
+class Viscous(NamedTuple):
+    """The dampers that follow powers of the rate, numbered among themselves (see `viscous`).
+
+    Attributes
+    ----------
+    laws : ndarray, shape (n_viscous,)
+    number : ndarray, shape (n_laws,)
+        Place of a law in `laws`, -1 for others.
+    numbers : ndarray, shape (n_viscous, 4)
+        c, with the sign of the rate, and n; the rate up to which the force is straight; the tangent's.
+    light : ndarray
+        Those that hold unknowns without mass.
+    fast : ndarray, shape (n_viscous,)
+        Whether the force is a series.
+    rate, rest, force : ndarray, shape (n_viscous, TERMS + 1)
+        Coefficients of the rate's magnitude, of what the tangent leaves of the force, and of the force.
+    """
+
+    laws: Index
+    number: Index
+    numbers: Array
+    light: Index
+    fast: Flags
+    rate: Array
+    rest: Array
+    force: Array
+
+
+class Strings(NamedTuple):
+    """The members with P-Delta by the present axial force (see `strings`).
+
+    Attributes
+    ----------
+    axial, across, force : ndarray, shape (n_members, TERMS + 1)
+        Coefficients of the axial forces, the displacements across and the forces there.
+    """
+
+    axial: Array
+    across: Array
+    force: Array
+
+
 class Damped(NamedTuple):
     """The unknowns that the structure's dashpots act on.
 
@@ -386,6 +428,8 @@ class Series(NamedTuple):
     curved : Curved
     friction : Friction
     smooth : Smooth
+    viscous : Viscous
+    strings : Strings
     damped : Damped
     modal : Modal
     """
@@ -404,5 +448,7 @@ class Series(NamedTuple):
     curved: Curved
     friction: Friction
     smooth: Smooth
+    viscous: Viscous
+    strings: Strings
     damped: Damped
     modal: Modal

@@ -64,6 +64,8 @@ from pound_solve.integrate.series import (
     smooth,
     springs,
     state,
+    strings,
+    viscous,
 )
 from pound_solve.integrate.series.massless import STIFFNESS
 from pound_solve.integrate.series.present import Present
@@ -100,6 +102,7 @@ class Taylor(KernelEngine):
         monitored: MonitoredOutputs,
         recorder: Recorder,
         contacts: RigidContacts,
+        most: float,
     ) -> None:
         length = float(start.times[-1] - start.times[0])
         nothing_to_solve = Scheme(0.0, 0.0)
@@ -107,7 +110,7 @@ class Taylor(KernelEngine):
             system, start, monitored, recorder, nothing_to_solve, length, "TAYLOR, power series"
         )
         o, laws = self.order, self.springs
-        self.contacts = contacts
+        self.contacts, self.most = contacts, most
         self.massless = massless.allocate(
             self.linear,
             system.stiffness[np.ix_(o, o)],
@@ -121,6 +124,7 @@ class Taylor(KernelEngine):
             expansion.TERMS + 1,
             expansion.TERMS // expansion.CHECK + 1,
         )
+        dampers = np.array([s.law.curved and s.role is Role.DAMPER for s in laws], bool)
         is_smooth = np.array([s.law.rule.smooth is not None for s in laws], bool)
         self.series = state.Series(
             motion=np.zeros((terms, system.size)),
@@ -140,13 +144,15 @@ class Taylor(KernelEngine):
             massless=self.massless,
             rigid=rigid.allocate(self.contacts, o, len(laws), terms),
             curved=curved.allocate(
-                np.array([s.law.curved and s.role is not Role.FRICTION for s in laws], bool) & ~is_smooth,
+                np.array([s.law.curved and s.role.collides for s in laws], bool),
                 terms,
             ),
             friction=friction.allocate(
                 self.laws.coupled, self.laws.normal[self.laws.coupled], len(laws), terms
             ),
             smooth=smooth.allocate(is_smooth, terms),
+            viscous=viscous.allocate(dampers, self.massless.law_number >= 0, terms),
+            strings=strings.allocate(len(self.laws.members.parameters), terms),
             damped=self._damped(terms),
             modal=modal_tables.allocate(
                 system, self.laws.stiffness, monitored, self._intervals(), np.argsort(o), self.buffers.which
@@ -155,6 +161,7 @@ class Taylor(KernelEngine):
         for i in self.series.curved.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
             curved.enter(self.laws, self.rules, self.series.curved, i)
+        viscous.linearise(self.laws, self.rules, self.series.viscous)
         smooth.linearise(self.laws, self.rules, self.series.smooth)
         smooth.count_creep(self.laws, self.series.smooth, length)
         self._hold()
@@ -172,7 +179,12 @@ class Taylor(KernelEngine):
     def _intervals(self) -> Array:
         """Times between which intervals may be taken in modes; none where more acts than modes know."""
         laws, linear = self.laws, self.linear
-        others = len(self.massless.unknown) + len(self.contacts.laws) + len(linear.support_damping)
+        others = (
+            len(laws.members.parameters)
+            + len(self.massless.unknown)
+            + len(self.contacts.laws)
+            + len(linear.support_damping)
+        )
         acts_else = laws.curved.any() or laws.inputs.any() or linear.monitored_inputs.any()
         if others or acts_else or len(laws.coupled):
             return np.zeros(1)
@@ -233,7 +245,7 @@ class Taylor(KernelEngine):
         """Take in what was kept; stop where steps are too short for the length of the run."""
         super().fetch()
         done, steps = float(self.state.time - self.times[0]), int(self.state.steps)
-        if steps > PAUSE // 2 and steps * self.dt > MAX_STEPS * done:
+        if steps > PAUSE // 2 and steps * self.dt > self.most * done:
             count = f"some {steps * self.dt / done:.1g}" if done else "far too many"
             why = f"the fastest mode asks for {count} steps (now {self.lengths.next:.3g} long)"
             others = ["EXACT"] * (not not_linear(self.system)) + ["NEWMARK"] * (not self.contacts.laws)
@@ -290,7 +302,8 @@ def integrate(
     options: Mapping[str, Any],
     recorder: Recorder,
 ) -> Outcome:
-    """Integrate a reduced system by power series; see the module's head.
+    """Integrate a reduced system by power series; see the module's head.  `options` may hold STEPS, the
+    most that a run may come to.
 
     Raises
     ------
@@ -306,7 +319,7 @@ def integrate(
         contacts = RigidContacts(system)
     except MasslessContact as err:
         raise Stop("A505", begin, str(err)) from None
-    return Taylor(system, start, monitored, recorder, contacts).run()
+    return Taylor(system, start, monitored, recorder, contacts, options.get("STEPS", MAX_STEPS)).run()
 
 
 SPEC = Spec(

@@ -28,6 +28,7 @@ from pound_solve.integrate.series.friction import friction_event
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.smooth import bend_event
 from pound_solve.integrate.series.state import Series
+from pound_solve.integrate.series.viscous import turn_event
 
 
 def parting(series: Series, terms: int, end: float, i: int) -> LocatedEvent:
@@ -87,6 +88,8 @@ def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: in
         first = earlier(first, i, e, at)
     if series.smooth.number[i] >= 0:
         return bend_event(series, terms, first, i)
+    if series.viscous.number[i] >= 0:
+        return turn_event(series, terms, h, first, i)
     return phase_event(laws, series, terms, first, i) if series.curved.number[i] >= 0 else first
 
 

@@ -109,6 +109,12 @@ def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
     return curve(p, at, m, d, d, v)[0] * v
 
 
+def powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float, float]:
+    """Force as a power of the rate, see `Rule`."""
+    moving = at != PLAY and at < LIMITED
+    return (side(at) * p[1] if moving else 0.0), p[2], 0.0, 0.0, 0.0
+
+
 RULE = Rule(
     (
         *BranchKind.OPEN.named("in the play"),
@@ -122,6 +128,7 @@ RULE = Rule(
     recoverable,
     curve,
     power,
+    powers,
     parameters=9,
     variables=1,
 )

@@ -1,0 +1,66 @@
+r"""P-Delta with the present axial force in a power series: kernels.
+
+The force across a string (see `structure.corotational`) is the product of two series of its motion,
+
+.. math:: f_k = \frac1L \sum_{j=0}^{k} n_j\, y_{k-j},
+
+known as soon as the motion up to k is.  It has no potential: the work :math:`\int y^2/2L\;dn` that the
+axial force does on the way which a string leaves out counts as put in.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.series.smooth import product_term
+from pound_solve.integrate.series.state import Series, Strings
+from pound_solve.numerics.types import Array
+from pound_solve.structure.corotational import ACROSS, AXIAL, LENGTH, N0
+
+
+def allocate(members: int, terms: int) -> Strings:
+    """Lay out so many `members` for series of so many `terms`."""
+    return Strings(*np.zeros((3, members, terms)))
+
+
+def quantity_term(laws: Laws, series: Series, c: int, j: int, k: int, top: int) -> float:
+    """Coefficient `k` of quantity `j` of member `c`; the inputs have `top` coefficients."""
+    members, total = laws.members, 0.0
+    for y in range(members.pointers[c], members.pointers[c + 1]):
+        total += members.rows[y, j] * series.motion[k, members.unknown[y]]
+    if k < top:
+        for i in range(series.inputs.shape[1]):
+            total += members.inputs[c, j, i] * series.inputs[k, i]
+    return total
+
+
+def add_strings(laws: Laws, series: Series, k: int, h: float, top: int, new: Array) -> None:
+    """Add the coefficients `k` of the strings' forces to the right side `new` of the coefficients `k` + 2;
+    the inputs have `top` coefficients.
+    """
+    members, strings = laws.members, series.strings
+    for c in range(len(members.parameters)):
+        strings.across[c, k] = quantity_term(laws, series, c, ACROSS, k, top)
+        strings.axial[c, k] = quantity_term(laws, series, c, AXIAL, k, top)
+        if k == 0:
+            strings.axial[c, 0] += members.parameters[c, N0]
+        force = product_term(strings.axial[c], strings.across[c], k) / members.parameters[c, LENGTH]
+        strings.force[c, k] = force
+        for y in range(members.pointers[c], members.pointers[c + 1]):
+            new[members.unknown[y]] -= h * h * members.rows[y, ACROSS] * force
+
+
+def string_power(laws: Laws, series: Series, terms: int, s: float, h: float) -> float:
+    """Power put in at the place `s`; the forces of the members become those there."""
+    members, strings, power = laws.members, series.strings, 0.0
+    for c in range(len(members.parameters)):
+        y, rate, force = 0.0, 0.0, 0.0
+        for k in range(terms - 2, -1, -1):
+            y = y * s + strings.across[c, k]
+            force = force * s + strings.force[c, k]
+            if k > 0:
+                rate = rate * s + k * strings.axial[c, k]
+        members.trial.forces[c, ACROSS] = force
+        power += 0.5 * y * y / members.parameters[c, LENGTH] * rate / h
+    return power

@@ -1,0 +1,164 @@
+r"""Dampers whose force is a power of the rate, in a power series: kernels.
+
+The force of a damper (see `Rule.powers`), :math:`f = \pm c\,x^n` at the rate :math:`x = |\dot d|`, has a
+power series wherever it moves.  Euler's recurrence (see `curved`) splits into the tangent at the start of
+the step, a linear dashpot, and a rest that is known from the terms before,
+
+.. math:: f_k = n c\,x_0^{n-1}\,\frac{k+1}{h}\,d_{k+1} \pm r_k, \qquad
+          r_k = \frac{1}{k x_0} \sum_{j=1}^{k-1} (n j - k + j)\, x_j\, |f|_{k-j} .
+
+So nodes without mass follow at the rate that their springs leave to the tangents: Newton's iteration finds
+it at the start of every step (`march.settle`).
+
+The series ends where the damper turns, before or behind: steps shorten in proportion to the rate.  Where
+it, or the force, is below a share `SLOW` of the largest, the force goes straight through zero: what that
+changes on one side of a turn, it changes back on the other.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise
+from pound_solve.integrate.events.protocol import LocatedEvent, earlier
+from pound_solve.integrate.kernels.allocation import places
+from pound_solve.integrate.kernels.laws import internal, parameters
+from pound_solve.integrate.kernels.products import spread
+from pound_solve.integrate.kernels.state import Laws
+from pound_solve.integrate.series.curved import K, N, right_part
+from pound_solve.integrate.series.springs import deformation
+from pound_solve.integrate.series.state import Series, Viscous
+from pound_solve.laws.functions import Tables, powers_of
+from pound_solve.numerics.types import Array, Flags
+
+TURNS = -7  #: event beside those of the branch: the force begins or ceases to go straight through zero
+SLOW = 1e-10  #: share of the largest rate, or of the force there, below which it does
+STOPPED = 1e-12  #: the same, of the rate one
+APART = 1e-3  #: share of this rate between the two events, lest they follow one another
+SETTLED = 1e-6  #: share of a rate that Newton's iteration changes last: it leaves the square of that
+ROUNDING = 1e-15  #: share of the velocities whose difference a rate is
+LIMIT, RATE = 2, 3  #: columns of `Viscous.numbers`, beside K and N
+
+
+def allocate(viscous: Flags, light: Flags, terms: int) -> Viscous:
+    """Lay out the `viscous` ones of the laws for series of so many `terms`; the laws `light` hold unknowns
+    without mass.
+    """
+    laws = np.flatnonzero(viscous)
+    n = len(laws)
+    return Viscous(
+        laws=laws,
+        number=places(laws, len(viscous)),
+        numbers=np.zeros((n, 4)),
+        light=np.flatnonzero(light[laws]),
+        fast=np.zeros(n, bool),
+        rate=np.zeros((n, terms)),
+        rest=np.zeros((n, terms)),
+        force=np.zeros((n, terms)),
+    )
+
+
+def linearise(laws: Laws, rules: Tables, viscous: Viscous) -> None:
+    """Put the present tangents in the place of the dampers' branches."""
+    for r in range(len(viscous.laws)):
+        i, own = viscous.laws[r], viscous.numbers[r]
+        own[K], own[N], _, _, _ = powers_of(
+            rules, laws.rule[i], parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
+        )
+        viscous.fast[r], own[RATE] = False, laws.now.rate[i]
+        if own[K] == 0.0:  # the branch is linear
+            continue
+        c, n, x = abs(own[K]), own[N], own[RATE] if own[K] > 0.0 else -own[RATE]
+        share = 1.0 / max(n, 1.0)
+        own[LIMIT] = max(STOPPED**share, SLOW**share * laws.largest_rate[i]) if n != 1.0 else np.inf
+        viscous.fast[r] = x > own[LIMIT]
+        if viscous.fast[r]:
+            laws.damping[i] = n * c * x ** (n - 1.0)
+            laws.offset[i] = (1.0 - n) * own[K] * x**n
+        else:
+            laws.damping[i] = c if n == 1.0 else c * own[LIMIT] ** (n - 1.0)
+            laws.offset[i] = 0.0
+
+
+def is_fast(viscous: Viscous, i: int) -> bool:
+    """Whether law `i` is a damper whose force is a series."""
+    return bool(viscous.number[i] >= 0 and viscous.fast[viscous.number[i]])
+
+
+def take_rate(laws: Laws, series: Series, r: int, k: int, h: float, top: int) -> None:
+    """Take in the coefficient `k` of the rate of damper `r`: that of its force."""
+    viscous, i = series.viscous, series.viscous.laws[r]
+    own, sign = viscous.numbers[r], 1.0 if viscous.numbers[r, K] > 0.0 else -1.0
+    x = sign * (k + 1) / h * deformation(laws, series, k + 1, top, i)
+    if k == 0:
+        x = max(x, own[LIMIT])
+        viscous.force[r, 0] = own[K] * x ** own[N]
+    else:
+        viscous.force[r, k] = sign * laws.damping[i] * x + viscous.rest[r, k]
+    viscous.rate[r, k] = x
+
+
+def find_drags(laws: Laws, series: Series, k: int, h: float, top: int) -> None:
+    """Find the coefficients `k` of what the tangents leave of the dampers, from the motion up to `k`; the
+    inputs have `top` coefficients.
+    """
+    viscous = series.viscous
+    for r in range(len(viscous.laws)):
+        if not viscous.fast[r]:
+            continue
+        if k == 0:
+            viscous.rest[r, 0] = 0.0
+            continue
+        take_rate(laws, series, r, k - 1, h, top)
+        n, x, force, total = viscous.numbers[r, N], viscous.rate[r], viscous.force[r], 0.0
+        for j in range(1, k):
+            total += (n * j - (k - j)) * x[j] * force[k - j]
+        viscous.rest[r, k] = total / (k * x[0])
+
+
+def add_drags(laws: Laws, viscous: Viscous, k: int, h: float, new: Array) -> None:
+    """Add the coefficients `k` of what the tangents leave to the right side `new` of those `k` + 2."""
+    for r in range(len(viscous.laws)):
+        if viscous.fast[r]:
+            spread(laws.rows, viscous.laws[r], -h * h * viscous.rest[r, k], new)
+
+
+def drags_right_up_to(viscous: Viscous, terms: int, end: float) -> float:
+    """Part of a step, or multiple of it, up to which all is right that steps go on with, `end` at most."""
+    for r in range(len(viscous.laws)):
+        if viscous.fast[r]:
+            end = right_part(viscous.force[r], terms, end)
+    for r in viscous.light:
+        if viscous.fast[r]:
+            end = right_part(viscous.rate[r], terms, end)
+    return end
+
+
+def turn_event(series: Series, terms: int, h: float, first: LocatedEvent, i: int) -> LocatedEvent:
+    """The instant at which damper `i` becomes fast, or slow, or the `first` event."""
+    viscous, d, p = series.viscous, series.deformation[i], series.polynomial[POLYNOMIAL]
+    r = viscous.number[i]
+    k, limit = viscous.numbers[r, K], viscous.numbers[r, LIMIT]
+    if k == 0.0 or limit == np.inf:
+        return first
+    sign = -1.0 if viscous.fast[r] else 1.0
+    for q in range(terms):
+        p[q] = (sign if k > 0.0 else -sign) * (q + 1) / h * d[q + 1]
+    p[terms] = 0.0
+    p[0] -= sign * (1.0 + sign * APART) * limit
+    return earlier(first, i, TURNS, first_rise(series.polynomial, terms, first.time, 0.0))
+
+
+def settled(laws: Laws, viscous: Viscous, velocity: Array) -> bool:
+    """Whether the tangents of those that hold unknowns without mass were at the present rates, as near as
+    Newton's iteration needs and rounding of the `velocity` of the unknowns lets them be.
+    """
+    for r in viscous.light:
+        i, own = viscous.laws[r], viscous.numbers[r]
+        if own[K] != 0.0 and own[N] != 1.0:
+            v, size = laws.now.rate[i], 0.0
+            for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+                size += abs(laws.rows.values[q] * velocity[laws.rows.columns[q]])
+            if abs(v - own[RATE]) > SETTLED * max(abs(v), own[LIMIT]) + ROUNDING * size:
+                return False
+    return True

@@ -1,0 +1,269 @@
+"""TAYLOR with fluid dampers: closed forms, an ODE solver's answers, and NEWMARK that converges to it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from pound_solve.catalog import catalog
+from pound_solve.laws.automaton import consistent
+from pound_solve.numerics.types import Array
+from unit.test_damper_contract import law_of
+from verification.cases import Ran, run_text
+
+DECK = """UNITS kN m s
+GRAVITY 10
+NODES
+ 1 0 0 FIX=YR
+{nodes}
+ELEMENTS
+ 1 BACK 1
+{elements}
+PROPS
+ BACK SPRING KX={k}
+{props}
+WEIGHTS
+ 1 10 0
+{load}
+ANALYSIS
+ HISTORY {end} FROM=REST METHOD=TAYLOR
+OUTPUT
+ EVERY=0.05
+"""
+K, C, LINK, AMPLITUDE, OMEGA = 40.0, 2.0, 60.0, 6.0, 5.0
+SINE = f"FORCES\n SINE 1 FX={AMPLITUDE} OMEGA={OMEGA}"
+LOADS = {"thrown": "INITIAL\n 1 VX=1", "shaken": f"INITIAL\n 1 VX=1\n{SINE}"}
+#: instant from which the reference goes on after an event, behind it by this much
+BEHIND = 1e-10
+
+Case = tuple[float, float, float]  #: exponent, limit of the force, end of the play
+
+
+Event = Callable[[float, Array], Any]
+Rates = Callable[[float, Array], list[float]]
+
+
+def pushed(t: float, shaken: bool) -> float:
+    return AMPLITUDE * math.sin(OMEGA * t) if shaken else 0.0
+
+
+def rising(function: Event) -> Event:
+    """An event function whose rise ends a stretch."""
+    function.terminal, function.direction = True, 1.0  # type: ignore[attr-defined]
+    return function
+
+
+def histories(
+    rates: Rates,
+    corners: Callable[[Array], list[Event]],
+    after: Callable[[int, Array], None],
+    y: Array,
+    end: float,
+) -> Array:
+    """Displacements of the mass every 0.05, by DOP853 from one of the `corners` to the next."""
+    times, t = np.linspace(0.0, end, round(end / 0.05) + 1), 0.0
+    out = np.zeros(len(times))
+    while True:
+        y = y + BEHIND * np.array(rates(t, y))
+        options = {"rtol": 1e-12, "atol": 1e-15, "max_step": 0.02}
+        s = solve_ivp(
+            rates, (t + BEHIND, end), y, "DOP853", dense_output=True, events=corners(y), **options
+        )
+        seen = (times >= t) & (times <= s.t[-1] + 1e-12)
+        if seen.any():
+            out[seen] = s.sol(times[seen])[0]
+        if s.status == 0:
+            return out
+        which = next(i for i, x in enumerate(s.t_events) if len(x))
+        t, y = float(s.t_events[which][0]), s.y_events[which][0].copy()
+        after(which, y)
+
+
+def deck(items: str, load: str, link: float, end: float) -> str:
+    """A mass of 1 with a spring and a damper, which a spring may hold."""
+    if link == np.inf:
+        parts = {"nodes": "", "elements": " 2 DAMP 1", "props": f" DAMP DASHPOT CX={C} {items}"}
+    else:
+        parts = {
+            "nodes": " 2 1 0 FIX=YR",
+            "elements": " 2 LINK 1 2\n 3 DAMP 2",
+            "props": f" LINK SPRING KX={link}\n DAMP DASHPOT CX={C} {items}",
+        }
+    return DECK.format(k=K, end=end, load=LOADS[load], **parts)
+
+
+def told(alpha: float, limit: float, play: float, shaken: bool, end: float) -> Array:
+    """Displacements of the mass on a damper, by DOP853 between the corners of the law."""
+    side, inside, fast = 1.0, play > 0.0, (limit / C) ** (1.0 / alpha)
+
+    def rates(t: float, y: Array) -> list[float]:
+        force = 0.0 if inside else side * min(C * max(side * y[1], 0.0) ** alpha, limit)
+        return [y[1], pushed(t, shaken) - K * y[0] - force]
+
+    def corners(y: Array) -> list[Event]:
+        return [
+            rising(lambda t, y: -side * y[1]),
+            rising(lambda t, y: (abs(y[0]) - play) * (1 if inside else -1) if play else -1.0),
+            rising(lambda t, y: (side * y[1] - fast) * (1 if side * y[1] < fast else -1)),
+        ]
+
+    def after(which: int, y: Array) -> None:
+        nonlocal side, inside
+        if which == 0:
+            side = -side
+        elif which == 1:
+            inside, side = not inside, math.copysign(1.0, y[1])
+
+    return histories(rates, corners, after, np.array([0.0, 1.0]), end)
+
+
+def told_behind(alpha: float, limit: float, shaken: bool, end: float) -> Array:
+    """The same with a spring between them: the third unknown is the displacement of the damper."""
+    fast, held = (limit / C) ** (1.0 / alpha), False
+
+    def free(y: Array) -> float:
+        """Rate of a damper below its limit."""
+        force = LINK * (y[0] - y[2])
+        return math.copysign((abs(force) / C) ** (1.0 / alpha), force)
+
+    def rates(t: float, y: Array) -> list[float]:
+        return [y[1], pushed(t, shaken) - K * y[0] - LINK * (y[0] - y[2]), y[1] if held else free(y)]
+
+    def corners(y: Array) -> list[Event]:
+        side = math.copysign(1.0, y[0] - y[2])
+        full = (lambda t, y: fast - side * y[1]) if held else (lambda t, y: side * free(y) - fast)
+        return [rising(lambda t, y: -side * (y[0] - y[2])), rising(full)]
+
+    def after(which: int, y: Array) -> None:
+        nonlocal held
+        held = which == 1 and not held
+
+    return histories(rates, corners, after, np.array([0.0, 1.0, 0.0]), end)
+
+
+def run_taylor(text: str) -> Ran:
+    r = run_text(text)
+    assert r.status == "done", r.message
+    return r
+
+
+@pytest.mark.parametrize("alpha", [0.3, 0.5, 1.5, 2.0])
+@pytest.mark.parametrize("load", ["thrown", "shaken"])
+@pytest.mark.parametrize("link", [np.inf, LINK])
+@pytest.mark.parametrize("limit", [np.inf, 1.2])
+def test_one_mass(alpha: float, load: str, link: float, limit: float) -> None:
+    """On a damper with and without a relief valve, or on one behind a spring: a node without mass."""
+    items = f"ALPHA={alpha}" + (f" FX={limit}" if limit < np.inf else "")
+    r = run_taylor(deck(items, load, link, 2.0))
+    shaken = load == "shaken"
+    if link == np.inf:
+        expected = told(alpha, limit, 0.0, shaken, 2.0)
+    else:
+        expected = told_behind(alpha, limit, shaken, 2.0)
+    assert np.abs(r.u[:, 0, 0] - expected).max() < 1e-10 * np.abs(expected).max()
+    assert r.check() < 1e-11
+
+
+@pytest.mark.parametrize("alpha", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("limit", [np.inf, 1.2])
+def test_a_play(alpha: float, limit: float) -> None:
+    items = f"ALPHA={alpha} GAPX=0.06" + (f" FX={limit}" if limit < np.inf else "")
+    r = run_taylor(deck(items, "shaken", np.inf, 2.0))
+    expected = told(alpha, limit, 0.06, True, 2.0)
+    assert np.abs(r.u[:, 0, 0] - expected).max() < 1e-10 * np.abs(expected).max()
+    assert r.check() < 1e-11
+
+
+@pytest.mark.parametrize("alpha", [0.5, 2.0])
+def test_a_mass_that_is_braked(alpha: float) -> None:
+    """m v' = -C v^alpha from 1, for 0.5 to a standstill."""
+    r = run_taylor(deck(f"ALPHA={alpha}", "thrown", np.inf, 1.2).replace(" 1 BACK 1\n", ""))
+    t = np.arange(25) * 0.05
+    v = np.maximum(1.0 - (1.0 - alpha) * C * t, 0.0) ** (1.0 / (1.0 - alpha))
+    assert r.v[:, 0, 0] == pytest.approx(v, abs=1e-10)
+    (row,) = r.tables["spring_envelope"]
+    assert row["force_max"] == pytest.approx(C, rel=1e-13)
+    assert row["plastic_work"] == pytest.approx(0.5 - 0.5 * v[-1] ** 2, rel=1e-12)
+
+
+FRAME = """UNITS kN m s
+GRAVITY 9.81
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=YR
+ 3 0 6 FIX=YR
+ 4 0 0.5 FIX=YR
+ 5 0 3.5 FIX=YR
+ELEMENTS
+ 1 STOREY 1 2
+ 2 STOREY 2 3
+ 3 BRACE 4 2
+ 4 BRACE 5 3
+ 5 DAMP 1 4
+ 6 DAMP 2 5
+PROPS
+ STOREY SPRING KX=40000 FX=500 RULE=BILINEAR R=0.05
+ BRACE SPRING KX=30000
+ DAMP DASHPOT CX=300 ALPHA={alpha} {items}
+WEIGHTS
+ 2 1000
+ 3 1000
+DAMPING
+ RAYLEIGH XI=0.02 OMEGA=10,30
+EQUAKE
+ TABLE POINTS=0,0.4,0.3,3,0.6,-4,0.9,3,1.2,-3,1.5,2
+OUTPUT
+ EVERY=0.05
+ANALYSIS
+ HISTORY 1.5 FROM=REST
+"""
+
+
+@pytest.mark.parametrize(
+    ("alpha", "items"),
+    [
+        (0.5, ""),
+        *(pytest.param(a, x, marks=pytest.mark.full) for a in (0.3, 0.7, 1.5) for x in ("", "FX=40")),
+    ],
+)
+def test_newmark_converges_to_braced_frames(alpha: float, items: str) -> None:
+    """Dampers in a row behind braces, beside storeys that yield."""
+    text = FRAME.format(alpha=alpha, items=items)
+    r = run_text(text, None, "TAYLOR")
+    assert r.status == "done" and r.check() < 1e-11, r.message
+    far, near = (np.abs(run_text(text, None, "NEWMARK", dt).u - r.u).max() for dt in (2e-3, 5e-4))
+    assert near < 1e-3 * np.abs(r.u).max() and far > 6.0 * near
+
+
+def test_supports_that_move_apart() -> None:
+    """What they put in through a damper that ends at one of them."""
+    text = deck("ALPHA=0.5 FX=1.2", "thrown", np.inf, 1.0).replace(" 2 DAMP 1", " 2 DAMP 2 1")
+    text = text.replace(" 1 BACK 1\n", " 1 BACK 3 1\n").replace(
+        " 1 0 0 FIX=YR\n", " 1 0 0 FIX=YR\n 2 1 0 FIX=XYR\n 3 2 0 FIX=XYR\n"
+    )
+    text = text.replace(
+        "INITIAL",
+        "EQUAKE\n SINE AMPLITUDE=4 PERIOD=0.5 SUPPORTS=2\n SINE AMPLITUDE=3 PERIOD=0.7 SUPPORTS=3\nINITIAL",
+    )
+    assert run_taylor(text).check() < 1e-11
+
+
+def test_a_play_at_a_node_without_mass_is_refused_in_words() -> None:
+    r = run_text(deck("ALPHA=0.5 GAPX=0.01", "thrown", LINK, 1.0))
+    assert r.status == "stopped"
+    assert "the law FLUID of element 3 is curved, has a play and meets a node without mass" in r.message
+
+
+@pytest.mark.parametrize("name", list(catalog().family("damper")))
+def test_powers_are_the_curve(name: str) -> None:
+    """On all branches on which a damper moves, at random rates."""
+    law = law_of(catalog().family("damper")[name])
+    for v in np.random.default_rng(3).normal(size=20) * 10.0 ** np.arange(-10, 10):
+        state = consistent(law, law.start(), 0.0, float(v))
+        k, n, *_ = law.rule.powers(law.p, state[0], state[3])  # type: ignore[misc]
+        assert k * abs(v) ** n == pytest.approx(law.force(state, 0.0, float(v))[0], rel=1e-13)
