@@ -29,6 +29,7 @@ from pound_solve.integrate.protocol import (
     EnvelopeRecorder,
     MonitoredOutputs,
     Outcome,
+    Recorder,
     Start,
     Stop,
     goals,
@@ -98,7 +99,7 @@ def by_series(
     system: ReducedSystem,
     start: Start,
     monitored: MonitoredOutputs,
-    recorder: EnvelopeRecorder,
+    recorder: Recorder,
     **options: Any,
 ) -> Outcome:
     """Run TAYLOR, and state why."""
