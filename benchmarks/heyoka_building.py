@@ -1,4 +1,4 @@
-"""One elastic building of the paper by heyoka, a Taylor integrator that compiles each system; one JSON object.
+"""One elastic building of the paper by heyoka, a Taylor integrator that compiles each system; prints JSON.
 
 Runs in an environment of its own (pip install heyoka numpy); see ``pair_building.py``.
 """
