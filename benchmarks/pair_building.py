@@ -3,9 +3,9 @@
     python3.11 -m venv .venv-heyoka && .venv-heyoka/bin/pip install heyoka numpy
     python benchmarks/pair_building.py --heyoka .venv-heyoka/bin/python
 
-Both follow the same 2 (n + 1) unknowns without forces or events for ten seconds.  heyoka compiles the
-system anew for each building; pound-solve's kernels are compiled once for all.  CPU seconds of the solution alone,
-best of five; pound-solve stores both floors every 0.02 s besides, heyoka nothing.
+Both follow the same 2 (n + 1) unknowns without forces or events for ten seconds. heyoka compiles the
+system anew for each building; pound-solve's kernels are compiled once for all. CPU seconds of the
+solution alone, best of five; pound-solve stores both floors every 0.02 s besides, heyoka nothing.
 """
 
 import argparse
