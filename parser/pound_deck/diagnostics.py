@@ -431,6 +431,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "drift of one node",
         "Both nodes of the drift are the same. Name the lower and the upper one.",
     ),
+    "P349": (
+        "gravity of another unit (warning)",
+        "GRAVITY is the earth's in another unit of length than that of UNITS, so masses and motions in G "
+        "are wrong by their ratio. Write the value that the message gives.",
+    ),
     "R401": (
         "record not found",
         "The record is neither in the deck's folder nor in the record folders. Check its name, "

@@ -157,7 +157,7 @@ def test_a_history_that_a_method_refuses_leaves_no_tables(deck, method):
     assert present["Free vibration"] and present["Reduced system and problem size"]
     for heading in ("Envelopes of the time history", "Members and springs", "Contacts and collisions"):
         assert not present[heading]
-    assert not present["Energy and checks"]
+    assert not present["Energy and run log"]
 
 
 def test_a_mechanism_under_load_is_named(deck, capsys):

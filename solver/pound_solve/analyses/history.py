@@ -6,8 +6,9 @@ state to be saved, and on), and gathers what the method and the recorder found.
 
 from __future__ import annotations
 
+import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Protocol
 
@@ -158,6 +159,14 @@ class HistoryResult:
     def system(self) -> ReducedSystem:
         """The reduced system."""
         return self.recorder.items.system
+
+
+def drift_heights(model: Model) -> Iterator[float]:
+    """Storey height of every drift [L]; NaN where none follows from the deck."""
+    for c in model.drifts:
+        i, j = model.nodes[c["I"]], model.nodes[c["J"]]
+        across = abs(j.y - i.y) if c["DIRECTION"] == "X" else abs(j.x - i.x)
+        yield c["HEIGHT"] if c["HEIGHT"] is not None else (across or math.nan)
 
 
 def monitored(structure: Structure, system: ReducedSystem) -> MonitoredOutputs:

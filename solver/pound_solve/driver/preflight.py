@@ -9,8 +9,11 @@ import numpy as np
 
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
+from pound_solve.loading.motions.base import METRE
 from pound_solve.numerics.types import Array
 from pound_solve.structure.structure import Structure
+
+EARTH: Final = 9.80665  #: acceleration of gravity [m/s2]
 
 
 def inclined(structure: Structure) -> list[Diagnostic]:
@@ -87,10 +90,25 @@ def _connected(structure: Structure, shift: Array) -> bool:
     )
 
 
+def foreign_gravity(structure: Structure) -> list[Diagnostic]:
+    """GRAVITY that is the earth's in another unit of length than the deck's."""
+    model = structure.model
+    own = METRE.get(model.units.length.lower()) if "units" not in model.defaults else None
+    if own is None or abs(model.gravity / (EARTH * own) - 1.0) < 0.01:
+        return []
+    for unit, per_metre in METRE.items():
+        if abs(model.gravity / (EARTH * per_metre) - 1.0) < 0.01:
+            message = f"GRAVITY {model.gravity:g} is the earth's in {unit}; UNITS says {model.units.length}"
+            hint = f"write GRAVITY {EARTH * own:.5g}"
+            return [Diagnostic("P349", message, None, hint, "warning")]
+    return []
+
+
 CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     inclined,
     pressed,
     adrift,
+    foreign_gravity,
     pushover.mistakes,
 )
 

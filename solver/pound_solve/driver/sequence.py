@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 
 from pound_deck.model import Card
-from pound_solve.analyses import history, modal, pushover, restart, static
+from pound_solve.analyses import history, modal, plausibility, pushover, restart, static
 from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.analyses.recorder import RecordedItems, SampleBlock
 from pound_solve.analyses.static_response import static_response
@@ -60,6 +60,7 @@ class AnalysisSequence:
             diaphragm_collisions(ready.structure),
         )
         self.record.stored = writer.stored
+        self.record.warnings = ready.warnings
         self.output = HistoryWriter(self.record, writer, progress, ready.identity)
 
     def run(self) -> str:
@@ -156,7 +157,7 @@ class AnalysisSequence:
         if found.recorder.started:
             self._write(Stage.SAMPLES)
         if found.outcome is not None:
-            record.checks += found.checks
+            record.checks += [*found.checks, *plausibility.of_history(record.structure, found)]
             self._write(Stage.PEAKS)
         if found.stop is not None:
             raise found.stop

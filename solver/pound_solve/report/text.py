@@ -68,7 +68,7 @@ def render(results: Results, *, limit: int | None = None, only: Collection[str] 
         ]
         if blocks:
             lines += [f"{number}  {heading.upper()}", "=" * WIDTH, ""]
-            if number == 1:
+            if "options" in names:
                 lines += [_INDENT + "An asterisk (*) marks a default value.", ""]
             lines += [line for block in blocks for line in block]
     return "\n".join(line.rstrip() for line in lines).rstrip() + "\n"

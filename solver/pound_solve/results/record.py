@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from pound_solve.results.schema import Layout
 
 if TYPE_CHECKING:
+    from pound_deck.diagnostics import Diagnostic
     from pound_deck.model import Model
     from pound_solve.analyses.history import HistoryResult
     from pound_solve.analyses.modal import ModalResult
@@ -48,6 +49,8 @@ class RunRecord:
     stored : callable
         Rows of a history so far, by its name (``time`` among them), shape (n_times, \\*row): for tables of
         figures that no method tracks.  Peaks between the output times are not among them.
+    warnings : sequence of Diagnostic
+        About the deck.
     checks : list of Check
         Of all analyses.
     solve_seconds, cpu_seconds : float
@@ -68,6 +71,12 @@ class RunRecord:
     recorded: RecordedItems | None = None
     layout: Layout = field(default_factory=dict)
     stored: Callable[[str], Array] = field(init=False)
+    warnings: Sequence[Diagnostic] = ()
     checks: list[Check] = field(default_factory=list)
     solve_seconds: float = 0.0
     cpu_seconds: float = 0.0
+
+    @property
+    def responded(self) -> bool:
+        """Whether there is a history whose method returned its peaks."""
+        return hasattr(self, "history") and self.history.outcome is not None

@@ -2,4 +2,4 @@
 
 from pound_solve.results.schema import Section
 
-SECTION = Section("Contacts and collisions", 90)
+SECTION = Section("Contacts and collisions", 40)

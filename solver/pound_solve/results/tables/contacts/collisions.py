@@ -37,7 +37,7 @@ def remark(run: RunRecord) -> str | None:
     if not any(x.pair for x in run.diaphragm_collisions.values()):
         return None
     return (
-        "The prediction considers the diaphragms only (section 1), no other forces and no ringing: the "
+        "The prediction considers the diaphragms only (see the input), no other forces and no ringing: the "
         "peak of a mesh of lumped masses exceeds a constant force by 14 % or more. It assumes a contact "
         "much stiffer than the diaphragms, and is omitted where they touch for more than twice the "
         "predicted time: softer contacts stay below it. The plateau is the impulse over the time of "

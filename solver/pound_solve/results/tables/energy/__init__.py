@@ -1,5 +1,5 @@
-"""Section 'Energy and checks' of the report."""
+"""Section 'Energy and run log' of the report."""
 
 from pound_solve.results.schema import Section
 
-SECTION = Section("Energy and checks", 100)
+SECTION = Section("Energy and run log", 50)

@@ -2,4 +2,4 @@
 
 from pound_solve.results.schema import Section
 
-SECTION = Section("Envelopes of the time history", 70)
+SECTION = Section("Envelopes of the time history", 20)

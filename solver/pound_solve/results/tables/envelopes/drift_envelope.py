@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from pound_deck.model import Model
+from pound_solve.analyses.history import drift_heights
 from pound_solve.results.columns import extreme_columns
 from pound_solve.results.record import RunRecord
 from pound_solve.results.remarks import how_found
@@ -15,16 +15,8 @@ from pound_solve.results.schema import Column, Row, Stage, Table
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each DRIFT card."""
     names, found = run.history.items.drifts.names, run.history.returned.peaks.monitored
-    for name, e, h in zip(names, found, heights(run.model)):
+    for name, e, h in zip(names, found, drift_heights(run.model)):
         yield name, e.high, e.t_high, e.low, e.t_low, h, max(abs(e.high), abs(e.low)) / h
-
-
-def heights(model: Model) -> Iterator[float]:
-    """Storey height of every drift [L]; NaN where none follows from the deck."""
-    for c in model.drifts:
-        i, j = model.nodes[c["I"]], model.nodes[c["J"]]
-        across = abs(j.y - i.y) if c["DIRECTION"] == "X" else abs(j.x - i.x)
-        yield c["HEIGHT"] if c["HEIGHT"] is not None else (across or math.nan)
 
 
 TABLE = Table(

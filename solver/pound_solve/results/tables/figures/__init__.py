@@ -2,4 +2,4 @@
 
 from pound_solve.results.schema import Section
 
-SECTION = Section("Run figures", 110, of_the_day=True)
+SECTION = Section("Run figures", 900, of_the_day=True)

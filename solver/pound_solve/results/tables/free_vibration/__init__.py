@@ -2,4 +2,4 @@
 
 from pound_solve.results.schema import Section
 
-SECTION = Section("Free vibration", 50)
+SECTION = Section("Free vibration", 80)

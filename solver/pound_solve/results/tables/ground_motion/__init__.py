@@ -2,4 +2,4 @@
 
 from pound_solve.results.schema import Section
 
-SECTION = Section("Ground motion", 20)
+SECTION = Section("Ground motion", 90)

@@ -2,4 +2,4 @@
 
 from pound_solve.results.schema import Section
 
-SECTION = Section("Members and springs", 80)
+SECTION = Section("Members and springs", 30)

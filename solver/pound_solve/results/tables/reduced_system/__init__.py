@@ -2,4 +2,4 @@
 
 from pound_solve.results.schema import Section
 
-SECTION = Section("Reduced system and problem size", 30)
+SECTION = Section("Reduced system and problem size", 100)

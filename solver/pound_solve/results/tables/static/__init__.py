@@ -2,4 +2,4 @@
 
 from pound_solve.results.schema import Section
 
-SECTION = Section("Static analysis", 40)
+SECTION = Section("Static analysis", 70)

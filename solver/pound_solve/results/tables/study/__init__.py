@@ -2,4 +2,4 @@
 
 from pound_solve.results.schema import Section
 
-SECTION = Section("Error against time", 120, of_the_day=True)
+SECTION = Section("Error against time", 910, of_the_day=True)

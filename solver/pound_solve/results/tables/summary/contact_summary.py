@@ -43,7 +43,7 @@ def remark(run: RunRecord) -> str:
 TABLE = Table(
     name="contact_summary",
     title="Contact summary",
-    place=10,
+    place=30,
     stages=(Stage.PEAKS,),
     columns=(
         CONTACT,

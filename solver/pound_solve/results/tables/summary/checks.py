@@ -16,7 +16,7 @@ def rows(run: RunRecord) -> Sequence[Row]:
 TABLE = Table(
     name="checks",
     title="Checks of this run",
-    place=20,
+    place=50,
     stages=(
         Stage.STATIC,
         Stage.PUSHOVER,
