@@ -40,6 +40,7 @@ WITHIN = {
     "integrate": (
         "protocol",
         "costs",
+        "release",
         "rigid",
         "kernels",
         "events",

@@ -22,6 +22,7 @@ from pound_solve.integrate.protocol import (
     Stop,
     light,
 )
+from pound_solve.integrate.release import falls, release
 from pound_solve.integrate.tracker import ResponseTracker
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.types import Array
@@ -73,6 +74,22 @@ class EventDrivenRun(ABC):
         force = self.laws[law].force(self.states[law], d, 0.0 if self._massless_laws[law] else v)
         self.tracker.switched(law, before, after.kind, self.t, d, v, force)
         self.tracker.force(law).take(force, self.t)
+
+    def change(self, law: int, event_index: int, d: float, v: float) -> None:
+        """Let a law leave its branch, and joints without mass move where its force falls."""
+        before = self.branches[law]
+        self.transition(law, event_index, d, v)
+        if self._massless_laws[law] and falls(before, self.branches[law], d):
+            release(self, law)
+
+    def force(self, law: int, d: float) -> tuple[float, float]:
+        """Force of a law at rest at deformation `d`, and its tangent."""
+        return self.laws[law].law.force(self.states[law], d)[:2]
+
+    def take_release(self, law: int, lost: float) -> None:
+        """Count the work that a falling force has done into that on its law."""
+        at, d, work, m = self.states[law]
+        self.states[law] = at, d, work + lost, m
 
     def count_change(self, elapsed: float, rounding: float) -> None:
         """Count changes of branch at one instant: an event after a share `rounding` of the time is one."""

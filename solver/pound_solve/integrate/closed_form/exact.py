@@ -221,7 +221,7 @@ class Exact(EventDrivenRun):
             if strikes:
                 self.rigid.impact()
             else:
-                self.transition(law, event_index, d, v)
+                self.change(law, event_index, d, v)
             self.rigid.open_pulled(self.subsystems.spectral_radius)
             if strikes:
                 self.subsystems.present = []  # the velocities have jumped

@@ -145,7 +145,7 @@ class Laplace(EventDrivenRun):
         if event is not None:
             self.events += 1
             d, rate = float(ends[0][event.law]), float(ends[1][event.law])
-            self.transition(event.law, event.event_index, d, rate)
+            self.change(event.law, event.event_index, d, rate)
             self.stop_chatter(event.law, "EXACT")
         hint = f" as samples {self.dt:g} apart see it: is DT too long for the excitation?"
         self.stop_growth(self.v, hint)

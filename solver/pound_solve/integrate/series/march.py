@@ -45,7 +45,7 @@ from pound_solve.integrate.series.expansion import (
 )
 from pound_solve.integrate.series.forces import count_largest, press, take_over
 from pound_solve.integrate.series.friction import LIFT, slides, touching
-from pound_solve.integrate.series.massless import factorise, violated
+from pound_solve.integrate.series.massless import factorise, jumps, violated
 from pound_solve.integrate.series.modal import from_modes, renew_modes, take_in_modes
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.smooth import BENDS, bend, linearise
@@ -65,8 +65,8 @@ LOOKS = 2  #: instants of a step that envelopes of nodes and members see: some 2
 CUT = 0.5  #: part of a step, as it was tried, that is taken at least
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
 #: why `march` came back, beside those of `kernels.state`: steps are too short for the clock; an unknown
-#: without mass is not held; a rigid contact touches or parts
-SHORT, LOOSE, STRIKE = 7, 8, 9
+#: without mass is not held; a rigid contact touches or parts; a force at a joint without mass falls
+SHORT, LOOSE, STRIKE, FALL = 7, 8, 9, 10
 
 
 def add_law_losses(
@@ -296,6 +296,8 @@ def settle(
             return LOOSE
         begin_series(linear, laws, step, series, coefs, begin, 1.0)
         next_term(linear, laws, step, series, 0, 1.0, len(coefs))
+        if jumps(laws, series, len(coefs)):
+            return FALL
         for i in held.unknown:
             now.displacement[i], now.velocity[i] = series.motion[0, i], series.motion[1, i]
         for i in held.laws:

@@ -49,6 +49,7 @@ from pound_solve.numerics.matrices import (
 from pound_solve.numerics.modes import scaling, softest
 from pound_solve.numerics.types import Array, Index
 
+JUMP = 1e-9  #: share of the largest deformation above which one has jumped
 DAMPING, STIFFNESS = range(2)  #: rows of `Massless.factors`
 TAKES_PART = 1e-6  #: share of the largest component of a motion above which an unknown takes part
 
@@ -243,6 +244,17 @@ def add_massless(laws: Laws, step: Step, series: Series, k: int, h: float, top: 
     members = held.members[STIFFNESS]
     for q in range(held.counts[STIFFNESS]):
         c[k, held.unknown[members[q]]] = x[members[q]]
+
+
+def jumps(laws: Laws, series: Series, top: int) -> bool:
+    """Whether the laws at joints without mass deform in no time; the inputs have `top` coefficients."""
+    held, most, far = series.massless, 0.0, 0.0
+    for i in held.laws:
+        if not laws.viscous[i]:
+            d = laws.now.deformation[i]
+            most = max(most, abs(d), laws.largest_deformation[i])
+            far = max(far, abs(deformation(laws, series, 0, top, i) - d))
+    return far > JUMP * most
 
 
 def violated(laws: Laws, which: Index) -> tuple[int, int]:

@@ -63,6 +63,14 @@ class Present:
         own.fetch_transitions()
         self._branches[law] = own.springs[law].branch(own.law_state(law))
 
+    def force(self, law: int, d: float) -> tuple[float, float]:
+        """Force of a law at rest at deformation `d`, and its tangent."""
+        return self.engine.springs[law].law.force(self.engine.law_state(law), d)[:2]
+
+    def take_release(self, law: int, lost: float) -> None:
+        """Count the work that a falling force has done into that on its law."""
+        self.engine.laws.entry_work[law] += lost
+
     def take_impact(self, put_in: float, lost: Array) -> None:
         """Count the work that moving supports put in at an impact, and what each law lost, (n_laws,)."""
         works = self.engine.accumulator.works
@@ -91,7 +99,8 @@ class Present:
         laws, now, order = self.engine.laws, self.engine.step.now, self.engine.order
         now.displacement[:], now.velocity[:] = self.u[order], self.v[order]
         laws.largest_deformation[:], laws.largest_rate[:] = self.largest
-        inputs = self.system.excitation.value(self.t, 1)
-        laws.now.rate[:] = self.system.law_rows @ self.v + self.system.law_inputs @ inputs
+        for order, motion, of_laws in ((0, self.u, laws.now.deformation), (1, self.v, laws.now.rate)):
+            inputs = self.system.excitation.value(self.t, order)
+            of_laws[:] = self.system.law_rows @ motion + self.system.law_inputs @ inputs
         self.turn_back(known)
         self.engine.state.stale = 1

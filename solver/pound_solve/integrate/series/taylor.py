@@ -51,6 +51,7 @@ from pound_solve.integrate.protocol import (
     remedy,
     rounding_check,
 )
+from pound_solve.integrate.release import release
 from pound_solve.integrate.rigid.contacts import MasslessContact, RigidContacts
 from pound_solve.integrate.rigid.instants import RigidInstants
 from pound_solve.integrate.series import (
@@ -203,9 +204,16 @@ class Taylor(KernelEngine):
         self.advance(march.march, self.series, self.lengths, coefs, ex.breaks, ends, is_output, pieces)
 
     def resume(self, why: int) -> None:
-        """Let rigid contacts strike, close or part; stop where there is no going on."""
-        if why != march.STRIKE:
+        """Let rigid contacts strike, close or part, or joints without mass move where a force falls; stop
+        where there is no going on.
+        """
+        if why not in (march.STRIKE, march.FALL):
             raise self.trouble(why)
+        if why == march.FALL:
+            present = Present(self, self.series)
+            release(present, int(self.state.fault))
+            present.hand_back(np.zeros(0, np.int64))
+            return
         self._at_instant(self._strike)
         self.state.events += 1
 

@@ -1,0 +1,136 @@
+r"""Joints without mass at the instant at which the force of a law falls.
+
+A law that fails may lose a force at once.  What joins the unknowns Z without mass and without dashpots
+then moves in no time, and laws there may yield, unload or fail on the way.  Such a path is that of a force
+which falls little by little while everything else is still: with the force F that is lost, of a law along
+:math:`b`,
+
+.. math:: K_{ZZ}\,u_Z + f_Z(u_Z) = p_Z - (1 - \lambda)\,F\,b_Z, \qquad 0 \le \lambda \le 1 ,
+
+from one change of branch to the next.  The force at work on the way is lost with the law that failed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW, Stop
+from pound_solve.laws.automaton import Branch, EventFunction
+from pound_solve.numerics import polynomial
+from pound_solve.numerics.matrices import dense, used_rows, weighted
+from pound_solve.numerics.modes import massless
+from pound_solve.numerics.types import Array, Index
+from pound_solve.structure.reduction import ReducedSystem
+
+ALONG = 1e-9  #: share of the largest change of a deformation below which a law does not move
+LOST = 1e-9  #: share of a force's terms above which a change of branch has made it jump
+ARRIVED = 1e-13  #: share of the largest deformation that is no way any more
+
+
+class JumpingRun(Protocol):
+    """A run as its joints without mass see it.
+
+    Attributes
+    ----------
+    u : ndarray, shape (n,)
+        Present displacement.
+    """
+
+    t: float
+    u: Array
+    system: ReducedSystem
+
+    @property
+    def branches(self) -> Sequence[Branch]:
+        """Present branches of all laws."""
+        ...
+
+    def force(self, law: int, d: float) -> tuple[float, float]:
+        """Force of a law at rest at deformation `d`, and its tangent."""
+        ...
+
+    def transition(self, law: int, event_index: int, d: float, v: float) -> None:
+        """Let a law leave its branch at deformation `d` on a way in the direction of `v`."""
+        ...
+
+    def take_release(self, law: int, lost: float) -> None:
+        """Count the work that a falling force has done into that on its law."""
+        ...
+
+    def stop(self, code: str, why: str) -> Stop:
+        """Return the exception that ends the run here."""
+        ...
+
+
+def falls(before: Branch, after: Branch, d: float) -> bool:
+    """Whether the force of a law at rest jumps where it changes branch at the deformation `d`."""
+    terms = sum(abs(b.stiffness * d) + abs(b.force0) for b in (before, after))
+    return abs(before.force(d, 0.0) - after.force(d, 0.0)) > LOST * terms
+
+
+def share_of_way(event: EventFunction, d: float, move: float) -> float:
+    """Share of the way of a law by `move` from the deformation `d` at which an event is, infinite if it has
+    none.
+    """
+    if event.d_factor == 0.0:
+        return 0.0 if event.v_factor * move > 0.0 else np.inf
+    rise, value = event.d_factor * move, event.d_factor * d + event.constant
+    return max(-value, 0.0) / rise if event.v_factor == 0.0 and rise > 0.0 else np.inf
+
+
+def first_on_way(branches: Sequence[Branch], d: Array, move: Array) -> tuple[float, int, int]:
+    """Share of the way of all laws up to their first event, its law and its number; 1 and -1 without."""
+    first = 1.0, -1, -1
+    for i in np.flatnonzero(np.abs(move) > ALONG * np.abs(move).max(initial=0.0)).tolist():
+        for e, event in enumerate(branches[i].events):
+            share = share_of_way(event, float(d[i]), float(move[i]))
+            if share < first[0]:
+                first = share, i, e
+    return first
+
+
+def quick(system: ReducedSystem, branches: Sequence[Branch]) -> Index:
+    """Unknowns with neither mass nor dashpot on the present branches."""
+    damped = np.flatnonzero([b.damping != 0.0 for b in branches])
+    resisted = used_rows(system.damping) | used_rows(system.law_rows[damped].T)
+    return np.flatnonzero(massless(system.mass) & ~resisted)
+
+
+def release(run: JumpingRun, law: int) -> None:
+    """Take joints without mass to where they are in balance without the force that `law` has lost.
+
+    Raises
+    ------
+    Stop
+        Nothing holds one of them on the way, or the changes of branch do not end.
+    """
+    system = run.system
+    rows, own = system.law_rows, system.excitation.about(np.array([run.t]))[0]
+    s = polynomial.value(own, 0.0, 0)
+    for _ in range(CHANGES + CHANGES_PER_LAW * len(run.branches)):
+        z = quick(system, run.branches)
+        if not len(z):
+            return
+        d = rows @ run.u + system.law_inputs @ s
+        force, tangent = np.array([run.force(i, x) for i, x in enumerate(d.tolist())]).T
+        left = (system.inputs @ s + system.constant - system.stiffness @ run.u - rows.T @ force)[z]
+        stiffness = dense(system.stiffness[np.ix_(z, z)] + weighted(rows[:, z], tangent))
+        try:
+            np.linalg.cholesky(stiffness)
+        except np.linalg.LinAlgError:
+            name = system.name(int(z[int(np.argmax(np.abs(left)))]))
+            raise run.stop("A501", f"{name} has no mass, and does not come to rest where a force is lost: "
+                           "give it weight") from None  # fmt: skip
+        way = np.linalg.solve(stiffness, left)
+        move = rows[:, z] @ way
+        if np.abs(move).max(initial=0.0) <= ARRIVED * np.abs(d).max(initial=0.0):
+            return
+        share, i, e = first_on_way(run.branches, d, move)
+        run.u[z] += share * way
+        run.take_release(law, float(left @ way) * (share - 0.5 * share * share))
+        if i >= 0:
+            run.transition(i, e, float(d[i] + share * move[i]), float(move[i]))
+    raise run.stop("A503", "the changes of branch where a force is lost do not end")
