@@ -1,4 +1,4 @@
-"""Joints without mass at the instant at which the force of a law falls: closed form, energy, both methods."""
+"""Joints without mass at the instant at which the force of a law falls: closed form, energy, methods."""
 
 from __future__ import annotations
 

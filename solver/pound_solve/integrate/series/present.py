@@ -99,8 +99,8 @@ class Present:
         laws, now, order = self.engine.laws, self.engine.step.now, self.engine.order
         now.displacement[:], now.velocity[:] = self.u[order], self.v[order]
         laws.largest_deformation[:], laws.largest_rate[:] = self.largest
-        for order, motion, of_laws in ((0, self.u, laws.now.deformation), (1, self.v, laws.now.rate)):
-            inputs = self.system.excitation.value(self.t, order)
-            of_laws[:] = self.system.law_rows @ motion + self.system.law_inputs @ inputs
+        inputs = [self.system.excitation.value(self.t, derivative) for derivative in (0, 1)]
+        laws.now.deformation[:] = self.system.law_rows @ self.u + self.system.law_inputs @ inputs[0]
+        laws.now.rate[:] = self.system.law_rows @ self.v + self.system.law_inputs @ inputs[1]
         self.turn_back(known)
         self.engine.state.stale = 1
