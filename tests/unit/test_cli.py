@@ -114,7 +114,7 @@ def test_a_results_file_in_place_of_a_deck_is_told_with_the_verbs_that_read_it(d
     before = deck.with_suffix(".h5").read_bytes()
     with pytest.raises(SystemExit) as end:
         main([*verb, str(deck.with_suffix(".h5"))])
-    told = "is a results file, not a deck: report, export, plot and separation read it"
+    told = "is a results file, not a deck: report, export, plot, separation and spectrum read it"
     assert end.value.code == 2 and told in capsys.readouterr().err
     assert deck.with_suffix(".h5").read_bytes() == before
 

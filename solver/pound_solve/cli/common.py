@@ -52,17 +52,29 @@ def request(args: argparse.Namespace) -> Request:
     from pound_solve.results import is_hdf5
 
     if is_hdf5(args.deck):
-        text = f"{args.deck} is a results file, not a deck: report, export, plot and separation read it"
+        readers = "report, export, plot, separation and spectrum read it"
+        text = f"{args.deck} is a results file, not a deck: {readers}"
         raise SystemExit(complain(text, MISTAKES))
-    params = {}
-    for item in args.set:
+    given = vars(args)
+    own = {name: given[name] for name in ("method", "dt", "tol", "explain") if name in given}
+    return Request(args.deck, parameters(args.set), given.get("out"), tuple(args.records), **own)
+
+
+def parameters(items: Sequence[str]) -> dict[str, str]:
+    """PARAM values of --set by name.
+
+    Raises
+    ------
+    SystemExit
+        An item is not NAME=VALUE.
+    """
+    out = {}
+    for item in items:
         name, equals, value = item.partition("=")
         if not equals or not name.strip():
             raise SystemExit(complain(f"--set {item}: write NAME=VALUE", MISTAKES))
-        params[name.strip()] = value.strip()
-    given = vars(args)
-    own = {name: given[name] for name in ("method", "dt", "tol", "explain") if name in given}
-    return Request(args.deck, params, given.get("out"), tuple(args.records), **own)
+        out[name.strip()] = value.strip()
+    return out
 
 
 def picture(word: str) -> Path:

@@ -8,7 +8,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
+from pound_deck.model import Units
 from pound_solve.results import Results
+from pound_solve.results.schema import Row, Table
 
 _BLOCK: Final = 4096  #: rows that are turned into Python numbers at a time
 
@@ -38,6 +40,12 @@ def export_csv(results: Results, folder: str | Path) -> list[Path]:
         *(_table(results, name, folder) for name in results.tables),
         *(_history(results, name, folder) for name in results.histories if name != "time"),
     ]
+
+
+def export_rows(path: Path, units: Units, table: Table[Any], rows: Iterable[Row]) -> None:
+    """Write rows of a table that is not in a results file as CSV; see `export_csv`."""
+    heads = [_head(column.name, units.text(column.unit)) for column in table.columns]
+    _write(path, heads, ([_cell(v) for v in row] for row in rows))
 
 
 def _table(results: Results, name: str, folder: Path) -> Path:

@@ -58,7 +58,7 @@ def text(results: Results, periods: Sequence[float] = (), damping: Sequence[floa
     """
     found = rows(SeparationRecord(results, periods, damping))
     kinds = [(c.name, "O" if c.is_text else "f8") for c in TABLE.columns]
-    return "\n".join(line.rstrip() for line in block(results, TABLE, np.array(found, dtype=kinds)))
+    return "\n".join(line.rstrip() for line in block(results.units, TABLE, np.array(found, dtype=kinds)))
 
 
 def rows(record: SeparationRecord) -> list[Row]:

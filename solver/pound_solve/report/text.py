@@ -17,6 +17,7 @@ from typing import Any, Final
 from numpy.typing import NDArray
 from tabulate import tabulate
 
+from pound_deck.model import Units
 from pound_solve.results import Results
 from pound_solve.results.contents import SECTIONS, TABLES
 from pound_solve.results.schema import Column, Table
@@ -120,13 +121,11 @@ def _block(results: Results, table: Table[Any], limit: int | None) -> list[str]:
     more = ""
     if most and len(rows) > most:
         more = f"... and {len(rows) - most} more rows: table '{table.name}' of the results file"
-    return block(results, table, rows[:most] if most else rows, results.note(table.name), more)
+    return block(results.units, table, rows[:most] if most else rows, results.note(table.name), more)
 
 
-def block(
-    results: Results, table: Table[Any], rows: NDArray[Any], note: str = "", more: str = ""
-) -> list[str]:
-    """Lines of a table with its notes, in the units of `results`; none where there is nothing to show.
+def block(units: Units, table: Table[Any], rows: NDArray[Any], note: str = "", more: str = "") -> list[str]:
+    """Lines of a table with its notes; none where there is nothing to show.
 
     Parameters
     ----------
@@ -135,7 +134,7 @@ def block(
     note, more : str
         A further note, and a line on what is left out.
     """
-    lines = _body(results, table, rows)
+    lines = _body(units, table, rows)
     if more:
         lines += ["", _INDENT + more]
     notes = " ".join(_plain(text) for text in (table.note, note) if text)
@@ -144,7 +143,7 @@ def block(
     return lines
 
 
-def _body(results: Results, table: Table[Any], rows: NDArray[Any]) -> list[str]:
+def _body(units: Units, table: Table[Any], rows: NDArray[Any]) -> list[str]:
     """Lines of heads and rows; none where no column has anything to show."""
     groups = _groups(table, rows)
     cells, heads, columns = {}, {}, []
@@ -155,7 +154,7 @@ def _body(results: Results, table: Table[Any], rows: NDArray[Any]) -> list[str]:
         if any(t not in ("", "-") for t in texts):
             columns.append(c)
             cells[c.name] = texts
-            unit = f"\n[{_plain(results.units.text(c.unit))}]" if c.unit else ""
+            unit = f"\n[{_plain(units.text(c.unit))}]" if c.unit else ""
             heads[c.name] = c.title + unit
     if not columns:
         return []

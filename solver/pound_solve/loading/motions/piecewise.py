@@ -160,6 +160,30 @@ class Piecewise:
         coefs[: len(last), -1] = last
         return Piecewise(np.append(self.breaks, t_end), coefs)
 
+    def divided(self, parts: int) -> Piecewise:
+        """The same function with every interval in `parts` equal ones; itself for 1."""
+        if parts == 1:
+            return self
+        share = np.arange(parts) / parts * np.diff(self.breaks)[:, None]
+        breaks = np.append((self.breaks[:-1, None] + share).ravel(), self.end)
+        coefs = shift(np.repeat(self.coefs, parts, axis=1), share.ravel())
+        return Piecewise(breaks, coefs)
+
+    def chords(self, parts: int = 16) -> Piecewise:
+        """Straight lines between values, `parts` in every interval; the function itself if it is straight.
+
+        For a sine with 32 intervals a period, 16 parts are wrong by 2e-5 of its amplitude at most.
+        """
+        if self.degree == 0:
+            return Piecewise(self.breaks, np.vstack((self.coefs, np.zeros_like(self.coefs))))
+        if self.degree == 1:
+            return self
+        fine = self.divided(parts)
+        width = np.diff(fine.breaks)
+        return Piecewise(
+            fine.breaks, np.vstack((fine.coefs[0], (_horner(fine.coefs, width) - fine.coefs[0]) / width))
+        )
+
     def integral(self, initial: float = 0.0) -> Piecewise:
         """Continuous antiderivative that is `initial` at the first break; its degree is one higher.
 

@@ -9,12 +9,13 @@ from typing import Any
 
 from pound_solve.report.plot import course, structure, style
 from pound_solve.report.plot.loop import loop
+from pound_solve.report.plot.spectrum import spectra
 from pound_solve.report.plot.study import study
 from pound_solve.report.plot.style import Nothing, ready
 from pound_solve.results import Results
 from pound_solve.results.contents import TABLES
 
-__all__ = ("PICTURES", "Nothing", "draw", "draw_into", "loop", "possible", "ready")
+__all__ = ("PICTURES", "Nothing", "draw", "draw_into", "loop", "possible", "ready", "spectra")
 
 #: Every picture: what draws it, and the tables and histories that it needs.
 PICTURES: Mapping[str, tuple[Callable[[Results], Any], tuple[str, ...]]] = MappingProxyType(

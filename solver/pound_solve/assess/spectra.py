@@ -1,0 +1,175 @@
+"""Motions whose spectra ``pound-solve spectrum`` shows: of records, of decks, of nodes in a results file.
+
+A record is read by a card of a small deck, so that its items are those of a RECORD card and its mistakes
+are told as in any other deck.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+
+from pound_deck.diagnostics import Diagnostic, has_errors
+from pound_deck.model import Model, Units
+from pound_deck.reader import read_deck, read_text
+from pound_solve.catalog import catalog
+from pound_solve.driver import loading
+from pound_solve.driver.prepare import DeckError
+from pound_solve.driver.request import Request
+from pound_solve.loading.motions.piecewise import Piecewise
+from pound_solve.results import Results
+
+SAMPLES: Final = 10  #: stored accelerations in the shortest period, below which they are too coarse
+WAYS: Final = MappingProxyType({"X": "X", "Y": "Y", "R": "R (rad)"})  #: names of directions
+_AROUND: Final = """UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 1 0 FIX=YR
+ELEMENTS
+ 1 SPRING 1 2
+PROPS
+ SPRING SPRING KX=1
+ANALYSIS
+ STATIC
+EQUAKE
+"""
+
+
+class SpectrumError(Exception):
+    """A source that has no motion to show; the message says why."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """Accelerations of one file.
+
+    Attributes
+    ----------
+    units : Units
+    accelerations : mapping of str to Piecewise, [L/T^2]
+        By their names.
+    warnings : sequence of Diagnostic
+    files : mapping of str to str
+        Texts that the warnings point into.
+    """
+
+    units: Units
+    accelerations: Mapping[str, Piecewise]
+    warnings: Sequence[Diagnostic] = ()
+    files: Mapping[str, str] = field(default_factory=dict)
+
+
+def of_record(name: str, items: Sequence[str] = (), folders: Sequence[Path] = ()) -> Source:
+    """The acceleration of a record file or a known record, in kN, m and s.
+
+    Parameters
+    ----------
+    name : str
+        FILE of a RECORD card.
+    items : sequence of str
+        ``NAME=value``, the other items of the card.
+    folders : sequence of Path
+        Where it is looked for, after the working folder.
+
+    Raises
+    ------
+    DeckError
+        The record cannot be read, or an item is none of the card's.
+    """
+    card = " ".join([f' RECORD "{name}"', *map(_item, items)])
+    model, found, files = read_text(f"{_AROUND}{card}\n", catalog(), name="spectrum")
+    source = _of_model(model, found, files, Request("spectrum", records=tuple(folders)))
+    (acceleration,) = source.accelerations.values()
+    title = " ".join([Path(name).name, *items])
+    return Source(source.units, {title: acceleration}, source.warnings, source.files)
+
+
+def _item(text: str) -> str:
+    """An item as a deck writes it: a word with a slash, as of a unit, in quotes."""
+    name, _, value = " ".join(text.split()).partition("=")
+    return f'{name}="{value}"' if re.fullmatch(r"[A-Za-z]+/[A-Za-z]\w*", value) else f"{name}={value}"
+
+
+def of_deck(request: Request) -> Source:
+    """The motions of the EQUAKE cards of a deck, a wave as one for each place.
+
+    Raises
+    ------
+    DeckError
+        The deck or a record has mistakes.
+    SpectrumError
+        The deck has no motion.
+    OSError
+        The deck cannot be read.
+    """
+    source = _of_model(*read_deck(request.deck, catalog(), request.params), request)
+    if not source.accelerations:
+        raise SpectrumError(f"{request.deck} has no motion under EQUAKE")
+    return source
+
+
+def _of_model(
+    model: Model | None, found: list[Diagnostic], files: Mapping[str, str], request: Request
+) -> Source:
+    """Motions of a deck that was read."""
+    motions = [] if model is None else loading.motions(model, loading.context(model, request), found)
+    if model is None or has_errors(found):
+        raise DeckError(found, files)
+    stem = Path(request.deck).stem
+    names = (f"{stem}: {n} {m.info['name']} {WAYS[m.direction]}" for n, m in enumerate(motions, 1))
+    own = {name: m.acceleration for name, m in zip(names, motions)}
+    return Source(model.units, own, [d for d in found if d.code.startswith("R")], files)
+
+
+def of_nodes(results: Results, nodes: Sequence[int], direction: str = "X") -> Source:
+    """Stored absolute accelerations of nodes, straight lines between the output times.
+
+    Parameters
+    ----------
+    results : Results
+    nodes : sequence of int
+    direction : str
+        ``X``, ``Y`` or ``R``.
+
+    Raises
+    ------
+    SpectrumError
+        The file has no history of accelerations, or none of such a node.
+    """
+    if "node/a" not in results.histories or len(results.time) < 2:
+        raise SpectrumError(f"{results.path} holds no accelerations of nodes: its deck needs a HISTORY")
+    stored = results.attributes("node/a")["nodes"]
+    for node in nodes:
+        if node not in stored:
+            there = ", ".join(map(str, stored[:20])) + (", ..." if len(stored) > 20 else "")
+            raise SpectrumError(
+                f"{results.path} holds no accelerations of node {node}: OUTPUT NODES of the deck chooses "
+                f"what is stored; there are {there}"
+            )
+    a = results.history("node/a")[:, :, "XYR".index(direction)]
+    own = {
+        f"{results.path.with_suffix('')} node {node} {WAYS[direction]}": Piecewise.from_samples(
+            results.time, a[:, stored.index(node)]
+        )
+        for node in nodes
+    }
+    return Source(results.units, own)
+
+
+def coarse(source: Source, shortest: float) -> str:
+    """Warning that accelerations are stored too seldom for the shortest period [T]; empty if not."""
+    step = max(float(np.diff(a.breaks).max()) for a in source.accelerations.values())
+    if step * SAMPLES <= shortest * (1.0 + 1e-9):
+        return ""
+    time = source.units.time
+    return (
+        f"accelerations are stored every {step:.4g} {time}, and short peaks between are lost: "
+        f"spectra below {SAMPLES * step:.4g} {time} are coarse; for {shortest:.4g} {time} run the deck "
+        f"with OUTPUT EVERY={shortest / SAMPLES:.4g}"
+    )

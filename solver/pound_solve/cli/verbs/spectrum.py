@@ -1,0 +1,170 @@
+"""``pound-solve spectrum``: response spectra of records, of a deck's motions, and of floors."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pound_solve.cli import common
+
+if TYPE_CHECKING:
+    from pound_deck.model import Units
+    from pound_solve.assess.spectra import Source
+    from pound_solve.report.spectrum import Curve
+
+SUMMARY = "response spectra of records, of the motions of a deck, or of the floors of a run"
+DEFAULT = "0.01:10:91"  #: thirty periods a decade
+MOST = 10_000  #: periods
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    text = "record, known record, deck (.inp) or results file (.h5); several are shown together"
+    parser.add_argument("sources", nargs="+", metavar="FILE", help=text)
+    parser.add_argument(
+        "--item",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="item of the RECORD card (records)",
+    )
+    parser.add_argument(
+        "--node",
+        action="append",
+        default=[],
+        type=int,
+        metavar="N",
+        help="node of the floor (results files)",
+    )
+    parser.add_argument(
+        "--direction", choices=("X", "Y", "R"), default="X", help="of the nodes (default X)"
+    )
+    text = f"FIRST:LAST:COUNT or a list (default {DEFAULT})"
+    parser.add_argument("--periods", type=_periods, default=DEFAULT, metavar="T,T,...", help=text)
+    parser.add_argument(
+        "--damping", type=_damping, default="5", metavar="X,X,...", help="in percent (default 5)"
+    )
+    parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="write the spectra as CSV")
+    text = f"draw the spectra into a file, ending in {', '.join(common.FORMATS)}"
+    parser.add_argument("--picture", type=common.picture, metavar="FILE", help=text)
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=VALUE", help="replace a PARAM of the deck"
+    )
+    parser.add_argument(
+        "--records", action="append", default=[], type=Path, metavar="DIR", help="folder with records"
+    )
+
+
+def _periods(word: str) -> list[float]:
+    """Periods of an option: a list, or the first, the last and the number of equal ratios."""
+    values = common.numbers(
+        word.replace(":", ",").split(","), "--periods takes numbers", argparse.ArgumentTypeError
+    )
+    if min(values) <= 0.0:
+        raise argparse.ArgumentTypeError(f"{word[:60]}: periods must be above 0")
+    if ":" not in word:
+        return values
+    if word.count(":") != 2 or "," in word or not values[0] < values[1]:
+        raise argparse.ArgumentTypeError(f"{word[:60]}: write FIRST:LAST:COUNT, as {DEFAULT}")
+    first, last, count = values
+    if count != int(count) or not 2 <= count <= MOST:
+        raise argparse.ArgumentTypeError(f"{word[:60]}: COUNT is a whole number from 2 to {MOST}")
+    steps = int(count) - 1
+    return [first * (last / first) ** (k / steps) for k in range(steps)] + [last]
+
+
+def _damping(word: str) -> list[float]:
+    """Damping ratios from percentages of an option."""
+    values = common.numbers(word.split(","), "--damping takes percentages", argparse.ArgumentTypeError)
+    if not all(0.0 <= x < 100.0 for x in values):
+        raise argparse.ArgumentTypeError(f"{word[:60]}: damping is from 0 to below 100 percent")
+    return [x / 100.0 for x in values]
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Print the spectra; write and draw them into the files given."""
+    from pound_solve.assess.spectra import SpectrumError
+    from pound_solve.driver.prepare import DeckError
+    from pound_solve.report import spectrum as report
+    from pound_solve.results import ResultsError
+
+    if args.picture:
+        from pound_solve.report import plot
+
+        try:
+            plot.ready(args.picture.parent)
+        except ImportError:
+            text = '--picture needs matplotlib: pip install "pound-solve[plot]"'
+            return common.complain(text, common.MISTAKES)
+    try:
+        units, curves = _curves(args)
+    except DeckError as err:
+        print(err, file=sys.stderr)
+        return common.MISTAKES
+    except SpectrumError as err:
+        return common.complain(str(err), common.MISTAKES)
+    except ResultsError as err:
+        return common.complain(str(err))
+    print(report.text(units, curves))
+    if args.out:
+        report.write_csv(args.out, units, curves)
+    if args.picture:
+        plot.spectra(curves, units, args.picture)
+    return common.DONE
+
+
+def _curves(args: argparse.Namespace) -> tuple[Units, list[Curve]]:
+    """Spectra of all motions of all files, and their units."""
+    from pound_deck.diagnostics import render
+    from pound_solve.assess.spectra import SpectrumError
+    from pound_solve.loading.spectrum import response_spectrum
+    from pound_solve.report.spectrum import Curve
+
+    sources = [_source(name, args) for name in args.sources]
+    units = sources[0].units
+    for name, source in zip(args.sources, sources):
+        if source.warnings:
+            print(render(source.warnings, source.files), file=sys.stderr)
+        own = source.units
+        if (own.length, own.time) != (units.length, units.time):
+            raise SpectrumError(
+                f"{name} is in {own.length} and {own.time}, {args.sources[0]} in {units.length} and "
+                f"{units.time}: show them apart"
+            )
+    curves = []
+    for title, a in (item for source in sources for item in source.accelerations.items()):
+        try:
+            curves.append(Curve(title, a, response_spectrum(a, args.periods, args.damping)))
+        except ValueError as err:  # a period too short
+            raise SpectrumError(f"{title}: {err}") from None
+    return units, curves
+
+
+def _source(name: str, args: argparse.Namespace) -> Source:
+    """Motions of one file."""
+    from pound_solve.assess import spectra
+    from pound_solve.driver.request import Request
+    from pound_solve.results import Results, is_hdf5
+
+    kind = "deck" if name.endswith(".inp") else "record"
+    if name.endswith(".h5") or is_hdf5(name):
+        kind = "results file"
+    for option, to in (("node", "results file"), ("set", "deck"), ("item", "record")):
+        if getattr(args, option) and to != kind:
+            raise spectra.SpectrumError(f"--{option} belongs to a {to}, and {name} is a {kind}")
+    if kind == "record":
+        return spectra.of_record(name, args.item, args.records)
+    if kind == "deck":
+        request = Request(name, common.parameters(args.set), records=tuple(args.records))
+        return spectra.of_deck(request)
+    if not args.node:
+        raise spectra.SpectrumError(f"{name} is a results file: choose the floor with --node")
+    with Results.open(name) as results:
+        source = spectra.of_nodes(results, args.node, args.direction)
+        if results.status != "done":
+            common.complain(f"warning: {name} ended early, at {results.last_time:g} {results.units.time}")
+    if told := spectra.coarse(source, min(args.periods)):
+        common.complain(f"warning: {name}: {told}")
+    return source

@@ -1,0 +1,231 @@
+r"""Response spectra of piecewise-linear accelerations, with the true peaks between the samples.
+
+The oscillator of circular frequency :math:`\omega` and damping ratio :math:`\xi < 1`,
+
+.. math:: \ddot u + 2\xi\omega\dot u + \omega^2 u = -a(t), \qquad
+          \lambda = -\xi\omega + i\omega_d, \quad \omega_d = \omega\sqrt{1-\xi^2},
+
+is one complex equation, :math:`\dot z = \lambda z - a` with :math:`z = \dot u - \bar\lambda u`.  On a
+straight line :math:`a = a_0 + a_1 s` its solution is closed, the recurrence of Nigam and Jennings (1969) in
+complex form:
+
+.. math:: z(s) = e^{\lambda s} z_0 - s\,\bigl(a_0 K_0(\lambda s) + a_1 s K_1(\lambda s)\bigr)
+
+with the :math:`K_k` of `numerics.phi`.  Relative displacement, relative velocity and absolute acceleration
+(but for its sign) are
+
+.. math:: q_k = \operatorname{Im}(\lambda^k z)/\omega_d, \qquad k = 0, 1, 2 .
+
+The second derivative of each is a free vibration, :math:`\operatorname{Im}(\lambda^k \ddot z_0
+e^{\lambda s})/\omega_d`, whose zeros are known.  This bounds what a quantity can gain between two
+samples, and splits an interval into parts in which the slope is monotonic: a peak is the zero of the slope
+there.  After the last break the oscillator swings freely; its first extreme is the largest.
+
+References
+----------
+Nigam NC, Jennings PC (1969), Calculation of response spectra from strong-motion earthquake records,
+Bull. Seismol. Soc. Am. 59(2): 909-922.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pound_solve.loading.motions.piecewise import Piecewise
+from pound_solve.numerics.phi import duhamel
+from pound_solve.numerics.types import Array, Complex, Index
+
+BLOCK: Final = 2**20  #: numbers of one kind that are held at a time, at most
+MOST: Final = 2**22  #: intervals into which an acceleration is divided for short periods, at most
+EQUAL: Final = 12  #: digits in which steps that are taken for equal agree
+ENOUGH: Final = 1e-10  #: of an interval, to which the instant of a peak is found: the peak has its square
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Spectrum:
+    """Largest responses of oscillators to one acceleration.
+
+    Attributes
+    ----------
+    periods : ndarray, shape (n,), [T]
+    damping : ndarray, shape (m,), [-]
+        Ratios to critical damping.
+    sd, sv, sa : ndarray, shape (m, n), [L], [L/T], [L/T^2]
+        Largest relative displacement, relative velocity and absolute acceleration.
+    """
+
+    periods: Array
+    damping: Array
+    sd: Array
+    sv: Array
+    sa: Array
+
+    @property
+    def psv(self) -> Array:
+        """Pseudo-velocity :math:`\\omega S_d`, shape (m, n), [L/T]."""
+        return 2.0 * np.pi / self.periods * self.sd
+
+    @property
+    def psa(self) -> Array:
+        """Pseudo-acceleration :math:`\\omega^2 S_d`, shape (m, n), [L/T^2]."""
+        return (2.0 * np.pi / self.periods) ** 2 * self.sd
+
+
+def response_spectrum(
+    acceleration: Piecewise, periods: ArrayLike, damping: ArrayLike = 0.05, *, free: bool = True
+) -> Spectrum:
+    """Spectrum of oscillators that are at rest when the acceleration begins.
+
+    Parameters
+    ----------
+    acceleration : Piecewise, [L/T^2]
+        Of what carries the oscillators; a curved one is taken as its `chords`.
+    periods : array_like, shape (n,), [T]
+        Undamped periods, above zero.
+    damping : array_like, shape (m,), [-]
+        Ratios to critical damping, from 0 to below 1.
+    free : bool
+        Whether the free vibration after the end of the acceleration counts.
+
+    Returns
+    -------
+    Spectrum
+
+    Raises
+    ------
+    ValueError
+        A period or a damping is out of its range, or a period so short that the acceleration would have
+        to be divided into more than `MOST` intervals.
+    """
+    t, xi = (np.atleast_1d(np.asarray(x, dtype=np.float64)) for x in (periods, damping))
+    if not ((t > 0) & (t < np.inf)).all() or not ((xi >= 0) & (xi < 1)).all():
+        raise ValueError("periods are finite and above zero, damping ratios from 0 to below 1")
+    lines = acceleration.chords()
+    period, ratio = (x.ravel() for x in np.broadcast_arrays(t, xi[:, None]))
+    # an interval shorter than half a period has one inflexion at most
+    parts = 2 ** np.ceil(np.log2(np.maximum(2.0 * np.diff(lines.breaks).max() / period, 1.0))).astype(int)
+    if parts.max() * len(lines.breaks) > MOST:
+        raise ValueError(f"the period {t.min():g} is too short for an acceleration of this length")
+    peaks = np.empty((3, len(period)))
+    for count in np.unique(parts):
+        own, fine = np.flatnonzero(parts == count), lines.divided(int(count))
+        for some in np.array_split(own, -(-len(own) * len(fine.breaks) // BLOCK)):
+            peaks[:, some] = _peaks(fine, 2.0 * np.pi / period[some], ratio[some], free)
+    return Spectrum(t, xi, *peaks.reshape(3, len(xi), len(t)))
+
+
+def _peaks(lines: Piecewise, omega: Array, xi: Array, free: bool) -> Array:
+    """Largest absolute values of the three quantities, shape (3, n) for n oscillators."""
+    omega_d = omega * np.sqrt(1.0 - xi**2)
+    rate = -xi * omega + 1j * omega_d
+    z, width = _states(lines, rate), np.diff(lines.breaks)
+    a0, a1 = lines.coefs
+    bend = np.abs(_Swing(z[:-1], a0[:, None], a1[:, None], rate).bend)
+    out = np.empty((3, len(omega)))
+    for k in range(3):
+        factor = np.asarray(rate**k / omega_d, complex)
+        q = np.abs((factor * z).imag)
+        out[k] = q.max(axis=0)
+        gain = width[:, None] ** 2 / 8.0 * np.abs(factor) * bend
+        at, who = np.nonzero(np.maximum(q[:-1], q[1:]) + gain > out[k])
+        some = _Swing(z[at, who], a0[at], a1[at], rate[who])
+        mine, between = some.extremes(factor[who], width[at])
+        np.maximum.at(out[k], who[mine], np.abs(between))
+        if free:
+            # the first instant at which Im(factor rate z exp(rate s)) is zero
+            swing = factor * z[-1]
+            wait = np.mod(-np.angle(rate * swing), np.pi) / omega_d
+            out[k] = np.maximum(out[k], np.abs((swing * np.exp(rate * wait)).imag))
+    return out
+
+
+def _states(lines: Piecewise, rate: Complex) -> Complex:
+    """State z at every break, shape (n_breaks, n), from rest."""
+    # times are sums: equal steps differ by rounding
+    mantissa, exponent = np.frexp(np.diff(lines.breaks))
+    step, which = np.unique(np.ldexp(np.round(mantissa, EQUAL), exponent), return_inverse=True)
+    s = step[:, None]
+    decay, k = np.exp(rate * s), duhamel(rate * s, 1)
+    first, second = s * k[0], s**2 * k[1]
+    a0, a1 = lines.coefs[:, :, None]
+    z = np.zeros((len(lines.breaks), len(rate)), complex)
+    z[1:] = -a0 * first[which] - a1 * second[which]
+    for i, w in enumerate(which):
+        z[i + 1] += decay[w] * z[i]
+    return z
+
+
+class _Swing(NamedTuple):
+    """Oscillators, each on a straight line of the acceleration: state at its start, the line, and the rate.
+
+    All have one shape, or shapes that broadcast; quantities are Im(factor z).
+    """
+
+    z: Complex
+    a0: Array
+    a1: Array
+    rate: Complex
+
+    @property
+    def bend(self) -> Complex:
+        """Second derivative of z at the start."""
+        return self.rate * (self.rate * self.z - self.a0) - self.a1
+
+    def of(self, some: Index) -> _Swing:
+        """Some of the oscillators."""
+        return _Swing(self.z[some], self.a0[some], self.a1[some], self.rate[some])
+
+    def state(self, s: Array) -> Complex:
+        """State z after the times `s`."""
+        k0, k1 = duhamel(self.rate * s, 1)
+        out: Complex = np.exp(self.rate * s) * self.z - s * (self.a0 * k0 + self.a1 * s * k1)
+        return out
+
+    def slope(self, factor: Complex, s: Array) -> Array:
+        """Slope of the quantity after the times `s`."""
+        out: Array = (factor * (self.rate * self.state(s) - self.a0 - self.a1 * s)).imag
+        return out
+
+    def extremes(self, factor: Complex, width: Array) -> tuple[Index, Array]:
+        """Stationary points of the quantity within intervals of one inflexion at most.
+
+        Returns
+        -------
+        which : ndarray of int, shape (n_found,)
+            Oscillators that have one.
+        values : ndarray, shape (n_found,)
+        """
+        first, last = self.slope(factor, np.zeros_like(width)), self.slope(factor, width)
+        once = np.flatnonzero(first * last < 0)
+        inflexion = np.mod(-np.angle(factor * self.bend), np.pi) / self.rate.imag
+        twice = np.flatnonzero((first * last >= 0) & (inflexion < width))
+        middle = inflexion[twice]
+        turned = self.of(twice).slope(factor[twice], middle) * first[twice] < 0
+        twice, middle = twice[turned], middle[turned]
+        which = np.concatenate([once, twice, twice])
+        low = np.concatenate([np.zeros(len(once) + len(twice)), middle])
+        high = np.concatenate([width[once], middle, width[twice]])
+        found = self.of(which)
+        s = found.stationary(factor[which], low, high)
+        return which, (factor[which] * found.state(s)).imag
+
+    def stationary(self, factor: Complex, low: Array, high: Array) -> Array:
+        """Zeros of the slope between times at which its signs differ, by Newton's method and bisection."""
+        rises, enough = self.slope(factor, low) < 0, ENOUGH * (high - low)
+        bend, s = factor * self.bend, 0.5 * (low + high)
+        for _ in range(60):
+            slope = self.slope(factor, s)
+            before = (slope < 0) == rises
+            low, high = np.where(before, s, low), np.where(before, high, s)
+            curvature = (bend * np.exp(self.rate * s)).imag
+            new = s - slope / np.where(curvature == 0.0, np.inf, curvature)
+            new = np.where((new > low) & (new < high), new, 0.5 * (low + high))
+            done = np.abs(new - s) <= enough
+            s = new
+            if done.all():
+                break
+        return s

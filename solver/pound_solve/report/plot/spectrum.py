@@ -1,0 +1,43 @@
+"""Picture of response spectra: pseudo-acceleration and displacement over the period."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final
+
+from pound_deck.model import Units
+from pound_solve.report.plot import style
+from pound_solve.report.spectrum import Curve
+
+STROKES: Final = ("-", "--", ":", "-.")  #: one for each damping
+
+
+def spectra(curves: Sequence[Curve], units: Units, path: Path) -> None:
+    """Draw all curves into a file, whose ending names the format: a colour for each motion, a stroke for
+    each damping.
+
+    Raises
+    ------
+    ImportError
+        matplotlib is not installed.
+    OSError
+        The file cannot be written.
+    """
+    figure = style.figure(9.0, 4.2)
+    several = any(len(curve.spectrum.damping) > 1 for curve in curves)
+    for n, (quantity, unit) in enumerate((("PSA", "L/T^2"), ("SD", "L"))):
+        axes = style.grid(
+            figure.add_subplot(1, 2, n + 1), f"period [{units.time}]", f"{quantity} [{units.text(unit)}]"
+        )
+        for k, curve in enumerate(curves):
+            found = curve.spectrum
+            for i, values in enumerate(getattr(found, quantity.lower())):
+                name = f"{curve.name}, {100.0 * found.damping[i]:g} %" if several else curve.name
+                axes.semilogx(
+                    found.periods, values, color=style.COLOURS[k % len(style.COLOURS)],
+                    linestyle=STROKES[i % len(STROKES)], linewidth=1.1, label=name,
+                )  # fmt: skip
+        axes.set_ylim(bottom=0.0)
+    figure.axes[0].legend(fontsize=7)
+    style.save(figure, path)
