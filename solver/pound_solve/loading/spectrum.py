@@ -39,7 +39,7 @@ from pound_solve.loading.motions.piecewise import Piecewise
 from pound_solve.numerics.phi import duhamel
 from pound_solve.numerics.types import Array, Complex, Index
 
-BLOCK: Final = 2**20  #: numbers of one kind that are held at a time, at most
+BLOCK: Final = 2**17  #: numbers of one kind that are held at a time, at most
 MOST: Final = 2**22  #: intervals into which an acceleration is divided for short periods, at most
 EQUAL: Final = 12  #: digits in which steps that are taken for equal agree
 ENOUGH: Final = 1e-10  #: of an interval, to which the instant of a peak is found: the peak has its square
