@@ -3,11 +3,13 @@
     python benchmarks/spectra.py export FILE... FOLDER
     python benchmarks/spectra.py compare FOLDER
 
-The first writes samples and this program's figures; the second needs eqsig and pyrotd, and not this program:
-the two may have environments of their own.  The other programs get the same samples in m/s2.  Zeros follow
-them, because this program counts the free vibration, and because the Fourier transform of pyRotd is periodic
-and its oscillators must come to rest.  They get the samples once as they are, and once with seven more on
-every line between two, because they look for peaks at samples and integrate by the trapezium rule.
+The first writes samples and this program's figures; the second needs eqsig and pyrotd, and not this
+program: the two may have environments of their own.
+
+The other programs get the same samples in m/s2.  Zeros follow them, because this program counts the free
+vibration, and because the Fourier transform of pyRotd is periodic: its oscillators must come to rest.  They
+get the samples once as they are, and once with seven more on every line between two, because they look for
+peaks at samples and integrate by the trapezium rule.
 """
 
 import json

@@ -148,6 +148,14 @@ def test_an_independent_integration_finds_the_same_peaks(period: float, xi: floa
     assert got == pytest.approx(integrated(ground, period, xi), rel=1e-9)
 
 
+def test_a_first_peak_within_the_interval_that_begins_at_rest() -> None:
+    """The slope is zero at rest: the peak is beyond the inflexion, without another change of its sign."""
+    ground, period = noise(545, 12), 0.1015625
+    expected = integrated(ground, period, 0.0)
+    found = response_spectrum(ground, period, 0.0)
+    assert [found.sd[0, 0], found.sv[0, 0], found.sa[0, 0]] == pytest.approx(expected, rel=1e-9)
+
+
 def test_peaks_lie_between_the_samples() -> None:
     """A step with five samples a period: 1 + cos(36 deg) at the samples, 2 between them."""
     h, w = 0.2, 2 * math.pi

@@ -202,13 +202,14 @@ class _Swing(NamedTuple):
         first, last = self.slope(factor, np.zeros_like(width)), self.slope(factor, width)
         once = np.flatnonzero(first * last < 0)
         inflexion = np.mod(-np.angle(factor * self.bend), np.pi) / self.rate.imag
-        twice = np.flatnonzero((first * last >= 0) & (inflexion < width))
-        middle = inflexion[twice]
-        turned = self.of(twice).slope(factor[twice], middle) * first[twice] < 0
-        twice, middle = twice[turned], middle[turned]
-        which = np.concatenate([once, twice, twice])
-        low = np.concatenate([np.zeros(len(once) + len(twice)), middle])
-        high = np.concatenate([width[once], middle, width[twice]])
+        # else one on either side of an inflexion, but for a slope of zero at an end, as at rest
+        others = np.flatnonzero((first * last >= 0) & (inflexion < width))
+        middle = inflexion[others]
+        slope = self.of(others).slope(factor[others], middle)
+        left, right = slope * first[others] < 0, slope * last[others] < 0
+        which = np.concatenate([once, others[left], others[right]])
+        low = np.concatenate([np.zeros(len(once) + int(left.sum())), middle[right]])
+        high = np.concatenate([width[once], middle[left], width[others[right]]])
         found = self.of(which)
         s = found.stationary(factor[which], low, high)
         return which, (factor[which] * found.state(s)).imag
