@@ -14,7 +14,7 @@ from pound_deck.model import Card, Span
 from pound_deck.schema import REQUIRED, Field, Kind, Spec
 from pound_deck.values import Values
 
-MAX_GENERATED: Final = 1_000_000
+MAX_GENERATED: Final = 100_000
 _LISTS: Final = {Kind.NODES, Kind.ELEMENTS, Kind.PROPS}
 _NUMBERED: Final = {Kind.NODES, Kind.ELEMENTS}
 _WHOLE: Final = {Kind.INT, Kind.NODE, Kind.NODES, Kind.ELEMENTS}

@@ -225,7 +225,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P217": (
         "value out of limits",
-        "The number is outside the limits of this item. The message gives them.",
+        "The number is outside the limits of this item, which the message gives. Any number but 0 has a "
+        "magnitude from 1e-30 to 1e30, so that what the program computes of it stays finite.",
     ),
     "P218": (
         "wrong number of values",
@@ -245,7 +246,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P221": (
         "too much generated",
-        "Ranges of the deck generate more than 1 000 000 numbers. Check their ends.",
+        "Ranges of the deck generate more than 100 000 numbers. Check their ends.",
     ),
     "P222": (
         "unknown name",
@@ -431,6 +432,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "drift of one node",
         "Both nodes of the drift are the same. Name the lower and the upper one.",
     ),
+    "P345": (
+        "too many steps or rows",
+        "DT divides the history into more than 100 000 000 steps, or OUTPUT EVERY into more than 5 000 000 "
+        "stored rows. The message gives the count, and the shortest interval that is allowed.",
+    ),
     "P349": (
         "gravity of another unit (warning)",
         "GRAVITY is the earth's in another unit of length than that of UNITS, so masses and motions in G "
@@ -496,7 +502,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "A504": (
         "runaway or not a number",
-        "Displacements grew without bound. Check DT, damping and strengths.",
+        "Displacements grew without bound, or a result is no number. Check DT, damping, strengths, and the "
+        "magnitudes of the deck.",
     ),
     "A505": (
         "method does not suit the model",

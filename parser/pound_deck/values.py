@@ -15,6 +15,9 @@ from pound_deck.model import Units
 from pound_deck.schema import Catalog, Field, Kind
 
 _LARGEST: Final = 10**15  #: whole numbers beyond are no longer exact
+#: magnitudes of a real number but zero: quantities in any units lie far within, and products
+#: of ten of them do not reach 1e308, where floating point ends
+SMALL, GREAT = 1e-30, 1e30
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +77,14 @@ class Values:
         return text.upper() if text.upper() in f.words else ""
 
     def real(self, part: Expression, f: Field | None, bounded: bool = True) -> float:
-        """Finite number (of BY where the field is None), within the field's limits where `bounded`."""
+        """Number of a sensible magnitude (of BY where the field is None), within the field's limits where
+        `bounded`.
+        """
         value = self._number(part, f)
+        if value != 0.0 and not SMALL <= abs(value) <= GREAT:
+            name, meaning = (f.name, self.meaning(f)) if f else ("BY", "the step of a range")
+            message = f"{name} is {value:.10g}, but must be 0 or of a magnitude from {SMALL:g} to {GREAT:g}"
+            raise mistake("P217", message, part.span, meaning)
         return self.within(value, part, f) if bounded else value
 
     def whole(self, part: Expression, f: Field | None, bounded: bool = True) -> int:

@@ -10,11 +10,12 @@ import numpy as np
 
 from pound_solve.analyses.envelopes import Envelopes
 from pound_solve.integrate.energy import ENERGIES, energies
-from pound_solve.integrate.protocol import LawValues, MonitoredOutputs
+from pound_solve.integrate.protocol import LawValues, MonitoredOutputs, Stop
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.elements.base import Output
 from pound_solve.structure.reduction import ReducedSystem
 
+LARGEST = 1e100  #: magnitude of a sample: energies, which are products of samples, stay finite
 BLOCK, HELD = 256, 2**20  #: samples kept before they are written, and numbers of one kind in them, at most
 
 
@@ -112,6 +113,8 @@ class EnergyBalance:
         Input less what it became, at the last sample.
     largest, largest_residual : float
         Largest absolute energy and residual of all samples.
+    samples : int
+        How many were counted in.
     """
 
     def __init__(self, first: Array | None = None) -> None:
@@ -119,6 +122,7 @@ class EnergyBalance:
         self.first = np.zeros(len(ENERGIES)) if first is None else first
         self.last = np.zeros(len(ENERGIES))
         self.residual = self.largest = self.largest_residual = 0.0
+        self.samples = 0
 
     def take(self, energy: Array) -> Array:
         """Count in energies, shape (n_times, 6); return the residuals, shape (n_times,)."""
@@ -126,6 +130,7 @@ class EnergyBalance:
             self.first, self._fresh = energy[0], False
         change = energy - self.first
         residual: Array = 2.0 * change[:, 0] - change.sum(axis=1)
+        self.samples += len(energy)
         self.last, self.residual = energy[-1], float(residual[-1])
         self.largest = max(self.largest, float(np.abs(energy).max()))
         self.largest_residual = max(self.largest_residual, float(np.abs(residual).max()))
@@ -194,11 +199,28 @@ class HistoryRecorder:
         if not new.any():
             return
         block = (t, u, v, a, *laws, works)
+        if not all((np.abs(x) <= LARGEST).all() for x in block):
+            raise self._beyond(t, u, v, a, laws, works)
         self._blocks.append(block if new.all() else tuple(x[..., new] for x in block))
         self.last = u[:, -1], v[:, -1], works[:, -1]
         self.reached = float(t[-1])
         if sum(len(x[0]) for x in self._blocks) >= self._most:
             self.flush()
+
+    def _beyond(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> Stop:
+        """Take the samples before the first that is no number or beyond `LARGEST`; tell where that is."""
+        system = self.items.system
+        names = [system.name(i) for i in range(len(u))]
+        springs = [f"the spring of element {s.element}" for s in system.structure.laws]
+        told = [(x, names) for x in (u, v, a)] + [(x, springs) for x in laws] + [(works, ["the work"] * 3)]
+        good = np.array([(np.abs(x) <= LARGEST).all(axis=0) for x, _ in told]).all(axis=0)
+        first = int(np.argmin(good))
+        if first:
+            parts = LawValues(*(x[:, :first] for x in laws))
+            self.keep(t[:first], u[:, :first], v[:, :first], a[:, :first], parts, works[:, :first])
+        at = ((x[:, first], named) for x, named in told)
+        where = next(n for x, named in at for n, y in zip(named, x) if not abs(y) <= LARGEST)
+        return Stop("A504", float(t[first]), f"the motion is beyond all numbers, first at {where}")
 
     def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
         """Widen the envelopes only (see `integrate.protocol.Recorder`)."""

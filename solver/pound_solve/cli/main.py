@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import warnings
 from collections.abc import Callable, Sequence
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
+from typing import TextIO
 
 from pound_solve.cli import verbs
 from pound_solve.cli.common import MISTAKES, STOPPED, complain
@@ -54,8 +56,22 @@ def main(argv: Sequence[str] | None = None) -> int:
     # slower with several
     for name in THREADS:
         os.environ.setdefault(name, "1")
-    with Interruption() as args.interruption:
+    with Interruption() as args.interruption, warnings.catch_warnings():
+        warnings.showwarning = _tell
         return _status(args.execute, args)
+
+
+def _tell(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """Print a warning of a library in one line of ours: the numbers it met are the deck's."""
+    where = f"{category.__name__}: {message}".splitlines()[0]
+    complain(f"warning: arithmetic at the limits of floating point ({where}): check the deck's magnitudes")
 
 
 def _misspelt(words: Sequence[str]) -> bool:

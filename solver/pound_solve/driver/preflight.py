@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import ceil, floor, log10
 from typing import Final
 
 import numpy as np
@@ -14,6 +15,8 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.structure import Structure
 
 EARTH: Final = 9.80665  #: acceleration of gravity [m/s2]
+MOST_STEPS: Final = 10**8  #: of a history: hours of a small structure
+MOST_ROWS: Final = 5 * 10**6  #: of stored histories
 
 
 def inclined(structure: Structure) -> list[Diagnostic]:
@@ -104,12 +107,36 @@ def foreign_gravity(structure: Structure) -> list[Diagnostic]:
     return []
 
 
+def too_many(structure: Structure) -> list[Diagnostic]:
+    """Histories of more steps than anyone waits for, and of more rows than a results file holds."""
+    model = structure.model
+    out = []
+    for card in model.analyses:
+        if card.spec.name == "HISTORY":
+            end = card["T"]
+            asked = ("DT", "steps", card.values.get("DT"), MOST_STEPS, card.place("DT"))
+            stored = ("EVERY", "rows", model.output["EVERY"], MOST_ROWS, model.output.place("EVERY"))
+            for item, what, length, most, place in (asked, stored):
+                if length is not None and end / length > most:
+                    message = f"{item}={length:g} asks for {end / length:.3g} {what}, more than {most:g}"
+                    hint = f"over {end:g} {model.units.time} it is at least {rounded_up(end / most):g}"
+                    out.append(Diagnostic("P345", message, place, hint))
+    return out
+
+
+def rounded_up(x: float) -> float:
+    """The next number of one digit that is not below `x`."""
+    unit = 10.0 ** floor(log10(x))
+    return ceil(x / unit * (1.0 - 1e-12)) * unit
+
+
 CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     inclined,
     pressed,
     adrift,
     foreign_gravity,
     pushover.mistakes,
+    too_many,
 )
 
 

@@ -27,6 +27,7 @@ from pound_solve.structure.diaphragms import diaphragm_collisions
 from pound_solve.structure.reduction_checks import ReductionError
 
 NO_ROOM = "A508 no room on the disk; what was written before is kept"
+EXTREME = "of the deck that is far too large or too small"
 #: told the time reached, the time to reach, and what keeps the run waiting there, if anything
 Progress: TypeAlias = Callable[[float, float, str], None]
 
@@ -93,6 +94,8 @@ class AnalysisSequence:
             return f"{err.code} {doing}: {err}"
         except np.linalg.LinAlgError as err:
             return f"A501 the structure is a mechanism ({err})"
+        except ArithmeticError as err:
+            return f"A504 {doing}: numbers beyond computing ({err}): look for a value {EXTREME}"
         except (ReductionError, restart.RestartError) as err:
             return f"A505 {err}"
         except Stop as err:

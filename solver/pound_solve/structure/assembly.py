@@ -184,7 +184,7 @@ class _Elements:
             message = f"element {element.id} is a {kind}: only FRAME and BEAM_COLUMN take member loads"
             self.problems.append(Diagnostic("P331", message, context.member_loads[0].span))
         try:
-            own = context.prop.spec.impl(context)
+            own = _built(context)
         except ElementError as err:
             why = (context.prop.label, str(err), err.item)
             self._refused.setdefault(why, []).append(element)
@@ -192,6 +192,20 @@ class _Elements:
         self.parts[element.id] = own
         nodes = frozenset(k for k in (element.i, element.j) if k is not None)
         self.mass += [MassBlock(nodes, b.dofs, b.matrix) for b in own.mass]
+
+
+def _built(context: ElementContext) -> Parts:
+    """Parts of an element; ElementError too where its numbers leave the range of floating point."""
+    beyond = "its values and its nodes are too far apart in magnitude to be computed with"
+    try:
+        with np.errstate(over="raise", divide="raise", invalid="raise"):
+            own: Parts = context.prop.spec.impl(context)
+    except ArithmeticError as err:
+        raise ElementError(beyond) from err
+    blocks = [b.matrix for b in (*own.stiffness, *own.mass, *own.damping)]
+    if not all(np.isfinite(x).all() for x in blocks):
+        raise ElementError(beyond)
+    return own
 
 
 def stiffness_along(

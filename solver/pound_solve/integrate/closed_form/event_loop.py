@@ -10,6 +10,7 @@ import numpy as np
 
 from pound_solve.integrate.energy import EnergyAccumulator
 from pound_solve.integrate.events.functions import RowSet
+from pound_solve.integrate.kernels.ties import arrives
 from pound_solve.integrate.protocol import (
     CHANGES,
     CHANGES_PER_LAW,
@@ -24,6 +25,7 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.release import falls, release
 from pound_solve.integrate.tracker import ResponseTracker
+from pound_solve.integrate.uniqueness import Uniqueness
 from pound_solve.laws.automaton import Branch
 from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import ReducedSystem
@@ -65,6 +67,7 @@ class EventDrivenRun(ABC):
         self.t, self.u, self.v = float(start.times[0]), start.u.copy(), start.v.copy()
         self.events = self.changes_at_instant = 0
         self._massless_laws = light(system)
+        self.uniqueness = Uniqueness(system)
 
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
         """Let a law leave its branch at deformation `d` and rate `v`."""
@@ -75,11 +78,15 @@ class EventDrivenRun(ABC):
         self.tracker.switched(law, before, after.kind, self.t, d, v, force)
         self.tracker.force(law).take(force, self.t)
 
-    def change(self, law: int, event_index: int, d: float, v: float) -> None:
-        """Let a law leave its branch, and joints without mass move where its force falls."""
-        before = self.branches[law]
-        self.transition(law, event_index, d, v)
-        if self._massless_laws[law] and falls(before, self.branches[law], d):
+    def change(self, law: int, event_index: int, d: Array, v: Array) -> None:
+        """Let a law leave its branch, look which others come to the end of theirs with it, and let joints
+        without mass move where its force falls; `d` and `v` are those of all laws.
+        """
+        before, own = self.branches[law], float(d[law])
+        self.transition(law, event_index, own, float(v[law]))
+        if self.branches[law].stiffness < before.stiffness:
+            self._look_for_ties(law, d, v)
+        if self._massless_laws[law] and falls(before, self.branches[law], own):
             release(self, law)
 
     def force(self, law: int, d: float) -> tuple[float, float]:
@@ -90,6 +97,23 @@ class EventDrivenRun(ABC):
         """Count the work that a falling force has done into that on its law."""
         at, d, work, m = self.states[law]
         self.states[law] = at, d, work + lost, m
+
+    def _look_for_ties(self, law: int, d: Array, v: Array) -> None:
+        """Look which laws come to the end of their branches with one that is softer now."""
+        k = np.array([b.stiffness for b in self.branches])
+        rising = np.where(np.arange(len(k)) == law, v[: len(k)], 0.0)
+        if self.laws[law].role.collides or not self._massless_laws[law]:
+            return
+        for i in np.flatnonzero(self._massless_laws & (np.arange(len(k)) != law)).tolist():
+            events = () if self.laws[i].role.collides else self.branches[i].events
+            for n, e in enumerate(events):
+                if arrives(*e, float(d[i]), float(v[i]), float(self.largest[0, i])):
+                    after = self.laws[i].law.transition(self.states[i], n, float(d[i]), float(v[i]))
+                    softer = self.laws[i].branch(after).stiffness
+                    rising[i], k[i] = v[i] if softer < k[i] else 0.0, min(softer, k[i])
+                    break
+        if np.count_nonzero(rising) > 1:
+            self.uniqueness.take(self.t, k, np.array([b.damping for b in self.branches]), rising)
 
     def count_change(self, elapsed: float, rounding: float) -> None:
         """Count changes of branch at one instant: an event after a share `rounding` of the time is one."""

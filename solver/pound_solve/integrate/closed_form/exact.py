@@ -158,9 +158,7 @@ class Exact(EventDrivenRun):
         if overdue is not None:
             law = overdue.law
             self.count_change(0.0, SAME_INSTANT)
-            self._switch(
-                law, overdue.event_index, float(coarse.value[law, 0, 0]), float(coarse.rate[law, 0, 0])
-            )
+            self._switch(law, overdue.event_index, coarse.value[:, 0, 0], coarse.rate[:, 0, 0])
             return cursor
         fine = self.search.fine(coarse, bounds, window.h, self.largest)
         self.window_count += 1
@@ -210,11 +208,13 @@ class Exact(EventDrivenRun):
         self.count_change(tau, SAME_INSTANT)
         self.t = float(window.starts[interval]) + local
         self.windows.restart()
-        self._switch(law, event_index, float(end.value[law, 0, 0]), float(end.rate[law, 0, 0]))
+        self._switch(law, event_index, end.value[:, 0, 0], end.rate[:, 0, 0])
         return cursor + interval
 
-    def _switch(self, law: int, event_index: int, d: float, v: float) -> None:
-        """Let a law leave its branch, and all that follows from it at the same instant."""
+    def _switch(self, law: int, event_index: int, d: Array, v: Array) -> None:
+        """Let a law leave its branch, and all that follows from it at the same instant; `d` and `v` are the
+        deformations and rates of all laws.
+        """
         self.events += 1
         try:
             strikes = self.laws[law].law.rigid and not self.branches[law].held
@@ -342,7 +342,7 @@ class Exact(EventDrivenRun):
         if any(isinstance(x, SeriesPropagator) for x in propagators):
             checks.append(("defective modes, integrated by the exponential series", "present", "good"))
         peaks = self.tracker.close(self.energy.dashpot_losses)
-        checks += rounding_check(self.laws, peaks)
+        checks += [*rounding_check(self.laws, peaks), *self.uniqueness.checks()]
         return Outcome(peaks, figures, tuple(self.states), checks, exact=True, turns=True)
 
 

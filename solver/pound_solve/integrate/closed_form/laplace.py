@@ -144,8 +144,7 @@ class Laplace(EventDrivenRun):
         self.t += tau
         if event is not None:
             self.events += 1
-            d, rate = float(ends[0][event.law]), float(ends[1][event.law])
-            self.change(event.law, event.event_index, d, rate)
+            self.change(event.law, event.event_index, ends[0], ends[1])
             self.stop_chatter(event.law, "EXACT")
         hint = f" as samples {self.dt:g} apart see it: is DT too long for the excitation?"
         self.stop_growth(self.v, hint)
@@ -212,7 +211,7 @@ class Laplace(EventDrivenRun):
             "combinations of stiffnesses": len(self._stiffnesses),
         }
         peaks = self.tracker.close(self.energy.dashpot_losses)
-        checks = rounding_check(self.laws, peaks, STILL)
+        checks = [*rounding_check(self.laws, peaks, STILL), *self.uniqueness.checks()]
         return Outcome(peaks, figures, tuple(self.states), checks)
 
 

@@ -22,7 +22,7 @@ from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
 #: samples and transitions kept between two visits of Python, which cost 2 ms each
-SAMPLES, TRANSITIONS = 1024, 4096
+SAMPLES, TRANSITIONS, TIES = 1024, 4096, 64
 MOST_HELD = 2**20  #: numbers of one kind in those samples, at most, but for two
 SHOWS = 4  #: steps between two samples, at most, that the envelopes see
 INSTANT = 1e-6  #: share of the longest step that the time which tells massless velocities keeps below
@@ -369,6 +369,8 @@ def buffers(n: int, n_laws: int, which: Index) -> state.Buffers:
         time=np.zeros(samples),
         works=np.zeros((samples, 3)),
         log=np.zeros((TRANSITIONS + 16 * n_laws, state.LOGGED)),
+        ties=np.zeros((TIES, 3, n_laws)),
+        tie_time=np.zeros(TIES),
         which=which,
         shown=np.zeros((shown, 3, len(which))),
         shown_time=np.zeros(shown),

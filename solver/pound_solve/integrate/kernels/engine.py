@@ -25,6 +25,7 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.protocol import RUNAWAY as GROWS
 from pound_solve.integrate.tracker import Peaks, ResponseTracker
+from pound_solve.integrate.uniqueness import Uniqueness
 from pound_solve.laws import functions
 from pound_solve.laws.automaton import BranchKind, State
 from pound_solve.laws.hysteresis import bilinear
@@ -79,6 +80,7 @@ class KernelEngine(ABC):
         law_kernels.linearise_laws(self.laws, self.rules)
         corotational.form_members(self.laws, self.step)
         corotational.take_tangents(self.laws.members, self.laws.members.now.quantities)
+        self.uniqueness = Uniqueness(system)
         self.speed = np.zeros(2)  # v M v and a M a, summed over the samples
         self.seen = float(self.times[0])  # latest instant that the recorder was shown
 
@@ -145,6 +147,7 @@ class KernelEngine(ABC):
     def fetch(self) -> None:
         """Take in the samples and the transitions that were kept."""
         self.fetch_transitions()
+        self._fetch_ties()
         self._fetch_shown()
         self._fetch_samples()
         self.state.kept = self.state.shown = 0
@@ -158,6 +161,11 @@ class KernelEngine(ABC):
                 self.tracker.open[law].count(*row[7:])
             self.tracker.switched(law, branches[before].kind, branches[after].kind, *row[3:7])
         self.state.logged = 0
+
+    def _fetch_ties(self) -> None:
+        for k in range(int(self.state.tied)):
+            self.uniqueness.take(float(self.buffers.tie_time[k]), *self.buffers.ties[k])
+        self.state.tied = 0
 
     def _fetch_shown(self) -> None:
         buffers, shown = self.buffers, self.state.shown
@@ -215,7 +223,8 @@ class KernelEngine(ABC):
             collision.count(*(float(x) for x in running))
         peaks = self.tracker.close(self.accumulator.dashpot_losses)
         states = tuple(self.law_state(i) for i in range(len(self.springs)))
-        return Outcome(peaks, self.figures(), states, self.checks(peaks), self.exact)
+        checks = [*self.checks(peaks), *self.uniqueness.checks()]
+        return Outcome(peaks, self.figures(), states, checks, self.exact)
 
     def law_state(self, i: int) -> State:
         """State of law `i`."""

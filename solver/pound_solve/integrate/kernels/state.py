@@ -40,6 +40,7 @@ class Run(Protocol):
     updates: int  #: of rank one since the factor was made
     stale: int  #: whether what follows from the branches of the laws, as a factor, must be made anew
     falling: int  #: steps that are too long for a falling branch
+    tied: int  #: instants at which laws give way together in the buffers
     fault: int  #: law or unknown at fault, -1 for none
     time: float
     factor_length: float  #: step that the factor at hand is for
@@ -389,6 +390,10 @@ class Buffers(NamedTuple):
         Input, lost in the structure's, in the contacts' dashpots.
     log : ndarray, shape (n_log, LOGGED)
         Transitions.
+    ties : ndarray, shape (n_ties, 3, n_laws)
+        Of instants at which laws come to their events together: tangents and dashpots if these go on, and
+        the rates at which they come; zero for all others.
+    tie_time : ndarray, shape (n_ties,)
     which : ndarray, shape (n_which,)
         Unknowns that the envelopes look at.
     shown : ndarray, shape (n_shown, 3, n_which)
@@ -405,6 +410,8 @@ class Buffers(NamedTuple):
     time: Array
     works: Array
     log: Array
+    ties: Array
+    tie_time: Array
     which: Index
     shown: Array
     shown_time: Array

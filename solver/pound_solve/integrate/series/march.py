@@ -28,6 +28,7 @@ from pound_solve.integrate.kernels.state import (
     Run,
     Step,
 )
+from pound_solve.integrate.kernels.ties import note_ties
 from pound_solve.integrate.kernels.work import load_on_nodes, support_power
 from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW
 from pound_solve.integrate.series.curved import APART, change_phase
@@ -226,12 +227,13 @@ def change_friction(laws: Laws, buffers: Buffers, rules: Tables, series: Series,
 
 
 def change_branches(
-    laws: Laws, buffers: Buffers, rules: Tables, series: Series, terms: int, h: float, end: float,
-    event: LocatedEvent, run: Run,
+    linear: LinearSystem, laws: Laws, buffers: Buffers, rules: Tables, series: Series, terms: int, h: float,
+    end: float, event: LocatedEvent, run: Run,
 ) -> None:  # fmt: skip
     """Let a law leave its branch, and others whose events are at the same instant."""
-    now, instant = run.time, INSTANT * max(run.time, h)
+    now, instant, before = run.time, INSTANT * max(run.time, h), laws.stiffness[event.law]
     change_branch(laws, buffers, rules, series, run, now, event)
+    note_ties(linear, laws, buffers, rules, run, event.law, before)
     for i in range(len(laws.rule) if len(series.massless.unknown) == 0 else 0):  # else `settle` decides
         if i != event.law and series.rigid.number[i] < 0:
             own = event_of(laws, series, terms, h, min(event.time + AHEAD, end), i)
@@ -316,7 +318,7 @@ def settle(
 
 def must_pause(buffers: Buffers, run: Run, pause: int) -> bool:
     """Whether Python must empty the buffers, or may look whether the user wants to stop."""
-    crowded = len(buffers.log) - run.logged < len(buffers.log) // 2
+    crowded = len(buffers.log) - run.logged < len(buffers.log) // 2 or run.tied > len(buffers.ties) // 2
     return crowded or run.steps >= pause or run.shown + LOOKS > len(buffers.shown_time)
 
 
@@ -412,7 +414,7 @@ def stride(
         if series.rigid.number[event.law] >= 0:
             run.fault = event.law
             return STRIKE
-        change_branches(laws, buffers, rules, series, terms, h, end, event, run)
+        change_branches(linear, laws, buffers, rules, series, terms, h, end, event, run)
         why = settle(linear, laws, step, buffers, rules, series, coefs, run.time - begin, run)
         if why != DONE:
             return why

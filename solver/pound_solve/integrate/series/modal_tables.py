@@ -30,6 +30,7 @@ from pound_solve.structure.reduction import ReducedSystem
 MOST_UNKNOWNS = 200  #: of a part
 MOST_CONDITION = 3e3  #: of its modes
 WORTH = 10.0  #: radians of the fastest mode in an interval from which on it pays: two steps by series
+MOST_CELLS = 100_000  #: in an interval: faster modes than that are for no table
 FEW = 50  #: intervals of one length for which tables do not pay
 STRIDE = 5.0  #: radians of the fastest mode in a cell, at most, as in a step by series
 FEWEST = 4  #: cells
@@ -173,6 +174,8 @@ def allocate(
     open_ = np.array([not s.role.collides for s in system.structure.laws], bool)
     stiffness = stiffness * open_  # parts have modes of their own while all contacts are open
     parts = parts_of(system, stiffness, outputs, length)
+    if any(np.abs(p.rate).max() * length > MOST_CELLS * STRIDE for p in parts):
+        parts = []
     seen = [np.flatnonzero(np.isin(shown, place[p.unknowns])) for p in parts]
     n_inputs, n_followed = system.inputs.shape[1], len(stiffness) + len(outputs)
     counts = [(len(p.unknowns), len(p.rate), len(p.followed), len(s)) for p, s in zip(parts, seen)]

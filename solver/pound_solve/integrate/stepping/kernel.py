@@ -266,7 +266,8 @@ def advance(
         begin = breaks[pieces[goal]]
         begin_goal(linear, laws, step, scheme, piece, run.time - begin, h, run)
         while run.step < steps[goal]:
-            if len(buffers.log) - run.logged < room or run.steps >= pause:
+            crowded = len(buffers.log) - run.logged < room or run.tied > len(buffers.ties) // 2
+            if crowded or run.steps >= pause:
                 return FULL
             why = renew_factor(linear, laws, step, scheme, h, run)
             if why != DONE:

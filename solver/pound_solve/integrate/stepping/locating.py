@@ -35,6 +35,7 @@ from pound_solve.integrate.kernels.state import (
     Scheme,
     Step,
 )
+from pound_solve.integrate.kernels.ties import note_ties
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.stepping.step import (
     REFRESH,
@@ -78,6 +79,7 @@ def change_branch(
         force -= laws.damping[i] * v
     if before != laws.branch[i]:
         log_transition(laws, buffers, run, i, before, run.time, force)
+    note_ties(linear, laws, buffers, rules, run, i, k)
     run.events += 1
     for j in laws.coupled:
         before = laws.branch[j]

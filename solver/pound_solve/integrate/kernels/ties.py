@@ -1,0 +1,53 @@
+"""Laws that come to the end of their branches at one instant: where unknowns without mass stand between
+them, which of them goes on may hang on rounding (see `integrate.uniqueness`).
+"""
+
+from __future__ import annotations
+
+from pound_solve.integrate.kernels.consistency import touches_massless
+from pound_solve.integrate.kernels.laws import restore_state, save_state, transition
+from pound_solve.integrate.kernels.state import Buffers, Laws, LinearSystem, Run
+from pound_solve.laws.functions import Tables
+
+TIED = 1e-9  #: share of its largest terms that an event function may lack of an event at the same instant
+
+
+def arrives(a: float, b: float, c: float, d: float, v: float, largest: float) -> bool:
+    """Whether the event function ``a d + b v + c`` of a deformation alone comes to zero at `d` and the rate
+    `v`, where the largest deformation so far is `largest`.
+    """
+    near = abs(a * d + c) <= TIED * (abs(a) * largest + abs(c))
+    return b == 0.0 and a * v > 0.0 and near
+
+
+def note_ties(
+    linear: LinearSystem, laws: Laws, buffers: Buffers, rules: Tables, run: Run, law: int, before: float
+) -> None:
+    """Keep the tangents that the laws have if all go on that come to their events together with `law`,
+    which has just become softer than `before`; nothing where none does.
+    """
+    softer = laws.stiffness[law] < before and not laws.contact[law] and not laws.curved[law]
+    if not softer or not touches_massless(linear, laws, law) or run.tied == len(buffers.ties):
+        return
+    row, found = buffers.ties[run.tied], 0
+    rate = laws.now.rate
+    for i in range(len(laws.rule)):
+        row[0, i], row[1, i], row[2, i] = laws.stiffness[i], laws.damping[i], 0.0
+        if i == law or laws.contact[i] or laws.curved[i] or laws.normal[i] >= 0:
+            continue
+        d, v, k = laws.now.deformation[i], rate[i], laws.stiffness[i]
+        for e in range(laws.n_events[i]):
+            a, b, c = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
+            if arrives(a, b, c, d, v, laws.largest_deformation[i]) and touches_massless(linear, laws, i):
+                save_state(laws, i)
+                transition(laws, rules, i, e, d, v)
+                if laws.stiffness[i] < k:
+                    row[0, i], row[2, i] = laws.stiffness[i], v
+                    found += 1
+                restore_state(laws, rules, i)
+                laws.saved[i] = 0
+                break
+    if found > 0:
+        row[2, law] = rate[law]
+        buffers.tie_time[run.tied] = run.time
+        run.tied += 1

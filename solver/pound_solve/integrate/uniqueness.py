@@ -1,0 +1,95 @@
+r"""Whether the answer hangs on rounding where laws give way at one instant.
+
+Between laws in series the split of the deformation follows from the tangent stiffness of the unknowns
+without mass, which inertia does not hold.  If it is positive definite with the tangents of *all* laws that
+come to the end of their branches together (Hill's comparison solid), the rates are unique.  If there is a
+motion that it does not hold, in which some of these laws go on and others turn back, any of them may go on
+alone, and rounding chooses.  Dashpots hold such a motion where the tangent is zero; where it is negative
+they only slow it down, and what rounding makes of it grows without the structure's doing.
+
+References
+----------
+Hill R (1958), A general theory of uniqueness and stability in elastic-plastic solids, J. Mech. Phys. Solids
+6: 236-249.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.numerics.matrices import dense, diagonal, scaled, used_columns, used_rows
+from pound_solve.numerics.modes import massless
+from pound_solve.numerics.types import Array, Flags
+from pound_solve.structure.reduction import ReducedSystem
+
+SOFT = 1e-9  #: share of the elastic stiffness below which a tangent holds nothing
+TAKES_PART = 1e-6  #: share of the largest deformation of the motion that is not held
+SHOWN = 4  #: elements that are named
+ADVICE = "look: not unique; vary the strengths, or add a hardening R, or a weight between"
+
+
+class Uniqueness:
+    """Looks at the instants of a run at which laws give way together.
+
+    Attributes
+    ----------
+    first : str
+        The first instant at which it is open which of them goes on, in words; empty where there is none.
+    """
+
+    def __init__(self, system: ReducedSystem) -> None:
+        self.system, self.first = system, ""
+        self._straight = not system.structure.corotational
+        self._light = massless(system.mass)
+        self._undamped = self._light & ~used_rows(system.damping)
+        self._k0 = np.array([s.k0 for s in system.structure.laws], float)
+        self._known: set[bytes] = set()
+
+    def take(self, t: float, stiffness: Array, damping: Array, rising: Array) -> None:
+        """Look at an instant.
+
+        Parameters
+        ----------
+        t : float
+            [T]
+        stiffness, damping : ndarray, shape (n_laws,)
+            Tangents and dashpots of the laws if all that are tied go on [F/L], [F T/L].
+        rising : ndarray, shape (n_laws,)
+            Above zero for laws whose deformation rises to the end of its branch, below zero where it falls
+            to it, zero for all others.
+        """
+        if self.first or not self._straight:  # the tangents of the members move
+            return
+        key = b"".join(x.tobytes() for x in (stiffness, damping, np.sign(rising)))
+        if key in self._known:
+            return
+        self._known.add(key)
+        damped = used_columns(self.system.law_rows[damping != 0.0])
+        elements = self._open(self._undamped & ~damped, stiffness, rising, SOFT) or self._open(
+            self._light, stiffness, rising, -SOFT
+        )
+        if elements:
+            named = ", ".join(str(e) for e in elements[:SHOWN])
+            more = f" and {len(elements) - SHOWN} more" if len(elements) > SHOWN else ""
+            self.first = f"{named}{more} at t = {t:.6g} {self.system.structure.model.units.time}"
+
+    def _open(self, among: Flags, stiffness: Array, rising: Array, least: float) -> list[int]:
+        """Elements of tied laws that take part, some going on and some turning back, in a motion of some
+        unknowns whose tangent is below the `least` share of the elastic stiffness.
+        """
+        system, at = self.system, np.flatnonzero(among)
+        rows = dense(system.law_rows[:, at])
+        own = dense(system.stiffness[np.ix_(at, at)])
+        elastic = diagonal(own) + (np.maximum(self._k0, stiffness)[:, None] * rows**2).sum(axis=0)
+        factors = 1.0 / np.sqrt(np.where(elastic > 0.0, elastic, 1.0))
+        values, motions = np.linalg.eigh(scaled(own + (rows.T * stiffness) @ rows, factors))
+        for stretch in (rows @ (factors[:, None] * motions[:, values < least])).T:
+            share = np.sign(rising) * stretch / np.abs(stretch).max()
+            on, back = share > TAKES_PART, share < -TAKES_PART
+            if on.any() and back.any():
+                return sorted({system.structure.laws[i].element for i in np.flatnonzero(on | back)})
+        return []
+
+    def checks(self) -> list[tuple[str, str, str]]:
+        """The check of a run: none where its motion is unique."""
+        return [("elements of which any may give way", self.first, ADVICE)] if self.first else []

@@ -1,0 +1,121 @@
+"""An answer that hangs on rounding is told: laws that give way at one instant between massless unknowns."""
+
+from __future__ import annotations
+
+from math import asin
+
+import pytest
+
+from verification.cases import Ran, run_text
+
+STOREYS = """UNITS kN m s
+GRAVITY 9.81
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=YR
+ 3 0 6 FIX=YR
+ 4 0 9 FIX=YR
+ELEMENTS
+ 1 A 1 2
+ 2 B 2 3
+ 3 C 3 4
+PROPS
+ A SPRING KX=30000 RULE={a}
+ B SPRING KX=30000 RULE={b}
+ C SPRING KX={kc}
+WEIGHTS
+ 4 300
+{weights}
+INITIAL
+ 4 VX={vx}
+OUTPUT
+ EVERY=0.01
+ANALYSIS
+ HISTORY 0.3
+"""
+PLASTIC = "ELASTO_PLASTIC FX=150"
+METHODS = [("EXACT", None), ("TAYLOR", None), ("LAPLACE", 2e-3), ("NEWMARK", 1e-3), ("HHT", 1e-3)]
+NAME = "elements of which any may give way"
+
+
+def storeys(a: str = PLASTIC, b: str = PLASTIC, kc: float = 5e4, weights: str = "", vx: float = 2.0) -> str:
+    """A mass on three springs in series, over joints without mass."""
+    return STOREYS.format(a=a, b=b, kc=kc, weights=weights, vx=vx)
+
+
+def told(r: Ran) -> str:
+    """Which elements the check names, and its verdict; empty where there is no such check."""
+    return " ".join(f"{value}: {verdict}" for check, value, verdict in r.tables["checks"] if check == NAME)
+
+
+@pytest.mark.parametrize(("method", "dt"), METHODS)
+@pytest.mark.parametrize("vx", [2.0, -2.0])
+def test_two_equal_storeys_in_series(method: str, dt: float | None, vx: float) -> None:
+    """Both come to their strength together: k v sin(w t) / w = 150 with w of three springs in series."""
+    found = told(run_text(storeys(vx=vx), None, method, dt))
+    k = 1.0 / (2.0 / 30000 + 1.0 / 5e4)
+    w = (k * 9.81 / 300) ** 0.5
+    when = asin(150 * w / (k * 2.0)) / w
+    assert found.startswith("1, 2 at t = ") and "look: not unique" in found
+    assert float(found.split()[5]) == pytest.approx(when, rel=1e-4 if dt else 1e-5)
+
+
+@pytest.mark.parametrize(("method", "dt"), METHODS)
+@pytest.mark.parametrize(
+    "own",
+    [
+        {"b": "ELASTO_PLASTIC FX=150.001"},  # the other stays behind by far more than rounding
+        {"b": "BILINEAR FX=150 R=0.01"},  # hardens: the rates are unique
+        {"a": "BILINEAR FX=150 R=0.01", "b": "BILINEAR FX=150 R=0.01"},
+        {"weights": " 2 30"},  # inertia holds the joint
+        {"b": f"{PLASTIC}\n D DASHPOT CX=1000\nELEMENTS\n 4 D 1 2\nPROPS"},
+    ],
+    ids=["other strength", "one hardens", "both harden", "mass", "dashpots"],
+)
+def test_what_is_unique_is_not_told(method: str, dt: float | None, own: dict[str, str]) -> None:
+    r = run_text(storeys(**own), None, method, dt)
+    assert r.status == "done" and told(r) == ""
+    assert r.tables["spring_envelope"]["yield_events"].max() > 0
+
+
+PARALLEL = """UNITS kN m s
+GRAVITY 9.81
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=YR
+ 3 0 6 FIX=YR
+ELEMENTS
+ 1 HALF 1 2
+ 2 HALF 1 2
+ 3 TOP 2 3
+PROPS
+ HALF SPRING KX=15000 FX=75 RULE=ELASTO_PLASTIC
+ TOP SPRING KX=30000 FX={fx} RULE=ELASTO_PLASTIC
+WEIGHTS
+ 3 300
+INITIAL
+ 3 VX=2
+OUTPUT
+ EVERY=0.01
+ANALYSIS
+ HISTORY 0.3
+"""
+
+
+@pytest.mark.parametrize(("method", "dt"), METHODS)
+def test_parallel_springs_that_yield_together(method: str, dt: float | None) -> None:
+    """Both go on by the same deformation.  Against an equal storey it is open which storey does."""
+    assert told(run_text(PARALLEL.format(fx=160), None, method, dt)) == ""
+    assert told(run_text(PARALLEL.format(fx=150), None, method, dt)).startswith("1, 2, 3 at t = ")
+
+
+SOFTENING = "IMK_BILINEAR FX=150 R=0.05 DP=0.001 DPC=0.5"
+
+
+@pytest.mark.parametrize(("method", "dt"), METHODS)
+def test_two_equal_springs_that_soften_together(method: str, dt: float | None) -> None:
+    """Both harden together to their caps; there one goes on, the other unloads, or the other way round."""
+    found = told(run_text(storeys(a=SOFTENING, b=SOFTENING), None, method, dt))
+    assert found.startswith("1, 2 at t = ")
+    other = SOFTENING.replace("FX=150", "FX=150.15")
+    assert told(run_text(storeys(a=SOFTENING, b=other), None, method, dt)) == ""
