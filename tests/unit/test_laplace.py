@@ -223,8 +223,8 @@ ANALYSIS
 
 
 def test_motion_that_grows_is_that_of_exact() -> None:
-    """Falling branches: poles in the right half plane, to the right of the line of other motions.  Transforms
-    on that line gave velocities that jump, and events without an end."""
+    """Falling branches: poles right of the line of other motions.  Transforms on that line gave velocities
+    that jump, and events without an end."""
     exact = run_text(SOFTENING, method="EXACT")
     off = []
     for dt in (1e-3, 5e-4):

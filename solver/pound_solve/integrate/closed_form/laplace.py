@@ -159,7 +159,7 @@ class Laplace(EventDrivenRun):
         self.stop_growth(self.v, hint)
 
     def _stop_crowd(self) -> None:
-        """Stop where events follow one another so closely that the samples do not show what lies between."""
+        """Stop where events are so close that the samples do not show what lies between."""
         if self.t - self._since > self.dt:
             self._since, self._changes = self.t, 0
         self._changes += 1
@@ -256,8 +256,9 @@ def integrate(
     Raises
     ------
     Stop
-        A reduced system that is not piecewise linear or whose supports move apart from each other, a DT
-        that does not resolve it or its events, too many unknowns, a mechanism, numbers beyond all bounds, or an interrupt.
+        A reduced system that is not piecewise linear, that is too large or whose supports move apart from
+        each other, a DT that does not resolve it or its events, a mechanism, numbers beyond all bounds, or
+        an interrupt.
     """
     refuse_rigid(system, start, "LAPLACE")
     if why := not_linear(system) or ("the supports move apart from each other" if system.total else ""):
