@@ -1,4 +1,4 @@
-"""What many contacts, unknowns and samples cost: counts of the work, which must not grow faster than the model."""
+"""What many contacts and unknowns cost: counts of the work, which must not grow faster than the model."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pytest
 
 from kernels import interpreted
 from pound_solve import run
+from pound_solve.integrate import condensed
 from pound_solve.integrate.stepping import locating
 from pound_solve.results import Results
 
@@ -65,9 +66,47 @@ def trials(
 def test_contacts_that_meet_at_one_instant_cost_one_event(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, law: str, rule: str
 ) -> None:
-    """Bodies apart from each other, all alike: as many trials for twelve as for two, and the same motion."""
+    """Bodies apart from each other, all alike: as many trials for twelve as for two, the same motion."""
     few, events, u = trials(monkeypatch, tmp_path, 2, law, rule)
     many, all_events, all_u = trials(monkeypatch, tmp_path, 12, law, rule)
     assert all_events == 6 * events > 0
     assert many == few
     assert np.abs(all_u - u[:, :1]).max() < 1e-12 * np.abs(u).max()
+
+
+@pytest.fixture
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Full matrices hold five unknowns, and none is made."""
+    monkeypatch.setattr(condensed, "MAX_UNKNOWNS", 5)
+    monkeypatch.setattr(condensed, "condense", None)
+
+
+@pytest.mark.usefixtures("small")
+@pytest.mark.parametrize(
+    ("method", "law", "cure"),
+    [
+        ("EXACT", "KELVIN_VOIGT K=1E4 E=0.6", "METHOD=TAYLOR or NEWMARK or AUTO takes them"),
+        ("EXACT", "STEREOMECHANICS E=0.6", "METHOD=TAYLOR or AUTO takes them"),
+        ("LAPLACE DT=1E-3", "KELVIN_VOIGT K=1E4 E=0.6", "METHOD=TAYLOR or NEWMARK or AUTO takes them"),
+    ],
+)
+def test_full_matrices_are_refused_with_the_count_and_what_takes_it(
+    tmp_path: Path, method: str, law: str, cure: str
+) -> None:
+    deck = tmp_path / "deck.inp"
+    text = CROWD.format(n=6, law=law, rule="", weight="1")
+    deck.write_text(text.replace("NEWMARK DT=5E-3", method))
+    with run(deck, out=tmp_path) as results:
+        name = method.split()[0]
+        assert results.message.startswith(f"A505 at t = 0 s: {name} works on full matrices, and 6 unknowns")
+        assert results.message.endswith(cure)
+
+
+@pytest.mark.usefixtures("small")
+def test_auto_takes_what_full_matrices_do_not_hold(tmp_path: Path) -> None:
+    deck = tmp_path / "deck.inp"
+    text = CROWD.format(n=6, law=LAWS[0], rule="", weight="1").replace("NEWMARK DT=5E-3", "AUTO TOL=0.1")
+    deck.write_text(text)
+    with run(deck, out=tmp_path) as results:
+        assert results.status == "done", results.message
+        assert not dict(results.table("run").tolist())["method"].startswith("EXACT")
