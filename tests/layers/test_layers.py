@@ -106,6 +106,7 @@ ONLY_IN = {
     "tabulate": {"report/text.py"},
     "matplotlib": {"report/plot/style.py"},
     "numba": {"numerics/jit.py"},
+    "platformdirs": {"numerics/kernel_cache.py"},
     "pygls": {"editor/server.py"},
     "lsprotocol": {"editor/server.py"},
 }

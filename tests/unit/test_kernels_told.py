@@ -9,7 +9,10 @@ import pytest
 from pound_solve.cli.main import main
 from pound_solve.integrate.kernels import engine
 from pound_solve.laws import functions
+from pound_solve.numerics import jit, kernel_cache, providers
+from pound_solve.numerics.kernel_cache import NOT_KEPT, VARIABLE, Place
 from pound_solve.numerics.providers import INTERPRETED, Interpreter
+from pound_solve.results import Results
 
 DECK = """UNITS kN m s
 NODES
@@ -40,3 +43,21 @@ def test_what_a_run_waits_for(
     assert capsys.readouterr().err == (f"pound-solve: {told}\n" if told else "")
     assert main([str(deck), "--quiet"]) == 0
     assert capsys.readouterr().err == ""
+
+
+def test_error_stream_and_report_say_that_nothing_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(kernel_cache, "place", lambda: Place(None, NOT_KEPT))
+    monkeypatch.setattr(jit, "compiled", lambda kernel, *signature: kernel)
+    numba = jit.Numba()
+    for module in (engine, functions, providers):
+        monkeypatch.setattr(module, "provider", lambda: numba)
+    deck = tmp_path / "deck.inp"
+    deck.write_text(DECK)
+    assert main([str(deck)]) == 0
+    assert capsys.readouterr().err == f"pound-solve: {NOT_KEPT}\n"
+    assert VARIABLE in NOT_KEPT
+    with Results.open(deck.with_suffix(".h5")) as results:
+        assert dict(results.table("run_figures").tolist())["kernels"] == f"compiled by numba; {NOT_KEPT}"
+    assert VARIABLE in deck.with_suffix(".rpt").read_text(encoding="utf-8")

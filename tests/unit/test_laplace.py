@@ -7,7 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from verification.cases import ROOT, run_deck, run_text
+from pound_solve.integrate.closed_form import laplace
+from pound_solve.integrate.closed_form.laplace_transform import LaplaceTransform
+from verification.cases import ROOT, Ran, run_deck, run_text
 
 pytestmark = pytest.mark.full
 
@@ -183,3 +185,88 @@ def test_what_it_cannot_take_is_refused_in_words() -> None:
     assert "the supports move apart" in run_text(moved, None, "LAPLACE", 0.01).message
     curved = OSCILLATOR.replace("KX=w^2", "KX=w^2 FX=3 RULE=BOUC_WEN N=2")
     assert "the law BOUC_WEN of element 1 is curved" in run_text(curved, None, "LAPLACE", 0.01).message
+
+
+SOFTENING = """UNITS kN m s
+GRAVITY 9.81
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=YR
+ 3 0 6 FIX=YR
+ 4 1 0 FIX=XYR
+ 5 1 3 FIX=YR
+ 6 1 6 FIX=YR
+ELEMENTS
+ 1 S 1 2
+ 2 S 2 3
+ 3 S2 4 5
+ 4 S2 5 6
+ 9 C 2 5
+ 10 C 3 6
+PROPS
+ S SPRING KX=30000 RULE=BILINEAR R=-0.05 FX=150
+ S2 SPRING KX=60000 RULE=BILINEAR R=-0.05 FX=150
+ C CONTACT GAP=0.01 ANGLE=0 LAW=KELVIN_VOIGT K=1E6 E=0.5
+WEIGHTS
+ 2,3 300
+ 5,6 500
+DAMPING
+ RAYLEIGH ALPHA=0.2 BETA=0.001
+INITIAL
+ 2 VX=1
+ 6 VX=-1.5
+OUTPUT
+ EVERY=0.01
+ANALYSIS
+ HISTORY 0.15
+"""
+
+
+def test_motion_that_grows_is_that_of_exact() -> None:
+    """Falling branches: poles right of the line of other motions.  Transforms on that line gave velocities
+    that jump, and events without an end."""
+    exact = run_text(SOFTENING, method="EXACT")
+    off = []
+    for dt in (1e-3, 5e-4):
+        r = run_text(SOFTENING, method="LAPLACE", dt=dt)
+        assert r.status == "done", r.message
+        assert figure(r, "events") == figure(exact, "events") == 13
+        off.append(np.abs(r.u - exact.u).max() / np.abs(exact.u).max())
+        assert r.check() < 1e-5
+    assert off[0] < 1e-5 and off[1] < 0.3 * off[0]
+
+
+def figure(r: Ran, item: str) -> int:
+    """A count of the report."""
+    return int(dict(r.tables["run"].tolist())[item])
+
+
+def test_events_between_the_samples_without_an_end_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two springs of the deck yield 0.04 ms apart."""
+    monkeypatch.setattr(laplace, "CHANGES", 1)
+    monkeypatch.setattr(laplace, "CHANGES_PER_LAW", 0)
+    r = run_text(SOFTENING, method="LAPLACE", dt=1e-3)
+    assert r.message.startswith("A503 at t = 0.0051") and "2 changes of branch within one DT" in r.message
+    assert "METHOD=EXACT" in r.message
+
+
+def test_only_so_many_dynamic_stiffnesses_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The oldest goes, and is formed again; the answers are the same."""
+    deck = OSCILLATOR.replace("gap = 9", "gap = 0.5")
+    whole = run_text(deck, method="LAPLACE", dt=0.005)
+    monkeypatch.setattr(laplace, "MOST_NUMBERS", 2049)
+    kept = run_text(deck, method="LAPLACE", dt=0.005)
+    assert np.array_equal(kept.u, whole.u)
+    assert figure(kept, "combinations of stiffnesses") > figure(whole, "combinations of stiffnesses")
+
+
+def test_what_does_not_fit_into_memory_is_refused_before_it_is_formed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(LaplaceTransform, "dynamic_stiffness", None)
+    deck = OSCILLATOR.replace(" 2 1 0 FIX=YR", " 2 TO 201 1 TO 200 0 FIX=YR").replace(
+        " 1 K 1 2", " 1 K 1 2\n 3 TO 201 K 2 TO 200 3 TO 201"
+    )
+    r = run_text(deck.replace("\n 2 1\n", "\n 2 TO 201 1\n"), method="LAPLACE", dt=0.01)
+    assert r.message.startswith("A505")
+    assert "200 unknowns at 2049 frequencies, 1.31 GB: METHOD=EXACT" in r.message

@@ -24,9 +24,13 @@ class StatusLine:
             print(f"\r {text:{WIDTH}}", end="", file=sys.stderr, flush=True)
 
     def tell(self, text: str) -> None:
-        """Show what keeps a run waiting; where there is no terminal, print it once."""
-        self.show(text)
-        if not self.live and not self.quiet and text not in self._told:
+        """Show what keeps a run waiting; where there is no terminal, or what is to know is longer than the
+        line, print it once.
+        """
+        if self.live and len(text) <= WIDTH:
+            self.show(text)
+        elif not self.quiet and text not in self._told:
+            self.clear()
             self._told.add(text)
             print(f"pound-solve: {text}", file=sys.stderr, flush=True)
 

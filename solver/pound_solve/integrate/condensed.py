@@ -6,7 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from pound_solve.integrate.protocol import LawValues, MonitoredOutputs, Recorder, Start, Stop, rigid_contact
+from pound_solve.integrate.protocol import (
+    LawValues,
+    MonitoredOutputs,
+    Recorder,
+    Start,
+    Stop,
+    rigid_contact,
+    without_steps,
+)
 from pound_solve.numerics.types import Array, Flags
 from pound_solve.structure.condensation import Condensed, condense
 from pound_solve.structure.reduction import ReducedSystem
@@ -55,6 +63,15 @@ class ExpandingRecorder:
         self.recorder.trial(t, doing)
 
 
+def others(system: ReducedSystem) -> str:
+    """Which methods take so many unknowns."""
+    steps = ["NEWMARK"] if rigid_contact(system) is None else []
+    able = [method for method in without_steps(system) if method != "EXACT"] + steps
+    if not able:
+        return "no other method takes the rigid contacts; give them a LAW with a stiffness"
+    return f"METHOD={' or '.join([*able, 'AUTO'])} takes them"
+
+
 def condensed(
     system: ReducedSystem, start: Start, monitored: MonitoredOutputs, recorder: Recorder, method: str
 ) -> tuple[ReducedSystem, Start, MonitoredOutputs, Recorder]:
@@ -68,8 +85,7 @@ def condensed(
     """
     if system.size > MAX_UNKNOWNS:
         why = f"{method} works on full matrices, and {system.size} unknowns are too many for them"
-        other = "NEWMARK" if rigid_contact(system) is None else "TAYLOR"
-        raise Stop("A505", float(start.times[0]), f"{why} ({MAX_UNKNOWNS} at most): {other} takes them")
+        raise Stop("A505", float(start.times[0]), f"{why} ({MAX_UNKNOWNS} at most): {others(system)}")
     small = condense(system)
     return (
         small.system,

@@ -2,46 +2,31 @@
 else they run as Python.
 
 A kernel is plain Python.  Nothing is compiled, nor numba imported, before the first request here.
-The compiled code is kept between runs in the user's cache folder, in a folder of its own for every version
-of the kernels' source: numba itself does not notice a change in a function that another one calls.
+The compiled code is kept between runs (`kernel_cache`), in a folder of its own for every version of the
+kernels' source: numba itself does not notice a change in a function that another one calls.
 """
 
 from __future__ import annotations
 
 import dis
 import itertools
-import os
-import tempfile
 import types
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from pound_solve.numerics.digest import digest
+from pound_solve.numerics import kernel_cache
 
 Function = Callable[..., Any]
 
 
-COMPILING = "compiling the kernels, once for this version: about a minute"
+COMPILING = "compiling the kernels, once for this version: a minute or two"
 SHORT = 700  #: bytes of bytecode up to which a function is inlined
 FASTMATH = {"contract", "reassoc"}  #: reorderings of floating-point operations allowed in `loose` kernels
-
-
-def folder() -> Path:
-    """Where compiled kernels are kept: the user's cache, or a temporary folder if that is read-only."""
-    home = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    place = Path(home) / "pound-solve" / digest()
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=place):
-            return place
-    except OSError:
-        return Path(tempfile.mkdtemp(prefix="pound-solve-"))
 
 
 @cache
@@ -51,7 +36,7 @@ def numba() -> Any:
         import numba as found
     except ImportError:
         return None
-    setattr(found.config, "CACHE_DIR", str(folder()))  # noqa: B010
+    setattr(found.config, "CACHE_DIR", str(kernel_cache.place().folder or ""))  # noqa: B010
     lighten(found)
     return found
 
@@ -133,9 +118,9 @@ def compiling() -> Iterator[None]:
 
 
 def cold(function: Function) -> bool:
-    """Whether a kernel, which is compiled in one version only, has still to be compiled."""
-    found = numba()
-    return found is not None and not any(Path(found.config.CACHE_DIR).rglob(f"*.{function.__name__}-*.nbc"))
+    """Whether numba has still to compile a kernel, which is compiled in one version only."""
+    folder = kernel_cache.place().folder
+    return folder is None or not any(folder.rglob(f"*.{function.__name__}-*.nbc"))
 
 
 @cache
@@ -174,7 +159,8 @@ def compiled(
     twin = types.FunctionType(function.__code__, scope, function.__name__, function.__defaults__)
     twin.__qualname__, twin.__module__ = function.__qualname__, function.__module__
     # arrays belong to the caller of a kernel: they need not be counted, which would cost more than the work
-    how = {"cache": True, "error_model": "numpy", "_nrt": False, "forceinline": inline}
+    kept = kernel_cache.place().folder is not None
+    how = {"cache": kept, "error_model": "numpy", "_nrt": False, "forceinline": inline}
     if inner:  # no Python calls it, so that it needs no door to it; kept by a name of its own
         twin.__qualname__ += INLINE if inline else INNER
         how |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "cache": False}
@@ -194,13 +180,14 @@ class Numba:
         What a user has to know before every run.
     """
 
-    name, fast, loading = "compiled by numba", True, 1.0
+    fast, loading = True, 1.0
 
     def __init__(self, told: str = "") -> None:
-        self._told = told
+        self._told, self.name = told, "compiled by numba"
 
     def ready(self, kernel: Function, signature: str = "") -> Function:
         """See `providers.Provider`."""
+        self.name = "; ".join(filter(None, ["compiled by numba", kernel_cache.place().told]))
         if signature:
             return compiled(kernel, signature)
         own = compiled(kernel)
@@ -213,4 +200,6 @@ class Numba:
 
     def notice(self, kernel: Function) -> str:
         """See `providers.Provider`."""
-        return "; ".join(filter(None, [self._told, COMPILING if cold(kernel) else ""]))
+        place = kernel_cache.place()
+        compiling = COMPILING if place.folder and cold(kernel) else ""
+        return "; ".join(filter(None, [self._told, place.told, compiling]))

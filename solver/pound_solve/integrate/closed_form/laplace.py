@@ -32,6 +32,8 @@ from pound_solve.integrate.events import grid
 from pound_solve.integrate.events.functions import EventFunctions, monitored_functions
 from pound_solve.integrate.propagators.state_space import Mechanism
 from pound_solve.integrate.protocol import (
+    CHANGES,
+    CHANGES_PER_LAW,
     INTERRUPTED,
     MonitoredOutputs,
     Outcome,
@@ -48,6 +50,7 @@ from pound_solve.structure.reduction import ReducedSystem
 
 STILL = 1e-10  #: as that of `integrate.protocol`; the transforms have ten digits
 SAME_INSTANT = 1e-12  #: share of the time within which two events are at one instant
+MOST_NUMBERS = 6e7  #: complex ones of all dynamic stiffnesses that are kept: 1 GB
 
 
 class Laplace(EventDrivenRun):
@@ -65,7 +68,8 @@ class Laplace(EventDrivenRun):
         self.dt, self.points = options["DT"], 2 * (options["POINTS"] // 2)
         self.transform = LaplaceTransform(system, self.dt, self.points)
         self.with_mass = np.flatnonzero(~massless(system.mass))
-        self.transforms = 0
+        self.transforms = self.combinations = 0
+        self._since, self._changes = self.t, 0
         self._stiffnesses: dict[tuple[float, ...], DynamicStiffness] = {}
 
     def run(self) -> Outcome:  # noqa: D102
@@ -99,7 +103,10 @@ class Laplace(EventDrivenRun):
             if fastest * self.dt > 1.0:
                 why = "DT={:g} does not resolve the fastest mode, {:.4g} rad per unit of time: {:.3g} does"
                 raise self.stop("A502", why.format(self.dt, fastest, 0.5 / fastest))
+            while self._stiffnesses and (1 + len(self._stiffnesses)) * found.inverse.size > MOST_NUMBERS:
+                del self._stiffnesses[next(iter(self._stiffnesses))]  # the oldest
             self._stiffnesses[key] = found
+            self.combinations += 1
         return self._stiffnesses[key]
 
     def _accelerations(self, u: Array, v: Array, s: Array) -> Array:
@@ -146,8 +153,18 @@ class Laplace(EventDrivenRun):
             self.events += 1
             self.change(event.law, event.event_index, ends[0], ends[1])
             self.stop_chatter(event.law, "EXACT")
+            self._stop_crowd()
         hint = f" as samples {self.dt:g} apart see it: is DT too long for the excitation?"
         self.stop_growth(self.v, hint)
+
+    def _stop_crowd(self) -> None:
+        """Stop where events are so close that the samples do not show what lies between."""
+        if self.t - self._since > self.dt:
+            self._since, self._changes = self.t, 0
+        self._changes += 1
+        if self._changes > CHANGES + CHANGES_PER_LAW * len(self.laws):
+            why = f"{self._changes} changes of branch within one DT, each of which takes a transform"
+            raise self.stop("A503", f"{why}: try a shorter DT, or METHOD=EXACT")
 
     def _samples(self, motion: SampledMotion, tau: float) -> None:
         """Add the work up to the local time `tau` and sample the output times on the way."""
@@ -208,11 +225,22 @@ class Laplace(EventDrivenRun):
             "method": f"LAPLACE, {self.points} samples {self.dt:g} apart",
             "events": self.events,
             "transforms": self.transforms,
-            "combinations of stiffnesses": len(self._stiffnesses),
+            "combinations of stiffnesses": self.combinations,
         }
         peaks = self.tracker.close(self.energy.dashpot_losses)
         checks = [*rounding_check(self.laws, peaks, STILL), *self.uniqueness.checks()]
         return Outcome(peaks, figures, tuple(self.states), checks)
+
+
+def refuse_large(unknowns: int, points: int, t: float) -> None:
+    """Raise `Stop` at time `t` where one dynamic stiffness does not fit into memory."""
+    frequencies = points // 2 + 1
+    if unknowns**2 * frequencies > MOST_NUMBERS:
+        size = 16e-9 * unknowns**2 * frequencies
+        why = (
+            f"LAPLACE inverts the matrix of {unknowns} unknowns at {frequencies} frequencies, {size:.3g} GB"
+        )
+        raise Stop("A505", t, f"{why}: METHOD=EXACT needs one matrix")
 
 
 def integrate(
@@ -227,13 +255,15 @@ def integrate(
     Raises
     ------
     Stop
-        A reduced system that is not piecewise linear or whose supports move apart from each other, a DT
-        that does not resolve it, a mechanism, numbers beyond all bounds, or an interrupt.
+        A reduced system that is not piecewise linear, that is too large or whose supports move apart from
+        each other, a DT that does not resolve it or its events, a mechanism, numbers beyond all bounds, or
+        an interrupt.
     """
     refuse_rigid(system, start, "LAPLACE")
     if why := not_linear(system) or ("the supports move apart from each other" if system.total else ""):
         raise Stop("A505", float(start.times[0]), f"LAPLACE cannot take this: {why}; AUTO can")
     system, start, monitored, recorder = condensed(system, start, monitored, recorder, "LAPLACE")
+    refuse_large(system.size, options["POINTS"], float(start.times[0]))
     run = Laplace(system, start, monitored, options, recorder)
     try:
         return run.run()

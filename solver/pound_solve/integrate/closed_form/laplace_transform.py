@@ -13,7 +13,9 @@ closed transform that starts as the response does, up to the derivative of order
 is subtracted before the inversion.  What remains has kinks where the excitation has them, so that the error
 is of order DT^3 in displacements and DT^2 in velocities (straight-line records).
 :math:`\alpha` is such that the window's repetition and the rounding, which both grow with
-:math:`e^{\alpha t}`, are :math:`10^{-10}` in the first half of the window; only that is used.
+:math:`e^{\alpha t}`, are :math:`10^{-10}` in the first half of the window; only that is used.  Where the
+motion itself grows, on a falling branch, the line lies as far to the right of the fastest growth as else of
+zero: all poles must be on its left, and both errors are the same share of the motion.
 
 References
 ----------
@@ -48,6 +50,8 @@ class DynamicStiffness:
     space : StateSpace
     spectral_radius : float
         Largest \\|eigenvalue\\| [1/T].
+    s : ndarray of complex, shape (n_frequencies,)
+        Where it is transformed, to the right of all eigenvalues.
     inverse : ndarray of complex, shape (n_frequencies, n, n)
     """
 
@@ -55,6 +59,7 @@ class DynamicStiffness:
     stiffness: Array
     space: StateSpace
     spectral_radius: float
+    s: Complex
     inverse: Complex
 
 
@@ -72,6 +77,7 @@ class LaplaceTransform:
     Attributes
     ----------
     s : ndarray of complex, shape (n_frequencies,)
+        Where a motion that does not grow is transformed.
     """
 
     def __init__(self, system: ReducedSystem, dt: float, points: int) -> None:
@@ -87,14 +93,16 @@ class LaplaceTransform:
         Mechanism
             Massless DOFs with neither stiffness nor dashpot.
         """
-        mass, s = self.system.mass, self.s[:, None, None]
-        space = state_space(mass, c, k)
-        spectral_radius = float(np.abs(np.linalg.eigvals(space.a)).max(initial=0.0))
-        return DynamicStiffness(c, k, space, spectral_radius, np.linalg.inv(s * s * mass + s * c + k))
+        mass, space = self.system.mass, state_space(self.system.mass, c, k)
+        values = np.linalg.eigvals(space.a)
+        own = self.s + values.real.max(initial=0.0)
+        s = own[:, None, None]
+        inverse = np.linalg.inv(s * s * mass + s * c + k)
+        return DynamicStiffness(c, k, space, float(np.abs(values).max(initial=0.0)), own, inverse)
 
-    def inputs(self, begin: float) -> Complex:
+    def inputs(self, begin: float, s: Complex) -> Complex:
         """Return the transform of the inputs from time `begin` on, shape (n_frequencies, n_inputs)."""
-        excitation, s = self.system.excitation, self.s
+        excitation = self.system.excitation
         out = np.zeros((len(s), excitation.coefs.shape[2]), complex)
         end = begin + self.points * self.dt
         first = excitation.piece(begin + 1e-13 * max(1.0, begin))
@@ -157,9 +165,9 @@ class LaplaceTransform:
         u, v : ndarray, shape (n,)
             Displacement and velocity there.
         """
-        system, s, half = self.system, self.s, self.points // 2
+        system, s, half = self.system, x.s, self.points // 2
         derivatives = self._start_derivatives(x, constant, t, u, v)
-        beta = max(x.spectral_radius, s[0].real)  # free bodies have no rate: that of the window
+        beta = max(x.spectral_radius, self.s[0].real)  # free bodies have no rate: that of the window
         q = np.array(
             [
                 sum(
@@ -169,12 +177,12 @@ class LaplaceTransform:
                 for j in range(STARTS + 1)
             ]
         )
-        right = self.inputs(t) @ system.inputs.T + constant / s[:, None]
+        right = self.inputs(t, s) @ system.inputs.T + constant / s[:, None]
         right += s[:, None] * (system.mass @ derivatives[0]) + system.mass @ v + x.damping @ derivatives[0]
         start = sum(math.factorial(j) * q[j] / (s[:, None] + beta) ** (j + 1) for j in range(STARTS + 1))
         rest = (x.inverse @ right[:, :, None])[:, :, 0] - start
         times = self.dt * np.arange(half + 1)
-        growth = np.exp(DAMPING / (self.points * self.dt) * times) / self.dt
+        growth = np.exp(s[0].real * times) / self.dt
         decay, powers = np.exp(-beta * times), times ** np.arange(STARTS + 1)[:, None]
         slopes = powers[:-1] * np.arange(1, STARTS + 1)[:, None]
         out_u = np.fft.irfft(rest.T, self.points)[:, : half + 1] * growth + (q.T @ powers) * decay

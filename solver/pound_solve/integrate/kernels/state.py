@@ -273,7 +273,7 @@ class Laws(NamedTuple):
     peak_force, peak_time, impulse : ndarray
         Of the collision that is under way.
     saved : ndarray of int
-        Whether the state is saved.
+        Whether the state is saved; where steps are cut, 1 + the number of the event by which it is left.
     saved_state : ndarray, shape (n_laws, 3 + VARIABLES + 2)
         State at the start of a step that is not cut at events.
     members : Corotational

@@ -10,7 +10,12 @@ import numpy as np
 
 from pound_solve.integrate.energy import Works
 from pound_solve.integrate.events.protocol import LocatedEvent
-from pound_solve.integrate.events.within_step import event_value, first_event, value_at_start
+from pound_solve.integrate.events.within_step import (
+    event_value,
+    first_event,
+    time_of_event,
+    value_at_start,
+)
 from pound_solve.integrate.kernels.consistency import NEAR, make_consistent, touches_massless
 from pound_solve.integrate.kernels.laws import (
     couple,
@@ -90,6 +95,60 @@ def change_branch(
     hold_friction_limits(laws)
 
 
+def mark_others(
+    linear: LinearSystem, laws: Laws, step: Step, event: LocatedEvent, tried: float, h: float
+) -> None:
+    """Mark the laws that pass an event at the instant of the one located, in `laws.saved`: 1 + its number.
+
+    The part in which they do was tried with length `tried`, NaN where that failed, and is not accepted yet.
+    Rates of unknowns without mass and the forces of friction jump there: then one law leaves at a time.
+    """
+    alone = not linear.all_mass or len(laws.coupled) > 0
+    for i in range(len(laws.rule)):
+        laws.saved[i], first = 0, event.time + CLOSE * h
+        for e in range(0 if alone or i == event.law else laws.n_events[i]):
+            at = time_of_event(laws, step, i, e, tried)
+            if at <= first:
+                laws.saved[i], first = 1 + e, at
+
+
+def leaves_with(linear: LinearSystem, laws: Laws, step: Step, i: int) -> bool:
+    """Whether a law that is marked leaves its branch whatever the others do that have left at this instant.
+
+    A law that turns follows its acceleration, which changes where another one holds the same mass; their
+    unknowns are marked in `step.product`.
+    """
+    if laws.events[i, laws.saved[i] - 1, 0] != 0.0:
+        return True
+    for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+        if not linear.diagonal or step.product[laws.rows.columns[q]] != 0.0:
+            return False
+    return True
+
+
+def change_branches(
+    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
+    run: Run, h: float, event: LocatedEvent,
+) -> None:  # fmt: skip
+    """Let a law leave its branch, and those that are marked, and make the state consistent."""
+    laws.saved[event.law] = 1 + event.event_index
+    for j in range(len(step.product)):
+        step.product[j] = 0.0
+    for k in range(-1, len(laws.rule)):
+        i = event.law if k < 0 else k
+        room = len(buffers.log) - run.logged > len(laws.coupled)
+        if laws.saved[i] == 0 or not room or (k >= 0 and not leaves_with(linear, laws, step, i)):
+            continue
+        change_branch(linear, laws, step, buffers, rules, scheme, run, h, i, laws.saved[i] - 1)
+        if laws.curved[i] and laws.contact[i] and laws.now.rate[i] > 0.0:
+            run.longest_part = FIRST * h
+        for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+            step.product[laws.rows.columns[q]] = 1.0
+        laws.saved[i] = 0
+    make_consistent(linear, laws, step)
+    track(linear, laws, step, run.time, 0.0)
+
+
 class Bracket(NamedTuple):
     """Times of a step between which an event function rises through zero, and its values there.
 
@@ -155,15 +214,17 @@ def locate(
         DONE or what failed.
     event : LocatedEvent
         Law -1 where none is met after all; its time is the length that was tried last, or 0 where it is met
-        at once.
+        at once.  Others at this instant are marked, see `mark_others`.
     """
     law, index, tau = event.law, event.event_index, event.time
     g = event_value(laws, law, index, laws.trial.deformation[law], laws.trial.rate[law])[0]
     b = Bracket(0.0, length, np.nan, value_at_start(laws, step, law, index), g, np.nan)
-    bisects = False
+    bisects, tried = False, length
     for trial in range(100):
         if tau <= CLOSE * h:
-            return DONE, LocatedEvent(law, index, 0.0)
+            met = LocatedEvent(law, index, 0.0)
+            mark_others(linear, laws, step, met, tried, h)
+            return DONE, met
         last = b.high - b.low <= CLOSE * h
         if last:
             tau = b.high
@@ -177,8 +238,9 @@ def locate(
             if last:
                 return NEWTON, event
             start_again(laws, rules)  # at `high` there was a solution: look for the event nearer to it
-            b, bisects = Bracket(tau, b.high, np.nan, np.nan, b.g_high, np.nan), True
+            b, bisects, tried = Bracket(tau, b.high, np.nan, np.nan, b.g_high, np.nan), True, np.nan
             continue
+        tried = tau
         found = first_event(laws, step, tau)
         passed = found.law >= 0
         if passed and (found.law != law or found.event_index != index):
@@ -188,7 +250,9 @@ def locate(
         g, size = event_value(laws, law, index, laws.trial.deformation[law], laws.trial.rate[law])
         ends = verdict(b, g, size, tau, found.time, passed, last, h)
         if ends != GO_ON:
-            return DONE, LocatedEvent(law if ends == MET else -1, index, tau)
+            met = LocatedEvent(law if ends == MET else -1, index, tau)
+            mark_others(linear, laws, step, met, tried, h)
+            return DONE, met
         b = narrowed(b, tau, g, passed)
         tau = next_time(b, passed, found.time, h)
     return NEWTON, event
@@ -263,11 +327,7 @@ def step_in_parts(
         law = event.law
         if law < 0:
             continue
-        change_branch(linear, laws, step, buffers, rules, scheme, run, h, law, event.event_index)
-        if laws.curved[law] and laws.contact[law] and laws.now.rate[law] > 0.0:
-            run.longest_part = FIRST * h
-        make_consistent(linear, laws, step)
-        track(linear, laws, step, run.time, 0.0)
+        change_branches(linear, laws, step, buffers, rules, scheme, run, h, event)
         run.fault = law
         same += 1
         if same > most:
