@@ -225,7 +225,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P217": (
         "value out of limits",
-        "The number is outside the limits of this item. The message gives them.",
+        "The number is outside the limits of this item. The message gives them. No number of a deck is "
+        "beyond 1e30 in magnitude or, other than 0, below 1e-30.",
     ),
     "P218": (
         "wrong number of values",

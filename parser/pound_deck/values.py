@@ -15,6 +15,9 @@ from pound_deck.model import Units
 from pound_deck.schema import Catalog, Field, Kind
 
 _LARGEST: Final = 10**15  #: whole numbers beyond are no longer exact
+#: magnitude beyond that of any quantity, below its inverse nothing but 0: powers and products of numbers
+#: between these bounds do not overflow
+MOST: Final = 1e30
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +113,11 @@ class Values:
         return value
 
     def within(self, value: float, part: Expression, f: Field | None) -> float:
-        """The value, which must be within the field's limits."""
+        """The value, which must be within the field's limits and those of any number of a deck."""
+        if abs(value) > MOST or 0.0 < abs(value) < 1.0 / MOST:
+            message = f"{f.name if f else 'BY'} is {value:.10g}, which is no quantity of a structure"
+            hint = f"0, or between {1.0 / MOST:.0e} and {MOST:.0e} in magnitude"
+            raise mistake("P217", message, part.span, hint)
         if f and not _inside(value, f):
             raise mistake(
                 "P217", f"{f.name} is {value:.10g}, but must be {_allowed(f)}", part.span, self.meaning(f)
