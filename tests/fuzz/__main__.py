@@ -16,6 +16,7 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 from fuzz.cases import KINDS, bases, case
@@ -75,17 +76,14 @@ def main() -> int:
     found: Counter[tuple[str, str]] = Counter()
     with tempfile.TemporaryDirectory() as folder:
         whole = bases(Path(folder))
-    for done, (kind, number, outcome) in enumerate(
-        outcomes(tasks(counts, args.first), args.jobs, args.seed, whole), 1
-    ):
-        if done % 1000 == 0:
-            print(f"{done}: {kind} {number}", flush=True)
-        found[kind, outcome.end] += 1
-        if outcome.fault:
-            where = keep(args.out, kind, args.seed, number, outcome, whole)
-            print(f"{outcome.end}: {where}", flush=True)
-        if args.only:
-            print(outcome.said)
+    with suppress(KeyboardInterrupt):  # Ctrl-C: the counts so far
+        for kind, number, outcome in outcomes(tasks(counts, args.first), args.jobs, args.seed, whole):
+            found[kind, outcome.end] += 1
+            if outcome.fault:
+                where = keep(args.out, kind, args.seed, number, outcome, whole)
+                print(f"{outcome.end}: {where}", flush=True)
+            if args.only:
+                print(outcome.said)
     for kind in counts:
         own = {end: count for (k, end), count in sorted(found.items()) if k == kind}
         print(f"{kind:8}", ", ".join(f"{end} {count}" for end, count in own.items()))

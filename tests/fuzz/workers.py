@@ -52,6 +52,7 @@ def serve(connection: Connection, seed: int, bases: Mapping[str, bytes]) -> None
     os.environ["POUND_COMPILE"] = "0"
     os.environ.setdefault("MPLBACKEND", "Agg")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell may have had ignored
     bound_memory()
     while (task := connection.recv()) is not None:
         kind, number = task
