@@ -9,20 +9,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from pound_deck.diagnostics import MESSAGES
-from pound_deck.layout import layout
+from editor.everything import ask_everything, place_in
 from pound_deck.model import Card, Element, Span
 from pound_deck.reader import read_deck
 from pound_deck.schema import Kind, Spec
 from pound_solve.catalog import catalog
-from pound_solve.editor.complete import complete
-from pound_solve.editor.definition import define, references
-from pound_solve.editor.diagnose import MOST, diagnose
-from pound_solve.editor.hover import hover
 from pound_solve.editor.names import mentions
 from pound_solve.editor.reading import read
-from pound_solve.editor.rename import RenameError, applied, renamable, rename
-from pound_solve.editor.symbols import outline
+from pound_solve.editor.rename import RenameError, applied, rename
 
 ROOT = Path(__file__).parents[2]
 DECKS = sorted((ROOT / "examples").rglob("*.in[pc]"))
@@ -48,38 +42,6 @@ PIECES = [
 ]
 SORTS = ("node", "element", "property set", "PARAM")
 quiet = settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-
-
-def ask_everything(path, text, place):
-    """Every kind of help at one place of a text."""
-    unsaved = {str(path): text}
-    reading = read(str(path), catalog(), unsaved)
-    found, files = diagnose(str(path), unsaved)
-    assert {d.code for d in found} <= MESSAGES.keys() and len(found) <= MOST
-    for d in found:
-        lines = files[d.span.file].split("\n") if d.span and d.span.file in files else None
-        assert lines is None or (1 <= d.span.line <= len(lines) and 1 <= d.span.column < d.span.end)
-    suggestions, start = complete(reading, text, place.line, place.column)
-    assert start <= place.column and len({s.text for s in suggestions}) == len(suggestions)
-    hover(reading, place)
-    here = references(reading, place)
-    assert set(define(reading, place)) <= set(here)
-    name = renamable(reading, place)
-    try:
-        edits = rename(reading, str(path), place, "zz9" if name else "1")
-        assert name in {span for span, _ in edits}
-    except RenameError as error:
-        assert str(error)
-    lines = text.split("\n")
-    for symbol in outline(reading, str(path)):
-        assert symbol.span.line <= symbol.last <= len(lines)
-    layout(text, str(path))
-
-
-def place_in(path, text, at):
-    before = text[:at]
-    column = at - before.rfind("\n")
-    return Span(str(path), before.count("\n") + 1, column, column + 1)
 
 
 @quiet

@@ -45,6 +45,10 @@ def drop(file):
     del file["tables/nodes"]
 
 
+def drop_of_the_day(file):
+    del file["tables/run_figures"]
+
+
 def swap(file):
     file.move("tables/nodes", "tables/x")
     file.move("tables/elements", "tables/nodes")
@@ -73,7 +77,7 @@ def cut(file):
         file[f"history/{name}"].resize(5, axis=0)
 
 
-@pytest.mark.parametrize("attack", [drop, swap, link, change, relabel, cut])
+@pytest.mark.parametrize("attack", [drop, drop_of_the_day, swap, link, change, relabel, cut])
 def test_parts_that_are_missing_changed_or_elsewhere_end_in_damaged(tmp_path, capsys, attack):
     path = sample.write(tmp_path / "a.h5")
     with h5py.File(path, "r+") as file:

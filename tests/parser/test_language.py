@@ -457,3 +457,15 @@ def test_paths_need_quotes(catalog, value):
 def test_lists_with_blanks_say_how_lists_are_written(catalog, line, told):
     _, found, _ = read_text(f"{HEAD}{line}\n", catalog)
     assert told in found[0].hint, found
+
+
+@pytest.mark.parametrize("number", ["1E31", "-1E31", "1E300", "1E-31", "4.9E-324", "1E15*1E16"])
+def test_a_number_that_is_no_quantity_is_told_before_its_powers_overflow(codes, number):
+    assert codes(HEAD.replace(" 3 1 3", f" 3 1 {number}")) == ["P217"]
+    assert codes(HEAD.replace("KX=1", f"KX=abs({number})")) == ["P217"]
+    assert codes(HEAD.replace(" 3 1 3", f" 3 1 3\n 11 TO 12 0 TO {number} 3")) == ["P217"]
+
+
+@pytest.mark.parametrize("number", ["1E30", "1E-30", "0"])
+def test_the_largest_and_smallest_quantities(codes, number):
+    assert codes(HEAD.replace(" 3 1 3", f" 3 1 {number}")) == []

@@ -64,6 +64,10 @@ def digest_of(attributes: Mapping[str, Any], data: NDArray[Any] | str | None = N
     return out
 
 
+#: digest of a part that differs between two runs of a deck: of the whole file it is one by being there
+THERE: Final = digest_of({})
+
+
 def digest_of_file(parts: Mapping[str, str]) -> str:
     """Digest of a results file from those of its datasets, by their paths."""
     told = "\n".join(f"{name} {own}" for name, own in sorted(parts.items()))

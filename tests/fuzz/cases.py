@@ -1,0 +1,231 @@
+"""Cases of the fuzzer: what is given to the program, from a kind, a seed and a number.
+
+A case depends on these three and the sources alone, so that a fault is found again by its number.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from random import Random
+
+from agency_files import afad, cosmos, csmip, esm, knet, smc, unam
+from fuzz.attacks import attacked
+from fuzz.mutation import damaged, encoded, items, mutated, revalued, words
+from verification.generated import laws
+from verification.generated.decks import deck
+
+ROOT = Path(__file__).parents[2]
+RECORDS = {
+    "SMC": smc(),
+    "COSMOS": cosmos(),
+    "CSMIP": csmip(),
+    "KNET": knet(),
+    "ESM": esm(),
+    "AFAD": afad(),
+    "UNAM": unam(),
+    "PEER": "PEER\nx, y, 090\nACCELERATION IN UNITS OF G\nNPTS= 4, DT= .0050 SEC,\n .1E-01 -.2 .3D0-.4\n",
+    "BERG": "Title\n0.00 0.00 0.02 0.10 0.03 -0.20 0.06 0.30\n0.08 -0.05 0.10 0.00\n",
+    "COLUMNS": "t, a\n0.00, 0.1\n0.01, -0.2\n0.02, 0.3\n",
+}
+#: two masses and a wall, with every section; what a law, a method or a motion needs is put in
+SMALL = """TITLE small
+UNITS kN m s
+PARAM n = 2
+NODES
+ 1 0 0 FIX=XYR
+ 2 1 0 FIX=YR
+ 3 2 0 FIX=YR
+ 4 0 3
+ 5 3 3 FIX=XYR
+ELEMENTS
+ 1 COL 1 2
+ 2 COL 1 3
+ 3 HIT 2 3
+ 4 WALL 3
+ 5 BEAM 4 5
+ 6 DAMP 2 3
+ 7 FOOT 1 4
+PROPS
+ COL SPRING KX=4000 {rule}
+ HIT CONTACT GAP=0.004 {contact}
+ WALL CONTACT GAP=0.01 LAW=KELVIN_VOIGT K=1E5 E=0.6
+ BEAM FRAME E=2E7 A=0.04 I=1.3E-4
+ DAMP DASHPOT CX=5
+ FOOT FRAME E=2E7 A=0.04 I=1.3E-4
+WEIGHTS
+ 2 100*n
+ 3 150
+ 4 40
+LOADS
+ 4 FY=-20 FX=3
+DAMPING
+ {damping}
+INITIAL
+ 2 VX=0.1
+DRIFT
+ "storey" 1 2 HEIGHT=3
+EQUAKE
+ {motion}
+FORCES
+ TABLE 4 FX=10 POINTS=0,0,0.1,1,0.2,0
+ANALYSIS
+ STATIC
+ MODAL 2
+ {more}HISTORY 0.3 {method}
+OUTPUT
+ EVERY=0.01
+"""
+MOTIONS = (
+    "SINE AMPLITUDE=8 PERIOD=0.2 DURATION=0.3",
+    "TABLE POINTS=0,0,0.1,5,0.2,-5,0.3,0",
+    "RECORD FILE=record.txt FORMAT=COLUMNS DT=0.01 COLUMN=1 UNIT=G",
+)
+METHODS = (
+    *("METHOD=AUTO", "METHOD=AUTO TOL=1E-2", "METHOD=EXACT", "METHOD=TAYLOR", "METHOD=NEWMARK DT=0.005"),
+    *("METHOD=HHT DT=0.005", "METHOD=CENTRAL DT=0.001", "METHOD=LAPLACE DT=0.005", ""),
+)
+SHAKEN = "\n".join(f"{((7 * k) % 11 - 5) / 10}" for k in range(40))
+
+
+@dataclass(frozen=True)
+class Case:
+    """What the program is given.
+
+    Attributes
+    ----------
+    kind : str
+    number : int
+    files : mapping of str to bytes
+    words : tuple of str
+        Format of a record, or words of a command line.
+    place : float
+        Where in a deck an editor asks, as a share of its length.
+    """
+
+    kind: str
+    number: int
+    files: Mapping[str, bytes]
+    words: tuple[str, ...] = ()
+    place: float = 0.0
+
+    @property
+    def command(self) -> str:
+        """A command line that gives the program the same."""
+        return {
+            "deck": "pound-solve check deck.inp; pound-solve format --check deck.inp",
+            "run": "POUND_COMPILE=0 pound-solve run deck.inp",
+            "record": f"pound-solve check deck.inp  # FORMAT={self.words[0] if self.words else ''}",
+            "results": "pound-solve report model.h5; pound-solve export model.h5; pound-solve run deck.inp",
+            "words": "pound-solve list " + " ".join(map(repr, self.words)),
+        }[self.kind]
+
+
+def case(kind: str, seed: int, number: int, bases: Mapping[str, bytes]) -> Case:
+    """The case of a kind, a seed and a number; `bases` are the whole results files that are attacked."""
+    rng = Random(f"{seed} {kind} {number}")
+    return KINDS[kind](rng, number, bases)
+
+
+def _deck(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
+    way = rng.random()
+    text = rng.choice(decks()) if way < 0.7 else small(rng) if way < 0.99 else generated(number)
+    files = {"deck.inp": encoded(mutated(text, rng, decks()), rng)}
+    part = rng.choice(decks()).split("\n")
+    at = rng.randrange(len(part))
+    files["part.inc"] = encoded("\n".join(part[at : at + 10]), rng)
+    return Case("deck", number, files, place=rng.random())
+
+
+def _run(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
+    text = revalued(small(rng), rng) if rng.random() < 0.9 else mutated(small(rng), rng, ())
+    return Case("run", number, {"deck.inp": encoded(text, rng, 0.0), "record.txt": SHAKEN.encode()})
+
+
+def _record(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
+    name = rng.choice(sorted(RECORDS))
+    files = {"record.txt": encoded(damaged(RECORDS[name], rng), rng)}
+    name = rng.choice((name, "AUTO"))
+    more = rng.choice(
+        ("", "", " UNIT=G", " COLUMN=2", " DT=0.01", " COMPONENT=2", " SCALE=1E300", " SKIP=1")
+    )
+    motion = f"RECORD FILE=record.txt FORMAT={name}{more}"
+    text = plain(motion=motion)
+    return Case("record", number, files | {"deck.inp": text.encode()}, (name,))
+
+
+def _results(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
+    name = rng.choice(sorted(bases))
+    again = plain(method="METHOD=EXACT RESTART=model.h5").replace("HISTORY 0.3", "HISTORY 0.4")
+    whole = bases[name]
+    files = {"model.h5": attacked(whole, rng), "whole.h5": whole, "deck.inp": again.encode()}
+    return Case("results", number, files, (name,))
+
+
+def _words(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
+    pool = (*words(), *items(), "element", "method", "contact", "", "-", "é", "\x1b", "x" * 3000, "a=b")
+    return Case("words", number, {}, tuple(rng.choice(pool) for _ in range(rng.randint(0, 2))))
+
+
+KINDS: dict[str, Callable[[Random, int, Mapping[str, bytes]], Case]] = {
+    "deck": _deck,
+    "run": _run,
+    "record": _record,
+    "results": _results,
+    "words": _words,
+}
+
+
+@cache
+def generated(number: int) -> str:
+    """One of a hundred decks of buildings side by side."""
+    return deck(number % 100)
+
+
+@cache
+def decks() -> tuple[str, ...]:
+    """Texts of all decks below ``examples`` and ``tests``."""
+    paths = [*(ROOT / "examples").rglob("*.in[pc]"), *(ROOT / "tests").rglob("*.inp")]
+    return tuple(path.read_text("utf-8") for path in sorted(paths))
+
+
+def plain(motion: str = MOTIONS[0], method: str = "METHOD=EXACT") -> str:
+    """The small deck with a rule and a law that every method takes."""
+    rule, contact, damping = "FX=60 RULE=BILINEAR R=0.1", "LAW=LINEAR K=1E5", "MODAL XI=0.05"
+    return SMALL.format(rule=rule, contact=contact, damping=damping, motion=motion, more="", method=method)
+
+
+def small(rng: Random) -> str:
+    """A small deck with a rule, a contact law, damping, a motion and a method."""
+    straight = rng.random() < 0.5
+    return SMALL.format(
+        rule="FX=60 " + laws.hysteresis(rng, 60.0, 0.015, straight),
+        contact=laws.contact(rng, 100.0, 0.001, 1e6, straight),
+        damping=rng.choice(("", "RAYLEIGH XI=0.05 OMEGA=20,80", "MODAL XI=0.05", "RAYLEIGH ALPHA=0.5")),
+        motion=rng.choice(MOTIONS),
+        more=rng.choice(("", "", "PUSHOVER NODE=4 TARGET=0.02 STEPS=5\n ")),
+        method=rng.choice(METHODS),
+    )
+
+
+def bases(folder: Path) -> dict[str, bytes]:
+    """Whole results files: of a run, of a study, and one with all tables."""
+    from contextlib import redirect_stderr, redirect_stdout
+
+    from output import sample
+    from pound_solve.cli.main import main
+
+    deck = folder / "base.inp"
+    deck.write_text(plain())
+    with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()) as told:
+        for words in (
+            ["run", str(deck), "--quiet"],
+            ["study", str(deck), "--methods", "EXACT", "--repeat", "1"],
+        ):
+            assert main(words) == 0, told.getvalue()
+    sample.write(folder / "sample.h5")
+    names = ("base.h5", "base.study.h5", "sample.h5")
+    return {name: (folder / name).read_bytes() for name in names}

@@ -1,0 +1,123 @@
+"""A small tier of the fuzzer and of the kills; `make fuzz N=...` and `python -m fuzz.kills N` do more."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections import Counter
+from collections.abc import Mapping
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fuzz import judge as judges
+from fuzz import workers
+from fuzz.__main__ import keep
+from fuzz.cases import KINDS, bases, case
+from fuzz.judge import Outcome, judge
+from fuzz.kills import rounds
+from fuzz.workers import outcomes
+
+COUNTS = {"deck": 240, "run": 20, "record": 160, "results": 24, "words": 20}
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, bytes]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("POUND_COMPILE", "0")
+        return bases(tmp_path_factory.mktemp("bases"))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_case_depends_on_its_seed_and_number_alone(whole: Mapping[str, bytes], kind: str) -> None:
+    cases = [case(kind, 1, number, whole) for number in range(8)]
+    assert cases == [case(kind, 1, number, whole) for number in range(8)]
+    assert cases != [case(kind, 2, number, whole) for number in range(8)]
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_case_finds_a_fault(tmp_path: Path, whole: Mapping[str, bytes], kind: str) -> None:
+    tasks = ((kind, number) for number in range(COUNTS[kind]))
+    ends: Counter[str] = Counter()
+    for _, number, outcome in outcomes(tasks, 1, 0, whole):
+        ends[outcome.end] += 1
+        where = keep(tmp_path, kind, 0, number, outcome, whole) if outcome.fault else ""
+        assert not outcome.fault, f"{where}: {outcome}"
+    assert ends.total() == COUNTS[kind] and len(ends) > 1, ends
+
+
+def fault(case: object, folder: Path) -> Outcome:
+    """What the program never does: each a fault that must be found."""
+    print("pound-solve: a fault of the program, not of the deck")
+    if os.environ["FAULT"] == "traceback":
+        raise KeyError("x")
+    if os.environ["FAULT"] == "memory":
+        return Outcome("fine", str(len(bytearray(3 * 2**30))))
+    if os.environ["FAULT"] == "crash":
+        os.kill(os.getpid(), signal.SIGSEGV)
+    while True:
+        pass
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="bounds of this system")
+@pytest.mark.parametrize("sort", ["traceback", "memory", "crash", "hang"])
+def test_faults_are_found_and_the_next_case_is_judged(
+    tmp_path: Path, whole: Mapping[str, bytes], monkeypatch: pytest.MonkeyPatch, sort: str
+) -> None:
+    """In a process of its own, whose judge of words is one with a fault at every second case."""
+    monkeypatch.setenv("FAULT", sort)
+    monkeypatch.setattr(workers, "serve", serve_with_faults)
+    found = list(outcomes(iter([("words", 1), ("words", 2)]), 1, 0, whole))
+    assert [(number, outcome.end) for _, number, outcome in found] == [(1, sort), (2, "fine")]
+    folder = keep(tmp_path, *found[0][:1], 0, 1, found[0][2], whole)
+    told = (folder / "fault.txt").read_text()
+    assert told.startswith(sort) and "--only words 1" in told
+
+
+def serve_with_faults(*args: object) -> None:
+    def every_second(own: object, folder: Path) -> Outcome:
+        return fault(own, folder) if getattr(own, "number", 0) % 2 else Outcome("fine")
+
+    judges.JUDGES["words"] = every_second  # type: ignore[assignment]
+    workers.LIMITS["words"] = 0.5
+    workers.serve(*args)  # type: ignore[arg-type]
+
+
+def test_words_that_no_user_should_see_are_faults(monkeypatch: pytest.MonkeyPatch) -> None:
+    for text, status in (
+        ("a fault of the program", 1),
+        ("Traceback", 0),
+        ("not enough memory", 1),
+        ("", 2),
+    ):
+        monkeypatch.setattr(judges, "main", lambda words, t=text, s=status: print(t) or s)
+        with pytest.raises(judges.Fault):
+            judges.said("list", allowed=(0, 1, 2))
+
+
+def test_results_that_are_not_finite_are_a_fault(
+    tmp_path: Path, whole: Mapping[str, bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = next(
+        c for c in (case("run", 0, n, whole) for n in range(99)) if ends(c, tmp_path / str(c.number))
+    )
+    monkeypatch.setattr(judges, "np", SimpleNamespace(isfinite=lambda values: np.zeros(1, bool)))
+    (tmp_path / "again").mkdir()
+    assert judge(own, tmp_path / "again").end == "NaN"
+
+
+def ends(own: object, folder: Path) -> bool:
+    folder.mkdir()
+    return judge(own, folder).end == "fine"  # type: ignore[arg-type]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt", reason="SIGKILL")
+def test_kills_leave_older_results_or_whole_ones(tmp_path: Path) -> None:
+    found = Counter(words for _, words, _ in rounds(tmp_path, 60, 0))
+    assert not any(words.startswith("FAULT") for words in found), found
+    assert len(found) > 2
