@@ -437,11 +437,6 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "DT divides the history into more than 100 000 000 steps, or OUTPUT EVERY into more than 5 000 000 "
         "stored rows. The message gives the count, and the shortest interval that is allowed.",
     ),
-    "P349": (
-        "gravity of another unit (warning)",
-        "GRAVITY is the earth's in another unit of length than that of UNITS, so masses and motions in G "
-        "are wrong by their ratio. Write the value that the message gives.",
-    ),
     "R401": (
         "record not found",
         "The record is neither in the deck's folder nor in the record folders. Check its name, "

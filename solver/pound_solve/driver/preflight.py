@@ -10,11 +10,9 @@ import numpy as np
 
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
-from pound_solve.loading.motions.base import METRE
 from pound_solve.numerics.types import Array
 from pound_solve.structure.structure import Structure
 
-EARTH: Final = 9.80665  #: acceleration of gravity [m/s2]
 MOST_STEPS: Final = 10**8  #: of a history: hours of a small structure
 MOST_ROWS: Final = 5 * 10**6  #: of stored histories
 
@@ -93,20 +91,6 @@ def _connected(structure: Structure, shift: Array) -> bool:
     )
 
 
-def foreign_gravity(structure: Structure) -> list[Diagnostic]:
-    """GRAVITY that is the earth's in another unit of length than the deck's."""
-    model = structure.model
-    own = METRE.get(model.units.length.lower()) if "units" not in model.defaults else None
-    if own is None or abs(model.gravity / (EARTH * own) - 1.0) < 0.01:
-        return []
-    for unit, per_metre in METRE.items():
-        if abs(model.gravity / (EARTH * per_metre) - 1.0) < 0.01:
-            message = f"GRAVITY {model.gravity:g} is the earth's in {unit}; UNITS says {model.units.length}"
-            hint = f"write GRAVITY {EARTH * own:.5g}"
-            return [Diagnostic("P349", message, None, hint, "warning")]
-    return []
-
-
 def too_many(structure: Structure) -> list[Diagnostic]:
     """Histories of more steps than anyone waits for, and of more rows than a results file holds."""
     model = structure.model
@@ -134,7 +118,6 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     inclined,
     pressed,
     adrift,
-    foreign_gravity,
     pushover.mistakes,
     too_many,
 )
