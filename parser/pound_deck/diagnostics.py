@@ -225,8 +225,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P217": (
         "value out of limits",
-        "The number is outside the limits of this item, which the message gives. Any number but 0 has a "
-        "magnitude from 1e-30 to 1e30, so that what the program computes of it stays finite.",
+        "The number is outside the limits of this item, which the message gives. No magnitude is "
+        "above 1e30, and none that must be above 0 is below 1e-30, so that what is computed stays finite.",
     ),
     "P218": (
         "wrong number of values",

@@ -15,8 +15,8 @@ from pound_deck.model import Units
 from pound_deck.schema import Catalog, Field, Kind
 
 _LARGEST: Final = 10**15  #: whole numbers beyond are no longer exact
-#: magnitudes of a real number but zero: quantities in any units lie far within, and products
-#: of ten of them do not reach 1e308, where floating point ends
+#: magnitudes of a real number, the smaller one where the program may divide by it: quantities in any units
+#: lie far within, and products of ten of them do not reach 1e308, where floating point ends
 SMALL, GREAT = 1e-30, 1e30
 
 
@@ -81,9 +81,11 @@ class Values:
         `bounded`.
         """
         value = self._number(part, f)
-        if value != 0.0 and not SMALL <= abs(value) <= GREAT:
+        nothing = 0.0 if f is None or f.above != 0 else SMALL  # least magnitude of what is divided by
+        if not nothing <= abs(value) <= GREAT:
             name, meaning = (f.name, self.meaning(f)) if f else ("BY", "the step of a range")
-            message = f"{name} is {value:.10g}, but must be 0 or of a magnitude from {SMALL:g} to {GREAT:g}"
+            least = f"from {SMALL:g} to" if nothing else "up to"
+            message = f"{name} is {value:.10g}, but must be of a magnitude {least} {GREAT:g}"
             raise mistake("P217", message, part.span, meaning)
         return self.within(value, part, f) if bounded else value
 

@@ -459,11 +459,17 @@ def test_lists_with_blanks_say_how_lists_are_written(catalog, line, told):
     assert told in found[0].hint, found
 
 
-@pytest.mark.parametrize("number", ["1E31", "-1E31", "1E300", "1E-31", "4.9E-324", "1E15*1E16"])
+@pytest.mark.parametrize("number", ["1E31", "-1E31", "1E300", "1E15*1E16"])
 def test_a_number_that_is_no_quantity_is_told_before_its_powers_overflow(codes, number):
     assert codes(HEAD.replace(" 3 1 3", f" 3 1 {number}")) == ["P217"]
     assert codes(HEAD.replace("KX=1", f"KX=abs({number})")) == ["P217"]
     assert codes(HEAD.replace(" 3 1 3", f" 3 1 3\n 11 TO 12 0 TO {number} 3")) == ["P217"]
+
+
+@pytest.mark.parametrize("number", ["1E-31", "4.9E-324"])
+def test_what_must_be_above_zero_is_not_next_to_it(codes, number):
+    assert codes(HEAD + f"ANALYSIS\n HISTORY {number}\n") == ["P217"]
+    assert codes(HEAD.replace(" 3 1 3", f" 3 1 {number}")) == []  # a load or a place may be
 
 
 @pytest.mark.parametrize("number", ["1E30", "1E-30", "0"])
