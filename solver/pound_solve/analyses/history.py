@@ -31,6 +31,7 @@ from pound_solve.structure.structure import Structure
 
 MOST_ROWS = 5_000_000  #: of stored histories
 RESIDUAL = "largest energy residual over the largest energy"  #: name of the check
+BALANCE = "base shear and overturning moment less inertia and loads, over the largest"
 ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
 
 SPEC = Spec(
@@ -148,7 +149,17 @@ class HistoryResult:
         # not over the input at the end, which a free body may have given back
         ratio = energy.largest_residual / energy.largest if energy.largest else 0.0
         good = "good" if ratio < (1e-9 if self.returned.exact else 1e-2) else "look: energy is lost or made"
-        return [(RESIDUAL, f"{ratio:.2e}", good), *self.returned.checks]
+        balance = self.recorder.envelopes.imbalance(self.items.buildings)
+        held = (
+            "good"
+            if balance < (1e-9 if self.returned.exact else 1e-2)
+            else "look: forces are out of balance"
+        )
+        return [
+            (RESIDUAL, f"{ratio:.2e}", good),
+            (BALANCE, f"{balance:.2e}", held),
+            *self.returned.checks,
+        ]
 
     @property
     def items(self) -> RecordedItems:

@@ -11,6 +11,7 @@ from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
 from pound_solve.loading.motions.base import METRE
 from pound_solve.numerics.types import Array
+from pound_solve.structure.buildings import misnamed
 from pound_solve.structure.structure import Structure
 
 EARTH: Final = 9.80665  #: acceleration of gravity [m/s2]
@@ -110,6 +111,7 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     adrift,
     foreign_gravity,
     pushover.mistakes,
+    misnamed,
 )
 
 
