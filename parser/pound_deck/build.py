@@ -61,6 +61,7 @@ def build(
         member_loads=bound["MEMBER_LOADS"],
         initial=bound["INITIAL"],
         drifts=bound["DRIFT"],
+        buildings=bound["BUILDINGS"],
         damping=bound["DAMPING"],
         equake=bound["EQUAKE"],
         forces=bound["FORCES"],
@@ -94,7 +95,7 @@ def _row(name: str, row: Row, binder: Binder) -> list[Card] | None:
         return [card] if card else None
     generate = name in ("NODES", "ELEMENTS")
     cards = binder.cards(_SPECS[name], row.items or (), row.span, generate=generate)
-    if cards and name == "DRIFT":
+    if cards and name in ("DRIFT", "BUILDINGS"):
         cards = [_labelled(card) for card in cards]
     return cards
 

@@ -409,6 +409,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "EQUAKE shakes the base along a direction in which no fixed node, spring, dashpot or contact holds "
         "the structure, and neither INITIAL nor FORCES set it in motion. Fix its base in that direction.",
     ),
+    "P338": (
+        "name of no single building",
+        "A line of BUILDINGS names nodes that elements do not connect, a building that has a name, or a "
+        "name given before. A building is all that elements and slaving connect; contacts do not.",
+    ),
     "P340": (
         "P-Delta without axial forces (warning)",
         "GEOMETRY requests P-Delta, but no load compresses the columns, so it has no effect. Weights are "

@@ -1,8 +1,9 @@
 """Names of a deck's sections and cards, and the Specs of those that are not a plug-in family of the solver.
 
-NODES, ELEMENTS, WEIGHTS, LOADS, MEMBER_LOADS, INITIAL, DRIFT and OUTPUT have one kind of line each, given
-here.  PROPS, DAMPING, EQUAKE, FORCES and ANALYSIS hold cards of the families ``element``, ``damping``,
-``motion``, ``force`` and ``analysis``.  TITLE, UNITS and the other `CARDS` stand in no section.
+NODES, ELEMENTS, WEIGHTS, LOADS, MEMBER_LOADS, INITIAL, DRIFT, BUILDINGS and OUTPUT have one kind of line
+each, given here.  PROPS, DAMPING, EQUAKE, FORCES and ANALYSIS hold cards of the families ``element``,
+``damping``, ``motion``, ``force`` and ``analysis``.  TITLE, UNITS and the other `CARDS` stand in no
+section.
 """
 
 from __future__ import annotations
@@ -147,6 +148,15 @@ SECTIONS: Final = (
                 doc="storey height; left out: from the coordinates",
             ),
             Field("DIRECTION", Kind.WORD, default="X", words=("X", "Y"), doc="direction of the drift"),
+        ),
+    ),
+    Spec(
+        "section",
+        "BUILDINGS",
+        "names of buildings: connected parts of the structure, contacts apart",
+        (
+            Field("NAME", Kind.TEXT, doc="name in the report", positional=True),
+            Field("NODES", Kind.NODES, doc="one or more of its nodes"),
         ),
     ),
     Spec(

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from pound_solve.numerics.matrices import layers, used_columns, used_rows
 from pound_solve.numerics.types import Array, Index
+from pound_solve.structure.buildings import Building
 from pound_solve.structure.elements.base import Output
+from pound_solve.structure.equations import LinearSums
 from pound_solve.structure.reduction import ReducedSystem
 
 
@@ -42,9 +44,22 @@ class Envelope:
         """Largest value and its time, smallest value and its time, of each quantity."""
         return list(zip(self.high.tolist(), self.t_high.tolist(), self.low.tolist(), self.t_low.tolist()))
 
+    def largest(self) -> list[tuple[float, float]]:
+        """Largest absolute value of each quantity, and its time."""
+        rows = self.rows()
+        return [max((high, t_high), (-low, t_low), key=lambda x: x[0]) for high, t_high, low, t_low in rows]
+
 
 class Envelopes:
-    """Envelopes of the motion of some nodes and of the forces of some members.
+    """Envelopes of the motion of some nodes, of the forces of some members and of sums of forces.
+
+    Parameters
+    ----------
+    system : ReducedSystem
+    nodes : sequence of int
+    outputs : sequence of Output
+    sums : mapping of str to LinearSums
+        By the name of what they are.
 
     Attributes
     ----------
@@ -52,13 +67,23 @@ class Envelopes:
         Of displacements "u", velocities "v" (relative to the ground, where it moves as one) and
         accelerations "a" (total).
     output : Envelope
+    total : dict of Envelope
+        Of the sums, by their names.
     shown : ndarray of bool, shape (n,)
         Unknowns that it looks at.
+    pulling : ndarray of int, shape (n_pulling,)
+        Laws whose forces it looks at.
     seen, apart : int, float
         Number of instants between the samples that were counted in, longest time from one to the next [T].
     """
 
-    def __init__(self, system: ReducedSystem, nodes: Sequence[int], outputs: Sequence[Output]) -> None:
+    def __init__(
+        self,
+        system: ReducedSystem,
+        nodes: Sequence[int],
+        outputs: Sequence[Output],
+        sums: Mapping[str, LinearSums],
+    ) -> None:
         dofs, place = system.structure.dofs, system.structure.model.nodes
         self.system, self.n_nodes = system, len(nodes)
         of_u, on_inputs, at_rest = system.over(dofs.matrix([(n, d) for n in nodes for d in range(3)]))
@@ -85,12 +110,20 @@ class Envelopes:
         self.constants = np.array([o.constant for o in outputs]) + constants
         self.shares = system.corotational.shares([(o.element, o.quantity) for o in outputs])
         self.shown = used_columns(of_u) | used_columns(self.of_u) | used_columns(self.of_v)
-        self.shown |= bool(system.corotational)  # they look at all
+        self.sums, laws = sums, system.structure.laws
+        pulling = np.any([np.zeros(len(laws), bool), *(x.pulling for x in sums.values())], axis=0)
+        self.pulling = np.flatnonzero(pulling)
+        self.pulls = {name: x.pulls[:, self.pulling] for name, x in sums.items()}
+        self.shown |= np.any([x.shown for x in sums.values()], axis=0)
+        self.shown |= used_columns(system.law_rows[self.pulling])
+        # corotational members look at all, and so does the force of a closed rigid contact
+        self.shown |= bool(system.corotational) or any(laws[i].law.rigid for i in self.pulling)
         self._clear()
 
     def _clear(self) -> None:
         self.node = {q: Envelope(3 * self.n_nodes) for q in "uva"}
         self.output = Envelope(len(self.constants))
+        self.total = {name: Envelope(len(x.constant)) for name, x in self.sums.items()}
         self.seen, self.apart = 0, 0.0
 
     def blank(self) -> Envelopes:
@@ -109,16 +142,31 @@ class Envelopes:
         kinds = ["acceleration"] * int(whole.sum()) * 2 + self.units * 2
         return np.concatenate(values), kinds
 
+    def imbalance(self, buildings: Sequence[Building]) -> float:
+        """Largest difference of both ways to the forces of a building on the ground, over the largest of
+        these forces and of its inertia; a moment counts beside the force at the top of the building too.
+        """
+        off, base = (np.array([x for x, _ in self.total[name].largest()]) for name in ("imbalance", "base"))
+        off, inertia = off.reshape(2, -1, 3)
+        worst = 0.0
+        for b, x, force in zip(buildings, off, np.maximum(base.reshape(-1, 3), inertia)):
+            shear = float(force[:2].max())
+            moment = max(float(force[2]), shear * (b.levels[-1] - b.base))
+            worst = max(worst, float(x[:2].max()) / (shear or 1.0), float(x[2]) / (moment or 1.0))
+        return worst
+
     def widen(self, other: Envelopes) -> None:
         """Count in what another one of the same quantities has seen."""
         for q, envelope in self.node.items():
             envelope.widen(other.node[q])
         self.output.widen(other.output)
+        for name, total in self.total.items():
+            total.widen(other.total[name])
         self.seen, self.apart = self.seen + other.seen, max(self.apart, other.apart)
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, pull: Array, apart: float) -> None:
         """Count in instants between the samples (see `integrate.protocol.Recorder`)."""
-        self._count(t, u, v, a, [self.system.excitation.values(t, order).T for order in range(3)])
+        self._count(t, u, v, a, pull, [self.system.excitation.values(t, order).T for order in range(3)])
         self.seen, self.apart = self.seen + len(t), max(self.apart, apart)
 
     def stationary(self, t: Array, u: Array) -> None:
@@ -128,23 +176,24 @@ class Envelopes:
         self.node["u"].take(self._on_nodes(u, self.system.excitation.values(t).T, "u"), t, self.moving)
 
     def take(
-        self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]
-    ) -> tuple[dict[str, Array], Array]:
+        self, t: Array, u: Array, v: Array, a: Array, pull: Array, s: Sequence[Array]
+    ) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Count in some samples; return the motion of the nodes, shape (3 n_nodes, nt) each,
-        and the members' forces, shape (n_outputs, nt), from unknowns and inputs, shape (n, nt) each.
+        the members' forces, shape (n_outputs, nt), and the sums, (n_sums, nt) each, from unknowns and
+        inputs, shape (n, nt) each, and the forces of the laws in `pulling`.
         """
-        moving, out = self._count(t, u, v, a, s)
+        moving, out, totals = self._count(t, u, v, a, pull, s)
         node = {q: np.zeros((3 * self.n_nodes, len(t))) for q in moving}
         for q, values in moving.items():
             node[q][self.moving] = values
             self.node[q].take(node[q][self.still], t, self.still)
-        return node, out
+        return node, out, totals
 
     def _count(
-        self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]
-    ) -> tuple[dict[str, Array], Array]:
+        self, t: Array, u: Array, v: Array, a: Array, pull: Array, s: Sequence[Array]
+    ) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Count in some instants, but for what never moves; return the motion of the rest,
-        shape (n_moving, nt) each, and the members' forces.
+        shape (n_moving, nt) each, the members' forces, and the sums.
         """
         node = {q: self._on_nodes(x, y, q) for q, x, y in zip("uva", (u, v, a), s)}
         node["a"] += self.ground @ s[0]  # they are total
@@ -158,7 +207,10 @@ class Envelopes:
         for q, values in node.items():
             self.node[q].take(values, t, self.moving)
         self.output.take(out, t)
-        return node, out
+        totals = {name: x.values((u, v, a), self.pulls[name] @ pull, s) for name, x in self.sums.items()}
+        for name, values in totals.items():
+            self.total[name].take(values, t)
+        return node, out, totals
 
     def _on_nodes(self, x: Array, s: Array, quantity: str) -> Array:
         """Displacements "u", velocities "v" or accelerations "a" of the nodes, but for what never moves,

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from pound_solve.laws.automaton import State
-from pound_solve.numerics.matrices import by_rows, least_squares, used_rows
+from pound_solve.numerics.matrices import by_rows
 from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import assemble
 from pound_solve.structure.dofs import Dof
+from pound_solve.structure.equations import fixed_dofs, rigid_motions
 from pound_solve.structure.structure import Structure
 
 ROUNDING = 1e-9  #: share of the largest term below which a sum of forces is zero
@@ -35,19 +36,11 @@ class SupportReactions:
 
     def __init__(self, structure: Structure, axial: Array) -> None:
         model = structure.model
-        self.fixed = [(n.id, d) for n in model.nodes.values() for d in range(3) if "XYR"[d] in n.fixed]
-        bare = assemble(replace(model, damping=()), self.fixed, structure.self_weight)
+        bare = assemble(replace(model, damping=()), fixed_dofs(structure), structure.self_weight)
         self.structure, self.n = bare.stressed(axial), bare.n_free
         self.laws = structure.laws  # with what damping has made of them
         self.geometric = self.structure.stiffness - bare.stiffness
-        columns = bare.dofs.free + bare.dofs.moved
-        k = bare.initial_stiffness
-        inside = np.array([d > 2 for _, d in columns], bool) & used_rows(k)
-        self.rigid = np.array([_rigid(bare, f) for f in columns]).reshape(-1, 3).T
-        if inside.any():  # what is inside an element follows its nodes without strain
-            own, others = np.flatnonzero(inside), np.flatnonzero(~inside)
-            pull = k[np.ix_(own, others)] @ self.rigid[:, others].T
-            self.rigid[:, own] = -least_squares(k[np.ix_(own, own)], pull).T
+        self.rigid = rigid_motions(bare)
         self.linear, self.nonlinear = self._resistance()
 
     def _at(self, u: Array, states: Sequence[State]) -> tuple[Array, Array]:
@@ -135,12 +128,3 @@ def _above_rounding(a: Array, b: Array) -> Array:
     """a @ b, with zeros where nothing but rounding is left of its terms."""
     product = a @ b
     return np.where(np.abs(product) > ROUNDING * (np.abs(a) @ np.abs(b)), product, 0.0)
-
-
-def _rigid(structure: Structure, dof: Dof) -> tuple[float, float, float]:
-    """Motion of a node's DOF when the whole moves along x, along y, and turns about the origin."""
-    owner, d = dof
-    if d > 2:
-        return 0.0, 0.0, 0.0
-    node = structure.model.nodes[owner]
-    return ((1.0, 0.0, -node.y), (0.0, 1.0, node.x), (0.0, 0.0, 1.0))[d]

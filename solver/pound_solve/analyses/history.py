@@ -30,6 +30,7 @@ from pound_solve.structure.reduction import ReducedSystem
 from pound_solve.structure.structure import Structure
 
 RESIDUAL = "largest energy residual over the largest energy"  #: name of the check
+BALANCE = "base shear and overturning moment less inertia and loads, over the largest"
 ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
 
 SPEC = Spec(
@@ -151,7 +152,14 @@ class HistoryResult:
             good = "nothing moves: there is no energy to compare"
         elif energy.samples < 2:
             good = "look: the run ended before there was anything to compare"
-        return [(RESIDUAL, f"{ratio:.2e}", good), *self.returned.checks]
+        balance = self.recorder.envelopes.imbalance(self.items.buildings)
+        enough = balance < (1e-9 if self.returned.exact else 1e-2)
+        held = "good" if enough else "look: forces are out of balance"
+        return [
+            (RESIDUAL, f"{ratio:.2e}", good),
+            (BALANCE, f"{balance:.2e}", held),
+            *self.returned.checks,
+        ]
 
     @property
     def items(self) -> RecordedItems:

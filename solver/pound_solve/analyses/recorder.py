@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -11,12 +11,38 @@ import numpy as np
 from pound_solve.analyses.envelopes import Envelopes
 from pound_solve.integrate.energy import ENERGIES, energies
 from pound_solve.integrate.protocol import LawValues, MonitoredOutputs, Stop
-from pound_solve.numerics.types import Array, Flags
+from pound_solve.numerics.types import Array, Flags, Index
+from pound_solve.structure.buildings import Building, buildings
 from pound_solve.structure.elements.base import Output
+from pound_solve.structure.equations import Equations, LinearSums, reactions
 from pound_solve.structure.reduction import ReducedSystem
+from pound_solve.structure.storeys import (
+    acceleration_sums,
+    base_sums,
+    drift_sums,
+    imbalance_sums,
+    storey_sums,
+)
 
 LARGEST = 1e100  #: magnitude of a sample: energies, which are products of samples, stay finite
 BLOCK, HELD = 256, 2**20  #: samples kept before they are written, and numbers of one kind in them, at most
+
+
+def recorded_sums(
+    system: ReducedSystem, supports: Sequence[int], found: Sequence[Building]
+) -> dict[str, LinearSums]:
+    """Forces of the supports (X, Y, moment of each) and of the buildings on the ground (the same of each),
+    what is out of balance in these; drifts, shears and moments of the storeys, accelerations of the floors.
+    """
+    equations = Equations(system)
+    return {
+        "reaction": reactions(equations, supports),
+        "base": base_sums(equations, found),
+        "imbalance": imbalance_sums(equations, found),
+        "drift": drift_sums(system, found),
+        "storey": storey_sums(equations, found),
+        "acceleration": acceleration_sums(system, found),
+    }
 
 
 @dataclass(frozen=True)
@@ -33,6 +59,11 @@ class RecordedItems:
         Forces of the members.
     springs, contacts : tuple of int
         Places among the laws of the structure.
+    supports : tuple of int
+        Numbers of the nodes that are held.
+    buildings : tuple of Building
+    sums : mapping of str to LinearSums
+        See `recorded_sums`.
     """
 
     system: ReducedSystem
@@ -41,19 +72,27 @@ class RecordedItems:
     outputs: tuple[Output, ...]
     springs: tuple[int, ...]
     contacts: tuple[int, ...]
+    supports: tuple[int, ...]
+    buildings: tuple[Building, ...]
+    sums: Mapping[str, LinearSums]
 
     @classmethod
     def of(cls, system: ReducedSystem, drifts: MonitoredOutputs) -> Self:
         """Choose what the deck asks for."""
         structure = system.structure
         nodes, elements = (structure.model.output[item] for item in ("NODES", "MEMBERS"))
+        recorded = tuple(structure.model.nodes) if nodes is None else tuple(dict.fromkeys(nodes))
+        supports = tuple(n for n in recorded if structure.model.nodes[n].fixed)
         return cls(
             system,
             drifts,
-            tuple(structure.model.nodes) if nodes is None else tuple(dict.fromkeys(nodes)),
+            recorded,
             tuple(o for o in structure.outputs if elements is None or o.element in elements),
             tuple(i for i, s in enumerate(structure.laws) if not s.role.collides),
             tuple(i for i, s in enumerate(structure.laws) if s.role.collides),
+            supports,
+            found := tuple(buildings(structure)),
+            recorded_sums(system, supports, found),
         )
 
     @property
@@ -82,6 +121,8 @@ class SampleBlock:
         Displacements "u", velocities "v" and accelerations "a" of the recorded nodes.
     members : ndarray, shape (n_outputs, n_times)
         Forces of the recorded members [F], [F L].
+    totals : mapping of str to ndarray, shape (n_sums, n_times)
+        Sums of forces by their names [F], [F L].
     energy : ndarray, shape (n_times, 7)
         `ENERGIES` and the residual [F L].
     """
@@ -94,7 +135,15 @@ class SampleBlock:
     deformation: Array
     nodes: Mapping[str, Array]
     members: Array
+    totals: Mapping[str, Array]
     energy: Array
+
+
+def inputs_before(system: ReducedSystem, t: Array) -> list[Array]:
+    """Inputs and their first two derivatives, shape (n_inputs, n_times) each, as the accelerations of
+    samples have them: just before an instant at which they jump.
+    """
+    return [system.excitation.values(t, order, before=True).T for order in range(3)]
 
 
 class EnergyBalance:
@@ -179,7 +228,7 @@ class HistoryRecorder:
         first_energy: Array | None = None,
     ) -> None:
         self.items, self._append, self._progress = items, append, progress
-        self.envelopes = Envelopes(items.system, items.nodes, items.outputs)
+        self.envelopes = Envelopes(items.system, items.nodes, items.outputs, items.sums)
         self.energy = EnergyBalance(first_energy)
         self.losses = [0.0] * len(items.system.structure.laws)
         self.deformations = [0.0] * len(items.system.structure.laws)
@@ -222,9 +271,9 @@ class HistoryRecorder:
         where = next(n for x, named in at for n, y in zip(named, x) if not abs(y) <= LARGEST)
         return Stop("A504", float(t[first]), f"the motion is beyond all numbers, first at {where}")
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, pull: Array, apart: float) -> None:
         """Widen the envelopes only (see `integrate.protocol.Recorder`)."""
-        self.envelopes.between(t, u, v, a, apart)
+        self.envelopes.between(t, u, v, a, pull, apart)
 
     def stationary(self, t: Array, u: Array) -> None:
         """Widen the envelopes of displacements only (see `integrate.protocol.Recorder`)."""
@@ -234,6 +283,11 @@ class HistoryRecorder:
     def shown(self) -> Flags:
         """Which unknowns `between` looks at (see `integrate.protocol.Recorder`)."""
         return self.envelopes.shown
+
+    @property
+    def pulling(self) -> Index:
+        """Laws whose forces `between` looks at (see `integrate.protocol.Recorder`)."""
+        return self.envelopes.pulling
 
     def trial(self, t: float, doing: str = "") -> None:
         """Tell the progress of a run whose samples may not count (see `integrate.protocol.Recorder`)."""
@@ -249,7 +303,7 @@ class HistoryRecorder:
         if not self._blocks:
             return
         system = self.items.system
-        t, u, v, a, force, stored, lost, works = (
+        t, u, v, a, force, stored, lost, drag, works = (
             np.concatenate(parts, axis=-1) for parts in zip(*self._blocks)
         )
         self._blocks = []
@@ -258,6 +312,8 @@ class HistoryRecorder:
         energy = energies(system, t, u.T, v.T, stored.T, lost.T, works.T)
         residual = self.energy.take(energy)
         self.losses, self.deformations = lost[:, -1].tolist(), d[:, -1].tolist()
-        nodes, members = self.envelopes.take(t, u, v, a, inputs)
+        pull = (force + drag)[self.pulling]
+        before = inputs_before(system, t)
+        nodes, members, totals = self.envelopes.take(t, u, v, a, pull, before)
         whole = np.column_stack([energy, residual])
-        self._append(SampleBlock(self.items, t, u, inputs[0], force, d, nodes, members, whole))
+        self._append(SampleBlock(self.items, t, u, inputs[0], force, d, nodes, members, totals, whole))

@@ -15,7 +15,7 @@ from pound_solve.integrate.protocol import (
     rigid_contact,
     without_steps,
 )
-from pound_solve.numerics.types import Array, Flags
+from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.condensation import Condensed, condense
 from pound_solve.structure.reduction import ReducedSystem
 
@@ -29,16 +29,16 @@ class ExpandingRecorder:
         self.recorder, self.condensed = recorder, condensed
         self._input_at_start = condensed.put_in(np.zeros(1))
 
-    def _expanded(self, t: Array, *motion: Array) -> list[Array]:
-        """Displacements of all unknowns, and of their derivatives in order, shape (n, n_times) each."""
-        excitation = self.condensed.system.excitation
-        return [
-            self.condensed.all(x, excitation.values(t, order).T, order) for order, x in enumerate(motion)
-        ]
+    def _expanded(self, t: Array, *motion: Array, before: bool = False) -> list[Array]:
+        """Displacements of all unknowns, and of their derivatives in order, shape (n, n_times) each;
+        `before` the inputs jump.
+        """
+        values = self.condensed.system.excitation.values
+        return [self.condensed.all(x, values(t, order, before).T, order) for order, x in enumerate(motion)]
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take some samples (see `Recorder`)."""
-        u, v, a = self._expanded(t, u, v, a)
+        u, v, a = self._expanded(t, u, v, a, before=True)
         if not self.condensed.system.total:  # the total form counts the work on all DOFs
             works = works.copy()
             works[0] += self.condensed.put_in(t) - self._input_at_start
@@ -49,10 +49,15 @@ class ExpandingRecorder:
         """Which unknowns `between` needs (see `Recorder`)."""
         return np.asarray(self.condensed.expand[self.recorder.shown].any(axis=0))
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+    @property
+    def pulling(self) -> Index:
+        """Laws whose forces `between` needs (see `Recorder`)."""
+        return self.recorder.pulling
+
+    def between(self, t: Array, u: Array, v: Array, a: Array, pull: Array, apart: float) -> None:
         """Take the motion between samples (see `Recorder`)."""
         u, v, a = self._expanded(t, u, v, a)
-        self.recorder.between(t, u, v, a, apart)
+        self.recorder.between(t, u, v, a, pull, apart)
 
     def stationary(self, t: Array, u: Array) -> None:
         """Take displacements at stationary points (see `Recorder`)."""

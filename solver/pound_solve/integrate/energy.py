@@ -71,11 +71,11 @@ class EnergyAccumulator:
 
 def law_values(system: ReducedSystem, t: Array, u: Array, v: Array, states: Sequence[State]) -> LawValues:
     """Forces and energies of all laws from their states, at times (n_times,) and motions (n, n_times)
-    between two changes of branch.
+    between two changes of branch; `drag` of laws that are linear there.
     """
     laws = [s.law for s in system.structure.laws]
     if not laws:
-        return LawValues(*np.zeros((3, 0, len(t))))
+        return LawValues(*np.zeros((4, 0, len(t))))
     d = system.law_rows @ u + system.law_inputs @ system.excitation.values(t).T
     rate = system.law_rows @ v + system.law_inputs @ system.excitation.values(t, 1).T
     # `Law.work` and `Law.dissipated` of all laws and times at once: a sample of some laws is a small thing
@@ -98,7 +98,9 @@ def law_values(system: ReducedSystem, t: Array, u: Array, v: Array, states: Sequ
     )
     size = np.array([[x.p[0]] for x in laws]) * np.maximum(np.abs(d), np.abs(begin)) ** 2
     lost = done - stored
-    return LawValues(force, stored, np.where(np.abs(lost) > 1e-14 * size, lost, 0.0))
+    beside = [s.branch(x).damping - s.law.branch(x).damping for s, x in zip(system.structure.laws, states)]
+    drag = np.array(beside)[:, None] * rate
+    return LawValues(force, stored, np.where(np.abs(lost) > 1e-14 * size, lost, 0.0), drag)
 
 
 def energies(

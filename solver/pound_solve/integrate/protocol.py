@@ -12,7 +12,7 @@ from pound_solve.integrate.tracker import Peaks
 from pound_solve.laws.automaton import BranchKind, State
 from pound_solve.numerics.matrices import used_rows
 from pound_solve.numerics.modes import massless
-from pound_solve.numerics.types import Array, Flags
+from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.corotational import ACROSS, KIND, QUANTITIES, STRING
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
@@ -57,17 +57,20 @@ class Start:
 
 
 class LawValues(NamedTuple):
-    """Forces [F] or [F L], recoverable and lost energies [F L] of all laws, shape (n_laws, n_times)."""
+    """Forces [F] or [F L], recoverable and lost energies [F L] of all laws, and forces of the dashpots that
+    damping puts beside springs, which are no part of their forces, shape (n_laws, n_times) each.
+    """
 
     force: Array
     stored: Array
     lost: Array
+    drag: Array
 
 
 class Envelopes(Protocol):
     """Envelopes of a run."""
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, pull: Array, apart: float) -> None:
         """Count in the motion at some times, as `Recorder.between`."""
         ...
 
@@ -75,7 +78,7 @@ class Envelopes(Protocol):
         """Count in displacements that turn between those instants."""
         ...
 
-    def take(self, t: Array, u: Array, v: Array, a: Array, s: Sequence[Array]) -> object:
+    def take(self, t: Array, u: Array, v: Array, a: Array, pull: Array, s: Sequence[Array]) -> object:
         """Count in samples; `s` are the inputs and their first two rates."""
         ...
 
@@ -97,7 +100,12 @@ class Recorder(Protocol):
 
     @property
     def shown(self) -> Flags:
-        """Which unknowns `between` looks at, shape (n,)."""
+        """Which unknowns `between` looks at, shape (n,): those of the laws in `pulling` are among them."""
+        ...
+
+    @property
+    def pulling(self) -> Index:
+        """Laws whose forces `between` looks at, ascending, shape (n_pulling,)."""
         ...
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
@@ -108,9 +116,11 @@ class Recorder(Protocol):
         """
         ...
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, pull: Array, apart: float) -> None:
         """Take the motion at times between the samples, shapes (n_times,), (n, n_times): for envelopes.
         Only that of the unknowns in `shown` need be right.
+
+        `pull`, shape (n_pulling, n_times), are the forces of the laws in `pulling`, all dashpots included.
 
         `apart` is the longest time from one instant that is seen to the next.
         """

@@ -88,7 +88,11 @@ class Excitation:
         i = self.piece(t)
         return polynomial.value(self.coefs[i], t - float(self.breaks[i]), order)
 
-    def values(self, t: Array, order: int = 0) -> Array:
-        """`value` at several times, shape (n_times, n_inputs)."""
+    def values(self, t: Array, order: int = 0, before: bool = False) -> Array:
+        """`value` at several times, shape (n_times, n_inputs); `before` just before them, where an input
+        jumps then.
+        """
         i = self.pieces(t)
+        if before:
+            i = np.maximum(np.searchsorted(self.breaks[: len(self.coefs)], t, side="left") - 1, 0)
         return polynomial.values(self.coefs[i], t - self.breaks[i], order)

@@ -176,6 +176,19 @@ def member_actions(p: Array, s: Array, out: Array) -> None:
             out[i, c, 3] = (t + dt) * (1.0 / p[c, LENGTH] - 1.0 / now)
 
 
+def member_turning(p: Array, s: Array, out: Array) -> None:
+    """Forces on the quantities of all members at several instants, see `quantity_forces`.
+
+    Parameters
+    ----------
+    p : ndarray, shape (n_members, 10)
+    s, out : ndarray, shape (n_times, n_members, 6)
+    """
+    for i in range(s.shape[0]):
+        for c in range(s.shape[1]):
+            quantity_forces(p, c, s[i], 0, out[i], 0)
+
+
 class CorotationalMembers:
     """The members of a structure with corotational geometry or a P-Delta string.
 
@@ -241,6 +254,12 @@ class CorotationalMembers:
         """`member_actions` at the quantities `s`, shape (n_times, n_members, 6)."""
         out = np.zeros((*s.shape[:2], 4))
         provider().ready(member_actions)(self.p, np.ascontiguousarray(s), out)
+        return out
+
+    def turning(self, s: Array, members: Index) -> Array:
+        """`member_turning` of some members at their quantities `s`, shape (n_times, n_members, 6)."""
+        out = np.zeros(s.shape)
+        provider().ready(member_turning)(self.p[members], np.ascontiguousarray(s), out)
         return out
 
     def shares(self, outputs: Sequence[tuple[int, str]]) -> tuple[Index, Array]:

@@ -12,6 +12,7 @@ from pound_solve.numerics import modes
 from pound_solve.numerics.matrices import Matrix, entries, gathered, least_squares
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import CorotationalMembers
+from pound_solve.structure.damping.base import Proportional
 from pound_solve.structure.dofs import Dof, DofMap
 from pound_solve.structure.elements.base import ElementMatrix, Geometric, LawSpring, Output, Parts
 
@@ -56,6 +57,10 @@ class Structure:
     parts : mapping of int to Parts
         Contributions of every element, by its number.
     damping_texts : list of (Card, str)
+    proportional : tuple of Proportional
+        Part of the damping that acts between nodes, beside the dashpots of elements.
+    carried : ndarray, shape (n_geometric,)
+        Axial forces that the geometric stiffness is made of [F].
     basis : Matrix, shape (n_free, n_free), or None
         Z where modes are sought among the motions u = Z u alone, see `tied`.
     """
@@ -79,6 +84,8 @@ class Structure:
     self_weight: bool
     parts: dict[int, Parts]
     damping_texts: list[tuple[Card, str]] = field(default_factory=list)
+    proportional: tuple[Proportional, ...] = ()
+    carried: Array = field(default_factory=lambda: np.zeros(0))
     basis: Matrix | None = None
 
     @property
@@ -133,6 +140,7 @@ class Structure:
             stiffness=self.stiffness + matrix,
             initial_stiffness=self.initial_stiffness + matrix,
             outputs=outputs,
+            carried=axial,
         )
 
     def displaced(self, u: Array) -> Structure:

@@ -174,7 +174,7 @@ class Laplace(EventDrivenRun):
             works.append(works[-1] + self._work(at, goal - self.t, motion))
             at = goal - self.t
             u, v = motion.at(at)
-            s = self.system.excitation.value(goal)
+            s = self.system.excitation.values(np.array([goal]), before=True)[0]
             a = self._accelerations(u[:, None], v[:, None], s[:, None])[:, 0]
             self._sample(goal, u, v, a, works[-1])
         works.append(works[-1] + self._work(at, tau, motion))

@@ -24,6 +24,28 @@ STEPS = 4  #: fine steps from one instant of the envelopes to the next
 BEYOND = 1e-6  #: share of its range by which a stationary displacement must exceed it to be recorded
 
 
+def inputs_at(system: ReducedSystem, t: Array) -> Array:
+    """The inputs and their first two derivatives at some times, shape (3, n_inputs, n_times)."""
+    return np.stack([system.excitation.values(t, order).T for order in range(3)])
+
+
+def forces_of(
+    system: ReducedSystem, rigid: RigidContacts, chosen: Index, branches: Sequence[Branch], t: Array,
+    motion: Kinematics,
+) -> Array:  # fmt: skip
+    """Forces of the `chosen` laws on their present branches, all dashpots included, (n_chosen, n_times)."""
+    (u, v, _), s = motion, inputs_at(system, t)
+    d = system.law_rows[chosen] @ u + system.law_inputs[chosen] @ s[0]
+    rate = system.law_rows[chosen] @ v + system.law_inputs[chosen] @ s[1]
+    out = linear_forces([branches[i] for i in chosen])(d, rate)
+    held = np.array([branches[i].held for i in rigid.laws], bool)
+    if held.any():
+        held &= np.isin(rigid.laws, chosen)
+        of_rigid = rigid.forces(held, linear_forces(branches), u, v, s)
+        out[np.searchsorted(chosen, np.array(rigid.laws)[held])] = of_rigid[held]
+    return out
+
+
 class DeferredSamples:
     """Output samples that wait until their works are known."""
 
@@ -44,11 +66,8 @@ class DeferredSamples:
         laws = law_values(self.system, t, u, v, states)
         held = np.array([branches[i].held for i in self.rigid.laws], bool)
         if held.any():
-            excitation = self.system.excitation
-            s = np.stack([excitation.values(t, order) for order in range(3)])
-            for i in range(len(t)):
-                now = self.rigid.forces(held, linear_forces(branches), u[:, i], v[:, i], s[:, i])
-                laws.force[self.rigid.laws, i] = now
+            s = inputs_at(self.system, t)
+            laws.force[self.rigid.laws] = self.rigid.forces(held, linear_forces(branches), u, v, s)
         self._waiting.append((t, u, v, a, laws, entries))
 
     def release(self, works: Array) -> None:
@@ -82,7 +101,9 @@ class EnvelopeSamples:
             return
         tau, motion = dense.enveloped_grid(STEPS * h, end)
         longest = float(np.diff(tau, append=end).max(initial=0.0))
-        self._between.append((t0 + tau, *motion, longest))
+        rigid, t = dense.subsystems.rigid, t0 + tau
+        pull = forces_of(dense.subsystems.system, rigid, self.recorder.pulling, dense.branches, t, motion)
+        self._between.append((t, *motion, pull, longest))
         self._add_stationary(dense, t0, tau, motion, end)
         if sum(x[1].size for x in (*self._between, *self._stationary)) > MAX_WAITING:
             self.release()
@@ -125,8 +146,8 @@ class EnvelopeSamples:
         """Pass all that waits to the recorder."""
         if self._between:
             *motion, longest = zip(*self._between)
-            t, u, v, a = (np.concatenate(x, axis=-1) for x in motion)
-            self.recorder.between(t, u, v, a, max(longest))
+            t, u, v, a, pull = (np.concatenate(x, axis=-1) for x in motion)
+            self.recorder.between(t, u, v, a, pull, max(longest))
             self._between.clear()
         if self._stationary:
             t, u = (np.concatenate(x, axis=-1) for x in zip(*self._stationary))

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from pound_solve.integrate.protocol import EnvelopeRecorder, LawValues
-from pound_solve.numerics.types import Array, Flags
+from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
 
@@ -30,9 +30,9 @@ class Replay:
         self.low = np.minimum(self.low, u.min(axis=1))
         self.recorder.trial(float(t[-1]))
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, apart: float) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, pull: Array, apart: float) -> None:
         """Take the motion between samples (see `Recorder`)."""
-        self.envelopes.between(t, u, v, a, apart)
+        self.envelopes.between(t, u, v, a, pull, apart)
 
     def stationary(self, t: Array, u: Array) -> None:
         """Take displacements at stationary points (see `Recorder`)."""
@@ -43,6 +43,11 @@ class Replay:
         """Which unknowns `between` needs (see `Recorder`)."""
         return self.recorder.shown
 
+    @property
+    def pulling(self) -> Index:
+        """Laws whose forces `between` needs (see `Recorder`)."""
+        return self.recorder.pulling
+
     def trial(self, t: float, doing: str = "") -> None:
         """Pass the progress of a trial on."""
         self.recorder.trial(t, doing)
@@ -51,8 +56,10 @@ class Replay:
         """Peaks of the accelerations of nodes and of the forces of members, and the kind of each."""
         own = self.recorder.envelopes.blank()
         own.widen(self.envelopes)
-        for t, u, v, a, *_ in self.samples:
-            own.take(t, u, v, a, [system.excitation.values(t, order).T for order in range(3)])
+        for t, u, v, a, laws, _ in self.samples:
+            pull = (laws.force + laws.drag)[self.pulling]
+            s = [system.excitation.values(t, order, before=True).T for order in range(3)]
+            own.take(t, u, v, a, pull, s)
         return own.peaks()
 
     def pass_on(self) -> None:

@@ -353,12 +353,14 @@ def step_arrays(
     return out
 
 
-def buffers(n: int, n_laws: int, which: Index) -> state.Buffers:
-    """Room for samples and transitions; `which` unknowns are shown between the samples."""
+def buffers(n: int, n_laws: int, which: Index, pulling: Index) -> state.Buffers:
+    """Room for samples and transitions; `which` unknowns, and the forces of the laws `pulling`, are shown
+    between the samples.
+    """
     samples = min(SAMPLES, max(MOST_HELD // (3 * max((1 + SHOWS) * n, n_laws, 1)), 2))
-    shown = max(samples * SHOWS, min(16 * SAMPLES, MOST_HELD // (3 * max(len(which), 1))))
+    shown = max(samples * SHOWS, min(16 * SAMPLES, MOST_HELD // max(3 * len(which) + len(pulling), 3)))
     u, v, a = np.zeros((3, samples, n))
-    force, stored, lost = np.zeros((3, samples, n_laws))
+    force, stored, lost, drag = np.zeros((4, samples, n_laws))
     return state.Buffers(
         displacement=u,
         velocity=v,
@@ -366,6 +368,7 @@ def buffers(n: int, n_laws: int, which: Index) -> state.Buffers:
         force=force,
         stored=stored,
         lost=lost,
+        drag=drag,
         time=np.zeros(samples),
         works=np.zeros((samples, 3)),
         log=np.zeros((TRANSITIONS + 16 * n_laws, state.LOGGED)),
@@ -374,6 +377,8 @@ def buffers(n: int, n_laws: int, which: Index) -> state.Buffers:
         which=which,
         shown=np.zeros((shown, 3, len(which))),
         shown_time=np.zeros(shown),
+        pulling=pulling,
+        pull=np.zeros((shown, len(pulling))),
     )
 
 

@@ -99,7 +99,9 @@ def store_sample(
     for i in range(len(laws.rule)):
         d = laws.now.deformation[i]
         still = law_force(laws, rules, i, d, 0.0)
-        buffers.force[at, i] = law_force(laws, rules, i, d, laws.now.rate[i]) if laws.viscous[i] else still
+        whole = law_force(laws, rules, i, d, laws.now.rate[i])
+        buffers.force[at, i] = whole if laws.viscous[i] else still
+        buffers.drag[at, i] = whole - buffers.force[at, i]
         held = recoverable_of(
             rules,
             laws.rule[i],
@@ -128,10 +130,12 @@ def take_first_sample(
     run.started = 1
 
 
-def store_motion(step: Step, buffers: Buffers, run: Run, t: float, each: int) -> None:
+def store_motion(
+    laws: Laws, step: Step, buffers: Buffers, rules: Tables, run: Run, t: float, each: int
+) -> None:
     """Keep the motion after every `each`-th step between two samples."""
     run.since_shown += 1
-    if run.since_shown < each or len(buffers.which) == 0:
+    if run.since_shown < each or len(buffers.which) + len(buffers.pulling) == 0:
         return
     at, now = run.shown, step.now
     buffers.shown_time[at] = t
@@ -140,5 +144,8 @@ def store_motion(step: Step, buffers: Buffers, run: Run, t: float, each: int) ->
         buffers.shown[at, 0, i] = now.displacement[which]
         buffers.shown[at, 1, i] = now.velocity[which]
         buffers.shown[at, 2, i] = now.acceleration[which]
+    for i in range(len(buffers.pulling)):
+        law = buffers.pulling[i]
+        buffers.pull[at, i] = law_force(laws, rules, law, laws.now.deformation[law], laws.now.rate[law])
     run.since_shown = 0
     run.shown += 1

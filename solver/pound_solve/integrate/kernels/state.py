@@ -383,8 +383,8 @@ class Buffers(NamedTuple):
     Attributes
     ----------
     displacement, velocity, acceleration : ndarray, shape (n_samples, n)
-    force, stored, lost : ndarray, shape (n_samples, n_laws)
-        Of the laws: forces, recoverable and lost energies.
+    force, stored, lost, drag : ndarray, shape (n_samples, n_laws)
+        Of the laws: forces, recoverable and lost energies, forces of dashpots beside springs.
     time : ndarray, shape (n_samples,)
     works : ndarray, shape (n_samples, 3)
         Input, lost in the structure's, in the contacts' dashpots.
@@ -399,6 +399,10 @@ class Buffers(NamedTuple):
     shown : ndarray, shape (n_shown, 3, n_which)
         Their motion between the samples.
     shown_time : ndarray, shape (n_shown,)
+    pulling : ndarray, shape (n_pulling,)
+        Laws that the envelopes look at.
+    pull : ndarray, shape (n_shown, n_pulling)
+        Their forces between the samples, all dashpots included.
     """
 
     displacement: Array
@@ -407,6 +411,7 @@ class Buffers(NamedTuple):
     force: Array
     stored: Array
     lost: Array
+    drag: Array
     time: Array
     works: Array
     log: Array
@@ -415,6 +420,8 @@ class Buffers(NamedTuple):
     which: Index
     shown: Array
     shown_time: Array
+    pulling: Index
+    pull: Array
 
 
 class Scheme(NamedTuple):

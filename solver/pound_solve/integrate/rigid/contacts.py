@@ -44,9 +44,11 @@ LawForces = Callable[[Array, Array], Array]
 
 
 def linear_forces(branches: Sequence[Branch]) -> LawForces:
-    """Forces of laws on linear branches, from their deformations and rates, shape (n_laws,) each."""
+    """Forces of laws on linear branches, from their deformations and rates, shape (n_laws,) each, or
+    (n_laws, n_times).
+    """
     k, c, f0 = np.array([(b.stiffness, b.damping, b.force0) for b in branches]).reshape(-1, 3).T
-    return lambda d, v: np.asarray(k * d + c * v + f0)
+    return lambda d, v: np.asarray((d.T * k + v.T * c + f0).T)
 
 
 class MasslessContact(Exception):
@@ -162,7 +164,7 @@ class RigidContacts:
         self, law_forces: LawForces, u: Array, v: Array, inputs: Array
     ) -> tuple[Array, Array]:
         """Return the second rates of the deformations without contact forces, and the magnitude of their
-        terms, (n_rigid,) each: a share of the magnitude is rounding.
+        terms, (n_rigid,) each: a share of the magnitude is rounding.  Further axes are instants.
 
         Parameters
         ----------
@@ -181,7 +183,7 @@ class RigidContacts:
         terms = np.array(
             [
                 system.inputs @ inputs[0],
-                system.constant,
+                np.broadcast_to(system.constant, u.T.shape).T,
                 -system.damping @ v,
                 -system.stiffness @ u,
                 -system.law_rows.T @ force,
@@ -196,10 +198,10 @@ class RigidContacts:
         return self.velocity_change.T @ terms.sum(axis=0) + self.inputs @ inputs[2], size
 
     def forces(self, held: Flags, law_forces: LawForces, u: Array, v: Array, inputs: Array) -> Array:
-        """Return the forces of the contacts that are `held` closed, shape (n_rigid,); parameters as of
-        `free_accelerations`.
+        """Forces of the contacts that are `held` closed, shape (n_rigid,), or (n_rigid, n_times);
+        parameters as of `free_accelerations`.
         """
-        out, at = np.zeros(len(held)), np.flatnonzero(held)
+        out, at = np.zeros((len(held), *u.shape[1:])), np.flatnonzero(held)
         free = self.free_accelerations(law_forces, u, v, inputs)[0]
         out[at] = self.inverse(at) @ free[at]
         return out

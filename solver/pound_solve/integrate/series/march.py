@@ -190,7 +190,7 @@ def store_looks(
     t: float,
 ) -> None:
     """Keep the motion at the start of the step, where its acceleration may have jumped, and on its way."""
-    if len(buffers.which) == 0:
+    if len(buffers.which) + len(buffers.pulling) == 0:
         return
     for look in range(LOOKS):
         s, at = look * end / LOOKS, run.shown
@@ -198,6 +198,21 @@ def store_looks(
             evaluate_some(series.motion, buffers.which, terms if look else j, s, h, j, buffers.shown[at, j])
         buffers.shown_time[at] = t + s * h
         run.shown += 1
+
+
+def store_pulls(
+    laws: Laws, buffers: Buffers, rules: Tables, series: Series, terms: int, h: float, end: float, run: Run
+) -> None:
+    """Keep the forces of the laws at the instants that `store_looks` has kept."""
+    if len(buffers.pulling) == 0:
+        return
+    for look in range(LOOKS):
+        s, at = look * end / LOOKS, run.shown - LOOKS + look
+        press(laws, series, terms, s, h)
+        for i in range(len(buffers.pulling)):
+            law = buffers.pulling[i]
+            d, v = law_at(series, terms, s, h, law)
+            buffers.pull[at, i] = law_force(laws, rules, law, d, v)
 
 
 def change_branch(
@@ -341,6 +356,7 @@ def take(
     track_laws(laws, step, series, terms, h, end, t, len(linear.monitored_constants))
     if end > 0.0:
         store_looks(buffers, series, terms, h, end, run, t)
+        store_pulls(laws, buffers, rules, series, terms, h, end, run)
         add_works(
             linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, end, works, rules
         )

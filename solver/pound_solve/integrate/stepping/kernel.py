@@ -171,7 +171,7 @@ def plain_steps(
         track(linear, laws, step, run.time, h)
         run.step += 1
         run.steps += 1
-        store_motion(step, buffers, run, run.time, each)
+        store_motion(laws, step, buffers, rules, run, run.time, each)
     return False
 
 
@@ -294,7 +294,7 @@ def advance(
             run.step += 1
             run.steps += 1
             if run.step < steps[goal] or not outputs[goal]:
-                store_motion(step, buffers, run, run.time, shows[goal])
+                store_motion(laws, step, buffers, rules, run, run.time, shows[goal])
         run.time = goals[goal]
         why = end_goal(linear, laws, step, buffers, rules, outputs[goal], works, run)
         if why != DONE:

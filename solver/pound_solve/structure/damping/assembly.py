@@ -13,7 +13,7 @@ from pound_solve.numerics import modes
 from pound_solve.numerics.graph import components
 from pound_solve.numerics.matrices import Matrix, entries, gathered, weighted
 from pound_solve.numerics.types import Array
-from pound_solve.structure.damping.base import DampingContext, DampingError, Dashpots, Group
+from pound_solve.structure.damping.base import DampingContext, DampingError, Dashpots, Group, Proportional
 from pound_solve.structure.damping.secant import SecantLaw
 from pound_solve.structure.dofs import label
 from pound_solve.structure.elements.base import Role
@@ -38,7 +38,7 @@ def add_damping(structure: Structure, mass: Sequence[MassBlock]) -> list[Diagnos
         The cards that are at fault.
     """
     sources, problems = _Sources(structure, mass), list[Diagnostic]()
-    context = DampingContext(sources.mass, sources.stiffness, sources.modes)
+    context = DampingContext(sources.mass, sources.modes)
     betas = np.zeros((2, len(structure.laws)))  # of the tangent and of the secant stiffness
     for card in structure.model.damping:
         group = _group(card, context, problems)
@@ -46,6 +46,8 @@ def add_damping(structure: Structure, mass: Sequence[MassBlock]) -> list[Diagnos
             continue
         for matrix in _matrices(structure, group):
             structure.damping = structure.damping + matrix
+        if group.proportional is not None:
+            structure.proportional += (group.proportional,)
         if group.dashpots is not None:
             betas[int(group.dashpots.secant)] += _multiples(structure, group.dashpots)
         structure.damping_texts.append((card, group.text))
@@ -81,9 +83,17 @@ def _matrices(structure: Structure, group: Group) -> list[Matrix]:
         out.append(structure.framed(group.relative))
         if len(structure.dofs.moved):
             out.append(_at_supports(structure, group.relative[:n, :n]))
-    if group.between is not None:
-        out.append(group.between)
+    if group.proportional is not None:
+        out.append(between_nodes(structure, group.proportional))
     return out
+
+
+def between_nodes(structure: Structure, damping: Proportional) -> Matrix:
+    """Damping matrix in proportion to the stiffness of elements, shape (n, n)."""
+    elements = structure.model.elements.values()
+    chosen = [structure.parts[e.id] for e in elements if damping.props is None or e.prop in damping.props]
+    blocks = (b for p in chosen for b in ([p.initial()] if damping.laws else p.stiffness))
+    return damping.beta * structure.dofs.assembled((b.dofs, b.matrix) for b in blocks)
 
 
 def _multiples(structure: Structure, dashpots: Dashpots) -> Array:
@@ -133,16 +143,6 @@ class _Sources:
                 loose = {k for k in where if len(set(self.structure.model.nodes[k].fixed)) < 3}
                 terms.append((at, matrix * (len(loose & chosen) / max(len(loose), 1))))
         return self.structure.dofs.assembled(terms)
-
-    def stiffness(self, labels: Collection[str] | None, laws: bool) -> Matrix:
-        """Initial stiffness of the elements of some property sets (None: of all), with or without that of
-        hysteretic laws.
-        """
-        structure = self.structure
-        elements = structure.model.elements.values()
-        chosen = [structure.parts[e.id] for e in elements if labels is None or e.prop in labels]
-        blocks = (b for p in chosen for b in ([p.initial()] if laws else p.stiffness))
-        return structure.dofs.assembled((b.dofs, b.matrix) for b in blocks)
 
     def modes(self, nodes: Collection[int] | None, count: int | None) -> modes.Modes:
         """The `count` slowest modes (None: all) of the structure, or of the building of these nodes.

@@ -30,16 +30,12 @@ class DampingContext:
     ----------
     mass : callable
         ``mass(nodes or None)``: mass matrix of the masses at these nodes, shape (n_columns, n_columns).
-    stiffness : callable
-        ``stiffness(property labels or None, laws)``: initial stiffness of their elements, same shape;
-        `laws` False: without that of hysteretic laws.
     modes : callable
         ``modes(nodes or None, count)``: the `count` slowest modes, or more (None: all), of the initial
         structure, or of the building that these nodes make up, over all unknowns.
     """
 
     mass: Callable[[Collection[int] | None], matrices.Matrix]
-    stiffness: Callable[[Collection[str] | None, bool], matrices.Matrix]
     modes: Callable[[Collection[int] | None, int | None], Modes]
 
     def from_modes(self, modes: Modes, rates: Array) -> matrices.Matrix:
@@ -63,6 +59,16 @@ class DampingContext:
         return np.asarray((weighted * rates) @ weighted.T)
 
 
+class Proportional(NamedTuple):
+    """Damping `beta` [T] times the initial stiffness of the elements of property sets (None: of all);
+    `laws` False: without that of hysteretic laws.
+    """
+
+    props: Collection[str] | None
+    beta: float
+    laws: bool
+
+
 class Dashpots(NamedTuple):
     """Dashpots beside the hysteretic laws of property sets (None: of all), `beta` [T] times the stiffness
     that the law has at the time: tangent, or `secant`.
@@ -78,12 +84,12 @@ class Group:
     """Damping of one card and words for the report.
 
     `relative` acts on the motion relative to the quasi-static one of moved supports (mass-proportional and
-    modal damping: they have no place between two nodes); `between` acts between nodes as it stands;
+    modal damping: they have no place between two nodes); `proportional` acts between nodes;
     `dashpots` follow the laws.
     """
 
     relative: matrices.Matrix | None
-    between: matrices.Matrix | None
+    proportional: Proportional | None
     text: str
     dashpots: Dashpots | None = None
 

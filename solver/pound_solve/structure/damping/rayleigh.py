@@ -26,6 +26,7 @@ from pound_solve.structure.damping.base import (
     DampingError,
     Dashpots,
     Group,
+    Proportional,
     frequencies,
     ratios,
     values,
@@ -72,7 +73,7 @@ def build(card: Card, context: DampingContext) -> Group:
     follows = card["STIFFNESS"] in ("TANGENT", "SECANT")
     return Group(
         alpha * context.mass(card["NODES"]),
-        beta * context.stiffness(card["PROPS"], card["STIFFNESS"] == "INITIAL"),
+        Proportional(card["PROPS"], beta, card["STIFFNESS"] == "INITIAL"),
         f"alpha {alpha:.9g}, beta {beta:.9g} of the {card['STIFFNESS'].lower()} stiffness ({how})",
         Dashpots(card["PROPS"], beta, card["STIFFNESS"] == "SECANT") if follows else None,
     )

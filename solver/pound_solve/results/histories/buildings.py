@@ -1,0 +1,70 @@
+"""``/history/building``, ``/history/storey``: forces on the ground, and what the storeys go through."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING
+
+from pound_solve.results.schema import History, HistoryLayout
+from pound_solve.structure.storeys import storeys
+
+if TYPE_CHECKING:
+    from pound_solve.analyses.recorder import RecordedItems, SampleBlock
+    from pound_solve.numerics.types import Array
+
+BASE = (("shear X", "F"), ("force Y", "F"), ("moment", "F*L"))  #: of a building, and their dimensions
+
+
+def of_buildings(items: RecordedItems) -> HistoryLayout:
+    """Three columns for each building."""
+    labels = [f"{b.name} {quantity}" for b in items.buildings for quantity, _ in BASE]
+    return HistoryLayout(
+        (len(labels),), {"labels": labels, "unit": [u for _, u in BASE] * len(items.buildings)}
+    )
+
+
+def of_storeys(unit: str, items: RecordedItems) -> HistoryLayout:
+    """One column for each storey."""
+    labels = [f"{b.name} storey {i}" for b, i in storeys(items.buildings)]
+    return HistoryLayout((len(labels),), {"labels": labels, "unit": unit})
+
+
+def total(name: str, chosen: slice, block: SampleBlock) -> Array:
+    """Some sums of a name, shape (n_times, n_chosen)."""
+    return block.totals[name][chosen].T
+
+
+def _storey(place: int, name: str, unit: str, doc: str, values: Callable[[SampleBlock], Array]) -> History:
+    return History(
+        name=f"storey/{name}",
+        place=place,
+        row="storeys",
+        doc=doc,
+        layout=partial(of_storeys, unit),
+        values=values,
+        sample=HistoryLayout((2,), {"labels": ["A storey 1", "A storey 2"], "unit": unit}),
+    )
+
+
+FORCE = History(
+    name="building/base",
+    place=42,
+    row="buildings x 3",
+    doc="force of each building on the ground along X and Y, and overturning moment",
+    layout=of_buildings,
+    values=partial(total, "base", slice(None)),
+    sample=HistoryLayout(
+        (3,), {"labels": ["A shear X", "A force Y", "A moment"], "unit": ["F", "F", "F*L"]}
+    ),
+)
+DRIFT = _storey(43, "drift", "-", "drift ratios of the storeys", partial(total, "drift", slice(None)))
+SHEAR = _storey(44, "shear", "F", "shears of the storeys", partial(total, "storey", slice(0, None, 2)))
+MOMENT = _storey(
+    45, "moment", "F*L", "overturning moments about the feet of the storeys",
+    partial(total, "storey", slice(1, None, 2)),
+)  # fmt: skip
+ACCELERATION = _storey(
+    46, "acceleration", "L/T^2", "total accelerations of the floors along X",
+    partial(total, "acceleration", slice(None)),
+)  # fmt: skip

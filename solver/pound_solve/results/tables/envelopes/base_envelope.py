@@ -1,0 +1,51 @@
+"""Table ``base_envelope``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pound_solve.results.columns import UNIT, extreme_columns
+from pound_solve.results.histories.buildings import BASE
+from pound_solve.results.record import RunRecord
+from pound_solve.results.remarks import how_sampled
+from pound_solve.results.schema import Column, Row, Stage, Table
+
+
+def rows(run: RunRecord) -> Iterator[Row]:
+    """Up to three rows for each building: those of forces that are not zero throughout."""
+    units, found = run.model.units, iter(run.history.recorder.envelopes.total["base"].rows())
+    for b in run.history.items.buildings:
+        for (quantity, dimension), extremes in zip(BASE, found):
+            if extremes[0] != 0.0 or extremes[2] != 0.0:
+                yield b.name, quantity, units.text(dimension), *extremes
+
+
+def remark(run: RunRecord) -> str:
+    """Tell what the envelopes are taken from."""
+    return how_sampled(run)
+
+
+TABLE = Table(
+    name="base_envelope",
+    title="Base shears and overturning moments",
+    place=40,
+    stages=(Stage.SAMPLES,),
+    columns=(
+        Column("building", doc="name of the building"),
+        Column("quantity", doc="`shear X`, `force Y` or `moment`, which tips towards +x"),
+        UNIT,
+        *extreme_columns(""),
+    ),
+    rows=rows,
+    remark=remark,
+    note="Force of each building on the ground: at its supports, and below its elements that end at "
+    "the ground. It equals the inertia of the building and the loads on it. Contacts with other "
+    "buildings, and mass-proportional and modal damping, are loads here. Moments are about the middle of "
+    "the feet, positive where they tip the building towards +x.",
+    group="quantity",
+    sample=(
+        ("A", "shear X", "kN", 1152.39, 6.458, -1256.96, 4.866),
+        ("A", "moment", "kN*m", 9671.99, 2.948, -8422.91, 5.17),
+        ("B", "shear X", "kN", 969.329, 3.85, -906.171, 8.436),
+    ),
+)

@@ -1,0 +1,60 @@
+"""Table ``storey_envelope``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pound_solve.results.columns import time_column
+from pound_solve.results.record import RunRecord
+from pound_solve.results.remarks import how_sampled
+from pound_solve.results.schema import Column, Row, Stage, Table
+from pound_solve.structure.storeys import storeys
+
+
+def rows(run: RunRecord) -> Iterator[Row]:
+    """One row for each storey."""
+    seen = run.history.recorder.envelopes.total
+    drift, force, motion = (seen[name].largest() for name in ("drift", "storey", "acceleration"))
+    last = run.stored("storey/drift")[-1] if len(drift) else ()
+    for n, (b, i) in enumerate(storeys(run.history.items.buildings)):
+        height, floor = b.levels[i] - b.levels[i - 1], b.floors[i - 1]
+        own = *drift[n], float(last[n]), *force[2 * n], *force[2 * n + 1], *motion[n]
+        yield b.name, i, floor.level, height, floor.mass, *own
+
+
+def remark(run: RunRecord) -> str:
+    """Tell what the envelopes are taken from."""
+    return how_sampled(run)
+
+
+TABLE = Table(
+    name="storey_envelope",
+    title="Storeys",
+    place=50,
+    stages=(Stage.SAMPLES,),
+    columns=(
+        Column("building", doc="name of the building"),
+        Column("storey", fmt="int", doc="number of the storey, from below"),
+        Column("level", "floor\nlevel", "L", "given", doc="height of the floor above the storey"),
+        Column("height", "", "L", "given", doc="height of the storey"),
+        Column("mass", "floor\nmass", "F*T^2/L", "num", doc="mass of that floor along x"),
+        Column("drift", "drift\nratio", "-", "short", doc="largest absolute drift ratio"),
+        time_column("t_drift", "at time", "time of the largest drift"),
+        Column("residual", "drift at\nthe end", "-", "short", doc="drift ratio at the end of the history"),
+        Column("shear", "", "F", "num", doc="largest absolute shear"),
+        time_column("t_shear", "at time", "time of the largest shear"),
+        Column("moment", "", "F*L", "num", doc="largest absolute overturning moment at the storey's foot"),
+        time_column("t_moment", "at time", "time of the largest moment"),
+        Column("acceleration", "floor\naccel.", "L/T^2", "num", doc="largest absolute total acceleration"),
+        time_column("t_acceleration", "at time", "time of the largest acceleration"),
+    ),
+    rows=rows,
+    remark=remark,
+    note="Displacements and accelerations of a floor are the means of its nodes, weighted by mass, along "
+    "x; those of the base are the means of the feet. The shear is the sum of the forces of all elements "
+    "that cross the storey.",
+    sample=(
+        ("A", 1, 3.5, 3.5, 42.1, 0.00745, 2.726, 0.0002, 1256.96, 4.866, 9671.99, 2.948, 3.251, 1.988),
+        ("A", 2, 7.0, 3.5, 42.1, 0.0042, 8.606, -0.0001, 856.31, 4.87, 4671.2, 2.95, 4.833, 3.554),
+    ),
+)

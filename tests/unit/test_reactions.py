@@ -1,0 +1,227 @@
+"""Forces of supports, base shears and storeys of a history: closed forms, and both ways to each force."""
+
+import numpy as np
+import pytest
+
+import pound_solve
+
+SDOF = """UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=YR
+ELEMENTS
+ 1 COL 1 2
+PROPS
+ COL SPRING KX=100
+WEIGHTS
+ 2 9.81
+DAMPING
+ RAYLEIGH ALPHA=0.3 BETA=0.01
+EQUAKE
+ SINE AMPLITUDE=2 PERIOD=0.7 DURATION=1
+OUTPUT
+ EVERY={every}
+ANALYSIS
+ HISTORY 2 METHOD={method}
+"""
+METHODS = (
+    "EXACT",
+    "TAYLOR",
+    "AUTO",
+    "NEWMARK DT=0.01",
+    "HHT DT=0.01",
+    "CENTRAL DT=0.01",
+    "LAPLACE DT=0.01",
+)
+
+#: two frames of unlike heights side by side: hinges, a slaved floor, a spring to the ground, a dashpot
+FRAMES = """UNITS kN m s
+GRAVITY 10
+GEOMETRY {geometry}
+NODES
+ 1 0 0 FIX=XYR
+ 2 4 0 FIX=XY
+ 3 0 3
+ 4 4 3 SLAVED=X MASTER=3
+ 5 0 6
+ 6 4 6 SLAVED=X MASTER=5
+ 11 4.5 0 FIX=XYR
+ 12 4.5 3 FIX=R
+ELEMENTS
+ 1 COL 1 3
+ 2 COL 2 4
+ 3 COL 3 5
+ 4 COL 4 6
+ 5 BEAM 3 4
+ 6 BEAM 5 6
+ 7 SOFT 11 12
+ 8 DAMP 1 5
+ 9 SOIL 4
+ 20 HIT 4 12
+PROPS
+ COL FRAME E=2e7 A=0.04 I=2e-4 {hinges}
+ BEAM FRAME E=2e7 A=0.06 I=6e-4
+ SOFT SPRING KX=2000 KY=1e5 {spring}
+ DAMP DASHPOT CX=8
+ SOIL SPRING KX=150
+ HIT CONTACT GAP=0.004 LAW={law}
+WEIGHTS
+ 3 TO 6 60 WR=2
+ 12 90
+ 1 5
+LOADS
+ 3 FX=4
+DAMPING
+ RAYLEIGH ALPHA=0.2 BETA=0.002 STIFFNESS={damping}
+{equake}
+FORCES
+ TABLE NODES=5,11 FX=20 POINTS=0,0,0.1,1,0.3,0
+OUTPUT
+ EVERY={every}
+BUILDINGS
+ "low" NODES=12
+ANALYSIS
+ STATIC GRAVITY=YES
+ HISTORY {end} METHOD={method}
+"""
+BASE = "EQUAKE\n SINE AMPLITUDE=4 PERIOD=0.5 DURATION=1"
+APART = BASE + " SUPPORTS=1,2\n SINE AMPLITUDE=3 PERIOD=0.4 DURATION=1 SUPPORTS=11"
+CHOICES = {
+    "geometry": "SMALL", "hinges": "RULE=BILINEAR R=0.05 MI=12 MJ=12 KH=2e4",
+    "spring": "FX=20 RULE=BILINEAR,ELASTIC,ELASTIC R=0.1",
+    "law": "KELVIN_VOIGT K=50000 E=0.6", "damping": "INITIAL", "equake": BASE, "every": 0.01, "end": 1.2,
+    "method": "EXACT",
+}  # fmt: skip
+BALANCE = "base shear and overturning moment less inertia and loads, over the largest"
+
+
+def run(folder, text):
+    deck = folder / "deck.inp"
+    deck.write_text(text)
+    found = pound_solve.run(deck)
+    assert found.status == "done", found.message
+    return found
+
+
+def frames(folder, **other):
+    return run(folder, FRAMES.format(**{**CHOICES, **other}))
+
+
+def balance(found):
+    (value,) = [float(c["value"]) for c in found.table("checks") if c["check"] == BALANCE]
+    return value
+
+
+def inertia(found, masses):
+    """Sum of mass times total acceleration along x."""
+    nodes = list(found.attributes("node/a")["nodes"])
+    return sum(m * found.history("node/a")[:, nodes.index(n), 0] for n, m in masses.items())
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_an_oscillator_pulls_at_its_support_as_its_spring_and_dashpot_do(tmp_path, method):
+    """R = -(k u + beta k v) with every method; the mass-proportional dashpot passes by the support."""
+    r = run(tmp_path, SDOF.format(method=method, every=0.01))
+    u, v, a = (r.history(f"node/{q}")[:, 1, 0] for q in "uva")
+    spring = 100.0 * u + 1.0 * v
+    reaction, base = r.history("reaction"), r.history("building/base")
+    assert np.abs(reaction[:, 0, 0] + spring).max() < 1e-13 * np.abs(spring).max()
+    assert np.abs(reaction[:, 0, 1:]).max() == np.abs(reaction[:, 1]).max() == 0.0
+    assert np.abs(base[:, 0] - spring).max() < 1e-13 * np.abs(spring).max()
+    assert np.abs(base[:, 2] - 3.0 * spring).max() < 1e-12 * np.abs(spring).max()
+    tolerance = 0.05 if method.startswith("HHT") else 1e-10  # whose balance is a mean over the step
+    assert np.abs(base[:, 0] + a + 0.3 * v).max() < tolerance * np.abs(spring).max()
+    (row,) = r.table("storey_envelope")
+    assert (row["storey"], row["level"], row["height"]) == (1, 3.0, 3.0)
+    assert row["mass"] == pytest.approx(1.0, rel=1e-12)
+    assert row["shear"] >= np.abs(spring).max() * (1 - 1e-12)
+    assert row["drift"] == pytest.approx(np.abs(u).max() / 3.0, rel=1e-2)
+    assert row["residual"] == pytest.approx(u[-1] / 3.0, rel=1e-12)
+    assert row["acceleration"] >= np.abs(a).max() * (1 - 1e-12)
+
+
+@pytest.mark.parametrize("method", ["EXACT", "TAYLOR"])
+def test_envelopes_do_not_depend_on_the_output(tmp_path, method):
+    """Between samples more than a period apart the peaks are found, as closely as those of nodes are."""
+    coarse, fine = (run(tmp_path, SDOF.format(method=method, every=every)) for every in (0.8, 0.001))
+    for name, key in (("reaction_envelope", "max"), ("base_envelope", "min"), ("storey_envelope", "shear")):
+        one, other = (np.abs(r.table(name)[key]) for r in (coarse, fine))
+        assert one == pytest.approx(other, rel=0.01), name
+    assert np.abs(coarse.history("reaction")).max() < 0.9 * np.abs(fine.history("reaction")).max()
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("method", ["EXACT", "TAYLOR"])
+@pytest.mark.parametrize(
+    "other",
+    [
+        {},
+        {"damping": "TANGENT", "geometry": "PDELTA"},
+        {"damping": "SECANT", "equake": APART},
+        {"equake": APART, "hinges": "", "law": "STEREOMECHANICS E=0"},
+        {"law": "STEREOMECHANICS E=0", "geometry": "PDELTA_MEMBER"},
+    ],
+    ids=["plain", "tangent", "apart", "rigid-apart", "rigid"],
+)
+def test_base_shears_are_inertia_loads_and_contact(tmp_path, method, other):
+    """Supports and inertia give the same forces, at samples and between them; the contact is a force from
+    building to building; storey shears are the inertia above.
+    """
+    r = frames(tmp_path, method=method, **other)
+    assert balance(r) < 1e-9
+    labels = list(r.labels("building/base"))
+    assert labels[0] == "building 1 shear X" and labels[3] == "low shear X"
+    base, contact, v = r.history("building/base"), r.history("contact/force")[:, 0], r.history("node/v")
+    assert contact.max() > 1.0
+    nodes = list(r.attributes("node/a")["nodes"])
+    push = np.interp(r.time, [0.0, 0.1, 0.3], [0.0, 20.0, 0.0])
+    whole = -inertia(r, dict.fromkeys((3, 4, 5, 6), 6.0) | {1: 0.5}) + push + 4.0 - contact
+    low = -inertia(r, {12: 9.0}) + push + contact
+    if other.get("geometry") != "PDELTA_MEMBER":
+        # the weight of a support, which stands 2 m from the axis, turns the ground alone
+        for name, at, weight in (("building 1", 2, 5.0 * 2.0), ("low", 5, 0.0)):
+            place = list(r.labels("storey/moment")).index(f"{name} storey 1")
+            moment = r.history("storey/moment")[:, place]
+            assert np.abs(moment - base[:, at] - weight).max() < 1e-9 * np.abs(moment).max()
+    if other.get("equake") == APART:  # dashpots to the ground act on what is not stored
+        return
+    for at, (shear, masses) in {0: (whole, (3, 4, 5, 6)), 3: (low, (12,))}.items():
+        mass = 6.0 if at == 0 else 9.0
+        dashpot = 0.2 * mass * sum(v[:, nodes.index(n), 0] for n in masses)
+        assert np.abs(base[:, at] - shear + dashpot).max() < 1e-9 * np.abs(base[:, at]).max()
+    top = list(r.labels("storey/shear")).index("building 1 storey 2")
+    above = -inertia(r, {5: 6.0, 6: 6.0}) + push
+    above -= 0.2 * 6.0 * sum(v[:, nodes.index(n), 0] for n in (5, 6))
+    assert np.abs(r.history("storey/shear")[:, top] - above).max() < 1e-9 * np.abs(above).max()
+
+
+@pytest.mark.parametrize("geometry", ["SMALL", "PDELTA", "LARGE"])
+def test_a_history_at_rest_has_the_reactions_of_the_static_state(tmp_path, geometry):
+    rest = "EQUAKE\n SINE AMPLITUDE=1e-9 PERIOD=0.5 DURATION=0.01"
+    text = FRAMES.format(
+        **{**CHOICES, "geometry": geometry, "equake": rest, "end": 0.02, "method": "NEWMARK DT=0.002"}
+    ).replace("FX=20 POINTS", "FX=1e-9 POINTS")
+    r = run(tmp_path, text)
+    supports = list(r.attributes("reaction")["nodes"])
+    for row in r.table("reactions"):
+        static = np.array([row["fx"], row["fy"], row["mz"]])
+        found = r.history("reaction")[:, supports.index(row["node"])]
+        assert np.abs(found - static).max() < 1e-6 * max(np.abs(static).max(), 1.0), row["node"]
+    assert balance(r) < 1e-6
+
+
+@pytest.mark.full
+def test_varying_p_delta_and_large_displacements_are_in_balance(tmp_path):
+    for geometry in ("PDELTA_VARYING", "LARGE"):
+        r = frames(tmp_path, geometry=geometry, method="NEWMARK DT=0.002", end=0.6)
+        assert balance(r) < 1e-6
+
+
+def test_buildings_are_what_contacts_do_not_join(tmp_path):
+    r = frames(tmp_path, end=0.02)
+    first, low = r.table("buildings")
+    assert (first["building"], first["node"], first["nodes"], first["storeys"]) == ("building 1", 1, 6, 2)
+    assert (low["building"], low["node"], low["nodes"], low["storeys"]) == ("low", 11, 2, 1)
+    assert first["mass"] == pytest.approx(24.5) and low["mass"] == pytest.approx(9.0)
+    assert (first["base"], first["top"]) == (0.0, 6.0)
+    assert [row["level"] for row in r.table("storey_envelope")] == [3.0, 6.0, 3.0]
