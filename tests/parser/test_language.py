@@ -468,7 +468,7 @@ def test_a_number_that_is_no_quantity_is_told_before_its_powers_overflow(codes, 
 
 @pytest.mark.parametrize("number", ["1E-31", "4.9E-324"])
 def test_what_must_be_above_zero_is_not_next_to_it(codes, number):
-    assert codes(HEAD + f"ANALYSIS\n HISTORY {number}\n") == ["P217"]
+    assert codes(f"GRAVITY {number}\n{HEAD}") == ["P217"]
     assert codes(HEAD.replace(" 3 1 3", f" 3 1 {number}")) == []  # a load or a place may be
 
 

@@ -30,7 +30,7 @@ def remark(run: RunRecord) -> str:
 TABLE = Table(
     name="storey_envelope",
     title="Storeys",
-    place=50,
+    place=60,
     stages=(Stage.SAMPLES,),
     columns=(
         Column("building", doc="name of the building"),
