@@ -140,6 +140,7 @@ class Writer:
             self._history = {
                 name: self._file["history"][name] for name in self._history if name in self._file["history"]
             }
+            self._digests = {name: own for name, own in self._digests.items() if name in self._file}
             raise
 
     def text(self, name: str, text: str) -> None:
