@@ -181,6 +181,13 @@ SECTIONS: Final = (
                 default=None,
                 doc="elements with histories and envelopes; left out: all",
             ),
+            Field(
+                "STOREYS",
+                Kind.WORD,
+                default="YES",
+                words=("YES", "NO"),
+                doc="base shears; drifts, shears and accelerations of storeys; NO where time counts most",
+            ),
         ),
     ),
 )

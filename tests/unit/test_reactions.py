@@ -225,3 +225,14 @@ def test_buildings_are_what_contacts_do_not_join(tmp_path):
     assert first["mass"] == pytest.approx(24.5) and low["mass"] == pytest.approx(9.0)
     assert (first["base"], first["top"]) == (0.0, 6.0)
     assert [row["level"] for row in r.table("storey_envelope")] == [3.0, 6.0, 3.0]
+
+
+def test_storeys_may_be_left_out(tmp_path):
+    whole = run(tmp_path, SDOF.format(every=0.02, method="EXACT"))
+    lean = run(tmp_path, SDOF.format(every="0.02 STOREYS=NO", method="EXACT"))
+    gone = {"base_envelope", "storey_envelope"}
+    assert gone <= set(whole.tables) and not gone & {n for n in lean.tables if len(lean.table(n))}
+    assert "building/base" in whole.histories and "building/base" not in lean.histories
+    assert not any("base shear" in check for check in lean.table("checks")["check"])
+    assert (lean.history("node/u") == whole.history("node/u")).all()
+    assert (lean.history("reaction") == whole.history("reaction")).all()

@@ -91,7 +91,7 @@ class RecordedItems:
             tuple(i for i, s in enumerate(structure.laws) if not s.role.collides),
             tuple(i for i, s in enumerate(structure.laws) if s.role.collides),
             supports,
-            found := tuple(buildings(structure)),
+            found := tuple(buildings(structure)) if structure.model.output["STOREYS"] == "YES" else (),
             recorded_sums(system, supports, found),
         )
 

@@ -159,7 +159,7 @@ class Results:
     @_sound
     def tables(self) -> tuple[str, ...]:
         """Names of the tables in the file, in the order of the report."""
-        stored = self._file["tables"]
+        stored = list(self._file["tables"])  # asking HDF5 for each name is slow
         return (*(n for n in TABLES if n in stored), *(n for n in stored if n not in TABLES))
 
     @property
