@@ -7,7 +7,6 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from pound_solve.results.schema import History, HistoryLayout
-from pound_solve.structure.storeys import storeys
 
 if TYPE_CHECKING:
     from pound_solve.analyses.recorder import RecordedItems, SampleBlock
@@ -26,6 +25,8 @@ def of_buildings(items: RecordedItems) -> HistoryLayout:
 
 def of_storeys(unit: str, items: RecordedItems) -> HistoryLayout:
     """One column for each storey."""
+    from pound_solve.structure.storeys import storeys  # not needed to read a report
+
     labels = [f"{b.name} storey {i}" for b, i in storeys(items.buildings)]
     return HistoryLayout((len(labels),), {"labels": labels, "unit": unit})
 

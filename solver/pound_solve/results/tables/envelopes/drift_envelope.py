@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from pound_solve.analyses.history import drift_heights
 from pound_solve.results.columns import extreme_columns
 from pound_solve.results.record import RunRecord
 from pound_solve.results.remarks import how_found
@@ -14,6 +13,8 @@ from pound_solve.results.schema import Column, Row, Stage, Table
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each DRIFT card."""
+    from pound_solve.analyses.history import drift_heights  # which reading a report does not need
+
     names, found = run.history.items.drifts.names, run.history.returned.peaks.monitored
     for name, e, h in zip(names, found, drift_heights(run.model)):
         yield name, e.high, e.t_high, e.low, e.t_low, h, max(abs(e.high), abs(e.low)) / h

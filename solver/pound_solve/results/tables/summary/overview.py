@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
-from pound_solve.analyses.history import drift_heights
-from pound_solve.loading.motions.base import Motion
 from pound_solve.results.columns import ITEM, VALUE
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Row, Stage, Table
 from pound_solve.results.words import contact_name
+
+if TYPE_CHECKING:
+    from pound_solve.loading.motions.base import Motion
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
@@ -37,6 +39,8 @@ def ground_motion(run: RunRecord, motion: Motion) -> str:
 
 def response(run: RunRecord) -> Iterator[Row]:
     """The largest values of a history."""
+    from pound_solve.analyses.history import drift_heights  # which reading a report does not need
+
     history, units = run.history, run.model.units
     figures = history.returned.figures
     yield "method", str(figures.get("method", ""))

@@ -8,11 +8,12 @@ from pound_solve.results.columns import time_column
 from pound_solve.results.record import RunRecord
 from pound_solve.results.remarks import how_sampled
 from pound_solve.results.schema import Column, Row, Stage, Table
-from pound_solve.structure.storeys import storeys
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each storey."""
+    from pound_solve.structure.storeys import storeys  # not needed to read a report
+
     seen = run.history.recorder.envelopes.total
     drift, force, motion = (seen[name].largest() for name in ("drift", "storey", "acceleration"))
     last = run.stored("storey/drift")[-1] if len(drift) else ()

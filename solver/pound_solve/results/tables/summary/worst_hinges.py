@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
-from pound_solve.analyses.spring_response import SpringResponse
 from pound_solve.results.columns import ELEMENT
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
+
+if TYPE_CHECKING:
+    from pound_solve.analyses.spring_response import SpringResponse
 
 MOST = 10  #: rows
 #: states by the damage index of Park and Ang
