@@ -10,7 +10,6 @@ import numpy as np
 
 from pound_solve.integrate.energy import EnergyAccumulator
 from pound_solve.integrate.events.functions import RowSet
-from pound_solve.integrate.kernels.ties import arrives
 from pound_solve.integrate.protocol import (
     CHANGES,
     CHANGES_PER_LAW,
@@ -104,6 +103,8 @@ class EventDrivenRun(ABC):
         rising = np.where(np.arange(len(k)) == law, v[: len(k)], 0.0)
         if self.laws[law].role.collides or not self._massless_laws[law]:
             return
+        from pound_solve.integrate.kernels.ties import arrives  # which most decks do not need
+
         for i in np.flatnonzero(self._massless_laws & (np.arange(len(k)) != law)).tolist():
             events = () if self.laws[i].role.collides else self.branches[i].events
             for n, e in enumerate(events):
