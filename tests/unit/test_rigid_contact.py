@@ -480,7 +480,7 @@ def test_no_method_is_advised_where_none_takes_it() -> None:
         r = run_text(curved, {"gap": 0.5}, method, dt)
         assert r.status == "stopped" and r.message.startswith(
             "A505 at t = 0 s: no method takes a rigid contact, which STEREOMECHANICS of element 2 is, "
-            "where the law FLUID of element 3 is curved: give the contact a LAW with a stiffness, or"
+            "where the law FLUID of element 3 is curved and stands beside rigid contacts: give"
         ), r.message
 
 
