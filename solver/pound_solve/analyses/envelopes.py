@@ -71,7 +71,7 @@ class Envelopes:
         Of the sums, by their names.
     shown : ndarray of bool, shape (n,)
         Unknowns that it looks at.
-    pulling : ndarray of int, shape (n_pulling,)
+    acting : ndarray of int, shape (n_acting,)
         Laws whose forces it looks at.
     seen, apart : int, float
         Number of instants between the samples that were counted in, longest time from one to the next [T].
@@ -111,13 +111,13 @@ class Envelopes:
         self.shares = system.corotational.shares([(o.element, o.quantity) for o in outputs])
         self.shown = used_columns(of_u) | used_columns(self.of_u) | used_columns(self.of_v)
         self.sums, laws = sums, system.structure.laws
-        pulling = np.any([np.zeros(len(laws), bool), *(x.pulling for x in sums.values())], axis=0)
-        self.pulling = np.flatnonzero(pulling)
-        self.pulls = {name: x.pulls[:, self.pulling] for name, x in sums.items()}
+        acting = np.any([np.zeros(len(laws), bool), *(x.acting for x in sums.values())], axis=0)
+        self.acting = np.flatnonzero(acting)
+        self.of_laws = {name: x.of_laws[:, self.acting] for name, x in sums.items()}
         self.shown |= np.any([x.shown for x in sums.values()], axis=0)
-        self.shown |= used_columns(system.law_rows[self.pulling])
+        self.shown |= used_columns(system.law_rows[self.acting])
         # corotational members look at all, and so does the force of a closed rigid contact
-        self.shown |= bool(system.corotational) or any(laws[i].law.rigid for i in self.pulling)
+        self.shown |= bool(system.corotational) or any(laws[i].law.rigid for i in self.acting)
         self._clear()
 
     def _clear(self) -> None:
@@ -164,9 +164,11 @@ class Envelopes:
             total.widen(other.total[name])
         self.seen, self.apart = self.seen + other.seen, max(self.apart, other.apart)
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, pull: Array, apart: float) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, apart: float) -> None:
         """Count in instants between the samples (see `integrate.protocol.Recorder`)."""
-        self._count(t, u, v, a, pull, [self.system.excitation.values(t, order).T for order in range(3)])
+        self._count(
+            t, u, v, a, law_forces, [self.system.excitation.values(t, order).T for order in range(3)]
+        )
         self.seen, self.apart = self.seen + len(t), max(self.apart, apart)
 
     def stationary(self, t: Array, u: Array) -> None:
@@ -176,13 +178,13 @@ class Envelopes:
         self.node["u"].take(self._on_nodes(u, self.system.excitation.values(t).T, "u"), t, self.moving)
 
     def take(
-        self, t: Array, u: Array, v: Array, a: Array, pull: Array, s: Sequence[Array]
+        self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, s: Sequence[Array]
     ) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Count in some samples; return the motion of the nodes, shape (3 n_nodes, nt) each,
         the members' forces, shape (n_outputs, nt), and the sums, (n_sums, nt) each, from unknowns and
-        inputs, shape (n, nt) each, and the forces of the laws in `pulling`.
+        inputs, shape (n, nt) each, and the forces of the laws in `acting`.
         """
-        moving, out, totals = self._count(t, u, v, a, pull, s)
+        moving, out, totals = self._count(t, u, v, a, law_forces, s)
         node = {q: np.zeros((3 * self.n_nodes, len(t))) for q in moving}
         for q, values in moving.items():
             node[q][self.moving] = values
@@ -190,7 +192,7 @@ class Envelopes:
         return node, out, totals
 
     def _count(
-        self, t: Array, u: Array, v: Array, a: Array, pull: Array, s: Sequence[Array]
+        self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, s: Sequence[Array]
     ) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Count in some instants, but for what never moves; return the motion of the rest,
         shape (n_moving, nt) each, the members' forces, and the sums.
@@ -207,7 +209,9 @@ class Envelopes:
         for q, values in node.items():
             self.node[q].take(values, t, self.moving)
         self.output.take(out, t)
-        totals = {name: x.values((u, v, a), self.pulls[name] @ pull, s) for name, x in self.sums.items()}
+        totals = {
+            name: x.values((u, v, a), self.of_laws[name] @ law_forces, s) for name, x in self.sums.items()
+        }
         for name, values in totals.items():
             self.total[name].take(values, t)
         return node, out, totals

@@ -271,9 +271,9 @@ class HistoryRecorder:
         where = next(n for x, named in at for n, y in zip(named, x) if not abs(y) <= LARGEST)
         return Stop("A504", float(t[first]), f"the motion is beyond all numbers, first at {where}")
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, pull: Array, apart: float) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, apart: float) -> None:
         """Widen the envelopes only (see `integrate.protocol.Recorder`)."""
-        self.envelopes.between(t, u, v, a, pull, apart)
+        self.envelopes.between(t, u, v, a, law_forces, apart)
 
     def stationary(self, t: Array, u: Array) -> None:
         """Widen the envelopes of displacements only (see `integrate.protocol.Recorder`)."""
@@ -285,9 +285,9 @@ class HistoryRecorder:
         return self.envelopes.shown
 
     @property
-    def pulling(self) -> Index:
+    def acting(self) -> Index:
         """Laws whose forces `between` looks at (see `integrate.protocol.Recorder`)."""
-        return self.envelopes.pulling
+        return self.envelopes.acting
 
     def trial(self, t: float, doing: str = "") -> None:
         """Tell the progress of a run whose samples may not count (see `integrate.protocol.Recorder`)."""
@@ -303,7 +303,7 @@ class HistoryRecorder:
         if not self._blocks:
             return
         system = self.items.system
-        t, u, v, a, force, stored, lost, drag, works = (
+        t, u, v, a, force, stored, lost, dashpot, works = (
             np.concatenate(parts, axis=-1) for parts in zip(*self._blocks)
         )
         self._blocks = []
@@ -312,8 +312,8 @@ class HistoryRecorder:
         energy = energies(system, t, u.T, v.T, stored.T, lost.T, works.T)
         residual = self.energy.take(energy)
         self.losses, self.deformations = lost[:, -1].tolist(), d[:, -1].tolist()
-        pull = (force + drag)[self.pulling]
+        law_forces = (force + dashpot)[self.acting]
         before = inputs_before(system, t)
-        nodes, members, totals = self.envelopes.take(t, u, v, a, pull, before)
+        nodes, members, totals = self.envelopes.take(t, u, v, a, law_forces, before)
         whole = np.column_stack([energy, residual])
         self._append(SampleBlock(self.items, t, u, inputs[0], force, d, nodes, members, totals, whole))

@@ -50,14 +50,14 @@ class ExpandingRecorder:
         return np.asarray(self.condensed.expand[self.recorder.shown].any(axis=0))
 
     @property
-    def pulling(self) -> Index:
+    def acting(self) -> Index:
         """Laws whose forces `between` needs (see `Recorder`)."""
-        return self.recorder.pulling
+        return self.recorder.acting
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, pull: Array, apart: float) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, apart: float) -> None:
         """Take the motion between samples (see `Recorder`)."""
         u, v, a = self._expanded(t, u, v, a)
-        self.recorder.between(t, u, v, a, pull, apart)
+        self.recorder.between(t, u, v, a, law_forces, apart)
 
     def stationary(self, t: Array, u: Array) -> None:
         """Take displacements at stationary points (see `Recorder`)."""

@@ -64,13 +64,13 @@ class LawValues(NamedTuple):
     force: Array
     stored: Array
     lost: Array
-    drag: Array
+    dashpot: Array
 
 
 class Envelopes(Protocol):
     """Envelopes of a run."""
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, pull: Array, apart: float) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, apart: float) -> None:
         """Count in the motion at some times, as `Recorder.between`."""
         ...
 
@@ -78,7 +78,7 @@ class Envelopes(Protocol):
         """Count in displacements that turn between those instants."""
         ...
 
-    def take(self, t: Array, u: Array, v: Array, a: Array, pull: Array, s: Sequence[Array]) -> object:
+    def take(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, s: Sequence[Array]) -> object:
         """Count in samples; `s` are the inputs and their first two rates."""
         ...
 
@@ -100,12 +100,12 @@ class Recorder(Protocol):
 
     @property
     def shown(self) -> Flags:
-        """Which unknowns `between` looks at, shape (n,): those of the laws in `pulling` are among them."""
+        """Which unknowns `between` looks at, shape (n,): those of the laws in `acting` are among them."""
         ...
 
     @property
-    def pulling(self) -> Index:
-        """Laws whose forces `between` looks at, ascending, shape (n_pulling,)."""
+    def acting(self) -> Index:
+        """Laws whose forces `between` looks at, ascending, shape (n_acting,)."""
         ...
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
@@ -116,11 +116,11 @@ class Recorder(Protocol):
         """
         ...
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, pull: Array, apart: float) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, apart: float) -> None:
         """Take the motion at times between the samples, shapes (n_times,), (n, n_times): for envelopes.
         Only that of the unknowns in `shown` need be right.
 
-        `pull`, shape (n_pulling, n_times), are the forces of the laws in `pulling`, all dashpots included.
+        `law_forces`, shape (n_acting, n_times), are the forces of the laws in `acting`, all dashpots included.
 
         `apart` is the longest time from one instant that is seen to the next.
         """

@@ -184,10 +184,10 @@ class Equations:
         inputs[0] = inputs[0] + weights.inertia @ (s.ground.T @ system.acceleration_inputs)
         inputs[0] = inputs[0] - weights.loads @ self._forces()
         constant = terms[0][:, : self.n] @ system.expand_constant - weights.loads @ s.held
-        pulls = (weights.elements @ s.law_rows.T) * ~self._contact
-        pulls = pulls + (weights.contacts @ s.law_rows.T) * self._contact
+        of_laws = (weights.elements @ s.law_rows.T) * ~self._contact
+        of_laws = of_laws + (weights.contacts @ s.law_rows.T) * self._contact
         turning = _product(weights.geometric, s.corotational.rows.T)
-        return LinearSums(system, motion, inputs, constant, pulls, turning)
+        return LinearSums(system, motion, inputs, constant, of_laws, turning)
 
     def _forces(self) -> Array:
         """FORCES over the released columns, shape (n_columns, n_inputs)."""
@@ -210,7 +210,7 @@ class LinearSums:
     inputs : list of ndarray, shape (n_sums, n_inputs)
         On the inputs and their first two derivatives.
     constant : ndarray, shape (n_sums,)
-    pulls : Matrix, shape (n_sums, n_laws)
+    of_laws : Matrix, shape (n_sums, n_laws)
         On the forces of the laws, all dashpots included.
     turning : Matrix, shape (n_sums, 6 n_members)
         On the forces on the quantities of the corotational members.
@@ -219,33 +219,33 @@ class LinearSums:
     ----------
     shown : ndarray of bool, shape (n,)
         Unknowns that they depend on, those of the laws and members apart.
-    pulling : ndarray of bool, shape (n_laws,)
+    acting : ndarray of bool, shape (n_laws,)
     """
 
     def __init__(
         self, system: ReducedSystem, motion: list[Matrix], inputs: list[Array], constant: Array,
-        pulls: Matrix, turning: Matrix,
+        of_laws: Matrix, turning: Matrix,
     ) -> None:  # fmt: skip
         self.system, self.motion, self.inputs, self.constant = system, motion, inputs, constant
-        self.pulls, self.turning = pulls, turning
+        self.of_laws, self.turning = of_laws, turning
         self.shown: Flags = np.any([used_columns(x) for x in motion], axis=0)
-        self.pulling: Flags = used_columns(pulls)
+        self.acting: Flags = used_columns(of_laws)
         members = used_columns(turning).reshape(-1, QUANTITIES).any(axis=1)
         self.members: Index = np.flatnonzero(members)
 
-    def values(self, motion: Sequence[Array], pulled: Array, s: Sequence[Array]) -> Array:
+    def values(self, motion: Sequence[Array], from_laws: Array, s: Sequence[Array]) -> Array:
         """Values at some instants, shape (n_sums, n_times).
 
         Parameters
         ----------
         motion : sequence of ndarray, shape (n, n_times)
             u, v, a of the unknowns.
-        pulled : ndarray, shape (n_sums, n_times)
+        from_laws : ndarray, shape (n_sums, n_times)
             What the laws make of them.
         s : sequence of ndarray, shape (n_inputs, n_times)
             Inputs and their first two derivatives.
         """
-        out = np.asarray(pulled + self.constant[:, None])
+        out = np.asarray(from_laws + self.constant[:, None])
         for order in range(3):
             out += self.motion[order] @ motion[order] + self.inputs[order] @ s[order]
         if len(self.members):

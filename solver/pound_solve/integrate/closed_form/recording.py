@@ -102,8 +102,10 @@ class EnvelopeSamples:
         tau, motion = dense.enveloped_grid(STEPS * h, end)
         longest = float(np.diff(tau, append=end).max(initial=0.0))
         rigid, t = dense.subsystems.rigid, t0 + tau
-        pull = forces_of(dense.subsystems.system, rigid, self.recorder.pulling, dense.branches, t, motion)
-        self._between.append((t, *motion, pull, longest))
+        law_forces = forces_of(
+            dense.subsystems.system, rigid, self.recorder.acting, dense.branches, t, motion
+        )
+        self._between.append((t, *motion, law_forces, longest))
         self._add_stationary(dense, t0, tau, motion, end)
         if sum(x[1].size for x in (*self._between, *self._stationary)) > MAX_WAITING:
             self.release()
@@ -146,8 +148,8 @@ class EnvelopeSamples:
         """Pass all that waits to the recorder."""
         if self._between:
             *motion, longest = zip(*self._between)
-            t, u, v, a, pull = (np.concatenate(x, axis=-1) for x in motion)
-            self.recorder.between(t, u, v, a, pull, max(longest))
+            t, u, v, a, law_forces = (np.concatenate(x, axis=-1) for x in motion)
+            self.recorder.between(t, u, v, a, law_forces, max(longest))
             self._between.clear()
         if self._stationary:
             t, u = (np.concatenate(x, axis=-1) for x in zip(*self._stationary))

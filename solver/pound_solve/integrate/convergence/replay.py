@@ -30,9 +30,9 @@ class Replay:
         self.low = np.minimum(self.low, u.min(axis=1))
         self.recorder.trial(float(t[-1]))
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, pull: Array, apart: float) -> None:
+    def between(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, apart: float) -> None:
         """Take the motion between samples (see `Recorder`)."""
-        self.envelopes.between(t, u, v, a, pull, apart)
+        self.envelopes.between(t, u, v, a, law_forces, apart)
 
     def stationary(self, t: Array, u: Array) -> None:
         """Take displacements at stationary points (see `Recorder`)."""
@@ -44,9 +44,9 @@ class Replay:
         return self.recorder.shown
 
     @property
-    def pulling(self) -> Index:
+    def acting(self) -> Index:
         """Laws whose forces `between` needs (see `Recorder`)."""
-        return self.recorder.pulling
+        return self.recorder.acting
 
     def trial(self, t: float, doing: str = "") -> None:
         """Pass the progress of a trial on."""
@@ -57,9 +57,9 @@ class Replay:
         own = self.recorder.envelopes.blank()
         own.widen(self.envelopes)
         for t, u, v, a, laws, _ in self.samples:
-            pull = (laws.force + laws.drag)[self.pulling]
+            law_forces = (laws.force + laws.dashpot)[self.acting]
             s = [system.excitation.values(t, order, before=True).T for order in range(3)]
-            own.take(t, u, v, a, pull, s)
+            own.take(t, u, v, a, law_forces, s)
         return own.peaks()
 
     def pass_on(self) -> None:

@@ -353,14 +353,14 @@ def step_arrays(
     return out
 
 
-def buffers(n: int, n_laws: int, which: Index, pulling: Index) -> state.Buffers:
-    """Room for samples and transitions; `which` unknowns, and the forces of the laws `pulling`, are shown
+def buffers(n: int, n_laws: int, which: Index, acting: Index) -> state.Buffers:
+    """Room for samples and transitions; `which` unknowns, and the forces of the laws `acting`, are shown
     between the samples.
     """
     samples = min(SAMPLES, max(MOST_HELD // (3 * max((1 + SHOWS) * n, n_laws, 1)), 2))
-    shown = max(samples * SHOWS, min(16 * SAMPLES, MOST_HELD // max(3 * len(which) + len(pulling), 3)))
+    shown = max(samples * SHOWS, min(16 * SAMPLES, MOST_HELD // max(3 * len(which) + len(acting), 3)))
     u, v, a = np.zeros((3, samples, n))
-    force, stored, lost, drag = np.zeros((4, samples, n_laws))
+    force, stored, lost, dashpot = np.zeros((4, samples, n_laws))
     return state.Buffers(
         displacement=u,
         velocity=v,
@@ -368,7 +368,7 @@ def buffers(n: int, n_laws: int, which: Index, pulling: Index) -> state.Buffers:
         force=force,
         stored=stored,
         lost=lost,
-        drag=drag,
+        dashpot=dashpot,
         time=np.zeros(samples),
         works=np.zeros((samples, 3)),
         log=np.zeros((TRANSITIONS + 16 * n_laws, state.LOGGED)),
@@ -377,8 +377,8 @@ def buffers(n: int, n_laws: int, which: Index, pulling: Index) -> state.Buffers:
         which=which,
         shown=np.zeros((shown, 3, len(which))),
         shown_time=np.zeros(shown),
-        pulling=pulling,
-        pull=np.zeros((shown, len(pulling))),
+        acting=acting,
+        law_forces=np.zeros((shown, len(acting))),
     )
 
 

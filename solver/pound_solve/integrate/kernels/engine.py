@@ -73,7 +73,7 @@ class KernelEngine(ABC):
         self.laws = allocation.law_arrays(system, start, own, scheme, rules, losses)
         self.step = allocation.step_arrays(system, start, own, self.linear, self.tracker.extremes)
         which = own.place[np.flatnonzero(recorder.shown)]
-        self.buffers = allocation.buffers(system.size, len(self.springs), which, recorder.pulling)
+        self.buffers = allocation.buffers(system.size, len(self.springs), which, recorder.acting)
         self.state = allocation.run_record(float(self.times[0]), self.accumulator.initial)
         for i in range(len(self.springs)):
             law_kernels.enter_branch(self.laws, self.rules, i)
@@ -175,8 +175,8 @@ class KernelEngine(ABC):
         seen = np.sort(np.concatenate([[self.seen], times, buffers.time[: self.state.kept]]))
         u, v, a = motion = np.zeros((3, len(self.order), shown))
         motion[:, self.order[buffers.which]] = buffers.shown[:shown].transpose(1, 2, 0)
-        pull = buffers.pull[:shown].T.copy()
-        self.recorder.between(times.copy(), u, v, a, pull, float(np.diff(seen).max()))
+        law_forces = buffers.law_forces[:shown].T.copy()
+        self.recorder.between(times.copy(), u, v, a, law_forces, float(np.diff(seen).max()))
         self.seen = float(seen[-1])
 
     def _fetch_samples(self) -> None:
@@ -187,7 +187,7 @@ class KernelEngine(ABC):
         u, v, a = (np.ascontiguousarray(x[:kept, back].T) for x in motions)
         mass = self.system.mass
         self.speed += (v * (mass @ v)).sum(), (a * (mass @ a)).sum()
-        of_laws = buffers.force, buffers.stored, buffers.lost, buffers.drag
+        of_laws = buffers.force, buffers.stored, buffers.lost, buffers.dashpot
         values = LawValues(*(x[:kept].T.copy() for x in of_laws))
         self.recorder.sample(buffers.time[:kept].copy(), u, v, a, values, buffers.works[:kept].T.copy())
 

@@ -101,7 +101,7 @@ def store_sample(
         still = law_force(laws, rules, i, d, 0.0)
         whole = law_force(laws, rules, i, d, laws.now.rate[i])
         buffers.force[at, i] = whole if laws.viscous[i] else still
-        buffers.drag[at, i] = whole - buffers.force[at, i]
+        buffers.dashpot[at, i] = whole - buffers.force[at, i]
         held = recoverable_of(
             rules,
             laws.rule[i],
@@ -135,7 +135,7 @@ def store_motion(
 ) -> None:
     """Keep the motion after every `each`-th step between two samples."""
     run.since_shown += 1
-    if run.since_shown < each or len(buffers.which) + len(buffers.pulling) == 0:
+    if run.since_shown < each or len(buffers.which) + len(buffers.acting) == 0:
         return
     at, now = run.shown, step.now
     buffers.shown_time[at] = t
@@ -144,8 +144,10 @@ def store_motion(
         buffers.shown[at, 0, i] = now.displacement[which]
         buffers.shown[at, 1, i] = now.velocity[which]
         buffers.shown[at, 2, i] = now.acceleration[which]
-    for i in range(len(buffers.pulling)):
-        law = buffers.pulling[i]
-        buffers.pull[at, i] = law_force(laws, rules, law, laws.now.deformation[law], laws.now.rate[law])
+    for i in range(len(buffers.acting)):
+        law = buffers.acting[i]
+        buffers.law_forces[at, i] = law_force(
+            laws, rules, law, laws.now.deformation[law], laws.now.rate[law]
+        )
     run.since_shown = 0
     run.shown += 1

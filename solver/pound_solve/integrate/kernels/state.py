@@ -383,7 +383,7 @@ class Buffers(NamedTuple):
     Attributes
     ----------
     displacement, velocity, acceleration : ndarray, shape (n_samples, n)
-    force, stored, lost, drag : ndarray, shape (n_samples, n_laws)
+    force, stored, lost, dashpot : ndarray, shape (n_samples, n_laws)
         Of the laws: forces, recoverable and lost energies, forces of dashpots beside springs.
     time : ndarray, shape (n_samples,)
     works : ndarray, shape (n_samples, 3)
@@ -399,9 +399,9 @@ class Buffers(NamedTuple):
     shown : ndarray, shape (n_shown, 3, n_which)
         Their motion between the samples.
     shown_time : ndarray, shape (n_shown,)
-    pulling : ndarray, shape (n_pulling,)
+    acting : ndarray, shape (n_acting,)
         Laws that the envelopes look at.
-    pull : ndarray, shape (n_shown, n_pulling)
+    law_forces : ndarray, shape (n_shown, n_acting)
         Their forces between the samples, all dashpots included.
     """
 
@@ -411,7 +411,7 @@ class Buffers(NamedTuple):
     force: Array
     stored: Array
     lost: Array
-    drag: Array
+    dashpot: Array
     time: Array
     works: Array
     log: Array
@@ -420,8 +420,8 @@ class Buffers(NamedTuple):
     which: Index
     shown: Array
     shown_time: Array
-    pulling: Index
-    pull: Array
+    acting: Index
+    law_forces: Array
 
 
 class Scheme(NamedTuple):

@@ -190,7 +190,7 @@ def store_looks(
     t: float,
 ) -> None:
     """Keep the motion at the start of the step, where its acceleration may have jumped, and on its way."""
-    if len(buffers.which) + len(buffers.pulling) == 0:
+    if len(buffers.which) + len(buffers.acting) == 0:
         return
     for look in range(LOOKS):
         s, at = look * end / LOOKS, run.shown
@@ -204,15 +204,15 @@ def store_pulls(
     laws: Laws, buffers: Buffers, rules: Tables, series: Series, terms: int, h: float, end: float, run: Run
 ) -> None:
     """Keep the forces of the laws at the instants that `store_looks` has kept."""
-    if len(buffers.pulling) == 0:
+    if len(buffers.acting) == 0:
         return
     for look in range(LOOKS):
         s, at = look * end / LOOKS, run.shown - LOOKS + look
         press(laws, series, terms, s, h)
-        for i in range(len(buffers.pulling)):
-            law = buffers.pulling[i]
+        for i in range(len(buffers.acting)):
+            law = buffers.acting[i]
             d, v = law_at(series, terms, s, h, law)
-            buffers.pull[at, i] = law_force(laws, rules, law, d, v)
+            buffers.law_forces[at, i] = law_force(laws, rules, law, d, v)
 
 
 def change_branch(

@@ -295,17 +295,17 @@ def add_interval_works(modal: Modal, n_inputs: int, works: Works) -> None:
 def show(laws: Laws, modal: Modal, buffers: Buffers, run: Run, n_inputs: int) -> None:
     """Keep the motion at the starts and the middles of the cells for the envelopes."""
     looks = modal.growth.shape[1] - 1
-    if len(buffers.which) + len(buffers.pulling) == 0:
+    if len(buffers.which) + len(buffers.acting) == 0:
         return
-    for i in range(len(buffers.pulling)):
-        law = buffers.pulling[i]
+    for i in range(len(buffers.acting)):
+        law = buffers.acting[i]
         for look in range(looks):
             d = modal.offset[law]
             for b in range(len(modal.counts)):
                 own, size = modal.place[b, law], 2 * (modal.counts[b, MODES] + n_inputs)
                 if own >= 0:
                     d += dot(modal.rows[b, own, :size], modal.x[b, look, :size])
-            buffers.pull[run.shown + look, i] = laws.stiffness[law] * d + laws.offset[law]
+            buffers.law_forces[run.shown + look, i] = laws.stiffness[law] * d + laws.offset[law]
     for look in range(looks):
         buffers.shown_time[run.shown + look] = run.time + modal.length[0] * look / looks
     for b in range(len(modal.counts)):
