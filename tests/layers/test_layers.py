@@ -40,6 +40,7 @@ WITHIN = {
     "integrate": (
         "protocol",
         "costs",
+        "intervals",
         "release",
         "rigid",
         "kernels",

@@ -161,6 +161,17 @@ class HistoryResult:
             enough = balance < (1e-9 if self.returned.exact else 1e-2)
             yield BALANCE, f"{balance:.2e}", "good" if enough else "look: forces are out of balance"
 
+    def drift_ratios(self) -> list[tuple[str, float]]:
+        """Name of every drift, and the largest absolute one over its height; NaN where it has none."""
+        return [
+            (name, max(abs(e.high), abs(e.low)) / height)
+            for name, e, height in zip(
+                self.items.drifts.names,
+                self.returned.peaks.monitored,
+                drift_heights(self.system.structure.model),
+            )
+        ]
+
     @property
     def items(self) -> RecordedItems:
         """What was recorded."""

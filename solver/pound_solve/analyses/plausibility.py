@@ -5,10 +5,12 @@ They are no errors of the computation, which may be exact: units, strengths and 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
-from pound_solve.analyses.history import HistoryResult, drift_heights
+from pound_deck.model import Model
+from pound_solve.analyses.history import HistoryResult
 from pound_solve.integrate.protocol import Outcome
 from pound_solve.structure.structure import Structure
 
@@ -20,9 +22,7 @@ LARGEST_OVERLAP: Final = 0.02  #: of the shortest member that meets a contact
 
 def drifts(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
     """Drifts beyond a tenth of their height."""
-    names = history.items.drifts.names
-    for name, e, height in zip(names, outcome.peaks.monitored, drift_heights(structure.model)):
-        ratio = max(abs(e.high), abs(e.low)) / height
+    for name, ratio in history.drift_ratios():
         if ratio > LARGEST_DRIFT:
             verdict = "look: above 10 %; check units, masses and strengths"
             yield f"drift ratio of {name}", f"{100 * ratio:.3g} %", verdict
@@ -39,24 +39,32 @@ def failures(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
 def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
     """Contacts pressed together by more than an elastic contact means."""
     model = structure.model
+    if not history.items.contacts:
+        return
+    shortest = shortest_members(model)
     for i in history.items.contacts:
         law = structure.laws[i]
+        contact = model.elements[law.element]
         overlap = max(outcome.peaks.deformation[i].high - law.facts["gap"], 0.0)
-        ends = {model.elements[law.element].i, model.elements[law.element].j} - {None}
-        lengths = [
-            (
-                (model.nodes[e.i].x - model.nodes[e.j].x) ** 2
-                + (model.nodes[e.i].y - model.nodes[e.j].y) ** 2
-            )
-            ** 0.5
-            for e in model.elements.values()
-            if e.j is not None and e.id != law.element and {e.i, e.j} & ends
-        ]
-        shortest = min((x for x in lengths if x > 0.0), default=0.0)
-        if shortest and overlap > LARGEST_OVERLAP * shortest:
-            name = model.elements[law.element].name or str(law.element)
-            share = f"{100 * overlap / shortest:.3g} % of the shortest member there"
+        length = min((shortest[n] for n in (contact.i, contact.j) if n in shortest), default=0.0)
+        if length and overlap > LARGEST_OVERLAP * length:
+            share = f"{100 * overlap / length:.3g} % of the shortest member there"
+            name = contact.name or str(law.element)
             yield f"overlap of contact {name}", share, "look: above 2 %; check the stiffness of the contact"
+
+
+def shortest_members(model: Model) -> dict[int, float]:
+    """Length of the shortest element, contacts apart, at every node that has one [L]."""
+    shortest: dict[int, float] = {}
+    for e in model.elements.values():
+        if e.j is None or model.props[e.prop].spec.name == "CONTACT":
+            continue
+        i, j = model.nodes[e.i], model.nodes[e.j]
+        length = math.hypot(i.x - j.x, i.y - j.y)
+        if length > 0.0:
+            for end in (e.i, e.j):
+                shortest[end] = min(length, shortest.get(end, length))
+    return shortest
 
 
 RULES: Final[Sequence[Callable[[Structure, HistoryResult, Outcome], Iterator[Check]]]] = (

@@ -25,6 +25,7 @@ from pound_solve.integrate.closed_form import exact
 from pound_solve.integrate.convergence.compared import ALL, RESPONSE
 from pound_solve.integrate.convergence.refinement import StepRefinement
 from pound_solve.integrate.convergence.replay import Replay
+from pound_solve.integrate.intervals import MOST_UNKNOWNS, WORTH, usual
 from pound_solve.integrate.protocol import (
     EnvelopeRecorder,
     MonitoredOutputs,
@@ -64,13 +65,11 @@ def intervals_in_modes(system: ReducedSystem, times: Array, rate: float) -> int:
     """Return how many of the intervals between some `times` TAYLOR takes in modes while all springs are
     elastic and all contacts open; `rate` is that of the fastest mode [1/T].
     """
-    from pound_solve.integrate.series import modal_tables  # where steps are taken it is not loaded
-
-    length = modal_tables.usual(times)
+    length = usual(times)
     curved = any(s.law.curved or s.law.rigid for s in system.structure.laws)
-    small = system.size <= modal_tables.MOST_UNKNOWNS and not massless(system.mass).any()
+    small = system.size <= MOST_UNKNOWNS and not massless(system.mass).any()
     straight = system.excitation.coefs.shape[1] <= 2
-    if curved or not small or not straight or rate * length < modal_tables.WORTH:
+    if curved or not small or not straight or rate * length < WORTH:
         return 0
     return int(np.isclose(np.diff(times), length, rtol=1e-9, atol=0.0).sum())
 

@@ -120,7 +120,8 @@ class Recorder(Protocol):
         """Take the motion at times between the samples, shapes (n_times,), (n, n_times): for envelopes.
         Only that of the unknowns in `shown` need be right.
 
-        `law_forces`, shape (n_acting, n_times), are the forces of the laws in `acting`, all dashpots included.
+        `law_forces`, shape (n_acting, n_times), are the forces of the laws in `acting`, all dashpots
+        included.
 
         `apart` is the longest time from one instant that is seen to the next.
         """

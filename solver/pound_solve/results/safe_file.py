@@ -224,10 +224,13 @@ def _locked(path: Path) -> IO[bytes]:
         try:
             fcntl.flock(disk, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as err:
-            disk.close()
-            raise BusyError(
-                f"{path}: another run writes it; wait for it, or give another folder with -o"
-            ) from err
+            if not _only_read(disk):
+                disk.close()
+                raise BusyError(
+                    f"{path}: another run writes it; wait for it, or give another folder with -o"
+                ) from err
+            _give_up(path, disk)  # to its readers, who keep what they have open
+            continue
         except OSError:  # a file system without locks
             return disk
         try:
@@ -236,6 +239,25 @@ def _locked(path: Path) -> IO[bytes]:
         except FileNotFoundError:
             pass
         disk.close()  # the run that held it has ended and moved it away in the meantime
+
+
+def _only_read(disk: IO[bytes]) -> bool:
+    """Whether those who hold a lock on the file only read it."""
+    try:
+        fcntl.flock(disk, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
+
+
+def _give_up(path: Path, disk: IO[bytes]) -> None:
+    """Free the name of the file, if it is still that of the file."""
+    try:
+        if os.path.samestat(os.fstat(disk.fileno()), path.stat()):
+            path.unlink()
+    except FileNotFoundError:
+        pass
+    disk.close()
 
 
 def _allocate(disk: IO[bytes], start: int, count: int) -> None:

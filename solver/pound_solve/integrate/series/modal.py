@@ -21,6 +21,7 @@ import numpy as np
 
 from pound_solve.integrate.energy import Works
 from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL
+from pound_solve.integrate.intervals import SAME
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.recording import count_extreme
 from pound_solve.integrate.kernels.state import Buffers, Laws, LinearSystem, Run, Step
@@ -31,7 +32,6 @@ from pound_solve.integrate.tracker import Extremes
 from pound_solve.numerics.jit import loose
 from pound_solve.numerics.types import Array
 
-SAME = 1e-11  #: share by which intervals of one length may differ: the clock is rounded
 ROUNDING = 1e-16  #: share of the terms of a series that is rounding
 UNKNOWNS, MODES, FOLLOWED, SHOWN = range(4)  #: columns of `Modal.counts`
 DISPLACEMENT, VELOCITY = range(2)  #: rows of `Modal.to_modes` and `Modal.from_modes`

@@ -19,39 +19,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_solve.integrate import costs
+from pound_solve.integrate.intervals import MOST_UNKNOWNS, WORTH, usual
 from pound_solve.integrate.protocol import MonitoredOutputs
-from pound_solve.integrate.series.modal import SAME
 from pound_solve.integrate.series.state import Modal
 from pound_solve.numerics.graph import components
 from pound_solve.numerics.matrices import dense, used_rows
 from pound_solve.numerics.types import Array, Complex, Index
 from pound_solve.structure.reduction import ReducedSystem
 
-MOST_UNKNOWNS = 200  #: of a part
 MOST_CONDITION = 3e3  #: of its modes
-WORTH = 10.0  #: radians of the fastest mode in an interval from which on it pays: two steps by series
 MOST_CELLS = 100_000  #: in an interval: faster modes than that are for no table
-FEW = 50  #: intervals of one length for which tables do not pay
 STRIDE = 5.0  #: radians of the fastest mode in a cell, at most, as in a step by series
 FEWEST = 4  #: cells
 START = np.zeros(1)  #: of an interval
 PANEL, POINTS = 8.0, 16  #: radians that Gauss's rule with so many points integrates to rounding
-
-
-def usual(times: Array) -> float:
-    """Length of most of the intervals between some times; 0 where few have the same.
-
-    Each is known to the rounding of the clock, and their mean far better: over thousands of periods that
-    counts.
-    """
-    if len(times) <= FEW:
-        return 0.0
-    lengths = np.sort(np.diff(times))
-    ends = np.flatnonzero(np.diff(lengths, append=np.inf) > SAME * lengths) + 1
-    counts = np.diff(ends, prepend=0)
-    most = int(np.argmax(counts))
-    own = lengths[ends[most] - counts[most] : ends[most]]
-    return float(own.mean()) if len(own) > FEW else 0.0
 
 
 class Part:

@@ -15,9 +15,9 @@ def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each DRIFT card."""
     from pound_solve.analyses.history import drift_heights  # which reading a report does not need
 
-    names, found = run.history.items.drifts.names, run.history.returned.peaks.monitored
-    for name, e, h in zip(names, found, drift_heights(run.model)):
-        yield name, e.high, e.t_high, e.low, e.t_low, h, max(abs(e.high), abs(e.low)) / h
+    found, heights = run.history.returned.peaks.monitored, drift_heights(run.model)
+    for (name, ratio), e, h in zip(run.history.drift_ratios(), found, heights):
+        yield name, e.high, e.t_high, e.low, e.t_low, h, ratio
 
 
 TABLE = Table(

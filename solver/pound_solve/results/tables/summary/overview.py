@@ -39,18 +39,11 @@ def ground_motion(run: RunRecord, motion: Motion) -> str:
 
 def response(run: RunRecord) -> Iterator[Row]:
     """The largest values of a history."""
-    from pound_solve.analyses.history import drift_heights  # which reading a report does not need
-
     history, units = run.history, run.model.units
     figures = history.returned.figures
     yield "method", str(figures.get("method", ""))
     yield "end of the history", f"{history.recorder.reached:.6g} {units.time}"
-    names, peaks = history.items.drifts.names, history.returned.peaks
-    drifts = [
-        (max(abs(e.high), abs(e.low)) / h, name)
-        for name, e, h in zip(names, peaks.monitored, drift_heights(run.model))
-        if h == h
-    ]
+    drifts = [(ratio, name) for name, ratio in history.drift_ratios() if not math.isnan(ratio)]
     if drifts:
         ratio, name = max(drifts)
         yield "largest drift ratio", f"{100.0 * ratio:.3g} %, {name}"

@@ -1,0 +1,28 @@
+"""Intervals between the times of output: which of them modes take as a whole, and where that pays."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.numerics.types import Array
+
+SAME = 1e-11  #: share by which intervals of one length may differ: the clock is rounded
+FEW = 50  #: intervals of one length for which tables do not pay
+MOST_UNKNOWNS = 200  #: of a part
+WORTH = 10.0  #: radians of the fastest mode in an interval from which on it pays: two steps by series
+
+
+def usual(times: Array) -> float:
+    """Length of most of the intervals between some times; 0 where few have the same.
+
+    Each is known to the rounding of the clock, and their mean far better: over thousands of periods that
+    counts.
+    """
+    if len(times) <= FEW:
+        return 0.0
+    lengths = np.sort(np.diff(times))
+    ends = np.flatnonzero(np.diff(lengths, append=np.inf) > SAME * lengths) + 1
+    counts = np.diff(ends, prepend=0)
+    most = int(np.argmax(counts))
+    own = lengths[ends[most] - counts[most] : ends[most]]
+    return float(own.mean()) if len(own) > FEW else 0.0
