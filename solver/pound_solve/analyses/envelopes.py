@@ -166,16 +166,16 @@ class Envelopes:
 
     def between(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, apart: float) -> None:
         """Count in instants between the samples (see `integrate.protocol.Recorder`)."""
-        self._count(
-            t, u, v, a, law_forces, [self.system.excitation.values(t, order).T for order in range(3)]
-        )
+        after = [self.system.excitation.values_after(t, order).T for order in range(3)]
+        self._count(t, u, v, a, law_forces, after)
         self.seen, self.apart = self.seen + len(t), max(self.apart, apart)
 
     def stationary(self, t: Array, u: Array) -> None:
         """Count in displacements that turn between those instants (see
         `integrate.protocol.Recorder`).
         """
-        self.node["u"].take(self._on_nodes(u, self.system.excitation.values(t).T, "u"), t, self.moving)
+        after = self.system.excitation.values_after(t).T
+        self.node["u"].take(self._on_nodes(u, after, "u"), t, self.moving)
 
     def take(
         self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, s: Sequence[Array]

@@ -31,17 +31,18 @@ class ExpandingRecorder:
 
     def _expanded(self, t: Array, *motion: Array, before: bool = False) -> list[Array]:
         """Displacements of all unknowns, and of their derivatives in order, shape (n, n_times) each;
-        `before` the inputs jump.
+        `before` or after the inputs jump.
         """
-        values = self.condensed.system.excitation.values
-        return [self.condensed.all(x, values(t, order, before).T, order) for order, x in enumerate(motion)]
+        inputs = self.condensed.system.excitation
+        s = [inputs.values(t, i, before) if before else inputs.values_after(t, i) for i in range(3)]
+        return [self.condensed.all(x, s[order].T, order) for order, x in enumerate(motion)]
 
     def sample(self, t: Array, u: Array, v: Array, a: Array, laws: LawValues, works: Array) -> None:
         """Take some samples (see `Recorder`)."""
         u, v, a = self._expanded(t, u, v, a, before=True)
         if not self.condensed.system.total:  # the total form counts the work on all DOFs
             works = works.copy()
-            works[0] += self.condensed.put_in(t) - self._input_at_start
+            works[0] += self.condensed.put_in(t, before=True) - self._input_at_start
         self.recorder.sample(t, u, v, a, laws, works)
 
     @property

@@ -11,6 +11,8 @@ from pound_solve.loading.motions.base import Piecewise
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Flags, Index
 
+INSTANT = 1e-13  #: share of a time, and of the unit of time, by which rounding may put it beside a break
+
 
 @dataclass(frozen=True)
 class Excitation:
@@ -58,7 +60,14 @@ class Excitation:
         """Indices of the intervals just after some times, shape (n_times,): a time that rounding has put
         before a break belongs to the interval that begins there.
         """
-        return self.pieces(t + 1e-13 * np.maximum(1.0, t))
+        return self.pieces(t + INSTANT * np.maximum(1.0, t))
+
+    def pieces_before(self, t: Array) -> Index:
+        """Indices of the intervals just before some times, shape (n_times,): a time that rounding has put
+        beyond a break belongs to the interval that ends there.
+        """
+        i = np.searchsorted(self.breaks, t - INSTANT * np.maximum(1.0, t), side="left") - 1
+        return np.clip(i, 0, len(self.coefs) - 1)
 
     def local(self, piece: int, t: float) -> Array:
         """Coefficients about `t`, shape (degree + 1, n_inputs)."""
@@ -92,7 +101,10 @@ class Excitation:
         """`value` at several times, shape (n_times, n_inputs); `before` just before them, where an input
         jumps then.
         """
-        i = self.pieces(t)
-        if before:
-            i = np.maximum(np.searchsorted(self.breaks[: len(self.coefs)], t, side="left") - 1, 0)
+        i = self.pieces_before(t) if before else self.pieces(t)
+        return polynomial.values(self.coefs[i], t - self.breaks[i], order)
+
+    def values_after(self, t: Array, order: int = 0) -> Array:
+        """`value` just after several times (see `pieces_after`), shape (n_times, n_inputs)."""
+        i = self.pieces_after(t)
         return polynomial.values(self.coefs[i], t - self.breaks[i], order)

@@ -39,11 +39,11 @@ class Condensed:
     constant: Array
     loads: Array
 
-    def put_in(self, t: Array) -> Array:
+    def put_in(self, t: Array, before: bool = False) -> Array:
         """Work of the loads on condensed DOFs by the part of their displacements that is proportional to
-        the loads, counted from zero loads [F L], at some times.
+        the loads, counted from zero loads [F L], at some times, or just before the loads jump then.
         """
-        s = np.vstack([self.system.excitation.values(t).T, np.ones(len(t))])
+        s = np.vstack([self.system.excitation.values(t, before=before).T, np.ones(len(t))])
         own = np.column_stack([self.follow, self.constant]) @ s
         return np.asarray(0.5 * (own * (self.loads @ s)).sum(axis=0))
 

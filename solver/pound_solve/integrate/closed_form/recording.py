@@ -24,17 +24,13 @@ STEPS = 4  #: fine steps from one instant of the envelopes to the next
 BEYOND = 1e-6  #: share of its range by which a stationary displacement must exceed it to be recorded
 
 
-def inputs_at(system: ReducedSystem, t: Array) -> Array:
-    """The inputs and their first two derivatives at some times, shape (3, n_inputs, n_times)."""
-    return np.stack([system.excitation.values(t, order).T for order in range(3)])
-
-
 def forces_of(
     system: ReducedSystem, rigid: RigidContacts, chosen: Index, branches: Sequence[Branch], t: Array,
     motion: Kinematics,
 ) -> Array:  # fmt: skip
     """Forces of the `chosen` laws on their present branches, all dashpots included, (n_chosen, n_times)."""
-    (u, v, _), s = motion, inputs_at(system, t)
+    u, v, _ = motion
+    s = np.stack([system.excitation.values_after(t, order).T for order in range(3)])
     d = system.law_rows[chosen] @ u + system.law_inputs[chosen] @ s[0]
     rate = system.law_rows[chosen] @ v + system.law_inputs[chosen] @ s[1]
     out = linear_forces([branches[i] for i in chosen])(d, rate)
@@ -66,7 +62,8 @@ class DeferredSamples:
         laws = law_values(self.system, t, u, v, states)
         held = np.array([branches[i].held for i in self.rigid.laws], bool)
         if held.any():
-            s = inputs_at(self.system, t)
+            inputs = self.system.excitation
+            s = np.stack([inputs.values(t, order, before=True).T for order in range(3)])
             laws.force[self.rigid.laws] = self.rigid.forces(held, linear_forces(branches), u, v, s)
         self._waiting.append((t, u, v, a, laws, entries))
 
