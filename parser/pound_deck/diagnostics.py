@@ -414,6 +414,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "A line of BUILDINGS names nodes that elements do not connect, a building that has a name, or a "
         "name given before. A building is all that elements and slaving connect; contacts do not.",
     ),
+    "P339": (
+        "building damped twice, or not at all (warning)",
+        "Lines of DAMPING name buildings (BUILDING=), and another building has no line, or one building "
+        "has several, which add up. Lines for some NODES or PROPS of a building may stand side by side.",
+    ),
     "P340": (
         "P-Delta without axial forces (warning)",
         "GEOMETRY requests P-Delta, but no load compresses the columns, so it has no effect. Weights are "

@@ -12,6 +12,7 @@ from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
 from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import misnamed
+from pound_solve.structure.damping.by_building import uneven
 from pound_solve.structure.structure import Structure
 
 MOST_STEPS: Final = 10**8  #: of a history: hours of a small structure
@@ -122,6 +123,7 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     pushover.mistakes,
     too_many,
     misnamed,
+    uneven,
 )
 
 

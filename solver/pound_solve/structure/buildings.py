@@ -109,6 +109,21 @@ def buildings(structure: Structure) -> list[Building]:
     return out
 
 
+def building(structure: Structure, name: str) -> Building:
+    """The building of a name.
+
+    Raises
+    ------
+    KeyError
+        There is none; its text tells what there is.
+    """
+    found = {b.name: b for b in buildings(structure)}
+    if name not in found:
+        there = ", ".join(found) or "none"
+        raise KeyError(f"there is no building {name!r}; the buildings are {there}")
+    return found[name]
+
+
 def misnamed(structure: Structure) -> list[Diagnostic]:
     """Cards of BUILDINGS that name no building, several, or one that has a name."""
     out, names, of = list[Diagnostic](), set[str](), {}

@@ -13,6 +13,7 @@ from pound_solve.numerics import modes
 from pound_solve.numerics.graph import components
 from pound_solve.numerics.matrices import Matrix, entries, gathered, weighted
 from pound_solve.numerics.types import Array
+from pound_solve.structure.buildings import building
 from pound_solve.structure.damping.base import DampingContext, DampingError, Dashpots, Group, Proportional
 from pound_solve.structure.damping.secant import SecantLaw
 from pound_solve.structure.dofs import label
@@ -38,7 +39,7 @@ def add_damping(structure: Structure, mass: Sequence[MassBlock]) -> list[Diagnos
         The cards that are at fault.
     """
     sources, problems = _Sources(structure, mass), list[Diagnostic]()
-    context = DampingContext(sources.mass, sources.modes)
+    context = DampingContext(sources.mass, sources.modes, sources.building)
     betas = np.zeros((2, len(structure.laws)))  # of the tangent and of the secant stiffness
     for card in structure.model.damping:
         group = _group(card, context, problems)
@@ -91,7 +92,7 @@ def _matrices(structure: Structure, group: Group) -> list[Matrix]:
 def between_nodes(structure: Structure, damping: Proportional) -> Matrix:
     """Damping matrix in proportion to the stiffness of elements, shape (n, n)."""
     elements = structure.model.elements.values()
-    chosen = [structure.parts[e.id] for e in elements if damping.props is None or e.prop in damping.props]
+    chosen = [structure.parts[e.id] for e in elements if damping.elements.has(e)]
     blocks = (b for p in chosen for b in ([p.initial()] if damping.laws else p.stiffness))
     return damping.beta * structure.dofs.assembled((b.dofs, b.matrix) for b in blocks)
 
@@ -102,8 +103,7 @@ def _multiples(structure: Structure, dashpots: Dashpots) -> Array:
     return np.array(
         [
             dashpots.beta
-            if s.role is Role.SPRING
-            and (dashpots.props is None or model.elements[s.element].prop in dashpots.props)
+            if s.role is Role.SPRING and dashpots.elements.has(model.elements[s.element])
             else 0.0
             for s in structure.laws
         ]
@@ -129,6 +129,19 @@ class _Sources:
 
     structure: Structure
     blocks: Sequence[MassBlock]
+
+    def building(self, name: str) -> Collection[int]:
+        """Nodes of the building of that name.
+
+        Raises
+        ------
+        DampingError
+            There is none.
+        """
+        try:
+            return frozenset(building(self.structure, name).nodes)
+        except KeyError as err:
+            raise DampingError(str(err.args[0]), "BUILDING") from None
 
     def mass(self, nodes: Collection[int] | None) -> Matrix:
         """Mass matrix of the masses at some nodes (None: of all)."""

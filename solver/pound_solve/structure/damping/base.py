@@ -8,17 +8,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pound_deck.model import Card
+from pound_deck.model import Card, Element
 from pound_deck.schema import Field, Kind
 from pound_solve.numerics import matrices
 from pound_solve.numerics.modes import Modes
 from pound_solve.numerics.types import Array
 
 BUILDING = Field(
+    "BUILDING",
+    Kind.TEXT,
+    default="",
+    doc="name of the building that is damped, by its own modes; left out: the whole structure",
+)
+NODES = Field(
     "NODES",
     Kind.NODES,
     default=None,
-    doc="all nodes of one building, whose own modes are meant; left out: the whole structure",
+    doc="all nodes of one building, in place of its name",
 )  #: of the models that are made of modes
 
 
@@ -33,10 +39,28 @@ class DampingContext:
     modes : callable
         ``modes(nodes or None, count)``: the `count` slowest modes, or more (None: all), of the initial
         structure, or of the building that these nodes make up, over all unknowns.
+    building : callable
+        ``building(name)``: nodes of the building of that name.
     """
 
     mass: Callable[[Collection[int] | None], matrices.Matrix]
     modes: Callable[[Collection[int] | None, int | None], Modes]
+    building: Callable[[str], Collection[int]]
+
+    def nodes(self, card: Card) -> Collection[int] | None:
+        """Nodes of the BUILDING of a card, or its NODES; None: all.
+
+        Raises
+        ------
+        DampingError
+            Both are given, or there is no such building.
+        """
+        given: Collection[int] | None = card["NODES"]
+        if not card["BUILDING"]:
+            return given
+        if given is not None:
+            raise DampingError("BUILDING stands for all nodes of a building: leave NODES out", "NODES")
+        return self.building(card["BUILDING"])
 
     def from_modes(self, modes: Modes, rates: Array) -> matrices.Matrix:
         r"""Return :math:`M \Phi\,\mathrm{diag}(2\xi_n\omega_n)\,\Phi^T M`, shape (n_free, n_free): full.
@@ -59,22 +83,34 @@ class DampingContext:
         return np.asarray((weighted * rates) @ weighted.T)
 
 
-class Proportional(NamedTuple):
-    """Damping `beta` [T] times the initial stiffness of the elements of property sets (None: of all);
-    `laws` False: without that of hysteretic laws.
-    """
+class Chosen(NamedTuple):
+    """Elements of property sets (None: of all) that end at some nodes (None: at any)."""
 
     props: Collection[str] | None
+    nodes: Collection[int] | None
+
+    def has(self, element: Element) -> bool:
+        """Whether an element is one of them."""
+        of_these = self.props is None or element.prop in self.props
+        return of_these and (self.nodes is None or element.i in self.nodes)
+
+
+class Proportional(NamedTuple):
+    """Damping `beta` [T] times the initial stiffness of elements; `laws` False: without that of hysteretic
+    laws.
+    """
+
+    elements: Chosen
     beta: float
     laws: bool
 
 
 class Dashpots(NamedTuple):
-    """Dashpots beside the hysteretic laws of property sets (None: of all), `beta` [T] times the stiffness
-    that the law has at the time: tangent, or `secant`.
+    """Dashpots beside the hysteretic laws of elements, `beta` [T] times the stiffness that the law has at
+    the time: tangent, or `secant`.
     """
 
-    props: Collection[str] | None
+    elements: Chosen
     beta: float
     secant: bool
 
@@ -124,7 +160,8 @@ def frequencies(card: Card, omega: Callable[[], Array]) -> Array:
         return np.array(card["OMEGA"])
     known = omega()
     if max(card["MODES"]) > len(known):
-        raise DampingError(f"the structure has {len(known)} modes only", "MODES")
+        whole = "the building" if card["BUILDING"] else "the structure"
+        raise DampingError(f"{whole} has {len(known)} modes only", "MODES")
     out = known[np.array(card["MODES"]) - 1]
     if not out.all():
         raise DampingError(

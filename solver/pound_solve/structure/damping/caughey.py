@@ -27,6 +27,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.numerics.types import Array
 from pound_solve.structure.damping.base import (
     BUILDING,
+    NODES,
     DampingContext,
     DampingError,
     Group,
@@ -53,7 +54,7 @@ def rates(omega: Array, at: Array, xi: Array) -> Array:
 
 def build(card: Card, context: DampingContext) -> Group:
     """Damping of the whole structure, or of one building of several."""
-    modes = context.modes(card["NODES"], None)
+    modes = context.modes(context.nodes(card), None)
     at = frequencies(card, lambda: modes.omega)
     xi = ratios(card, len(at))
     apart(at, "OMEGA" if card["OMEGA"] is not None else "MODES")
@@ -107,6 +108,7 @@ SPEC = Spec(
         ),
         Field("MODES", Kind.INT, default=None, count=(1, 12), lo=1, doc="the same by modes"),
         BUILDING,
+        NODES,
     ),
     reference="Caughey 1960",
     impl=build,

@@ -24,6 +24,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.numerics.types import Array
 from pound_solve.structure.damping.base import (
     BUILDING,
+    NODES,
     DampingContext,
     DampingError,
     Group,
@@ -86,7 +87,7 @@ def interpolated(card: Card, omega: Array) -> tuple[Array, str]:
 
 def build(card: Card, context: DampingContext) -> Group:
     """Damping of the whole structure, or of one building of several."""
-    modes = context.modes(card["NODES"], None)
+    modes = context.modes(context.nodes(card), None)
     points = card["OMEGA"] is not None or card["MODES"] is not None
     xi, text = (interpolated if points else listed)(card, modes.omega)
     return Group(context.from_modes(modes, 2.0 * xi * modes.omega), None, text)
@@ -131,6 +132,7 @@ SPEC = Spec(
             doc="what the ratio is linear in: the frequency, or the number of the mode",
         ),
         BUILDING,
+        NODES,
     ),
     code=4,
     reference="Wilson & Penzien 1972",

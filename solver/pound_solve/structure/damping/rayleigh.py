@@ -7,10 +7,11 @@ by :math:`2\xi_i\omega_i = \alpha + \beta\omega_i^2`:
           \beta = 2\frac{\xi_2\omega_2 - \xi_1\omega_1}{\omega_2^2-\omega_1^2}
 
 The mass part acts on the masses of NODES, the stiffness part on the elements of PROPS; contacts are never
-damped by it.  K is that of the structure at rest (STIFFNESS=INITIAL), or every hysteretic law has a dashpot
-beside it with :math:`\beta` times its present stiffness, TANGENT (none while that is negative) or SECANT
-(that of the farthest reversal so far, see `secant`); with ELASTIC the laws have no share, so that a
-yielding hinge is not restrained by its dashpot.
+damped by it.  With BUILDING both act on this building alone, and MODES are its own.  K is that of the
+structure at rest (STIFFNESS=INITIAL), or every hysteretic law has a dashpot beside it with :math:`\beta`
+times its present stiffness, TANGENT (none while that is negative) or SECANT (that of the farthest reversal
+so far, see `secant`); with ELASTIC the laws have no share, so that a yielding hinge is not restrained by
+its dashpot.
 
 References
 ----------
@@ -22,6 +23,8 @@ from __future__ import annotations
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.structure.damping.base import (
+    BUILDING,
+    Chosen,
     DampingContext,
     DampingError,
     Dashpots,
@@ -58,24 +61,26 @@ def coefficients(xi: tuple[float, float], w: tuple[float, float]) -> tuple[float
 
 def build(card: Card, context: DampingContext) -> Group:
     """Damping of one group."""
-    alpha, beta = card["ALPHA"], card["BETA"]
+    alpha, beta, nodes = card["ALPHA"], card["BETA"], context.nodes(card)
+    own = nodes if card["BUILDING"] else None
     how = "ALPHA and BETA given"
     if card["XI"] is not None:
         if alpha is not None or beta is not None:
             raise DampingError("give ALPHA and BETA, or XI with OMEGA or MODES, not both", "XI")
-        w1, w2 = frequencies(card, lambda: context.modes(None, max(card["MODES"])).omega)
+        w1, w2 = frequencies(card, lambda: context.modes(own, max(card["MODES"])).omega)
         x1, x2 = ratios(card, 2)
         alpha, beta = coefficients((x1, x2), (w1, w2))
         how = f"XI {values(card['XI'])} at omega {w1:.6g} and {w2:.6g}"
     elif card["OMEGA"] is not None or card["MODES"] is not None:
         raise DampingError("OMEGA and MODES go with XI", "OMEGA" if card["OMEGA"] is not None else "MODES")
     alpha, beta = alpha or 0.0, beta or 0.0
+    chosen = Chosen(card["PROPS"], own)
     follows = card["STIFFNESS"] in ("TANGENT", "SECANT")
     return Group(
-        alpha * context.mass(card["NODES"]),
-        Proportional(card["PROPS"], beta, card["STIFFNESS"] == "INITIAL"),
+        alpha * context.mass(nodes),
+        Proportional(chosen, beta, card["STIFFNESS"] == "INITIAL"),
         f"alpha {alpha:.9g}, beta {beta:.9g} of the {card['STIFFNESS'].lower()} stiffness ({how})",
-        Dashpots(card["PROPS"], beta, card["STIFFNESS"] == "SECANT") if follows else None,
+        Dashpots(chosen, beta, card["STIFFNESS"] == "SECANT") if follows else None,
     )
 
 
@@ -110,7 +115,7 @@ SPEC = Spec(
             default=None,
             count=(2, 2),
             lo=1,
-            doc="modes of the whole structure that have XI",
+            doc="modes of the structure, or of the BUILDING, that have XI",
         ),
         Field(
             "STIFFNESS",
@@ -120,6 +125,7 @@ SPEC = Spec(
             codes={"INITIAL": 0, "TANGENT": 1, "SECANT": 6},
             doc="stiffness of hysteretic laws that BETA goes with: at rest, present, secant, or none",
         ),
+        BUILDING,
         Field("NODES", Kind.NODES, default=None, doc="nodes of the mass part; left out: all"),
         Field(
             "PROPS",

@@ -1,0 +1,43 @@
+"""Whether every building is damped once, where cards of DAMPING name buildings."""
+
+from __future__ import annotations
+
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Card
+from pound_solve.structure.buildings import Building, buildings
+from pound_solve.structure.structure import Structure
+
+
+def uneven(structure: Structure) -> list[Diagnostic]:
+    """Buildings that several cards damp, one of them by name, and buildings without damping beside those.
+
+    A card for some NODES or PROPS only is meant to go with others.
+    """
+    cards, out = structure.model.damping, list[Diagnostic]()
+    named = [c for c in cards if c["BUILDING"]]
+    for b in buildings(structure) if named else ():
+        whole = [c for c in cards if _of_whole(c, b)]
+        if len(whole) > 1 and any(c in named for c in whole):
+            first, again = whole[:2]
+            message = f"building {b.name!r} has two dampings: this one and that of line {first.span.line}"
+            hint = "they add up; leave one out, or give each its BUILDING"
+            out.append(Diagnostic("P339", message, again.span, hint, "warning"))
+        if not any(_touches(c, b) for c in cards):
+            message = f"building {b.name!r} has no damping"
+            hint = f'add a line with BUILDING="{b.name}", or leave BUILDING out for all'
+            out.append(Diagnostic("P339", message, named[0].place("BUILDING"), hint, "warning"))
+    return out
+
+
+def _touches(card: Card, b: Building) -> bool:
+    """Whether a card damps a part of a building."""
+    if card["BUILDING"]:
+        return bool(card["BUILDING"] == b.name)
+    return card["NODES"] is None or bool(set(card["NODES"]) & set(b.nodes))
+
+
+def _of_whole(card: Card, b: Building) -> bool:
+    """Whether a card damps all of a building."""
+    part = card.values.get("PROPS") is not None
+    part |= card.spec.name == "RAYLEIGH" and card["NODES"] is not None
+    return _touches(card, b) and not part
