@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -27,6 +27,8 @@ class SupportReactions:
     structure : Structure
     axial : ndarray, shape (n_geometric,)
         Axial forces that its geometric stiffness is made of.
+    own : collection of int, or None
+        Nodes of the building whose base shear is meant; None: of all.
 
     Attributes
     ----------
@@ -34,8 +36,9 @@ class SupportReactions:
         Motions of the whole along x and y, and its turn about the origin, over all columns.
     """
 
-    def __init__(self, structure: Structure, axial: Array) -> None:
+    def __init__(self, structure: Structure, axial: Array, own: Collection[int] | None = None) -> None:
         model = structure.model
+        self.own = frozenset(model.nodes if own is None else own)
         bare = assemble(replace(model, damping=()), fixed_dofs(structure), structure.self_weight)
         self.structure, self.n = bare.stressed(axial), bare.n_free
         self.laws = structure.laws  # with what damping has made of them
@@ -65,13 +68,13 @@ class SupportReactions:
 
     def shear(self, u: Array, states: Sequence[State], d: int, nodes: Sequence[int] | None) -> float:
         """Force on the ground along direction `d` [F]: at the supports `nodes`,
-        or at all supports and below all elements that end at the ground.
+        or at all supports of the building and below all its elements that end at the ground.
         """
         reactions = self.reactions(u, states)
         if nodes is not None:
             return -sum(reactions.get((node, d), 0.0) for node in nodes)
         own, _ = self._held(*self._at(u, states))
-        return float(own[d]) - sum(r for (_, at), r in reactions.items() if at == d)
+        return float(own[d]) - sum(r for (n, at), r in reactions.items() if at == d and n in self.own)
 
     def balance(self, u: Array, states: Sequence[State]) -> list[tuple[Any, ...]]:
         """Rows of the table ``equilibrium``: forces along x and y and moments about the origin."""
@@ -100,7 +103,7 @@ class SupportReactions:
 
     def _held(self, full: Array, force: Array) -> tuple[Array, Array]:
         """Force and moment of the elements that resist a motion of the whole, shape (3,) each:
-        of those that end at the ground, and of those between nodes.
+        of those of the building that end at the ground, and of those between nodes.
         """
         held = np.array([rows @ full + force @ laws for rows, laws in zip(self.linear, self.nonlinear)])
         return held[0], held[1]
@@ -112,16 +115,24 @@ class SupportReactions:
         s = self.structure
         linear = np.zeros((2, *self.rigid.shape))
         for number, parts in s.parts.items():
-            between = int(s.model.elements[number].j is not None)
+            if (between := self._place(number)) is None:
+                continue
             for b in parts.stiffness:
                 moved = [[s.dofs.value([f], [1.0], line) for f in b.dofs] for line in self.rigid]
                 for way, force in enumerate(_above_rounding(np.array(moved), b.matrix)):
                     s.dofs.add(linear[between, way], b.dofs, force)
         nonlinear = np.zeros((2, len(s.laws), 3))
         for i, (x, (at, row)) in enumerate(zip(s.laws, by_rows(s.law_rows))):
-            between = int(s.model.elements[x.element].j is not None)
-            nonlinear[between, i] = _above_rounding(self.rigid[:, at], row)
+            if (between := self._place(x.element)) is not None:
+                nonlinear[between, i] = _above_rounding(self.rigid[:, at], row)
         return linear, nonlinear
+
+    def _place(self, number: int) -> int | None:
+        """0 for an element of the building that ends at the ground, 1 for one between nodes, else None."""
+        element = self.structure.model.elements[number]
+        if element.j is None:
+            return 0 if element.i in self.own else None
+        return 1
 
 
 def _above_rounding(a: Array, b: Array) -> Array:

@@ -17,6 +17,11 @@ With ADAPTIVE=YES the pattern is that of the present mode: after every change of
 and no spectrum).  Once the tangent stiffness has a direction without resistance there is no such mode, and
 the last pattern is kept.
 
+With BUILDING one building of several is pushed: the pattern has forces on its nodes only, and the base
+shear is that of its supports and of its elements that end at the ground.  Its neighbours carry what
+contacts hand to them, or stand no more (NEIGHBOURS=NO): then its own static state is the start, and the
+path is that of a deck with this building alone.
+
 References
 ----------
 Antoniou S, Pinho R (2004), Advantages and limitations of adaptive and non-adaptive force-based pushover
@@ -33,14 +38,15 @@ import numpy as np
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve.analyses import static
 from pound_solve.analyses.equilibrium import ROUNDING, SupportReactions
+from pound_solve.analyses.load_pattern import LoadPattern
 from pound_solve.analyses.path_following import Change, EquilibriumPath, InstabilityError, Mark, PathEvent
 from pound_solve.analyses.static import StaticState
-from pound_solve.numerics import modes
 from pound_solve.numerics.types import Array
+from pound_solve.structure.buildings import building
+from pound_solve.structure.standing_alone import standing_alone
 from pound_solve.structure.structure import Structure
-
-SOUGHT = 12  #: slowest modes of a large structure among which the pattern is chosen
 
 
 @dataclass(frozen=True)
@@ -60,6 +66,8 @@ class PushoverResult:
     Attributes
     ----------
     card : Card
+    structure : Structure
+        What was pushed: all that the deck has, or one building.
     curve : list of CapacityPoint
         At the start, at the stations, and where laws changed.
     ladder : list of (CapacityPoint, Change)
@@ -75,6 +83,7 @@ class PushoverResult:
     """
 
     card: Card
+    structure: Structure
     curve: list[CapacityPoint] = field(default_factory=list)
     ladder: list[tuple[CapacityPoint, Change]] = field(default_factory=list)
     first: Array = field(default_factory=lambda: np.zeros(0))
@@ -108,12 +117,30 @@ def mistakes(structure: Structure) -> list[Diagnostic]:
 
 def _wrong(structure: Structure, card: Card) -> tuple[str, str, str] | None:
     """Message, item of the card and hint."""
-    if wrong := _wrong_control(structure, card) or _wrong_items(card):
+    if wrong := _wrong_building(structure, card) or _wrong_control(structure, card) or _wrong_items(card):
         return wrong
-    pattern = LoadPattern(structure, card)
+    pattern = LoadPattern(structure, card, _own(structure, card))
     if not (pattern.mass if pattern.by_mode else pattern.forces.any()):
         hint = "the nodes that are pushed need forces, loads or WEIGHTS, and must be able to move so"
         return f"PATTERN={card['PATTERN']} has no force along {card['DIRECTION']}", "PATTERN", hint
+    return None
+
+
+def _wrong_building(structure: Structure, card: Card) -> tuple[str, str, str] | None:
+    """What is wrong with the building that is pushed, and with the nodes that must be its own."""
+    name = card["BUILDING"]
+    if not name and card["NEIGHBOURS"] == "YES":
+        return None
+    if not name:
+        return "NEIGHBOURS=NO needs a building", "NEIGHBOURS", 'add BUILDING="name" of the one that is left'
+    try:
+        own = building(structure, name).nodes
+    except KeyError as err:
+        return str(err.args[0]), "BUILDING", "buildings have the names of the section BUILDINGS"
+    for item, given in (("NODE", (card["NODE"],)), ("NODES", card["NODES"]), ("BASE", card["BASE"])):
+        for node in given or ():
+            if node not in own:
+                return f"node {node} is not of building {name!r}", item, "name nodes of this building"
     return None
 
 
@@ -164,12 +191,17 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
     InstabilityError
         The path has no first step.
     """
+    own = _own(structure, card)
+    if own is not None and card["NEIGHBOURS"] == "NO":
+        structure = standing_alone(structure, own)
+        state = static.solve(structure)
+        structure = structure.stressed(state.axial).displaced(state.u)
     n, by_load = structure.n_free, card["CONTROL"] == "FORCE"
     control = _control(structure, card)
     start = float(control @ state.u)
     if card["TARGET"] == start:
         raise InstabilityError(f"the control node stands at its target {start:g} already", "A505")
-    pattern = LoadPattern(structure, card)
+    pattern = LoadPattern(structure, card, own)
     path = EquilibriumPath(
         structure, state.u, state.states, structure.loads[:n], np.zeros(n), None if by_load else control
     )
@@ -177,13 +209,13 @@ def push(structure: Structure, state: StaticState, card: Card) -> PushoverResult
     if not path.load.any():
         raise InstabilityError("no mode of the static state moves the nodes that are pushed", "A505")
     path.sign = _sense(path, card, control, start)
-    reactions = SupportReactions(structure, state.axial)
+    reactions = SupportReactions(structure, state.axial, own)
 
     def here() -> CapacityPoint:
         shear = reactions.shear(path.u, path.states, "XY".index(card["DIRECTION"]), card["BASE"])
         return CapacityPoint(float(control @ path.u), shear, path.factor, path.changes)
 
-    ends, out = _ends(card, control, start), PushoverResult(card, first=path.load)
+    ends, out = _ends(card, control, start), PushoverResult(card, structure, first=path.load)
     # the stations divide the way to the first of the ends
     (row, share, value), _ = ends[0]
     begin = float(row @ state.u)
@@ -255,76 +287,15 @@ def _clean(displacement: float, curve: list[CapacityPoint]) -> float:
     return displacement if abs(displacement) > 1e-13 * max(abs(p.displacement) for p in curve) else 0.0
 
 
+def _own(structure: Structure, card: Card) -> tuple[int, ...] | None:
+    """Nodes of the building that is pushed; None: all."""
+    return building(structure, card["BUILDING"]).nodes if card["BUILDING"] else None
+
+
 def _control(structure: Structure, card: Card) -> Array:
     """Row of the control displacement, shape (n_free,)."""
     at = (card["NODE"], "XY".index(card["DIRECTION"]))
     return structure.dofs.row([at], [1.0])[: structure.n_free]
-
-
-class LoadPattern:
-    """The forces per load factor.
-
-    Parameters
-    ----------
-    structure : Structure
-    card : Card
-
-    Attributes
-    ----------
-    forces : ndarray, shape (n_free,)
-        Present forces; zeros where the pattern has none, and before the first mode is known.
-    mass : float
-        Mass that is pushed [F T^2/L].
-    """
-
-    def __init__(self, structure: Structure, card: Card) -> None:
-        n, d = structure.n_free, "XY".index(card["DIRECTION"])
-        model, dofs = structure.model, structure.dofs
-        kind, nodes = card["PATTERN"], card["NODES"]
-        self.by_mode, self._stiff = kind == "MODE", 1
-        self.along = np.array([float(at == d) for _, at in dofs.free])  # the whole moves by one
-        pushed = np.zeros(n)
-        for node in model.nodes if nodes is None else nodes:
-            pushed[[i for i, _ in dofs.terms[node, d] if i < n]] = 1.0
-        self.structure_mass = structure.mass[:n, :n]
-        self.pushed = pushed * self.along
-        self.mass = float(self._share(np.ones(n)).sum())
-        self.forces = np.zeros(n)
-        if kind == "LOADS":
-            self.forces = structure.loads[:n]
-        elif kind == "FORCES":
-            self.forces = dofs.row([(node, d) for node in nodes], card["FORCES"])[:n]
-        elif kind == "UNIFORM":
-            self.forces = self._of(np.ones(n))
-        elif kind == "TRIANGULAR":
-            base = min((node.y for node in model.nodes.values() if node.fixed), default=0.0)
-            height = [model.nodes[owner].y - base if at == d else 0.0 for owner, at in dofs.free]
-            self.forces = self._of(np.array(height))
-
-    def _share(self, shape: Array) -> Array:
-        """Mass times a shape, of what is pushed; the mass is symmetric."""
-        return np.asarray(self.pushed * (self.structure_mass @ (self.along * shape)))
-
-    def _of(self, shape: Array) -> Array:
-        """Forces of sum one by mass and shape."""
-        p = self._share(shape)
-        total = float(p.sum())
-        return p / total if abs(total) > 1e-12 * np.abs(p).sum() else 0.0 * p
-
-    def follow(self, path: EquilibriumPath) -> Array:
-        """Forces at the present point."""
-        if self.by_mode:
-            try:
-                tied = path.ties.among
-                found = modes.solve(tied(path.tangent()), tied(self.structure_mass), SOUGHT)
-            except np.linalg.LinAlgError:
-                return self.forces  # a part without mass has become a mechanism
-            stiff = path.ties.whole(found.shapes[:, found.omega > 0.0])
-            if stiff.shape[1] >= self._stiff:  # else a motion has lost its resistance
-                self._stiff = stiff.shape[1]
-                effective = ((self.along * (self.structure_mass @ self.pushed)) @ stiff) ** 2
-                self.forces = self._of(stiff[:, int(np.argmax(effective))])
-        return self.forces
 
 
 SPEC = Spec(
@@ -351,6 +322,16 @@ SPEC = Spec(
             "or the LOADS once more",
         ),
         Field("NODES", Kind.NODES, default=None, doc="nodes that are pushed; left out: all that have mass"),
+        Field(
+            "BUILDING", Kind.TEXT, default="", doc="name of the one building that is pushed; left out: all"
+        ),
+        Field(
+            "NEIGHBOURS",
+            Kind.WORD,
+            default="YES",
+            words=("YES", "NO"),
+            doc="whether the other buildings stand beside that BUILDING, or are removed",
+        ),
         Field(
             "FORCES",
             Kind.REAL,
@@ -387,7 +368,7 @@ SPEC = Spec(
             "BASE",
             Kind.NODES,
             default=None,
-            doc="supports whose reactions make the base shear; left out: all that holds the structure",
+            doc="supports whose reactions make the base shear; left out: all that holds what is pushed",
         ),
     ),
     reference="Antoniou & Pinho 2004 (adaptive)",

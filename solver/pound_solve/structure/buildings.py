@@ -12,6 +12,7 @@ floor, and is cut at the middle of its height.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,7 +20,8 @@ import numpy as np
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Model
 from pound_solve.numerics.graph import components
-from pound_solve.numerics.types import Array
+from pound_solve.numerics.types import Array, Flags
+from pound_solve.structure.dofs import Dof
 from pound_solve.structure.structure import Structure
 
 SAME_LEVEL = 1e-3  #: share of a building's height by which nodes of one floor may differ in height
@@ -122,6 +124,20 @@ def building(structure: Structure, name: str) -> Building:
         there = ", ".join(found) or "none"
         raise KeyError(f"there is no building {name!r}; the buildings are {there}")
     return found[name]
+
+
+def columns_of(model: Model, columns: Sequence[Dof], nodes: Collection[int]) -> Flags:
+    """Which columns belong to some nodes, or to what is inside the elements between them."""
+    own, elements = frozenset(nodes), model.elements
+    return np.array(
+        [
+            owner in own
+            if d < 3
+            else elements[owner].i in own and (elements[owner].j or elements[owner].i) in own
+            for owner, d in columns
+        ],
+        bool,
+    )
 
 
 def misnamed(structure: Structure) -> list[Diagnostic]:

@@ -29,7 +29,7 @@ import numpy as np
 
 from pound_solve.numerics.matrices import Matrix, gathered
 from pound_solve.numerics.types import Array, Flags
-from pound_solve.structure.buildings import Building
+from pound_solve.structure.buildings import Building, columns_of
 from pound_solve.structure.equations import Equations, LinearSums, Weights
 from pound_solve.structure.reduction import ReducedSystem
 
@@ -114,16 +114,7 @@ def _sums(system: ReducedSystem, motion: list[Matrix], inputs: list[Array], cons
 
 def _own(equations: Equations, nodes: Sequence[int]) -> Flags:
     """Columns of some nodes, and of what is inside the elements between them."""
-    own, elements = frozenset(nodes), equations.structure.model.elements
-    return np.array(
-        [
-            f[0] in own
-            if f[1] < 3
-            else elements[f[0]].i in own and (elements[f[0]].j or elements[f[0]].i) in own
-            for f in equations.columns
-        ],
-        bool,
-    )
+    return columns_of(equations.structure.model, equations.columns, nodes)
 
 
 def _stacked(rows: Sequence[Array], equations: Equations) -> Array:

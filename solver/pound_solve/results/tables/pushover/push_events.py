@@ -11,7 +11,7 @@ from pound_solve.results.schema import Column, Row, Stage, Table
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each change of a spring, hinge or contact."""
-    laws = run.structure.laws
+    laws = run.pushover.structure.laws
     for p, c in run.pushover.ladder:
         own = laws[c.law]
         yield (

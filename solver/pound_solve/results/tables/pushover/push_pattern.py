@@ -9,7 +9,7 @@ from pound_solve.results.schema import Column, Row, Stage, Table
 
 def rows(run: RunRecord) -> list[Row]:
     """One row for each degree of freedom that is pushed."""
-    free = run.structure.dofs.free
+    free = run.pushover.structure.dofs.free
     return [
         (owner, "XYR"[d], float(a), float(b))
         for (owner, d), a, b in zip(free, run.pushover.first, run.pushover.last)

@@ -15,6 +15,9 @@ def rows(run: RunRecord) -> Iterator[Row]:
     card, length, force = pushed.card, units.text("L"), units.text("F")
     top, end = max(pushed.curve, key=lambda p: abs(p.shear)), pushed.curve[-1]
     adaptive = ", adaptive" if card["ADAPTIVE"] == "YES" else ""
+    if card["BUILDING"]:
+        neighbours = "beside its neighbours" if card["NEIGHBOURS"] == "YES" else "without its neighbours"
+        yield "building", f"{card['BUILDING']}, {neighbours}"
     yield "pattern", f"{card['PATTERN']}{adaptive}, along {card['DIRECTION']}"
     yield "control", f"{card['CONTROL'].lower()}, node {card['NODE']}"
     yield "end", pushed.end

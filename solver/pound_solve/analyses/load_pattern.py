@@ -1,0 +1,85 @@
+"""The forces of a pushover per load factor: of its PATTERN, on the nodes that are pushed."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import numpy as np
+
+from pound_deck.model import Card
+from pound_solve.analyses.path_following import EquilibriumPath
+from pound_solve.numerics import modes
+from pound_solve.numerics.types import Array
+from pound_solve.structure.buildings import columns_of
+from pound_solve.structure.structure import Structure
+
+SOUGHT = 12  #: slowest modes of a large structure among which the pattern is chosen
+
+
+class LoadPattern:
+    """The forces per load factor.
+
+    Parameters
+    ----------
+    structure : Structure
+    card : Card
+    own : collection of int, or None
+        Nodes of the building that is pushed; None: of all.
+
+    Attributes
+    ----------
+    forces : ndarray, shape (n_free,)
+        Present forces; zeros where the pattern has none, and before the first mode is known.
+    mass : float
+        Mass that is pushed [F T^2/L].
+    """
+
+    def __init__(self, structure: Structure, card: Card, own: Collection[int] | None) -> None:
+        own = tuple(structure.model.nodes) if own is None else own
+        n, d = structure.n_free, "XY".index(card["DIRECTION"])
+        model, dofs = structure.model, structure.dofs
+        kind, nodes = card["PATTERN"], card["NODES"]
+        self.by_mode, self._stiff = kind == "MODE", 1
+        self.along = np.array([float(at == d) for _, at in dofs.free])  # the whole moves by one
+        pushed = np.zeros(n)
+        for node in own if nodes is None else nodes:
+            pushed[[i for i, _ in dofs.terms[node, d] if i < n]] = 1.0
+        self.structure_mass = structure.mass[:n, :n]
+        self.pushed = pushed * self.along
+        self.mass = float(self._share(np.ones(n)).sum())
+        self.forces = np.zeros(n)
+        if kind == "LOADS":
+            self.forces = structure.loads[:n] * columns_of(model, dofs.free, own)
+        elif kind == "FORCES":
+            self.forces = dofs.row([(node, d) for node in nodes], card["FORCES"])[:n]
+        elif kind == "UNIFORM":
+            self.forces = self._of(np.ones(n))
+        elif kind == "TRIANGULAR":
+            base = min((model.nodes[x].y for x in own if model.nodes[x].fixed), default=0.0)
+            height = [model.nodes[owner].y - base if at == d else 0.0 for owner, at in dofs.free]
+            self.forces = self._of(np.array(height))
+
+    def _share(self, shape: Array) -> Array:
+        """Mass times a shape, of what is pushed; the mass is symmetric."""
+        return np.asarray(self.pushed * (self.structure_mass @ (self.along * shape)))
+
+    def _of(self, shape: Array) -> Array:
+        """Forces of sum one by mass and shape."""
+        p = self._share(shape)
+        total = float(p.sum())
+        return p / total if abs(total) > 1e-12 * np.abs(p).sum() else 0.0 * p
+
+    def follow(self, path: EquilibriumPath) -> Array:
+        """Forces at the present point."""
+        if self.by_mode:
+            try:
+                tied = path.ties.among
+                found = modes.solve(tied(path.tangent()), tied(self.structure_mass), SOUGHT)
+            except np.linalg.LinAlgError:
+                return self.forces  # a part without mass has become a mechanism
+            stiff = path.ties.whole(found.shapes[:, found.omega > 0.0])
+            if stiff.shape[1] >= self._stiff:  # else a motion has lost its resistance
+                self._stiff = stiff.shape[1]
+                effective = ((self.along * (self.structure_mass @ self.pushed)) @ stiff) ** 2
+                self.forces = self._of(stiff[:, int(np.argmax(effective))])
+        return self.forces

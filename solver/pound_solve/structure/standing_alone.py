@@ -1,0 +1,35 @@
+"""One building of several without the others."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+from pound_deck.model import Card
+from pound_solve.structure.assembly import assemble
+from pound_solve.structure.structure import Structure
+
+
+def standing_alone(structure: Structure, nodes: Collection[int]) -> Structure:
+    """The building that some nodes make up, without all that is not its own: other buildings, and contacts
+    with them.  It has no damping.
+    """
+    own, model = frozenset(nodes), structure.model
+    elements = {e.id: e for e in model.elements.values() if e.i in own and (e.j is None or e.j in own)}
+
+    def kept(cards: Sequence[Card], item: str, these: Collection[int]) -> tuple[Card, ...]:
+        found = [(c, tuple(x for x in c[item] if x in these)) for c in cards]
+        return tuple(replace(c, values={**c.values, item: left}) for c, left in found if left)
+
+    part = replace(
+        model,
+        nodes={n: x for n, x in model.nodes.items() if n in own},
+        elements=elements,
+        weights=kept(model.weights, "NODES", own),
+        loads=kept(model.loads, "NODES", own),
+        member_loads=kept(model.member_loads, "ELEMENTS", elements),
+        buildings=kept(model.buildings, "NODES", own),
+        damping=(),
+    )
+    moved = [f for f in structure.dofs.moved if f[0] in own]
+    return assemble(part, moved, structure.self_weight)
