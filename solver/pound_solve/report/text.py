@@ -12,12 +12,14 @@ import re
 import textwrap
 import unicodedata
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 from numpy.typing import NDArray
 from tabulate import tabulate
 
 from pound_deck.model import Units
+from pound_solve.report.views import view_of
 from pound_solve.results import Results
 from pound_solve.results.contents import SECTIONS, TABLES
 from pound_solve.results.schema import Column, Table
@@ -116,12 +118,19 @@ def _warning(results: Results) -> Iterator[str]:
 
 def _block(results: Results, table: Table[Any], limit: int | None) -> list[str]:
     """Lines of one table of the file with its notes; none when it has no rows."""
+    view, units = view_of(table.name, whole=limit == 0), results.units
+    if view is not None:
+        lines = []
+        for own in view(results):
+            shaped = _body(units, replace(table, columns=own.columns, group=""), own.rows)
+            lines += ["", *([_INDENT + own.title, ""] if own.title else []), *shaped]
+        return _with_notes(lines[1:], table, results.note(table.name))
     rows = results.table(table.name)
     most = table.limit if limit is None or not table.limit else limit
     more = ""
     if most and len(rows) > most:
         more = f"... and {len(rows) - most} more rows: table '{table.name}' of the results file"
-    return block(results.units, table, rows[:most] if most else rows, results.note(table.name), more)
+    return block(units, table, rows[:most] if most else rows, results.note(table.name), more)
 
 
 def block(units: Units, table: Table[Any], rows: NDArray[Any], note: str = "", more: str = "") -> list[str]:
@@ -137,9 +146,14 @@ def block(units: Units, table: Table[Any], rows: NDArray[Any], note: str = "", m
     lines = _body(units, table, rows)
     if more:
         lines += ["", _INDENT + more]
+    return _with_notes(lines, table, note)
+
+
+def _with_notes(lines: list[str], table: Table[Any], note: str) -> list[str]:
+    """Lines of a table, if there are any, and its notes below them."""
     notes = " ".join(_plain(text) for text in (table.note, note) if text)
     if lines and notes:
-        lines += ["", *(_INDENT + line for line in textwrap.wrap(notes, WIDTH - len(_INDENT)))]
+        lines = [*lines, "", *(_INDENT + line for line in textwrap.wrap(notes, WIDTH - len(_INDENT)))]
     return lines
 
 

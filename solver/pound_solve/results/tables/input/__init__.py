@@ -2,4 +2,4 @@
 
 from pound_solve.results.schema import Section
 
-SECTION = Section("Input", 110)
+SECTION = Section("Appendix: input", 110)

@@ -12,7 +12,8 @@ from pound_solve.results.schema import Column, Row, Stage, Table
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each element of each card."""
     for c in run.model.member_loads:
-        parts = [f"{k} {c[k]:.6g}" for k in ("WX", "WY", "PX", "PY") if c[k]]
+        units = (run.model.units.text(unit) for unit in ("F/L", "F/L", "F", "F"))
+        parts = [f"{k} {c[k]:.6g} {unit}" for k, unit in zip(("WX", "WY", "PX", "PY"), units) if c[k]]
         if c["PX"] or c["PY"]:
             parts.append(f"AT {c['AT']:.4g}")
         for element in c["ELEMENTS"]:
@@ -29,5 +30,5 @@ TABLE = Table(
         Column("load", doc="the load in words"),
     ),
     rows=rows,
-    sample=((101, "uniform -12 kN/m in global Y over the whole length"),),
+    sample=((101, "WY -12 kN/m, PX 3 kN, AT 0.5"),),
 )

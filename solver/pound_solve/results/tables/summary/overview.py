@@ -12,6 +12,7 @@ from pound_solve.results.schema import Row, Stage, Table
 from pound_solve.results.words import contact_name
 
 if TYPE_CHECKING:
+    from pound_solve.integrate.protocol import Outcome
     from pound_solve.loading.motions.base import Motion
 
 
@@ -42,6 +43,7 @@ def response(run: RunRecord) -> Iterator[Row]:
     history, units = run.history, run.model.units
     figures = history.returned.figures
     yield "method", str(figures.get("method", ""))
+    yield "error of the method", error_of(history.returned)
     yield "end of the history", f"{history.recorder.reached:.6g} {units.time}"
     drifts = [(ratio, name) for name, ratio in history.drift_ratios() if not math.isnan(ratio)]
     if drifts:
@@ -59,6 +61,17 @@ def response(run: RunRecord) -> Iterator[Row]:
     if indices:
         index, spring = max(indices, key=lambda pair: pair[0])
         yield "largest damage index", f"{index:.3g}, element {spring.element} {spring.component}"
+
+
+def error_of(outcome: Outcome) -> str:
+    """What is known about the error of a method in time."""
+    if outcome.exact:
+        return "rounding only: it makes no error from one instant to the next"
+    told = [(check, value) for check, value, _ in outcome.checks if check.startswith("estimated error")]
+    if told:
+        check, value = told[0]
+        return f"{value}, {check}"
+    return "not estimated: METHOD=AUTO does, and a second run with half the step shows it"
 
 
 def _collisions(run: RunRecord) -> str:

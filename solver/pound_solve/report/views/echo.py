@@ -1,0 +1,91 @@
+"""The echo of the deck in groups: ranges of nodes and elements, nodes of equal values, items of a set."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from pound_solve.report.views.part import Part, part
+from pound_solve.report.views.ranges import between, numbers, stepping
+from pound_solve.results import Results
+from pound_solve.results.contents import TABLES
+from pound_solve.results.schema import Column
+
+FEW: Final = 1e-12  #: share of a range that a coordinate which does not change may still differ by
+
+
+def nodes(results: Results) -> list[Part]:
+    """Nodes that stand evenly."""
+    return [_ranges(results, "nodes")]
+
+
+def elements(results: Results) -> list[Part]:
+    """Elements from evenly numbered nodes to such nodes."""
+    return [_ranges(results, "elements")]
+
+
+def masses(results: Results) -> list[Part]:
+    """Nodes of equal masses."""
+    return [_equal(results, "masses")]
+
+
+def loads(results: Results) -> list[Part]:
+    """Nodes of equal loads."""
+    return [_equal(results, "loads")]
+
+
+def member_loads(results: Results) -> list[Part]:
+    """Elements of equal loads."""
+    return [_equal(results, "member_loads")]
+
+
+def properties(results: Results) -> list[Part]:
+    """One row for each kind of item of a set: all items that are given, then those of default value."""
+    found: dict[tuple[str, str], tuple[list[str], list[str]]] = {}
+    for r in results.table("properties"):
+        unit = f" {r['unit']}" if r["unit"] else ""
+        own = found.setdefault((r["property"], r["kind"]), ([], []))
+        own[r["default"] == "*"].append(f"{r['item']} {r['value']}{unit}")
+    columns = Column("property"), Column("kind"), Column("given"), Column("default", "default (*)")
+    rows = ((*key, ", ".join(given), ", ".join(default)) for key, (given, default) in found.items())
+    return [part(columns, rows)]
+
+
+def _ranges(results: Results, name: str) -> Part:
+    """Rows of a table of the deck, those that step evenly in one."""
+    columns, rows = _stored(results, name)
+    out = []
+    for first, last, count in stepping(rows):
+        out.append(tuple(_cell(c, a, b, count) for c, a, b in zip(columns, first, last)))
+    return part([Column(c.name, c.head, c.unit) for c in columns], out)
+
+
+def _stored(results: Results, name: str) -> tuple[list[Column], list[tuple[Any, ...]]]:
+    """Columns of a table that the file has, and their rows."""
+    rows = results.table(name)
+    columns = [c for c in TABLES[name].columns if c.name in (rows.dtype.names or ())]
+    return columns, list(zip(*(rows[c.name].tolist() for c in columns)))
+
+
+def _cell(column: Column, first: Any, last: Any, count: int) -> str:
+    """Value of a column in a range of rows, or its first and last value."""
+    if column.fmt == "text":
+        return str(first)
+    if column.fmt == "int":
+        if column.zero and not first:
+            return column.zero
+        return str(first) if first == last else between(first, last, (last - first) // (count - 1))
+    if first != first:
+        return "-"
+    digits = 10 if column.fmt == "given" else 5
+    a, b = (f"{0.0 if abs(x) <= FEW * max(abs(first), abs(last)) else x:.{digits}g}" for x in (first, last))
+    return a if a == b else f"{a} to {b}"
+
+
+def _equal(results: Results, name: str) -> Part:
+    """Rows of a table of the deck, those of equal values in one, with the numbers of all."""
+    (key, *columns), rows = _stored(results, name)
+    found: dict[tuple[Any, ...], list[int]] = {}
+    for owner, *values in rows:
+        found.setdefault(tuple(values), []).append(owner)
+    owners = Column(key.name, f"{key.name}s")
+    return part([owners, *columns], ((numbers(own), *values) for values, own in found.items()))

@@ -1,0 +1,112 @@
+"""Forces of members with one row for each end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any, Final
+
+from pound_solve.report.views.instants import decimals
+from pound_solve.report.views.part import Part, part
+from pound_solve.results import Results
+from pound_solve.results.columns import ELEMENT, time_column
+from pound_solve.results.contents import TABLES
+from pound_solve.results.schema import Column
+
+Extremes = Sequence[float]  #: largest value, its time, smallest value, its time
+
+NONE: Final = (math.nan,) * 4
+STATIC_COLUMNS: Final = (
+    ELEMENT,
+    Column("end"),
+    Column("axial", "", "F", "num"),
+    Column("shear", "", "F", "num"),
+    Column("moment", "", "F*L", "num"),
+)
+END_COLUMNS: Final = (
+    ELEMENT,
+    Column("end"),
+    Column("axial_max", "axial\nmax", "F", "num"),
+    Column("axial_min", "axial\nmin", "F", "num"),
+    Column("shear_max", "shear\nmax", "F", "num"),
+    Column("shear_min", "shear\nmin", "F", "num"),
+    Column("max", "moment\nmax", "F*L", "num"),
+    time_column("t_max", "at time", ""),
+    Column("min", "moment\nmin", "F*L", "num"),
+    time_column("t_min", "at time", ""),
+    Column("ductility", "hinge\nductility", "-", "short"),
+    Column("reversals", "yield\nevents"),
+    Column("damage", "damage\nindex", "-", "short"),
+)
+
+
+def envelopes(results: Results) -> list[Part]:
+    """One row for each end of a member, with what happened to its hinge; then all other forces."""
+    rows = results.table("member_envelope")
+    found = {(r["element"], r["quantity"]): extremes(r) for r in rows}
+    hinges, own = _hinges(results), set[tuple[int, str]]()
+    digits, out = decimals(rows), []
+    for element, end, names in ends(rows):
+        axial, shear, moment, hinge = (found.get((element, name), NONE) for name in names)
+        own.update((element, name) for name in names[:3])
+        if _same(hinge, moment):
+            own.add((element, names[3]))
+        bent = (moment[0], round(moment[1], digits), moment[2], round(moment[3], digits))
+        forces = axial[0], axial[2], shear[0], shear[2], *bent
+        out.append((element, end, *forces, *hinges.get((element, end), (math.nan, "", math.nan))))
+    rest = [i for i, r in enumerate(rows) if (r["element"], r["quantity"]) not in own]
+    stored = TABLES["member_envelope"].columns
+    return [part(END_COLUMNS, out)] * bool(out) + [Part(stored, rows[rest])] * bool(rest)
+
+
+def static_forces(results: Results) -> list[Part]:
+    """One row for each end of a member; then all other forces."""
+    rows = results.table("static_force")
+    found = {(r["element"], r["quantity"]): float(r["value"]) for r in rows}
+    own, out = set[tuple[int, str]](), []
+    for element, end, names in ends(rows):
+        axial, shear, moment, hinge = (found.get((element, name), math.nan) for name in names)
+        own.update((element, name) for name in names[:3])
+        if abs(hinge) == abs(moment):
+            own.add((element, names[3]))
+        out.append((element, end, axial, shear, moment))
+    rest = [i for i, r in enumerate(rows) if (r["element"], r["quantity"]) not in own]
+    stored = TABLES["static_force"].columns
+    return [part(STATIC_COLUMNS, out)] * bool(out) + [Part(stored, rows[rest])] * bool(rest)
+
+
+def ends(rows: Any) -> Iterator[tuple[int, str, tuple[str, ...]]]:
+    """Ends of the members among rows of elements and quantities: element, end, names of its axial force,
+    shear, moment, and moment of the hinge, which is the same where nothing rigid lies between.
+    """
+    known = {(r["element"], r["quantity"]) for r in rows}
+    for element in dict.fromkeys(rows["element"].tolist()):
+        axial = "axial" if (element, "axial") in known else ""
+        for end in ("I", "J"):
+            if (element, f"moment {end}") in known:
+                names = axial or f"axial {end}", f"shear {end}", f"moment {end}", f"moment hinge {end}"
+                yield element, end, names
+
+
+def _same(one: Extremes, other: Extremes) -> bool:
+    """Whether extremes are the same but for the sign of the quantity."""
+    return tuple(one) in (tuple(other), (-other[2], other[3], -other[0], other[1]))
+
+
+def _hinges(results: Results) -> dict[tuple[int, str], tuple[float, str, float]]:
+    """Ductility, yield events and damage index of the hinge at each end of a member."""
+    index: dict[tuple[int, str], float] = {}
+    if "damage" in results.tables:
+        index = {(r["element"], r["component"]): r["index"] for r in results.table("damage")}
+    out: dict[tuple[int, str], tuple[float, str, float]] = {}
+    for r in results.table("spring_envelope") if "spring_envelope" in results.tables else ():
+        kind, _, end = r["component"].partition(" ")
+        if kind == "hinge":
+            key = (r["element"], r["component"])
+            out[r["element"], end] = (r["ductility"], str(r["yield_events"]), index.get(key, math.nan))
+    return out
+
+
+def extremes(row: Any) -> tuple[float, float, float, float]:
+    """Largest value, its time, smallest value and its time of a row of an envelope."""
+    return float(row["max"]), float(row["t_max"]), float(row["min"]), float(row["t_min"])

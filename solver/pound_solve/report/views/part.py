@@ -1,0 +1,26 @@
+"""A part of a table as it is printed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.results.schema import FORMATS, Column
+
+
+class Part(NamedTuple):
+    """Columns and rows, whose fields are the columns, and a line above them."""
+
+    columns: tuple[Column, ...]
+    rows: NDArray[Any]
+    title: str = ""
+
+
+def part(columns: Sequence[Column], rows: Iterable[Sequence[Any]]) -> Part:
+    """Part of rows with one value for each column."""
+    kinds = [object if FORMATS[c.fmt] == "text" else FORMATS[c.fmt] for c in columns]
+    kind = np.dtype([(c.name, k) for c, k in zip(columns, kinds)])
+    return Part(tuple(columns), np.array([tuple(row) for row in rows], kind))

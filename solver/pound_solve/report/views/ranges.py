@@ -1,0 +1,74 @@
+"""Numbers and rows as ranges: ``11 to 13``, ``1001 to 1601 by 100``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+Cell = str | int | float
+CLOSE = 1e-9  #: share of the larger of two numbers by which steps of one range may differ
+
+
+def numbers(given: Sequence[int]) -> str:
+    """Whole numbers in their order, three or more of equal distance, or two neighbours, as a range."""
+    out, i = list[str](), 0
+    while i < len(given):
+        end = _run(given, i)
+        if end - i > 2 or (end - i == 2 and given[i + 1] - given[i] == 1):
+            out.append(between(given[i], given[end - 1], given[i + 1] - given[i]))
+        else:
+            end = i + 1
+            out.append(str(given[i]))
+        i = end
+    return ", ".join(out)
+
+
+def between(first: int, last: int, step: int) -> str:
+    """Range of whole numbers."""
+    return f"{first} to {last}" + (f" by {step}" if abs(step) != 1 else "")
+
+
+def _run(given: Sequence[int], start: int) -> int:
+    """Where numbers of equal distance from one on end."""
+    end = min(start + 2, len(given))
+    while end < len(given) and given[end] - given[end - 1] == given[start + 1] - given[start] != 0:
+        end += 1
+    return end
+
+
+def stepping(rows: Sequence[tuple[Cell, ...]]) -> list[tuple[tuple[Cell, ...], tuple[Cell, ...], int]]:
+    """First and last row and number of rows of each range: rows of which texts stay the same and numbers
+    step evenly.
+
+    Two rows are a range only if the first column steps by one and at most one other real number changes.
+    """
+    out, i = [], 0
+    while i < len(rows):
+        end = i + 1
+        while end < len(rows) and _continues(rows, i, end):
+            end += 1
+        if end - i == 2 and not _neighbours(rows[i], rows[i + 1]):
+            end = i + 1
+        out.append((rows[i], rows[end - 1], end - i))
+        i = end
+    return out
+
+
+def _continues(rows: Sequence[tuple[Cell, ...]], start: int, at: int) -> bool:
+    """Whether row `at` goes on with the steps of the range that begins with row `start`."""
+    first, second, before, row = rows[start], rows[start + 1], rows[at - 1], rows[at]
+    return first[0] != second[0] and all(map(_steps, first, second, before, row))
+
+
+def _steps(first: Cell, second: Cell, before: Cell, value: Cell) -> bool:
+    """Whether a value is as far from that before it as the second from the first; a text is the same."""
+    if isinstance(first, str) or isinstance(second, str):
+        return first == second == value
+    assert not isinstance(before, str) and not isinstance(value, str)
+    return abs((value - before) - (second - first)) <= CLOSE * max(abs(value), abs(before))
+
+
+def _neighbours(first: tuple[Cell, ...], second: tuple[Cell, ...]) -> bool:
+    """Whether two rows have numbers one apart, and no more than one real number changes."""
+    changed = sum(isinstance(a, float) and a != b for a, b in zip(first, second))
+    one, next_one = first[0], second[0]
+    return isinstance(one, int) and isinstance(next_one, int) and next_one - one == 1 and changed < 2
