@@ -218,7 +218,7 @@ def test_a_stopped_run_says_so_first(tmp_path: Path) -> None:
     path = sample.write(tmp_path / "s.h5", status="stopped", message=why)
     with Results.open(path) as results:
         text = render(results)
-    frame = text[: text.index("1  INPUT")]
+    frame = text[: text.index("1  SUMMARY")]
     head, _, told, _, scope = (line.strip("* ") for line in frame.splitlines() if line.startswith("**  "))
     assert (head, told) == ("THE ANALYSIS DID NOT COMPLETE", why)
     assert (

@@ -1,8 +1,10 @@
 """What no engineer would believe stands on the first page, and nothing calls it good."""
 
+import numpy as np
 import pytest
 
 import pound_solve
+from decks import structure_of
 from pound_solve.report.text import render
 from pound_solve.results.contents import SECTIONS
 
@@ -62,6 +64,7 @@ def test_failed_components_are_told(tmp_path):
     results = run(tmp_path, a=8.0)
     assert results.table("damage")["index"][0] >= 1.0
     assert "damage index of 1 springs and hinges" in looks(results)
+    assert "largest over ultimate deformation of 1 springs and hinges" in looks(results)
     assert results.table("worst_hinges")["state"][0] == "failed"
 
 
@@ -72,6 +75,49 @@ def test_a_contact_pressed_into_its_building_is_told(tmp_path):
     assert "overlap of contact 9" not in looks(run(tmp_path, k=1e6, a=3.0))
 
 
+@pytest.mark.full
+def test_a_hinge_that_its_rule_fails_is_told(tmp_path):
+    """IMK loses all strength at DU; the deck asks for no damage index."""
+    rule = "RULE=IMK_BILINEAR R=0.02 DP=0.02 DPC=0.05 DU=0.04"
+    text = DECK.replace("RULE=BILINEAR R=0.05 DUCTU=4", rule)
+    for a, failed in ((8.0, True), (1.0, False)):
+        deck = tmp_path / f"{a:g}.inp"
+        deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=a))
+        results = pound_solve.run(deck)
+        told = "springs and hinges without strength, first 1 X"
+        assert (told in looks(results)) == failed
+        worst = results.table("worst_hinges")["state"].tolist() if "worst_hinges" in results.tables else []
+        assert (worst == ["failed"]) == failed
+
+
+@pytest.mark.full
+def test_an_overlap_beyond_what_the_law_means_is_told(tmp_path):
+    """Points of a table that end at 2 mm."""
+    for a, told in ((6.0, True), (0.05, False)):
+        deck = tmp_path / f"{a:g}.inp"
+        text = DECK.replace("LAW=LINEAR K={k}", "LAW=TABLE DEPTHS=0.001,0.002 FORCES=100,300")
+        deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, a=a))
+        results = pound_solve.run(deck)
+        assert ("overlap of contact 9 beyond its law" in looks(results)) == told
+        assert ("its law is meant up to 0.002 m" in first_page(results)) == told
+
+
+@pytest.mark.parametrize(
+    ("law", "limit"),
+    [
+        ("TABLE DEPTHS=0.001,0.002 FORCES=100,300", 0.002),
+        ("RUBBER_BUMPER K=1E6 E=0.6 THICKNESS=0.003 KU=1E8", 0.003),
+        ("RUBBER_BUMPER K=1E6 E=0.6", np.inf),
+        ("BILINEAR_IMPACT KH=1E7 E=0.6 DM=0.001", 0.001),
+        ("KELVIN_VOIGT K=1E6 E=0.6", np.inf),
+    ],
+)
+def test_laws_tell_what_overlap_they_are_meant_for(law, limit):
+    bumper = f"PROPS\n W CONTACT GAP=0.01 LAW={law}\n"
+    deck = "NODES\n 1 0 0 FIX=YR\nELEMENTS\n 9 W 1\nWEIGHTS\n 1 10\n" + bumper
+    assert structure_of(deck).laws[0].facts["limit"] == limit
+
+
 @pytest.mark.parametrize(("units", "g", "told"), [("kN mm s", 9.81, "m"), ("kN m s", 981, "cm")])
 def test_gravity_of_another_unit_is_told_on_the_first_page(tmp_path, units, g, told):
     page = " ".join(first_page(run(tmp_path, units=units, g=g)).split())
@@ -80,6 +126,39 @@ def test_gravity_of_another_unit_is_told_on_the_first_page(tmp_path, units, g, t
 
 def test_a_motion_beyond_any_earthquake_is_told_on_the_first_page(tmp_path):
     assert "R404" in first_page(run(tmp_path, a=32.0))
+
+
+RECORD_OF = {
+    "gal without its unit": (
+        818.0,
+        "DT=0.01",
+        "is 818 g; it would be 0.834 g if",
+    ),
+    "multiplied by g twice": (
+        0.28,
+        "DT=0.01 SCALE=9.81",
+        "SCALE=9.81 is gravity",
+    ),
+    "m/s^2 read as g": (2.75, "DT=0.01", "is 2.75 g; it would be 0.28 g if"),
+}
+
+
+@pytest.mark.parametrize("case", RECORD_OF)
+def test_a_record_in_another_unit_is_told_on_the_first_page(tmp_path, case):
+    peak, items, told = RECORD_OF[case]
+    t = np.arange(300) * 0.01
+    samples = peak * np.sin(2 * np.pi * t / 0.5) * np.sin(np.pi * t / 3.0)
+    samples *= peak / np.abs(samples).max()
+    (tmp_path / "a.txt").write_text("".join(f"{x:.6f}\n" for x in samples))
+    text = DECK.replace("SINE AMPLITUDE={a} PERIOD=0.7 DURATION=3", f'RECORD "a.txt" {items}')
+    deck = tmp_path / "model.inp"
+    deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5))
+    results = pound_solve.run(deck)
+    page = " ".join(first_page(results).split())
+    assert "R404" in page and told in page
+    assert ("R404" in results.table("warnings")["number"].tolist()) and "R404" in deck.with_suffix(
+        ".rpt"
+    ).read_text()
 
 
 def test_the_overview_names_the_largest_of_all(tmp_path):

@@ -29,7 +29,16 @@ def drifts(structure: Structure, history: HistoryResult, outcome: Outcome) -> It
 
 
 def failures(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
-    """Components at the end of their damage index or of their ultimate deformation."""
+    """Components at the end of their damage index or beyond their ultimate deformation."""
+    beyond = [r.damage.by_deformation for r in history.springs if r.damage is not None]
+    beyond = [share for share in beyond if share >= 1.0]
+    if beyond:
+        name = f"largest over ultimate deformation of {len(beyond)} springs and hinges"
+        yield name, f"{max(beyond):.3g}", "look: beyond DUCTU; the model goes on as if they held"
+    lost = [r.spring for r in history.springs if r.failed]
+    if lost:
+        name = f"springs and hinges without strength, first {lost[0].element} {lost[0].component}"
+        yield name, str(len(lost)), "look: their rule has failed them; what they carried is on others"
     failed = [r.damage.total for r in history.springs if r.damage is not None and r.damage.total >= 1.0]
     if failed:
         text = "look: 1 is failure; the model goes on as if they held"
@@ -46,10 +55,14 @@ def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
         law = structure.laws[i]
         contact = model.elements[law.element]
         overlap = max(outcome.peaks.deformation[i].high - law.facts["gap"], 0.0)
+        name, limit = contact.name or str(law.element), law.facts["limit"]
+        if overlap > limit:
+            told = f"{overlap:.3g} {model.units.length}"
+            verdict = f"look: its law is meant up to {limit:.3g} {model.units.length}"
+            yield f"overlap of contact {name} beyond its law", told, verdict
         length = min((shortest[n] for n in (contact.i, contact.j) if n in shortest), default=0.0)
         if length and overlap > LARGEST_OVERLAP * length:
             share = f"{100 * overlap / length:.3g} % of the shortest member there"
-            name = contact.name or str(law.element)
             yield f"overlap of contact {name}", share, "look: above 2 %; check the stiffness of the contact"
 
 

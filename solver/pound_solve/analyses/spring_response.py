@@ -11,6 +11,7 @@ from pound_solve.analyses import damage
 from pound_solve.analyses.recorder import HistoryRecorder
 from pound_solve.integrate.protocol import Outcome
 from pound_solve.integrate.tracker import Extreme
+from pound_solve.laws.automaton import STRENGTHLESS
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.structure import Structure
 
@@ -55,6 +56,8 @@ class SpringResponse:
         None where no energy was lost, and for friction, which has no residual deformation.
     damage : Damage or None
         None where the deck gives no ultimate ductility.
+    failed : bool
+        Its rule has taken all strength from it, as at an ultimate deformation.
     """
 
     spring: LawSpring
@@ -65,6 +68,7 @@ class SpringResponse:
     loss: float
     plastic: PlasticDeformation | None
     damage: damage.Damage | None
+    failed: bool
 
     @property
     def deformation_unit(self) -> str:
@@ -98,4 +102,7 @@ def _response(
         sides = (ultimate[0], ultimate[-1])
         index = damage.park_ang((d.high, d.low), loss, spring.k0, spring.yields, sides, card["PA_BETA"])
     ductility = damage.ductility((d.high, d.low), spring.yields)
-    return SpringResponse(spring, peaks.force[i], d, peaks.yields[i], ductility, loss, plastic, index)
+    at = spring.law.rule.branches[outcome.states[i][0]]
+    return SpringResponse(
+        spring, peaks.force[i], d, peaks.yields[i], ductility, loss, plastic, index, at.name == STRENGTHLESS
+    )

@@ -102,6 +102,9 @@ class BranchKind(IntEnum):
         return tuple(BranchType(name, self) for name in names)
 
 
+STRENGTHLESS = "failed"  #: name of the branch of a spring that has lost all of its strength for good
+
+
 class BranchType(NamedTuple):
     """A branch of a rule: its name, as reports show it, and its kind."""
 

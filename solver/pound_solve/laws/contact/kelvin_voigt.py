@@ -15,6 +15,7 @@ release loses :math:`\tfrac12 k\delta_r^2` as the contact element relaxes alone.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -94,6 +95,8 @@ class Built(NamedTuple):
     note : str
         For the report.
     unit : str
+    limit : float
+        Overlap up to which the law is meant [L].
     """
 
     law: Law
@@ -104,6 +107,7 @@ class Built(NamedTuple):
     e_given: float
     note: str
     unit: str = "F/L"
+    limit: float = math.inf
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:

@@ -120,7 +120,8 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
     )
     limit = math.inf if thickness is None else values["LIMIT"] * thickness
     law = Law(RULE, (k, n, values["GAP"], limit, beyond or 0.0, found.value, reduced_mass))
-    return Built(law, k, math.nan, *found, unit=stiffness_unit(n))
+    end = math.inf if thickness is None else thickness
+    return Built(law, k, math.nan, *found, unit=stiffness_unit(n), limit=end)
 
 
 SPEC = Spec(

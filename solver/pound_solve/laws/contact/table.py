@@ -155,7 +155,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         steepest = ku
     points = [x for pair in path[1:] for x in pair]
     law = Law(RULE, (slopes[0], values["GAP"], ku or 0.0, len(depths), *points))
-    return Built(law, steepest, 0.0, 0.0, math.nan, given, note)
+    return Built(law, steepest, 0.0, 0.0, math.nan, given, note, limit=depths[-1])
 
 
 SPEC = Spec(

@@ -43,6 +43,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind
 from pound_solve.laws.automaton import (
+    STRENGTHLESS,
     BranchKind,
     Numbers,
 )
@@ -50,7 +51,7 @@ from pound_solve.laws.mirror import need_both_sides
 
 FAILED = 0
 BRANCHES = BranchKind.OPEN.named(
-    "failed"
+    STRENGTHLESS
 )  #: the rules' own come in pairs after it: positive side, negative side
 
 # Internal variables: five numbers of each side, mirrored (the first two are F_y and F_ref), then the

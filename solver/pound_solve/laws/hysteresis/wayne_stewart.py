@@ -41,6 +41,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
+    STRENGTHLESS,
     BranchKind,
     Law,
     Numbers,
@@ -213,7 +214,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
 
 RULE = Rule(
     (
-        *BranchKind.OPEN.named("slack", "failed"),
+        *BranchKind.OPEN.named("slack", STRENGTHLESS),
         *BranchKind.ELASTIC.named("unloading", "elastic +", "elastic -"),
         *BranchKind.YIELDING.named(
             "yielding +",

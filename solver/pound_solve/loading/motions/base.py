@@ -68,6 +68,7 @@ METRE: Final[Mapping[str, float]] = MappingProxyType(
 
 Closed = tuple[Callable[[], Piecewise], Callable[[], Piecewise]]
 _STRONG, _WEAK = 3.0, 0.001  # [g]
+_RARE: Final = 2.0  #: [g], which hardly a record of an earthquake exceeds
 _USUAL: Final = 0.3  # [g], the middle of what damages buildings
 _PER_METRE: Final = {"M/S2": 1.0, "CM/S2": 100.0, "GAL": 100.0, "MM/S2": 1000.0}
 
@@ -228,8 +229,9 @@ def finish(
     warnings = list(info.get("warnings", ()))
     strength = abs(pga) / context.gravity
     # a factor of zero is a motion switched off on purpose; a rotation is no share of gravity
-    if scale != 0 and bare.direction != "R" and not _WEAK <= strength <= _STRONG:
-        other = _likely_unit(strength, str(info.get("unit") or ""), context)
+    unit = str(info.get("unit") or "")  # of a record alone
+    if scale != 0 and bare.direction != "R" and not _WEAK <= strength <= (_RARE if unit else _STRONG):
+        other = _likely_unit(strength, unit, context)
         warnings.append(f"peak ground acceleration is {strength:.3g} g; {other}check UNIT and SCALE")
     peaks = {
         "scale": scale,

@@ -132,6 +132,7 @@ def build(context: ElementContext) -> Parts:
         "xi": built.xi,
         "e_asked": built.e_asked,
         "e_given": built.e_given,
+        "limit": built.limit,
         "note": built.note + note + rubs,
         "reduced_mass": reduced,
         "masses": masses,

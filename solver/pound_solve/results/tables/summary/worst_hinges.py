@@ -24,7 +24,7 @@ def rows(run: RunRecord) -> list[Row] | None:
     out = []
     for r in worst:
         index = r.damage.total if r.damage else math.nan
-        state = next((word for least, word in STATES if index >= least), "")
+        state = "failed" if r.failed else next((word for least, word in STATES if index >= least), "")
         out.append(
             (
                 r.spring.element,
