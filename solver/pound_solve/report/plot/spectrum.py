@@ -35,7 +35,7 @@ def spectra(curves: Sequence[Curve], units: Units, path: Path) -> None:
             for i, values in enumerate(getattr(found, quantity.lower())):
                 name = f"{curve.name}, {100.0 * found.damping[i]:g} %" if several else curve.name
                 axes.semilogx(
-                    found.periods, values, color=style.COLOURS[k % len(style.COLOURS)],
+                    found.periods, values, color=style.stroke(k)["color"],
                     linestyle=STROKES[i % len(STROKES)], linewidth=1.1, label=name,
                 )  # fmt: skip
         axes.set_ylim(bottom=0.0)

@@ -1,0 +1,63 @@
+"""Picture `contacts`: contact force against overlap."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pound_solve.report.plot import style
+from pound_solve.report.plot.members import chosen_contacts
+from pound_solve.report.plot.schema import Choice, Picture
+from pound_solve.results import Results
+
+MOST = 16  #: panels
+
+
+def contacts(results: Results, choice: Choice) -> Any:
+    """Draw one panel for each contact."""
+    names = results.labels("contact/force")
+    columns = chosen_contacts(results, choice) or list(range(len(names)))
+    shown = columns[:MOST]
+    more = f": {len(shown)} of {len(columns)}" if len(shown) < len(columns) else ""
+    figure, all_axes = style.panels(len(shown), f"Contacts{more}, at the stored instants")
+    for axes, k in zip(all_axes, shown):
+        panel(axes, results, k, choice)
+    return figure
+
+
+def panel(axes: Any, results: Results, k: int, choice: Choice) -> None:
+    """Draw the force of a contact over its overlap, at the stored instants; a line is its true peak."""
+    rows = choice.span(results)
+    force, gap = results.history("contact/force")[rows, k], results.history("contact/gap")[rows, k]
+    name = results.labels("contact/force")[k]
+    style.grid(axes, f"overlap [{results.units.length}]", f"force [{results.units.force}]")
+    near = gap <= max(0.0, 0.2 * float(-gap.min()))
+    # a line only between neighbours in time that both are close
+    x, y = np.where(near, -gap, np.nan), np.where(near, force, np.nan)
+    axes.plot(x, y, color=style.RED, linestyle="-", linewidth=0.8, marker=".", markersize=3)
+    peak, closures = _peak(results, name)
+    if closures and np.isfinite(peak) and not choice.between:
+        axes.axhline(peak, color="0.3", linestyle="--", linewidth=0.8)
+        axes.set_title(f"{style.short(name)}\ndashes: peak of {peak:.5g} {results.units.force}")
+    else:
+        axes.set_title(f"{style.short(name)}" + ("" if closures else "\nnot closed"))
+
+
+def _peak(results: Results, name: str) -> tuple[float, int]:
+    """True peak of the force and number of closures of a contact."""
+    if "contact_summary" in results.tables:
+        for row in results.table("contact_summary"):
+            if row["contact"] == name:
+                return float(row["peak_force"]), int(row["closures"])
+    return float("nan"), 0
+
+
+SPEC = Picture(
+    name="contacts",
+    place=120,
+    shows="the force of each contact over its overlap, with its true peak",
+    needs=("contact/force", "contact/gap"),
+    draw=contacts,
+    options=("member", "between"),
+)
