@@ -4,6 +4,7 @@ their true peaks.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -33,18 +34,28 @@ def panel(axes: Any, results: Results, name: str, choice: Choice = ALL, last: bo
     t, values, labels = results.time[rows], results.history(name)[rows], results.labels(name)
     unit = ", ".join(dict.fromkeys(results.history_units(name)))
     quantity, things = QUANTITY[name]
-    style.grid(axes, f"time [{results.units.time}]" if last else "", f"{quantity} [{unit}]")
+    style.grid(axes, f"time [{results.units.time}]" if last else "", f"{quantity}\n[{unit}]")
     chosen = worst(values)
+    named = motions(results) if name == "ground" else labels
     for k, column in enumerate(chosen):
         if name == "contact/force":
-            force_curve(axes, results, column, k, choice)
+            force_curve(axes, results, column, style.stroke(k), choice)
         else:
-            axes.plot(t, values[:, column], **style.stroke(k), label=style.short(labels[column]))
+            axes.plot(t, values[:, column], **style.stroke(k), label=style.short(named[column]))
     if choice.between:
         axes.set_xlim(*choice.between)
     if len(chosen) < len(labels):
         axes.set_title(f"{len(chosen)} of {len(labels)} {things}, those with the largest values")
     style.legend(axes)
+
+
+def motions(results: Results) -> tuple[str, ...]:
+    """Names of the ground motions with their directions, in the order of the history."""
+    labels = results.labels("ground")
+    table = results.table("motions") if "motions" in results.tables else ()
+    if len(table) != len(labels):
+        return labels
+    return tuple(f"{str(row['motion']).split(' ', 1)[-1]} {str(row['direction'])[0]}" for row in table)
 
 
 def of_contact(results: Results, name: str, choice: Choice = ALL) -> NDArray[Any]:
@@ -69,12 +80,13 @@ def with_peaks(t: Array, force: Array, own: NDArray[Any]) -> tuple[Array, Array]
     return at[order], found[order]
 
 
-def force_curve(axes: Any, results: Results, column: int, k: int, choice: Choice = ALL) -> None:
+def force_curve(
+    axes: Any, results: Results, column: int, look: Mapping[str, Any], choice: Choice = ALL
+) -> None:
     """Draw the force of one contact over time; a ring marks each true peak, a bar an impact in no time."""
     rows = choice.span(results)
     name = results.labels("contact/force")[column]
     own = of_contact(results, name, choice)
-    look = style.stroke(k)
     at, force = with_peaks(results.time[rows], results.history("contact/force")[rows, column], own)
     axes.plot(at, force, **look, label=style.short(name))
     peaks = own[np.isfinite(own["peak_force"])]

@@ -17,6 +17,7 @@ from pound_solve.structure.elements.base import axes as own_axes
 SHARE = 0.08  #: largest drawn displacement as a share of the structure's size
 WALL = 0.035  #: half the length of a wall, and about its distance, as a share of that size
 HATCHES = 6
+SLENDER = 0.15  #: least half of a picture's side, as a share of that size
 NOWHERE = np.zeros(2)
 STILL: Mapping[int, Array] = MappingProxyType({})  #: no displacements
 
@@ -74,10 +75,12 @@ class DrawnStructure:
         look.setdefault("linestyle", "-")
         return axes.plot(*self.path(shift=shift), **look)[0]
 
-    def draw_contacts(self, axes: Any, shift: Mapping[int, Array] = STILL) -> Any:
-        """Draw the contacts between two nodes, displaced; return the line."""
-        look = {"color": style.RED, "linewidth": 1.5, "linestyle": "-", "marker": "|", "markersize": 8}
-        return axes.plot(*self.path(contacts=True, shift=shift), **look)[0]
+    def draw_contacts(self, axes: Any, shift: Mapping[int, Array] = STILL) -> None:
+        """Draw the contacts between two nodes, displaced."""
+        look: dict[str, Any] = {"color": style.RED, "linewidth": 1.5, "linestyle": "-", "marker": "|"}
+        look |= {"markersize": 8, "zorder": 5}  # above the masses
+        if self.lines(contacts=True):
+            axes.plot(*self.path(contacts=True, shift=shift), **look)
 
     def draw_supports(self, axes: Any) -> None:
         """A triangle where a node is held both ways, or at the foot of the structure."""
@@ -97,10 +100,17 @@ class DrawnStructure:
                 size = 2.0 + 6.0 * (mass / heaviest) ** 0.5
                 axes.plot(*self.place[node], "o", color="0.2", markersize=size, zorder=4)
 
+    def view(self, room: float = 0.06) -> tuple[Array, Array]:
+        """Corners of what a picture shows: `room` around the structure as a share of its size; a slender
+        structure gets more.
+        """
+        half = np.maximum(0.5 * (self.high - self.low) + room * self.size, SLENDER * self.size)
+        middle = 0.5 * (self.low + self.high)
+        return middle - half, middle + half
+
     def frame(self, axes: Any, room: float = 0.06) -> None:
         """Equal scales, with room around the structure as a share of its size."""
-        margin = room * self.size
-        (x0, y0), (x1, y1) = self.low - margin, self.high + margin
+        (x0, y0), (x1, y1) = self.view(room)
         axes.set_xlim(x0, x1)
         axes.set_ylim(y0, y1)
         axes.set_aspect("equal", adjustable="box")
@@ -110,7 +120,8 @@ class DrawnStructure:
 
     def shape(self) -> tuple[float, float]:
         """Width and height of a picture of it, in inches."""
-        width, height = self.high - self.low + 0.12 * self.size
+        low, high = self.view()
+        width, height = high - low
         scale = min(9.0 / width, 7.0 / height)
         return max(4.0, float(width * scale)), max(2.6, float(height * scale))
 

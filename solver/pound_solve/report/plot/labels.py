@@ -17,7 +17,7 @@ from pound_solve.report.plot import style
 
 WAITING: Final = "label without a place"
 ROOM = 1.5  #: free pixels around a text
-POINT = 3.0  #: half the size of a point that a text should not cover, in pixels
+POINT = 3.0  #: least half the size of a point that a text should not cover, in pixels
 #: sides on which a label may stand: direction, and which corner of the text points at it
 SIDES: Final = (
     (1, 1, "left", "bottom"),
@@ -29,7 +29,7 @@ SIDES: Final = (
     (1, 0, "left", "center"),
     (-1, 0, "right", "center"),
 )
-DISTANCES: Final = (3.0, 8.0, 16.0, 28.0, 44.0)  #: from the point, in points of print
+DISTANCES: Final = (4.0, 8.0, 16.0, 28.0, 44.0)  #: from the point, in points of print
 
 
 def label(axes: Any, at: Any, text: str, far: bool = False, **look: Any) -> None:
@@ -114,7 +114,8 @@ def _drawn(axes: Any) -> tuple[Array, Array]:
         if line.get_linestyle() not in ("None", ""):
             pieces.append(np.hstack([xy[:-1], xy[1:]]))
         if line.get_marker() not in ("None", "", None):
-            points.append(np.hstack([xy - POINT, xy + POINT]))
+            half = max(POINT, 0.5 * line.get_markersize() * axes.figure.dpi / 72.0)
+            points.append(np.hstack([xy - half, xy + half]))
     found, marked = np.concatenate(pieces), np.concatenate(points)
     return found[np.isfinite(found).all(axis=1)], marked[np.isfinite(marked).all(axis=1)]
 

@@ -141,6 +141,9 @@ class Line:
 def lines(results: Results, place: Mapping[int, Array], choice: Choice) -> Iterator[Line]:
     """Forces along the chosen members, or all: at an instant, or their extremes over the history (of the
     static state where there is none).
+
+    The extremes at the ends are the true ones; between the ends they are those at the stored instants, and
+    what these lack at the ends is added in proportion.
     """
     refuse(results, choice, ("member",))
     if not members(results):
@@ -160,13 +163,12 @@ def lines(results: Results, place: Mapping[int, Array], choice: Choice) -> Itera
         x, found = along_member(own, float(np.hypot(*(j - i))), along, points.get(number, []))
         low = {q: v.min(axis=0) for q, v in found.items()}
         high = {q: v.max(axis=0) for q, v in found.items()}
-        for q in found:
-            for end, name, sign in (
-                (0, QUANTITIES[q][1], _SIGN[q][0]),
-                (-1, QUANTITIES[q][2], _SIGN[q][1]),
-            ):
-                if (number, name) in extremes:  # those between the stored instants, too
-                    low[q][end], high[q][end] = sorted(sign * v for v in extremes[number, name])
+        for q, (_, *ends) in ((q, QUANTITIES[q]) for q in found):
+            for end, name, sign, share in zip((0, -1), ends, _SIGN[q], (1.0 - x, x)):
+                if (number, name) in extremes:
+                    least, most = sorted(sign * v for v in extremes[number, name])
+                    low[q] += share * (least - low[q][end])
+                    high[q] += share * (most - high[q][end])
         yield Line(number, i, j, x, low, high)
 
 

@@ -74,7 +74,7 @@ class Choice:
         if self.between is None:
             return slice(None)
         t, unit = results.time, results.units.time
-        low, high = np.searchsorted(t, self.between, "left"), np.searchsorted(t, self.between, "right")
+        low, high = np.searchsorted(t, self.between[0]), np.searchsorted(t, self.between[1], "right")
         if high - low < 2:
             reach = f"from {t[0]:g} to {t[-1]:g} {unit}" if len(t) else "nowhere"
             raise ChoiceError(

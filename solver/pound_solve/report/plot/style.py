@@ -128,8 +128,16 @@ def stroke(k: int) -> dict[str, Any]:
 
 def legend(axes: Any, handles: Sequence[Any] | None = None, title: str = "") -> None:
     """Name the curves beside the axes, where nothing is drawn."""
-    named = {"handles": handles} if handles is not None else {}
-    axes.legend(**named, title=title or None, loc="upper left", bbox_to_anchor=(1.005, 1.02))
+    named: dict[str, Any] = {"handles": handles} if handles is not None else {}
+    count = len(handles if handles is not None else axes.get_legend_handles_labels()[1])
+    axes.legend(
+        **named,
+        ncols=2 if count > 5 else 1,
+        columnspacing=1.0,
+        title=title or None,
+        loc="upper left",
+        bbox_to_anchor=(1.005, 1.02),
+    )
 
 
 def panels(count: int, title: str, each: tuple[float, float] = (3.4, 2.6)) -> tuple[Any, Sequence[Any]]:

@@ -183,7 +183,7 @@ def page(own: Film) -> str:
 
 SPEC = Picture(
     name="animation",
-    place=180,
+    place=200,
     shows="the structure as it moves, as a page that plays by itself, a GIF or an MP4",
     needs=("node/u", "nodes", "elements"),
     draw=animation,

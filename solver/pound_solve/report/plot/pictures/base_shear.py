@@ -34,7 +34,7 @@ def panel(
     all_labels, units = results.labels("building/base"), results.history_units("building/base")
     own = [k for k, label in enumerate(all_labels) if label.endswith(f" {quantity}")]
     unit = ", ".join(dict.fromkeys(units[k] for k in own))
-    style.grid(axes, f"time [{results.units.time}]" if last else "", f"{TITLES[quantity]} [{unit}]")
+    style.grid(axes, f"time [{results.units.time}]" if last else "", f"{TITLES[quantity]}\n[{unit}]")
     for n, k in enumerate(own):
         name, look = all_labels[k].removesuffix(f" {quantity}"), style.stroke(n)
         axes.plot(t, values[:, k], **look, label=style.short(name))

@@ -29,7 +29,7 @@ def curve(axes: Any, results: Results) -> None:
     style.grid(axes, f"displacement of the control node [{units.length}]", f"base shear [{units.force}]")
     x, y = table["displacement"], table["base_shear"]
     axes.plot(x, y, color=style.BLUE, linestyle="-", linewidth=1.4)
-    axes.margins(0.06, 0.12)
+    axes.margins(0.06, 0.08)
     events = results.table("push_events")
     words = kinds(results, events)
     for n, kind in enumerate(dict.fromkeys(words)):
@@ -43,7 +43,7 @@ def curve(axes: Any, results: Results) -> None:
     labels.label(axes, (x[top], y[top]), f"{y[top]:.5g} {units.force}", far=True)
     for k in first_ones(words)[:MOST]:
         own = events[k]
-        text = f"{named(results, own)} {words[k]}"
+        text = f"{named(results, own)}: {words[k]}"
         labels.label(axes, (own["displacement"], own["base_shear"]), text, far=True)
     style.legend(axes, title="events (number)")
     told = [said[item] for item in ("pattern", "control", "end") if item in said]

@@ -32,7 +32,7 @@ def collisions(results: Results, choice: Choice) -> Any:
         last = np.where(np.isnan(own["t_end"]), end, own["t_end"])
         if len(own):
             top.vlines(own[when], 0.0, own[column], color=colour, linewidth=0.9)
-        top.plot(own[when], own[column], "o", color=colour, label=style.short(name))
+            top.plot(own[when], own[column], "o", color=colour, label=style.short(name))
         # a collision is short: no bar is thinner than a line
         width = np.maximum(last - own["t_start"], 0.002 * end)
         bottom.barh(np.full(len(own), n), width, left=own["t_start"], color=colour, height=0.6)

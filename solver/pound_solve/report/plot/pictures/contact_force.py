@@ -22,14 +22,16 @@ def contact_force(results: Results, choice: Choice) -> Any:
         columns = list(range(len(names)))
     shown = columns[: style.LINES]
     more = f": {len(shown)} of {len(columns)}" if len(shown) < len(columns) else ""
-    figure = style.figure(9.0, 1.7 * len(shown) + 0.9, f"Contact forces{more}")
+    title = f"Contact forces{more}; rings: peak of each collision"
+    figure = style.figure(9.0, 1.7 * len(shown) + 0.9, title)
     first = None
     for n, k in enumerate(shown):
         axes = figure.add_subplot(len(shown), 1, n + 1, sharex=first)
         first = first or axes
         last = n == len(shown) - 1
         style.grid(axes, f"time [{results.units.time}]" if last else "", f"force [{results.units.force}]")
-        courses.force_curve(axes, results, k, n, choice)
+        look = {"color": style.stroke(n)["color"], "linestyle": "-"}
+        courses.force_curve(axes, results, k, look, choice)
         axes.set_title(_caption(results, names[k], choice))
         if choice.between:
             axes.set_xlim(*choice.between)
@@ -47,7 +49,7 @@ def _caption(results: Results, name: str, choice: Choice) -> str:
     top = peaks[np.argmax(peaks["peak_force"])]
     return (
         f"{name}: {times}, largest force {top['peak_force']:.5g} {units.force} at {top['t_peak']:.6g} "
-        f"{units.time} (rings: peak of each collision)"
+        f"{units.time}"
     )
 
 

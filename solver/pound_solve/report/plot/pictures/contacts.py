@@ -8,7 +8,7 @@ import numpy as np
 
 from pound_solve.report.plot import style
 from pound_solve.report.plot.members import chosen_contacts
-from pound_solve.report.plot.schema import Choice, Picture
+from pound_solve.report.plot.schema import Choice, Nothing, Picture
 from pound_solve.results import Results
 
 MOST = 16  #: panels
@@ -17,7 +17,10 @@ MOST = 16  #: panels
 def contacts(results: Results, choice: Choice) -> Any:
     """Draw one panel for each contact."""
     names = results.labels("contact/force")
-    columns = chosen_contacts(results, choice) or list(range(len(names)))
+    columns = chosen_contacts(results, choice)
+    columns = columns or [k for k, name in enumerate(names) if _peaks(results, name)[2]]
+    if not columns:
+        raise Nothing("closed contacts")
     shown = columns[:MOST]
     more = f": {len(shown)} of {len(columns)}" if len(shown) < len(columns) else ""
     figure, all_axes = style.panels(len(shown), f"Contacts{more}, at the stored instants")
@@ -36,21 +39,23 @@ def panel(axes: Any, results: Results, k: int, choice: Choice) -> None:
     # a line only between neighbours in time that both are close
     x, y = np.where(near, -gap, np.nan), np.where(near, force, np.nan)
     axes.plot(x, y, color=style.RED, linestyle="-", linewidth=0.8, marker=".", markersize=3)
-    peak, closures = _peak(results, name)
+    peak, overlap, closures = _peaks(results, name)
     if closures and np.isfinite(peak) and not choice.between:
         axes.axhline(peak, color="0.3", linestyle="--", linewidth=0.8)
         axes.set_title(f"{style.short(name)}\ndashes: peak of {peak:.5g} {results.units.force}")
+        axes.set_xlim(-0.2 * overlap, 1.05 * overlap)
+        axes.set_ylim(min(0.0, float(np.nanmin(y, initial=0.0))) - 0.05 * peak, 1.08 * peak)
     else:
         axes.set_title(f"{style.short(name)}" + ("" if closures else "\nnot closed"))
 
 
-def _peak(results: Results, name: str) -> tuple[float, int]:
-    """True peak of the force and number of closures of a contact."""
+def _peaks(results: Results, name: str) -> tuple[float, float, int]:
+    """True peaks of the force and of the overlap of a contact, and how often it closed."""
     if "contact_summary" in results.tables:
         for row in results.table("contact_summary"):
             if row["contact"] == name:
-                return float(row["peak_force"]), int(row["closures"])
-    return float("nan"), 0
+                return float(row["peak_force"]), float(row["peak_penetration"]), int(row["closures"])
+    return float("nan"), float("nan"), 0
 
 
 SPEC = Picture(

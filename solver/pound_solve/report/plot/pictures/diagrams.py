@@ -13,6 +13,7 @@ from pound_solve.report.plot.schema import Choice, Nothing, Picture
 from pound_solve.results import Results
 
 SHARE = 0.11  #: largest value as a share of the structure's size
+WIDEST = 0.35  #: and no more than this share of a middling member's length
 UNITS = {"M": "F*L", "V": "F", "N": "F"}
 
 
@@ -26,7 +27,7 @@ def diagrams(results: Results, choice: Choice) -> Any:
     width, height = s.shape()
     upright = height > 0.8 * width
     scale = min(1.0, 5.0 / width) if upright else min(1.0, 8.0 / width)
-    width, height = max(3.4, width * scale), max(2.4, height * scale) + 0.3
+    width, height = max(4.0, width * scale), max(2.4, height * scale) + 0.3
     size = (width * len(shown), height + 0.4) if upright else (width, height * len(shown) + 0.4)
     figure = style.figure(*size, title=_title(results, choice))
     for n, quantity in enumerate(shown):
@@ -56,17 +57,23 @@ def panel(axes: Any, s: geometry.DrawnStructure, found: list[Line], quantity: st
     low = min(float(own.low[quantity].min()) for own in found)
     high = max(float(own.high[quantity].max()) for own in found)
     top = max(abs(low), abs(high)) or 1.0
+    lengths = [float(np.hypot(*(own.j - own.i))) for own in found]
+    factor = min(SHARE * s.size, WIDEST * float(np.median(lengths))) / top
+    one = all(np.array_equal(own.low[quantity], own.high[quantity]) for own in found)
     for own in found:
-        for values, colour in ((own.high[quantity], style.BLUE), (own.low[quantity], style.RED)):
-            base, edge = _outline(own, values, quantity, SHARE * s.size / top)
+        both = ((own.high[quantity], style.BLUE), (own.low[quantity], style.RED))
+        for values, colour in both[: 1 if one else 2]:
+            base, edge = _outline(own, values, quantity, factor)
             axes.fill(*np.hstack([edge, base[:, ::-1]]), color=colour, alpha=0.18, linewidth=0)
             axes.plot(*np.hstack([base[:, :1], edge, base[:, -1:]]), color=colour, linestyle="-",
                       linewidth=0.8)  # fmt: skip
     for own in sorted(found, key=lambda x: -max(abs(x.low[quantity]).max(), abs(x.high[quantity]).max())):
-        _values(axes, own, quantity, SHARE * s.size / top, 0.02 * top)
+        _values(axes, own, quantity, factor, 0.02 * top)
     unit, word = s.units.text(UNITS[quantity]), QUANTITIES[quantity][0]
-    side = ", on the side in tension" if quantity == "M" else ""
-    axes.set_title(f"{word} {quantity} [{unit}]{side}: {low:.5g} to {high:.5g}")
+    told = ["drawn on the side in tension"] * (quantity == "M") + ["blue: largest, red: smallest"] * (
+        not one
+    )
+    axes.set_title(f"{word} {quantity} [{unit}]: {low:.5g} to {high:.5g}\n{'; '.join(told)}")
 
 
 def _outline(own: Line, values: Array, quantity: str, factor: float) -> tuple[Array, Array]:
@@ -89,7 +96,12 @@ def _values(axes: Any, own: Line, quantity: str, factor: float, least: float) ->
             continue
         told.append(value)
         _, edge = _outline(own, values, quantity, factor)
-        labels.label(axes, edge[:, at], f"{value:.3g}", fontsize=6)
+        labels.label(axes, edge[:, at], _text(value), fontsize=6)
+
+
+def _text(value: float) -> str:
+    """Three digits, without an exponent."""
+    return f"{float(f'{value:.3g}'):g}"
 
 
 SPEC = Picture(

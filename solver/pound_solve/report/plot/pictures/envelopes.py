@@ -47,6 +47,8 @@ def _drifts(axes: Any, results: Results) -> None:
     axes.barh(rows, drifts["min"], color=style.RED, height=0.6)
     axes.axvline(0.0, color="0.3", linewidth=0.8)
     axes.margins(x=0.06)
+    room = max(0.6, 2.5 - 0.5 * len(rows))  # a few bars do not fill the picture
+    axes.set_ylim(-room, len(rows) - 1 + room)
     axes.set_yticks(rows, [style.short(str(n)) for n in drifts["name"]])
     axes.set_title("largest drifts to both sides, in the order of the deck")
 
@@ -59,7 +61,7 @@ def _columns(results: Results) -> list[Array]:
     for row in own:
         x, y = place[int(row["node"])].tolist()
         lines.setdefault(x, []).append((y, float(row["min"]), float(row["max"])))
-    return [np.array(sorted(line)).T for line in lines.values() if len(line) > 1]
+    return [np.array(sorted(line)).T for line in lines.values() if len({y for y, _, _ in line}) > 1]
 
 
 SPEC = Picture(

@@ -13,11 +13,11 @@ from pound_solve.report.plot.geometry import DrawnStructure
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 
-#: of a profile: column of the table, history, words, dimension, factor, whether it belongs to floors
+#: quantity of a profile in the table, with its words, dimension and factor
 PROFILES = {
-    "drift": ("storey/drift", "drift ratio", "%", 100.0),
-    "shear": ("storey/shear", "storey shear", "F", 1.0),
-    "acceleration": ("storey/acceleration", "total floor acceleration", "L/T^2", 1.0),
+    "drift ratio": ("drift ratio", "%", 100.0),
+    "shear": ("storey shear", "F", 1.0),
+    "acceleration": ("total floor acceleration", "L/T^2", 1.0),
 }
 
 
@@ -43,13 +43,13 @@ def storeys(results: Results, choice: Choice) -> Any:
 def panel(axes: Any, results: Results, names: list[str], quantity: str) -> None:
     """Draw one profile of some buildings: lines for the largest values, dashes for the smallest."""
     table = results.table("storey_envelope")
-    _, words, dimension, factor = PROFILES[quantity]
+    words, dimension, factor = PROFILES[quantity]
     unit = dimension if dimension == "%" else results.units.text(dimension)
     style.grid(axes, f"{words} [{unit}]", f"height [{results.units.length}]")
     axes.axvline(0.0, color="0.3", linewidth=0.8)
     for n, name in enumerate(names):
         own = table[table["building"] == name]
-        high, low = extremes(results, own, quantity)
+        high, low = extremes(results, name, quantity)
         look = {"color": style.stroke(n)["color"], "linewidth": 1.2}
         for values, dashes in ((high, "-"), (low, "--")):
             label = style.short(name) if dashes == "-" else None
@@ -69,18 +69,11 @@ def _base(own: NDArray[Any]) -> float:
     return float(own["level"][0] - own["height"][0])
 
 
-def extremes(results: Results, own: NDArray[Any], quantity: str) -> tuple[Array, Array]:
-    """Largest and smallest values of some storeys, shape (n,) each.
-
-    The table has the true value of the larger of the two sides, the history both at the stored instants.
-    """
-    name = PROFILES[quantity][0]
-    labels = {label: k for k, label in enumerate(results.labels(name))}
-    columns = [labels[f"{row['building']} storey {row['storey']}"] for row in own]
-    history = results.history(name)[:, columns]
-    high, low, top = history.max(axis=0), history.min(axis=0), own[quantity]
-    upwards = high >= -low
-    return np.where(upwards, top, high), np.where(upwards, low, -top)
+def extremes(results: Results, name: str, quantity: str) -> tuple[Array, Array]:
+    """Largest and smallest values of the storeys of a building from below, shape (n,) each."""
+    table = results.table("storey_extremes")
+    own = table[(table["building"] == name) & (table["quantity"] == quantity)]
+    return own["max"], own["min"]
 
 
 def base_acceleration(results: Results, building: str) -> tuple[float, float]:
@@ -98,9 +91,6 @@ SPEC = Picture(
     name="storeys",
     place=70,
     shows="drift ratio, shear and floor acceleration over the height of each building, to both sides",
-    needs=(
-        "storey_envelope", "storey/drift", "storey/shear", "storey/acceleration", "buildings",
-        "node_envelope", "nodes", "elements",
-    ),
+    needs=("storey_envelope", "storey_extremes", "buildings", "node_envelope", "nodes", "elements"),
     draw=storeys,
 )  # fmt: skip

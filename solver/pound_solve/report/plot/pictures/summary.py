@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from pound_solve.report.plot import courses, style
 from pound_solve.report.plot.geometry import DrawnStructure
-from pound_solve.report.plot.pictures import base_shear, capacity, frame, storeys
+from pound_solve.report.plot.members import lines, members
+from pound_solve.report.plot.pictures import base_shear, capacity, diagrams, frame, storeys
 from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 from pound_solve.version import __version__
@@ -20,37 +22,41 @@ def summary(results: Results, choice: Choice) -> Any:
     """Draw the structure and the main figures, what there is of the histories, and profiles."""
     figure = style.figure(*PAGE, title=results.title)
     rows = _rows(results)
-    heights = [2.6, *[1.45] * len(rows)]
     profiles = all(results.holds(name) for name in storeys.SPEC.needs)
-    if profiles:
-        heights.append(2.2)
-    parts = figure.subfigures(len(heights) + 1, 1, height_ratios=[*heights, 0.25])
-    head, *courses_, foot = parts
+    heights = [2.6, (1.5 if len(rows) > 1 else 4.0) * len(rows) + 0.01, 2.3 * profiles + 0.01, 0.25]
+    head, middle, low, foot = figure.subfigures(4, 1, height_ratios=heights)
     axes, text = head.subplots(1, 2, width_ratios=(1.15, 1.0))
     _structure(axes, results)
     _figures(text, results)
-    for part, draw in zip(courses_, rows):
-        draw(part.subplots())
+    if rows:
+        for draw, own in zip(rows, middle.subplots(len(rows), 1, squeeze=False).ravel()):
+            draw(own)
     if profiles:
-        _profiles(courses_[-1], results)
+        _profiles(low, results)
     foot.text(0.01, 0.5, _foot(results), fontsize=6.5, color="0.4", va="center")
     return figure
 
 
 def _rows(results: Results) -> list[Any]:
-    """What draws each panel over time, of what the file has."""
+    """What draws each panel over time, of what the file has; without a history, the capacity curve."""
+    if not len(results.time):
+        if results.holds("capacity_curve"):
+            return [partial(capacity.curve, results=results)]
+        return [partial(_moments, results=results)] if members(results) else []
     out: list[Any] = []
-    wanted = ["ground", "drift", "base", "contact/force"]
-    for n, name in enumerate(wanted):
-        last = n == len(wanted) - 1
+    for name in ("ground", "drift", "base", "contact/force"):
         if name == "base":
             if all(map(results.holds, base_shear.SPEC.needs)):
-                out.append(lambda axes: base_shear.panel(axes, results))
-        elif name in results.histories and len(results.time):
-            out.append(lambda axes, name=name, last=last: courses.panel(axes, results, name, last=last))
-    if not out and results.holds("capacity_curve"):
-        out.append(lambda axes: capacity.curve(axes, results))
-    return out
+                out.append(partial(base_shear.panel, results=results, last=False))
+        elif name in results.histories:
+            out.append(partial(courses.panel, results=results, name=name, last=False))
+    return [*out[:-1], partial(out[-1], last=True)] if out else []
+
+
+def _moments(axes: Any, results: Results) -> None:
+    """Draw the bending moments of the static state."""
+    s = DrawnStructure(results)
+    diagrams.panel(axes, s, list(lines(results, s.place, Choice())), "M")
 
 
 def _structure(axes: Any, results: Results) -> None:
@@ -95,8 +101,7 @@ def _foot(results: Results) -> str:
 SPEC = Picture(
     name="summary",
     place=10,
-    shows="one page (A4): structure, main figures, base point motions, drifts, base shears, contact forces, "
-    "profiles of the storeys",
+    shows="one page (A4): structure, figures, ground motions, drifts, base shears, contacts, profiles",
     needs=("nodes", "elements"),
     draw=summary,
 )
