@@ -56,7 +56,7 @@ def test_every_picture_is_drawn_and_repeats(results: Results, tmp_path: Path) ->
         again, _ = plot.draw(results, names, tmp_path / "b", ending)
         assert len(first) == len(names) and not left_out
         for a, b in zip(first, again):
-            assert a.read_bytes() == b.read_bytes()
+            assert a.read_bytes() == b.read_bytes(), a.name
             assert a.stat().st_size > 5000
 
 
@@ -117,7 +117,7 @@ def test_a_loaded_structure_starts_with_energy_and_turns_in_radians(tmp_path: Pa
         # the pile and the line stay together: nothing is lost
         top = axes.collections[-1].get_paths()[0].vertices[:, 1].max()
         assert top == pytest.approx(line[:, 1].max(), rel=1e-6) and top > 2 * strain
-        across, turn = plot.picture(results, "loops").axes[:2]
+        across, turn = plot.picture(results, "loops", plot.Choice(("1",))).axes[:2]
         assert (across.get_xlabel(), across.get_ylabel()) == ("deformation [m]", "force [kN]")
         assert (turn.get_xlabel(), turn.get_ylabel()) == ("rotation [rad]", "moment [kN*m]")
         assert results.history_units("node/a")[:3] == ("m/s^2", "m/s^2", "rad/s^2")

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pound_solve.results import Results
 
 SUMMARY = "draw pictures of a results file (needs matplotlib: the extra plot)"
-STILL, MOVING = common.FORMATS, ("gif", "mp4", "html")
+STILL, MOVING = common.FORMATS, ("html", "gif", "mp4")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -102,7 +102,7 @@ def _draw(results: Results, args: argparse.Namespace, choice: Choice) -> int:
     left_out: dict[str, list[str]] = {}
     for name in names:
         moves = plot.PICTURES[name].write is not None
-        ending = args.ending or ("html" if moves else STILL[0])
+        ending = args.ending or (MOVING if moves else STILL)[0]
         more, less = plot.draw(results, [name], folder, ending, choice)
         drawn += more
         for what, own in less.items():

@@ -36,7 +36,7 @@ class DrawnStructure:
     low, high : ndarray, shape (2,)
         Corners of the box around all nodes [L].
     size : float
-        The longer side of that box [L].
+        The longer side of that box, 1 for a single node [L].
     """
 
     def __init__(self, results: Results) -> None:
@@ -52,7 +52,7 @@ class DrawnStructure:
             self.angles = dict(results.table("contact_laws")[["contact", "angle"]].tolist())
         xy = np.array(list(self.place.values()))
         self.low, self.high = xy.min(axis=0), xy.max(axis=0)
-        self.size = float(max(*(self.high - self.low), 1e-30))
+        self.size = float(max(self.high - self.low)) or 1.0
 
     def lines(self, contacts: bool) -> list[tuple[int, int]]:
         """Ends of all elements between two nodes: contacts, or the others."""

@@ -44,14 +44,13 @@ def label(axes: Any, at: Any, text: str, far: bool = False, **look: Any) -> None
 
 
 def settle(figure: Any) -> None:
-    """Give the labels of a figure their places, or take them out."""
+    """Give the labels of an arranged figure their places, or take them out."""
     waiting = [(axes, [t for t in axes.texts if t.get_gid() == WAITING]) for axes in figure.axes]
     if not any(texts for _, texts in waiting):
         return
     for _, texts in waiting:
         for text in texts:
             text.set_visible(False)
-    figure.draw_without_rendering()
     for axes, texts in waiting:
         if texts:
             _settle(axes, texts)

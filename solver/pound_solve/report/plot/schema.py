@@ -12,7 +12,7 @@ import numpy as np
 from pound_solve.results import Results
 
 STILL: Final = ("svg", "png", "pdf")  #: endings of a picture that stands still
-MOVING: Final = ("gif", "mp4", "html")  #: endings of one that moves
+MOVING: Final = ("html", "gif", "mp4")  #: endings of one that moves
 
 
 class Nothing(Exception):

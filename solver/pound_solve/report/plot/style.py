@@ -132,7 +132,7 @@ def legend(axes: Any, handles: Sequence[Any] | None = None, title: str = "") -> 
     count = len(handles if handles is not None else axes.get_legend_handles_labels()[1])
     axes.legend(
         **named,
-        ncols=2 if count > 5 else 1,
+        ncols=2 if count > 6 else 1,
         columnspacing=1.0,
         title=title or None,
         loc="upper left",
@@ -157,6 +157,18 @@ def patches(named: Sequence[tuple[str, str]]) -> list[Any]:
 
     look = {"linestyle": "", "marker": "o", "markersize": 7, "markeredgecolor": "0.2"}
     return [Line2D([], [], color=c, label=name, **look) for c, name in named]  # type: ignore[arg-type]
+
+
+def arrange(picture: Any) -> None:
+    """Give all axes their final places.
+
+    The layout's last digits differ from run to run, and bytes would with them: they are rounded off.
+    """
+    picture.draw_without_rendering()
+    places = [(axes, axes.get_position(original=True)) for axes in picture.axes]
+    picture.set_layout_engine("none")
+    for axes, box in places:
+        axes.set_position([round(value, 6) for value in box.bounds])
 
 
 def text_box(text: Any) -> Any:

@@ -151,6 +151,8 @@ def write(results: Results, choice: Choice, path: Path) -> None:
         path.write_text(page(own), encoding="utf-8", newline="\n")
         return
     stage = Stage(own)
+    stage.show(0)
+    style.arrange(stage.figure)
     style.film(stage.figure, stage.show, len(own.time), path, RATE)
 
 

@@ -15,13 +15,15 @@ TITLES = {"shear X": "base shear", "moment": "overturning moment", "force Y": "v
 
 
 def base_shear(results: Results, choice: Choice) -> Any:
-    """Draw the shears of all buildings, and the moments below."""
-    figure = style.figure(9.5, 5.2, results.title)
+    """Draw the shears of all buildings, and below the moments if there are any."""
+    found = set(results.table("base_envelope")["quantity"])
+    shown = [quantity for quantity in SHOWN if quantity in found] or list(SHOWN[:1])
+    figure = style.figure(9.5, 2.4 * len(shown) + 0.4, results.title)
     first = None
-    for n, quantity in enumerate(SHOWN):
-        axes = figure.add_subplot(len(SHOWN), 1, n + 1, sharex=first)
+    for n, quantity in enumerate(shown):
+        axes = figure.add_subplot(len(shown), 1, n + 1, sharex=first)
         first = first or axes
-        panel(axes, results, quantity, choice, n == len(SHOWN) - 1)
+        panel(axes, results, quantity, choice, n == len(shown) - 1)
     return figure
 
 

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from pound_solve.report.plot import style
+from pound_solve.report.plot import courses, style
 from pound_solve.report.plot.members import chosen_contacts
 from pound_solve.report.plot.schema import Choice, Nothing, Picture
 from pound_solve.results import Results
 
 MOST = 16  #: panels
+DENSE = 6  #: stored instants of a collision that a line joins
 
 
 def contacts(results: Results, choice: Choice) -> Any:
@@ -35,10 +36,13 @@ def panel(axes: Any, results: Results, k: int, choice: Choice) -> None:
     force, gap = results.history("contact/force")[rows, k], results.history("contact/gap")[rows, k]
     name = results.labels("contact/force")[k]
     style.grid(axes, f"overlap [{results.units.length}]", f"force [{results.units.force}]")
-    near = gap <= max(0.0, 0.2 * float(-gap.min()))
-    # a line only between neighbours in time that both are close
+    t, near = results.time[rows], gap <= max(0.0, 0.2 * float(-gap.min()))
     x, y = np.where(near, -gap, np.nan), np.where(near, force, np.nan)
-    axes.plot(x, y, color=style.RED, linestyle="-", linewidth=0.8, marker=".", markersize=3)
+    axes.plot(x, y, ".", color=style.RED, markersize=3)
+    for own in courses.of_contact(results, name, choice):
+        closed = (t >= own["t_start"]) & ~(t > own["t_end"])
+        if closed.sum() >= DENSE:
+            axes.plot(x[closed], y[closed], color=style.RED, linestyle="-", linewidth=0.8)
     peak, overlap, closures = _peaks(results, name)
     if closures and np.isfinite(peak) and not choice.between:
         axes.axhline(peak, color="0.3", linestyle="--", linewidth=0.8)

@@ -13,6 +13,7 @@ from pound_solve.report.plot.schema import Choice, Nothing, Picture
 from pound_solve.results import Results
 
 SHARE = 0.11  #: largest value as a share of the structure's size
+MOST = 60  #: members whose values are written, those with the largest
 WIDEST = 0.35  #: and no more than this share of a middling member's length
 UNITS = {"M": "F*L", "V": "F", "N": "F"}
 
@@ -67,7 +68,8 @@ def panel(axes: Any, s: geometry.DrawnStructure, found: list[Line], quantity: st
             axes.fill(*np.hstack([edge, base[:, ::-1]]), color=colour, alpha=0.18, linewidth=0)
             axes.plot(*np.hstack([base[:, :1], edge, base[:, -1:]]), color=colour, linestyle="-",
                       linewidth=0.8)  # fmt: skip
-    for own in sorted(found, key=lambda x: -max(abs(x.low[quantity]).max(), abs(x.high[quantity]).max())):
+    order = sorted(found, key=lambda x: -max(abs(x.low[quantity]).max(), abs(x.high[quantity]).max()))
+    for own in order[:MOST]:
         _values(axes, own, quantity, factor, 0.02 * top)
     unit, word = s.units.text(UNITS[quantity]), QUANTITIES[quantity][0]
     told = ["drawn on the side in tension"] * (quantity == "M") + ["blue: largest, red: smallest"] * (

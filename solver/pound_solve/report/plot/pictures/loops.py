@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from pound_solve.numerics.types import Array
 from pound_solve.report.plot import style
 from pound_solve.report.plot.members import chosen_contacts, chosen_springs, refuse
 from pound_solve.report.plot.pictures import contacts
@@ -14,17 +11,20 @@ from pound_solve.report.plot.schema import Choice, Nothing, Picture
 from pound_solve.results import Results
 
 MOST = 16  #: panels
+LEAST = 1e-6  #: plastic work of a panel, as a share of the largest
 
 
 def loops(results: Results, choice: Choice) -> Any:
-    """Draw the chosen springs, hinges and contacts, or the springs and hinges that yielded most."""
+    """Draw the chosen springs, hinges and contacts, or those with the largest plastic work."""
     springs = "spring/force" in results.histories
     if not choice.member:
         if not springs:
             raise Nothing("springs and hinges")
         count = len(results.labels("spring/force"))
-        shown, closed = _yielded(results, choice), list[int]()
-        more = f": {len(shown)} of {count}, those that yielded most" if len(shown) < count else ""
+        shown, closed = _yielded(results), list[int]()
+        more = (
+            f": {len(shown)} of {count}, those with the largest plastic work" if len(shown) < count else ""
+        )
         title = f"Springs and hinges{more}"
     else:
         shown = chosen_springs(results, choice) if springs else []
@@ -56,22 +56,22 @@ def panel(axes: Any, results: Results, k: int, choice: Choice) -> None:
     axes.set_title(results.labels("spring/force")[k])
 
 
-def _yielded(results: Results, choice: Choice) -> list[int]:
-    """Springs whose loops have the largest areas for their size, in their order."""
-    rows = choice.span(results)
-    force: Array = results.history("spring/force")[rows]
-    deformation: Array = results.history("spring/deformation")[rows]
-    span, held = np.ptp(deformation, axis=0), np.abs(force).max(axis=0)
-    area = np.abs(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(deformation, axis=0), axis=0))
-    scale = np.where(span * held > 0.0, span * held, 1.0)
-    chosen: list[int] = np.sort(np.argsort(-area / scale, kind="stable")[:MOST]).tolist()
-    return chosen
+def _yielded(results: Results) -> list[int]:
+    """Springs with the largest plastic work, in their order; the first ones where none has any."""
+    labels = results.labels("spring/force")
+    work = dict.fromkeys(labels, 0.0)
+    if "spring_envelope" in results.tables:
+        for row in results.table("spring_envelope"):
+            work[f"{row['element']} {row['component']}"] = float(row["plastic_work"])
+    least = LEAST * max(work.values(), default=0.0)
+    chosen = [k for k, label in enumerate(labels) if work[label] > least] or list(range(len(labels)))
+    return sorted(sorted(chosen, key=lambda k: -work[labels[k]])[:MOST])
 
 
 SPEC = Picture(
     name="loops",
     place=150,
-    shows="force over deformation of springs and hinges, those that yielded most, or of the chosen ones",
+    shows="force over deformation of springs and hinges: those that yielded most, or those chosen",
     needs=("time",),
     draw=loops,
     options=("member", "between"),

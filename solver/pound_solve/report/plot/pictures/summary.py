@@ -29,7 +29,7 @@ def summary(results: Results, choice: Choice) -> Any:
     _structure(axes, results)
     _figures(text, results)
     if rows:
-        for draw, own in zip(rows, middle.subplots(len(rows), 1, squeeze=False).ravel()):
+        for draw, own in zip(rows, middle.subplots(len(rows), 1, squeeze=False, sharex=True).ravel()):
             draw(own)
     if profiles:
         _profiles(low, results)
