@@ -151,7 +151,8 @@ def pictures(folder: Path, study: Study) -> dict[str, Path]:
     out: dict[str, Path] = {}
     for name, (draw, *what) in drawn.items():
         out[name] = folder / f"{name.replace(' ', '_')}.svg"
-        draw(*what, out[name])
+        with style.sheet():
+            draw(*what, out[name])
     return out
 
 

@@ -30,11 +30,11 @@ INWARDS = 0.07  #: of a hinge from the end of its member, as a share of its leng
 def hinges(results: Results, choice: Choice) -> Any:
     """Draw the structure with a disc at each spring and hinge, coloured by ductility and by damage."""
     s = DrawnStructure(results)
-    panels = [("ductility (largest deformation over yield)", "ductility", results.table("spring_envelope"),
+    panels = [("ductility\n(largest deformation over yield)", "ductility", results.table("spring_envelope"),
                DUCTILITY)]  # fmt: skip
     if results.holds("damage"):
         damage = results.table("damage")
-        panels.append(("damage index of Park and Ang", "index", damage[damage["element"] > 0], STATES))
+        panels.append(("damage index\nof Park and Ang", "index", damage[damage["element"] > 0], STATES))
     if not any(np.isfinite(rows[column]).any() for _, column, rows, _ in panels):
         raise Nothing("springs and hinges that can yield")
     width, height = s.shape()

@@ -23,7 +23,7 @@ def summary(results: Results, choice: Choice) -> Any:
     figure = style.figure(*PAGE, title=results.title)
     rows = _rows(results)
     profiles = all(results.holds(name) for name in storeys.SPEC.needs)
-    heights = [2.6, (1.5 if len(rows) > 1 else 4.0) * len(rows) + 0.01, 2.3 * profiles + 0.01, 0.25]
+    heights = [2.6, (1.5 if len(rows) > 1 else 4.0) * len(rows) + 0.01, 2.3 * profiles + 0.01, 0.35]
     head, middle, low, foot = figure.subfigures(4, 1, height_ratios=heights)
     axes, text = head.subplots(1, 2, width_ratios=(1.15, 1.0))
     _structure(axes, results)
@@ -95,7 +95,8 @@ def _profiles(part: Any, results: Results) -> None:
 
 def _foot(results: Results) -> str:
     own = f"pound-solve {__version__}, {results.path.name}"
-    return f"{own}, digest {results.digest[:16]}" if results.digest else own
+    told = "rings: true peaks; profiles: lines to the right, dashes to the left"
+    return f"{told}\n{own}, digest {results.digest[:16]}" if results.digest else f"{told}\n{own}"
 
 
 SPEC = Picture(
