@@ -15,6 +15,8 @@ from runs import PLACES, Run
 from statements import judge, sensitivity
 from tabulate import tabulate
 
+from pound_solve.report.plot import style
+
 
 @dataclass(frozen=True)
 class Study:

@@ -46,6 +46,7 @@ def _panel(axes: Any, curves: Sequence[Curve], quantity: str) -> None:
             look = style.stroke(k)
             if several:
                 look["linestyle"] = STROKES[i % len(STROKES)]
-            name = f"{curve.name}, {100.0 * found.damping[i]:g} %" if several else curve.name
-            axes.semilogx(found.periods, values, **look, label=style.short(name, 34))
+            name = style.short(curve.name, 34)
+            name = f"{name}, {100.0 * found.damping[i]:g} %" if several else name
+            axes.semilogx(found.periods, values, **look, label=name)
     axes.set_ylim(bottom=0.0)
