@@ -71,6 +71,23 @@ OUTPUT
 """
 
 
+#: a long row of masses, the last of which meets a wall
+ROW = """
+NODES
+ 1001 TO 1040  0 TO 70  0  FIX=YR
+ELEMENTS
+ 1 TO 39  BAR  1001 TO 1039  1002 TO 1040
+ 40 STOP 1040 NAME=wall
+PROPS
+ BAR SPRING KX=100
+ STOP CONTACT GAP=1 K=100
+WEIGHTS
+ 1001 TO 1040  1
+ANALYSIS
+ HISTORY 0.1
+"""
+
+
 @pytest.fixture(scope="module")
 def pair(tmp_path_factory: Any) -> Iterator[Results]:
     deck = tmp_path_factory.mktemp("pair") / "pair.inp"
@@ -154,11 +171,21 @@ def test_node_numbers_keep_apart_and_those_without_room_are_left_out() -> None:
     places = [(x, y) for x in range(20) for y in range(20)]
     for n, place in enumerate(places):
         labels.label(axes, place, str(1000 + n))
-    style.arrange(figure)
     labels.settle(figure)
     kept = [t.get_text() for t in axes.texts]
     assert 20 < len(kept) < len(places) and kept[0] == "1000"
     assert overprinted(figure) == []
+
+
+def test_node_numbers_of_a_wide_structure_keep_apart(tmp_path: Path) -> None:
+    deck = tmp_path / "row.inp"
+    deck.write_text(ROW, encoding="utf-8")
+    with pound_solve.run(deck) as results:
+        figure = plot.picture(results, "frame")
+        assert overprinted(figure) == []
+        kept = {t.get_text() for t in figure.axes[0].texts}
+        assert {"1001", "wall"} <= kept and len(kept) < 41
+        assert overprinted(plot.picture(results, "summary")) == []
 
 
 def test_a_label_avoids_lines_and_texts_where_it_can() -> None:
@@ -169,7 +196,6 @@ def test_a_label_avoids_lines_and_texts_where_it_can() -> None:
     axes.plot([5, 10], [5, 10], linestyle="-")
     labels.label(axes, (5, 5), "first")
     labels.label(axes, (5, 5), "second")
-    style.arrange(figure)
     labels.settle(figure)
     first, second = axes.texts
     assert first.get_horizontalalignment() == "right" and first.get_verticalalignment() == "bottom"

@@ -103,7 +103,6 @@ def picture(results: Results, name: str, choice: Choice = ALL) -> Any:
     _complete(results, spec)
     with style.sheet(choice.style):
         figure = spec.draw(results, choice)
-        style.arrange(figure)
         labels.settle(figure)
     return figure
 

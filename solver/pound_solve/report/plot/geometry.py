@@ -92,12 +92,15 @@ class DrawnStructure:
             look = {"marker": "^", "linestyle": "", "color": style.GREEN, "markersize": 6}
             axes.plot(*np.transpose(held), **look, clip_on=False, zorder=3)
 
-    def draw_masses(self, axes: Any) -> None:
-        """A dot at every mass, its area in proportion."""
+    def draw_masses(self, axes: Any, width: float) -> None:
+        """A dot at every mass, its area in proportion, on axes of about a width in points."""
         heaviest = max(self.mass.values(), default=0.0)
+        lengths = [np.hypot(*(self.place[j] - self.place[i])) for i, j in self.lines(contacts=False)]
+        apart = width * float(np.median(lengths)) / self.size if lengths else width
+        largest = min(8.0, 0.7 * apart)
         for node, mass in self.mass.items():
             if heaviest and mass:
-                size = 2.0 + 6.0 * (mass / heaviest) ** 0.5
+                size = largest * (0.25 + 0.75 * (mass / heaviest) ** 0.5)
                 axes.plot(*self.place[node], "o", color="0.2", markersize=size, zorder=4)
 
     def view(self, room: float = 0.06) -> tuple[Array, Array]:

@@ -16,7 +16,7 @@ from pound_solve.numerics.types import Array, Flags
 from pound_solve.report.plot import style
 
 WAITING: Final = "label without a place"
-ROOM = 1.5  #: free pixels around a text
+ROOM = 2.5  #: free pixels around a text
 POINT = 3.0  #: least half the size of a point that a text should not cover, in pixels
 #: sides on which a label may stand: direction, and which corner of the text points at it
 SIDES: Final = (
@@ -44,13 +44,11 @@ def label(axes: Any, at: Any, text: str, far: bool = False, **look: Any) -> None
 
 
 def settle(figure: Any) -> None:
-    """Give the labels of an arranged figure their places, or take them out."""
+    """Arrange a figure, and give its labels their places, or take them out."""
     waiting = [(axes, [t for t in axes.texts if t.get_gid() == WAITING]) for axes in figure.axes]
-    if not any(texts for _, texts in waiting):
-        return
-    for _, texts in waiting:
-        for text in texts:
-            text.set_visible(False)
+    for text in (text for _, texts in waiting for text in texts):
+        text.set_visible(False)
+    style.arrange(figure)
     for axes, texts in waiting:
         if texts:
             _settle(axes, texts)

@@ -169,6 +169,7 @@ def arrange(picture: Any) -> None:
     picture.set_layout_engine("none")
     for axes, box in places:
         axes.set_position([round(value, 6) for value in box.bounds])
+    picture.draw_without_rendering()  # equal scales move the axes again
 
 
 def text_box(text: Any) -> Any:

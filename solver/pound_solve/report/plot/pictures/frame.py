@@ -14,19 +14,19 @@ def frame(results: Results, choice: Choice) -> Any:
     s = geometry.DrawnStructure(results)
     figure = style.figure(*s.shape(), title=results.title)
     axes = figure.add_subplot()
-    panel(axes, s)
+    panel(axes, s, 500.0)
     for node, xy in s.place.items():
         labels.label(axes, xy, str(node), fontsize=6)
     axes.set_title("triangles: supports; dots: masses; red: contacts")
     return figure
 
 
-def panel(axes: Any, s: geometry.DrawnStructure) -> None:
-    """Draw members, supports, masses and contacts with their names."""
+def panel(axes: Any, s: geometry.DrawnStructure, width: float) -> None:
+    """Draw members, supports, masses and contacts with their names, about as wide as so many points."""
     s.frame(axes)
     s.draw(axes, color=style.BLUE, linewidth=1.4)
     s.draw_supports(axes)
-    s.draw_masses(axes)
+    s.draw_masses(axes, width)
     s.draw_contacts(axes)
     for e in s.elements[s.elements["kind"] == "CONTACT"]:
         name, i = geometry.contact_name(e), s.place[int(e["i"])]

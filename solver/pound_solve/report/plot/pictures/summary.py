@@ -62,7 +62,7 @@ def _moments(axes: Any, results: Results) -> None:
 def _structure(axes: Any, results: Results) -> None:
     """Draw the structure with the names of its contacts."""
     s = DrawnStructure(results)
-    frame.panel(axes, s)
+    frame.panel(axes, s, 220.0)
     axes.set_title("structure", loc="left")
 
 
