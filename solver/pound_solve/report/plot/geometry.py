@@ -96,7 +96,7 @@ class DrawnStructure:
         """A dot at every mass, its area in proportion, on axes of about a width in points."""
         heaviest = max(self.mass.values(), default=0.0)
         lengths = [np.hypot(*(self.place[j] - self.place[i])) for i, j in self.lines(contacts=False)]
-        apart = width * float(np.median(lengths)) / self.size if lengths else width
+        apart = width * float(np.quantile(lengths, 0.25)) / self.size if lengths else width
         largest = min(8.0, 0.7 * apart)
         for node, mass in self.mass.items():
             if heaviest and mass:

@@ -1,9 +1,10 @@
 """Labels that never overprint: each takes the first free place beside its point, or none.
 
 A picture adds its labels with `label`; when all is drawn, `settle` gives them their places in the order in
-which they were added.  A place is free where the text covers no other text and lies within the axes; among
-free places, the one that covers the fewest lines and points is taken.  A label without a free place is left
-out.  Nothing is left to chance: equal pictures have equal labels.
+which they were added.  A place is free where the text covers no other text and no point, lies within the
+axes, and is not nearer to the point of another label than to its own; among free places, the one that
+covers the fewest lines is taken.  A label without a free place is left out.  Nothing is left to chance:
+equal pictures have equal labels.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from pound_solve.report.plot import style
 WAITING: Final = "label without a place"
 ROOM = 2.5  #: free pixels around a text
 POINT = 3.0  #: least half the size of a point that a text should not cover, in pixels
+SAME = 4.0  #: pixels within which points are one, as nodes on both sides of a gap
 #: sides on which a label may stand: direction, and which corner of the text points at it
 SIDES: Final = (
     (1, 1, "left", "bottom"),
@@ -29,7 +31,7 @@ SIDES: Final = (
     (1, 0, "left", "center"),
     (-1, 0, "right", "center"),
 )
-DISTANCES: Final = (4.0, 8.0, 16.0, 28.0, 44.0)  #: from the point, in points of print
+DISTANCES: Final = (6.0, 9.0, 16.0, 28.0, 44.0)  #: from the point, in points of print
 
 
 def label(axes: Any, at: Any, text: str, far: bool = False, **look: Any) -> None:
@@ -58,9 +60,11 @@ def _settle(axes: Any, texts: list[Any]) -> None:
     taken = [t.get_window_extent().extents for t in axes.texts if t.get_visible() and t.get_text()]
     lines, points = _drawn(axes)
     window = axes.get_window_extent().extents + np.array([-ROOM, -ROOM, ROOM, ROOM])
+    near = [t for t in texts if t.arrow_patch is None]
+    anchors = axes.transData.transform(np.reshape([t.xy for t in near], (-1, 2)))
     for text in texts:
         text.set_gid(None)
-        place = _place(text, window, taken, lines, points)
+        place = _place(text, window, taken, lines, points, anchors)
         if place is None:
             text.remove()
             continue
@@ -68,7 +72,9 @@ def _settle(axes: Any, texts: list[Any]) -> None:
         text.set_visible(True)
 
 
-def _place(text: Any, window: Array, taken: list[Array], lines: Array, points: Array) -> Array | None:
+def _place(
+    text: Any, window: Array, taken: list[Array], lines: Array, points: Array, anchors: Array
+) -> Array | None:
     """Move a text to its best free place, and return the box that it takes there, in pixels."""
     text.set_visible(True)
     best: tuple[int, Array, tuple[Any, ...]] | None = None
@@ -81,9 +87,11 @@ def _place(text: Any, window: Array, taken: list[Array], lines: Array, points: A
             # the text alone: its line to the point may cross others
             box = style.text_box(text) + np.array([-ROOM, -ROOM, ROOM, ROOM])
             inside = (box[:2] >= window[:2]).all() and (box[2:] <= window[2:]).all()
-            if not inside or _overlap(box, others).any():
+            if not inside or _overlap(box, others).any() or _overlap(box, points).any():
                 continue
-            hidden = int(_crossed(box, lines).sum() + _overlap(box, points).sum())
+            if not far and _nearer(box, text.axes.transData.transform(text.xy), anchors):
+                continue
+            hidden = int(_crossed(box, lines).sum())
             if best is None or hidden < best[0]:
                 best = hidden, box, how
         if best is not None and best[0] == 0:
@@ -126,6 +134,13 @@ def _overlap(box: Array, others: Array) -> Flags:
         & (others[:, 3] > box[1])
     )
     return out
+
+
+def _nearer(box: Array, own: Array, anchors: Array) -> bool:
+    """Whether the middle of a box is nearer to another point than to its own."""
+    middle = 0.5 * (box[:2] + box[2:])
+    away = np.hypot(*(anchors - middle).T)
+    return bool((away < np.hypot(*(own - middle)) - SAME).any())
 
 
 def _crossed(box: Array, lines: Array) -> Flags:
