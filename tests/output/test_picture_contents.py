@@ -276,7 +276,7 @@ def test_profiles_are_those_of_the_tables(pair: Results) -> None:
         own = {r["quantity"]: r for r in extremes[extremes["building"] == row["building"]]}
         for axes, quantity, column, factor in zip(
             figure.axes[3 * n : 3 * n + 3],
-            ("drift ratio", "shear", "acceleration"),
+            ("drift ratio", "shear", "floor acceleration"),
             ("drift", "shear", "acceleration"),
             (100.0, 1.0, 1.0),
         ):

@@ -33,7 +33,8 @@ def spectra(curves: Sequence[Curve], units: Units, path: Path) -> None:
                 f"{quantity} [{units.text(unit)}]",
             )
             _panel(axes, curves, quantity)
-        style.legend(axes)
+        named = axes.get_legend_handles_labels()
+        figure.legend(*named, loc="outside lower left")
         style.save(figure, path)
 
 
@@ -46,7 +47,6 @@ def _panel(axes: Any, curves: Sequence[Curve], quantity: str) -> None:
             look = style.stroke(k)
             if several:
                 look["linestyle"] = STROKES[i % len(STROKES)]
-            name = style.short(curve.name, 34)
-            name = f"{name}, {100.0 * found.damping[i]:g} %" if several else name
+            name = f"{curve.name}, {100.0 * found.damping[i]:g} %" if several else curve.name
             axes.semilogx(found.periods, values, **look, label=name)
     axes.set_ylim(bottom=0.0)

@@ -17,7 +17,7 @@ from pound_solve.results import Results
 PROFILES = {
     "drift ratio": ("drift ratio", "%", 100.0),
     "shear": ("storey shear", "F", 1.0),
-    "acceleration": ("total floor acceleration", "L/T^2", 1.0),
+    "floor acceleration": ("total floor acceleration", "L/T^2", 1.0),
 }
 
 
@@ -53,7 +53,7 @@ def panel(axes: Any, results: Results, names: list[str], quantity: str) -> None:
         look = {"color": style.stroke(n)["color"], "linewidth": 1.2}
         for values, dashes in ((high, "-"), (low, "--")):
             label = style.short(name) if dashes == "-" else None
-            if quantity == "acceleration":
+            if quantity == "floor acceleration":
                 at = [_base(own), *own["level"]]
                 base = base_acceleration(results, name)
                 shown = [base[0] if dashes == "-" else base[1], *values]

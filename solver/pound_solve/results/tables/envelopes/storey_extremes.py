@@ -19,7 +19,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
     for n, (b, i) in enumerate(storeys(run.history.items.buildings)):
         yield b.name, i, "drift ratio", "-", *drift[n]
         yield b.name, i, "shear", units.text("F"), *force[2 * n]
-        yield b.name, i, "acceleration", units.text("L/T^2"), *motion[n]
+        yield b.name, i, "floor acceleration", units.text("L/T^2"), *motion[n]
 
 
 def remark(run: RunRecord) -> str:
@@ -35,7 +35,7 @@ TABLE = Table(
     columns=(
         Column("building", doc="name of the building"),
         Column("storey", fmt="int", doc="number of the storey, from below"),
-        Column("quantity", doc="`drift ratio`, `shear` or `acceleration`, that of the floor above"),
+        Column("quantity", doc="`drift ratio`, `shear` or `floor acceleration`, of the floor above"),
         UNIT,
         *extreme_columns(""),
     ),
@@ -46,6 +46,6 @@ TABLE = Table(
     sample=(
         ("A", 1, "drift ratio", "-", 0.00745, 2.726, -0.0061, 5.06),
         ("A", 1, "shear", "kN", 1152.39, 6.458, -1256.96, 4.866),
-        ("A", 1, "acceleration", "m/s^2", 3.251, 1.988, -2.81, 3.554),
+        ("A", 1, "floor acceleration", "m/s^2", 3.251, 1.988, -2.81, 3.554),
     ),
 )
