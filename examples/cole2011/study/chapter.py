@@ -15,6 +15,8 @@ from runs import PLACES, Run
 from statements import judge, sensitivity
 from tabulate import tabulate
 
+from pound_solve.report.plot import style
+
 
 @dataclass(frozen=True)
 class Study:
@@ -151,7 +153,8 @@ def pictures(folder: Path, study: Study) -> dict[str, Path]:
     out: dict[str, Path] = {}
     for name, (draw, *what) in drawn.items():
         out[name] = folder / f"{name.replace(' ', '_')}.svg"
-        draw(*what, out[name])
+        with style.sheet():
+            draw(*what, out[name])
     return out
 
 

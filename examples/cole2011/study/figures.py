@@ -114,7 +114,9 @@ def figure_6(path: Path) -> None:
         for colour, tau in zip(["0.1", *COLOURS.values(), "#7a3d7a"], PERIODS):
             pairs = [pair(mu, tau) for mu in RATIOS]
             label = f"T1/T2 = {tau:g}" + (" (lumped)" if tau == 1.0 else "")
-            axes.semilogx(RATIOS, [p.alpha[n] for p in pairs], color=colour, linewidth=1.3, label=label)
+            axes.semilogx(
+                RATIOS, [p.alpha[n] for p in pairs], "-", color=colour, linewidth=1.3, label=label
+            )
             axes.semilogx(RATIOS, [p.alpha_paper[n] for p in pairs], ":", color=colour, linewidth=1.3)
         axes.set_xlabel("m1 / m2")
         axes.set_title(f"alpha {n + 1}: lines exact, dots by the paper", fontsize=9)
@@ -128,9 +130,11 @@ def figure_7(path: Path) -> None:
     axes = axes_of(figure)[0]
     for colour, tau in zip(["0.1", *COLOURS.values(), "#7a3d7a"], PERIODS):
         pairs = [pair(mu, tau) for mu in RATIOS]
-        axes.semilogx(RATIOS, [p.e for p in pairs], color=colour, linewidth=1.4, label=f"T1/T2 = {tau:g}")
+        axes.semilogx(
+            RATIOS, [p.e for p in pairs], "-", color=colour, linewidth=1.4, label=f"T1/T2 = {tau:g}"
+        )
         axes.semilogx(RATIOS, [p.e_paper for p in pairs], ":", color=colour, linewidth=1.2)
-        axes.semilogx(RATIOS, [0.5 * p.e for p in pairs], color=colour, linewidth=0.5)
+        axes.semilogx(RATIOS, [0.5 * p.e for p in pairs], "-", color=colour, linewidth=0.5)
     axes.axhline(0, color="0.4", linewidth=0.8)
     axes.set_ylim(-1, 1.05)
     axes.set_xlabel("m1 / m2")
@@ -148,7 +152,7 @@ def theory_map(path: Path) -> None:
     axes = axes_of(figure)[0]
     levels = (-2.0, -1.5, -1.0, -0.75, -0.5, -0.25, -0.1, -0.02)
     filled = axes.contourf(ratios, periods, error, levels=(*levels, 1e-9), cmap="YlOrBr_r")
-    axes.plot(ratios, np.where(ratios <= 1, ratios, np.nan), color="0.2", linewidth=1.2)
+    axes.plot(ratios, np.where(ratios <= 1, ratios, np.nan), "-", color="0.2", linewidth=1.2)
     axes.annotate("Z1 = Z2: the paper\nholds on the left", (0.06, 0.8), fontsize=8)
     first, second = PAIR.first, PAIR.second
     at = first.mass / second.mass, first.period / second.period

@@ -5,25 +5,44 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pound_solve.cli import common
 
+if TYPE_CHECKING:
+    from pound_solve.report.plot import Choice
+    from pound_solve.results import Results
+
 SUMMARY = "draw pictures of a results file (needs matplotlib: the extra plot)"
-#: those of `report.plot`, which is not imported for the help
-PICTURES = (
-    "frame", "modes", "deformed", "envelopes", "histories", "energy", "loops", "contacts", "collisions",
-    "study",
-)  # fmt: skip
+STILL, MOVING = common.FORMATS, ("html", "gif", "mp4")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("results", help="results file (.h5)")
-    parser.add_argument(
-        "pictures", nargs="*", metavar="PICTURE", help=f"{', '.join(PICTURES)} (default: all)"
-    )
+    parser.add_argument("results", nargs="?", help="results file (.h5); none: list the pictures")
+    text = "its name (default: all that the file has data for, but the animation)"
+    parser.add_argument("pictures", nargs="*", metavar="PICTURE", help=text)
     parser.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: the file's)")
-    parser.add_argument("--as", dest="ending", default="svg", choices=common.FORMATS, help="format")
+    text = "format (default: svg; of the animation html)"
+    parser.add_argument("--as", dest="ending", choices=(*STILL, *MOVING), help=text)
+    parser.add_argument(
+        "--member",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="this member, spring, hinge or contact only, by number, name or label; may be repeated",
+    )
+    parser.add_argument("--time", type=_time, metavar="T", help="at this time")
+    parser.add_argument("--between", type=_time, nargs=2, metavar=("T1", "T2"), help="these times only")
+    parser.add_argument(
+        "--style", type=Path, metavar="FILE", help="style sheet of matplotlib, laid over the program's"
+    )
+
+
+def _time(word: str) -> float:
+    """A finite time of an option."""
+    (value,) = common.numbers([word], "this option takes a time", argparse.ArgumentTypeError)
+    return value
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -31,25 +50,65 @@ def execute(args: argparse.Namespace) -> int:
     from pound_solve.report import plot
     from pound_solve.results import Results, ResultsError
 
-    unknown = [name for name in args.pictures if name not in PICTURES]
-    if unknown:
-        text = f"there is no picture {unknown[0]}: choose from {', '.join(PICTURES)}"
-        return common.complain(text, common.MISTAKES)
+    if args.results is None:
+        for picture in plot.PICTURES.values():
+            print(f"{picture.name:<14} {picture.shows}")
+        return common.DONE
+    between = tuple(args.between) if args.between else None
+    choice = plot.Choice(tuple(args.member), args.time, between, args.style)
+    if wrong := _wrong(args, choice):
+        return common.complain(wrong, common.MISTAKES)
     try:
         with Results.open(args.results) as results:
-            can = plot.possible(results)
-            if lacking := [name for name in args.pictures if name not in can]:
-                needs = ", ".join(plot.PICTURES[lacking[0]][1])
-                text = f"{args.results} lacks what the picture {lacking[0]} needs: {needs}"
-                return common.complain(text, common.MISTAKES)
-            folder = args.out or results.path.parent
-            drawn, left_out = plot.draw(results, args.pictures or can, folder, args.ending)
+            return _draw(results, args, choice)
     except ResultsError as err:
         return common.complain(str(err))
+    except plot.ChoiceError as err:
+        return common.complain(str(err), common.MISTAKES)
     except ImportError:
         return common.complain('pictures need matplotlib: pip install "pound-solve[plot]"', common.MISTAKES)
-    for path in drawn:
-        print(path)
+
+
+def _wrong(args: argparse.Namespace, choice: Choice) -> str:
+    """What is wrong with the arguments, or nothing."""
+    from pound_solve.report.plot import PICTURES
+
+    for name in args.pictures:
+        if name not in PICTURES:
+            return f"there is no picture {name}: choose from {', '.join(PICTURES)}"
+        if args.ending and args.ending not in PICTURES[name].endings:
+            return f"the picture {name} is written as {', '.join(PICTURES[name].endings)}"
+    if choice.between and not choice.between[0] < choice.between[1]:
+        return "--between takes the first time, then the last"
+    for option in sorted(choice.given):
+        users = [p.name for p in PICTURES.values() if option in p.options]
+        if not set(users) & set(args.pictures):
+            return f"--{option} belongs to the pictures {', '.join(users)}: name one of them"
+    return ""
+
+
+def _draw(results: Results, args: argparse.Namespace, choice: Choice) -> int:
+    """Draw what is asked for, or what can be drawn in this format."""
+    from pound_solve.report import plot
+
+    folder: Path = args.out or results.path.parent
+    held = {*results.tables, *results.histories}
+    for name in args.pictures:
+        if not held >= set(needs := plot.PICTURES[name].needs):
+            text = f"{args.results} lacks what the picture {name} needs: {', '.join(needs)}"
+            return common.complain(text, common.MISTAKES)
+    names = args.pictures or plot.possible(results, args.ending or STILL[0])
+    drawn: list[Path] = []
+    left_out: dict[str, list[str]] = {}
+    for name in names:
+        moves = plot.PICTURES[name].write is not None
+        ending = args.ending or (MOVING if moves else STILL)[0]
+        more, less = plot.draw(results, [name], folder, ending, choice)
+        drawn += more
+        for what, own in less.items():
+            left_out.setdefault(what, []).extend(own)
+        for path in more:
+            print(path, flush=True)
     if left_out:
         reasons = "; ".join(f"{', '.join(names)} (no {what})" for what, names in left_out.items())
         print(f"pound-solve: left out, nothing to draw: {reasons}", file=sys.stderr)

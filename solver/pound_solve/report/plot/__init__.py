@@ -2,46 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
-from pound_solve.report.plot import course, structure, style
+from pound_solve.report.plot import labels, style
+from pound_solve.report.plot.catalog import PICTURES
 from pound_solve.report.plot.loop import loop
+from pound_solve.report.plot.schema import ALL, MOVING, STILL, Choice, ChoiceError, Nothing, Picture
 from pound_solve.report.plot.spectrum import spectra
-from pound_solve.report.plot.study import study
-from pound_solve.report.plot.style import Nothing, ready
+from pound_solve.report.plot.style import ready, sheet
 from pound_solve.results import Results
 from pound_solve.results.contents import TABLES
 
-__all__ = ("PICTURES", "Nothing", "draw", "draw_into", "loop", "possible", "ready", "spectra")
-
-#: Every picture: what draws it, and the tables and histories that it needs.
-PICTURES: Mapping[str, tuple[Callable[[Results], Any], tuple[str, ...]]] = MappingProxyType(
-    {
-        "frame": (structure.frame, ("nodes", "elements")),
-        "modes": (structure.modes, ("mode_shapes",)),
-        "deformed": (structure.deformed, ("node/u",)),
-        "envelopes": (structure.envelopes, ("node_envelope",)),
-        "histories": (course.histories, ("drift",)),
-        "energy": (course.energy, ("energy",)),
-        "loops": (course.loops, ("spring/force",)),
-        "contacts": (course.contacts, ("contact/force",)),
-        "collisions": (course.collisions, ("collisions", "contact/force")),
-        "study": (study, ("study",)),
-    }
-)
+__all__ = (
+    "ALL", "MOVING", "PICTURES", "STILL", "Choice", "ChoiceError", "Nothing", "draw", "draw_into", "loop",
+    "picture", "possible", "ready", "sheet", "spectra",
+)  # fmt: skip
 
 
-def possible(results: Results) -> list[str]:
-    """Pictures that the file has the tables and histories for, be they empty."""
+def possible(results: Results, ending: str = "svg") -> list[str]:
+    """Pictures of a format that the file has the tables and histories for, be they empty."""
     held = {*results.tables, *results.histories}
-    return [name for name, (_, needs) in PICTURES.items() if held >= set(needs)]
+    return [p.name for p in PICTURES.values() if ending in p.endings and held >= set(p.needs)]
 
 
 def draw(
-    results: Results, names: Sequence[str], folder: Path, ending: str = "svg"
+    results: Results,
+    names: Sequence[str],
+    folder: Path,
+    ending: str = "svg",
+    choice: Choice = ALL,
 ) -> tuple[list[Path], dict[str, list[str]]]:
     """Draw pictures into files ``<results>_<picture>.<ending>``.
 
@@ -53,7 +44,8 @@ def draw(
     folder : Path
         Made where it is missing.
     ending : str
-        ``svg``, ``png`` or ``pdf``.
+        One of the picture's endings.
+    choice : Choice
 
     Returns
     -------
@@ -65,6 +57,8 @@ def draw(
     ------
     ImportError
         matplotlib is not installed.
+    ChoiceError
+        The file has not what is chosen.
     """
     ready(folder)
     drawn: list[Path] = []
@@ -72,7 +66,7 @@ def draw(
     for name in names:
         path = folder / f"{results.path.stem}_{name}.{ending}"
         try:
-            draw_into(results, name, path)
+            draw_into(results, name, path, choice)
         except Nothing as why:
             left_out.setdefault(str(why), []).append(name)
         else:
@@ -80,7 +74,7 @@ def draw(
     return drawn, left_out
 
 
-def draw_into(results: Results, name: str, path: Path) -> None:
+def draw_into(results: Results, name: str, path: Path, choice: Choice = ALL) -> None:
     """Draw one picture into a file, whose ending names the format; see `draw`.
 
     Raises
@@ -88,8 +82,33 @@ def draw_into(results: Results, name: str, path: Path) -> None:
     Nothing
         There is nothing to draw.
     """
-    picture, needs = PICTURES[name]
-    for need in needs:
+    spec = PICTURES[name]
+    _complete(results, spec)
+    with style.sheet(choice.style):
+        if spec.write:
+            spec.write(results, choice, path)
+        else:
+            style.save(picture(results, name, choice), path)
+
+
+def picture(results: Results, name: str, choice: Choice = ALL) -> Any:
+    """The figure of a picture, its labels in their places; the first frame of one that moves.
+
+    Raises
+    ------
+    Nothing
+        There is nothing to draw.
+    """
+    spec = PICTURES[name]
+    _complete(results, spec)
+    with style.sheet(choice.style):
+        figure = spec.draw(results, choice)
+        labels.settle(figure)
+    return figure
+
+
+def _complete(results: Results, spec: Picture) -> None:
+    """Raise where the file has nothing of what a picture needs."""
+    for need in spec.needs:
         if not results.holds(need):
             raise Nothing("history" if need in results.histories else TABLES[need].title.lower())
-    style.save(picture(results), path)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from textwrap import fill
 
 from pound_solve.report.plot import style
 from pound_solve.report.text_plot import Curve
@@ -27,10 +26,11 @@ def loop(curve: Curve, title: str, x_name: str, y_name: str, path: Path) -> None
     OSError
         The file cannot be written.
     """
-    figure = style.figure(6.4, 4.5)
-    axes = style.grid(figure.add_subplot(), x_name, y_name)
-    axes.set_title(fill(title, 80), fontsize=9)
-    axes.axhline(0.0, color="0.4", linewidth=0.8)
-    axes.axvline(0.0, color="0.4", linewidth=0.8)
-    axes.plot(*zip(*curve), color=style.BLUE, linewidth=1.4)
-    style.save(figure, path)
+    with style.sheet():
+        figure = style.figure(6.4, 4.5)
+        axes = style.grid(figure.add_subplot(), x_name, y_name)
+        axes.set_title(style.wrapped(title, 80))
+        axes.axhline(0.0, color="0.4", linewidth=0.8)
+        axes.axvline(0.0, color="0.4", linewidth=0.8)
+        axes.plot(*zip(*curve), color=style.BLUE, linestyle="-", linewidth=1.4)
+        style.save(figure, path)

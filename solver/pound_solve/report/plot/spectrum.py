@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from pound_deck.model import Units
 from pound_solve.report.plot import style
@@ -24,20 +24,29 @@ def spectra(curves: Sequence[Curve], units: Units, path: Path) -> None:
     OSError
         The file cannot be written.
     """
-    figure = style.figure(9.0, 4.2)
+    with style.sheet():
+        figure = style.figure(9.5, 4.2)
+        for n, (quantity, unit) in enumerate((("PSA", "L/T^2"), ("SD", "L"))):
+            axes = style.grid(
+                figure.add_subplot(1, 2, n + 1),
+                f"period [{units.time}]",
+                f"{quantity} [{units.text(unit)}]",
+            )
+            _panel(axes, curves, quantity)
+        named = axes.get_legend_handles_labels()
+        figure.legend(*named, loc="outside lower left")
+        style.save(figure, path)
+
+
+def _panel(axes: Any, curves: Sequence[Curve], quantity: str) -> None:
+    """Draw one quantity of all curves; a single damping leaves the strokes to the motions."""
     several = any(len(curve.spectrum.damping) > 1 for curve in curves)
-    for n, (quantity, unit) in enumerate((("PSA", "L/T^2"), ("SD", "L"))):
-        axes = style.grid(
-            figure.add_subplot(1, 2, n + 1), f"period [{units.time}]", f"{quantity} [{units.text(unit)}]"
-        )
-        for k, curve in enumerate(curves):
-            found = curve.spectrum
-            for i, values in enumerate(getattr(found, quantity.lower())):
-                name = f"{curve.name}, {100.0 * found.damping[i]:g} %" if several else curve.name
-                axes.semilogx(
-                    found.periods, values, color=style.COLOURS[k % len(style.COLOURS)],
-                    linestyle=STROKES[i % len(STROKES)], linewidth=1.1, label=name,
-                )  # fmt: skip
-        axes.set_ylim(bottom=0.0)
-    figure.axes[0].legend(fontsize=7)
-    style.save(figure, path)
+    for k, curve in enumerate(curves):
+        found = curve.spectrum
+        for i, values in enumerate(getattr(found, quantity.lower())):
+            look = style.stroke(k)
+            if several:
+                look["linestyle"] = STROKES[i % len(STROKES)]
+            name = f"{curve.name}, {100.0 * found.damping[i]:g} %" if several else curve.name
+            axes.semilogx(found.periods, values, **look, label=name)
+    axes.set_ylim(bottom=0.0)

@@ -1,17 +1,66 @@
-"""What all pictures share: matplotlib (extra `plot`), imported here only, and how axes look in print."""
+"""What all pictures share: matplotlib (extra `plot`), imported here only, and how axes look in print.
+
+The look stands in a style sheet, `pound.mplstyle`, which a user's own is laid over.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
-BLUE, RED, GREEN = "#0b4f8a", "#b3301e", "#3d7a3d"
-COLOURS = (BLUE, "#b3541e", GREEN, "#7a3d7a", "#8a7a0b", "#0b8a7a", "0.35", "#5a5ad0")
+from pound_solve.report.plot.schema import ChoiceError
+
+SHEET: Final = Path(__file__).with_name("pound.mplstyle")
+BLUE, RED, GREEN = "C0", "C1", "C2"  #: of the style: members; contacts and limits; supports
+LINES = 10  #: curves that a style tells apart
+LONGEST = 26  #: characters of a name in a legend
 
 
-class Nothing(Exception):
-    """There is nothing to draw; the message states what is missing."""
+@contextmanager
+def sheet(own: Path | None = None) -> Iterator[None]:
+    """Draw within in the style of the program, below one's own.
+
+    Raises
+    ------
+    ImportError
+        matplotlib is not installed.
+    OSError, ChoiceError
+        The file cannot be read, or is no style sheet.
+    """
+    from matplotlib import rc_context, rc_params_from_file
+
+    with rc_context(rc_params_from_file(SHEET, use_default_template=False)):
+        if own is None:
+            yield
+            return
+        with rc_context(_settings(own)):
+            yield
+
+
+def _settings(path: Path) -> Any:
+    """Settings of a style sheet: lines ``name: value``, comments after ``#``."""
+    from matplotlib import RcParams, rcParams
+
+    out: Any = RcParams()
+    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+        name, colon, value = (part.strip() for part in line.partition("#")[0].partition(":"))
+        where = f"{path}:{number}"
+        if not name and not colon:
+            continue
+        if not colon:
+            raise ChoiceError(f"{where}: a line of a style sheet reads `name: value`, as `font.size: 9`")
+        if name not in rcParams:
+            near = get_close_matches(name, rcParams, 1)
+            hint = f"; did you mean {near[0]}?" if near else ""
+            raise ChoiceError(f"{where}: matplotlib has no setting {name}{hint}")
+        try:
+            out[name] = value
+        except ValueError as err:
+            raise ChoiceError(f"{where}: {err}") from None
+    return out
 
 
 def ready(folder: Path) -> None:
@@ -40,18 +89,55 @@ def figure(width: float = 7.0, height: float = 4.5, title: str = "") -> Any:
 
     out = Figure(figsize=(width, height), layout="constrained")
     if title:
-        out.suptitle(title, fontsize=10)
+        out.suptitle(wrapped(title, int(12 * width)))
     return out
+
+
+def wrapped(text: str, width: int) -> str:
+    """A text in lines of a number of characters."""
+    from textwrap import fill
+
+    return fill(text, width)
+
+
+def short(name: str, most: int = LONGEST) -> str:
+    """A name that a legend has room for."""
+    return name if len(name) <= most else f"{name[: most - 1]}…"
 
 
 def grid(axes: Any, x: str = "", y: str = "") -> Any:
     """Light lines behind the curves, and names of the axes."""
-    axes.grid(color="0.88", linewidth=0.6)
+    axes.grid(True)
     axes.set_axisbelow(True)
-    axes.set_xlabel(x, fontsize=8)
-    axes.set_ylabel(y, fontsize=8)
-    axes.tick_params(labelsize=8)
+    axes.set_xlabel(x)
+    axes.set_ylabel(y)
     return axes
+
+
+def stroke(k: int) -> dict[str, Any]:
+    """Colour and stroke of the curve of a number, from 0; `LINES` of them differ."""
+    from matplotlib import rcParams
+
+    cycle = rcParams["axes.prop_cycle"].by_key()
+    return {
+        name: values[k % len(values)]
+        for name, values in cycle.items()
+        if name in ("color", "linestyle", "marker")
+    }
+
+
+def legend(axes: Any, handles: Sequence[Any] | None = None, title: str = "") -> None:
+    """Name the curves beside the axes, where nothing is drawn."""
+    named: dict[str, Any] = {"handles": handles} if handles is not None else {}
+    count = len(handles if handles is not None else axes.get_legend_handles_labels()[1])
+    axes.legend(
+        **named,
+        ncols=2 if count > 6 else 1,
+        columnspacing=1.0,
+        title=title or None,
+        loc="upper left",
+        bbox_to_anchor=(1.005, 1.02),
+    )
 
 
 def panels(count: int, title: str, each: tuple[float, float] = (3.4, 2.6)) -> tuple[Any, Sequence[Any]]:
@@ -65,11 +151,40 @@ def panels(count: int, title: str, each: tuple[float, float] = (3.4, 2.6)) -> tu
     return out, axes
 
 
+def patches(named: Sequence[tuple[str, str]]) -> list[Any]:
+    """Coloured discs for a legend, by their (colour, name)."""
+    from matplotlib.lines import Line2D
+
+    look = {"linestyle": "", "marker": "o", "markersize": 7, "markeredgecolor": "0.2"}
+    return [Line2D([], [], color=c, label=name, **look) for c, name in named]  # type: ignore[arg-type]
+
+
+def arrange(picture: Any) -> None:
+    """Give all axes their final places.
+
+    The layout's last digits differ from run to run, and bytes would with them: they are rounded off.
+    """
+    picture.draw_without_rendering()
+    places = [(axes, axes.get_position(original=True)) for axes in picture.axes]
+    picture.set_layout_engine("none")
+    for axes, box in places:
+        axes.set_position([round(value, 6) for value in box.bounds])
+    picture.draw_without_rendering()  # equal scales move the axes again
+
+
+def text_box(text: Any) -> Any:
+    """Corners of a drawn text in pixels, without the line to its point: x0, y0, x1, y1."""
+    from matplotlib.text import Text
+
+    text.get_window_extent()  # moves it to its place
+    return Text.get_window_extent(text).extents
+
+
 def save(picture: Any, path: Path) -> None:
     """Write a picture, whose file's ending names the format; equal numbers give equal bytes."""
     import matplotlib
 
-    _literal(picture)
+    literal(picture)
     with matplotlib.rc_context({"svg.hashsalt": "pound-solve", "svg.fonttype": "none"}):
         dated = {"Date": None} if path.suffix == ".svg" else None
         if path.suffix == ".pdf":
@@ -77,7 +192,28 @@ def save(picture: Any, path: Path) -> None:
         picture.savefig(path, dpi=150, metadata=dated)
 
 
-def _literal(picture: Any) -> None:
+def film(picture: Any, show: Callable[[int], None], count: int, path: Path, rate: int) -> None:
+    """Write `count` frames, which `show` draws one by one, at `rate` a second into a .gif or .mp4.
+
+    Raises
+    ------
+    ChoiceError
+        There is no program that writes this format.
+    """
+    from matplotlib.animation import writers
+
+    name, need = ("pillow", "Pillow") if path.suffix == ".gif" else ("ffmpeg", "the program ffmpeg")
+    if not writers.is_available(name):
+        raise ChoiceError(f"{path.suffix} needs {need}, which is not installed: html needs nothing")
+    literal(picture)
+    writer = writers[name](fps=rate)
+    with writer.saving(picture, str(path), dpi=100):
+        for k in range(count):
+            show(k)
+            writer.grab_frame()
+
+
+def literal(picture: Any) -> None:
     """Have names of a deck drawn as they are: dollar signs mean formulas in numbers of log axes only."""
     from matplotlib.text import Text
 

@@ -1,4 +1,4 @@
-"""Picture of a study: the largest error of every run against its time and its steps."""
+"""Picture `study`: the largest error of every run against its time and its steps."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 
 from pound_solve.report.plot import style
+from pound_solve.report.plot.schema import Choice, Picture
 from pound_solve.results import Results
 
 MARKS = "os^Dvx"
 ROOM = 0.05  #: left beside the curves, as a share of a decade
 
 
-def study(results: Results) -> Any:
+def study(results: Results, choice: Choice) -> Any:
     """Error against time to solve and against the number of steps, one curve a method."""
     table = results.table("study")
     table = table[np.isfinite(table["seconds"])]
@@ -30,13 +31,13 @@ def study(results: Results) -> Any:
             own = (table["method"] == method) & (table[column] > 0)
             if own.any():
                 axes.loglog(
-                    table[column][own], worst[own], color=style.COLOURS[k % len(style.COLOURS)],
-                    marker=MARKS[k % len(MARKS)], markersize=4, linewidth=0.9, label=method,
+                    table[column][own], worst[own], **{**style.stroke(k), "marker": MARKS[k % len(MARKS)]},
+                    markersize=4, linewidth=0.9, label=method,
                 )  # fmt: skip
         for target in results.table("study_advice")["target"]:
             axes.axhline(target, color="0.5", linewidth=0.6, linestyle="--")
         _decades(axes)
-    figure.axes[0].legend(fontsize=7)
+    style.legend(figure.axes[-1])
     return figure
 
 
@@ -46,3 +47,12 @@ def _decades(axes: Any) -> None:
         low, high = np.log10(axis.get_data_interval())
         limit(10.0 ** np.floor(low - ROOM), 10.0 ** np.ceil(high + ROOM))
     axes.tick_params(which="minor", labelbottom=False, labelleft=False)
+
+
+SPEC = Picture(
+    name="study",
+    place=190,
+    shows="error over time and over steps of every method, of a results file of `study`",
+    needs=("study", "study_advice"),
+    draw=study,
+)

@@ -1,0 +1,22 @@
+"""All pictures of a results file: found in the modules of `pictures`, none is listed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+from types import MappingProxyType
+from typing import Final
+
+from pound_solve.modules import modules_below
+from pound_solve.report.plot import pictures
+from pound_solve.report.plot.schema import Picture
+
+
+def _found() -> list[Picture]:
+    """The objects `SPEC` of all modules, by place."""
+    specs = (import_module(name).SPEC for name in modules_below(pictures))
+    return sorted(specs, key=lambda spec: spec.place)
+
+
+#: Every picture by its name, in the order of their places.
+PICTURES: Final[Mapping[str, Picture]] = MappingProxyType({spec.name: spec for spec in _found()})

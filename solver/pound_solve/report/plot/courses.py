@@ -1,0 +1,97 @@
+"""Curves over time that several pictures draw: named beside the axes, ten at most, contact forces with
+their true peaks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.numerics.types import Array
+from pound_solve.report.plot import style
+from pound_solve.report.plot.schema import ALL, Choice
+from pound_solve.results import Results
+
+QUANTITY = {
+    "ground": ("ground acceleration", "ground motions"),
+    "drift": ("drift", "drifts"),
+    "contact/force": ("contact force", "contacts"),
+}  #: of a history: what its axis says, and what its curves are
+
+
+def worst(values: Array, most: int = style.LINES) -> list[int]:
+    """Columns of the largest absolute values, `most` of them, in their order."""
+    order = np.argsort(-np.abs(values).max(axis=0, initial=0.0), kind="stable")[:most]
+    return sorted(order.tolist())
+
+
+def panel(axes: Any, results: Results, name: str, choice: Choice = ALL, last: bool = True) -> None:
+    """Draw the columns of a history over time, those of the largest values where there are too many."""
+    rows = choice.span(results)
+    t, values, labels = results.time[rows], results.history(name)[rows], results.labels(name)
+    unit = ", ".join(dict.fromkeys(results.history_units(name)))
+    quantity, things = QUANTITY[name]
+    style.grid(axes, f"time [{results.units.time}]" if last else "", f"{quantity}\n[{unit}]")
+    chosen = worst(values)
+    named = motions(results) if name == "ground" else labels
+    for k, column in enumerate(chosen):
+        if name == "contact/force":
+            force_curve(axes, results, column, style.stroke(k), choice)
+        else:
+            axes.plot(t, values[:, column], **style.stroke(k), label=style.short(named[column]))
+    if choice.between:
+        axes.set_xlim(*choice.between)
+    if len(chosen) < len(labels):
+        axes.set_title(f"{len(chosen)} of {len(labels)} {things}, those with the largest values")
+    style.legend(axes)
+
+
+def motions(results: Results) -> tuple[str, ...]:
+    """Names of the ground motions with their directions, in the order of the history."""
+    labels = results.labels("ground")
+    table = results.table("motions") if "motions" in results.tables else ()
+    if len(table) != len(labels):
+        return labels
+    return tuple(f"{str(row['motion']).split(' ', 1)[-1]} {str(row['direction'])[0]}" for row in table)
+
+
+def of_contact(results: Results, name: str, choice: Choice = ALL) -> NDArray[Any]:
+    """Collisions of a contact, by the time of closing; those that reach into `between`."""
+    if "collisions" not in results.tables:
+        return np.empty(0, dtype=[(c, float) for c in ("t_start", "t_end", "peak_force", "t_peak")])
+    table = results.table("collisions")
+    own = table[[str(c) == name for c in table["contact"]]]
+    if choice.between is None:
+        return own
+    end = np.where(np.isnan(own["t_end"]), np.inf, own["t_end"])
+    return own[(own["t_start"] <= choice.between[1]) & (end >= choice.between[0])]
+
+
+def with_peaks(t: Array, force: Array, own: NDArray[Any]) -> tuple[Array, Array]:
+    """Times and forces of a contact: the stored ones, and start, true peak and end of every collision."""
+    hard = own[np.isfinite(own["peak_force"])]
+    ended, none = hard["t_end"][np.isfinite(hard["t_end"])], np.zeros(len(hard))
+    at = np.concatenate([hard["t_start"], t, hard["t_peak"], ended])
+    found = np.concatenate([none, force, hard["peak_force"], none[: len(ended)]])
+    order = np.argsort(at, kind="stable")
+    return at[order], found[order]
+
+
+def force_curve(
+    axes: Any, results: Results, column: int, look: Mapping[str, Any], choice: Choice = ALL
+) -> None:
+    """Draw the force of one contact over time; a ring marks each true peak, a bar an impact in no time."""
+    rows = choice.span(results)
+    name = results.labels("contact/force")[column]
+    own = of_contact(results, name, choice)
+    at, force = with_peaks(results.time[rows], results.history("contact/force")[rows, column], own)
+    axes.plot(at, force, **look, label=style.short(name))
+    peaks = own[np.isfinite(own["peak_force"])]
+    axes.plot(
+        peaks["t_peak"], peaks["peak_force"], "o", color=look["color"], fillstyle="none", markersize=4
+    )
+    impacts = own[np.isnan(own["peak_force"])]
+    axes.plot(impacts["t_start"], np.zeros(len(impacts)), "|", color=look["color"], markersize=10)

@@ -1,0 +1,269 @@
+"""Springs, contacts and members by the words of a user; the lines of M, V and N along members.
+
+Between the ends of a member, moments and forces follow from those at its ends and the loads between them:
+uniform loads (self weight among them) are what the end forces lack for equilibrium, point loads stand in
+the table `member_loads`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from pound_solve.numerics.types import Array
+from pound_solve.report.plot.geometry import contact_name
+from pound_solve.report.plot.schema import Choice, ChoiceError
+from pound_solve.results import Results
+
+STATIONS: Final = 21  #: places along a member
+MOST_LISTED = 60  #: names in a message
+#: forces along a member, with their names in words and those at both ends
+QUANTITIES: Final[Mapping[str, tuple[str, str, str]]] = {
+    "M": ("bending moment", "moment I", "moment J"),
+    "V": ("shear force", "shear I", "shear J"),
+    "N": ("axial force", "axial I", "axial J"),
+}
+
+
+def _words(results: Results, kind: str) -> list[set[str]]:
+    """For each column of springs, contacts or members: the words that name it, in small letters."""
+    elements = results.table("elements")
+    names = {int(e["element"]): str(e["name"]) for e in elements}
+    if kind == "spring":
+        labels = results.labels("spring/force") if "spring/force" in results.histories else ()
+        numbers = [int(label.split()[0]) for label in labels]
+    elif kind == "contact":
+        labels = results.labels("contact/force") if "contact/force" in results.histories else ()
+        number = {contact_name(e): int(e["element"]) for e in elements}
+        numbers = [number[label] for label in labels]
+    else:
+        numbers = members(results)
+        labels = tuple(map(str, numbers))
+    return [
+        {word.lower() for word in (label, str(n), names[n]) if word} for label, n in zip(labels, numbers)
+    ]
+
+
+def members(results: Results) -> list[int]:
+    """Elements between two nodes of which there are axial forces at both ends."""
+    two = {int(e["element"]) for e in results.table("elements") if e["j"]}
+    return list(dict.fromkeys(e for e, quantity in _ends(results) if quantity == "axial I" and e in two))
+
+
+def _ends(results: Results) -> list[tuple[int, str]]:
+    """Element and quantity of every force of members, of the history or else of the static state."""
+    if "member/force" in results.histories and len(results.time):
+        attributes = results.attributes("member/force")
+        return list(zip(map(int, attributes["element"]), map(str, attributes["quantity"])))
+    if "static_force" in results.tables:
+        return [(int(row["element"]), str(row["quantity"])) for row in results.table("static_force")]
+    return []
+
+
+def _columns(results: Results, choice: Choice, kind: str) -> list[int]:
+    asked = {word.lower() for word in choice.member}
+    return [k for k, words in enumerate(_words(results, kind)) if words & asked]
+
+
+def refuse(results: Results, choice: Choice, kinds: Sequence[str]) -> None:
+    """Raise where a word of `Choice.member` names nothing of these kinds (spring, contact, member).
+
+    Raises
+    ------
+    ChoiceError
+        It lists what there is.
+    """
+    known = {kind: _words(results, kind) for kind in kinds}
+    for word in choice.member:
+        if not any(word.lower() in words for found in known.values() for words in found):
+            listed = "; ".join(f"{kind}s {_listed(results, kind)}" for kind in kinds if known[kind])
+            raise ChoiceError(f"there is no {' or '.join(kinds)} {word!r}; there are: {listed or 'none'}")
+
+
+def _listed(results: Results, kind: str) -> str:
+    """Names of what there is of a kind."""
+    if kind == "spring":
+        names = list(results.labels("spring/force"))
+    elif kind == "contact":
+        names = list(results.labels("contact/force"))
+    else:
+        names = list(map(str, members(results)))
+    more = f", ... ({len(names)})" if len(names) > MOST_LISTED else ""
+    return ", ".join(names[:MOST_LISTED]) + more
+
+
+def chosen_springs(results: Results, choice: Choice) -> list[int]:
+    """Columns of the springs and hinges that the choice names."""
+    return _columns(results, choice, "spring")
+
+
+def chosen_contacts(results: Results, choice: Choice, refused: bool = True) -> list[int]:
+    """Columns of the contacts that the choice names; empty where it names none.
+
+    Raises
+    ------
+    ChoiceError
+        It names something else, which is `refused`.
+    """
+    if refused:
+        refuse(results, choice, ("contact",))
+    return _columns(results, choice, "contact")
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """Forces along one member.
+
+    Attributes
+    ----------
+    element : int
+    i, j : ndarray, shape (2,)
+        Ends of the flexible length [L].
+    x : ndarray, shape (n,)
+        Places between them, as shares of that length.
+    low, high : dict of str to ndarray, shape (n,)
+        Smallest and largest ``M`` (positive where the member sags: tension on the right of the line from I
+        to J) [F L], ``V`` (positive where it turns the member clockwise) and ``N`` (tension) [F].
+    """
+
+    element: int
+    i: Array
+    j: Array
+    x: Array
+    low: dict[str, Array]
+    high: dict[str, Array]
+
+
+def lines(results: Results, place: Mapping[int, Array], choice: Choice) -> Iterator[Line]:
+    """Forces along the chosen members, or all: at an instant, or their extremes over the history (of the
+    static state where there is none).
+
+    The extremes at the ends are the true ones; between the ends they are those at the stored instants, and
+    what these lack at the ends is added in proportion.
+    """
+    refuse(results, choice, ("member",))
+    if not members(results):
+        return
+    chosen = {members(results)[k] for k in _columns(results, choice, "member")} or set(members(results))
+    values, extremes = _values(results, choice), _extremes(results, choice)
+    blocks, points = _blocks(results), _point_loads(results)
+    for e in results.table("elements"):
+        number = int(e["element"])
+        if number not in chosen:
+            continue
+        i, j = place[int(e["i"])], place[int(e["j"])]
+        along = (j - i) / max(float(np.hypot(*(j - i))), 1e-300)
+        first, last = blocks.get(str(e["property"]), (0.0, 0.0))
+        i, j = i + first * along, j - last * along
+        own = {quantity: v for (n, quantity), v in values.items() if n == number}
+        x, found = along_member(own, float(np.hypot(*(j - i))), along, points.get(number, []))
+        low = {q: v.min(axis=0) for q, v in found.items()}
+        high = {q: v.max(axis=0) for q, v in found.items()}
+        for q, (_, *ends) in ((q, QUANTITIES[q]) for q in found):
+            for end, name, sign, share in zip((0, -1), ends, _SIGN[q], (1.0 - x, x)):
+                if (number, name) in extremes:
+                    least, most = sorted(sign * v for v in extremes[number, name])
+                    low[q] += share * (least - low[q][end])
+                    high[q] += share * (most - high[q][end])
+        yield Line(number, i, j, x, low, high)
+
+
+_SIGN: Final = {"M": (-1.0, 1.0), "V": (1.0, -1.0), "N": (1.0, 1.0)}  #: of the end forces at I and J
+
+
+def along_member(
+    ends: Mapping[str, Array], length: float, along: Array, points: Sequence[tuple[float, Array]] = ()
+) -> tuple[Array, dict[str, Array]]:
+    r"""Forces along a member from those at its ends.
+
+    .. math:: M(x) = -M_I (1 - x/L) + M_J x/L + M_0(x), \quad V(x) = V_I + w x + \textstyle\sum P
+
+    with :math:`M_0` the moment of the loads on a beam on two pins, and w the uniform load that the end
+    forces leave beside the point loads.
+
+    Parameters
+    ----------
+    ends : dict of str to ndarray, shape (nt,)
+        ``moment I``, ``shear I``, ``axial I`` and those at J; a bar has the axial ones only.
+    length : float
+        Of the flexible part [L].
+    along : ndarray, shape (2,)
+        Direction from I to J.
+    points : sequence of (place, force)
+        Point loads: share of the length from I, and force along global x and y [F].
+
+    Returns
+    -------
+    x : ndarray, shape (n,)
+        Places as shares of the length: `STATIONS`, and both sides of each point load.
+    forces : dict of str to ndarray, shape (nt, n)
+        ``M``, ``V``, ``N`` as `Line` defines them.
+    """
+    jumps = [a for a, _ in points for _ in range(2)]
+    x = np.sort(np.concatenate([np.linspace(0.0, 1.0, STATIONS), jumps]))
+    right = [np.arange(len(x)) > np.flatnonzero(x == a)[0] for a, _ in points]
+    across = np.array([-along[1], along[0]])
+    parts = [(a, float(p @ along), float(p @ across), beyond) for (a, p), beyond in zip(points, right)]
+    out = {}
+    if "moment I" in ends:
+        v, moment = ends["shear I"][:, None], (-ends["moment I"][:, None], ends["moment J"][:, None])
+        w = -(v + ends["shear J"][:, None]) - sum(p for _, _, p, _ in parts)  # in all
+        out["M"] = moment[0] * (1.0 - x) + moment[1] * x - 0.5 * w * length * x * (1.0 - x)
+        out["V"] = v + w * x
+        for a, _, p, beyond in parts:
+            out["M"] -= p * length * np.where(x < a, x * (1.0 - a), a * (1.0 - x))
+            out["V"] += p * beyond
+    n = ends["axial I"][:, None]
+    w = ends["axial J"][:, None] - n + sum(p for _, p, _, _ in parts)
+    out["N"] = n + w * x
+    for _, p, _, beyond in parts:
+        out["N"] -= p * beyond
+    return x, out
+
+
+def _values(results: Results, choice: Choice) -> dict[tuple[int, str], Array]:
+    """End forces by element and quantity, shape (nt,) each."""
+    if not ("member/force" in results.histories and len(results.time)):
+        if choice.time is not None:
+            choice.instant(results)
+        table = results.table("static_force")
+        return {(int(r["element"]), str(r["quantity"])): np.array([r["value"]]) for r in table}
+    rows = choice.span(results)
+    if choice.time is not None:
+        at = choice.instant(results)
+        rows = slice(at, at + 1)
+    return dict(zip(_ends(results), results.history("member/force")[rows].T))
+
+
+def _extremes(results: Results, choice: Choice) -> dict[tuple[int, str], tuple[float, float]]:
+    """True extremes of the end forces, where the whole history is drawn."""
+    if choice.given & {"time", "between"} or "member_envelope" not in results.tables:
+        return {}
+    table = results.table("member_envelope")
+    return {(int(r["element"]), str(r["quantity"])): (float(r["min"]), float(r["max"])) for r in table}
+
+
+def _blocks(results: Results) -> dict[str, tuple[float, float]]:
+    """Lengths of the rigid end blocks by property set [L]."""
+    out: dict[str, tuple[float, float]] = {}
+    for row in results.table("properties"):
+        if row["item"] in ("END1", "END2"):
+            first, last = out.get(row["property"], (0.0, 0.0))
+            length = float(row["value"])
+            out[row["property"]] = (length, last) if row["item"] == "END1" else (first, length)
+    return out
+
+
+def _point_loads(results: Results) -> dict[int, list[tuple[float, Array]]]:
+    """Place and force of the point loads of every member, from the words of the table."""
+    out: dict[int, list[tuple[float, Array]]] = {}
+    for row in results.table("member_loads") if "member_loads" in results.tables else ():
+        load: dict[str, Any] = dict(re.findall(r"(\w+) ([-+.\deE]+)", str(row["load"])))
+        force = np.array([float(load.get("PX", 0.0)), float(load.get("PY", 0.0))])
+        if force.any():
+            out.setdefault(int(row["element"]), []).append((float(load["AT"]), force))
+    return out

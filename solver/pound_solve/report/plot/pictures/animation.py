@@ -1,0 +1,195 @@
+"""Picture `animation`: the structure as it moves, as GIF, MP4, or a page that plays by itself."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pound_solve.numerics.types import Array, Flags
+from pound_solve.report.plot import style
+from pound_solve.report.plot.geometry import (
+    SHARE,
+    WALL,
+    DrawnStructure,
+    contact_name,
+    displacements,
+    draw_wall,
+    largest,
+)
+from pound_solve.report.plot.schema import MOVING, Choice, Picture
+from pound_solve.results import Results
+
+FRAMES = 240  #: pictures of a film
+RATE = 20  #: of them a second
+PAGE = Path(__file__).parents[1] / "animation.html"
+
+
+@dataclass(frozen=True, slots=True)
+class Film:
+    """What moves.
+
+    Attributes
+    ----------
+    structure : DrawnStructure
+    title : str
+    factor : float
+        By which displacements are drawn larger.
+    nodes : list of int
+    time : ndarray, shape (n,)
+        Of the frames [T].
+    moved : ndarray, shape (n, n_nodes, 2)
+        Displacements of the nodes, times the factor [L].
+    contacts : list of str
+        Names of the contacts.
+    closed : ndarray of bool, shape (n, n_contacts)
+        Which were closed at any instant since the frame before.
+    """
+
+    structure: DrawnStructure
+    title: str
+    factor: float
+    nodes: list[int]
+    time: Array
+    moved: Array
+    contacts: list[str]
+    closed: Flags
+
+
+def film(results: Results, choice: Choice) -> Film:
+    """Take frames at equal times out of the stored instants."""
+    s = DrawnStructure(results)
+    numbers, u = displacements(results, choice.span(results))
+    t = results.time[choice.span(results)]
+    size = largest(u)[1]
+    factor = SHARE * s.size / size if size > 0.0 else 1.0
+    time = np.linspace(t[0], t[-1], min(FRAMES, max(2, len(t))))
+    flat = u.reshape(len(t), -1)
+    moved = np.column_stack([np.interp(time, t, column) for column in flat.T])
+    contacts = [contact_name(e) for e in s.elements if e["kind"] == "CONTACT"]
+    closed = np.array([_closed(results, name, time) for name in contacts], bool).reshape(len(contacts), -1)
+    shape = len(time), len(numbers), 2
+    return Film(s, results.title, factor, numbers, time, factor * moved.reshape(shape), contacts, closed.T)
+
+
+def _closed(results: Results, name: str, time: Array) -> Flags:
+    """Whether a contact was closed between each frame and the one before, shape (n,)."""
+    out = np.zeros(len(time), bool)
+    if "collisions" in results.tables:
+        table = results.table("collisions")
+        for own in table[[str(c) == name for c in table["contact"]]]:
+            end = own["t_end"] if np.isfinite(own["t_end"]) else np.inf
+            out |= (time >= own["t_start"]) & (np.roll(time, 1) <= end) & (np.arange(len(time)) > 0)
+    return out
+
+
+class Stage:
+    """A figure in which the frames of a film are shown.
+
+    Parameters
+    ----------
+    own : Film
+    """
+
+    def __init__(self, own: Film) -> None:
+        s = self.structure = own.structure
+        self.film = own
+        self.figure = style.figure(*s.shape(), title=own.title)
+        self.axes = self.figure.add_subplot()
+        s.frame(self.axes, 0.06 + SHARE)
+        s.draw(self.axes, color="0.85", linewidth=0.8)
+        s.draw_supports(self.axes)
+        self.members = s.draw(self.axes, color=style.BLUE, linewidth=1.4)
+        self.ends = [(int(e["i"]), int(e["j"])) for e in s.elements if e["kind"] == "CONTACT"]
+        for e in s.elements:
+            if e["kind"] == "CONTACT" and not e["j"]:
+                draw_wall(self.axes, s.place[int(e["i"])], s.angles[contact_name(e)], WALL * s.size)
+        look = {"color": style.RED, "linestyle": ""}
+        self.open = self.axes.plot([], [], marker="|", markersize=8, **look)[0]
+        self.closed = self.axes.plot([], [], marker="o", markersize=10, **look)[0]
+        self.axes.set_title(" ")
+
+    def show(self, k: int) -> None:
+        """Draw the frame of a number."""
+        own, s = self.film, self.structure
+        moved = dict(zip(own.nodes, own.moved[k]))
+        self.members.set_data(*s.path(shift=moved))
+        points = [
+            np.mean([s.place[n] + moved.get(n, np.zeros(2)) for n in ends if n], axis=0)
+            for ends in self.ends
+        ]
+        hit = own.closed[k]
+        for line, chosen in ((self.open, ~hit), (self.closed, hit)):
+            line.set_data(*np.array([p for p, c in zip(points, chosen) if c]).reshape(-1, 2).T)
+        self.axes.set_title(caption(own, k))
+
+
+def caption(own: Film, k: int) -> str:
+    """Time, magnification, and the contacts that are closed."""
+    names = [name for name, closed in zip(own.contacts, own.closed[k]) if closed]
+    when = (
+        f"{own.time[k]:.2f} {own.structure.units.time}, displacements drawn {own.factor:.3g} times as large"
+    )
+    return f"{when}; closed: {', '.join(names)}" if names else when
+
+
+def animation(results: Results, choice: Choice) -> Any:
+    """Draw the first frame."""
+    stage = Stage(film(results, choice))
+    stage.show(0)
+    return stage.figure
+
+
+def write(results: Results, choice: Choice, path: Path) -> None:
+    """Write the film in the format of the file's ending."""
+    own = film(results, choice)
+    if path.suffix == ".html":
+        path.write_text(page(own), encoding="utf-8", newline="\n")
+        return
+    stage = Stage(own)
+    stage.show(0)
+    style.arrange(stage.figure)
+    style.film(stage.figure, stage.show, len(own.time), path, RATE)
+
+
+def page(own: Film) -> str:
+    """A page that needs nothing else: the drawing, its numbers and what plays it."""
+    s = own.structure
+    places = {n: k for k, n in enumerate(own.nodes)}
+    still = [n for n in s.place if n not in places]
+    order = [*own.nodes, *still]
+    at = {n: k for k, n in enumerate(order)}
+    digits = max(0, 5 - int(np.floor(np.log10(s.size))))
+    data = {
+        "nodes": [np.round(s.place[n], digits).tolist() for n in order],
+        "members": [[at[i], at[j]] for i, j in s.lines(contacts=False)],
+        "contacts": [
+            [at[int(e["i"])], at[int(e["j"])] if e["j"] else at[int(e["i"])]]
+            for e in s.elements if e["kind"] == "CONTACT"
+        ],
+        "supports": [at[n] for n in s.place if {"X", "Y"} <= set(s.fixed[n])],
+        "box": [*(s.low - 0.15 * s.size).tolist(), *(s.high + 0.15 * s.size).tolist()],
+        "rate": RATE,
+        "captions": [caption(own, k) for k in range(len(own.time))],
+        "moved": np.round(own.moved, digits).reshape(len(own.time), -1).tolist(),
+        "closed": own.closed.astype(int).tolist(),
+    }  # fmt: skip
+    text = json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
+    head = PAGE.read_text(encoding="utf-8").replace("{{title}}", escape(own.title))
+    return head.replace("{{data}}", text)
+
+
+SPEC = Picture(
+    name="animation",
+    place=200,
+    shows="the structure as it moves, as a page that plays by itself, a GIF or an MP4",
+    needs=("node/u", "nodes", "elements"),
+    draw=animation,
+    options=("between",),
+    endings=MOVING,
+    write=write,
+)

@@ -1,0 +1,55 @@
+"""Picture `collisions`: when every contact was closed, and how hard it was hit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pound_solve.report.plot import courses, style
+from pound_solve.report.plot.schema import Choice, Picture
+from pound_solve.results import Results
+
+
+def collisions(results: Results, choice: Choice) -> Any:
+    """Draw a line for the peak of each collision, and below a bar for its time.
+
+    Impacts in no time have no force: where all are so, the lines are their impulses.
+    """
+    names = list(results.labels("contact/force"))
+    figure = style.figure(9.5, 0.3 * len(names) + 3.4, "Collisions")
+    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 0.3 * len(names) + 0.5))
+    found = results.table("collisions")
+    impacts = bool(np.isnan(found["peak_force"]).all())
+    column, when = ("impulse", "t_start") if impacts else ("peak_force", "t_peak")
+    unit = results.units.text("F*T") if impacts else results.units.force
+    style.grid(top, "", f"{'impulse' if impacts else 'peak force'} [{unit}]")
+    style.grid(bottom, f"time [{results.units.time}]")
+    end = results.last_time
+    for n, name in enumerate(names):
+        colour = style.stroke(n)["color"]
+        own = courses.of_contact(results, name, choice)
+        last = np.where(np.isnan(own["t_end"]), end, own["t_end"])
+        if len(own):
+            top.vlines(own[when], 0.0, own[column], color=colour, linewidth=0.9)
+            top.plot(own[when], own[column], "o", color=colour, label=style.short(name))
+        # a collision is short: no bar is thinner than a line
+        width = np.maximum(last - own["t_start"], 0.002 * end)
+        bottom.barh(np.full(len(own), n), width, left=own["t_start"], color=colour, height=0.6)
+    top.set_xlim(*(choice.between or (results.time[0], end)))
+    top.set_ylim(bottom=0.0)
+    style.legend(top)
+    bottom.set_yticks(range(len(names)), [style.short(name) for name in names])
+    bottom.set_ylim(-0.6, len(names) - 0.4)
+    bottom.set_title("times at which each contact was closed")
+    return figure
+
+
+SPEC = Picture(
+    name="collisions",
+    place=110,
+    shows="the peak force of each collision, and the times at which each contact was closed",
+    needs=("collisions", "contact/force"),
+    draw=collisions,
+    options=("between",),
+)

@@ -1,0 +1,40 @@
+"""Picture `deformed`: the displaced structure, magnified."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pound_solve.report.plot import geometry, style
+from pound_solve.report.plot.schema import Choice, Picture
+from pound_solve.results import Results
+
+
+def deformed(results: Results, choice: Choice) -> Any:
+    """Draw the displacements at an instant, by default that of the largest one."""
+    s = geometry.DrawnStructure(results)
+    numbers, u = geometry.displacements(results)
+    at, size = geometry.largest(u)
+    factor = geometry.SHARE * s.size / size if size > 0.0 else 1.0
+    if choice.time is not None:
+        at = choice.instant(results)
+    when = f"{results.time[at]:.4g} {s.units.time}"
+    what = f"at {when}" if choice.time is not None else f"when they are largest, at {when}"
+    figure = style.figure(*s.shape(), title=f"Displacements {what}, drawn {factor:.3g} times as large")
+    axes = figure.add_subplot()
+    moved = geometry.shifts(numbers, factor * u[at])
+    s.frame(axes, 0.06 + geometry.SHARE)
+    s.draw(axes, color="0.8", linewidth=0.8)
+    s.draw(axes, moved, color=style.BLUE, linewidth=1.3)
+    s.draw_contacts(axes, moved)
+    axes.set_title("grey: as it stands; red: contacts")
+    return figure
+
+
+SPEC = Picture(
+    name="deformed",
+    place=40,
+    shows="the displaced structure at an instant (the largest displacements), magnified",
+    needs=("node/u", "nodes", "elements"),
+    draw=deformed,
+    options=("time",),
+)

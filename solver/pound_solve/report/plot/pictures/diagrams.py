@@ -1,0 +1,116 @@
+"""Picture `diagrams`: bending moments, shear and axial forces along the members."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pound_solve.numerics.types import Array
+from pound_solve.report.plot import geometry, labels, style
+from pound_solve.report.plot.members import QUANTITIES, Line, lines
+from pound_solve.report.plot.schema import Choice, Nothing, Picture
+from pound_solve.results import Results
+
+SHARE = 0.11  #: largest value as a share of the structure's size
+MOST = 60  #: members whose values are written, those with the largest
+WIDEST = 0.35  #: and no more than this share of a middling member's length
+UNITS = {"M": "F*L", "V": "F", "N": "F"}
+
+
+def diagrams(results: Results, choice: Choice) -> Any:
+    """Draw the three beside or below each other, at an instant or as envelopes."""
+    s = geometry.DrawnStructure(results)
+    found = list(lines(results, s.place, choice))
+    shown = [q for q in QUANTITIES if any(q in own.low for own in found)]
+    if not shown:
+        raise Nothing("members with forces at both ends")
+    width, height = s.shape()
+    upright = height > 0.8 * width
+    scale = min(1.0, 5.0 / width) if upright else min(1.0, 8.0 / width)
+    width, height = max(4.0, width * scale), max(2.4, height * scale) + 0.3
+    size = (width * len(shown), height + 0.4) if upright else (width, height * len(shown) + 0.4)
+    figure = style.figure(*size, title=_title(results, choice))
+    for n, quantity in enumerate(shown):
+        axes = figure.add_subplot(*((1, len(shown)) if upright else (len(shown), 1)), n + 1)
+        panel(axes, s, [own for own in found if quantity in own.low], quantity)
+    return figure
+
+
+def _title(results: Results, choice: Choice) -> str:
+    if choice.time is not None:
+        at = results.time[choice.instant(results)]
+        return f"Member forces at {at:.6g} {results.units.time}"
+    if not len(results.time):
+        return "Member forces of the static state"
+    if choice.between:
+        return (
+            f"Envelopes of the member forces from {choice.between[0]:g} to {choice.between[1]:g} "
+            f"{results.units.time}"
+        )
+    return "Envelopes of the member forces"
+
+
+def panel(axes: Any, s: geometry.DrawnStructure, found: list[Line], quantity: str) -> None:
+    """Draw one force along all members; the largest and the smallest of each bear their values."""
+    s.frame(axes, 0.06 + SHARE)
+    s.draw(axes, color="0.6", linewidth=0.8)
+    low = min(float(own.low[quantity].min()) for own in found)
+    high = max(float(own.high[quantity].max()) for own in found)
+    top = max(abs(low), abs(high)) or 1.0
+    lengths = [float(np.hypot(*(own.j - own.i))) for own in found]
+    factor = min(SHARE * s.size, WIDEST * float(np.median(lengths))) / top
+    one = all(np.array_equal(own.low[quantity], own.high[quantity]) for own in found)
+    for own in found:
+        both = ((own.high[quantity], style.BLUE), (own.low[quantity], style.RED))
+        for values, colour in both[: 1 if one else 2]:
+            base, edge = _outline(own, values, quantity, factor)
+            axes.fill(*np.hstack([edge, base[:, ::-1]]), color=colour, alpha=0.18, linewidth=0)
+            axes.plot(*np.hstack([base[:, :1], edge, base[:, -1:]]), color=colour, linestyle="-",
+                      linewidth=0.8)  # fmt: skip
+    order = sorted(found, key=lambda x: -max(abs(x.low[quantity]).max(), abs(x.high[quantity]).max()))
+    for own in order[:MOST]:
+        _values(axes, own, quantity, factor, 0.02 * top)
+    unit, word = s.units.text(UNITS[quantity]), QUANTITIES[quantity][0]
+    told = ["drawn on the side in tension"] * (quantity == "M") + ["blue: largest, red: smallest"] * (
+        not one
+    )
+    axes.set_title(f"{word} {quantity} [{unit}]: {low:.5g} to {high:.5g}\n{'; '.join(told)}")
+
+
+def _outline(own: Line, values: Array, quantity: str, factor: float) -> tuple[Array, Array]:
+    """Points of a member's axis, and beside them those of its values, shape (2, n) each."""
+    along = (own.j - own.i) / max(float(np.hypot(*(own.j - own.i))), 1e-300)
+    left = np.array([-along[1], along[0]]) * (-1.0 if quantity == "M" else 1.0)
+    base = own.i[:, None] + (own.j - own.i)[:, None] * own.x
+    return base, base + factor * left[:, None] * values
+
+
+def _values(axes: Any, own: Line, quantity: str, factor: float, least: float) -> None:
+    """Name the largest and the smallest value of a member, if they differ and are not small."""
+    told: list[float] = []
+    for values, at in (
+        (own.high[quantity], int(np.argmax(own.high[quantity]))),
+        (own.low[quantity], int(np.argmin(own.low[quantity]))),
+    ):
+        value = float(values[at])
+        if abs(value) < least or any(abs(value - other) < least for other in told):
+            continue
+        told.append(value)
+        _, edge = _outline(own, values, quantity, factor)
+        labels.label(axes, edge[:, at], _text(value), fontsize=6)
+
+
+def _text(value: float) -> str:
+    """Three digits, without an exponent."""
+    return f"{float(f'{value:.3g}'):g}"
+
+
+SPEC = Picture(
+    name="diagrams",
+    place=160,
+    shows="bending moments, shear and axial forces along the members, at an instant or as envelopes",
+    needs=("nodes", "elements", "properties"),
+    draw=diagrams,
+    options=("member", "time", "between"),
+)

@@ -1,0 +1,73 @@
+"""Picture `envelopes`: largest drifts of the deck, and horizontal displacements over the height."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pound_solve.numerics.types import Array
+from pound_solve.report.plot import style
+from pound_solve.report.plot.geometry import DrawnStructure
+from pound_solve.report.plot.schema import Choice, Nothing, Picture
+from pound_solve.results import Results
+
+
+def envelopes(results: Results, choice: Choice) -> Any:
+    """Draw what there is of the two: drifts in the order of the deck, columns of nodes over the height."""
+    drifts = results.holds("drift_envelope")
+    columns = _columns(results)
+    count = drifts + bool(columns)
+    if not count:
+        raise Nothing("drifts, no columns of nodes")
+    rows = len(results.table("drift_envelope")) if drifts else 0
+    figure = style.figure(4.75 * count, max(4.2, 0.16 * rows + 1.0))
+    if drifts:
+        _drifts(figure.add_subplot(1, count, 1), results)
+    if columns:
+        axes = figure.add_subplot(1, count, count)
+        unit = results.units.length
+        style.grid(axes, f"displacement X [{unit}]", f"height [{unit}]")
+        for height, low, high in columns:
+            axes.plot(low, height, color=style.RED, linestyle="--", marker=".")
+            axes.plot(high, height, color=style.BLUE, linestyle="-", marker=".")
+        axes.axvline(0.0, color="0.3", linewidth=0.8)
+        axes.margins(x=0.06)
+        axes.set_title(
+            "largest displacements to the right (lines) and to the left\n(dashes) of each column of nodes"
+        )
+    return figure
+
+
+def _drifts(axes: Any, results: Results) -> None:
+    drifts = results.table("drift_envelope")
+    rows = np.arange(len(drifts))
+    style.grid(axes, f"drift [{results.units.length}]")
+    axes.barh(rows, drifts["max"], color=style.BLUE, height=0.6)
+    axes.barh(rows, drifts["min"], color=style.RED, height=0.6)
+    axes.axvline(0.0, color="0.3", linewidth=0.8)
+    axes.margins(x=0.06)
+    room = max(0.6, 2.5 - 0.5 * len(rows))  # a few bars do not fill the picture
+    axes.set_ylim(-room, len(rows) - 1 + room)
+    axes.set_yticks(rows, [style.short(str(n)) for n in drifts["name"]])
+    axes.set_title("largest drifts to both sides, in the order of the deck")
+
+
+def _columns(results: Results) -> list[Array]:
+    """Heights, smallest and largest displacements X of the nodes above each other, shape (3, n) each."""
+    place, table = DrawnStructure(results).place, results.table("node_envelope")
+    own = table[(table["direction"] == "X") & (table["quantity"] == "displacement")]
+    lines: dict[float, list[tuple[float, float, float]]] = {}
+    for row in own:
+        x, y = place[int(row["node"])].tolist()
+        lines.setdefault(x, []).append((y, float(row["min"]), float(row["max"])))
+    return [np.array(sorted(line)).T for line in lines.values() if len({y for y, _, _ in line}) > 1]
+
+
+SPEC = Picture(
+    name="envelopes",
+    place=60,
+    shows="largest drifts to both sides; extremes of horizontal displacements over the height",
+    needs=("node_envelope", "nodes", "elements"),
+    draw=envelopes,
+)

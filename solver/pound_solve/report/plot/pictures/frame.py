@@ -1,0 +1,46 @@
+"""Picture `frame`: the structure with its node numbers, supports, masses and contacts."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pound_solve.report.plot import geometry, labels, style
+from pound_solve.report.plot.schema import Choice, Picture
+from pound_solve.results import Results
+
+
+def frame(results: Results, choice: Choice) -> Any:
+    """Draw the structure as it stands."""
+    s = geometry.DrawnStructure(results)
+    figure = style.figure(*s.shape(), title=results.title)
+    axes = figure.add_subplot()
+    panel(axes, s, 500.0)
+    for node, xy in s.place.items():
+        labels.label(axes, xy, str(node), fontsize=6)
+    axes.set_title("triangles: supports; dots: masses; red: contacts")
+    return figure
+
+
+def panel(axes: Any, s: geometry.DrawnStructure, width: float) -> None:
+    """Draw members, supports, masses and contacts with their names, about as wide as so many points."""
+    s.frame(axes)
+    s.draw(axes, color=style.BLUE, linewidth=1.4)
+    s.draw_supports(axes)
+    s.draw_masses(axes, width)
+    s.draw_contacts(axes)
+    for e in s.elements[s.elements["kind"] == "CONTACT"]:
+        name, i = geometry.contact_name(e), s.place[int(e["i"])]
+        if e["j"]:
+            above = (i + s.place[int(e["j"])]) / 2
+        else:
+            above = geometry.draw_wall(axes, i, s.angles[name], geometry.WALL * s.size)
+        labels.label(axes, above, name, far=True, color=style.RED, fontsize=7)
+
+
+SPEC = Picture(
+    name="frame",
+    place=20,
+    shows="the structure: nodes with numbers, supports, masses, members, contacts",
+    needs=("nodes", "elements"),
+    draw=frame,
+)

@@ -1,0 +1,108 @@
+"""Picture `summary`: one page (A4) to be stapled to the report."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from pound_solve.report.plot import courses, style
+from pound_solve.report.plot.geometry import DrawnStructure
+from pound_solve.report.plot.members import lines, members
+from pound_solve.report.plot.pictures import base_shear, capacity, diagrams, frame, storeys
+from pound_solve.report.plot.schema import Choice, Picture
+from pound_solve.results import Results
+from pound_solve.version import __version__
+
+PAGE = (8.27, 11.69)  #: inches
+MOST_FIGURES = 16  #: lines of figures
+WIDTH = 58  #: characters of a line
+
+
+def summary(results: Results, choice: Choice) -> Any:
+    """Draw the structure and the main figures, what there is of the histories, and profiles."""
+    figure = style.figure(*PAGE, title=results.title)
+    rows = _rows(results)
+    profiles = all(results.holds(name) for name in storeys.SPEC.needs)
+    heights = [2.6, (1.5 if len(rows) > 1 else 4.0) * len(rows) + 0.01, 2.3 * profiles + 0.01, 0.35]
+    head, middle, low, foot = figure.subfigures(4, 1, height_ratios=heights)
+    axes, text = head.subplots(1, 2, width_ratios=(1.15, 1.0))
+    _structure(axes, results)
+    _figures(text, results)
+    if rows:
+        for draw, own in zip(rows, middle.subplots(len(rows), 1, squeeze=False, sharex=True).ravel()):
+            draw(own)
+    if profiles:
+        _profiles(low, results)
+    foot.text(0.01, 0.5, _foot(results), fontsize=6.5, color="0.4", va="center")
+    return figure
+
+
+def _rows(results: Results) -> list[Any]:
+    """What draws each panel over time, of what the file has; without a history, the capacity curve."""
+    if not len(results.time):
+        if results.holds("capacity_curve"):
+            return [partial(capacity.curve, results=results)]
+        return [partial(_moments, results=results)] if members(results) else []
+    out: list[Any] = []
+    for name in ("ground", "drift", "base", "contact/force"):
+        if name == "base":
+            if all(map(results.holds, base_shear.SPEC.needs)):
+                out.append(partial(base_shear.panel, results=results, last=False))
+        elif name in results.histories:
+            out.append(partial(courses.panel, results=results, name=name, last=False))
+    return [*out[:-1], partial(out[-1], last=True)] if out else []
+
+
+def _moments(axes: Any, results: Results) -> None:
+    """Draw the bending moments of the static state."""
+    s = DrawnStructure(results)
+    diagrams.panel(axes, s, list(lines(results, s.place, Choice())), "M")
+
+
+def _structure(axes: Any, results: Results) -> None:
+    """Draw the structure with the names of its contacts."""
+    s = DrawnStructure(results)
+    frame.panel(axes, s, 220.0)
+    axes.set_title("structure", loc="left")
+
+
+def _figures(axes: Any, results: Results) -> None:
+    """Write the main figures as lines, item and value."""
+    axes.set_axis_off()
+    lines: list[tuple[str, str]] = []
+    if "overview" in results.tables:
+        lines += [(str(item), str(value)) for item, value in results.table("overview").tolist()]
+    if results.status != "done":
+        lines.insert(0, ("this run", f"{results.status}: {results.message}".rstrip(": ")))
+    if "checks" in results.tables:
+        bad = [row for row in results.table("checks") if not str(row["verdict"]).startswith("good")]
+        lines += [("look at", f"{row['check']}: {row['value']}") for row in bad]
+    if results.holds("warnings"):
+        lines.append(("warnings", f"{len(results.table('warnings'))}, see the report"))
+    text = [style.wrapped(f"{item}: {value}", WIDTH) for item, value in lines[:MOST_FIGURES]]
+    axes.text(0.0, 1.0, "\n".join(text), va="top", fontsize=7, transform=axes.transAxes, linespacing=1.35)
+
+
+def _profiles(part: Any, results: Results) -> None:
+    """Draw the three profiles of all buildings, a colour for each."""
+    names = list(dict.fromkeys(results.table("storey_envelope")["building"].tolist()))
+    all_axes = part.subplots(1, 3, sharey=True)
+    for axes, quantity in zip(all_axes, storeys.PROFILES):
+        storeys.panel(axes, results, names, quantity)
+        axes.label_outer()
+    style.legend(all_axes[-1])
+
+
+def _foot(results: Results) -> str:
+    own = f"pound-solve {__version__}, {results.path.name}"
+    told = "rings: true peaks; profiles: lines to the right, dashes to the left"
+    return f"{told}\n{own}, digest {results.digest[:16]}" if results.digest else f"{told}\n{own}"
+
+
+SPEC = Picture(
+    name="summary",
+    place=10,
+    shows="one page (A4): structure, figures, ground motions, drifts, base shears, contacts, profiles",
+    needs=("nodes", "elements"),
+    draw=summary,
+)

@@ -1,0 +1,122 @@
+"""What a picture is: the class that every module of `pictures` declares an object of, as `SPEC`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from pound_solve.results import Results
+
+STILL: Final = ("svg", "png", "pdf")  #: endings of a picture that stands still
+MOVING: Final = ("html", "gif", "mp4")  #: endings of one that moves
+
+
+class Nothing(Exception):
+    """There is nothing to draw; the message states what is missing."""
+
+
+class ChoiceError(Exception):
+    """The file has no such member, instant or time; the message states what there is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What of a run is drawn; pictures use what their `Picture.options` name.
+
+    Parameters
+    ----------
+    member : tuple of str
+        Numbers, names or labels of elements; empty for all, or those that matter most.
+    time : float, optional
+        An instant [T].
+    between : tuple of float, optional
+        First and last time [T].
+    style : Path, optional
+        Style sheet of matplotlib, laid over that of the program.
+    """
+
+    member: tuple[str, ...] = ()
+    time: float | None = None
+    between: tuple[float, float] | None = None
+    style: Path | None = None
+
+    @property
+    def given(self) -> set[str]:
+        """Names of the options that are given."""
+        return {name for name in ("member", "time", "between") if getattr(self, name) not in (None, ())}
+
+    def instant(self, results: Results) -> int:
+        """Number of the stored instant next to `time`.
+
+        Raises
+        ------
+        ChoiceError
+            The history does not reach so far.
+        """
+        t, unit = results.time, results.units.time
+        if self.time is None or not len(t) or not t[0] <= self.time <= t[-1]:
+            reach = f"reaches from {t[0]:g} to {t[-1]:g} {unit}" if len(t) else "is empty"
+            raise ChoiceError(f"the history has no time {self.time:g} {unit}: it {reach}")
+        return int(np.argmin(np.abs(t - self.time)))
+
+    def span(self, results: Results) -> slice:
+        """Stored instants within `between`, or all.
+
+        Raises
+        ------
+        ChoiceError
+            There are fewer than two.
+        """
+        if self.between is None:
+            return slice(None)
+        t, unit = results.time, results.units.time
+        low, high = np.searchsorted(t, self.between[0]), np.searchsorted(t, self.between[1], "right")
+        if high - low < 2:
+            reach = f"from {t[0]:g} to {t[-1]:g} {unit}" if len(t) else "nowhere"
+            raise ChoiceError(
+                f"the history has fewer than two instants from {self.between[0]:g} to "
+                f"{self.between[1]:g} {unit}: it reaches {reach}"
+            )
+        return slice(int(low), int(high))
+
+
+ALL: Final = Choice()  #: nothing is chosen
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Picture:
+    """One picture of a results file.
+
+    Parameters
+    ----------
+    name : str
+        That of its module.
+    place : int
+        Pictures are drawn and listed in the order of their places.
+    shows : str
+        What it shows, for the help and the manual.
+    needs : tuple of str
+        Tables and histories that the file must have, and have rows of.
+    draw : callable
+        Makes the figure, of a picture that moves the first frame.  It raises `Nothing` where the rows are
+        of no use to it.
+    options : tuple of str
+        Attributes of `Choice` that it uses.
+    endings : tuple of str
+        Formats of its file.
+    write : callable, optional
+        Writes the file of a picture that moves.
+    """
+
+    name: str
+    place: int
+    shows: str
+    needs: tuple[str, ...]
+    draw: Callable[[Results, Choice], Any]
+    options: tuple[str, ...] = ()
+    endings: tuple[str, ...] = STILL
+    write: Callable[[Results, Choice, Path], None] | None = None

@@ -1,0 +1,51 @@
+"""Table ``storey_extremes``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pound_solve.results.columns import UNIT, extreme_columns
+from pound_solve.results.record import RunRecord
+from pound_solve.results.remarks import how_sampled
+from pound_solve.results.schema import Column, Row, Stage, Table
+
+
+def rows(run: RunRecord) -> Iterator[Row]:
+    """Three rows for each storey."""
+    from pound_solve.structure.storeys import storeys  # not needed to read a report
+
+    seen, units = run.history.recorder.envelopes.total, run.model.units
+    drift, force, motion = (list(seen[name].rows()) for name in ("drift", "storey", "acceleration"))
+    for n, (b, i) in enumerate(storeys(run.history.items.buildings)):
+        yield b.name, i, "drift ratio", "-", *drift[n]
+        yield b.name, i, "shear", units.text("F"), *force[2 * n]
+        yield b.name, i, "floor acceleration", units.text("L/T^2"), *motion[n]
+
+
+def remark(run: RunRecord) -> str:
+    """Tell what the envelopes are taken from."""
+    return how_sampled(run)
+
+
+TABLE = Table(
+    name="storey_extremes",
+    title="Storeys to both sides",
+    place=50,
+    stages=(Stage.SAMPLES,),
+    columns=(
+        Column("building", doc="name of the building"),
+        Column("storey", fmt="int", doc="number of the storey, from below"),
+        Column("quantity", doc="`drift ratio`, `shear` or `floor acceleration`, of the floor above"),
+        UNIT,
+        *extreme_columns(""),
+    ),
+    rows=rows,
+    remark=remark,
+    note="The quantities are those of the table of storeys, positive along x.",
+    group="quantity",
+    sample=(
+        ("A", 1, "drift ratio", "-", 0.00745, 2.726, -0.0061, 5.06),
+        ("A", 1, "shear", "kN", 1152.39, 6.458, -1256.96, 4.866),
+        ("A", 1, "floor acceleration", "m/s^2", 3.251, 1.988, -2.81, 3.554),
+    ),
+)

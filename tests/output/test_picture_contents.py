@@ -1,0 +1,451 @@
+"""What pictures show is what tables hold; labels do not overprint; lines stay distinct."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+from collections.abc import Iterator
+from itertools import combinations, pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pound_solve
+from pound_solve.cli.main import main
+
+pytest.importorskip("matplotlib")
+
+from pound_solve.report import plot
+from pound_solve.report.plot import PICTURES, Choice, ChoiceError, labels, members, style
+from pound_solve.report.plot.pictures import hinges
+from pound_solve.results import Results
+
+#: two frames with hinges and a contact, stored so coarsely that no sample meets a peak
+PAIR = """
+TITLE Two frames at $cost$
+UNITS kN m s
+NODES
+  1  0   0  FIX=XYR
+  2  4   0  FIX=XYR
+ 11  0   3
+ 12  4   3
+  3  4.1 0  FIX=XYR
+  4  7.1 0  FIX=XYR
+ 13  4.1 3
+ 14  7.1 3
+ELEMENTS
+  1 COLUMN  1 11
+  2 COLUMN  2 12
+  3 COLUMN  3 13
+  4 COLUMN  4 14
+ 11 BEAM   11 12
+ 12 BEAM   13 14   NAME="beam B"
+ 90 POUND  12 13   NAME="floor 1"
+PROPS
+ COLUMN FRAME E=28E6 A=0.16 I=6.4E-4 MI=80 MJ=80 LP=0.2 RULE=TAKEDA DUCTU=8
+ BEAM   FRAME E=28E6 A=0.11 I=8E-4
+ POUND  CONTACT GAP=0.01 LAW=KELVIN_VOIGT K=2E5 E=0.6
+MEMBER_LOADS
+ 11  WY=-12
+ 12  PY=-40 AT=0.25
+WEIGHTS
+ 11,12  120
+ 13,14  60
+DAMPING
+ RAYLEIGH XI=0.05 MODES=1,2
+DRIFT
+ "A" 1 11
+ "B $x$" 3 13
+EQUAKE
+ SINE AMPLITUDE=3 PERIOD=0.5
+ANALYSIS
+ STATIC
+ MODAL 4
+ PUSHOVER 11 0.06 STEPS=12
+ HISTORY 1.1 METHOD=NEWMARK DT=0.001
+OUTPUT
+ EVERY=0.037
+"""
+
+
+#: a long row of masses, the last of which meets a wall
+ROW = """
+NODES
+ 1001 TO 1120  0 TO 70  0  FIX=YR
+ELEMENTS
+ 1 TO 119  BAR  1001 TO 1119  1002 TO 1120
+ 120 STOP 1120 NAME=wall
+PROPS
+ BAR SPRING KX=100
+ STOP CONTACT GAP=1 K=100
+WEIGHTS
+ 1001 TO 1120  1
+ANALYSIS
+ HISTORY 0.1
+"""
+
+
+@pytest.fixture(scope="module")
+def pair(tmp_path_factory: Any) -> Iterator[Results]:
+    deck = tmp_path_factory.mktemp("pair") / "pair.inp"
+    deck.write_text(PAIR, encoding="utf-8")
+    with pound_solve.run(deck) as out:
+        yield out
+
+
+def drawn(figure: Any) -> list[tuple[str, np.ndarray]]:
+    """Visible texts of a figure with their boxes in pixels."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.text import Text
+
+    FigureCanvasAgg(figure).draw()
+    out = []
+    for text in figure.findobj(Text):
+        if text.get_visible() and text.get_text().strip() and text.axes is not None:
+            if not text.axes.axison:
+                continue
+            out.append((text.get_text(), style.text_box(text)))
+    return out
+
+
+def in_sight(figure: Any, axes: Any) -> list[tuple[str, np.ndarray]]:
+    """Labels and numbers of one axes that lie within the figure."""
+    ticks = []
+    for axis in (axes.xaxis, axes.yaxis):
+        low, high = sorted(axis.get_view_interval())
+        for place, label in zip(axis.get_ticklocs(), axis.get_ticklabels()):
+            if low <= place <= high and label.get_visible() and label.get_text():
+                ticks.append((label.get_text(), style.text_box(label)))
+    own = [(t.get_text(), style.text_box(t)) for t in axes.texts if t.get_visible() and t.get_text()]
+    for t in (axes.title, axes._left_title, axes._right_title, axes.xaxis.label, axes.yaxis.label):
+        if t.get_text().strip() and t.get_visible():
+            own.append((t.get_text(), style.text_box(t)))
+    legend = axes.get_legend()
+    if legend is not None:
+        own += [(t.get_text(), style.text_box(t)) for t in legend.get_texts()]
+    return own + ticks
+
+
+def overprinted(figure: Any) -> list[tuple[str, str]]:
+    """Pairs of texts whose boxes overlap."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    FigureCanvasAgg(figure).draw()
+    texts = [t for axes in figure.axes if axes.axison for t in in_sight(figure, axes)]
+    return [
+        (a, b)
+        for (a, x), (b, y) in combinations(texts, 2)
+        if x[0] < y[2] - 0.5 and y[0] < x[2] - 0.5 and x[1] < y[3] - 0.5 and y[1] < x[3] - 0.5
+    ]
+
+
+STILL = [name for name, spec in PICTURES.items() if spec.write is None and name != "study"]
+
+
+@pytest.mark.parametrize("name", STILL)
+def test_no_text_of_a_picture_covers_another(pair: Results, name: str) -> None:
+    assert overprinted(plot.picture(pair, name)) == []
+
+
+@pytest.mark.parametrize("name", STILL)
+def test_axes_bear_units(pair: Results, name: str) -> None:
+    for axes in plot.picture(pair, name).axes:
+        if not axes.axison:
+            continue
+        for axis, said in ((axes.xaxis, axes.get_xlabel()), (axes.yaxis, axes.get_ylabel())):
+            named = axis.get_major_formatter().__class__.__name__ in ("FixedFormatter", "FuncFormatter")
+            hidden = not any(t.get_visible() and t.get_text() for t in axis.get_ticklabels())
+            group = axes.get_shared_x_axes() if axis is axes.xaxis else axes.get_shared_y_axes()
+            shared = not said and (named or hidden or len(group.get_siblings(axes)) > 1)
+            assert shared or re.search(r"\[[^]]+\]", said), (name, said)
+
+
+def test_node_numbers_keep_apart_and_those_without_room_are_left_out() -> None:
+    figure = style.figure(5.0, 5.0)
+    axes = figure.add_subplot()
+    axes.set_xlim(-1, 20)
+    axes.set_ylim(-1, 20)
+    places = [(x, y) for x in range(20) for y in range(20)]
+    for n, place in enumerate(places):
+        labels.label(axes, place, str(1000 + n))
+    labels.settle(figure)
+    kept = [t.get_text() for t in axes.texts]
+    assert 20 < len(kept) < len(places) and kept[0] == "1000"
+    assert overprinted(figure) == []
+
+
+def test_node_numbers_of_a_wide_structure_keep_apart(tmp_path: Path) -> None:
+    deck = tmp_path / "row.inp"
+    deck.write_text(ROW, encoding="utf-8")
+    with pound_solve.run(deck) as results:
+        figure = plot.picture(results, "frame")
+        assert overprinted(figure) == []
+        kept = {t.get_text() for t in figure.axes[0].texts}
+        assert {"1001", "wall"} <= kept and 20 < len(kept) < 121
+        assert overprinted(plot.picture(results, "summary")) == []
+
+
+def test_a_label_avoids_lines_and_texts_where_it_can() -> None:
+    figure = style.figure(4.0, 3.0)
+    axes = figure.add_subplot()
+    axes.set_xlim(0, 10)
+    axes.set_ylim(0, 10)
+    axes.plot([5, 10], [5, 10], linestyle="-")
+    labels.label(axes, (5, 5), "first")
+    labels.label(axes, (5, 5), "second")
+    labels.settle(figure)
+    first, second = axes.texts
+    assert first.get_horizontalalignment() == "right" and first.get_verticalalignment() == "bottom"
+    assert second.get_verticalalignment() == "top"
+
+
+def test_ten_lines_differ_in_colour_and_in_stroke() -> None:
+    from matplotlib.colors import to_rgb
+
+    with plot.sheet():
+        strokes = [style.stroke(k) for k in range(style.LINES)]
+    assert style.LINES == 10
+    assert len({str(s["linestyle"]) for s in strokes}) == 10
+    colours = np.array([to_rgb(s["color"]) for s in strokes])
+    apart = [np.linalg.norm(a - b) for a, b in combinations(colours, 2)]
+    assert min(apart) > 0.2
+    assert (colours @ [0.299, 0.587, 0.114] < 0.65).all()  # dark enough on white
+
+
+def test_a_style_sheet_replaces_what_it_sets(pair: Results, tmp_path: Path) -> None:
+    own = tmp_path / "own.mplstyle"
+    own.write_text(
+        "# mine\nlines.linewidth: 3.5   # thick\naxes.prop_cycle: cycler(color=['ff0000', '00ff00'])\n"
+    )
+    figure = plot.picture(pair, "base_shear", Choice(style=own))
+    first, ring, second = figure.axes[0].get_lines()[:3]
+    assert first.get_linewidth() == second.get_linewidth() == 3.5
+    assert first.get_color() == "#ff0000" or first.get_color() == "ff0000"
+    assert ring.get_marker() == "o"
+    for line, said in (("lines.linewidth 3\n", ":1: a line"), ("\nline.width: 3", "2: matplotlib has no"),
+                       ("font.size: big", ":1: ")):  # fmt: skip
+        own.write_text(line)
+        with pytest.raises(ChoiceError, match=re.escape(said) if said[0] == ":" else said):
+            plot.picture(pair, "energy", Choice(style=own))
+
+
+def peaks(axes: Any) -> list[np.ndarray]:
+    """Points of the rings of an axes."""
+    rings = [x for x in axes.get_lines() if x.get_marker() == "o" and x.get_linestyle() == "None"]
+    return [np.column_stack(x.get_data()) for x in rings]
+
+
+def test_the_largest_contact_force_is_that_of_the_table(pair: Results) -> None:
+    summary, collisions = pair.table("contact_summary"), pair.table("collisions")
+    top = summary["peak_force"][0]
+    assert len(collisions) > 1 and pair.history("contact/force").max() < 0.95 * top
+    for name, at in (("contact_force", 0), ("histories", 2), ("summary", 5)):
+        axes = plot.picture(pair, name).axes[at]
+        curve = axes.get_lines()[0]
+        assert curve.get_ydata().max() == top
+        (rings,) = peaks(axes)
+        assert np.array_equal(rings, np.column_stack([collisions["t_peak"], collisions["peak_force"]]))
+        times = curve.get_xdata()
+        assert (np.diff(times) >= 0.0).all()
+        for row in collisions:  # no force is drawn outside of a collision
+            outside = (times < row["t_start"]) | (times > row["t_end"])
+            assert set(rings[:, 0]) - set(times[outside]) or len(collisions) == 1
+    force = curve.get_ydata()[(times > collisions["t_end"][0]) & (times < collisions["t_start"][1])]
+    assert (force == 0.0).all()
+
+
+def test_base_shears_are_those_of_the_table(pair: Results) -> None:
+    table = pair.table("base_envelope")
+    figure = plot.picture(pair, "base_shear")
+    for axes, quantity in zip(figure.axes, ("shear X", "moment")):
+        own = table[table["quantity"] == quantity]
+        for rings, row in zip(peaks(axes), own):
+            assert sorted(rings[:, 1]) == [row["min"], row["max"]]
+    history = pair.history("building/base")
+    line = figure.axes[0].get_lines()[0]
+    assert np.array_equal(line.get_ydata(), history[:, 0]) and "[kN]" in figure.axes[0].get_ylabel()
+
+
+def test_profiles_are_those_of_the_tables(pair: Results) -> None:
+    figure = plot.picture(pair, "storeys")
+    envelope, extremes = pair.table("storey_envelope"), pair.table("storey_extremes")
+    for n, row in enumerate(envelope):
+        own = {r["quantity"]: r for r in extremes[extremes["building"] == row["building"]]}
+        for axes, quantity, column, factor in zip(
+            figure.axes[3 * n : 3 * n + 3],
+            ("drift ratio", "shear", "floor acceleration"),
+            ("drift", "shear", "acceleration"),
+            (100.0, 1.0, 1.0),
+        ):
+            _, high, low = axes.get_lines()
+            assert high.get_xdata()[-1] == factor * own[quantity]["max"]
+            assert low.get_xdata()[-1] == factor * own[quantity]["min"]
+            assert max(own[quantity]["max"], -own[quantity]["min"]) == row[column]
+            assert (low.get_linestyle(), high.get_linestyle()) == ("--", "-")
+    # the profile begins at the base, which moves as the ground
+    ground = 3.0
+    assert abs(high.get_xdata()[0]) == pytest.approx(ground, rel=1e-2) and high.get_ydata()[0] == 0.0
+
+
+def test_the_capacity_curve_names_its_events(pair: Results) -> None:
+    axes = plot.picture(pair, "capacity").axes[0]
+    table, events = pair.table("capacity_curve"), pair.table("push_events")
+    curve = axes.get_lines()[0]
+    assert np.array_equal(curve.get_xdata(), table["displacement"])
+    assert np.array_equal(curve.get_ydata(), table["base_shear"])
+    marked = sum(len(x.get_xdata()) for x in axes.get_lines()[1:] if x.get_marker() == "o")
+    assert marked == len(events)
+    texts = {t.get_text() for t in axes.texts}
+    first = events[0]
+    assert f"{first['element']} {first['component']}: yielding" in texts and "floor 1: closes" in texts
+    assert f"{table['base_shear'].max():.5g} kN" in texts
+
+
+def test_diagrams_of_a_beam_are_those_of_statics() -> None:
+    # a beam on two pins, q = 12 down over 4, and P = 40 down at a quarter
+    load, span, point = 12.0, 4.0, 40.0
+    at_i, at_j = load * span / 2 + 0.75 * point, load * span / 2 + 0.25 * point
+    ends = {
+        "moment I": [0.0], "moment J": [0.0], "shear I": [at_i], "shear J": [at_j], "axial I": [0.0],
+        "axial J": [0.0],
+    }  # fmt: skip
+    along = np.array([1.0, 0.0])
+    x, found = members.along_member(
+        {k: np.array(v) for k, v in ends.items()}, span, along, [(0.25, np.array([0.0, -point]))]
+    )
+    m = at_i * span * x - load * (span * x) ** 2 / 2 - point * np.maximum(span * x - 1.0, 0.0)
+    assert found["M"][0] == pytest.approx(m, abs=1e-12)
+    v = found["V"][0]
+    assert v[0] == at_i and v[-1] == pytest.approx(-at_j) and not found["N"].any()
+    (jump,) = np.flatnonzero(np.diff(x) == 0.0)[:1]
+    assert v[jump] - v[jump + 1] == pytest.approx(point)
+    # the moment's slope is the shear
+    inner = np.diff(x) > 0.0
+    slope = np.diff(m)[inner] / (span * np.diff(x)[inner])
+    assert slope == pytest.approx((0.5 * (v[1:] + v[:-1]))[inner])
+
+
+def test_diagrams_show_the_true_extremes_and_the_values_at_an_instant(pair: Results) -> None:
+    place = {int(n["node"]): np.array([n["x"], n["y"]]) for n in pair.table("nodes")}
+    table = pair.table("member_envelope")
+    rows = {(int(r["element"]), r["quantity"]): r for r in table}
+    found = {own.element: own for own in members.lines(pair, place, Choice())}
+    assert list(found) == [1, 2, 3, 4, 11, 12]
+    for element, own in found.items():
+        assert own.high["M"][-1] == rows[element, "moment J"]["max"]
+        assert own.high["M"][0] == -rows[element, "moment I"]["min"]
+        assert own.low["N"][0] == rows[element, "axial I"]["min"]
+        assert own.low["V"][-1] == -rows[element, "shear J"]["max"]
+    at = int(np.argmin(np.abs(pair.time - 0.5)))
+    names = pair.attributes("member/force")
+    column = list(zip(names["element"], names["quantity"])).index((11, "moment J"))
+    (beam,) = members.lines(pair, place, Choice(("11",), time=0.5))
+    assert beam.high["M"][-1] == beam.low["M"][-1] == pair.history("member/force")[at, column]
+    assert "0.518" in plot.picture(pair, "diagrams", Choice(("beam B",), time=0.5)).get_suptitle()
+
+
+def test_the_map_of_hinges_counts_them(pair: Results) -> None:
+    figure = plot.picture(pair, "hinges")
+    ductility, damage = figure.axes
+    table = pair.table("spring_envelope")
+    discs = [x for x in ductility.get_lines() if x.get_marker() == "o" and len(x.get_xdata())]
+    found = {x.get_markerfacecolor(): len(x.get_xdata()) for x in discs}
+    limits = [least for least, _ in reversed(hinges.DUCTILITY)][1:]
+    classes = np.searchsorted(limits, table["ductility"], side="left")
+    assert found == {
+        hinges.COLOURS[n]: int(count) for n, count in zip(*np.unique(classes, return_counts=True))
+    }
+    worst = pair.table("worst_hinges")[0]
+    named = {c: word for c, (_, word) in zip(hinges.COLOURS, reversed(hinges.STATES))}
+    drawn_states = {named[x.get_markerfacecolor()] for x in damage.get_lines() if x.get_marker() == "o"}
+    assert worst["state"] in drawn_states
+
+
+def test_one_spring_hinge_or_contact_is_drawn_by_any_of_its_names(pair: Results, capsys: Any) -> None:
+    for words, titles in (
+        (("1",), ["1 hinge I", "1 hinge J"]),
+        (("2 hinge j",), ["2 hinge J"]),
+        (("90",), ["floor 1"]),
+        (("FLOOR 1", "3 hinge I"), ["3 hinge I", "floor 1"]),
+    ):
+        axes = plot.picture(pair, "loops", Choice(words)).axes
+        assert [a.get_title().split("\n")[0] for a in axes] == titles
+    k = pair.labels("spring/force").index("2 hinge J")
+    line = plot.picture(pair, "loops", Choice(("2 hinge J",))).axes[0].get_lines()[0]
+    assert np.array_equal(line.get_ydata(), pair.history("spring/force")[:, k])
+    file = str(pair.path)
+    assert main(["plot", file, "loops", "--member", "17"]) == 2
+    said = capsys.readouterr().err
+    assert "no spring or contact '17'" in said and "4 hinge J" in said and "floor 1" in said
+    assert main(["plot", file, "diagrams", "--member", "floor 1"]) == 2
+    assert "there are: members 1, 2, 3, 4, 11, 12" in capsys.readouterr().err
+
+
+def test_wrong_times_and_options_are_told(pair: Results, capsys: Any) -> None:
+    file = str(pair.path)
+    for words, said in (
+        (["diagrams", "--time", "9"], "from 0 to 1.1 s"),
+        (["contact_force", "--between", "3", "4"], "fewer than two instants"),
+        (["energy", "--between", "1", "0.5"], "the first time, then the last"),
+        (["energy", "--time", "0.5"], "--time belongs to the pictures deformed, diagrams"),
+        (["--member", "11"], "--member belongs to"),
+        (["animation", "--as", "png"], "written as html, gif, mp4"),
+        (["energy", "--style", "none.mplstyle"], "none.mplstyle"),
+    ):
+        assert main(["plot", file, *words]) in (2, 3)
+        err = capsys.readouterr().err
+        assert said in err and len(err.splitlines()) == 1
+
+
+def test_between_shows_these_times_only(pair: Results) -> None:
+    axes = plot.picture(pair, "contact_force", Choice(between=(0.3, 0.6))).axes[0]
+    assert axes.get_xlim() == (0.3, 0.6)
+    inside = [t for t in pair.table("collisions")["t_peak"] if 0.3 <= t <= 0.6]
+    assert 0 < len(inside) < len(pair.table("collisions"))
+    assert peaks(axes)[0][:, 0].tolist() == inside
+
+
+def test_the_page_of_the_animation_holds_all_and_fetches_nothing(pair: Results, tmp_path: Path) -> None:
+    (path,), _ = plot.draw(pair, ["animation"], tmp_path, "html")
+    text = path.read_text("utf-8")
+    assert not re.findall(r"(?:src|href|url|import|fetch)\s*[=(]", text)
+    assert set(re.findall(r"https?://[^\s\"']+", text)) == {"http://www.w3.org/2000/svg"}
+    (data,) = re.findall(r'<script id="data" type="application/json">(.*?)</script>', text)
+    film = json.loads(data)
+    u = pair.history("node/u")[:, :, :2]
+    frames = np.array(film["moved"])
+    assert len(frames) == len(film["captions"]) == len(film["closed"]) == len(pair.time)
+    at = np.linspace(pair.time[0], pair.time[-1], len(frames))
+    moved = np.array([np.interp(at, pair.time, column) for column in u.reshape(len(u), -1).T]).T
+    factor = (frames * moved).sum() / (moved * moved).sum()
+    assert frames == pytest.approx(factor * moved, abs=1e-4)
+    assert f"drawn {factor:.3g} times" in film["captions"][0]
+    # however short a collision, a frame shows it
+    assert sum(np.diff([0, *(c[0] for c in film["closed"])]) > 0) >= 2
+    again, _ = plot.draw(pair, ["animation"], tmp_path / "again", "html")
+    assert again[0].read_bytes() == path.read_bytes()
+
+
+def test_a_gif_moves(pair: Results, tmp_path: Path) -> None:
+    from PIL import Image
+
+    choice = Choice(between=(0.3, 0.6))
+    files = [plot.draw(pair, ["animation"], tmp_path / n, "gif", choice)[0][0] for n in ("a", "b")]
+    assert files[0].read_bytes() == files[1].read_bytes()
+    with Image.open(io.BytesIO(files[0].read_bytes())) as film:
+        frames = []
+        for k in range(film.n_frames):
+            film.seek(k)
+            frames.append(np.asarray(film.convert("RGB"), float))
+    inside = (pair.time >= 0.3) & (pair.time <= 0.6)
+    assert len(frames) == inside.sum()
+    assert all(np.abs(a - b).max() > 50 for a, b in pairwise(frames))
+
+
+def test_names_are_no_formulas_in_the_summary(pair: Results, tmp_path: Path) -> None:
+    (path,), _ = plot.draw(pair, ["summary"], tmp_path)
+    text = path.read_text("utf-8")
+    assert "Two frames at $cost$" in text and "B $x$" in text
