@@ -24,7 +24,15 @@ from fuzz.judge import ENDS, Outcome
 from fuzz.workers import outcomes
 
 #: share of each kind in N cases
-SHARES = {"deck": 1.0, "run": 0.005, "record": 0.2, "results": 0.05, "words": 0.01}
+SHARES = {
+    "deck": 1.0,
+    "verbs": 0.02,
+    "editor": 0.005,
+    "run": 0.005,
+    "record": 0.2,
+    "results": 0.05,
+    "words": 0.01,
+}
 
 
 def keep(

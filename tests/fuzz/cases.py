@@ -8,7 +8,7 @@ from __future__ import annotations
 import io
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from random import Random
 
@@ -116,7 +116,9 @@ class Case:
     def command(self) -> str:
         """A command line that gives the program the same."""
         return {
-            "deck": "pound-solve check deck.inp; pound-solve format --check deck.inp",
+            "deck": "pound-solve check deck.inp",
+            "verbs": "pound-solve check deck.inp; pound-solve format --check deck.inp",
+            "editor": "pound-solve lsp  # deck.inp opened, and asked for everything",
             "run": "POUND_COMPILE=0 pound-solve run deck.inp",
             "record": f"pound-solve check deck.inp  # FORMAT={self.words[0] if self.words else ''}",
             "results": "pound-solve report model.h5; pound-solve export model.h5; pound-solve run deck.inp",
@@ -130,14 +132,14 @@ def case(kind: str, seed: int, number: int, bases: Mapping[str, bytes]) -> Case:
     return KINDS[kind](rng, number, bases)
 
 
-def _deck(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
+def _deck(rng: Random, number: int, bases: Mapping[str, bytes], kind: str = "deck") -> Case:
     way = rng.random()
     text = rng.choice(decks()) if way < 0.7 else small(rng) if way < 0.99 else generated(number)
     files = {"deck.inp": encoded(mutated(text, rng, decks()), rng)}
     part = rng.choice(decks()).split("\n")
     at = rng.randrange(len(part))
     files["part.inc"] = encoded("\n".join(part[at : at + 10]), rng)
-    return Case("deck", number, files, place=rng.random())
+    return Case(kind, number, files, place=rng.random())
 
 
 def _run(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
@@ -172,6 +174,8 @@ def _words(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
 
 KINDS: dict[str, Callable[[Random, int, Mapping[str, bytes]], Case]] = {
     "deck": _deck,
+    "verbs": partial(_deck, kind="verbs"),
+    "editor": partial(_deck, kind="editor"),
     "run": _run,
     "record": _record,
     "results": _results,

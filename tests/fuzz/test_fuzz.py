@@ -21,7 +21,7 @@ from fuzz.judge import Outcome, judge
 from fuzz.kills import rounds
 from fuzz.workers import outcomes
 
-COUNTS = {"deck": 240, "run": 20, "record": 160, "results": 24, "words": 20}
+COUNTS = {"deck": 300, "verbs": 24, "editor": 6, "run": 20, "record": 160, "results": 24, "words": 20}
 
 
 @pytest.fixture(scope="module")

@@ -18,7 +18,7 @@ from fuzz.judge import Outcome, judge
 
 MEMORY = 2**30  #: bytes that a process may ask for
 #: CPU seconds that a case may take; a run is then asked to end, as by Ctrl-C, and has `GRACE`
-LIMITS = {"deck": 60.0, "record": 5.0, "results": 30.0, "words": 10.0, "run": 15.0}
+LIMITS = {"deck": 20.0, "verbs": 60.0, "editor": 60.0, "record": 5.0, "results": 30.0, "words": 10.0, "run": 15.0}
 GRACE = 10.0
 PATIENCE = 100.0  #: times the limit after which a process that uses no CPU counts as hanging
 MOST_CASES = 2000  #: of one process: a new one has a clean memory
