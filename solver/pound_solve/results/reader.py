@@ -24,6 +24,8 @@ from pound_solve.results.form import (
     FILETYPE,
     FORMAT_VERSION,
     IDENTITY,
+    SEALED_SINCE,
+    STATUSES,
     THERE,
     ResultsError,
     digest_of,
@@ -33,9 +35,15 @@ from pound_solve.results.form import (
     unescape,
 )
 from pound_solve.results.safe_file import in_use
+from pound_solve.results.seal import holds
 
 #: what h5py and numpy raise on a file that is not as it was written
 DAMAGE: Final = (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError, AttributeError)
+#: what a user is told before HDF5 sees such a file
+NOT_AS_WRITTEN: Final = (
+    "damaged results file: its bytes are not those that were written; take a copy that is whole, or run the "
+    "deck again (in Python, Results.open(path, damaged=True) reads the parts that hold)"
+)
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -71,6 +79,14 @@ class Results:
     ----------
     path : str or Path
         The file.
+    damaged : bool
+        Read a file whose checksum does not hold, too.  Each part is still compared with its digest, but HDF5
+        may end the process, or read without an end, where its own tables are damaged.
+
+    Attributes
+    ----------
+    changed : bool
+        Whether a program has changed the file after the run, as far as that can be told.
 
     Raises
     ------
@@ -79,16 +95,20 @@ class Results:
         where the file is damaged.
     """
 
-    def __init__(self, path: str | Path) -> None:
+    def __init__(self, path: str | Path, damaged: bool = False) -> None:
         self.path = Path(path)
         if not self.path.is_file():
             raise ResultsError(f"{path}: no such file")
         try:
+            with self.path.open("rb") as file:
+                sealed = holds(file)
+            if sealed is False and not damaged:
+                raise ResultsError(f"{path}: {NOT_AS_WRITTEN}")
             self._file = h5py.File(path, "r")
         except OSError as err:
             raise ResultsError(f"{path}: {reason(err)}") from err
         try:
-            self._check_head()
+            self._check_head(sealed is True)
         except ResultsError:
             self.close()
             raise
@@ -96,7 +116,7 @@ class Results:
             self.close()
             raise ResultsError(f"{path}: damaged results file: {err}") from err
 
-    def _check_head(self) -> None:
+    def _check_head(self, sealed: bool) -> None:
         attrs = self._file.attrs
         if _plain(attrs.get("filetype")) != FILETYPE:
             raise ResultsError(f"{self.path}: an HDF5 file, but not one of pound-solve results")
@@ -114,17 +134,18 @@ class Results:
         self.status: str = _plain(attrs["status"])
         if self.status == "running" and not in_use(self.path):
             self.status = "killed"
+        self.changed = not sealed and self.status in STATUSES and (major, minor) >= SEALED_SINCE
         self.digest: str = _plain(attrs.get(DIGEST, ""))  #: of what the file holds but the run's times
         self.message: str = _plain(attrs["message"])  #: where and why the analysis stopped, else empty
         self._datasets: dict[str, h5py.Dataset] = {}
         self._file["history"].visititems(self._collect)
         # A kill amid a flush may leave histories of different lengths: what all of them have, holds.
         self._length = min((len(d) for d in self._datasets.values()), default=0)
-        if self.digest and self.digest != digest_of_file(self._parts()):
+        if self.digest and (major, minor) >= SEALED_SINCE and self.digest != self._own_digest():
             raise self._damaged("parts are missing or not as they were written")
 
-    def _parts(self) -> dict[str, str]:
-        """Digests that the file gives of its parts, by their paths."""
+    def _own_digest(self) -> str:
+        """Digest of the file from those that its parts name."""
         out: dict[str, str] = {}
 
         def take(name: str, item: h5py.Dataset | h5py.Group) -> None:
@@ -134,16 +155,16 @@ class Results:
                 out[name] = THERE.hexdigest()
 
         self._file.visititems(take)
-        return out
+        return digest_of_file(out, self._file.attrs)
 
     def _collect(self, name: str, item: h5py.Dataset | h5py.Group) -> None:
         if isinstance(item, h5py.Dataset):
             self._datasets[name] = item
 
     @classmethod
-    def open(cls, path: str | Path) -> Self:
+    def open(cls, path: str | Path, damaged: bool = False) -> Self:
         """Open a results file, see the class."""
-        return cls(path)
+        return cls(path, damaged)
 
     def close(self) -> None:
         """Close the file."""
@@ -253,7 +274,11 @@ class Results:
     def restart(self) -> dict[str, Array]:
         """State that a later run can be taken up from; empty where the file has none."""
         group = self._file.get("restart", {})
-        return {name: np.asarray(group[name], float) for name in group if name != IDENTITY}
+        return {
+            name: self._as_written(name, group[name], np.asarray(group[name], float))
+            for name in group
+            if name != IDENTITY
+        }
 
     @_sound
     def identity(self) -> dict[str, str]:
