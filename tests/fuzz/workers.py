@@ -57,7 +57,7 @@ def bound_memory() -> None:
 
 def serve(connection: Connection, seed: int, bases: Mapping[str, bytes]) -> None:
     """Judge the cases that come, until none does."""
-    os.environ.setdefault("POUND_COMPILE", "0")  # 1: by the library of kernels, where there is one
+    os.environ.setdefault("POUND_COMPILE", "0")  # 1: by a library
     os.environ.setdefault("MPLBACKEND", "Agg")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell may have had ignored

@@ -96,13 +96,40 @@ def retitle(file):
     file.attrs["title"] = "another"
 
 
+def undigested(file):
+    file.attrs["digest"] = ""
+
+
+def other_columns(file):
+    del file["tables/nodes"]
+    file["tables/nodes"] = np.zeros(3, [("x", float)])
+    file["tables/nodes"].attrs["columns"] = file["tables/nodes"].attrs["units"] = ["x"]
+    file["tables/nodes"].attrs["note"] = ""
+    killed(file)
+
+
+def narrower(file):
+    labels = file["history/drift"].attrs["labels"]
+    del file["history/drift"]
+    file["history/drift"] = np.zeros((len(file["history/time"]), len(labels) + 1))
+    file["history/drift"].attrs["labels"] = file["history/drift"].attrs["unit"] = labels
+    killed(file)
+
+
+def killed(file):
+    """Say that the run was killed: the digest of the whole is not known."""
+    file.attrs["status"] = "running"
+    file.attrs["digest"] = ""
+
+
 def end_otherwise(file):
     file.attrs["status"] = "done" if file.attrs["status"] == "stopped" else "stopped"
 
 
-@pytest.mark.parametrize(
-    "attack", [retitle, end_otherwise, drop, drop_of_the_day, swap, link, change, relabel, cut]
-)
+ATTACKS = (retitle, end_otherwise, undigested, other_columns, narrower, drop, drop_of_the_day, swap, link)
+
+
+@pytest.mark.parametrize("attack", [*ATTACKS, change, relabel, cut])
 def test_parts_that_are_missing_changed_or_elsewhere_end_in_damaged(tmp_path, capsys, attack):
     path = sample.write(tmp_path / "a.h5")
     with h5py.File(path, "r+") as file:
@@ -119,7 +146,7 @@ def test_a_table_that_a_verb_needs_and_a_file_lacks_is_named(tmp_path, capsys):
     sample.write(path)
     with h5py.File(path, "r+") as file:
         del file["tables/nodes"]
-        file.attrs["digest"] = ""
+        file.attrs["format_version"] = [1, 1]
     assert main(["plot", str(path), "-o", str(tmp_path / "p")]) == 3
     assert "no table 'nodes' in this file" in capsys.readouterr().err
 
@@ -179,3 +206,11 @@ def test_files_of_versions_without_a_seal_are_read(tmp_path, version):
         file.attrs["format_version"] = np.array(version)
     with Results.open(path) as results:
         assert not results.changed and results.table("nodes").size
+
+
+def test_a_file_without_anything_to_draw_is_told(tmp_path, capsys):
+    path = tmp_path / "a.h5"
+    with Writer(path, title="", units=sample.UNITS, program_version="") as writer:
+        writer.finish("done")
+    assert main(["plot", str(path)]) == 2
+    assert "holds nothing that a picture shows" in capsys.readouterr().err

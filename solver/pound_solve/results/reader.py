@@ -6,6 +6,7 @@ All that a reader needs stands in the file; `pound_solve.results.contents` lists
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Mapping
 from functools import wraps
 from pathlib import Path
@@ -41,8 +42,8 @@ from pound_solve.results.seal import holds
 DAMAGE: Final = (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError, AttributeError)
 #: what a user is told before HDF5 sees such a file
 NOT_AS_WRITTEN: Final = (
-    "damaged results file: its bytes are not those that were written; take a copy that is whole, or run the "
-    "deck again (in Python, Results.open(path, damaged=True) reads the parts that hold)"
+    "damaged results file: its bytes are not those that were written; take a copy that is whole, or run "
+    "the deck again (in Python, Results.open(path, damaged=True) reads the parts that hold)"
 )
 
 _P = ParamSpec("_P")
@@ -80,8 +81,8 @@ class Results:
     path : str or Path
         The file.
     damaged : bool
-        Read a file whose checksum does not hold, too.  Each part is still compared with its digest, but HDF5
-        may end the process, or read without an end, where its own tables are damaged.
+        Read a file whose checksum does not hold, too.  Each part is still compared with its digest, but
+        HDF5 may end the process, or read without an end, where its own tables are damaged.
 
     Attributes
     ----------
@@ -134,14 +135,16 @@ class Results:
         self.status: str = _plain(attrs["status"])
         if self.status == "running" and not in_use(self.path):
             self.status = "killed"
-        self.changed = not sealed and self.status in STATUSES and (major, minor) >= SEALED_SINCE
+        self._sealed = (major, minor) >= SEALED_SINCE
+        self._complete = self.status in STATUSES and self._sealed
+        self.changed = self._complete and not sealed
         self.digest: str = _plain(attrs.get(DIGEST, ""))  #: of what the file holds but the run's times
         self.message: str = _plain(attrs["message"])  #: where and why the analysis stopped, else empty
         self._datasets: dict[str, h5py.Dataset] = {}
         self._file["history"].visititems(self._collect)
         # A kill amid a flush may leave histories of different lengths: what all of them have, holds.
         self._length = min((len(d) for d in self._datasets.values()), default=0)
-        if self.digest and (major, minor) >= SEALED_SINCE and self.digest != self._own_digest():
+        if self._complete and self.digest != self._own_digest():
             raise self._damaged("parts are missing or not as they were written")
 
     def _own_digest(self) -> str:
@@ -229,7 +232,7 @@ class Results:
         for field, kind in zip(stored.dtype.names, fields):
             column = stored[field]
             out[field] = [_plain(v) for v in column] if kind.kind == "O" else column
-        return self._as_written(name, self._table(name), out)
+        return self._as_written(name, self._table(name), out, name in TABLES)
 
     @_sound
     def table_units(self, name: str) -> dict[str, str]:
@@ -247,7 +250,9 @@ class Results:
     def history(self, name: str) -> Array:
         """History, shape (nt, \\*row); KeyError where the file has none of that name."""
         out: Array = self._dataset(name)[: self._length]
-        return self._as_written(name, self._dataset(name), out)
+        if out.dtype != float or math.prod(out.shape[1:]) != len(self.labels(name)):
+            raise self._damaged(f"{name} does not have the columns that its labels name")
+        return self._as_written(name, self._dataset(name), out, self._complete)
 
     @_sound
     def labels(self, name: str) -> tuple[str, ...]:
@@ -305,10 +310,10 @@ class Results:
             raise self._damaged(f"{name} is in another file")
         return dataset
 
-    def _as_written(self, name: str, dataset: h5py.Dataset, data: _D) -> _D:
-        """The data of a dataset, if they are those that were written."""
+    def _as_written(self, name: str, dataset: h5py.Dataset, data: _D, ours: bool = True) -> _D:
+        """The data of a dataset, if they are those that were written; `ours` have a digest."""
         attrs = dataset.attrs
-        told = attrs.get(DIGEST, attrs.get(DIGEST_OF_THE_DAY))
+        told = attrs.get(DIGEST, attrs.get(DIGEST_OF_THE_DAY, "" if ours and self._sealed else None))
         if told is not None and _plain(told) != digest_of(attrs, data).hexdigest():
             raise self._damaged(f"{name} is not as it was written")
         return data

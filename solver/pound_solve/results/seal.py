@@ -1,8 +1,9 @@
 """The seal of a results file: a checksum of all its bytes, which holds before HDF5 sees the first of them.
 
 HDF5 trusts what it reads: a damaged heap can keep it busy without an end.  The seal stands behind the last
-byte of HDF5, which takes no notice of it.  A program that changes the file by HDF5 drops the seal, as HDF5
-ends a file where its own data end; the digests of the parts, see `form`, then tell what is as it was written.
+byte of HDF5, which takes no notice of it.  A program that changes the file by HDF5 drops the seal, because
+HDF5 ends a file where its own data end; digests of the parts, see `form`, then tell what is as it was
+written.
 """
 
 from __future__ import annotations

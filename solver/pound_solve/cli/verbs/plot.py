@@ -38,6 +38,10 @@ def execute(args: argparse.Namespace) -> int:
     try:
         with Results.open(args.results) as results:
             can = plot.possible(results)
+            if not can:
+                return common.complain(
+                    f"{args.results} holds nothing that a picture shows", common.MISTAKES
+                )
             if lacking := [name for name in args.pictures if name not in can]:
                 needs = ", ".join(plot.PICTURES[lacking[0]][1])
                 text = f"{args.results} lacks what the picture {lacking[0]} needs: {needs}"
