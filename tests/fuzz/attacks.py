@@ -44,7 +44,7 @@ def _bytes(whole: bytes, rng: Random) -> bytes:
 
 
 def _parts(whole: bytes, rng: Random) -> bytes:
-    """HDF5's own words: groups, datasets, links, attributes; the digest of the whole is looked at or not."""
+    """By HDF5: groups, datasets, links, attributes; the digest of the whole is looked at or not."""
     memory = io.BytesIO(whole)
     with h5py.File(memory, "r+") as file:
         names: list[str] = []

@@ -12,25 +12,13 @@ from functools import cache, partial
 from pathlib import Path
 from random import Random
 
-from agency_files import afad, cosmos, csmip, esm, knet, smc, unam
+from agency_files import FILES
 from fuzz.attacks import attacked
 from fuzz.mutation import damaged, encoded, items, mutated, revalued, words
 from verification.generated import laws
 from verification.generated.decks import deck
 
 ROOT = Path(__file__).parents[2]
-RECORDS = {
-    "SMC": smc(),
-    "COSMOS": cosmos(),
-    "CSMIP": csmip(),
-    "KNET": knet(),
-    "ESM": esm(),
-    "AFAD": afad(),
-    "UNAM": unam(),
-    "PEER": "PEER\nx, y, 090\nACCELERATION IN UNITS OF G\nNPTS= 4, DT= .0050 SEC,\n .1E-01 -.2 .3D0-.4\n",
-    "BERG": "Title\n0.00 0.00 0.02 0.10 0.03 -0.20 0.06 0.30\n0.08 -0.05 0.10 0.00\n",
-    "COLUMNS": "t, a\n0.00, 0.1\n0.01, -0.2\n0.02, 0.3\n",
-}
 #: two masses and a wall, with every section; what a law, a method or a motion needs is put in
 SMALL = """TITLE small
 UNITS kN m s
@@ -148,8 +136,8 @@ def _run(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
 
 
 def _record(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
-    name = rng.choice(sorted(RECORDS))
-    files = {"record.txt": encoded(damaged(RECORDS[name], rng), rng)}
+    name = rng.choice(sorted(FILES))
+    files = {"record.txt": encoded(damaged(FILES[name], rng), rng)}
     name = rng.choice((name, "AUTO"))
     more = rng.choice(
         ("", "", " UNIT=G", " COLUMN=2", " DT=0.01", " COMPONENT=2", " SCALE=1E300", " SKIP=1")

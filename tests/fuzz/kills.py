@@ -23,7 +23,7 @@ from random import Random
 
 from fuzz.cases import MOTIONS, plain
 from pound_solve.results import Results, ResultsError
-from pound_solve.results.place import digest_of, partial
+from pound_solve.results.place import digest_in, partial
 
 METHODS = ("METHOD=EXACT", "METHOD=TAYLOR", "METHOD=NEWMARK DT=0.005", "METHOD=AUTO TOL=1E-2")
 OLD, NEW = "the older results are intact", "the new results are whole"
@@ -70,7 +70,7 @@ def verdict(folder: Path, verb: str, before: tuple[bytes, ...], deck: str) -> st
     try:
         with Results.open(folder / VERBS[verb][1][0]) as results:
             whole = results.status == "done" and all(len(results.table(t)) >= 0 for t in results.tables)
-            same = results.digest == digest_of(folder / VERBS[verb][1][1])
+            same = results.digest == digest_in(folder / VERBS[verb][1][1])
     except ResultsError as error:
         return f"FAULT: {error}"
     return NEW if whole and same else f"FAULT: status {results.status}, one digest: {same}"

@@ -10,7 +10,7 @@ import pound_solve
 from pound_solve.cli.main import main
 from pound_solve.driver.run import DeckError
 from pound_solve.results import Results, ResultsError, Writer, safe_file
-from pound_solve.results.place import digest_of, partial
+from pound_solve.results.place import digest_in, partial
 
 DECK = """UNITS N m s
 GRAVITY 1
@@ -122,8 +122,8 @@ def test_an_open_file_that_is_being_written_and_one_whose_run_was_killed(tmp_pat
 def test_report_and_results_tell_that_they_belong_together(tmp_path, capsys):
     deck, other = write(tmp_path), write(tmp_path, "other", strength=11)
     with pound_solve.run(deck) as results, pound_solve.run(other) as others:
-        assert results.digest == digest_of(deck.with_suffix(".rpt"))
-        assert others.digest == digest_of(other.with_suffix(".rpt")) != results.digest
+        assert results.digest == digest_in(deck.with_suffix(".rpt"))
+        assert others.digest == digest_in(other.with_suffix(".rpt")) != results.digest
     before = results.digest
     with pound_solve.run(deck) as again:
         assert again.digest == before  # what differs from run to run is not part of it

@@ -54,7 +54,7 @@ def put_in_place(results: Path, report: str, whole: bool) -> Path:
     return results
 
 
-def digest_of(report: Path) -> str:
+def digest_in(report: Path) -> str:
     """Digest of the results that a report was made from; empty where it has none."""
     found = (
         _DIGEST.search(report.read_text(encoding="ascii", errors="replace")) if report.is_file() else None
