@@ -41,7 +41,8 @@ VERBS = {
 def start(verb: str, folder: Path) -> subprocess.Popen[bytes]:
     """Start a verb on the deck of a folder, kernels as Python."""
     words = [sys.executable, "-m", "pound_solve", *VERBS[verb][0]]
-    environment = {**os.environ, "POUND_COMPILE": "0"}
+    there = os.pathsep.join(map(os.path.abspath, os.environ.get("PYTHONPATH", "").split(os.pathsep)))
+    environment = {**os.environ, "POUND_COMPILE": "0", "PYTHONPATH": there}
     nowhere = subprocess.DEVNULL
     return subprocess.Popen(words, cwd=folder, env=environment, stdout=nowhere, stderr=nowhere)
 
