@@ -3,6 +3,7 @@
 import errno
 import os
 import shutil
+from contextlib import suppress
 
 import pytest
 
@@ -132,6 +133,25 @@ def test_report_and_results_tell_that_they_belong_together(tmp_path, capsys):
     shutil.copy(other.with_suffix(".rpt"), deck.with_suffix(".rpt"))
     assert main(["report", str(deck.with_suffix(".h5"))]) == 0
     assert "is the report of another run" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("at", range(3))
+def test_a_kill_amid_the_renaming_leaves_no_report_of_other_results(tmp_path, monkeypatch, at):
+    deck, calls, replace = write(tmp_path), [], os.replace
+    pound_solve.run(deck).close()
+    write(tmp_path, strength=11)
+
+    def killed(*names):
+        calls.append(names)
+        if len(calls) > at:
+            raise KeyboardInterrupt
+        replace(*names)
+
+    with monkeypatch.context() as patch, suppress(KeyboardInterrupt):
+        patch.setattr("pound_solve.results.place.os.replace", killed)
+        pound_solve.run(deck).close()
+    with Results.open(deck.with_suffix(".h5")) as results:
+        assert digest_in(deck.with_suffix(".rpt")) in ("", results.digest)
 
 
 def test_an_open_older_result_stays_readable(tmp_path):
