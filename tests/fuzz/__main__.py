@@ -82,8 +82,10 @@ def main() -> int:
         given = {kind: max(1, round(share * args.n)) for kind, share in SHARES.items()}
     counts = {kind: count for kind, count in given.items() if count}
     found: Counter[tuple[str, str]] = Counter()
-    with tempfile.TemporaryDirectory() as folder:
-        whole = bases(Path(folder))
+    whole: Mapping[str, bytes] = {}
+    if "results" in counts:
+        with tempfile.TemporaryDirectory() as folder:
+            whole = bases(Path(folder))
     with suppress(KeyboardInterrupt):  # Ctrl-C: the counts so far
         for kind, number, outcome in outcomes(tasks(counts, args.first), args.jobs, args.seed, whole):
             found[kind, outcome.end] += 1

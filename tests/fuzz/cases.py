@@ -215,7 +215,7 @@ def bases(folder: Path) -> dict[str, bytes]:
     with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()) as told:
         for words in (
             ["run", str(deck), "--quiet"],
-            ["study", str(deck), "--methods", "EXACT", "--repeat", "1"],
+            ["study", str(deck), "--methods", "EXACT", "--repeat", "1", "--longest", "600"],
         ):
             assert main(words) == 0, told.getvalue()
     sample.write(folder / "sample.h5")
