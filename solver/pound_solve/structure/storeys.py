@@ -141,7 +141,7 @@ def _own(places: Mapping[int, Sequence[tuple[int, int]]], nodes: Sequence[int]) 
 
 def _matrix(blocks: Sequence[Block], equations: Equations) -> Matrix:
     """Blocks of rows one below the other."""
-    i, j, x, first = [], [], [], 0
+    i, j, x, first = list[Index](), list[Index](), list[Array](), 0
     for columns, values in blocks:
         row, column = np.nonzero(values)
         i.append(first + row)
