@@ -191,3 +191,18 @@ def unam(thinned: str = "1", declared: int | None = None, unit: str = "Gal (cm/s
     lines += ["         V      N00E      N90E", rule]
     lines += ["".join(rows([x, x / 2, x / 4], "10.4f", 3)) for x in SAMPLES]
     return "\r\n".join(lines) + "\r\n"
+
+
+#: a sound file of every format
+FILES = {
+    "SMC": smc(),
+    "COSMOS": cosmos(),
+    "CSMIP": csmip(),
+    "KNET": knet(),
+    "ESM": esm(),
+    "AFAD": afad(),
+    "UNAM": unam(),
+    "PEER": "PEER\nx, y, 090\nACCELERATION IN UNITS OF G\nNPTS= 4, DT= .0050 SEC,\n .1E-01 -.2 .3D0-.4\n",
+    "BERG": "Title\n0.00 0.00 0.02 0.10 0.03 -0.20 0.06 0.30\n0.08 -0.05 0.10 0.00\n",
+    "COLUMNS": "t, a\n0.00, 0.1\n0.01, -0.2\n0.02, 0.3\n",
+}

@@ -24,7 +24,15 @@ from fuzz.judge import ENDS, Outcome
 from fuzz.workers import outcomes
 
 #: share of each kind in N cases
-SHARES = {"deck": 1.0, "run": 0.005, "record": 0.2, "results": 0.05, "words": 0.01}
+SHARES = {
+    "deck": 1.0,
+    "verbs": 0.02,
+    "editor": 0.005,
+    "run": 0.005,
+    "record": 0.2,
+    "results": 0.05,
+    "words": 0.01,
+}
 
 
 def keep(
@@ -74,8 +82,10 @@ def main() -> int:
         given = {kind: max(1, round(share * args.n)) for kind, share in SHARES.items()}
     counts = {kind: count for kind, count in given.items() if count}
     found: Counter[tuple[str, str]] = Counter()
-    with tempfile.TemporaryDirectory() as folder:
-        whole = bases(Path(folder))
+    whole: Mapping[str, bytes] = {}
+    if "results" in counts:
+        with tempfile.TemporaryDirectory() as folder:
+            whole = bases(Path(folder))
     with suppress(KeyboardInterrupt):  # Ctrl-C: the counts so far
         for kind, number, outcome in outcomes(tasks(counts, args.first), args.jobs, args.seed, whole):
             found[kind, outcome.end] += 1

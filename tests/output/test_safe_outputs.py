@@ -3,6 +3,7 @@
 import errno
 import os
 import shutil
+from contextlib import suppress
 
 import pytest
 
@@ -10,7 +11,7 @@ import pound_solve
 from pound_solve.cli.main import main
 from pound_solve.driver.run import DeckError
 from pound_solve.results import Results, ResultsError, Writer, safe_file
-from pound_solve.results.place import digest_of, partial
+from pound_solve.results.place import digest_in, partial
 
 DECK = """UNITS N m s
 GRAVITY 1
@@ -122,8 +123,8 @@ def test_an_open_file_that_is_being_written_and_one_whose_run_was_killed(tmp_pat
 def test_report_and_results_tell_that_they_belong_together(tmp_path, capsys):
     deck, other = write(tmp_path), write(tmp_path, "other", strength=11)
     with pound_solve.run(deck) as results, pound_solve.run(other) as others:
-        assert results.digest == digest_of(deck.with_suffix(".rpt"))
-        assert others.digest == digest_of(other.with_suffix(".rpt")) != results.digest
+        assert results.digest == digest_in(deck.with_suffix(".rpt"))
+        assert others.digest == digest_in(other.with_suffix(".rpt")) != results.digest
     before = results.digest
     with pound_solve.run(deck) as again:
         assert again.digest == before  # what differs from run to run is not part of it
@@ -132,6 +133,25 @@ def test_report_and_results_tell_that_they_belong_together(tmp_path, capsys):
     shutil.copy(other.with_suffix(".rpt"), deck.with_suffix(".rpt"))
     assert main(["report", str(deck.with_suffix(".h5"))]) == 0
     assert "is the report of another run" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("at", range(3))
+def test_a_kill_amid_the_renaming_leaves_no_report_of_other_results(tmp_path, monkeypatch, at):
+    deck, calls, replace = write(tmp_path), [], os.replace
+    pound_solve.run(deck).close()
+    write(tmp_path, strength=11)
+
+    def killed(*names):
+        calls.append(names)
+        if len(calls) > at:
+            raise KeyboardInterrupt
+        replace(*names)
+
+    with monkeypatch.context() as patch, suppress(KeyboardInterrupt):
+        patch.setattr("pound_solve.results.place.os.replace", killed)
+        pound_solve.run(deck).close()
+    with Results.open(deck.with_suffix(".h5")) as results:
+        assert digest_in(deck.with_suffix(".rpt")) in ("", results.digest)
 
 
 def test_an_open_older_result_stays_readable(tmp_path):

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from agency_files import afad, cosmos, csmip, esm, knet, smc, unam
+from agency_files import FILES, csmip, knet, smc
 from pound_solve.driver.run import DeckError, Request, prepare
 from pound_solve.loading.motions import record
 from pound_solve.loading.motions.base import LoadingContext
@@ -19,18 +19,6 @@ from pound_solve.loading.records.base import RawRecord, RecordError
 from pound_solve.loading.records.known import load
 from pound_solve.loading.records.text import parse
 
-FILES = {
-    "SMC": smc(),
-    "COSMOS": cosmos(),
-    "CSMIP": csmip(),
-    "KNET": knet(),
-    "ESM": esm(),
-    "AFAD": afad(),
-    "UNAM": unam(),
-    "PEER": "PEER\nx, y, 090\nACCELERATION IN UNITS OF G\nNPTS= 4, DT= .0050 SEC,\n .1E-01 -.2 .3D0-.4\n",
-    "BERG": "Title\n0.00 0.00 0.02 0.10 0.03 -0.20 0.06 0.30\n0.08 -0.05 0.10 0.00\n",
-    "COLUMNS": "t, a\n0.00, 0.1\n0.01, -0.2\n0.02, 0.3\n",
-}
 #: what damage puts in the place of something else
 _WORDS = (
     "",

@@ -105,5 +105,6 @@ def test_a_state_of_another_version_is_refused(tmp_path):
     run(tmp_path, "first", "EXACT", end=2)
     with h5py.File(tmp_path / "first.h5", "r+") as file:
         file.attrs["program_version"] = "0.1.0"
+        file.attrs["format_version"] = [1, 1]
     with pytest.raises(DeckError, match="written by version 0"):
         run(tmp_path, "again", "EXACT", end=4, more="RESTART=first.h5")

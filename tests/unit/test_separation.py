@@ -186,6 +186,7 @@ def test_a_run_that_ended_early_says_so(tmp_path: Path) -> None:
         assert "early" not in rows(SeparationRecord(results))[0][-1]
     with h5py.File(tmp_path / "walls.h5", "a") as file:
         file.attrs["status"] = "stopped"
+        file.attrs["format_version"] = [1, 1]
     with Results.open(tmp_path / "walls.h5") as results:
         assert rows(SeparationRecord(results))[0][-1].endswith(
             f"the run ended early, at {results.time[-1]:g}"

@@ -85,6 +85,20 @@ def picture(word: str) -> Path:
     return path
 
 
+def drawable(path: Path | None) -> bool:
+    """Whether a picture that is asked for can be drawn; says what is missing before the work begins."""
+    if path is None:
+        return True
+    from pound_solve.report import plot
+
+    try:
+        plot.ready(path.parent)
+    except ImportError:
+        complain('--picture needs matplotlib: pip install "pound-solve[plot]"', MISTAKES)
+        return False
+    return True
+
+
 def numbers(words: Sequence[str], takes: str, error: type[Exception]) -> list[float]:
     """Finite numbers; raise `error`, which says what the option `takes`, at the first word that is none."""
     out = []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
-from pound_solve.driver.identity import MOTION, differences
+from pound_solve.driver.identity import MOTION, differences, identity
 from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import METRE, LoadingContext, Motion
@@ -87,19 +87,24 @@ def _built(card: Card, surroundings: LoadingContext, found: list[Diagnostic]) ->
 
 
 def saved_state(
-    model: Model, request: Request, own: Mapping[str, str], found: list[Diagnostic]
+    model: Model,
+    request: Request,
+    motions: Sequence[Motion],
+    forces: Sequence[Force],
+    found: list[Diagnostic],
 ) -> dict[str, Array]:
     """State of the results file that a history goes on from.
 
     Parameters
     ----------
-    own : mapping of str to str
-        `identity` of this deck.
+    motions, forces : sequence
+        Those of this deck.
     found : list of Diagnostic
         Gets what keeps the state from being used.
     """
     for card in model.analyses:
         if card.spec.name == "HISTORY" and card["RESTART"]:
+            own = identity(model, motions, forces)
             return _taken_up(card, Path(request.deck).parent / card["RESTART"], own, found)
         if card.spec.name == "HISTORY" and card["NEW"] != "NOTHING":
             found.append(Diagnostic("R406", "NEW stands beside RESTART only", card.place("NEW")))

@@ -10,7 +10,6 @@ from pound_deck.model import Model
 from pound_deck.reader import read_deck
 from pound_solve.catalog import catalog
 from pound_solve.driver import loading
-from pound_solve.driver.identity import identity
 from pound_solve.driver.outputs import overwritten
 from pound_solve.driver.overrides import overridden
 from pound_solve.driver.preflight import preflight
@@ -35,8 +34,7 @@ class DeckError(Exception):
 class Prepared:
     """A deck that is read and checked, its motions, its forces in time and its assembled structure.
 
-    `identity` is what a state saved by its run belongs to; `saved` is the state that its history goes on
-    from, or empty.
+    `saved` is the state that its history goes on from, or empty.
     """
 
     model: Model
@@ -45,7 +43,6 @@ class Prepared:
     structure: Structure
     warnings: tuple[Diagnostic, ...]
     files: Mapping[str, str]
-    identity: Mapping[str, str]
     saved: Mapping[str, Array] = field(default_factory=dict)
 
 
@@ -80,11 +77,10 @@ def assembled(
     except AssemblyError as err:
         found += err.diagnostics
     found += overwritten(model, request, context)
-    own = identity(model, motions, forces)
-    saved = loading.saved_state(model, request, own, found)
+    saved = loading.saved_state(model, request, motions, forces, found)
     if has_errors(found) or structure is None:
         raise DeckError(found, files)
-    return Prepared(model, tuple(motions), tuple(forces), structure, tuple(found), files, own, saved)
+    return Prepared(model, tuple(motions), tuple(forces), structure, tuple(found), files, saved)
 
 
 def _assembled(model: Model, motions: Sequence[Motion]) -> Structure:

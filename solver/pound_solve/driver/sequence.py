@@ -13,6 +13,7 @@ from pound_solve.analyses import history, modal, plausibility, pushover, restart
 from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.analyses.recorder import RecordedItems, SampleBlock
 from pound_solve.analyses.static_response import static_response
+from pound_solve.driver.identity import identity
 from pound_solve.driver.prepare import Prepared
 from pound_solve.driver.request import Request
 from pound_solve.integrate.protocol import INTERRUPTED, Stop
@@ -62,7 +63,7 @@ class AnalysisSequence:
         )
         self.record.stored = writer.stored
         self.record.warnings = ready.warnings
-        self.output = HistoryWriter(self.record, writer, progress, ready.identity)
+        self.output = HistoryWriter(self.record, writer, progress)
 
     def run(self) -> str:
         """Run everything the deck asks for; return why it stopped, or nothing."""
@@ -174,15 +175,10 @@ class HistoryWriter:
     record : RunRecord
     writer : Writer
     progress : callable or None
-    identity : mapping of str to str
-        What a saved state belongs to.
     """
 
-    def __init__(
-        self, record: RunRecord, writer: Writer, progress: Progress | None, identity: Mapping[str, str]
-    ) -> None:
+    def __init__(self, record: RunRecord, writer: Writer, progress: Progress | None) -> None:
         self.record, self.writer, self._progress = record, writer, progress
-        self._identity = identity
 
     def start(self, items: RecordedItems) -> None:
         """Create the histories."""
@@ -196,7 +192,8 @@ class HistoryWriter:
 
     def save(self, state: Mapping[str, Array]) -> None:
         """Store the state that a later run can be taken up from."""
-        self.writer.restart(state, self._identity)
+        run = self.record
+        self.writer.restart(state, identity(run.model, run.motions, run.forces))
 
     def progress(self, t: float, end: float, doing: str) -> None:
         """Tell the user."""

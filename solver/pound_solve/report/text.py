@@ -87,6 +87,8 @@ def _banner(results: Results) -> Iterator[str]:
     yield f" Units: force {_plain(units.force)}, length {_plain(units.length)}, time {_plain(units.time)}"
     if results.digest:
         yield f" Results {results.digest}"
+    if results.changed:
+        yield " The results file was changed after the run; what is printed here is as the run wrote it."
     yield "=" * WIDTH
     yield from ("", "")
 

@@ -11,7 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 FILETYPE: Final = "pound-solve results"
-FORMAT_VERSION: Final = (1, 1)  #: major: old readers fail; minor: something was added
+FORMAT_VERSION: Final = (1, 2)  #: major: old readers fail; minor: something was added
+#: version since which a complete file is sealed, see `seal`, and its digest knows its head
+SEALED_SINCE: Final = (1, 2)
+#: attributes of the file that its digest knows
+HEAD: Final = ("filetype", "format_version", "program_version", "title", "units", "status", "message")
 DIGEST: Final = "digest"  #: name of the attribute by which a part is known to be as it was written
 DIGEST_OF_THE_DAY: Final = "digest_of_the_day"  #: the same of what differs between two runs of a deck
 IDENTITY: Final = (
@@ -68,9 +72,10 @@ def digest_of(attributes: Mapping[str, Any], data: NDArray[Any] | str | None = N
 THERE: Final = digest_of({})
 
 
-def digest_of_file(parts: Mapping[str, str]) -> str:
-    """Digest of a results file from those of its datasets, by their paths."""
-    told = "\n".join(f"{name} {own}" for name, own in sorted(parts.items()))
+def digest_of_file(parts: Mapping[str, str], attributes: Mapping[str, Any]) -> str:
+    """Digest of a results file from those of its datasets, by their paths, and from its own attributes."""
+    head = digest_of({key: attributes[key] for key in HEAD}).hexdigest()
+    told = "\n".join(f"{name} {own}" for name, own in sorted({**parts, "/": head}.items()))
     return blake2b(told.encode(), digest_size=8).hexdigest()
 
 

@@ -2,7 +2,8 @@
 
 A run writes ``model.partial.h5``.  When it has ended, its results file and its report are complete, and
 only then they take the names ``model.h5`` and ``model.rpt``.  What stood there before holds until then,
-whatever happens to the run.
+whatever happens to the run.  A kill in the very moment of renaming may leave results without a report,
+which ``pound-solve report`` prints again; it never leaves the report of other results.
 """
 
 from __future__ import annotations
@@ -47,6 +48,7 @@ def put_in_place(results: Path, report: str, whole: bool) -> Path:
         partial(text).write_text(report, encoding="ascii", newline="\n")
         if not whole and (results.exists() or text.exists()):
             return own
+        text.unlink(missing_ok=True)  # a kill between two renames would leave the report of other results
         for path in (results, text):
             os.replace(partial(path), path)
     except OSError as err:
@@ -54,7 +56,7 @@ def put_in_place(results: Path, report: str, whole: bool) -> Path:
     return results
 
 
-def digest_of(report: Path) -> str:
+def digest_in(report: Path) -> str:
     """Digest of the results that a report was made from; empty where it has none."""
     found = (
         _DIGEST.search(report.read_text(encoding="ascii", errors="replace")) if report.is_file() else None

@@ -6,6 +6,7 @@ All that a reader needs stands in the file; `pound_solve.results.contents` lists
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Mapping
 from functools import wraps
 from pathlib import Path
@@ -24,6 +25,8 @@ from pound_solve.results.form import (
     FILETYPE,
     FORMAT_VERSION,
     IDENTITY,
+    SEALED_SINCE,
+    STATUSES,
     THERE,
     ResultsError,
     digest_of,
@@ -33,9 +36,15 @@ from pound_solve.results.form import (
     unescape,
 )
 from pound_solve.results.safe_file import in_use
+from pound_solve.results.seal import holds
 
 #: what h5py and numpy raise on a file that is not as it was written
 DAMAGE: Final = (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError, AttributeError)
+#: what a user is told before HDF5 sees such a file
+NOT_AS_WRITTEN: Final = (
+    "damaged results file: its bytes are not those that were written; take a copy that is whole, or run "
+    "the deck again (in Python, Results.open(path, damaged=True) reads the parts that hold)"
+)
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -71,6 +80,14 @@ class Results:
     ----------
     path : str or Path
         The file.
+    damaged : bool
+        Read a file whose checksum does not hold, too.  Each part is still compared with its digest, but
+        HDF5 may end the process, or read without an end, where its own tables are damaged.
+
+    Attributes
+    ----------
+    changed : bool
+        Whether a program has changed the file after the run, as far as that can be told.
 
     Raises
     ------
@@ -79,16 +96,20 @@ class Results:
         where the file is damaged.
     """
 
-    def __init__(self, path: str | Path) -> None:
+    def __init__(self, path: str | Path, damaged: bool = False) -> None:
         self.path = Path(path)
         if not self.path.is_file():
             raise ResultsError(f"{path}: no such file")
         try:
+            with self.path.open("rb") as file:
+                sealed = holds(file)
+            if sealed is False and not damaged:
+                raise ResultsError(f"{path}: {NOT_AS_WRITTEN}")
             self._file = h5py.File(path, "r")
         except OSError as err:
             raise ResultsError(f"{path}: {reason(err)}") from err
         try:
-            self._check_head()
+            self._check_head(sealed is True)
         except ResultsError:
             self.close()
             raise
@@ -96,7 +117,7 @@ class Results:
             self.close()
             raise ResultsError(f"{path}: damaged results file: {err}") from err
 
-    def _check_head(self) -> None:
+    def _check_head(self, sealed: bool) -> None:
         attrs = self._file.attrs
         if _plain(attrs.get("filetype")) != FILETYPE:
             raise ResultsError(f"{self.path}: an HDF5 file, but not one of pound-solve results")
@@ -114,17 +135,20 @@ class Results:
         self.status: str = _plain(attrs["status"])
         if self.status == "running" and not in_use(self.path):
             self.status = "killed"
+        self._sealed = (major, minor) >= SEALED_SINCE
+        self._complete = self.status in STATUSES and self._sealed
+        self.changed = self._complete and not sealed
         self.digest: str = _plain(attrs.get(DIGEST, ""))  #: of what the file holds but the run's times
         self.message: str = _plain(attrs["message"])  #: where and why the analysis stopped, else empty
         self._datasets: dict[str, h5py.Dataset] = {}
         self._file["history"].visititems(self._collect)
         # A kill amid a flush may leave histories of different lengths: what all of them have, holds.
         self._length = min((len(d) for d in self._datasets.values()), default=0)
-        if self.digest and self.digest != digest_of_file(self._parts()):
+        if self._complete and self.digest != self._own_digest():
             raise self._damaged("parts are missing or not as they were written")
 
-    def _parts(self) -> dict[str, str]:
-        """Digests that the file gives of its parts, by their paths."""
+    def _own_digest(self) -> str:
+        """Digest of the file from those that its parts name."""
         out: dict[str, str] = {}
 
         def take(name: str, item: h5py.Dataset | h5py.Group) -> None:
@@ -134,16 +158,16 @@ class Results:
                 out[name] = THERE.hexdigest()
 
         self._file.visititems(take)
-        return out
+        return digest_of_file(out, self._file.attrs)
 
     def _collect(self, name: str, item: h5py.Dataset | h5py.Group) -> None:
         if isinstance(item, h5py.Dataset):
             self._datasets[name] = item
 
     @classmethod
-    def open(cls, path: str | Path) -> Self:
+    def open(cls, path: str | Path, damaged: bool = False) -> Self:
         """Open a results file, see the class."""
-        return cls(path)
+        return cls(path, damaged)
 
     def close(self) -> None:
         """Close the file."""
@@ -208,7 +232,7 @@ class Results:
         for field, kind in zip(stored.dtype.names, fields):
             column = stored[field]
             out[field] = [_plain(v) for v in column] if kind.kind == "O" else column
-        return self._as_written(name, self._table(name), out)
+        return self._as_written(name, self._table(name), out, name in TABLES)
 
     @_sound
     def table_units(self, name: str) -> dict[str, str]:
@@ -226,7 +250,9 @@ class Results:
     def history(self, name: str) -> Array:
         """History, shape (nt, \\*row); KeyError where the file has none of that name."""
         out: Array = self._dataset(name)[: self._length]
-        return self._as_written(name, self._dataset(name), out)
+        if out.dtype != float or math.prod(out.shape[1:]) != len(self.labels(name)):
+            raise self._damaged(f"{name} does not have the columns that its labels name")
+        return self._as_written(name, self._dataset(name), out, self._complete)
 
     @_sound
     def labels(self, name: str) -> tuple[str, ...]:
@@ -253,7 +279,11 @@ class Results:
     def restart(self) -> dict[str, Array]:
         """State that a later run can be taken up from; empty where the file has none."""
         group = self._file.get("restart", {})
-        return {name: np.asarray(group[name], float) for name in group if name != IDENTITY}
+        return {
+            name: self._as_written(name, group[name], np.asarray(group[name], float))
+            for name in group
+            if name != IDENTITY
+        }
 
     @_sound
     def identity(self) -> dict[str, str]:
@@ -280,10 +310,10 @@ class Results:
             raise self._damaged(f"{name} is in another file")
         return dataset
 
-    def _as_written(self, name: str, dataset: h5py.Dataset, data: _D) -> _D:
-        """The data of a dataset, if they are those that were written."""
+    def _as_written(self, name: str, dataset: h5py.Dataset, data: _D, ours: bool = True) -> _D:
+        """The data of a dataset, if they are those that were written; `ours` have a digest."""
         attrs = dataset.attrs
-        told = attrs.get(DIGEST, attrs.get(DIGEST_OF_THE_DAY))
+        told = attrs.get(DIGEST, attrs.get(DIGEST_OF_THE_DAY, "" if ours and self._sealed else None))
         if told is not None and _plain(told) != digest_of(attrs, data).hexdigest():
             raise self._damaged(f"{name} is not as it was written")
         return data

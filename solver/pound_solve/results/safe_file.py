@@ -15,11 +15,12 @@ import errno
 import os
 import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Final
 
 from pound_solve.results.form import ResultsError
+from pound_solve.results.seal import LENGTH, seal
 
 try:
     import fcntl
@@ -185,9 +186,17 @@ class SafeFile:
         self._room = size
 
     def end(self) -> None:
-        """Give the reserve back; from here on others may read the file, not write it."""
-        self._disk.truncate(self._committed)
-        self._room = self._committed
+        """Seal the file, if the disk has room, and give the reserve back; from here on others may read the
+        file, not write it.
+        """
+        end = self._committed
+        with suppress(NoRoomError):
+            self._make_room(end + LENGTH)
+            own = seal(self._disk, end)
+            self._disk.seek(end)
+            end += self._disk.write(own)
+        self._disk.truncate(end)
+        self._room = end
         if fcntl is not None:
             fcntl.flock(self._disk, fcntl.LOCK_SH)
 

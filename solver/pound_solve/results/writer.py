@@ -322,7 +322,7 @@ class Writer:
                 dataset.attrs[DIGEST] = parts[f"history/{name}"]
             self._file.attrs["status"] = status
             self._file.attrs["message"] = storable(message)
-            self._file.attrs[DIGEST] = digest_of_file(parts)
+            self._file.attrs[DIGEST] = digest_of_file(parts, self._file.attrs)
             self._commit()
 
 

@@ -144,11 +144,11 @@ class Equations:
         kinds = [model.props[model.elements[s.element].prop].spec.name for s in whole.laws]
         self._contact = np.array([kind == "CONTACT" for kind in kinds], bool)
 
-    def rigid_about(self, x: float, y: float) -> Array:
-        """Unit displacements along x and y, and a turn by one about a point that tips towards +x,
-        shape (3, n_columns).
+    def rigid_about(self, x: float, y: float, columns: Index) -> Array:
+        """Unit displacements along x and y, and a turn by one about a point that tips towards +x, over some
+        columns, shape (3, len(columns)).
         """
-        along, up, turn = self.rigid
+        along, up, turn = self.rigid[:, columns]
         return np.array([along, up, x * up - y * along - turn])
 
     def _damping_to_ground(self) -> Matrix:

@@ -23,48 +23,50 @@ forces alone are those of the displaced structure; what these add to the end mom
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TypeAlias
 
 import numpy as np
 
 from pound_solve.numerics.matrices import Matrix, gathered
-from pound_solve.numerics.types import Array, Flags
-from pound_solve.structure.buildings import Building, columns_of
+from pound_solve.numerics.types import Array, Index
+from pound_solve.structure.buildings import Building
 from pound_solve.structure.equations import Equations, LinearSums, Weights
 from pound_solve.structure.reduction import ReducedSystem
+
+#: rows of a matrix that have values in some columns only: the columns, the values of all rows in them
+Block: TypeAlias = tuple[Index, Array]
 
 
 def base_sums(equations: Equations, buildings: Sequence[Building]) -> LinearSums:
     """Force of every building on the ground along x and y, and its overturning moment: three sums each."""
-    rows = [equations.rigid_about(b.axis, b.base) * _own(equations, b.nodes) for b in buildings]
-    whole = _stacked(rows, equations)
-    inner = whole * (np.arange(whole.shape[1]) < equations.n)
-    held = inner - whole
-    return equations.sums(Weights(*map(_matrix, (inner, held, held, held, 0.0 * held, held))))
+    rows, n = _rigid(equations, buildings), equations.n
+    inner = _matrix([(k, x * (k < n)) for k, x in rows], equations)
+    held = _matrix([(k, -x * (k >= n)) for k, x in rows], equations)
+    return equations.sums(Weights(inner, held, held, held, 0.0 * held, held))
 
 
 def imbalance_sums(equations: Equations, buildings: Sequence[Building]) -> LinearSums:
     """What is left of the equations of motion, summed over the unknowns of every building as above; then
     the inertia among it, which tells its size where a building does not stand on the ground.
     """
-    rows = [equations.rigid_about(b.axis, b.base) * _own(equations, b.nodes) for b in buildings]
-    inner = _stacked(rows, equations)
-    inner[:, equations.n :] = 0.0
-    twice, once = _matrix(np.vstack([inner, inner])), _matrix(np.vstack([inner, 0.0 * inner]))
+    inner = [(k, x * (k < equations.n)) for k, x in _rigid(equations, buildings)]
+    twice = _matrix([*inner, *inner], equations)
+    once = _matrix([*inner, *((k, 0.0 * x) for k, x in inner)], equations)
     return equations.sums(Weights(once, once, once, twice, once, once))
 
 
 def storey_sums(equations: Equations, buildings: Sequence[Building]) -> LinearSums:
     """Shear and overturning moment of every storey, two sums each: of what is above on what is below."""
-    elements, geometric = [], []
+    elements, geometric, places = list[Block](), list[Block](), _places(equations)
     y = {n.id: n.y for n in equations.structure.model.nodes.values()}
     for b in buildings:
         for foot, top in zip(b.levels, b.levels[1:]):
-            above = _own(equations, [n for n in b.nodes if y[n] > 0.5 * (foot + top)])
-            x, _, turn = equations.rigid_about(b.axis, foot) * above
-            elements.append(np.array([x, turn]))
-            geometric.append(np.array([x, 0.0 * turn]))
-    own, turned = (_matrix(_stacked(r, equations)) for r in (elements, geometric))
+            above = _own(places, [n for n in b.nodes if y[n] > 0.5 * (foot + top)])
+            x, _, turn = equations.rigid_about(b.axis, foot, above)
+            elements.append((above, np.array([x, turn])))
+            geometric.append((above, np.array([x, 0.0 * turn])))
+    own, turned = (_matrix(rows, equations) for rows in (elements, geometric))
     nothing = 0.0 * own
     return equations.sums(Weights(own, turned, nothing, nothing, nothing, nothing))
 
@@ -112,15 +114,39 @@ def _sums(system: ReducedSystem, motion: list[Matrix], inputs: list[Array], cons
     return LinearSums(system, motion, inputs, constant, *nothing)
 
 
-def _own(equations: Equations, nodes: Sequence[int]) -> Flags:
+def _rigid(equations: Equations, buildings: Sequence[Building]) -> list[Block]:
+    """Rigid motions of every building about the foot of its axis: three rows each."""
+    places = _places(equations)
+    columns = [_own(places, b.nodes) for b in buildings]
+    return [(k, equations.rigid_about(b.axis, b.base, k)) for b, k in zip(buildings, columns)]
+
+
+def _places(equations: Equations) -> dict[int, list[tuple[int, int]]]:
+    """For each node its columns, and those inside the elements that begin at it, each with the node that
+    must belong to a building, too, if the column shall.
+    """
+    out: dict[int, list[tuple[int, int]]] = {}
+    elements = equations.structure.model.elements
+    for column, (owner, d) in enumerate(equations.columns):
+        i, j = (owner, owner) if d < 3 else (elements[owner].i, elements[owner].j)
+        out.setdefault(i, []).append((column, j or i))
+    return out
+
+
+def _own(places: Mapping[int, Sequence[tuple[int, int]]], nodes: Sequence[int]) -> Index:
     """Columns of some nodes, and of what is inside the elements between them."""
-    return columns_of(equations.structure.model, equations.columns, nodes)
+    own = frozenset(nodes)
+    return np.array(sorted(column for i in own for column, j in places.get(i, ()) if j in own), np.int64)
 
 
-def _stacked(rows: Sequence[Array], equations: Equations) -> Array:
-    return np.concatenate([np.zeros((0, len(equations.columns))), *rows])
-
-
-def _matrix(rows: Array) -> Matrix:
-    i, j = np.nonzero(rows)
-    return gathered(rows.shape, i, j, rows[i, j])
+def _matrix(blocks: Sequence[Block], equations: Equations) -> Matrix:
+    """Blocks of rows one below the other."""
+    i, j, x, first = list[Index](), list[Index](), list[Array](), 0
+    for columns, values in blocks:
+        row, column = np.nonzero(values)
+        i.append(first + row)
+        j.append(columns[column])
+        x.append(values[row, column])
+        first += len(values)
+    shape = first, len(equations.columns)
+    return gathered(shape, *(np.concatenate([np.zeros(0), *parts]) for parts in (i, j, x)))

@@ -98,6 +98,8 @@ def _draw(results: Results, args: argparse.Namespace, choice: Choice) -> int:
             text = f"{args.results} lacks what the picture {name} needs: {', '.join(needs)}"
             return common.complain(text, common.MISTAKES)
     names = args.pictures or plot.possible(results, args.ending or STILL[0])
+    if not names:
+        return common.complain(f"{args.results} holds nothing that a picture shows", common.MISTAKES)
     drawn: list[Path] = []
     left_out: dict[str, list[str]] = {}
     for name in names:

@@ -22,7 +22,7 @@ def execute(args: argparse.Namespace) -> int:
     from pound_solve.report.text import render
     from pound_solve.results import Results, ResultsError
     from pound_solve.results.contents import SECTIONS
-    from pound_solve.results.place import digest_of
+    from pound_solve.results.place import digest_in
 
     try:
         with Results.open(args.results) as results:
@@ -30,7 +30,7 @@ def execute(args: argparse.Namespace) -> int:
                 render(results, limit=0 if args.full else None, only=SECTIONS[0][1] if args.brief else None)
             )
             beside = results.path.with_suffix(".rpt")
-            if digest_of(beside) not in ("", results.digest):
+            if digest_in(beside) not in ("", results.digest):
                 common.complain(f"warning: {beside} is the report of another run")
     except ResultsError as err:
         return common.complain(str(err))

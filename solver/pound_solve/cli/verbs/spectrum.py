@@ -90,14 +90,8 @@ def execute(args: argparse.Namespace) -> int:
     from pound_solve.report import spectrum as report
     from pound_solve.results import ResultsError
 
-    if args.picture:
-        from pound_solve.report import plot
-
-        try:
-            plot.ready(args.picture.parent)
-        except ImportError:
-            text = '--picture needs matplotlib: pip install "pound-solve[plot]"'
-            return common.complain(text, common.MISTAKES)
+    if not common.drawable(args.picture):
+        return common.MISTAKES
     try:
         units, curves = _curves(args)
     except DeckError as err:
@@ -111,6 +105,8 @@ def execute(args: argparse.Namespace) -> int:
     if args.out:
         report.write_csv(args.out, units, curves)
     if args.picture:
+        from pound_solve.report import plot
+
         plot.spectra(curves, units, args.picture)
     return common.DONE
 

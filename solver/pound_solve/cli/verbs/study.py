@@ -72,14 +72,8 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
     from pound_solve.results import ResultsError
 
     request, line = common.request(args), StatusLine()
-    if args.picture:
-        from pound_solve.report import plot
-
-        try:
-            plot.ready(args.picture.parent)
-        except ImportError:
-            text = '--picture needs matplotlib: pip install "pound-solve[plot]"'
-            return common.complain(text, common.MISTAKES)
+    if not common.drawable(args.picture):
+        return common.MISTAKES
     try:
         found, ready = study.run(request, _plan(args), line.show)
         line.clear()
@@ -100,6 +94,8 @@ def _study_of_a_deck(args: argparse.Namespace) -> int:
         print(report(results))
         print(f"{found.sentence}\n{request.path('.study.rpt')}\n{request.path('.study.h5')}")
         if args.picture:
+            from pound_solve.report import plot
+
             plot.draw_into(results, "study", args.picture)
     return common.DONE
 

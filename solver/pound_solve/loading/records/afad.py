@@ -11,7 +11,15 @@ from typing import Any, Final
 
 from pound_deck.schema import Spec
 from pound_solve.loading.records.base import Format, RawRecord, RecordError
-from pound_solve.loading.records.header import FIELDS, choose, count, positive, printed, side_by_side
+from pound_solve.loading.records.header import (
+    FIELDS,
+    choose,
+    count,
+    filled,
+    positive,
+    printed,
+    side_by_side,
+)
 from pound_solve.loading.records.text import is_data
 
 _OPENING: Final = re.compile(r"\s*STRONG GROUND MOTION RECORDS OF (?:TURKIYE|TURKEY)", re.IGNORECASE)
@@ -58,7 +66,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
         unit="CM/S2",
         declared=count(*npts),
         component=names[k],
-        title=tuple(stripped for line in lines[: start - 1] if (stripped := line.strip())),
+        title=filled(lines[: start - 1]),
         peak=printed(stated.get(names[k], "")),
     ).checked()
 

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from pound_deck.schema import Spec
 from pound_solve.loading.records.base import Format, RawRecord, RecordError
-from pound_solve.loading.records.header import FIELDS, choose, count, positive, printed
+from pound_solve.loading.records.header import FIELDS, choose, count, filled, parts, positive, printed
 from pound_solve.loading.records.text import fixed, parse
 
 _OPENING: Final = re.compile(r".{4,60}\(format v\s*\S+ with +\d+ text lines\)", re.IGNORECASE)
@@ -117,7 +117,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
         unit=known[0],
         declared=count(samples[1], "the count of samples", row),
         component=block.component,
-        title=tuple(stripped for line in block.lines[:13] if (stripped := line.strip())),
+        title=filled(block.lines[:13]),
         peak=printed(peak) if _known(peak) and known[1] == 1 else "",
         length=printed(length) if _known(length) else "",
     ).checked()
@@ -137,9 +137,7 @@ def _blocks(lines: list[str]) -> Iterator[_Block]:
     RecordError
         R402 where the integers or reals are not there.
     """
-    starts = [k for k, line in enumerate(lines) if _OPENING.match(line)]
-    for start, stop in zip(starts, [*starts[1:], len(lines)]):
-        part = lines[start:stop]
+    for part, first in parts(lines, _OPENING.match):
         found = {
             m[1].lower(): " ".join(fixed(part[k + 1 : k + 1 + int(m[2][:3])], int(m[3][:3]) or 1)).split()
             for k, line in enumerate(part)
@@ -149,10 +147,10 @@ def _blocks(lines: list[str]) -> Iterator[_Block]:
         if len(integers) <= _AZIMUTH or len(reals) <= _PEAK:
             raise RecordError(
                 "R402",
-                f"line {start + 1}: the header has {len(integers)} integers and {len(reals)} reals; "
+                f"line {first}: the header has {len(integers)} integers and {len(reals)} reals; "
                 f"{_AZIMUTH + 1} and {_PEAK + 1} are needed",
             )
-        yield _Block(part, start + 1, integers, reals)
+        yield _Block(part, first, integers, reals)
 
 
 SPEC: Final = Spec(

@@ -8,13 +8,13 @@ line that begins with ``/&``.  Of the reals, the 61st is the step of these sampl
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 from pound_deck.schema import Spec
 from pound_solve.loading.records.base import Format, RawRecord, RecordError
-from pound_solve.loading.records.header import FIELDS, choose, count, positive, printed, unit
+from pound_solve.loading.records.header import FIELDS, choose, count, filled, parts, positive, printed, unit
 from pound_solve.loading.records.text import fixed, parse
 
 _OPENING: Final = re.compile(r"\s*corrected accelerogram\b", re.IGNORECASE)
@@ -62,7 +62,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     RecordError
         R402 for a damaged header, R403, R405 for an unknown component.
     """
-    blocks = list(_blocks(text.splitlines()))
+    blocks = [_Block(*part) for part in parts(text.splitlines(), _OPENING.match)]
     if not blocks:
         raise RecordError("R402", "no line 'Corrected accelerogram' in the file", "leave FORMAT out")
     block = blocks[choose([b.component for b in blocks], options.get("COMPONENT"))]
@@ -94,16 +94,9 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
         unit=unit_of_samples,
         declared=count(samples[1], "the count of samples", row),
         component=block.component,
-        title=tuple(stripped for line in block.lines[:_TEXT] if (stripped := line.strip())),
+        title=filled(block.lines[:_TEXT]),
         peak=printed(reals[_PEAK]),
     ).checked()
-
-
-def _blocks(lines: list[str]) -> Iterator[_Block]:
-    """Parts of the file that begin with an opening line."""
-    starts = [k for k, line in enumerate(lines) if _OPENING.match(line)]
-    for start, stop in zip(starts, [*starts[1:], len(lines)]):
-        yield _Block(lines[start:stop], start + 1)
 
 
 def _step(in_reals: str, in_line: str, row: int) -> float:

@@ -9,13 +9,13 @@ raw samples and the 26th that of the ones in the file.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 from pound_deck.schema import Spec
 from pound_solve.loading.records.base import Format, RawRecord, RecordError
-from pound_solve.loading.records.header import FIELDS, choose, positive
+from pound_solve.loading.records.header import FIELDS, choose, filled, parts, positive
 from pound_solve.loading.records.text import fixed, parse
 from pound_solve.numerics.types import Array
 
@@ -63,7 +63,8 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     RecordError
         R402, R403 where a block does not hold what its integers count, R405 for an unknown component.
     """
-    blocks = list(_blocks(text.splitlines()))
+    # the words come back in the text of a header, but not on its first line
+    blocks = [_Block(*part) for part in parts(text.splitlines(), _OPENING.search)]
     if not blocks:
         raise RecordError(
             "R402", "no line 'Corrected accelerogram' or 'Uncorrected accelerogram' in the file"
@@ -95,7 +96,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
         raise RecordError(
             "R402", f"line {block.first + _TEXT + _INTEGERS + 2}: the step is {dt:g} s, not above zero"
         )
-    title = tuple(stripped for line in block.lines[:_TEXT] if (stripped := line.strip()))
+    title = filled(block.lines[:_TEXT])
     reading = _READING.search(" ".join(title))
     factor = positive(reading[1], "the unit of the readings", block.first) if reading else 1.0
     return RawRecord(
@@ -106,14 +107,6 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
         component=block.component,
         title=title,
     ).checked()
-
-
-def _blocks(lines: list[str]) -> Iterator[_Block]:
-    """Parts of the file that begin with an opening line."""
-    # the words come back in the text of a header, but not on its first line
-    starts = [k for k, line in enumerate(lines) if _OPENING.search(line)]
-    for start, stop in zip(starts, [*starts[1:], len(lines)]):
-        yield _Block(lines[start:stop], start + 1)
 
 
 SPEC: Final = Spec(

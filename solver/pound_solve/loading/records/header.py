@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
 from pound_deck.schema import Field, Kind
@@ -92,6 +92,25 @@ def unit(words: str) -> str | None:
     """
     plain = words.strip().rstrip(".").upper()
     return _UNITS.get(_SQUARE.sub("/S2", _DIVISION.sub("/S2", plain)))
+
+
+def parts(lines: list[str], opens: Callable[[str], object]) -> Iterator[tuple[list[str], int]]:
+    """Parts of a file of several components, each with the 1-based number of its first line.
+
+    Parameters
+    ----------
+    lines : list of str
+    opens : callable
+        Whether a line is the first of a part.
+    """
+    starts = [k for k, line in enumerate(lines) if opens(line)]
+    for start, stop in zip(starts, [*starts[1:], len(lines)]):
+        yield lines[start:stop], start + 1
+
+
+def filled(lines: Sequence[str], marks: str | None = None) -> tuple[str, ...]:
+    """Lines of a title without blanks or other marks at their ends; those of nothing else are left out."""
+    return tuple(stripped for line in lines if (stripped := line.strip(marks)))
 
 
 def choose(names: Sequence[str], wanted: object) -> int:

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from pound_deck.schema import Spec
 from pound_solve.loading.records.base import Format, RawRecord, RecordError
-from pound_solve.loading.records.header import count, positive, unit
+from pound_solve.loading.records.header import count, filled, positive, unit
 from pound_solve.loading.records.text import parse
 
 _REAL: Final = r"([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[ED][+-]?\d+)?)"
@@ -50,7 +50,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
             "R402", "no line with NPTS and DT at the head of the file", "leave FORMAT out, or try COLUMNS"
         )
     npts, dt = count(counts[0], "NPTS", row + 1), positive(counts[1], "the step DT [s]", row + 1)
-    title = tuple(stripped for part in lines[:row] if (stripped := part.strip()))
+    title = filled(lines[:row])
     about = " ".join(title)
     if wrong := _QUANTITY.search(about):
         raise RecordError(

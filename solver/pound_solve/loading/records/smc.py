@@ -17,7 +17,7 @@ import numpy as np
 
 from pound_deck.schema import Spec
 from pound_solve.loading.records.base import Format, RawRecord, RecordError
-from pound_solve.loading.records.header import count, positive, printed
+from pound_solve.loading.records.header import count, filled, positive, printed
 from pound_solve.loading.records.text import fixed, parse
 
 _OPENING: Final = re.compile(
@@ -89,7 +89,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
         unit="CM/S2",
         declared=declared,
         component=_component(integers),
-        title=tuple(stripped for line in lines[:_TEXT] if (stripped := line.strip("* "))),
+        title=filled(lines[:_TEXT], "* "),
         peak=max(filter(_given, (reals[29], reals[31])), key=lambda word: abs(float(word)), default=""),
     ).checked()
 

@@ -12,7 +12,16 @@ from typing import Any, Final
 
 from pound_deck.schema import Spec
 from pound_solve.loading.records.base import Format, RawRecord, RecordError
-from pound_solve.loading.records.header import FIELDS, choose, count, positive, printed, side_by_side, unit
+from pound_solve.loading.records.header import (
+    FIELDS,
+    choose,
+    count,
+    filled,
+    positive,
+    printed,
+    side_by_side,
+    unit,
+)
 from pound_solve.loading.records.text import fixed
 
 _OPENING: Final = re.compile(r"ARCHIVO ESTANDAR DE ACELERACION", re.IGNORECASE)
@@ -80,7 +89,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
         unit=samples_in,
         declared=count(counts[k][0], "the count of samples", counts[k][1]),
         component=names[k][0],
-        title=tuple(stripped for line in lines[:at] if (stripped := line.strip("*= "))),
+        title=filled(lines[:at], "*= "),
         peak=printed(peaks[k][0]) if len(peaks) == len(names) and samples_in == "CM/S2" else "",
     ).checked()
 
