@@ -225,7 +225,7 @@ def test_chunks_hold_a_block_of_all_columns(done: Results) -> None:
     with h5py.File(done.path) as file:
         assert file["history/node/u"].chunks == (BLOCK, len(sample.NODES), 3)
         assert file["history/node/u"].dtype == np.float64
-        assert list(file.attrs["format_version"]) == [1, 1]
+        assert list(file.attrs["format_version"]) == [1, 2]
         assert file.attrs["filetype"] == "pound-solve results"
 
 

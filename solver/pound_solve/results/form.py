@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 FILETYPE: Final = "pound-solve results"
-FORMAT_VERSION: Final = (1, 1)  #: major: old readers fail; minor: something was added
+FORMAT_VERSION: Final = (1, 2)  #: major: old readers fail; minor: something was added
 DIGEST: Final = "digest"  #: name of the attribute by which a part is known to be as it was written
 DIGEST_OF_THE_DAY: Final = "digest_of_the_day"  #: the same of what differs between two runs of a deck
 IDENTITY: Final = (

@@ -17,7 +17,7 @@ def histories(results: Results) -> Any:
     """Ground accelerations, drifts, contact forces over time."""
     wanted = [h for h in ("ground", "drift", "contact/force") if h in results.histories]
     figure = style.figure(9.0, 2.6 * len(wanted) + 0.4, results.title)
-    t, first = results.time, None
+    first = None
     for n, name in enumerate(wanted):
         axes = figure.add_subplot(len(wanted), 1, n + 1, sharex=first)
         first = first or axes
@@ -25,7 +25,8 @@ def histories(results: Results) -> Any:
         unit = ", ".join(dict.fromkeys(results.history_units(name)))
         title = {"ground": "ground acceleration", "drift": "drift", "contact/force": "contact force"}[name]
         style.grid(axes, f"time [{results.units.time}]" if last else "", f"{title} [{unit}]")
-        for k, (label, values) in enumerate(zip(results.labels(name), results.history(name).T)):
+        t, rows = results.course(name)
+        for k, (label, values) in enumerate(zip(results.labels(name), rows.T)):
             axes.plot(t, values, color=style.COLOURS[k % len(style.COLOURS)], linewidth=0.8, label=label)
         if len(results.labels(name)) <= 12:
             axes.legend(fontsize=6, ncols=4, loc="upper right")
@@ -103,8 +104,8 @@ def loops(results: Results) -> Any:
 
 
 def contacts(results: Results) -> Any:
-    """Contact force against overlap, by the stored samples."""
-    force, gap = results.history("contact/force"), results.history("contact/gap")
+    """Contact force against overlap, by the stored samples and close-ups."""
+    force, gap = (results.course(name)[1] for name in ("contact/force", "contact/gap"))
     names = results.labels("contact/force")
     figure, all_axes = style.panels(len(names), "Contacts, as sampled")
     for k, (axes, name) in enumerate(zip(all_axes, names)):
