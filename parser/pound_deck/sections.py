@@ -182,6 +182,15 @@ SECTIONS: Final = (
                 doc="elements with histories and envelopes; left out: all",
             ),
             Field(
+                "CLOSEUPS",
+                Kind.REAL,
+                default=16.0,
+                lo=0.0,
+                hi=1e5,
+                doc="megabytes at most of histories at every instant of the method while a contact is "
+                "pressed; 0: none",
+            ),
+            Field(
                 "STOREYS",
                 Kind.WORD,
                 default="YES",

@@ -73,10 +73,12 @@ def test_histories_are_those_of_the_file(results: Results) -> None:
     figure = plot.picture(results, "histories")
     drawn = [lines(axes) for axes in figure.axes]
     for name, curves in zip(("ground", "drift"), drawn):
-        values = results.history(name)
+        t, values = results.course(name)
         assert len(curves) == values.shape[1]
         for curve, column in zip(curves, values.T):
-            assert np.array_equal(curve, np.column_stack([results.time, column]))
+            assert np.array_equal(curve, np.column_stack([t, column]))
+    peaks = results.table("contact_summary")["peak_force"]
+    assert np.allclose(results.course("contact/force")[1].max(axis=0), peaks, rtol=1e-9)
 
 
 def test_energies_pile_up_to_the_input(results: Results) -> None:

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from pound_solve.analyses.closeups import Closeups
+from pound_solve.integrate.protocol import Course, Motion
+from pound_solve.numerics.crests import NODES, crests, may_exceed
 from pound_solve.numerics.matrices import layers, used_columns, used_rows
-from pound_solve.numerics.types import Array, Index
+from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.buildings import Building
 from pound_solve.structure.elements.base import Output
 from pound_solve.structure.equations import LinearSums
 from pound_solve.structure.reduction import ReducedSystem
+
+EXCESS = (
+    0.5  #: share of a quantity's changes from node to node, by which it may exceed the largest of these
+)
+CELLS = 256  #: that are searched at once
 
 
 class Envelope:
@@ -33,6 +41,32 @@ class Envelope:
             own = values[new]
             at = place(own, axis=1)
             value[which[new]], time[which[new]] = own[np.arange(len(own)), at], t[at]
+
+    def may_exceed(self, values: Array, which: Index) -> Flags:
+        """Which cells may hold more than was counted in (see `crests`), shape (n_times,)."""
+        return may_exceed(values, self.low[which], self.high[which])
+
+    def near(self, values: Array, which: Index) -> Iterator[tuple[float, Index, Index, Array]]:
+        """What may exceed the largest and the smallest values within some cells, by values at the `NODES`
+        of each, shape (n, n_cells, n_nodes): a sign, numbers of quantities and of cells, and their values
+        times that sign, shape (n_near, n_nodes).
+        """
+        change = np.abs(np.diff(values, axis=2))
+        for sign, best in ((1.0, self.high), (-1.0, self.low)):
+            x = sign * values
+            at = np.argmax(x, axis=2)[..., None]
+            most = np.take_along_axis(x, at, 2)[..., 0]
+            for side in (np.maximum(at - 1, 0), np.minimum(at, change.shape[2] - 1)):
+                most = most + EXCESS * np.take_along_axis(change, side, 2)[..., 0]
+            row, cell = np.nonzero(most > (sign * best[which])[:, None])
+            yield sign, which[row], cell, x[row, cell]
+
+    def take_tops(self, sign: float, own: Index, top: Array, t: Array) -> None:
+        """Count in extremes of quantities with some numbers, times a sign, and their times."""
+        best, time = (self.high, self.t_high) if sign > 0.0 else (self.low, self.t_low)
+        order = np.flatnonzero(top > sign * best[own])
+        order = order[np.argsort(top[order], kind="stable")]  # the largest of each comes last
+        best[own[order]], time[own[order]] = sign * top[order], t[order]
 
     def widen(self, other: Envelope) -> None:
         """Count in what another one of the same quantities has seen."""
@@ -60,9 +94,14 @@ class Envelopes:
     outputs : sequence of Output
     sums : mapping of str to LinearSums
         By the name of what they are.
+    followed : ndarray of bool, shape (n,)
+        Unknowns that close-ups need beside those of nodes, members and sums.
+    room : int
+        Instants that the close-ups keep, at most.
 
     Attributes
     ----------
+    closeups : Closeups
     node : dict of Envelope
         Of displacements "u", velocities "v" (relative to the ground, where it moves as one) and
         accelerations "a" (total).
@@ -75,6 +114,8 @@ class Envelopes:
         Laws whose forces it looks at.
     seen, apart : int, float
         Number of instants between the samples that were counted in, longest time from one to the next [T].
+    searched : bool
+        Whether extremes between these instants were found.
     """
 
     def __init__(
@@ -83,6 +124,8 @@ class Envelopes:
         nodes: Sequence[int],
         outputs: Sequence[Output],
         sums: Mapping[str, LinearSums],
+        followed: Flags,
+        room: int = 0,
     ) -> None:
         dofs, place = system.structure.dofs, system.structure.model.nodes
         self.system, self.n_nodes = system, len(nodes)
@@ -112,10 +155,14 @@ class Envelopes:
         self.shown = used_columns(of_u) | used_columns(self.of_u) | used_columns(self.of_v)
         self.sums, laws = sums, system.structure.laws
         acting = np.any([np.zeros(len(laws), bool), *(x.acting for x in sums.values())], axis=0)
-        self.acting = np.flatnonzero(acting)
+        contacts = np.array([s.role.collides and room > 0 for s in laws], bool)
+        self.acting = np.flatnonzero(acting | contacts)
+        self.closeups = Closeups(np.flatnonzero(contacts[self.acting]), room)
         self.of_laws = {name: x.of_laws[:, self.acting] for name, x in sums.items()}
         self.shown |= np.any([x.shown for x in sums.values()], axis=0)
         self.shown |= used_columns(system.law_rows[self.acting])
+        if contacts.any():
+            self.shown |= followed
         # corotational members look at all, and so does the force of a closed rigid contact
         self.shown |= bool(system.corotational) or any(laws[i].law.rigid for i in self.acting)
         self._clear()
@@ -124,11 +171,12 @@ class Envelopes:
         self.node = {q: Envelope(3 * self.n_nodes) for q in "uva"}
         self.output = Envelope(len(self.constants))
         self.total = {name: Envelope(len(x.constant)) for name, x in self.sums.items()}
-        self.seen, self.apart = 0, 0.0
+        self.seen, self.apart, self.searched = 0, 0.0, False
 
     def blank(self) -> Envelopes:
         """Return one of the same quantities that has seen nothing."""
         other = copy.copy(self)
+        other.closeups = self.closeups.blank()
         other._clear()
         return other
 
@@ -163,40 +211,87 @@ class Envelopes:
         for name, total in self.total.items():
             total.widen(other.total[name])
         self.seen, self.apart = self.seen + other.seen, max(self.apart, other.apart)
+        self.searched |= other.searched
+        self.closeups.widen(other.closeups)
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, apart: float) -> None:
-        """Count in instants between the samples (see `integrate.protocol.Recorder`)."""
-        after = [self.system.excitation.values_after(t, order).T for order in range(3)]
-        self._count(t, u, v, a, law_forces, after)
-        self.seen, self.apart = self.seen + len(t), max(self.apart, apart)
+    def between(self, course: Course) -> None:
+        """Count in the motion between samples (see `integrate.protocol.Recorder`), with its extremes."""
+        parts = self._parts(*self._values(course.motion, self._inputs(course.motion.t)))
+        for envelope, values, which in parts:
+            envelope.take(values, course.motion.t, which)
+        self.seen += len(course.motion.t)
+        self.apart = max(self.apart, float(course.lengths.max(initial=0.0)))
+        self.closeups.take(course)
+        if course.within is None:
+            return
+        self.searched = True
+        may = [envelope.may_exceed(values, which) for envelope, values, which in parts if len(values)]
+        cells = np.flatnonzero(np.any(may, axis=0)) if may else np.zeros(0, np.int64)
+        for some in np.split(cells, range(CELLS, len(cells), CELLS)):
+            if len(some):
+                self._refine(course, some, course.within(some, NODES))
 
-    def stationary(self, t: Array, u: Array) -> None:
-        """Count in displacements that turn between those instants (see
-        `integrate.protocol.Recorder`).
-        """
-        after = self.system.excitation.values_after(t).T
-        self.node["u"].take(self._on_nodes(u, after, "u"), t, self.moving)
+    def _refine(self, course: Course, cells: Index, motion: Motion) -> None:
+        """Count in the extremes over some cells, whose motion at the nodes is known."""
+        parts = self._parts(*self._values(motion, self._inputs(motion.t)))
+        near = [
+            (envelope, *found)
+            for envelope, values, which in parts
+            if len(values)
+            for found in envelope.near(values.reshape(len(values), len(cells), -1), which)
+        ]
+        tops, places = crests(np.concatenate([x for *_, x in near]))
+        end = 0
+        for envelope, sign, own, cell, _ in near:
+            mine = slice(end, end := end + len(own))
+            at = cells[cell]
+            t = course.motion.t[at] + places[mine] * course.lengths[at]
+            envelope.take_tops(sign, own, tops[mine], t)
 
-    def take(
-        self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, s: Sequence[Array]
-    ) -> tuple[dict[str, Array], Array, dict[str, Array]]:
+    def _inputs(self, t: Array) -> list[Array]:
+        """Inputs and their first two derivatives after the times, shape (n_inputs, n_times) each."""
+        return [self.system.excitation.values_after(t, order).T for order in range(3)]
+
+    def _parts(
+        self, node: Mapping[str, Array], out: Array, totals: Mapping[str, Array]
+    ) -> list[tuple[Envelope, Array, Index]]:
+        """Envelopes, values for them, and numbers of these in them."""
+        parts = [(self.node[q], values, self.moving) for q, values in node.items()]
+        parts.append((self.output, out, np.arange(len(out))))
+        return parts + [(self.total[name], x, np.arange(len(x))) for name, x in totals.items()]
+
+    def take(self, motion: Motion, s: Sequence[Array]) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Count in some samples; return the motion of the nodes, shape (3 n_nodes, nt) each,
-        the members' forces, shape (n_outputs, nt), and the sums, (n_sums, nt) each, from unknowns and
-        inputs, shape (n, nt) each, and the forces of the laws in `acting`.
+        the members' forces, shape (n_outputs, nt), and the sums, (n_sums, nt) each, from the motion and the
+        inputs, shape (n_inputs, nt) each.
         """
-        moving, out, totals = self._count(t, u, v, a, law_forces, s)
-        node = {q: np.zeros((3 * self.n_nodes, len(t))) for q in moving}
-        for q, values in moving.items():
-            node[q][self.moving] = values
-            self.node[q].take(node[q][self.still], t, self.still)
+        moving, out, totals = self._values(motion, s)
+        for envelope, values, which in self._parts(moving, out, totals):
+            envelope.take(values, motion.t, which)
+        node = self._whole(moving, len(motion.t))
+        for q, values in node.items():
+            self.node[q].take(values[self.still], motion.t, self.still)
         return node, out, totals
 
-    def _count(
-        self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, s: Sequence[Array]
+    def values(self, motion: Motion) -> tuple[dict[str, Array], Array, dict[str, Array]]:
+        """Motion of the nodes, forces of the members and sums, as `take`, of instants between samples."""
+        moving, out, totals = self._values(motion, self._inputs(motion.t))
+        return self._whole(moving, len(motion.t)), out, totals
+
+    def _whole(self, moving: Mapping[str, Array], count: int) -> dict[str, Array]:
+        """Motion of the nodes, shape (3 n_nodes, count) each, with what never moves."""
+        node = {q: np.zeros((3 * self.n_nodes, count)) for q in moving}
+        for q, values in moving.items():
+            node[q][self.moving] = values
+        return node
+
+    def _values(
+        self, motion: Motion, s: Sequence[Array]
     ) -> tuple[dict[str, Array], Array, dict[str, Array]]:
-        """Count in some instants, but for what never moves; return the motion of the rest,
-        shape (n_moving, nt) each, the members' forces, and the sums.
+        """Motion of the nodes, but for what never moves, shape (n_moving, nt) each, the members' forces,
+        and the sums.
         """
+        _, u, v, a, law_forces = motion
         node = {q: self._on_nodes(x, y, q) for q, x, y in zip("uva", (u, v, a), s)}
         node["a"] += self.ground @ s[0]  # they are total
         out = self.of_u @ u + self.out_s @ s[0] + self.constants[:, None]
@@ -206,14 +301,9 @@ class Envelopes:
             at, share = self.shares
             seen = self.system.corotational.actions(self.system.quantities(u.T, s[0].T))[:, at, 1:]
             out += (share * seen).sum(axis=2).T
-        for q, values in node.items():
-            self.node[q].take(values, t, self.moving)
-        self.output.take(out, t)
         totals = {
             name: x.values((u, v, a), self.of_laws[name] @ law_forces, s) for name, x in self.sums.items()
         }
-        for name, values in totals.items():
-            self.total[name].take(values, t)
         return node, out, totals
 
     def _on_nodes(self, x: Array, s: Array, quantity: str) -> Array:

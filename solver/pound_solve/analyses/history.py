@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Protocol
 
@@ -31,6 +31,7 @@ from pound_solve.structure.structure import Structure
 
 RESIDUAL = "largest energy residual over the largest energy"  #: name of the check
 BALANCE = "base shear and overturning moment less inertia and loads, over the largest"
+CLOSEUPS = "time from which on close-ups of collisions found no room"
 ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
 
 SPEC = Spec(
@@ -90,6 +91,10 @@ class HistoryOutput(Protocol):
 
     def append(self, block: SampleBlock) -> None:
         """Take some samples."""
+        ...
+
+    def closeups(self, blocks: Iterable[SampleBlock]) -> None:
+        """Take the close-ups of collisions, when the history is over."""
         ...
 
     def save(self, state: Mapping[str, Array]) -> None:
@@ -152,7 +157,14 @@ class HistoryResult:
             good = "nothing moves: there is no energy to compare"
         elif energy.samples < 2:
             good = "look: the run ended before there was anything to compare"
-        return [(RESIDUAL, f"{ratio:.2e}", good), *self._balance(), *self.returned.checks]
+        found = [(RESIDUAL, f"{ratio:.2e}", good), *self._balance(), *self._closeups()]
+        return found + self.returned.checks
+
+    def _closeups(self) -> Iterator[tuple[str, str, str]]:
+        """Tell where the close-ups of collisions found no room."""
+        full = self.recorder.envelopes.closeups.full
+        if full < math.inf:
+            yield CLOSEUPS, f"{full:.6g}", "look: a larger OUTPUT CLOSEUPS keeps all"
 
     def _balance(self) -> Iterator[tuple[str, str, str]]:
         """Compare the base shear with inertia and loads, where there are buildings."""
@@ -264,6 +276,7 @@ def run(
         stop = Stop("A506", max(recorder.reached, 0.0), INTERRUPTED)
     seconds, cpu_seconds = time.perf_counter() - began, time.process_time() - used
     recorder.flush()
+    output.closeups(recorder.closeups())
     outcome = restart.join(parts) if parts and recorder.started else None
     springs = [] if outcome is None else spring_responses(structure, recorder, outcome, stop is None)
     return HistoryResult(recorder, outcome, springs, stop, every, seconds, cpu_seconds)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
 
+from pound_solve.analyses.closeups import MEGABYTE
 from pound_solve.analyses.envelopes import Envelopes
 from pound_solve.integrate.energy import ENERGIES, energies
-from pound_solve.integrate.protocol import LawValues, MonitoredOutputs, Stop
+from pound_solve.integrate.protocol import Course, LawValues, MonitoredOutputs, Motion, Stop
+from pound_solve.numerics.matrices import used_columns
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.buildings import Building, buildings
 from pound_solve.structure.elements.base import Output
@@ -94,6 +96,19 @@ class RecordedItems:
             found := tuple(buildings(structure)) if structure.model.output["STOREYS"] == "YES" else (),
             recorded_sums(system, supports, found),
         )
+
+    @property
+    def room(self) -> int:
+        """Instants of close-ups that the deck has room for."""
+        widths = 9 * len(self.nodes), len(self.outputs), *(len(x.constant) for x in self.sums.values())
+        others = 1 + len(self.springs) + 2 * len(self.contacts) + len(self.drifts.names)
+        budget = self.system.structure.model.output["CLOSEUPS"] * MEGABYTE
+        return int(budget / (8 * (sum(widths) + others)))
+
+    @property
+    def followed(self) -> Flags:
+        """Unknowns of the drifts and the deformations of the springs and contacts, shape (n,)."""
+        return used_columns(self.drifts.rows) | used_columns(self.system.law_rows)
 
     @property
     def widest(self) -> int:
@@ -228,7 +243,9 @@ class HistoryRecorder:
         first_energy: Array | None = None,
     ) -> None:
         self.items, self._append, self._progress = items, append, progress
-        self.envelopes = Envelopes(items.system, items.nodes, items.outputs, items.sums)
+        self.envelopes = Envelopes(
+            items.system, items.nodes, items.outputs, items.sums, items.followed, items.room
+        )
         self.energy = EnergyBalance(first_energy)
         self.losses = [0.0] * len(items.system.structure.laws)
         self.deformations = [0.0] * len(items.system.structure.laws)
@@ -271,13 +288,9 @@ class HistoryRecorder:
         where = next(n for x, named in at for n, y in zip(named, x) if not abs(y) <= LARGEST)
         return Stop("A504", float(t[first]), f"the motion is beyond all numbers, first at {where}")
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, apart: float) -> None:
+    def between(self, course: Course) -> None:
         """Widen the envelopes only (see `integrate.protocol.Recorder`)."""
-        self.envelopes.between(t, u, v, a, law_forces, apart)
-
-    def stationary(self, t: Array, u: Array) -> None:
-        """Widen the envelopes of displacements only (see `integrate.protocol.Recorder`)."""
-        self.envelopes.stationary(t, u)
+        self.envelopes.between(course)
 
     @property
     def shown(self) -> Flags:
@@ -314,6 +327,19 @@ class HistoryRecorder:
         self.losses, self.deformations = lost[:, -1].tolist(), d[:, -1].tolist()
         law_forces = (force + dashpot)[self.acting]
         before = inputs_before(system, t)
-        nodes, members, totals = self.envelopes.take(t, u, v, a, law_forces, before)
+        nodes, members, totals = self.envelopes.take(Motion(t, u, v, a, law_forces), before)
         whole = np.column_stack([energy, residual])
         self._append(SampleBlock(self.items, t, u, inputs[0], force, d, nodes, members, totals, whole))
+
+    def closeups(self) -> Iterator[SampleBlock]:
+        """The close-ups of collisions, in the order of time; they have no energies, and forces of the
+        contacts only.
+        """
+        system = self.items.system
+        for motion in self.envelopes.closeups.blocks():
+            s = system.excitation.values(motion.t).T
+            d = system.law_rows @ motion.u + system.law_inputs @ s
+            force = np.zeros((len(d), len(motion.t)))
+            force[self.acting] = motion.law_forces
+            values = self.envelopes.values(motion)
+            yield SampleBlock(self.items, motion.t, motion.u, s, force, d, *values, np.zeros((0, 7)))

@@ -128,7 +128,8 @@ def _of_model(
 
 
 def of_nodes(results: Results, nodes: Sequence[int], direction: str = "X") -> Source:
-    """Stored absolute accelerations of nodes, straight lines between the output times.
+    """Stored absolute accelerations of nodes, straight lines between the output times and
+    the instants of close-ups.
 
     Parameters
     ----------
@@ -152,10 +153,11 @@ def of_nodes(results: Results, nodes: Sequence[int], direction: str = "X") -> So
                 f"{results.path} holds no accelerations of node {node}: OUTPUT NODES of the deck chooses "
                 f"what is stored; there are {there}"
             )
-    a = results.history("node/a")[:, :, "XYR".index(direction)]
+    t, a = results.course("node/a")
+    a = a[:, :, "XYR".index(direction)]
     own = {
         f"{results.path.with_suffix('')} node {node} {WAYS[direction]}": Piecewise.from_samples(
-            results.time, a[:, stored.index(node)]
+            t, a[:, stored.index(node)]
         )
         for node in nodes
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TypeAlias
 
@@ -19,7 +19,7 @@ from pound_solve.driver.request import Request
 from pound_solve.integrate.protocol import INTERRUPTED, Stop
 from pound_solve.numerics.types import Array
 from pound_solve.results import Writer
-from pound_solve.results.contents import layout_of, values_of
+from pound_solve.results.contents import closeups_of, layout_of, values_of
 from pound_solve.results.record import RunRecord
 from pound_solve.results.safe_file import NoRoomError
 from pound_solve.results.schema import Stage
@@ -189,6 +189,10 @@ class HistoryWriter:
     def append(self, block: SampleBlock) -> None:
         """Append some samples to all histories."""
         self.writer.append(values_of(block))
+
+    def closeups(self, blocks: Iterable[SampleBlock]) -> None:
+        """Store the close-ups of collisions."""
+        self.writer.closeups(self.record.layout, [closeups_of(block) for block in blocks])
 
     def save(self, state: Mapping[str, Array]) -> None:
         """Store the state that a later run can be taken up from."""

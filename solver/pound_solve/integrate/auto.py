@@ -22,7 +22,7 @@ import numpy as np
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate import costs
 from pound_solve.integrate.closed_form import exact
-from pound_solve.integrate.convergence.compared import ALL, RESPONSE
+from pound_solve.integrate.convergence.compared import ALL, RESPONSE, tolerances
 from pound_solve.integrate.convergence.refinement import StepRefinement
 from pound_solve.integrate.convergence.replay import Replay
 from pound_solve.integrate.intervals import MOST_UNKNOWNS, WORTH, usual
@@ -188,7 +188,9 @@ def integrate(
         if (outcome := by_few_series(system, start, monitored, recorder)) is not None:
             return outcome
         series = np.inf
-    trial = ExactTrial(system, start, monitored, recorder, options["TOL"], not_linear(system))
+    trial = ExactTrial(
+        system, start, monitored, recorder, min(tolerances(options).values()), not_linear(system)
+    )
     if rigid:
         return by_trial(trial, series) or by_series(system, start, monitored, recorder)
     if series <= SERIES_FIRST:
@@ -220,6 +222,26 @@ SPEC = Spec(
             words=(RESPONSE, ALL),
             doc="peaks that TOL is for: RESPONSE drifts and contact forces; ALL also accelerations "
             "and forces of the nodes and members that OUTPUT names",
+        ),
+        Field(
+            "TOL_ACCELERATION",
+            Kind.REAL,
+            "-",
+            default=None,
+            lo=1e-9,
+            hi=0.1,
+            doc="largest error of the peak accelerations of the nodes that OUTPUT names, as a share of the "
+            "largest; left out: TOL with PEAKS=ALL, else none is asked for",
+        ),
+        Field(
+            "TOL_MEMBER",
+            Kind.REAL,
+            "-",
+            default=None,
+            lo=1e-9,
+            hi=0.1,
+            doc="the same for the peak forces of the members that OUTPUT names, as a share of the largest "
+            "of their unit",
         ),
     ),
     impl=integrate,

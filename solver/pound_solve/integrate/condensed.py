@@ -7,8 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from pound_solve.integrate.protocol import (
+    Course,
     LawValues,
     MonitoredOutputs,
+    Motion,
     Recorder,
     Start,
     Stop,
@@ -55,14 +57,16 @@ class ExpandingRecorder:
         """Laws whose forces `between` needs (see `Recorder`)."""
         return self.recorder.acting
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, apart: float) -> None:
+    def between(self, course: Course) -> None:
         """Take the motion between samples (see `Recorder`)."""
-        u, v, a = self._expanded(t, u, v, a)
-        self.recorder.between(t, u, v, a, law_forces, apart)
 
-    def stationary(self, t: Array, u: Array) -> None:
-        """Take displacements at stationary points (see `Recorder`)."""
-        self.recorder.stationary(t, *self._expanded(t, u))
+        def whole(x: Motion) -> Motion:
+            u, v, a = self._expanded(x.t, x.u, x.v, x.a)
+            return Motion(x.t, u, v, a, x.law_forces)
+
+        own = course.within
+        within = None if own is None else lambda cells, shares: whole(own(cells, shares))
+        self.recorder.between(Course(whole(course.motion), course.lengths, within))
 
     def trial(self, t: float, doing: str = "") -> None:
         """Pass the progress on."""

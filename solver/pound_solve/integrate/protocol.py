@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol, Self
 
@@ -67,18 +67,45 @@ class LawValues(NamedTuple):
     dashpot: Array
 
 
+class Motion(NamedTuple):
+    """The motion at some instants: their times, shape (n_times,), the unknowns, their velocities and
+    accelerations, shape (n, n_times) each, of which only those in `Recorder.shown` need be right, and the
+    forces of the laws in `Recorder.acting`, all dashpots included, shape (n_acting, n_times).
+    """
+
+    t: Array
+    u: Array
+    v: Array
+    a: Array
+    law_forces: Array
+
+
+class Course(NamedTuple):
+    """The motion between two samples: at instants that rise, and from each of them on.
+
+    Attributes
+    ----------
+    motion : Motion
+    lengths : ndarray, shape (n_times,)
+        Time from each instant up to which its motion is smooth [T]: to the next, or to an event before it.
+    within : callable or None
+        The motion from instants of some numbers, shape (n_cells,), on, at shares of these times between 0
+        and 1, shape (n_shares,): n_cells * n_shares instants, cell by cell.  None: nothing is known of it.
+    """
+
+    motion: Motion
+    lengths: Array
+    within: Callable[[Index, Array], Motion] | None
+
+
 class Envelopes(Protocol):
     """Envelopes of a run."""
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, apart: float) -> None:
-        """Count in the motion at some times, as `Recorder.between`."""
+    def between(self, course: Course) -> None:
+        """Count in the motion between samples, as `Recorder.between`."""
         ...
 
-    def stationary(self, t: Array, u: Array) -> None:
-        """Count in displacements that turn between those instants."""
-        ...
-
-    def take(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, s: Sequence[Array]) -> object:
+    def take(self, motion: Motion, s: Sequence[Array]) -> object:
         """Count in samples; `s` are the inputs and their first two rates."""
         ...
 
@@ -116,19 +143,8 @@ class Recorder(Protocol):
         """
         ...
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, apart: float) -> None:
-        """Take the motion at times between the samples, shapes (n_times,), (n, n_times): for envelopes.
-        Only that of the unknowns in `shown` need be right.
-
-        `law_forces`, shape (n_acting, n_times), are the forces of the laws in `acting`, all dashpots
-        included.
-
-        `apart` is the longest time from one instant that is seen to the next.
-        """
-        ...
-
-    def stationary(self, t: Array, u: Array) -> None:
-        """Take displacements at instants at which some of them turn, shapes as in `between`."""
+    def between(self, course: Course) -> None:
+        """Take the motion between samples: for envelopes."""
         ...
 
     def trial(self, t: float, doing: str = "") -> None:
@@ -152,7 +168,7 @@ class EnvelopeRecorder(Recorder, Protocol):
 @dataclass
 class Outcome:
     """How an integration went: its peaks, whether they are exact, figures, self-checks;
-    the laws' states at its end; whether it told the sink of the instants at which displacements turn.
+    the laws' states at its end.
     """
 
     peaks: Peaks
@@ -160,7 +176,6 @@ class Outcome:
     states: tuple[State, ...]
     checks: list[tuple[str, str, str]] = field(default_factory=list)
     exact: bool = False
-    turns: bool = False
 
 
 class Stop(Exception):

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from pound_deck.model import Units
+from pound_solve.numerics.types import Array
 from pound_solve.results import Results
 from pound_solve.results.schema import Row, Table
 
@@ -16,7 +17,7 @@ _BLOCK: Final = 4096  #: rows that are turned into Python numbers at a time
 
 
 def export_csv(results: Results, folder: str | Path) -> list[Path]:
-    """Write ``<table>.csv`` and ``history_<name>.csv`` files.
+    """Write ``<table>.csv``, ``history_<name>.csv`` and ``closeup_<name>.csv`` files.
 
     Heads hold the units in brackets.  Numbers have all their digits; a number that is missing is an empty
     cell.  Texts are UTF-8; one that a spreadsheet would take for a formula
@@ -38,7 +39,12 @@ def export_csv(results: Results, folder: str | Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     return [
         *(_table(results, name, folder) for name in results.tables),
-        *(_history(results, name, folder) for name in results.histories if name != "time"),
+        *(
+            _history(results, name, folder, "history", results.time, results.history(name))
+            for name in results.histories
+            if name != "time"
+        ),
+        *(_history(results, name, folder, "closeup", *results.closeup(name)) for name in results.closeups),
     ]
 
 
@@ -54,9 +60,9 @@ def _table(results: Results, name: str, folder: Path) -> Path:
     return _write(folder / f"{name}.csv", heads, rows)
 
 
-def _history(results: Results, name: str, folder: Path) -> Path:
-    time, labels = results.time, results.labels(name)
-    values = results.history(name).reshape(len(time), len(labels))
+def _history(results: Results, name: str, folder: Path, kind: str, time: Array, values: Array) -> Path:
+    labels = results.labels(name)
+    values = values.reshape(len(time), len(labels))
     heads = [_head("time", results.history_units("time")[0])]
     heads += map(_head, labels, results.history_units(name))
     rows = (
@@ -64,7 +70,7 @@ def _history(results: Results, name: str, folder: Path) -> Path:
         for start in range(0, len(time), _BLOCK)
         for t, row in zip(time[start : start + _BLOCK].tolist(), values[start : start + _BLOCK].tolist())
     )
-    return _write(folder / f"history_{name.replace('/', '_')}.csv", heads, rows)
+    return _write(folder / f"{kind}_{name.replace('/', '_')}.csv", heads, rows)
 
 
 def _write(path: Path, heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:

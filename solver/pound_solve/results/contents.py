@@ -64,3 +64,8 @@ def layout_of(items: RecordedItems) -> Layout:
 def values_of(block: SampleBlock) -> dict[str, Array]:
     """Rows of all histories, from a block of samples."""
     return {name: h.values(block) for name, h in HISTORIES.items()}
+
+
+def closeups_of(block: SampleBlock) -> dict[str, Array]:
+    """Rows of the histories that close-ups have."""
+    return {name: h.values(block) for name, h in HISTORIES.items() if h.closeup}

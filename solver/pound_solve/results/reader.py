@@ -254,6 +254,38 @@ class Results:
             raise self._damaged(f"{name} does not have the columns that its labels name")
         return self._as_written(name, self._dataset(name), out, self._complete)
 
+    @property
+    @_sound
+    def closeups(self) -> tuple[str, ...]:
+        """Names of the histories that have close-ups of collisions in the file."""
+        group = self._file.get("closeup", {})
+        return tuple(name for name in self.histories if name != "time" and name in group)
+
+    @_sound
+    def closeup(self, name: str) -> tuple[Array, Array]:
+        r"""Close-ups of collisions: times that do not fall, shape (n,), and rows of a history at them,
+        shape (n, \*row); KeyError where the file has none of that name.
+
+        They stand at every instant of the method at which a contact was pressed, one more before and after,
+        and at the peaks of the contacts' forces.
+        """
+        group = self._file.get("closeup", {})
+        t, rows = (self._find(group, key, "close-up", name, self.closeups) for key in ("time", name))
+        return self._as_written("time", t, t[()]), self._as_written(name, rows, rows[()])
+
+    @_sound
+    def course(self, name: str) -> tuple[Array, Array]:
+        r"""A history with its close-ups: rising times, shape (n,), and rows, shape (n, \*row)."""
+        t, rows = self.time, self.history(name)
+        if name not in self.closeups:
+            return t, rows
+        near, own = self.closeup(name)
+        t, rows = np.concatenate([t, near]), np.concatenate([rows, own])
+        order = np.argsort(t, kind="stable")
+        t, rows = t[order], rows[order]
+        new = np.append(True, np.diff(t) > 0.0)
+        return t[new], rows[new]
+
     @_sound
     def labels(self, name: str) -> tuple[str, ...]:
         """Label of every number of a history's row, row by row (``100 ux`` for node histories)."""

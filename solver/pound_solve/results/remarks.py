@@ -22,15 +22,15 @@ def how_found(run: RunRecord) -> str:
 def how_sampled(run: RunRecord) -> str:
     """Tell at which instants envelopes are taken; a sentence, and a blank."""
     history, time = run.history, run.model.units.time
-    envelopes, outcome = history.recorder.envelopes, history.outcome
+    envelopes = history.recorder.envelopes
+    if envelopes.searched:
+        return "Peaks between all instants of the method are included. "
     if not envelopes.seen:
         return (
             f"Taken at the output times, every {history.every:.6g} {time}: peaks between them are missed, "
             "a smaller OUTPUT EVERY finds them. "
         )
-    turns = outcome is not None and outcome.turns
-    peaks = "peaks of displacements are among them, other peaks" if turns else "peaks"
     return (
-        f"Taken at {envelopes.seen} instants, at most {envelopes.apart:.3g} {time} apart, and at the "
-        f"output times; {peaks} between them are not included. "
+        f"Taken at the ends of all steps, at most {envelopes.apart:.3g} {time} apart; peaks within a step "
+        "are not included. "
     )

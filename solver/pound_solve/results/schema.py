@@ -193,6 +193,8 @@ class History:
         Makes the rows, shape (n_times, \\*row), from a block of samples.
     sample : HistoryLayout
         A made-up layout for the tests.
+    closeup : bool
+        Whether close-ups of collisions have it, too.
     """
 
     name: str
@@ -202,3 +204,4 @@ class History:
     layout: Callable[[RecordedItems], HistoryLayout]
     values: Callable[[SampleBlock], Array]
     sample: HistoryLayout
+    closeup: bool = False

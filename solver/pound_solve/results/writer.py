@@ -264,6 +264,26 @@ class Writer:
         self._history[name] = dataset
         self._digests[f"history/{name}"] = digest_of(attributes)
 
+    def closeups(self, layout: Layout, blocks: Sequence[Mapping[str, NDArray[Any]]]) -> None:
+        """Store the close-ups of collisions, below ``/closeup``.
+
+        Parameters
+        ----------
+        layout : mapping
+            As of `start_history`.
+        blocks : sequence of mappings
+            Rows of ``time`` and of other histories, in the order of time.
+        """
+        for name in blocks[0] if blocks else ():
+            own = HistoryLayout((), {"unit": "T"}) if name == "time" else layout[name]
+            if 0 in own.shape:
+                continue
+            attributes = _complete(name, own)
+            attributes["unit"] = [self._units.text(u) for u in attributes["unit"]]
+            rows = np.concatenate([np.asarray(block[name], float) for block in blocks])
+            texts = {key: [storable(v) for v in attributes[key]] for key in ("labels", "unit")}
+            self._put("closeup", name, rows, {**attributes, **texts})
+
     def stored(self, name: str) -> NDArray[np.float64]:
         """Rows of a history so far, shape (n_times, \\*row).
 

@@ -4,6 +4,7 @@ excitation is one polynomial.
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
@@ -75,6 +76,14 @@ class DenseOutput:
         c = np.array([self.branches[i].damping for i in laws])
         loads: Array = -(e * k + rate * c) @ system.law_rows[np.ix_(laws, subsystem.decomposition.unknowns)]
         return loads
+
+    def kept(self) -> DenseOutput:
+        """One that stays as it is when the run goes on."""
+        out = copy.copy(self)
+        out.branches = list(self.branches)
+        out.subsystems = copy.copy(self.subsystems)
+        out.subsystems.present = [copy.copy(x) for x in self.subsystems.present]
+        return out
 
     @property
     def intervals(self) -> int:

@@ -96,7 +96,7 @@ class Exact(EventDrivenRun):
         self.work = DeferredWork(self.energy, system.constant, contact)
         self.rigid = RigidInstants(self, self.subsystems.rigid)
         self.samples = DeferredSamples(system, self.subsystems.rigid, recorder)
-        self.envelopes = EnvelopeSamples(self.subsystems, self.u, recorder)
+        self.envelopes = EnvelopeSamples(self.subsystems, recorder)
         self.windows = Windows(int(options.get("REFINE") or 0))
         self.window_count = self.pieces = 0
 
@@ -343,7 +343,7 @@ class Exact(EventDrivenRun):
             checks.append(("defective modes, integrated by the exponential series", "present", "good"))
         peaks = self.tracker.close(self.energy.dashpot_losses)
         checks += [*rounding_check(self.laws, peaks), *self.uniqueness.checks()]
-        return Outcome(peaks, figures, tuple(self.states), checks, exact=True, turns=True)
+        return Outcome(peaks, figures, tuple(self.states), checks, exact=True)
 
 
 def integrate(

@@ -35,7 +35,9 @@ from pound_solve.integrate.protocol import (
     CHANGES,
     CHANGES_PER_LAW,
     INTERRUPTED,
+    Course,
     MonitoredOutputs,
+    Motion,
     Outcome,
     Recorder,
     Start,
@@ -44,8 +46,9 @@ from pound_solve.integrate.protocol import (
     refuse_rigid,
     rounding_check,
 )
+from pound_solve.integrate.rigid.contacts import linear_forces
 from pound_solve.numerics.modes import massless
-from pound_solve.numerics.types import Array
+from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.reduction import ReducedSystem
 
 STILL = 1e-10  #: as that of `integrate.protocol`; the transforms have ten digits
@@ -144,6 +147,7 @@ class Laplace(EventDrivenRun):
         if first:
             self._sample(self.t, motion.u[:, 0], motion.v[:, 0], motion.a[:, 0], self.energy.array())
         self._samples(motion, tau)
+        self._show(motion, tau)
         ends = rows.all_at(self.dt, tau)
         self._count_peaks(rows.until(tau, ends))
         self.u, self.v = motion.at(tau)
@@ -179,6 +183,31 @@ class Laplace(EventDrivenRun):
             self._sample(goal, u, v, a, works[-1])
         works.append(works[-1] + self._work(at, tau, motion))
         self.energy.advance(np.array(works))
+
+    def _show(self, motion: SampledMotion, tau: float) -> None:
+        """Show the recorder the motion up to the local time `tau`."""
+        begin = np.asarray(motion.h * np.arange(int(np.ceil(tau / motion.h * (1 - 1e-12)))), float)
+        if not len(begin):
+            return
+        lengths = np.diff(begin, append=tau)
+
+        def at(t: Array) -> Motion:
+            u, v = motion.at_times(t)
+            a = self._accelerations(u, v, self.system.excitation.values(self.t + t).T)
+            return self._with_forces(self.t + t, u, v, a)
+
+        def within(cells: Index, shares: Array) -> Motion:
+            return at((begin[cells, None] + lengths[cells, None] * shares).ravel())
+
+        self.recorder.between(Course(at(begin), lengths, within))
+
+    def _with_forces(self, t: Array, u: Array, v: Array, a: Array) -> Motion:
+        """The motion at some times with the forces of the laws that the recorder looks at."""
+        system, acting = self.system, self.recorder.acting
+        s, ds = (system.excitation.values(t, order).T for order in (0, 1))
+        d = system.law_rows[acting] @ u + system.law_inputs[acting] @ s
+        rate = system.law_rows[acting] @ v + system.law_inputs[acting] @ ds
+        return Motion(t, u, v, a, linear_forces([self.branches[i] for i in acting])(d, rate))
 
     def _work(self, begin: float, end: float, motion: SampledMotion) -> Array:
         """Work put in and lost in dashpots between two local times, shape (3,), by Simpson's rule

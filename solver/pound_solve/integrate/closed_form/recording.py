@@ -5,23 +5,21 @@ motion between them, for envelopes.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from pound_solve.integrate.closed_form.dense_output import DenseOutput, Kinematics
 from pound_solve.integrate.closed_form.subsystems import Subsystems
 from pound_solve.integrate.energy import law_values
-from pound_solve.integrate.events import grid
-from pound_solve.integrate.protocol import LawValues, Recorder
+from pound_solve.integrate.protocol import Course, LawValues, Motion, Recorder
 from pound_solve.integrate.rigid.contacts import RigidContacts, linear_forces
 from pound_solve.laws.automaton import Branch, State
 from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.reduction import ReducedSystem
 
 MAX_WAITING = 2**19  #: displacements between the samples that wait for the recorder
-STEPS = 4  #: fine steps from one instant of the envelopes to the next
-BEYOND = 1e-6  #: share of its range by which a stationary displacement must exceed it to be recorded
+STEPS = 2  #: fine steps from one instant of the envelopes to the next
 
 
 def forces_of(
@@ -81,74 +79,59 @@ class DeferredSamples:
         self._waiting.clear()
 
 
-class EnvelopeSamples:
-    """The motion between the output samples, and the stationary points of displacements that exceed their
-    range so far.
-    """
+class Window(NamedTuple):
+    """A window whose motion is kept: where its instants begin, their local times, and its start and end."""
 
-    def __init__(self, subsystems: Subsystems, u: Array, recorder: Recorder) -> None:
-        self.recorder, self.unknowns = recorder, np.flatnonzero(subsystems.enveloped)
-        self._range = np.array([u, u])[:, self.unknowns]  # largest and smallest so far
-        self._between: list[tuple[Any, ...]] = []
-        self._stationary: list[tuple[Array, Array]] = []
+    dense: DenseOutput
+    tau: Array
+    begin: float
+    end: float
+
+
+class EnvelopeSamples:
+    """The motion between the output samples."""
+
+    def __init__(self, subsystems: Subsystems, recorder: Recorder) -> None:
+        self.recorder, self.is_needed = recorder, bool(subsystems.enveloped.any())
+        self._windows: list[Window] = []
+        self._motions: list[Motion] = []
 
     def add(self, dense: DenseOutput, t0: float, h: float, end: float) -> None:
         """Keep the motion of a window from time `t0` on, up to the local time `end`."""
-        if not len(self.unknowns):
+        if not self.is_needed:
             return
         tau, motion = dense.enveloped_grid(STEPS * h, end)
-        longest = float(np.diff(tau, append=end).max(initial=0.0))
-        rigid, t = dense.subsystems.rigid, t0 + tau
-        law_forces = forces_of(
-            dense.subsystems.system, rigid, self.recorder.acting, dense.branches, t, motion
-        )
-        self._between.append((t, *motion, law_forces, longest))
-        self._add_stationary(dense, t0, tau, motion, end)
-        if sum(x[1].size for x in (*self._between, *self._stationary)) > MAX_WAITING:
+        self._windows.append(Window(dense.kept(), tau, t0, end))
+        self._motions.append(self._motion(dense, t0 + tau, motion))
+        if sum(x.u.size for x in self._motions) > MAX_WAITING:
             self.release()
 
-    def _add_stationary(
-        self, dense: DenseOutput, t0: float, tau: Array, motion: Kinematics, end: float
-    ) -> None:
-        """Keep the displacements at the instants at which one of them is stationary beyond its range so
-        far: of each the highest and the lowest, from the cubic from one point to the next and a step of
-        Newton's method on the motion itself.
-        """
-        last, (u, v, _) = dense.motion(*dense.locate(end)), motion
-        x, rate = (np.column_stack([y[self.unknowns], z[self.unknowns]]) for y, z in zip((u, v), last))
-        self._widen(x)
-        row, at = np.nonzero(rate[:, :-1] * rate[:, 1:] < 0.0)
-        length = np.diff(tau, append=end)[at]
-        begin, finish = rate[row, at] * length, rate[row, at + 1] * length
-        s, value = grid.cubic_extreme(x[row, at], x[row, at + 1], begin, finish)
-        margin = BEYOND * (self._range[0] - self._range[1])
-        best = np.array([self._range[0] + margin, margin - self._range[1]])
-        for sign, most in zip((1.0, -1.0), best):
-            np.maximum.at(most, row, sign * value)
-        chosen = np.flatnonzero((value == best[0][row]) | (-value == best[1][row]))
-        if not len(chosen):
-            return
-        times, dof = (tau[at] + s * length)[chosen], self.unknowns[row[chosen]]
-        _, v, a = (y[dof, np.arange(len(chosen))] for y in dense.enveloped_motions(times))
-        times -= np.divide(v, a, out=np.zeros_like(v), where=np.abs(v) < 0.1 * np.abs(a) * length[chosen])
-        times = np.unique(np.clip(times, 0.0, end))
-        u = dense.enveloped_motions(times)[0]
-        self._widen(u[self.unknowns])
-        self._stationary.append((t0 + times, u))
-
-    def _widen(self, x: Array) -> None:
-        """Count displacements, shape (n_unknowns, n_times), into their range."""
-        self._range[0] = np.maximum(self._range[0], x.max(axis=1))
-        self._range[1] = np.minimum(self._range[1], x.min(axis=1))
+    def _motion(self, dense: DenseOutput, t: Array, motion: Kinematics) -> Motion:
+        """The motion of a window at some times, with the forces of the laws."""
+        system, rigid = dense.subsystems.system, dense.subsystems.rigid
+        return Motion(t, *motion, forces_of(system, rigid, self.recorder.acting, dense.branches, t, motion))
 
     def release(self) -> None:
         """Pass all that waits to the recorder."""
-        if self._between:
-            *motion, longest = zip(*self._between)
-            t, u, v, a, law_forces = (np.concatenate(x, axis=-1) for x in motion)
-            self.recorder.between(t, u, v, a, law_forces, max(longest))
-            self._between.clear()
-        if self._stationary:
-            t, u = (np.concatenate(x, axis=-1) for x in zip(*self._stationary))
-            self.recorder.stationary(t, u)
-            self._stationary.clear()
+        if not self._windows:
+            return
+        windows, motions = self._windows, self._motions
+        self._windows, self._motions = [], []
+        lengths = [np.diff(w.tau, append=w.end) for w in windows]
+        first = np.cumsum([0, *map(len, lengths)])
+
+        def within(cells: Index, shares: Array) -> Motion:
+            own = np.searchsorted(first, cells, "right") - 1
+            out = []
+            for i in np.unique(own).tolist():
+                w, at = windows[i], cells[own == i] - first[i]
+                tau = (w.tau[at, None] + lengths[i][at, None] * shares).ravel()
+                out.append(self._motion(w.dense, w.begin + tau, w.dense.enveloped_motions(tau)))
+            return joined(out)
+
+        self.recorder.between(Course(joined(motions), np.concatenate(lengths), within))
+
+
+def joined(motions: Sequence[Motion]) -> Motion:
+    """The motion at the instants of all."""
+    return Motion(*(np.concatenate(x, axis=-1) for x in zip(*motions)))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from pound_solve.integrate import costs
-from pound_solve.integrate.convergence.compared import RESPONSE, figures, hardest
+from pound_solve.integrate.convergence.compared import NAMES, figures, hardest, tolerances
 from pound_solve.integrate.convergence.estimate import error_left, likely_error
 from pound_solve.integrate.convergence.replay import Replay
 from pound_solve.integrate.protocol import (
@@ -50,8 +50,10 @@ class StepRefinement:
         Step of the next run [T].
     aim : float
         Step that is likely to meet the tolerance [T].
+    tolerances, errors : dict
+        Of each kind of peaks that has a tolerance, and the estimate for the last run.
     error, likely : float
-        Estimate for the last run; error that the next step is chosen by.
+        The largest estimate for the last run, over its tolerance; that which the next step is chosen by.
     met : bool
         Whether the last run meets the tolerance, and its steps resolve the hardest collision.
     lasts : float
@@ -71,7 +73,8 @@ class StepRefinement:
         options: Mapping[str, Any],
     ) -> None:
         self.system, self.start, self.monitored, self.recorder = system, start, monitored, recorder
-        self.tol, self.asked = float(options["TOL"]), options.get("PEAKS", RESPONSE)
+        self.tolerances = tolerances(options)
+        self.errors = dict.fromkeys(self.tolerances, np.inf)
         self.length = float(start.times[-1] - start.times[0])
         intervals = np.diff(goals(system, start.times)[0], prepend=start.times[0])
         self.h = self.aim = min(float(np.median(intervals)), self.length / 1000)
@@ -139,7 +142,7 @@ class StepRefinement:
 
     def _compare(self, outcome: Outcome, replay: Replay) -> None:
         """Compare a run with those before, estimate its error, and judge whether it meets the tolerance."""
-        peaks, scales = figures(self.system, outcome.peaks, replay, self.asked)
+        peaks, scales, kinds = figures(self.system, outcome.peaks, replay, self.tolerances)
         steps, self.events = outcome.figures["steps"], outcome.figures["events"]
         if self.steps and steps <= self.steps[-1]:
             return  # output times cut the steps of both: runs of as many steps do not differ
@@ -148,11 +151,15 @@ class StepRefinement:
         if len(self.steps) == 1:
             return
         scales = np.where(scales > 0.0, scales, 1.0)
-        self.error = error_left(self.steps, self.peaks, scales)
+        for kind in self.tolerances:
+            own = kinds == kind
+            self.errors[kind] = error_left(self.steps, [x[own] for x in self.peaks], scales[own])
+        self.error = max(error / self.tolerances[kind] for kind, error in self.errors.items())
+        allowed = scales * np.array([self.tolerances[kind] for kind in kinds.tolist()])
         # two runs show no order: the next step relies on that of the method, the judgement does not
         two = len(self.steps) == 2
-        self.likely = likely_error(self.steps, self.peaks, scales) if two else self.error
-        self.met = self.error <= self.tol and self.lasts >= RESOLVED * self.h
+        self.likely = likely_error(self.steps, self.peaks, allowed) if two else self.error
+        self.met = self.error <= 1.0 and self.lasts >= RESOLVED * self.h
         self.stale = 0 if self.error < 0.5 * self.best else self.stale + 1
         self.best = min(self.best, self.error)
 
@@ -163,9 +170,7 @@ class StepRefinement:
         least = 0.25 if self.stale == 0 else 0.5
         if resolved < self.h * least:
             least = SHORTEST
-        shorter = (
-            float(np.sqrt(AIM * self.tol / max(self.likely, AIM * self.tol))) if self.steps[1:] else 0.5
-        )
+        shorter = float(np.sqrt(AIM / max(self.likely, AIM))) if self.steps[1:] else 0.5
         self.aim = min(self.h * shorter, resolved)
         self.h = float(np.clip(self.aim, least * self.h, LONGEST * self.h))
         self.aim = min(self.aim, self.h)
@@ -203,9 +208,14 @@ class StepRefinement:
     def checks(self, outcome: Outcome, ended: str) -> list[tuple[str, str, str]]:
         """Return checks beyond those of a single run; `ended` is why no shorter steps follow."""
         steps = outcome.figures["steps"]
-        verdict = "met" if self.met else f"look: not met with {steps} steps, {ended}"
-        what = "drifts and contact forces" if self.asked == RESPONSE else "all peaks"
+        resolved = self.met or self.error > 1.0  # else the steps are too long for a collision
+        out = []
+        for kind, tol in self.tolerances.items():
+            error = self.errors[kind]
+            met = error <= tol and resolved
+            verdict = "met" if met else f"look: not met with {steps} steps, {ended}"
+            out.append((f"estimated error of {NAMES[kind]}, TOL {tol:g}", f"{error:.1e}", verdict))
         return [
-            (f"estimated error of {what}, TOL {self.tol:g}", f"{self.error:.1e}", verdict),
+            *out,
             *rounding_check(self.system.structure.laws, outcome.peaks),
         ]

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from pound_solve.integrate.protocol import EnvelopeRecorder, LawValues
+from pound_solve.integrate.protocol import Course, EnvelopeRecorder, LawValues, Motion
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
@@ -30,13 +30,9 @@ class Replay:
         self.low = np.minimum(self.low, u.min(axis=1))
         self.recorder.trial(float(t[-1]))
 
-    def between(self, t: Array, u: Array, v: Array, a: Array, law_forces: Array, apart: float) -> None:
+    def between(self, course: Course) -> None:
         """Take the motion between samples (see `Recorder`)."""
-        self.envelopes.between(t, u, v, a, law_forces, apart)
-
-    def stationary(self, t: Array, u: Array) -> None:
-        """Take displacements at stationary points (see `Recorder`)."""
-        self.envelopes.stationary(t, u)
+        self.envelopes.between(course)
 
     @property
     def shown(self) -> Flags:
@@ -59,7 +55,7 @@ class Replay:
         for t, u, v, a, laws, _ in self.samples:
             law_forces = (laws.force + laws.dashpot)[self.acting]
             s = [system.excitation.values(t, order, before=True).T for order in range(3)]
-            own.take(t, u, v, a, law_forces, s)
+            own.take(Motion(t, u, v, a, law_forces), s)
         return own.peaks()
 
     def pass_on(self) -> None:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pound_solve.integrate.kernels import state
-from pound_solve.integrate.kernels.state import Product, Rows, Scheme
+from pound_solve.integrate.kernels.state import MOST_SHOWN, Product, Rows, Scheme
 from pound_solve.integrate.protocol import MonitoredOutputs, Start
 from pound_solve.integrate.tracker import Extremes
 from pound_solve.laws.automaton import EVENTS, Rule
@@ -24,7 +24,6 @@ from pound_solve.structure.reduction import ReducedSystem
 #: samples and transitions kept between two visits of Python, which cost 2 ms each
 SAMPLES, TRANSITIONS, TIES = 1024, 4096, 64
 MOST_HELD = 2**20  #: numbers of one kind in those samples, at most, but for two
-SHOWS = 4  #: steps between two samples, at most, that the envelopes see
 INSTANT = 1e-6  #: share of the longest step that the time which tells massless velocities keeps below
 FULL_DIAGONAL = 0.25  #: part of a diagonal from which its zeros cost less than naming its entries
 
@@ -357,8 +356,10 @@ def buffers(n: int, n_laws: int, which: Index, acting: Index) -> state.Buffers:
     """Room for samples and transitions; `which` unknowns, and the forces of the laws `acting`, are shown
     between the samples.
     """
-    samples = min(SAMPLES, max(MOST_HELD // (3 * max((1 + SHOWS) * n, n_laws, 1)), 2))
-    shown = max(samples * SHOWS, min(16 * SAMPLES, MOST_HELD // max(3 * len(which) + len(acting), 3)))
+    samples = min(SAMPLES, max(MOST_HELD // (3 * max(n, n_laws, 1)), 2))
+    log = TRANSITIONS + 16 * n_laws
+    # the parts of a step, which events cut, have room in any case
+    shown = MOST_SHOWN * log + max(min(16 * SAMPLES, MOST_HELD // max(3 * len(which) + len(acting), 3)), 2)
     u, v, a = np.zeros((3, samples, n))
     force, stored, lost, dashpot = np.zeros((4, samples, n_laws))
     return state.Buffers(
@@ -371,7 +372,7 @@ def buffers(n: int, n_laws: int, which: Index, acting: Index) -> state.Buffers:
         dashpot=dashpot,
         time=np.zeros(samples),
         works=np.zeros((samples, 3)),
-        log=np.zeros((TRANSITIONS + 16 * n_laws, state.LOGGED)),
+        log=np.zeros((log, state.LOGGED)),
         ties=np.zeros((TIES, 3, n_laws)),
         tie_time=np.zeros(TIES),
         which=which,

@@ -15,8 +15,10 @@ from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.state import CHATTER, CROWD, DONE, FULL, PIVOT, RUNAWAY, Scheme
 from pound_solve.integrate.protocol import (
     INTERRUPTED,
+    Course,
     LawValues,
     MonitoredOutputs,
+    Motion,
     Outcome,
     Recorder,
     Start,
@@ -49,6 +51,7 @@ class KernelEngine(ABC):
     """
 
     exact = False  #: whether there is no error but rounding
+    shows_steps = True  #: whether envelopes see the motion at the ends of steps
 
     def __init__(
         self,
@@ -72,8 +75,10 @@ class KernelEngine(ABC):
         losses = self.accumulator.dashpot_losses
         self.laws = allocation.law_arrays(system, start, own, scheme, rules, losses)
         self.step = allocation.step_arrays(system, start, own, self.linear, self.tracker.extremes)
-        which = own.place[np.flatnonzero(recorder.shown)]
-        self.buffers = allocation.buffers(system.size, len(self.springs), which, recorder.acting)
+        self.place = own.place
+        seen = own.place[np.flatnonzero(recorder.shown)], recorder.acting
+        which, acting = seen if self.shows_steps else np.zeros((2, 0), np.int64)
+        self.buffers = allocation.buffers(system.size, len(self.springs), which, acting)
         self.state = allocation.run_record(float(self.times[0]), self.accumulator.initial)
         for i in range(len(self.springs)):
             law_kernels.enter_branch(self.laws, self.rules, i)
@@ -148,7 +153,7 @@ class KernelEngine(ABC):
         """Take in the samples and the transitions that were kept."""
         self.fetch_transitions()
         self._fetch_ties()
-        self._fetch_shown()
+        self.fetch_shown()
         self._fetch_samples()
         self.state.kept = self.state.shown = 0
 
@@ -167,17 +172,18 @@ class KernelEngine(ABC):
             self.uniqueness.take(float(self.buffers.tie_time[k]), *self.buffers.ties[k])
         self.state.tied = 0
 
-    def _fetch_shown(self) -> None:
+    def fetch_shown(self) -> None:
+        """Show the recorder the motion that was kept between the samples."""
         buffers, shown = self.buffers, self.state.shown
         if not shown:
             return
-        times = buffers.shown_time[:shown]
-        seen = np.sort(np.concatenate([[self.seen], times, buffers.time[: self.state.kept]]))
+        times = buffers.shown_time[:shown].copy()
         u, v, a = motion = np.zeros((3, len(self.order), shown))
         motion[:, self.order[buffers.which]] = buffers.shown[:shown].transpose(1, 2, 0)
         law_forces = buffers.law_forces[:shown].T.copy()
-        self.recorder.between(times.copy(), u, v, a, law_forces, float(np.diff(seen).max()))
-        self.seen = float(seen[-1])
+        lengths = np.diff(times, prepend=self.seen)
+        self.seen = float(times[-1])
+        self.recorder.between(Course(Motion(times, u, v, a, law_forces), lengths, None))
 
     def _fetch_samples(self) -> None:
         buffers, kept, back = self.buffers, self.state.kept, np.argsort(self.order)

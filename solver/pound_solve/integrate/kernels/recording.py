@@ -130,12 +130,9 @@ def take_first_sample(
     run.started = 1
 
 
-def store_motion(
-    laws: Laws, step: Step, buffers: Buffers, rules: Tables, run: Run, t: float, each: int
-) -> None:
-    """Keep the motion after every `each`-th step between two samples."""
-    run.since_shown += 1
-    if run.since_shown < each or len(buffers.which) + len(buffers.acting) == 0:
+def store_motion(laws: Laws, step: Step, buffers: Buffers, rules: Tables, run: Run, t: float) -> None:
+    """Keep the present motion for the envelopes."""
+    if len(buffers.which) + len(buffers.acting) == 0:
         return
     at, now = run.shown, step.now
     buffers.shown_time[at] = t
@@ -149,5 +146,4 @@ def store_motion(
         buffers.law_forces[at, i] = law_force(
             laws, rules, law, laws.now.deformation[law], laws.now.rate[law]
         )
-    run.since_shown = 0
     run.shown += 1

@@ -22,6 +22,8 @@ LOGGED = (
     10  #: columns of `Buffers.log`: law, branches before and after, t, d, v, force; peak, its time, impulse
 )
 
+MOST_SHOWN = 2  #: motions that envelopes see of a part of a step: at its end, before and after an event
+
 
 class Run(Protocol):
     """Counters and clocks of a run: a numpy record."""
@@ -32,7 +34,6 @@ class Run(Protocol):
     kept: int  #: samples in the buffers
     logged: int  #: transitions in the buffers
     shown: int  #: motions between samples in the buffers
-    since_shown: int  #: steps since the motion was last shown or sampled
     steps: int
     events: int
     same_instant: int  #: transitions at one instant

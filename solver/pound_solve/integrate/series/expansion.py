@@ -28,7 +28,7 @@ from pound_solve.integrate.series.strings import add_strings
 from pound_solve.integrate.series.viscous import add_drags, drags_right_up_to, find_drags
 from pound_solve.numerics.jit import flat, loose
 from pound_solve.numerics.ldl import solve
-from pound_solve.numerics.types import Array, Index
+from pound_solve.numerics.types import Array
 
 TERMS = 32  #: of a series, at most
 CHECK = 4  #: terms after which it is seen whether they suffice
@@ -255,16 +255,6 @@ def evaluate(c: Array, terms: int, s: float, h: float, order: int, out: Array) -
             for i in range(n):
                 out[i] = out[i] * s + f0 * c[k, i]
             k -= 1
-
-
-def evaluate_some(c: Array, which: Index, terms: int, s: float, h: float, order: int, out: Array) -> None:
-    """Derivative of an order of some unknowns at the place `s`."""
-    for i in range(len(which)):
-        out[i] = 0.0
-    for k in range(terms, order - 1, -1):
-        factor = derived(k, order, h)
-        for i in range(len(which)):
-            out[i] = out[i] * s + factor * c[k, which[i]]
 
 
 def law_at(series: Series, terms: int, s: float, h: float, i: int) -> tuple[float, float]:

@@ -39,7 +39,6 @@ from pound_solve.integrate.series.expansion import (
     begin_series,
     dot,
     evaluate,
-    evaluate_some,
     expand,
     law_at,
     next_term,
@@ -49,6 +48,7 @@ from pound_solve.integrate.series.friction import LIFT, slides, touching
 from pound_solve.integrate.series.massless import factorise, jumps, violated
 from pound_solve.integrate.series.modal import from_modes, renew_modes, take_in_modes
 from pound_solve.integrate.series.rigid import is_held
+from pound_solve.integrate.series.shown import has_room, is_full, keep_step
 from pound_solve.integrate.series.smooth import BENDS, bend, linearise
 from pound_solve.integrate.series.springs import add_up, deformation
 from pound_solve.integrate.series.state import Lengths, Series
@@ -62,7 +62,6 @@ from pound_solve.numerics.types import Array, Flags, Index
 
 SHRINK = 1.0 / 16.0  #: of the length of a step that is tried again, at least
 AHEAD = 1e-3  #: part of a step that laws are looked at for which may leave at the instant of another
-LOOKS = 2  #: instants of a step that envelopes of nodes and members see: some 2.5 radians apart
 CUT = 0.5  #: part of a step, as it was tried, that is taken at least
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
 #: why `march` came back, beside those of `kernels.state`: steps are too short for the clock; an unknown
@@ -177,42 +176,6 @@ def accept(laws: Laws, now: MotionState, series: Series, terms: int, h: float, e
         laws.largest_rate[i] = max(laws.largest_rate[i], abs(v))
     press(laws, series, terms, end, h)
     count_largest(laws, series)
-
-
-@flat
-def store_looks(
-    buffers: Buffers,
-    series: Series,
-    terms: int,
-    h: float,
-    end: float,
-    run: Run,
-    t: float,
-) -> None:
-    """Keep the motion at the start of the step, where its acceleration may have jumped, and on its way."""
-    if len(buffers.which) + len(buffers.acting) == 0:
-        return
-    for look in range(LOOKS):
-        s, at = look * end / LOOKS, run.shown
-        for j in range(3):
-            evaluate_some(series.motion, buffers.which, terms if look else j, s, h, j, buffers.shown[at, j])
-        buffers.shown_time[at] = t + s * h
-        run.shown += 1
-
-
-def store_pulls(
-    laws: Laws, buffers: Buffers, rules: Tables, series: Series, terms: int, h: float, end: float, run: Run
-) -> None:
-    """Keep the forces of the laws at the instants that `store_looks` has kept."""
-    if len(buffers.acting) == 0:
-        return
-    for look in range(LOOKS):
-        s, at = look * end / LOOKS, run.shown - LOOKS + look
-        press(laws, series, terms, s, h)
-        for i in range(len(buffers.acting)):
-            law = buffers.acting[i]
-            d, v = law_at(series, terms, s, h, law)
-            buffers.law_forces[at, i] = law_force(laws, rules, law, d, v)
 
 
 def change_branch(
@@ -332,10 +295,10 @@ def settle(
     return CHATTER
 
 
-def must_pause(buffers: Buffers, run: Run, pause: int) -> bool:
+def must_pause(buffers: Buffers, series: Series, run: Run, pause: int) -> bool:
     """Whether Python must empty the buffers, or may look whether the user wants to stop."""
     crowded = len(buffers.log) - run.logged < len(buffers.log) // 2 or run.tied > len(buffers.ties) // 2
-    return crowded or run.steps >= pause or run.shown + LOOKS > len(buffers.shown_time)
+    return crowded or run.steps >= pause or is_full(series.shown)
 
 
 def step_length(lengths: Lengths, t: float, left: float) -> float:
@@ -347,7 +310,7 @@ def step_length(lengths: Lengths, t: float, left: float) -> float:
 
 
 def take(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, series: Series, lengths: Lengths,
+    linear: LinearSystem, laws: Laws, step: Step, series: Series, lengths: Lengths,
     coefs: Array, begin: float, terms: int, h: float, end: float, works: Works, run: Run, rules: Tables,
 ) -> None:  # fmt: skip
     """Take the step up to its place `end`: peaks, looks, works, and the motion there."""
@@ -355,8 +318,7 @@ def take(
     track_outputs(linear, laws, step, series, terms, h, end, t, len(coefs))
     track_laws(laws, step, series, terms, h, end, t, len(linear.monitored_constants))
     if end > 0.0:
-        store_looks(buffers, series, terms, h, end, run, t)
-        store_pulls(laws, buffers, rules, series, terms, h, end, run)
+        keep_step(laws, rules, series, terms, h, end, t)
         add_works(
             linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, end, works, rules
         )
@@ -379,7 +341,7 @@ def stride(
         DONE, or what is wrong.
     """
     while run.time < goal:
-        if must_pause(buffers, run, pause):
+        if must_pause(buffers, series, run, pause):
             return FULL
         t = run.time
         left = goal - t
@@ -404,7 +366,7 @@ def stride(
         lengths.next = max(h * min(fit * TERMS / terms, GROW), lengths.next if end == 1.0 else 0.0)
         event = first_event(laws, series, terms, h, end)
         at = event.time
-        take(linear, laws, step, buffers, series, lengths, coefs, begin, terms, h, at, works, run, rules)
+        take(linear, laws, step, series, lengths, coefs, begin, terms, h, at, works, run, rules)
         if event.law < 0:
             if not whole:
                 lengths.shortest = min(lengths.shortest, at * h)
@@ -443,8 +405,10 @@ def reach(
     lengths: Lengths, coefs: Array, begin: float, goal: float, pause: int, works: Works, run: Run,
 ) -> int:  # fmt: skip
     """Take the motion to a goal, in modes or by steps; return DONE, or what is wrong."""
+    if not has_room(series.shown):
+        return FULL
     if run.steps < pause and take_in_modes(
-        linear, laws, step, buffers, series, lengths, coefs, begin, goal, works, run
+        linear, laws, step, series, lengths, coefs, begin, goal, works, run
     ):
         return DONE
     from_modes(laws, series.modal, step)

@@ -24,8 +24,9 @@ from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL
 from pound_solve.integrate.intervals import SAME
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.recording import count_extreme
-from pound_solve.integrate.kernels.state import Buffers, Laws, LinearSystem, Run, Step
+from pound_solve.integrate.kernels.state import Laws, LinearSystem, Run, Step
 from pound_solve.integrate.series.expansion import CHECK, TERMS, dot, expand_inputs
+from pound_solve.integrate.series.shown import keep_interval
 from pound_solve.integrate.series.state import Lengths, Modal, Series
 from pound_solve.integrate.series.tracking import count_crest, event_of, track_law
 from pound_solve.integrate.tracker import Extremes
@@ -292,35 +293,6 @@ def add_interval_works(modal: Modal, n_inputs: int, works: Works) -> None:
     works.gross_input += abs(put)
 
 
-def show(laws: Laws, modal: Modal, buffers: Buffers, run: Run, n_inputs: int) -> None:
-    """Keep the motion at the starts and the middles of the cells for the envelopes."""
-    looks = modal.growth.shape[1] - 1
-    if len(buffers.which) + len(buffers.acting) == 0:
-        return
-    for i in range(len(buffers.acting)):
-        law = buffers.acting[i]
-        for look in range(looks):
-            d = modal.offset[law]
-            for b in range(len(modal.counts)):
-                own, size = modal.place[b, law], 2 * (modal.counts[b, MODES] + n_inputs)
-                if own >= 0:
-                    d += dot(modal.rows[b, own, :size], modal.x[b, look, :size])
-            buffers.law_forces[run.shown + look, i] = laws.stiffness[law] * d + laws.offset[law]
-    for look in range(looks):
-        buffers.shown_time[run.shown + look] = run.time + modal.length[0] * look / looks
-    for b in range(len(modal.counts)):
-        first, x, rest = 2 * modal.counts[b, MODES], modal.x[b], modal.rest[b]
-        size = first + 2 * n_inputs
-        for i in range(modal.counts[b, SHOWN]):
-            at, still = modal.shown[b, i], dot(modal.motion[b, 0, i, :first], rest[:first])
-            for kind in range(3):
-                row = modal.motion[b, kind, i, :size]
-                for look in range(looks):
-                    value = dot(row, x[look, :size])
-                    buffers.shown[run.shown + look, kind, at] = value + (still if kind == 0 else 0.0)
-    run.shown += looks
-
-
 def advance_modes(modal: Modal, n_inputs: int) -> None:
     """Take the modes to the end of the interval."""
     for b in range(len(modal.counts)):
@@ -333,7 +305,7 @@ def advance_modes(modal: Modal, n_inputs: int) -> None:
 
 
 def take_in_modes(
-    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, series: Series, lengths: Lengths,
+    linear: LinearSystem, laws: Laws, step: Step, series: Series, lengths: Lengths,
     coefs: Array, begin: float, goal: float, works: Works, run: Run,
 ) -> bool:  # fmt: skip
     """Take the interval up to a goal in modes; False where that is not certain to be right.
@@ -341,7 +313,7 @@ def take_in_modes(
     The motion stays in the modes, see `from_modes`.
     """
     modal, n_inputs = series.modal, series.inputs.shape[1]
-    if run.stale or not modal.serves[0] or run.shown + modal.growth.shape[1] > len(buffers.shown_time):
+    if run.stale or not modal.serves[0]:
         return False
     h = modal.length[0]
     if abs(goal - run.time - h) > SAME * h:
@@ -356,7 +328,7 @@ def take_in_modes(
     if not count_peaks(linear, laws, step, series, n_inputs, run.time):
         return False
     add_interval_works(modal, n_inputs, works)
-    show(laws, modal, buffers, run, n_inputs)
+    keep_interval(laws, series, run.time)
     advance_modes(modal, n_inputs)
     run.time = goal
     run.steps += 1

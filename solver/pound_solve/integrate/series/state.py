@@ -404,6 +404,48 @@ class Modal(NamedTuple):
     apart: Array
 
 
+class Shown(NamedTuple):
+    """What envelopes see of steps and intervals in modes (see `shown`).
+
+    Attributes
+    ----------
+    is_needed : ndarray, shape (1,)
+        Whether there is anything to see.
+    which, acting : ndarray
+        Unknowns, by their places in the order of elimination, and laws.
+    nodes : ndarray, shape (n_nodes,)
+        Places in a step at which forces of the laws are kept.
+    kept : ndarray, shape (2,)
+        Steps and intervals that were kept.
+    coefs : ndarray, shape (n_steps, TERMS + 1, n_which)
+        Of the unknowns.
+    law_forces : ndarray, shape (n_steps, n_nodes, n_acting)
+    begin, length, end : ndarray, shape (n_steps,)
+        Time of the start, length of the step, and the place up to which it was taken.
+    x, rest : ndarray, shape (n_intervals, n_parts, n_x) and (n_intervals, n_parts, 2 n_modes)
+        `Modal.x` and `Modal.rest` at their starts.
+    held : ndarray, shape (n_intervals, n_acting)
+        Forces of the laws where the modes come to rest.
+    start : ndarray, shape (n_intervals,)
+        Times.
+    """
+
+    is_needed: Flags
+    which: Index
+    acting: Index
+    nodes: Array
+    kept: Index
+    coefs: Array
+    law_forces: Array
+    begin: Array
+    length: Array
+    end: Array
+    x: Array
+    rest: Array
+    held: Array
+    start: Array
+
+
 class Series(NamedTuple):
     """The series of a step.
 
@@ -432,6 +474,7 @@ class Series(NamedTuple):
     strings : Strings
     damped : Damped
     modal : Modal
+    shown : Shown
     """
 
     motion: Array
@@ -452,3 +495,4 @@ class Series(NamedTuple):
     strings: Strings
     damped: Damped
     modal: Modal
+    shown: Shown

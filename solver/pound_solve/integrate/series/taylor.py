@@ -62,12 +62,14 @@ from pound_solve.integrate.series import (
     massless,
     modal_tables,
     rigid,
+    shown,
     smooth,
     springs,
     state,
     strings,
     viscous,
 )
+from pound_solve.integrate.series.course import ShownIntervals, ShownSteps
 from pound_solve.integrate.series.massless import STIFFNESS
 from pound_solve.integrate.series.present import Present
 from pound_solve.integrate.tracker import Peaks
@@ -95,6 +97,7 @@ class Taylor(KernelEngine):
     """One run; see the module's head."""
 
     exact = True
+    shows_steps = False
 
     def __init__(
         self,
@@ -127,6 +130,10 @@ class Taylor(KernelEngine):
         )
         dampers = np.array([s.law.curved and s.role is Role.DAMPER for s in laws], bool)
         is_smooth = np.array([s.law.rule.smooth is not None for s in laws], bool)
+        which, acting = self.place[np.flatnonzero(recorder.shown)], recorder.acting
+        modal = modal_tables.allocate(
+            system, self.laws.stiffness, monitored, self._intervals(), np.argsort(o), which
+        )
         self.series = state.Series(
             motion=np.zeros((terms, system.size)),
             stiffness_product=np.zeros(system.size),
@@ -155,9 +162,8 @@ class Taylor(KernelEngine):
             viscous=viscous.allocate(dampers, self.massless.law_number >= 0, terms),
             strings=strings.allocate(len(self.laws.members.parameters), terms),
             damped=self._damped(terms),
-            modal=modal_tables.allocate(
-                system, self.laws.stiffness, monitored, self._intervals(), np.argsort(o), self.buffers.which
-            ),
+            modal=modal,
+            shown=shown.allocate(which, acting, modal),
         )
         for i in self.series.curved.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
@@ -248,6 +254,15 @@ class Taylor(KernelEngine):
         kinds = [self.springs[i].law.rule.branches[self.laws.branch[i]].kind for i in x.laws]
         rigid.take_over(x, self.contacts, np.array([kind is BranchKind.HELD for kind in kinds], bool))
         x.largest[:] = np.maximum(x.largest, rounding)
+
+    def fetch_shown(self) -> None:
+        """Show the recorder the series and the modes that were kept."""
+        own = self.series.shown
+        if own.kept[shown.STEPS]:
+            self.recorder.between(ShownSteps(own, self.order).course())
+        if own.kept[shown.INTERVALS]:
+            self.recorder.between(ShownIntervals(own, self.series.modal, self.order).course())
+        own.kept[:] = 0
 
     def fetch(self) -> None:
         """Take in what was kept; stop where steps are too short for the length of the run."""

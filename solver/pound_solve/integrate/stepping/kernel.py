@@ -29,6 +29,7 @@ from pound_solve.integrate.kernels.recording import (
 from pound_solve.integrate.kernels.state import (
     DONE,
     FULL,
+    MOST_SHOWN,
     NEWTON,
     PIVOT,
     RUNAWAY,
@@ -150,10 +151,9 @@ def passes_event(laws: Laws, step: Step, scheme: Scheme, h: float) -> bool:
 @flat
 def plain_steps(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
-    coefs: Array, piece_start: float, works: Works, run: Run, h: float, last: int, each: int,
+    coefs: Array, piece_start: float, works: Works, run: Run, h: float, last: int,
 ) -> bool:  # fmt: skip
-    """Take steps of length `h` up to step `last` while every law stays on its branch; keep the motion after
-    each `each` of them.
+    """Take steps of length `h` up to step `last` while every law stays on its branch.
 
     Returns
     -------
@@ -171,7 +171,7 @@ def plain_steps(
         track(linear, laws, step, run.time, h)
         run.step += 1
         run.steps += 1
-        store_motion(laws, step, buffers, rules, run, run.time, each)
+        store_motion(laws, step, buffers, rules, run, run.time)
     return False
 
 
@@ -230,7 +230,6 @@ def end_goal(
     run.step = 0
     if sampled:
         store_sample(laws, step, buffers, rules, works, run, run.time)
-        run.since_shown = 0
         if run.kept == len(buffers.time):
             return FULL
     return DONE
@@ -238,8 +237,8 @@ def end_goal(
 
 def advance(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
-    coefs: Array, breaks: Array, goals: Array, steps: Index, lengths: Array, outputs: Flags, shows: Index,
-    pieces: Index, works: Works, run: Run,
+    coefs: Array, breaks: Array, goals: Array, steps: Index, lengths: Array, outputs: Flags, pieces: Index,
+    works: Works, run: Run,
 ) -> int:  # fmt: skip
     """Integrate to the last goal, or until Python must look at something.
 
@@ -249,8 +248,7 @@ def advance(
         The excitation, whose pieces begin at `breaks`.
     goals : ndarray, shape (n_goals,)
         Times that a step ends at, reached in `steps` steps of `lengths` each, on the excitation's `pieces`;
-        `outputs` says whether a sample is taken; on the way to it the envelopes see the motion every
-        so many steps as `shows` says.
+        `outputs` says whether a sample is taken.
 
     Returns
     -------
@@ -267,14 +265,16 @@ def advance(
         begin_goal(linear, laws, step, scheme, piece, run.time - begin, h, run)
         while run.step < steps[goal]:
             crowded = len(buffers.log) - run.logged < room or run.tied > len(buffers.ties) // 2
-            if crowded or run.steps >= pause:
+            # steps that have room
+            more = len(buffers.shown_time) - run.shown - MOST_SHOWN * len(buffers.log)
+            if crowded or more <= 0 or run.steps >= pause:
                 return FULL
             why = renew_factor(linear, laws, step, scheme, h, run)
             if why != DONE:
                 return why
-            last = min(steps[goal] - 1, run.step + pause - run.steps)
+            last = min(steps[goal] - 1, run.step + min(pause - run.steps, more))
             tried = plain_steps(
-                linear, laws, step, buffers, rules, scheme, piece, begin, works, run, h, last, shows[goal]
+                linear, laws, step, buffers, rules, scheme, piece, begin, works, run, h, last
             )
             if not tried and (run.step == last < steps[goal] - 1 or run.updates > REFRESH):
                 continue
@@ -293,8 +293,7 @@ def advance(
                 return why
             run.step += 1
             run.steps += 1
-            if run.step < steps[goal] or not outputs[goal]:
-                store_motion(laws, step, buffers, rules, run, run.time, shows[goal])
+            store_motion(laws, step, buffers, rules, run, run.time)
         run.time = goals[goal]
         why = end_goal(linear, laws, step, buffers, rules, outputs[goal], works, run)
         if why != DONE:

@@ -24,11 +24,12 @@ from pound_solve.integrate.kernels.laws import (
     linearise_law,
     transition,
 )
-from pound_solve.integrate.kernels.recording import log_transition, track
+from pound_solve.integrate.kernels.recording import log_transition, store_motion, track
 from pound_solve.integrate.kernels.state import (
     CHATTER,
     CROWD,
     DONE,
+    MOST_SHOWN,
     NEWTON,
     PART,
     PIVOT,
@@ -285,7 +286,8 @@ def step_in_parts(
     most, curved = 100 + 8 * len(laws.rule), laws.curved.any()
     at = WHOLE if abs(length - h) <= 1e-9 * h else PART
     while left > 0.0:
-        if len(buffers.log) - run.logged <= len(laws.coupled):
+        full = run.shown + MOST_SHOWN > len(buffers.shown_time)
+        if full or len(buffers.log) - run.logged <= len(laws.coupled):
             return CROWD
         t, part = run.time, min(left, run.longest_part, longest)
         if at == PART or part < left:
@@ -323,11 +325,14 @@ def step_in_parts(
             left -= part
             run.time = t + part
             track(linear, laws, step, run.time, part)
+            if at == PART:
+                store_motion(laws, step, buffers, rules, run, run.time)
         at = PART
         law = event.law
         if law < 0:
             continue
         change_branches(linear, laws, step, buffers, rules, scheme, run, h, event)
+        store_motion(laws, step, buffers, rules, run, run.time)  # it may have jumped
         run.fault = law
         same += 1
         if same > most:

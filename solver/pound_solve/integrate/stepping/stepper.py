@@ -22,7 +22,6 @@ from typing import Any
 import numpy as np
 
 from pound_deck.schema import Field, Kind
-from pound_solve.integrate.kernels.allocation import SHOWS
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.state import Scheme
 from pound_solve.integrate.protocol import (
@@ -99,15 +98,10 @@ class Stepper(KernelEngine):
         steps = np.maximum(1, np.ceil(lengths / self.dt * (1 - 1e-9))).astype(np.int64)
         # twelve digits: steps of equal length share their factor, whatever the rounding of the times
         h = np.array([float(f"{x:.12e}") for x in lengths / steps])
-        # steps from one output to the next, of which so many are shown to the envelopes
-        output = np.concatenate([[0], np.cumsum(is_output)[:-1]])
-        shows = -(-np.bincount(output, steps).astype(np.int64) // (SHOWS + 1))[output]
         ex = self.system.excitation
         pieces = ex.pieces_after(ends - lengths)
         coefs = np.ascontiguousarray(ex.coefs)
-        self.advance(
-            kernel.advance, self.scheme, coefs, ex.breaks, ends, steps, h, is_output, shows, pieces
-        )
+        self.advance(kernel.advance, self.scheme, coefs, ex.breaks, ends, steps, h, is_output, pieces)
 
     def figures(self) -> dict[str, Any]:
         """What the report tells of the run."""

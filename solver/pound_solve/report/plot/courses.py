@@ -30,8 +30,9 @@ def worst(values: Array, most: int = style.LINES) -> list[int]:
 
 def panel(axes: Any, results: Results, name: str, choice: Choice = ALL, last: bool = True) -> None:
     """Draw the columns of a history over time, those of the largest values where there are too many."""
-    rows = choice.span(results)
-    t, values, labels = results.time[rows], results.history(name)[rows], results.labels(name)
+    t, values = results.course(name)
+    rows, labels = choice.span(results, t), results.labels(name)
+    t, values = t[rows], values[rows]
     unit = ", ".join(dict.fromkeys(results.history_units(name)))
     quantity, things = QUANTITY[name]
     style.grid(axes, f"time [{results.units.time}]" if last else "", f"{quantity}\n[{unit}]")
@@ -84,10 +85,11 @@ def force_curve(
     axes: Any, results: Results, column: int, look: Mapping[str, Any], choice: Choice = ALL
 ) -> None:
     """Draw the force of one contact over time; a ring marks each true peak, a bar an impact in no time."""
-    rows = choice.span(results)
+    t, force = results.course("contact/force")
+    rows = choice.span(results, t)
     name = results.labels("contact/force")[column]
     own = of_contact(results, name, choice)
-    at, force = with_peaks(results.time[rows], results.history("contact/force")[rows, column], own)
+    at, force = with_peaks(t[rows], force[rows, column], own)
     axes.plot(at, force, **look, label=style.short(name))
     peaks = own[np.isfinite(own["peak_force"])]
     axes.plot(

@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from pound_solve.numerics.types import Array
 from pound_solve.results import Results
 
 STILL: Final = ("svg", "png", "pdf")  #: endings of a picture that stands still
@@ -63,8 +64,8 @@ class Choice:
             raise ChoiceError(f"the history has no time {self.time:g} {unit}: it {reach}")
         return int(np.argmin(np.abs(t - self.time)))
 
-    def span(self, results: Results) -> slice:
-        """Stored instants within `between`, or all.
+    def span(self, results: Results, times: Array | None = None) -> slice:
+        """Those of some rising times, by default the stored ones, that are within `between`, or all.
 
         Raises
         ------
@@ -73,7 +74,7 @@ class Choice:
         """
         if self.between is None:
             return slice(None)
-        t, unit = results.time, results.units.time
+        t, unit = results.time if times is None else times, results.units.time
         low, high = np.searchsorted(t, self.between[0]), np.searchsorted(t, self.between[1], "right")
         if high - low < 2:
             reach = f"from {t[0]:g} to {t[-1]:g} {unit}" if len(t) else "nowhere"

@@ -45,6 +45,7 @@ def _storey(place: int, name: str, unit: str, doc: str, values: Callable[[Sample
         layout=partial(of_storeys, unit),
         values=values,
         sample=HistoryLayout((2,), {"labels": ["A storey 1", "A storey 2"], "unit": unit}),
+        closeup=True,
     )
 
 
@@ -58,6 +59,7 @@ FORCE = History(
     sample=HistoryLayout(
         (3,), {"labels": ["A shear X", "A force Y", "A moment"], "unit": ["F", "F", "F*L"]}
     ),
+    closeup=True,
 )
 DRIFT = _storey(43, "drift", "-", "drift ratios of the storeys", partial(total, "drift", slice(None)))
 SHEAR = _storey(44, "shear", "F", "shears of the storeys", partial(total, "storey", slice(0, None, 2)))

@@ -35,6 +35,7 @@ GAP = History(
     layout=lambda items: HistoryLayout((len(items.contacts),), {"labels": labels(items), "unit": "L"}),
     values=gaps,
     sample=HistoryLayout((2,), {"labels": ["901", "902"], "unit": "L"}),
+    closeup=True,
 )
 FORCE = History(
     name="contact/force",
@@ -44,4 +45,5 @@ FORCE = History(
     layout=lambda items: HistoryLayout((len(items.contacts),), {"labels": labels(items), "unit": "F"}),
     values=lambda block: block.force[list(block.items.contacts)].T,
     sample=HistoryLayout((2,), {"labels": ["901", "902"], "unit": "F"}),
+    closeup=True,
 )

@@ -32,4 +32,5 @@ DRIFT = History(
     layout=layout,
     values=values,
     sample=HistoryLayout((1,), {"labels": ["B1 storey 1"], "unit": "L"}),
+    closeup=True,
 )

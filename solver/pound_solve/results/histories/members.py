@@ -38,4 +38,5 @@ FORCE = History(
             "unit": ["F", "F*L", "F"],
         },
     ),
+    closeup=True,
 )

@@ -40,6 +40,7 @@ DISPLACEMENT = History(
     layout=partial(recorded, ""),
     values=partial(values, "u"),
     sample=layout(NODES, ""),
+    closeup=True,
 )
 VELOCITY = History(
     name="node/v",
@@ -49,6 +50,7 @@ VELOCITY = History(
     layout=partial(recorded, "/T"),
     values=partial(values, "v"),
     sample=layout(NODES, "/T"),
+    closeup=True,
 )
 ACCELERATION = History(
     name="node/a",
@@ -58,4 +60,5 @@ ACCELERATION = History(
     layout=partial(recorded, "/T^2"),
     values=partial(values, "a"),
     sample=layout(NODES, "/T^2"),
+    closeup=True,
 )

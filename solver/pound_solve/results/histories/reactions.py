@@ -39,4 +39,5 @@ HISTORY = History(
     layout=recorded,
     values=values,
     sample=layout((1, 4)),
+    closeup=True,
 )

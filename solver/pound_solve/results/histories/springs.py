@@ -36,4 +36,5 @@ DEFORMATION = History(
     layout=lambda items: layout(items, {"F": "L", "F*L": "rad"}),
     values=lambda block: block.deformation[list(block.items.springs)].T,
     sample=HistoryLayout((2,), {"labels": ["11 X", "12 R"], "unit": ["L", "rad"]}),
+    closeup=True,
 )

@@ -14,4 +14,5 @@ HISTORY = History(
     layout=lambda items: LAYOUT,
     values=lambda block: block.t,
     sample=LAYOUT,
+    closeup=True,
 )

@@ -32,11 +32,12 @@ def contacts(results: Results, choice: Choice) -> Any:
 
 def panel(axes: Any, results: Results, k: int, choice: Choice) -> None:
     """Draw the force of a contact over its overlap, at the stored instants; a line is its true peak."""
-    rows = choice.span(results)
-    force, gap = results.history("contact/force")[rows, k], results.history("contact/gap")[rows, k]
+    t, force = results.course("contact/force")
+    rows = choice.span(results, t)
+    t, force, gap = t[rows], force[rows, k], results.course("contact/gap")[1][rows, k]
     name = results.labels("contact/force")[k]
     style.grid(axes, f"overlap [{results.units.length}]", f"force [{results.units.force}]")
-    t, near = results.time[rows], gap <= max(0.0, 0.2 * float(-gap.min()))
+    near = gap <= max(0.0, 0.2 * float(-gap.min()))
     x, y = np.where(near, -gap, np.nan), np.where(near, force, np.nan)
     axes.plot(x, y, ".", color=style.RED, markersize=3)
     for own in courses.of_contact(results, name, choice):

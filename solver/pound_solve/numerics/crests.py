@@ -1,0 +1,112 @@
+r"""Extremes of sampled quantities between their samples.
+
+A quantity y is known at instants, and between two of them, over a *cell*, it is smooth.  Its cells are
+looked at in two ways.  First the samples alone tell in which cells y may exceed what is known: where a cell
+has no more than 2.5 radians of an oscillation, this exceeds the larger of two samples by no more than its
+largest change over the cells next to it.  There, and nowhere else, y is sampled at the
+`NODES` of Chebyshev, whose polynomial is right to about :math:`J_{13}(1.25) \approx 10^{-13}` of the
+fastest part; its extreme is found on a fine grid and by Newton's method.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.numerics.types import Array, Flags
+
+DEGREE = 12  #: of the polynomial over a cell
+GROUP = 16  #: cells that are judged together
+FINE = 48  #: cells of the grid on which the extreme of a polynomial is looked for
+NEWTON = 3  #: iterations to it
+BEFORE = 2  #: samples before and after them that tell how the quantity bends
+MARGIN = 1.5  #: over the change over a cell, by which a quantity may exceed its samples
+SPREAD = 1.5  #: over the range of its second differences, by which it may bend more
+
+_AROUND = np.arange(-BEFORE, GROUP + BEFORE + 1)
+
+_TURN = np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1)
+#: places of the nodes in (0, 1): without the ends, at which a quantity may jump
+NODES = 0.5 * (1.0 - np.cos(_TURN))
+#: coefficients of Chebyshev's polynomials from values at the nodes
+_FIT = 2.0 / (DEGREE + 1) * np.cos(np.arange(DEGREE + 1)[:, None] * (np.pi - _TURN))
+_FIT[0] *= 0.5
+_GRID = np.linspace(-1.0, 1.0, FINE + 1)
+_ON_GRID = np.polynomial.chebyshev.chebvander(_GRID, DEGREE) @ _FIT
+
+
+def on_nodes(places: Array) -> Array:
+    """Values at places in [0, 1] of the polynomials through values at the `NODES`, shape (..., n_nodes)."""
+    return np.asarray(np.polynomial.chebyshev.chebvander(2.0 * places - 1.0, DEGREE) @ _FIT)
+
+
+def may_exceed(values: Array, low: Array, high: Array) -> Flags:
+    """Which cells may hold more than is known of some quantities, shape (n_times,).
+
+    Parameters
+    ----------
+    values : ndarray, shape (n, n_times)
+        At the starts of the cells; the end of one is the start of the next.
+    low, high : ndarray, shape (n,)
+        Smallest and largest values so far, these among them.
+    """
+    n, count = values.shape
+    starts = np.arange(0, count, GROUP)
+    change = np.zeros((n, count))
+    np.abs(values[:, 1:] - values[:, :-1], out=change[:, :-1])
+    reach = MARGIN * _beside(np.maximum.reduceat(change, starts, axis=1))
+    out = np.zeros(count + GROUP, bool)
+    for sign, reduced, best in ((1.0, np.maximum, high), (-1.0, np.minimum, low)):
+        most = sign * reduced.reduceat(values, starts, axis=1)
+        row, group = np.nonzero(most + reach > (sign * best)[:, None])
+        at = starts[group][:, None] + _AROUND
+        own = sign * values[row[:, None], np.clip(at, 0, count - 1)]
+        cell = np.nonzero(_bounds(own) > sign * best[row][:, None])
+        out[at[:, BEFORE : BEFORE + GROUP][cell]] = True
+    return out[:count]
+
+
+def _bounds(values: Array) -> Array:
+    """Bounds of quantities over `GROUP` cells from their values at the starts and ends of these, with
+    `BEFORE` more samples on either side, shape (n, GROUP).
+    """
+    slope = values[:, 1:] - values[:, :-1]
+    bend = slope[:, 1:] - slope[:, :-1]  # at all samples but the first and the last
+    least = np.lib.stride_tricks.sliding_window_view(bend, 4, axis=1).min(axis=2)
+    most = np.lib.stride_tricks.sliding_window_view(bend, 4, axis=1).max(axis=2)
+    bent = np.maximum(-least, 0.0) + SPREAD * (most - least)
+    begin, change = values[:, BEFORE : BEFORE + GROUP], slope[:, BEFORE : BEFORE + GROUP]
+    # the top of a parabola through both ends
+    at = np.clip(0.5 + np.divide(change, bent, out=np.sign(change), where=bent > 0.0), 0.0, 1.0)
+    return np.asarray(begin + at * change + 0.5 * bent * at * (1.0 - at))
+
+
+def _beside(x: Array) -> Array:
+    """The largest of every column and of those next to it."""
+    out = x.copy()
+    np.maximum(out[:, 1:], x[:, :-1], out=out[:, 1:])
+    np.maximum(out[:, :-1], x[:, 1:], out=out[:, :-1])
+    return out
+
+
+def crests(values: Array) -> tuple[Array, Array]:
+    """Largest values over some cells, and their places in [0, 1], shape (n,) each.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n, DEGREE + 1)
+        At the `NODES`.
+    """
+    found = values @ _ON_GRID.T
+    at = np.argmax(found, axis=1)
+    top, x = found[np.arange(len(at)), at], _GRID[at]
+    c = _FIT @ values.T
+    slope = np.polynomial.chebyshev.chebder(c)
+    bend = np.polynomial.chebyshev.chebder(slope)
+    y = x.copy()
+    for _ in range(NEWTON):
+        s, b = (np.polynomial.chebyshev.chebval(y, p, tensor=False) for p in (slope, bend))
+        y = np.clip(y - np.divide(s, b, out=np.zeros_like(s), where=b < 0.0), x - 2 / FINE, x + 2 / FINE)
+    y = np.clip(y, -1.0, 1.0)
+    best = np.polynomial.chebyshev.chebval(y, c, tensor=False)
+    better = best > top
+    return np.where(better, best, top), 0.5 * (1.0 + np.where(better, y, x))

@@ -1,0 +1,225 @@
+"""Envelopes and stored histories are those of the motion, whatever OUTPUT stores."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from kernels import steps_alone
+from pound_deck.reader import read_text
+from pound_solve import run
+from pound_solve.catalog import catalog
+from pound_solve.numerics.crests import NODES, crests, may_exceed
+from pound_solve.report.export import export_csv
+from pound_solve.results import Results
+
+DECK = """TITLE two frames
+UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3
+ 3 0 6
+ 11 0.31 0 FIX=XYR
+ 12 0.31 3
+ELEMENTS
+ 1 COL 1 2
+ 2 COL 2 3
+ 3 COL 11 12
+{contact}
+PROPS
+ COL FRAME E=3E7 A=0.09 I=0.0005
+ POUND CONTACT GAP=0.01 LAW=KELVIN_VOIGT K=5E4 E=0.6
+WEIGHTS
+ 2,3,12 100
+DAMPING
+ RAYLEIGH XI=0.05 MODES=1,3
+DRIFT
+ "A1" 1 2
+ "B1" 11 12
+EQUAKE
+ SINE AMPLITUDE=3 PERIOD=0.9
+OUTPUT
+ EVERY={every} {more}
+ANALYSIS
+ HISTORY 1.5 METHOD={method}
+"""
+CONTACT = " 9 POUND 2 12"
+ENVELOPES = ("node_envelope", "member_envelope", "reaction_envelope", "base_envelope")
+
+
+def history(tmp_path: Path, method: str, every: float, more: str = "", contact: str = CONTACT) -> Results:
+    """A run of the deck."""
+    deck = tmp_path / f"{method.split()[0]}_{every}.inp"
+    deck.write_text(DECK.format(method=method, every=every, more=more, contact=contact))
+    return run(deck, out=tmp_path / deck.stem)
+
+
+def extremes(results: Results) -> dict[str, Any]:
+    """The largest and the smallest values of all envelopes."""
+    found = {name: results.table(name) for name in ENVELOPES}
+    return {name: np.column_stack([x["max"], x["min"]]) for name, x in found.items()}
+
+
+def apart(one: dict[str, Any], other: dict[str, Any]) -> float:
+    """The largest difference, over the magnitude of each quantity but 1e-3 of the largest at least."""
+    worst = 0.0
+    for name, x in one.items():
+        size = np.abs(x).max(axis=1)
+        size = np.maximum(size, 1e-3 * size.max())
+        worst = max(worst, float((np.abs(x - other[name]) / size[:, None]).max()))
+    return worst
+
+
+@pytest.mark.parametrize("method", ["TAYLOR", "EXACT", "LAPLACE DT=0.0005"])
+def test_envelopes_do_not_hang_on_the_output_interval(tmp_path: Path, method: str) -> None:
+    """Accelerations were up to 12 % low, members' forces 4 %."""
+    seldom, often = (extremes(history(tmp_path, method, every)) for every in (1.0, 0.013))
+    assert apart(seldom, often) < 1e-9
+
+
+@pytest.mark.parametrize("method", ["NEWMARK DT=0.0005", "HHT DT=0.0005", "GENERALISED_ALPHA DT=0.0005"])
+def test_envelopes_of_steps_see_every_step(tmp_path: Path, method: str) -> None:
+    """Steps that end at other times make differences of their own, about the square of their length."""
+    runs = (history(tmp_path, method, every, contact="") for every in (1.5, 0.0005))
+    assert apart(*map(extremes, runs)) < 2e-4
+
+
+def test_envelopes_are_the_extremes_of_dense_histories(tmp_path: Path) -> None:
+    """No stored sample is beyond them, and samples come as near as their distance lets them."""
+    found, dense = history(tmp_path, "TAYLOR", 1.0), history(tmp_path, "EXACT", 0.0004)
+    a = dense.history("node/a").reshape(len(dense.time), -1)
+    a = a[:, np.abs(a).max(axis=0) > 0.0]
+    table = found.table("node_envelope")
+    own = table[(table["quantity"] == "acceleration") & (table["max"] > table["min"])]
+    size = np.abs(a).max()
+    assert (own["max"] >= a.max(axis=0) - 1e-9 * size).all()
+    assert np.abs(own["max"] - a.max(axis=0)).max() < 2e-3 * size
+    assert np.abs(own["min"] - a.min(axis=0)).max() < 2e-3 * size
+
+
+def test_two_methods_find_the_same_extremes(tmp_path: Path) -> None:
+    """TAYLOR from its series, EXACT from its modes."""
+    assert apart(*(extremes(history(tmp_path, method, 0.7)) for method in ("TAYLOR", "EXACT"))) < 1e-8
+
+
+def test_no_cell_that_holds_an_extreme_is_passed_over() -> None:
+    """Sums of oscillations of no more than 2.5 radians in a cell: whatever exceeds the samples is in a cell
+    that is looked at, and is found there.
+    """
+    random = np.random.default_rng(5)
+    for _ in range(300):
+        count, parts = int(random.integers(3, 60)), int(random.integers(1, 4))
+        rate, phase = random.uniform(0.01, 2.5, parts), random.uniform(0.0, 6.3, parts)
+        size = random.uniform(0.0, 1.0, parts)
+
+        def y(t: Any, rate: Any = rate, phase: Any = phase, size: Any = size) -> Any:
+            return np.sin(np.multiply.outer(t, rate) + phase) @ size
+
+        samples, fine = y(np.arange(count)), y(np.linspace(0.0, count - 1, 400 * count))
+        cells = np.flatnonzero(may_exceed(samples[None], samples[None].min(1), samples[None].max(1)))
+        cells = cells[cells < count - 1]
+        most = samples.max()
+        if len(cells):
+            top, place = crests(y(cells[:, None] + NODES))
+            assert np.abs(y(cells + place) - top).max() < 1e-9
+            most = max(most, top.max())
+        assert most >= fine.max() - 1e-9 * size.sum()
+
+
+def test_crests_of_polynomials() -> None:
+    """A top within, one at either end."""
+    x = NODES
+    values = np.array([1.0 - (x - 0.3) ** 2, 2.0 * x, -x, np.cos(2.0 * x - 1.2)])
+    top, place = crests(values)
+    np.testing.assert_allclose(top, [1.0, 2.0, 0.0, 1.0], atol=1e-12)
+    np.testing.assert_allclose(place, [0.3, 1.0, 0.0, 0.6], atol=1e-7)
+
+
+@pytest.mark.parametrize("method", ["TAYLOR", "EXACT"])
+def test_close_ups_hold_every_peak_of_a_contact(tmp_path: Path, method: str) -> None:
+    """Samples 0.1 s apart, collisions of some hundredths: the histories show each at its true peak."""
+    found = history(tmp_path, method, 0.1)
+    collisions = found.table("collisions")
+    assert len(collisions) >= 3
+    t, force = found.closeup("contact/force")
+    for c in collisions:
+        own = (t >= c["t_start"] - 1e-9) & (t <= c["t_end"] + 1e-9)
+        assert own.sum() >= 5
+        assert force[own].max() == pytest.approx(c["peak_force"], rel=1e-10)
+    assert found.history("contact/force").max() < 0.99 * collisions["peak_force"].max()
+    whole, values = found.course("contact/force")
+    assert (np.diff(whole) > 0.0).all() and len(values) == len(whole) > len(found.time)
+    assert values.max() == pytest.approx(found.table("contact_summary")["peak_force"][0], rel=1e-10)
+
+
+def test_close_ups_are_the_motion(tmp_path: Path) -> None:
+    """Every history of theirs is that of a run that stores these very instants."""
+    found, dense = history(tmp_path, "TAYLOR", 0.5), history(tmp_path, "EXACT", 0.0002)
+    for name in found.closeups:
+        t, rows = found.closeup(name)
+        rows, right = (x.reshape(len(x), -1) for x in (rows, dense.history(name)))
+        size = np.abs(right).max(axis=0)
+        kept = (size > 1e-6 * size.max(initial=0.0)) if size.size else size > 0.0
+        seen = np.column_stack([np.interp(t, dense.time, x) for x in right.T])
+        off = np.median(np.abs(rows - seen)[:, kept] / size[kept])
+        assert off < 1e-4, name
+    assert {"node/a", "contact/force", "building/base", "member/force"} <= set(found.closeups)
+    assert "energy" not in found.closeups
+
+
+def test_close_ups_keep_within_their_budget(tmp_path: Path) -> None:
+    """Where it binds the report says from when on; 0 stores none; peaks find room longest."""
+    none = history(tmp_path, "TAYLOR", 0.1, "CLOSEUPS=0")
+    assert none.closeups == () and none.course("contact/force")[0].tolist() == none.time.tolist()
+    few = history(tmp_path, "TAYLOR", 0.1, "CLOSEUPS=0.02")
+    width = sum(few.closeup(name)[1][0].size for name in few.closeups) + 1
+    assert 0 < 8 * width * len(few.closeup("contact/gap")[0]) <= 20000
+    (told,) = [c for c in few.table("checks") if "close-ups" in c["check"]]
+    assert "CLOSEUPS" in told["verdict"]
+
+
+def test_close_ups_go_into_csv(tmp_path: Path) -> None:
+    """One file for each history that has them."""
+    found = history(tmp_path, "TAYLOR", 0.1)
+    names = {path.name for path in export_csv(found, tmp_path / "csv")}
+    assert {"closeup_contact_force.csv", "history_contact_force.csv"} <= names
+    rows = np.loadtxt(tmp_path / "csv/closeup_contact_force.csv", delimiter=",", skiprows=1)
+    np.testing.assert_array_equal(rows, np.column_stack(found.closeup("contact/force")))
+
+
+def test_tolerances_of_their_own_for_accelerations_and_members(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each is estimated, met and above the true error; without them nothing is told of them."""
+    truth = extremes(history(tmp_path, "EXACT", 0.05))
+    steps_alone(monkeypatch)
+    plain = history(tmp_path, "AUTO TOL=2e-2", 0.05)
+    told = [str(c["check"]) for c in plain.table("checks") if "estimated error" in c["check"]]
+    assert len(told) == 1 and "drifts and contact forces" in told[0]
+    found = history(tmp_path, "AUTO TOL=2e-2 TOL_ACCELERATION=3e-2 TOL_MEMBER=4e-2", 0.05)
+    checks = [c for c in found.table("checks") if "estimated error" in c["check"]]
+    assert [str(c["check"]).split(", ")[-1] for c in checks] == ["TOL 0.02", "TOL 0.03", "TOL 0.04"]
+    assert all(c["verdict"] == "met" for c in checks)
+    own = extremes(found)
+    error = np.abs(own["member_envelope"] - truth["member_envelope"])
+    units = [str(u) for u in found.table("member_envelope")["quantity"]]
+    size = {
+        moment: max(np.abs(truth["member_envelope"][["moment" in u for u in units]]).max(), 1e-12)
+        if moment
+        else np.abs(truth["member_envelope"][["moment" not in u for u in units]]).max()
+        for moment in (True, False)
+    }
+    worst = max(e.max() / size["moment" in u] for e, u in zip(error, units))
+    assert worst <= float(checks[2]["value"])
+
+
+@pytest.mark.parametrize("item", ["TOL_ACCELERATION=0", "TOL_MEMBER=2", "TOL_ACCELERATION=x"])
+def test_a_tolerance_that_is_none(item: str) -> None:
+    """It is told with its line and column."""
+    text = DECK.format(method=f"AUTO {item}", every=0.1, more="", contact=CONTACT)
+    _, found, *_ = read_text(text, catalog())
+    (told,) = [d for d in found if d.code.startswith("P2")]
+    assert text.splitlines()[told.span.line - 1].lstrip().startswith("HISTORY")
