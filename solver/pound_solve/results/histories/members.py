@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from pound_solve.results.schema import History, HistoryLayout
@@ -38,4 +39,5 @@ FORCE = History(
             "unit": ["F", "F*L", "F"],
         },
     ),
+    axes=MappingProxyType({"member": "element", "component": "quantity"}),
 )
