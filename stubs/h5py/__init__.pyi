@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, MutableMapping
 from os import PathLike
-from typing import Any, Protocol
+from typing import Any, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
@@ -80,6 +80,8 @@ class File(Group):
     def __init__(
         self, name: str | PathLike[str] | FileLike, mode: str, *, libver: tuple[str, str] | None = None
     ) -> None: ...
+    def __enter__(self) -> Self: ...
+    def __exit__(self, *_: object) -> None: ...
     @property
     def filename(self) -> str: ...
     def flush(self) -> None: ...

@@ -72,6 +72,7 @@ WITHIN = {
         "frames",
         "writer",
         "reader",
+        "vtkhdf",
         "page",
     ),
     "editor": (
@@ -106,7 +107,7 @@ WITHIN = {
 #: who may import a library, as paths below the two packages
 ONLY_IN = {
     "lark": {"cards.py"},
-    "h5py": {"results/reader.py", "results/writer.py"},
+    "h5py": {"results/reader.py", "results/writer.py", "results/vtkhdf.py"},
     "tabulate": {"report/text.py"},
     "matplotlib": {"report/plot/style.py"},
     "pandas": {"results/frames.py", "results/reader.py"},
