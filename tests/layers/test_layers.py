@@ -112,6 +112,7 @@ ONLY_IN = {
     "matplotlib": {"report/plot/style.py"},
     "pandas": {"results/frames.py", "results/reader.py"},
     "xarray": {"results/frames.py", "results/reader.py"},
+    "plotly": {"report/html/__init__.py"},
     "numba": {"numerics/jit.py"},
     "platformdirs": {"numerics/kernel_cache.py"},
     "pygls": {"editor/server.py"},
