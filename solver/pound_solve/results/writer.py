@@ -270,7 +270,7 @@ class Writer:
         place = self._file["history"].require_group(group) if group else self._file["history"]
         dataset.attrs["long_name"] = HISTORIES[name].doc
         if len(set(attributes["unit"])) == 1:
-            dataset.attrs["units"] = attributes["unit"][0]
+            dataset.attrs["units"] = storable(attributes["unit"][0])
         if name == "time":
             dataset.make_scale(leaf)
             return
