@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from pound_solve.deck import PLACE
+from pound_solve.deck import Deck as Deck
 from pound_solve.version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
     from pathlib import Path
 
     from pound_solve.results import Results
 
 
 def run(
-    deck: str | Path,
+    deck: str | Path | Deck | Mapping[str, object],
     params: Mapping[str, object] | None = None,
     *,
     out: str | Path | None = None,
@@ -27,12 +31,14 @@ def run(
 
     Parameters
     ----------
-    deck : str or Path
-        Input deck.
+    deck : str, Path, Deck or mapping
+        Path of an input deck, or a deck that is no file: a `Deck`, or its sections as for
+        `Deck.from_sections`.
     params : mapping, optional
         PARAM values that replace the deck's, by name.
     out : str or Path, optional
-        Folder of ``<deck>.rpt`` and ``<deck>.h5``; the deck's own if left out.
+        Folder of ``<deck>.rpt`` and ``<deck>.h5``; the deck's own if left out.  Results of a deck that is
+        no file then stand in a temporary folder, which goes with the returned object.
     records : sequence of str or Path, optional
         Folders where records are looked for, after the deck's.
     method : str, optional
@@ -45,7 +51,8 @@ def run(
     Returns
     -------
     Results
-        The results file, opened; ``results.status`` is ``done`` or ``stopped``.
+        The results file, opened; ``results.status`` is ``done`` or ``stopped``.  It stays as it is when
+        another run writes its results under the same name.
 
     Raises
     ------
@@ -57,9 +64,15 @@ def run(
     # imported here: ``pound-solve --version`` must not wait for numpy
     from pathlib import Path
 
-    from pound_solve.driver.run import Request, execute
+    from pound_solve.driver.run import Request, execute, in_temporary_folder
 
     texts = {name: str(value) for name, value in (params or {}).items()}
     folders = tuple(Path(r) for r in records)
     folder = None if out is None else Path(out)
-    return execute(Request(str(deck), texts, folder, folders, method, dt, tol))[1]
+    if isinstance(deck, Mapping):
+        deck = Deck.from_sections(deck)
+    if not isinstance(deck, Deck):
+        return execute(Request(str(deck), texts, folder, folders, method, dt, tol))[1]
+    unsaved = {os.path.realpath(PLACE): deck.text}
+    request = Request(PLACE, texts, folder, folders, method, dt, tol, unsaved=unsaved, name=deck.name)
+    return in_temporary_folder(request) if folder is None else execute(request)[1]

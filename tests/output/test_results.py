@@ -225,7 +225,7 @@ def test_chunks_hold_a_block_of_all_columns(done: Results) -> None:
     with h5py.File(done.path) as file:
         assert file["history/node/u"].chunks == (BLOCK, len(sample.NODES), 3)
         assert file["history/node/u"].dtype == np.float64
-        assert list(file.attrs["format_version"]) == [1, 2]
+        assert list(file.attrs["format_version"]) == [2, 0]
         assert file.attrs["filetype"] == "pound-solve results"
 
 
@@ -254,8 +254,8 @@ def test_wrong_files_are_refused(tmp_path: Path) -> None:
         ("filetype", None, "not one of pound-solve"),
         (
             "format_version",
-            [2, 3],
-            r"format 2\.3, this version reads up to 1\.x; written by pound-solve",
+            [3, 3],
+            r"format 3\.3, this version reads up to 2\.x; written by pound-solve",
         ),
         ("title", None, "damaged results file"),
     ],

@@ -27,6 +27,8 @@ class Request:
         Put what the run imports, compiles and holds into the results.
     unsaved : mapping of str to str
         Texts of an editor by real path, read in place of these files.
+    name : str
+        Stem of the names of the output files; the deck's own if empty.
     """
 
     deck: str
@@ -38,8 +40,9 @@ class Request:
     tol: float | None = None
     explain: bool = False
     unsaved: Mapping[str, str] = field(default_factory=dict)
+    name: str = ""
 
     def path(self, suffix: str) -> Path:
         """Path of an output file."""
         deck = Path(self.deck)
-        return (self.out or deck.parent) / (deck.stem + suffix)
+        return (self.out or deck.parent) / ((self.name or deck.stem) + suffix)

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
+import tempfile
 import time
+import weakref
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -24,6 +28,7 @@ __all__ = (
     "Progress",
     "Request",
     "execute",
+    "in_temporary_folder",
     "prepare",
     "report_of",
     "solve",
@@ -65,6 +70,18 @@ def execute(request: Request, progress: Progress | None = None) -> tuple[int, Re
         path = put_in_place(path, report_of(partial(path)), whole=not message.startswith(BROKEN_OFF))
     status = FILES if message.startswith("A508") else STOPPED if message else DONE
     return status, Results.open(path), ready
+
+
+def in_temporary_folder(request: Request) -> Results:
+    """Run a deck into a folder that is removed with the results; see `execute`."""
+    folder = Path(tempfile.mkdtemp(prefix="pound-solve-"))
+    try:
+        results = execute(replace(request, out=folder))[1]
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    weakref.finalize(results, shutil.rmtree, folder, ignore_errors=True)
+    return results
 
 
 def writer_of(ready: Prepared, path: Path) -> Writer:

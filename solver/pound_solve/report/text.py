@@ -13,7 +13,7 @@ import textwrap
 import unicodedata
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from numpy.typing import NDArray
 from tabulate import tabulate
@@ -95,8 +95,21 @@ def _banner(results: Results) -> Iterator[str]:
 
 def _warning(results: Results) -> Iterator[str]:
     """Framed warning above the report of an analysis that did not finish."""
-    if results.status == "done":
+    told = incomplete(results)
+    if not told:
         return
+    inner = WIDTH - 8
+    yield "*" * WIDTH
+    for line in "\n\n".join("\n".join(textwrap.wrap(_plain(text), inner)) for text in told).split("\n"):
+        yield f"**  {line.ljust(inner)}  **"
+    yield "*" * WIDTH
+    yield from ("", "")
+
+
+def incomplete(results: Results) -> tuple[str, ...]:
+    """What a report says above an analysis that did not finish: that, why, and how far it came."""
+    if results.status == "done":
+        return ()
     head = "THE ANALYSIS DID NOT COMPLETE"
     if results.status == "stopped":
         why = results.message or "No reason was recorded."
@@ -109,13 +122,7 @@ def _warning(results: Results) -> Iterator[str]:
     else:
         when = f"{_times([results.last_time])[0]} {results.units.time}"
         scope = f"The last sample of the time history is that at {when}: results taken from it end there."
-    inner = WIDTH - 8
-    yield "*" * WIDTH
-    for text in (head, "", why, "", scope):
-        for line in textwrap.wrap(_plain(text), inner) or [""]:
-            yield f"**  {line.ljust(inner)}  **"
-    yield "*" * WIDTH
-    yield from ("", "")
+    return head, why, scope
 
 
 def _block(results: Results, table: Table[Any], limit: int | None) -> list[str]:
@@ -127,12 +134,17 @@ def _block(results: Results, table: Table[Any], limit: int | None) -> list[str]:
             shaped = _body(units, replace(table, columns=own.columns, group=""), own.rows)
             lines += ["", *([_INDENT + own.title, ""] if own.title else []), *shaped]
         return _with_notes(lines[1:], table, results.note(table.name))
+    rows, more = excerpt(results, table, limit)
+    return block(results.units, table, rows, results.note(table.name), more)
+
+
+def excerpt(results: Results, table: Table[Any], limit: int | None) -> tuple[NDArray[Any], str]:
+    """Rows of a table that a report shows, and a line on those left out; `limit` as of `render`."""
     rows = results.table(table.name)
     most = table.limit if limit is None or not table.limit else limit
-    more = ""
-    if most and len(rows) > most:
-        more = f"... and {len(rows) - most} more rows: table '{table.name}' of the results file"
-    return block(units, table, rows[:most] if most else rows, results.note(table.name), more)
+    if not most or len(rows) <= most:
+        return rows, ""
+    return rows[:most], f"... and {len(rows) - most} more rows: table '{table.name}' of the results file"
 
 
 def block(units: Units, table: Table[Any], rows: NDArray[Any], note: str = "", more: str = "") -> list[str]:
@@ -159,8 +171,27 @@ def _with_notes(lines: list[str], table: Table[Any], note: str) -> list[str]:
     return lines
 
 
-def _body(units: Units, table: Table[Any], rows: NDArray[Any]) -> list[str]:
-    """Lines of heads and rows; none where no column has anything to show."""
+class Formatted(NamedTuple):
+    """A table as text.
+
+    Attributes
+    ----------
+    columns : list of Column
+        Those that have anything to show.
+    heads, cells : dict of str
+        Head with its unit, and the cells from top to bottom, of each column by its name.
+    blocks : list of int
+        Number of rows of each group.
+    """
+
+    columns: list[Column]
+    heads: dict[str, str]
+    cells: dict[str, list[str]]
+    blocks: list[int]
+
+
+def formatted(units: Units, table: Table[Any], rows: NDArray[Any]) -> Formatted:
+    """Cells of a table as a report shows them."""
     groups = _groups(table, rows)
     cells, heads, columns = {}, {}, []
     for c in table.columns:
@@ -172,11 +203,17 @@ def _body(units: Units, table: Table[Any], rows: NDArray[Any]) -> list[str]:
             cells[c.name] = texts
             unit = f"\n[{_plain(units.text(c.unit))}]" if c.unit else ""
             heads[c.name] = c.title + unit
+    return Formatted(columns, heads, cells, [len(g) for g in groups])
+
+
+def _body(units: Units, table: Table[Any], rows: NDArray[Any]) -> list[str]:
+    """Lines of heads and rows; none where no column has anything to show."""
+    columns, heads, cells, blocks = formatted(units, table, rows)
     if not columns:
         return []
     _wrap(columns, heads, cells)
     # Blank lines between groups, unless every group is a single row.
-    breaks = [len(g) for g in groups[:-1]] if len(groups) < len(rows) else []
+    breaks = blocks[:-1] if len(blocks) < len(rows) else []
     lines: list[str] = []
     for panel in _panels(columns, heads, cells):
         lines += ["", *_print(panel, heads, cells, breaks)]

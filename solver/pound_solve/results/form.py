@@ -11,15 +11,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 FILETYPE: Final = "pound-solve results"
-FORMAT_VERSION: Final = (1, 2)  #: major: old readers fail; minor: something was added
+FORMAT_VERSION: Final = (2, 0)  #: major: old readers fail; minor: something was added
 #: version since which a complete file is sealed, see `seal`, and its digest knows its head
-SEALED_SINCE: Final = (1, 2)
+SEALED_SINCE: Final = (2, 0)
 #: attributes of the file that its digest knows
 HEAD: Final = ("filetype", "format_version", "program_version", "title", "units", "status", "message")
 DIGEST: Final = "digest"  #: name of the attribute by which a part is known to be as it was written
 DIGEST_OF_THE_DAY: Final = "digest_of_the_day"  #: the same of what differs between two runs of a deck
 IDENTITY: Final = (
     "identity"  #: name of the text in the group of the saved state that says what it belongs to
+)
+#: attributes that other programs need to see the axes of a history; they repeat what its own attributes say
+FOR_OTHERS: Final = frozenset(
+    ("CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "coordinates", "units", "long_name")
 )
 STATUSES: Final = ("done", "stopped")  #: how a run ends; before that its file says "running"
 
@@ -58,7 +62,7 @@ def digest_of(attributes: Mapping[str, Any], data: NDArray[Any] | str | None = N
     own = {
         key: [v.decode() if isinstance(v, bytes) else str(v) for v in np.atleast_1d(attributes[key])]
         for key in sorted(attributes)
-        if key not in (DIGEST, DIGEST_OF_THE_DAY)
+        if key not in (DIGEST, DIGEST_OF_THE_DAY, *FOR_OTHERS)
     }
     out = blake2b(storable(repr(own)).encode(), digest_size=8)
     if isinstance(data, str):

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping
+import textwrap
+from collections.abc import Callable, Iterator, Mapping
 from functools import wraps
 from pathlib import Path
-from typing import Any, Concatenate, Final, ParamSpec, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, Final, ParamSpec, Self, TypeVar
 
 import h5py
 import numpy as np
@@ -18,11 +19,13 @@ from numpy.typing import NDArray
 
 from pound_deck.model import Units
 from pound_solve.numerics.types import Array
+from pound_solve.results.axes import axes_of, coordinates
 from pound_solve.results.contents import HISTORIES, TABLES
 from pound_solve.results.form import (
     DIGEST,
     DIGEST_OF_THE_DAY,
     FILETYPE,
+    FOR_OTHERS,
     FORMAT_VERSION,
     IDENTITY,
     SEALED_SINCE,
@@ -35,8 +38,13 @@ from pound_solve.results.form import (
     reason,
     unescape,
 )
+from pound_solve.results.frames import frame, labelled, library
 from pound_solve.results.safe_file import in_use
 from pound_solve.results.seal import holds
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 #: what h5py and numpy raise on a file that is not as it was written
 DAMAGE: Final = (OSError, RuntimeError, KeyError, ValueError, TypeError, IndexError, AttributeError)
@@ -141,7 +149,10 @@ class Results:
         self.digest: str = _plain(attrs.get(DIGEST, ""))  #: of what the file holds but the run's times
         self.message: str = _plain(attrs["message"])  #: where and why the analysis stopped, else empty
         self._datasets: dict[str, h5py.Dataset] = {}
-        self._file["history"].visititems(self._collect)
+        histories = self._file["history"]
+        histories.visititems(self._collect)
+        if "time" in histories:  # every group of histories has one more name of it
+            self._datasets["time"] = histories["time"]
         # A kill amid a flush may leave histories of different lengths: what all of them have, holds.
         self._length = min((len(d) for d in self._datasets.values()), default=0)
         if self._complete and self.digest != self._own_digest():
@@ -157,11 +168,15 @@ class Results:
             elif DIGEST_OF_THE_DAY in item.attrs:
                 out[name] = THERE.hexdigest()
 
-        self._file.visititems(take)
+        for group in self._file:
+            if group != "history":
+                self._file[group].visititems(lambda name, item, group=group: take(f"{group}/{name}", item))
+        for name, dataset in self._datasets.items():
+            take(f"history/{name}", dataset)
         return digest_of_file(out, self._file.attrs)
 
     def _collect(self, name: str, item: h5py.Dataset | h5py.Group) -> None:
-        if isinstance(item, h5py.Dataset):
+        if isinstance(item, h5py.Dataset) and "labels" in item.attrs and name.rpartition("/")[2] != "time":
             self._datasets[name] = item
 
     @classmethod
@@ -247,12 +262,57 @@ class Results:
         return note
 
     @_sound
-    def history(self, name: str) -> Array:
-        """History, shape (nt, \\*row); KeyError where the file has none of that name."""
+    def history(self, name: str, /, **at: object) -> Array:
+        """History of some of its numbers, or of all.
+
+        Parameters
+        ----------
+        name : str
+            One of `histories`.
+        **at
+            Which numbers: values of some of its `coordinates`, as ``node=12, component="X"``.
+
+        Returns
+        -------
+        ndarray
+            Shape (nt, \\*row) without `at`, else (nt,) where that leaves one number and (nt, n) where more.
+
+        Raises
+        ------
+        NoSuchPartError
+            The file has no history of that name, or the history no such number; a KeyError, too.
+        """
         out: Array = self._dataset(name)[: self._length]
         if out.dtype != float or math.prod(out.shape[1:]) != len(self.labels(name)):
             raise self._damaged(f"{name} does not have the columns that its labels name")
-        return self._as_written(name, self._dataset(name), out, self._complete)
+        self._as_written(name, self._dataset(name), out, self._complete)
+        if not at:
+            return out
+        columns = out.reshape(len(out), -1)[:, self._places(name, at)]
+        return columns[:, 0] if columns.shape[1] == 1 else columns
+
+    @_sound
+    def coordinates(self, name: str) -> dict[str, tuple[Any, ...]]:
+        """What the numbers of a history's row are found by: each coordinate (``node``, ``component``, ...)
+        with its value for every number, in the order of `labels`.
+        """
+        return coordinates(axes_of(name, self.attributes(name)))
+
+    def _places(self, name: str, at: Mapping[str, object]) -> list[int]:
+        """Numbers of a history's row that have these coordinates."""
+        own = self.coordinates(name)
+        left = list(range(len(self.labels(name))))
+        for key, value in at.items():
+            if key not in own:
+                raise NoSuchPartError(
+                    f"history {name!r} has no {key!r}; it has: {', '.join(own) or 'none'}"
+                )
+            there = dict.fromkeys(own[key][i] for i in left)
+            left = [i for i in left if own[key][i] == value]
+            if not left:
+                has = ", ".join(map(str, there))
+                raise NoSuchPartError(f"history {name!r} has no number of {key}={value!r}; it has: {has}")
+        return left
 
     @property
     @_sound
@@ -305,7 +365,91 @@ class Results:
     def attributes(self, name: str) -> dict[str, list[Any]]:
         """All attributes of a history (``nodes``, ``element``, ``quantity``, ...), each as a list."""
         attrs = self._dataset(name).attrs
-        return {key: [_plain(v) for v in np.atleast_1d(attrs[key])] for key in attrs}
+        own = [key for key in attrs if key not in FOR_OTHERS]
+        return {key: [_plain(v) for v in np.atleast_1d(attrs[key])] for key in own}
+
+    def to_pandas(self, table: str) -> pandas.DataFrame:
+        """Table as a DataFrame, with its title and the units of its columns in ``attrs`` (extra ``data``).
+
+        Raises
+        ------
+        NoSuchPartError
+            The file has no table of that name.
+        ImportError
+            pandas is not installed.
+        """
+        title = TABLES[table].title if table in TABLES else table
+        return frame(self.table(table), self.table_units(table), title)
+
+    def to_xarray(self, history: str | None = None) -> xarray.DataArray | xarray.DataTree:
+        """Histories with their coordinates (extra ``data``): ``time``, and for each what its numbers are
+        found by, such as ``node``, ``member``, ``component``, ``contact``, ``building``, ``storey``.
+
+        Parameters
+        ----------
+        history : str, optional
+            One of `histories`; all of them if left out, which reads the whole file.
+
+        Returns
+        -------
+        xarray.DataArray or xarray.DataTree
+            One history, or all of them under their paths (``tree["node/u"]``).  ``units`` is an attribute
+            of each; where components differ in it, it tells the unit of each (``X: m, R: rad``).
+
+        Raises
+        ------
+        NoSuchPartError
+            The file has no history of that name.
+        ImportError
+            xarray is not installed.
+        """
+        if history is not None:
+            return self._labelled(history)
+        groups: dict[str, dict[str, xarray.DataArray]] = {}
+        for name in self.histories:
+            if name != "time":
+                group, _, leaf = name.rpartition("/")
+                groups.setdefault(f"/{group}", {})[leaf] = self._labelled(name)
+        attributes = {"title": self.title, "status": self.status, "program_version": self.program_version}
+        kit = library("xarray")
+        tree: xarray.DataTree = kit.DataTree.from_dict({k: kit.Dataset(own) for k, own in groups.items()})
+        tree.attrs = attributes
+        return tree
+
+    def _labelled(self, name: str) -> xarray.DataArray:
+        own, axes = self.attributes(name), axes_of(name, self.attributes(name))
+        units = own["unit"]
+        if len(set(units)) > 1:
+            named = own.get("quantity") or own["labels"]
+            units = [f"{c}: {u}" for c, u in dict(zip(named, units)).items()]
+        attributes = {"units": ", ".join(dict.fromkeys(units))}
+        if name in HISTORIES:
+            attributes["long_name"] = HISTORIES[name].doc
+        return labelled(name, self.time, self.history(name), axes, attributes)
+
+    def __repr__(self) -> str:
+        if not self._file:
+            return f"<Results {str(self.path)!r}, closed>"
+        return "\n".join(self._contents())
+
+    def _contents(self) -> Iterator[str]:
+        """Lines that tell what is in the file."""
+        units = self.units
+        yield f"<Results {str(self.path)!r}>"
+        yield self.title or "(no title)"
+        told = [self.status, *([self.message] if self.message else [])]
+        yield f"{': '.join(told)}; units {units.force}, {units.length}, {units.time}"
+        if "overview" in self.tables:
+            said = dict(self.table("overview").tolist())
+            yield from (f"{k}: {said[k]}" for k in ("structure", "analyses", "method") if said.get(k))
+        rows = ", ".join(f"{name} ({len(self._table(name))})" for name in self.tables)
+        yield from textwrap.wrap(f"tables (rows): {rows or 'none'}", 100, subsequent_indent="  ")
+        yield "histories:" if self.histories else "histories: none"
+        for name in self.histories:
+            axes = axes_of(name, self.attributes(name))
+            shape = [f"{self._length} instants", *(f"{len(a.labels)} {a.name}" for a in axes)]
+            unit = ", ".join(dict.fromkeys(self.history_units(name)))
+            yield f"  {name:20} {' x '.join(shape)}" + (f" [{unit}]" if unit else "")
 
     @_sound
     def restart(self) -> dict[str, Array]:

@@ -7,7 +7,7 @@ empty where units mean nothing); :meth:`pound_deck.model.Units.text` turns them 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum, auto
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, Generic, NamedTuple, TypeAlias, TypeVar
@@ -195,6 +195,9 @@ class History:
         A made-up layout for the tests.
     closeup : bool
         Whether close-ups of collisions have it, too.
+    axes : mapping of str to str
+        What a number of the row is found by (``node``, ``member``, ``component``, ...), and the attribute
+        that holds these labels.  Without them a label alone finds it.
     """
 
     name: str
@@ -205,3 +208,4 @@ class History:
     values: Callable[[SampleBlock], Array]
     sample: HistoryLayout
     closeup: bool = False
+    axes: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))

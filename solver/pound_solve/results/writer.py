@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_solve.results.axes import axes_of
 from pound_solve.results.contents import HISTORIES, OF_THE_DAY, TABLES, tables_at
 from pound_solve.results.form import (
     DIGEST,
@@ -255,14 +256,38 @@ class Writer:
             fletcher32=True,
         )
         for key, value in attributes.items():
-            items = np.asarray(value)
-            if items.dtype.kind in "iuf":
-                dataset.attrs[key] = items
-            else:
-                texts = np.array([storable(str(v)) for v in np.atleast_1d(items)], dtype=object)
-                dataset.attrs.create(key, texts, dtype=_TEXT)
+            items = _items(value)
+            dataset.attrs.create(key, items, dtype=None if items.dtype.kind in "iuf" else _TEXT)
         self._history[name] = dataset
         self._digests[f"history/{name}"] = digest_of(attributes)
+        self._scale(name, dataset, attributes)
+
+    def _scale(self, name: str, dataset: h5py.Dataset, attributes: Mapping[str, Any]) -> None:
+        """Give the axes of a history their labels in the way of netCDF: a dimension scale for each axis,
+        beside the history, so that programs for netCDF open its group by themselves.
+        """
+        group, _, leaf = name.rpartition("/")
+        place = self._file["history"].require_group(group) if group else self._file["history"]
+        dataset.attrs["long_name"] = HISTORIES[name].doc
+        if len(set(attributes["unit"])) == 1:
+            dataset.attrs["units"] = storable(attributes["unit"][0])
+        if name == "time":
+            dataset.make_scale(leaf)
+            return
+        if "time" not in place:
+            place["time"] = self._history["time"]  # one more name of the same dataset
+        dataset.dims[0].attach_scale(self._history["time"])
+        for number, axis in enumerate(axes_of(name, attributes), 1):
+            scale = _beside(place, axis.name, axis.labels)
+            if not scale.is_scale:
+                scale.make_scale(axis.name)
+            dataset.dims[number].attach_scale(scale)
+            for other, values in axis.coordinates.items():
+                along = _beside(place, other, values)
+                if not along.dims[0]:
+                    along.dims[0].attach_scale(scale)
+            if axis.coordinates:
+                dataset.attrs["coordinates"] = " ".join(axis.coordinates)
 
     def closeups(self, layout: Layout, blocks: Sequence[Mapping[str, NDArray[Any]]]) -> None:
         """Store the close-ups of collisions, below ``/closeup``.
@@ -344,6 +369,25 @@ class Writer:
             self._file.attrs["message"] = storable(message)
             self._file.attrs[DIGEST] = digest_of_file(parts, self._file.attrs)
             self._commit()
+
+
+def _items(values: Any) -> NDArray[Any]:
+    """Numbers as an array, anything else as an array of texts."""
+    items = np.asarray(values)
+    if items.dtype.kind in "iuf":
+        return items
+    return np.array([storable(str(v)) for v in np.atleast_1d(items)], dtype=object)
+
+
+def _beside(place: h5py.Group, name: str, values: Sequence[Any]) -> h5py.Dataset:
+    """Dataset with the labels of an axis; histories of a group share it."""
+    items = _items(values)
+    if name not in place:
+        return place.create_dataset(name, data=items, dtype=None if items.dtype.kind in "iuf" else _TEXT)
+    dataset: h5py.Dataset = place[name]
+    if _items(dataset.asstr()[()] if items.dtype.kind == "O" else dataset[()]).tolist() != items.tolist():
+        raise ValueError(f"two histories of one group differ in their axis {name!r}")
+    return dataset
 
 
 def _complete(name: str, layout: HistoryLayout) -> dict[str, Any]:

@@ -17,7 +17,7 @@ _OWN = Path(__file__).parents[2]
 FOLDERS = (_OWN / "examples", _OWN.parents[1] / "examples")
 #: a row of the table of examples/README.md
 _ROW = re.compile(r"\| \[(\w+)\]\(\w+/README\.md\) \| (.+?) \| (.+?) \|")
-_KEPT = (".inp", ".inc", ".md")
+_KEPT = (".inp", ".inc", ".md", ".ipynb")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,31 +1,64 @@
-"""``pound-solve export``: write the tables and histories of a results file as CSV."""
+"""``pound-solve export``: write the tables and histories of a results file as CSV, or for ParaView."""
 
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pound_solve.cli import common
 
-SUMMARY = "write the tables and histories of a results file as CSV"
+if TYPE_CHECKING:
+    from pound_solve.results import Results
+
+SUMMARY = "write the tables and histories of a results file as CSV, or for ParaView"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("results", help="results file (.h5)")
-    parser.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder (default: beside the file)")
+    parser.add_argument(
+        "-o",
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="folder (default: model for model.h5; with --vtk that of the file)",
+    )
+    parser.add_argument(
+        "--vtk",
+        action="store_true",
+        help="write model.vtkhdf instead: the structure in motion, for ParaView",
+    )
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Write the CSV files and print their paths."""
+    """Write the files and print their paths."""
     from pound_solve.report.export import export_csv
     from pound_solve.results import Results, ResultsError
 
-    folder = args.out or Path(args.results).with_suffix("")
     try:
         with Results.open(args.results) as results:
-            for path in export_csv(results, folder):
+            if args.vtk:
+                paths = [_vtk(results, args.out or results.path.parent)]
+            else:
+                paths = export_csv(results, args.out or results.path.with_suffix(""))
+            for path in paths:
                 print(path)
     except ResultsError as err:
         return common.complain(str(err))
     return common.DONE
+
+
+def _vtk(results: Results, folder: Path) -> Path:
+    """Write the VTKHDF file and name the nodes that it lacks."""
+    from pound_solve.results.vtkhdf import write_vtkhdf
+
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{results.path.stem}.vtkhdf"
+    left_out = write_vtkhdf(results, path)
+    if left_out:
+        some = ", ".join(map(str, left_out[:5])) + (", ..." if len(left_out) > 5 else "")
+        text = f"left out with their elements, because OUTPUT does not store them: nodes {some}"
+        print(f"pound-solve: {text}", file=sys.stderr)
+    return path

@@ -1,13 +1,18 @@
-"""``pound-solve report``: print the report of a results file."""
+"""``pound-solve report``: print the report of a results file, or write it as a page."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from pound_solve.cli import common
 
-SUMMARY = "print the report of a results file"
+if TYPE_CHECKING:
+    from pound_solve.results import Results
+
+SUMMARY = "print the report of a results file, or write it as a page for a browser"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -15,23 +20,51 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("results", help="results file (.h5)")
     parser.add_argument("--brief", action="store_true", help="print the summary only")
     parser.add_argument("--full", action="store_true", help="print long tables in full")
+    parser.add_argument(
+        "--html",
+        nargs="?",
+        type=Path,
+        const=Path(),
+        metavar="FILE",
+        help="write one page with tables that sort and pictures that zoom, without FILE model.html "
+        "(needs plotly: the extra html)",
+    )
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print the report."""
+    """Print the report, or write the page and print its path."""
     from pound_solve.report.text import render
     from pound_solve.results import Results, ResultsError
     from pound_solve.results.contents import SECTIONS
     from pound_solve.results.place import digest_in
 
+    chosen: dict[str, Any] = {
+        "limit": 0 if args.full else None,
+        "only": SECTIONS[0][1] if args.brief else None,
+    }
     try:
         with Results.open(args.results) as results:
-            sys.stdout.write(
-                render(results, limit=0 if args.full else None, only=SECTIONS[0][1] if args.brief else None)
-            )
+            if args.html is not None:
+                return _page(results, args.html, chosen)
+            sys.stdout.write(render(results, **chosen))
             beside = results.path.with_suffix(".rpt")
             if digest_in(beside) not in ("", results.digest):
                 common.complain(f"warning: {beside} is the report of another run")
     except ResultsError as err:
         return common.complain(str(err))
+    return common.DONE
+
+
+def _page(results: Results, path: Path, chosen: dict[str, Any]) -> int:
+    """Write the page into a file, by default beside the results."""
+    from pound_solve.report.html import page
+
+    path = results.path.with_suffix(".html") if path == Path() else path
+    try:
+        text = page(results, **chosen)
+    except ImportError:
+        need = '--html needs plotly: pip install "pound-solve[html]"'
+        return common.complain(need, common.MISTAKES)
+    path.write_text(text, encoding="utf-8", newline="\n")
+    print(path)
     return common.DONE

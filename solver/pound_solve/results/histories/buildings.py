@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from pound_solve.results.schema import History, HistoryLayout
@@ -17,9 +18,20 @@ BASE = (("shear X", "F"), ("force Y", "F"), ("moment", "F*L"))  #: of a building
 
 def of_buildings(items: RecordedItems) -> HistoryLayout:
     """Three columns for each building."""
-    labels = [f"{b.name} {quantity}" for b in items.buildings for quantity, _ in BASE]
+    return base_layout([b.name for b in items.buildings])
+
+
+def base_layout(buildings: Sequence[str]) -> HistoryLayout:
+    """Layout for buildings of these names."""
+    columns = [(b, quantity, unit) for b in buildings for quantity, unit in BASE]
     return HistoryLayout(
-        (len(labels),), {"labels": labels, "unit": [u for _, u in BASE] * len(items.buildings)}
+        (len(columns),),
+        {
+            "building": [b for b, _, _ in columns],
+            "quantity": [q for _, q, _ in columns],
+            "labels": [f"{b} {q}" for b, q, _ in columns],
+            "unit": [u for _, _, u in columns],
+        },
     )
 
 
@@ -27,8 +39,20 @@ def of_storeys(unit: str, items: RecordedItems) -> HistoryLayout:
     """One column for each storey."""
     from pound_solve.structure.storeys import storeys  # not needed to read a report
 
-    labels = [f"{b.name} storey {i}" for b, i in storeys(items.buildings)]
-    return HistoryLayout((len(labels),), {"labels": labels, "unit": unit})
+    return storey_layout(unit, [(b.name, i) for b, i in storeys(items.buildings)])
+
+
+def storey_layout(unit: str, places: Sequence[tuple[str, int]]) -> HistoryLayout:
+    """Layout for storeys, by the names of their buildings and their numbers."""
+    return HistoryLayout(
+        (len(places),),
+        {
+            "building": [b for b, _ in places],
+            "storey": [i for _, i in places],
+            "labels": [f"{b} storey {i}" for b, i in places],
+            "unit": unit,
+        },
+    )
 
 
 def total(name: str, chosen: slice, block: SampleBlock) -> Array:
@@ -44,7 +68,8 @@ def _storey(place: int, name: str, unit: str, doc: str, values: Callable[[Sample
         doc=doc,
         layout=partial(of_storeys, unit),
         values=values,
-        sample=HistoryLayout((2,), {"labels": ["A storey 1", "A storey 2"], "unit": unit}),
+        sample=storey_layout(unit, [("A", 1), ("A", 2)]),
+        axes=MappingProxyType({"building": "building", "storey": "storey"}),
         closeup=True,
     )
 
@@ -56,9 +81,8 @@ FORCE = History(
     doc="force of each building on the ground along X and Y, and overturning moment",
     layout=of_buildings,
     values=partial(total, "base", slice(None)),
-    sample=HistoryLayout(
-        (3,), {"labels": ["A shear X", "A force Y", "A moment"], "unit": ["F", "F", "F*L"]}
-    ),
+    sample=base_layout(["A"]),
+    axes=MappingProxyType({"building": "building", "component": "quantity"}),
     closeup=True,
 )
 DRIFT = _storey(43, "drift", "-", "drift ratios of the storeys", partial(total, "drift", slice(None)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,6 +36,7 @@ GAP = History(
     layout=lambda items: HistoryLayout((len(items.contacts),), {"labels": labels(items), "unit": "L"}),
     values=gaps,
     sample=HistoryLayout((2,), {"labels": ["901", "902"], "unit": "L"}),
+    axes=MappingProxyType({"contact": "labels"}),
     closeup=True,
 )
 FORCE = History(
@@ -45,5 +47,6 @@ FORCE = History(
     layout=lambda items: HistoryLayout((len(items.contacts),), {"labels": labels(items), "unit": "F"}),
     values=lambda block: block.force[list(block.items.contacts)].T,
     sample=HistoryLayout((2,), {"labels": ["901", "902"], "unit": "F"}),
+    axes=MappingProxyType({"contact": "labels"}),
     closeup=True,
 )

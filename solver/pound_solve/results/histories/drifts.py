@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from pound_solve.results.schema import History, HistoryLayout
@@ -32,5 +33,6 @@ DRIFT = History(
     layout=layout,
     values=values,
     sample=HistoryLayout((1,), {"labels": ["B1 storey 1"], "unit": "L"}),
+    axes=MappingProxyType({"drift_name": "labels"}),
     closeup=True,
 )

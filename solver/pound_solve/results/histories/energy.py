@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import Final
 
 from pound_solve.results.schema import History, HistoryLayout
@@ -18,4 +19,5 @@ ENERGY = History(
     layout=lambda items: LAYOUT,
     values=lambda block: block.energy,
     sample=LAYOUT,
+    axes=MappingProxyType({"part": "labels"}),
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -53,6 +54,7 @@ GROUND = History(
     layout=ground_layout,
     values=ground,
     sample=HistoryLayout((1,), {"labels": ["elcentro"], "unit": "L/T^2"}),
+    axes=MappingProxyType({"motion": "labels"}),
 )
 FORCE = History(
     name="force",
@@ -62,4 +64,5 @@ FORCE = History(
     layout=force_layout,
     values=forces,
     sample=HistoryLayout((1,), {"labels": ["1 SINE"]}),
+    axes=MappingProxyType({"load": "labels"}),
 )

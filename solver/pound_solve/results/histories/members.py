@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from pound_solve.results.schema import History, HistoryLayout
@@ -38,5 +39,6 @@ FORCE = History(
             "unit": ["F", "F*L", "F"],
         },
     ),
+    axes=MappingProxyType({"member": "element", "component": "quantity"}),
     closeup=True,
 )

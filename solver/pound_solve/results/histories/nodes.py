@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from pound_solve.results.schema import History, HistoryLayout
@@ -30,6 +31,7 @@ def values(quantity: str, block: SampleBlock) -> Array:
     return block.nodes[quantity].T.reshape(len(block.t), len(block.items.nodes), 3)
 
 
+AXES = MappingProxyType({"node": "nodes", "component": "labels"})
 NODES = (1, 2, 3, 4, 100, 101, 102, 300, 301, 302)  #: of the sample
 
 DISPLACEMENT = History(
@@ -40,6 +42,7 @@ DISPLACEMENT = History(
     layout=partial(recorded, ""),
     values=partial(values, "u"),
     sample=layout(NODES, ""),
+    axes=AXES,
     closeup=True,
 )
 VELOCITY = History(
@@ -50,6 +53,7 @@ VELOCITY = History(
     layout=partial(recorded, "/T"),
     values=partial(values, "v"),
     sample=layout(NODES, "/T"),
+    axes=AXES,
     closeup=True,
 )
 ACCELERATION = History(
@@ -60,5 +64,6 @@ ACCELERATION = History(
     layout=partial(recorded, "/T^2"),
     values=partial(values, "a"),
     sample=layout(NODES, "/T^2"),
+    axes=AXES,
     closeup=True,
 )

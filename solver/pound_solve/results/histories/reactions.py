@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from pound_solve.results.schema import History, HistoryLayout
@@ -39,5 +40,6 @@ HISTORY = History(
     layout=recorded,
     values=values,
     sample=layout((1, 4)),
+    axes=MappingProxyType({"support": "nodes", "action": "labels"}),
     closeup=True,
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from pound_solve.results.schema import History, HistoryLayout
@@ -15,8 +16,17 @@ if TYPE_CHECKING:
 def layout(items: RecordedItems, units: Mapping[str, str]) -> HistoryLayout:
     """One column for each spring; `units` by the dimension of its force."""
     springs = [items.system.structure.laws[i] for i in items.springs]
-    names = [f"{s.element} {s.component}" for s in springs]
-    return HistoryLayout((len(springs),), {"labels": names, "unit": [units[s.unit] for s in springs]})
+    return HistoryLayout(
+        (len(springs),),
+        {
+            "element": [s.element for s in springs],
+            "quantity": [s.component for s in springs],
+            "unit": [units[s.unit] for s in springs],
+        },
+    )
+
+
+AXES = MappingProxyType({"spring": "element", "component": "quantity"})
 
 
 FORCE = History(
@@ -27,6 +37,7 @@ FORCE = History(
     layout=lambda items: layout(items, {"F": "F", "F*L": "F*L"}),
     values=lambda block: block.force[list(block.items.springs)].T,
     sample=HistoryLayout((0,), {"labels": [], "unit": "F"}),
+    axes=AXES,
 )
 DEFORMATION = History(
     name="spring/deformation",
@@ -35,6 +46,7 @@ DEFORMATION = History(
     doc="deformations of the springs",
     layout=lambda items: layout(items, {"F": "L", "F*L": "rad"}),
     values=lambda block: block.deformation[list(block.items.springs)].T,
-    sample=HistoryLayout((2,), {"labels": ["11 X", "12 R"], "unit": ["L", "rad"]}),
+    sample=HistoryLayout((2,), {"element": [11, 12], "quantity": ["X", "R"], "unit": ["L", "rad"]}),
+    axes=AXES,
     closeup=True,
 )

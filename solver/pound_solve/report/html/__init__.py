@@ -1,0 +1,138 @@
+"""The report as one page for a browser: the same tables, which sort, and pictures, which zoom.
+
+The page needs nothing but itself: the library of the pictures (plotly.js, extra ``html``), its style and
+its program stand in it, and a policy in its head forbids the browser to fetch anything.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Iterator, Sequence
+from html import escape
+from importlib.resources import files
+from itertools import accumulate
+from typing import Any, Final, NamedTuple
+
+from pound_solve.report.html.pictures import Picture, pictures
+from pound_solve.report.text import excerpt, formatted, incomplete
+from pound_solve.results import Results
+from pound_solve.results.contents import SECTIONS, TABLES
+from pound_solve.results.schema import Table
+
+#: what a browser may use: what stands in the page, and the images that it makes itself
+POLICY: Final = (
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
+    "form-action 'none'; base-uri 'none'"
+)
+
+
+class _Section(NamedTuple):
+    """One section of the page: name of its place, heading, and what stands below it."""
+
+    place: str
+    heading: str
+    body: str
+
+
+def page(results: Results, *, limit: int | None = None, only: Collection[str] | None = None) -> str:
+    """Report of a results file as HTML; parameters as of `pound_solve.report.text.render`.
+
+    Without pictures if `only` is given.
+
+    Raises
+    ------
+    ImportError
+        plotly is not installed.
+    """
+    library = _library()
+    present = set(results.tables) if only is None else set(results.tables) & set(only)
+    sections = []
+    for number, (heading, names) in enumerate(SECTIONS, 1):
+        body = "".join(
+            line
+            for place, name in enumerate(names, 1)
+            if name in present
+            for line in _table(results, TABLES[name], f"{number}.{place}", limit)
+        )
+        if body:
+            sections.append(_Section(f"s{number}", f"{number} {heading}", body))
+    drawn = pictures(results) if only is None else []
+    if drawn:  # after the summary
+        figures = "".join(_figure(f"p{k}", picture) for k, picture in enumerate(drawn, 1))
+        sections.insert(1, _Section("pictures", "Pictures", figures))
+    return "".join((*_head(results), *_body(results, sections), *_programs(drawn, library)))
+
+
+def _library() -> str:
+    """The library of the pictures for a browser."""
+    from plotly.offline import get_plotlyjs
+
+    return str(get_plotlyjs())
+
+
+def _own(name: str) -> str:
+    """A file beside this module."""
+    return (files(__name__) / name).read_text("utf-8")
+
+
+def _title(results: Results) -> str:
+    return escape(results.title or results.path.stem)
+
+
+def _head(results: Results) -> Iterator[str]:
+    yield '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+    yield f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n'
+    yield '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+    yield f"<title>{_title(results)}</title>\n<style>\n{_own('page.css')}</style>\n</head>\n"
+
+
+def _body(results: Results, sections: Sequence[_Section]) -> Iterator[str]:
+    links = (f'<a href="#{s.place}">{s.heading}</a>\n' for s in sections)
+    yield f"<body>\n<nav>\n{''.join(links)}</nav>\n<main>\n<h1>{_title(results)}</h1>\n"
+    units = ", ".join(map(escape, (results.units.force, results.units.length, results.units.time)))
+    made = f"; results {results.digest}" if results.digest else ""
+    yield f"<p>pound-solve {escape(results.program_version)}; units {units}{made}</p>\n"
+    told = incomplete(results)
+    if told:
+        yield f'<div class="warning">{"".join(f"<p>{escape(text)}</p>" for text in told)}</div>\n'
+    for s in sections:
+        yield f'<section id="{s.place}">\n<h2>{s.heading}</h2>\n{s.body}</section>\n'
+    yield "</main>\n"
+
+
+def _programs(drawn: Sequence[Picture], library: str) -> Iterator[str]:
+    if drawn:
+        data = json.dumps([p.as_json() for p in drawn], allow_nan=False, separators=(",", ":"))
+        data = data.replace("</", r"<\/")  # no text in them ends the script that holds them
+        yield f"<script>{library}</script>\n"
+        yield f'<script type="application/json" id="figures">{data}</script>\n'
+    yield f"<script>\n{_own('page.js')}</script>\n</body>\n</html>\n"
+
+
+def _figure(place: str, picture: Picture) -> str:
+    note = f"<figcaption>{escape(picture.note)}</figcaption>" if picture.note else ""
+    head = f"<figure><h3>{escape(picture.title)}</h3>"
+    return f'{head}<div class="picture" id="{place}"></div>{note}</figure>\n'
+
+
+def _table(results: Results, table: Table[Any], number: str, limit: int | None) -> Iterator[str]:
+    """A table with its notes; nothing where it has nothing to show."""
+    rows, more = excerpt(results, table, limit)
+    columns, heads, cells, blocks = formatted(results.units, table, rows)
+    if not columns:
+        return
+    yield f"<h3>{number} {escape(table.title)}</h3>\n"
+    yield f'<div class="wide"><table id="{table.name}">\n<thead><tr>'
+    kinds = ["text" if c.is_text else "number" for c in columns]
+    for column, kind in zip(columns, kinds):
+        head = escape(heads[column.name]).replace("\n", "<br>")
+        yield f'<th class="{kind}" aria-sort="none"><button type="button">{head}</button></th>'
+    yield "</tr></thead>\n<tbody>\n"
+    starts = set(accumulate(blocks[:-1])) if len(blocks) < len(rows) else set()
+    for place, row in enumerate(zip(*(cells[c.name] for c in columns))):
+        yield '<tr class="block">' if place in starts else "<tr>"
+        yield from (f'<td class="{kind}">{escape(cell)}</td>' for kind, cell in zip(kinds, row))
+        yield "</tr>\n"
+    yield "</tbody></table></div>\n"
+    notes = (more, table.note, results.note(table.name))
+    yield from (f'<p class="note">{escape(text)}</p>\n' for text in notes if text)

@@ -1,0 +1,220 @@
+"""What the pictures of the page show, as plain data for plotly.js: curves, axes, a line below."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from html import escape
+from itertools import chain
+from typing import Any, Final, NamedTuple, TypeAlias
+
+import numpy as np
+
+from pound_solve.numerics.types import Array
+from pound_solve.report.plot.geometry import SHARE, DrawnStructure
+from pound_solve.results import Results
+
+MOST_POINTS: Final = 4000  #: of a curve in time; of more, the extremes of short intervals are kept
+MOST_SHOWN: Final = 8  #: curves of a picture that are shown at first; a click on its name shows another
+MOST_CURVES: Final = 60
+MOST_LOOPS: Final = 12
+
+#: Histories that are drawn over time: path, component where a row has pairs, title, name of the axis.
+COURSES: Final = (
+    ("ground", "", "Ground acceleration", "acceleration"),
+    ("storey/drift", "", "Drift ratios of the storeys", "drift ratio"),
+    ("drift", "", "Drifts that the deck names", "drift"),
+    ("storey/acceleration", "", "Total accelerations of the floors", "acceleration"),
+    ("storey/shear", "", "Shears of the storeys", "shear"),
+    ("building/base", "shear X", "Base shears", "base shear"),
+    ("contact/force", "", "Contact forces", "contact force"),
+    ("contact/gap", "", "Gaps", "gap"),
+    ("energy", "", "Energies", "energy"),
+)
+PROFILES: Final = (
+    ("drift", "Largest drift ratios over the height", "drift ratio"),
+    ("acceleration", "Largest floor accelerations over the height", "floor acceleration"),
+    ("shear", "Largest storey shears over the height", "storey shear"),
+)
+
+Trace: TypeAlias = dict[str, Any]
+
+
+class Picture(NamedTuple):
+    """One picture.
+
+    Attributes
+    ----------
+    title, note : str
+        Above and below it.
+    x, y : str
+        Names of the axes with their units.
+    traces : list of dict
+        Curves, as plotly.js takes them.
+    equal : bool
+        Whether both axes have one scale.
+    """
+
+    title: str
+    note: str
+    x: str
+    y: str
+    traces: list[Trace]
+    equal: bool = False
+
+    def as_json(self) -> dict[str, Any]:
+        """What the program of the page needs."""
+        return {"x": _plain(self.x), "y": _plain(self.y), "traces": self.traces, "equal": self.equal}
+
+
+def pictures(results: Results) -> list[Picture]:
+    """All pictures that the results have something for."""
+    makers: tuple[Callable[[Results], Iterator[Picture]], ...] = (
+        _structure, _profiles, _courses, _loops, _capacity,
+    )  # fmt: skip
+    return [picture for make in makers for picture in make(results) if picture.traces]
+
+
+def _structure(results: Results) -> Iterator[Picture]:
+    """Structure as it stands, and where its displacements are largest."""
+    if not results.holds("nodes"):
+        return
+    s, note = DrawnStructure(results), ""
+    traces = [_lines("as it stands", s.lines(False), s.place, "#b0b0b0")]
+    place = s.place
+    if results.holds("node/u"):
+        u = results.history("node/u")[:, :, :2]
+        numbers = [int(n) for n in results.attributes("node/u")["nodes"]]
+        size = np.abs(u).max(axis=(1, 2))
+        at = int(np.argmax(size))
+        factor = SHARE * s.size / size[at] if size[at] > 0.0 else 1.0
+        place = {n: s.place[n] + factor * u[at, k] for k, n in enumerate(numbers) if n in s.place}
+        note = (
+            f"The displacements are those at {results.time[at]:.6g} {s.units.time}, "
+            f"when the largest is {size[at]:.5g} {s.units.length}; drawn {factor:.3g} times as large."
+        )
+        traces.append(_lines("displaced", s.lines(False), place, "#0b4f8a"))
+    marked = {"mode": "lines+markers", "marker": {"symbol": "square-open", "size": 9, "color": "#b3301e"}}
+    traces.append(_lines("contacts", s.lines(True), place, "#b3301e") | marked)
+    traces.append(
+        {
+            "name": "nodes", "mode": "markers", "marker": {"size": 5, "color": "#333"},
+            "x": _numbers(xy[0] for xy in place.values()), "y": _numbers(xy[1] for xy in place.values()),
+            "text": [f"node {n}" for n in place], "hoverinfo": "text",
+        }
+    )  # fmt: skip
+    length = s.units.length
+    kept = [t for t in traces if t["x"]]
+    yield Picture("Structure", note, f"X [{length}]", f"Y [{length}]", kept, equal=True)
+
+
+def _lines(name: str, ends: Sequence[tuple[int, int]], place: dict[int, Array], colour: str) -> Trace:
+    """Straight lines between nodes that have a place, as one curve with gaps."""
+    own = [(place[i], place[j]) for i, j in ends if i in place and j in place]
+    x, y = (_numbers(chain.from_iterable((i[k], j[k], math.nan) for i, j in own)) for k in (0, 1))
+    return {"name": name, "mode": "lines", "line": {"color": colour}, "x": x, "y": y, "hoverinfo": "skip"}
+
+
+def _profiles(results: Results) -> Iterator[Picture]:
+    """Peaks of the storeys over the height, one curve for each building."""
+    if not results.holds("storey_envelope"):
+        return
+    table, units = results.table("storey_envelope"), results.table_units("storey_envelope")
+    for column, title, name in PROFILES:
+        traces = []
+        for building in dict.fromkeys(table["building"]):
+            own = table[table["building"] == building]
+            x, y = _numbers(own[column]), _numbers(own["level"])
+            traces.append({"name": _plain(building), "mode": "lines+markers", "x": x, "y": y})
+        yield Picture(title, "", f"{name} [{units[column]}]", f"level [{units['level']}]", traces)
+
+
+def _courses(results: Results) -> Iterator[Picture]:
+    """Histories over time."""
+    for name, component, title, axis in COURSES:
+        if not results.holds(name) or name not in results.histories:
+            continue
+        (t, values), labels = results.course(name), results.labels(name)
+        kinds = results.coordinates(name)["component"] if component else labels
+        chosen = [k for k, kind in enumerate(kinds) if not component or kind == component][:MOST_CURVES]
+        size = [float(np.abs(values[:, k]).max()) for k in chosen]
+        shown = {chosen[k] for k in np.argsort(size)[::-1][:MOST_SHOWN]}
+        traces = [_curve(labels[k], *thinned(t, values[:, k]), k in shown) for k in chosen]
+        note = "" if len(shown) == len(chosen) else "A click on a name shows its curve, or hides it."
+        if name == "contact/force":
+            traces += _peaks(results)
+            note = f"The marks are the peaks in the table of collisions. {note}".strip()
+        unit = results.history_units(name)[chosen[0]]
+        yield Picture(title, note, f"time [{results.units.time}]", f"{axis} [{unit}]", traces)
+
+
+def _curve(name: str, x: Array, y: Array, shown: bool) -> Trace:
+    own = {"name": _plain(name), "mode": "lines", "x": _numbers(x), "y": _numbers(y)}
+    return own if shown else own | {"visible": "legendonly"}
+
+
+def _peaks(results: Results) -> Iterator[Trace]:
+    """Marks at the true peak of every collision."""
+    if results.holds("collisions"):
+        table = results.table("collisions")
+        hard = table[np.isfinite(table["peak_force"])]
+        yield {
+            "name": "peaks", "mode": "markers", "marker": {"symbol": "x", "size": 6, "color": "#333"},
+            "x": _numbers(hard["t_peak"]), "y": _numbers(hard["peak_force"]),
+            "text": [_plain(c) for c in hard["contact"]],
+        }  # fmt: skip
+
+
+def _loops(results: Results) -> Iterator[Picture]:
+    """Force against deformation of springs and hinges: moments, and forces."""
+    if not (results.holds("spring/force") and results.holds("spring/deformation")):
+        return
+    force, deformation = results.history("spring/force"), results.history("spring/deformation")
+    units, labels = results.history_units("spring/force"), results.labels("spring/force")
+    along = results.history_units("spring/deformation")
+    work = np.abs(np.diff(deformation, axis=0) * 0.5 * (force[1:] + force[:-1])).sum(axis=0)
+    for unit in dict.fromkeys(units):
+        own = [k for k in np.argsort(work)[::-1].tolist() if units[k] == unit][:MOST_LOOPS]
+        traces = [_curve(labels[k], deformation[:, k], force[:, k], n == 0) for n, k in enumerate(own)]
+        kind = "Moment" if along[own[0]] == "rad" else "Force"
+        note = "At first the one with the most work is shown. " if len(own) > 1 else ""
+        note += "The corners are those of the stored instants."
+        yield Picture(
+            f"{kind}s of springs and hinges",
+            note,
+            f"deformation [{along[own[0]]}]",
+            f"{kind.lower()} [{unit}]",
+            traces,
+        )
+
+
+def _capacity(results: Results) -> Iterator[Picture]:
+    """Capacity curve of a pushover."""
+    if results.holds("capacity_curve"):
+        table, units = results.table("capacity_curve"), results.table_units("capacity_curve")
+        curve = _curve("base shear", table["displacement"], table["base_shear"], True)
+        x, y = f"control displacement [{units['displacement']}]", f"base shear [{units['base_shear']}]"
+        yield Picture("Capacity curve", "", x, y, [curve])
+
+
+def thinned(t: Array, values: Array) -> tuple[Array, Array]:
+    """A curve of many points by the smallest and the largest of every short interval, in their order."""
+    if len(t) <= MOST_POINTS:
+        return t, values
+    size = -(-2 * len(t) // MOST_POINTS)
+    keep = {0, len(t) - 1}
+    for start in range(0, len(t), size):
+        own = values[start : start + size]
+        keep |= {start + int(np.argmin(own)), start + int(np.argmax(own))}
+    chosen = sorted(keep)
+    return t[chosen], values[chosen]
+
+
+def _numbers(values: Any) -> list[float | None]:
+    """Numbers to seven digits, which no screen tells from all; None for one that is missing."""
+    return [float(f"{v:.7g}") if math.isfinite(v) else None for v in values]
+
+
+def _plain(text: str) -> str:
+    """A text that plotly.js takes for no markup."""
+    return escape(text, quote=False)

@@ -1,0 +1,251 @@
+"""The page: the tables of the text report, pictures of the numbers of the file, nothing from outside."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from output import sample
+from pound_solve import Deck, run
+from pound_solve.cli.main import main
+from pound_solve.report.html import POLICY, page
+from pound_solve.report.html.pictures import MOST_POINTS, pictures, thinned
+from pound_solve.report.text import render
+from pound_solve.results import Results
+from pound_solve.results.contents import SECTIONS
+
+plotly = pytest.importorskip("plotly.offline")
+
+WORDS = re.compile(r"\s+|(?<=\w)-")
+EVIL = '</script><img src=http://nowhere.example/x onerror="a()">'
+DECK = f"""TITLE Two masses & a <wall>
+UNITS kN m s
+NODES
+  1 0 0 FIX=XYR
+  2 3 0 FIX=YR
+  3 4 0 FIX=YR
+  4 7 0 FIX=XYR
+ELEMENTS
+  1 COLUMN 1 2
+  2 COLUMN 4 3
+  3 POUND  2 3 NAME='{EVIL}'
+PROPS
+  COLUMN SPRING KX=4000 RULE=BILINEAR R=0.05 FX=60
+  POUND  CONTACT GAP=0 LAW=KELVIN_VOIGT K=1E5 E=0.65
+WEIGHTS
+  2 981
+  3 200
+EQUAKE
+  SINE AMPLITUDE=3 PERIOD=0.8 DURATION=6
+ANALYSIS
+  MODAL 2 SHAPES=YES
+  HISTORY 7
+"""
+
+
+class Reader(HTMLParser):
+    """What a page holds: its tags with their attributes, its tables, its scripts."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(convert_charrefs=True)
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.tables: dict[str, list[list[str]]] = {}
+        self.numbers: dict[str, str] = {}  # of the tables in the report
+        self.scripts: list[str] = []
+        self.styles: list[str] = []
+        self._rows: list[list[str]] = []
+        self._inside = self._heading = ""
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        own = dict(attrs)
+        self.tags.append((tag, own))
+        self._inside = tag if tag in ("td", "th", "script", "style", "h3") else self._inside
+        if tag == "table":
+            self._rows = self.tables[str(own["id"])] = []
+            self.numbers[str(own["id"])] = self._heading.split()[0]
+        elif tag == "tr":
+            self._rows.append([])
+        elif tag in ("td", "th"):
+            self._rows[-1].append("")
+        elif tag in ("script", "style"):
+            (self.scripts if tag == "script" else self.styles).append("")
+        elif tag == "br" and self._inside == "th":
+            self._rows[-1][-1] += " "
+        elif tag == "h3":
+            self._heading = ""
+
+    def handle_endtag(self, tag: str) -> None:
+        self._inside = "" if tag == self._inside else self._inside
+
+    def handle_data(self, data: str) -> None:
+        if self._inside in ("td", "th"):
+            self._rows[-1][-1] += data
+        elif self._inside == "script":
+            self.scripts[-1] += data
+        elif self._inside == "style":
+            self.styles[-1] += data
+        elif self._inside == "h3":
+            self._heading += data
+
+
+@pytest.fixture(scope="module")
+def results() -> Iterator[Results]:
+    with run(Deck(DECK)) as found:
+        assert found.status == "done" and found.history("contact/force").max() > 0.0
+        yield found
+
+
+def blocks_of(text: str) -> dict[str, str]:
+    """Blocks of the text report by their numbers."""
+    parts = re.split(r"^(\d+\.\d+)  [A-Z].*$", text, flags=re.M)
+    return {
+        number: re.split(r"^\d+  [A-Z ,]+\n=+$", own, flags=re.M)[0]
+        for number, own in zip(parts[1::2], parts[2::2])
+    }
+
+
+def same_as_the_text(results: Results) -> None:
+    """All tables of the page are those of the text report, cell by cell."""
+    read, blocks = Reader(page(results)), blocks_of(render(results))
+    assert set(read.numbers.values()) == blocks.keys()
+    exactly = 0
+    for name, (heads, *rows) in read.tables.items():
+        lines = blocks[read.numbers[name]].split("\n")
+        rules = [k for k, line in enumerate(lines) if line.strip() and not set(line) - {" ", "-"}]
+        # a wide table stands in panels, a long text in several lines: short words stay whole but at hyphens
+        there = set(WORDS.split("\n".join(lines)))
+        for cell in (cell for row in (heads, *rows) for cell in row):
+            assert not {word for word in WORDS.split(cell) if len(word) <= 16} - there, (name, cell)
+        if len(rules) == 1:
+            printed = [line.split() for line in lines[rules[0] + 1 : rules[0] + 1 + len(rows)]]
+            if printed == [" ".join(row).split() for row in rows]:
+                exactly += 1
+    assert exactly > len(read.tables) / 3, "tables of one panel, without blocks and wrapped texts"
+
+
+def test_tables_are_those_of_the_text_report(done: Results) -> None:
+    with run(Deck(DECK.replace(EVIL, "the gap"))) as results:
+        same_as_the_text(results)
+    same_as_the_text(done)
+
+
+def test_rows_are_those_of_the_file_in_number(done: Results) -> None:
+    read = Reader(page(done))
+    for name, (_, *rows) in read.tables.items():
+        assert len(rows) == len(done.table(name)), name
+
+
+def test_long_tables_end_where_those_of_the_text_report_end(results: Results) -> None:
+    brief = Reader(page(results, limit=1, only=SECTIONS[0][1]))
+    assert set(brief.tables) <= set(SECTIONS[0][1]) and not brief.scripts[1:]
+
+
+def test_nothing_is_loaded_from_outside(results: Results) -> None:
+    text = page(results)
+    read = Reader(text)
+    assert {tag for tag, _ in read.tags} <= {
+        "html", "head", "meta", "title", "style", "script", "body", "nav", "a", "main", "section", "div",
+        "h1", "h2", "h3", "p", "table", "thead", "tbody", "tr", "th", "td", "button", "br", "figure",
+        "figcaption",
+    }  # fmt: skip
+    for tag, own in read.tags:
+        assert not own.keys() & {"src", "srcset", "style", "data", "action", "background", "poster"}, (
+            tag,
+            own,
+        )
+        assert not [key for key in own if key.startswith("on")], (tag, own)
+        assert str(own.get("href", "#")).startswith("#")
+    assert ("meta", {"http-equiv": "Content-Security-Policy", "content": POLICY}) in read.tags
+    assert "default-src 'none'" in POLICY and "http" not in POLICY and "*" not in POLICY
+    assert not re.search(r"url\(|@import|http", "".join(read.styles))
+    library, data, program = read.scripts
+    assert library == plotly.get_plotlyjs(), "as its authors wrote it"
+    assert program.strip() == (files("pound_solve.report.html") / "page.js").read_text("utf-8").strip()
+    assert not re.search(r"fetch|XMLHttp|import|WebSocket|https?:|eval|Function", program)
+    assert EVIL not in text and "nowhere.example" in data  # the name of the contact, as a text
+
+
+def test_texts_of_a_deck_are_no_markup(results: Results) -> None:
+    text = page(results)
+    assert "<h1>Two masses &amp; a &lt;wall&gt;</h1>" in text
+    read = Reader(text)
+    assert read.tables["contact_summary"][1][0] == EVIL
+    names = [t["name"] for figure in json.loads(read.scripts[1]) for t in figure["traces"]]
+    assert not [name for name in names if "<" in name]
+
+
+def test_pictures_show_the_numbers_of_the_file(results: Results) -> None:
+    drawn = {p.title: p for p in pictures(results)}
+    assert {
+        "Structure",
+        "Ground acceleration",
+        "Contact forces",
+        "Energies",
+        "Forces of springs and hinges",
+    } <= set(drawn)
+    force, *marks = drawn["Contact forces"].traces
+    np.testing.assert_allclose(force["x"], results.time, rtol=1e-6)
+    np.testing.assert_allclose(force["y"], results.history("contact/force")[:, 0], rtol=1e-6)
+    table = results.table("collisions")
+    np.testing.assert_allclose(marks[0]["y"], table["peak_force"], rtol=1e-6)
+    np.testing.assert_allclose(marks[0]["x"], table["t_peak"], rtol=1e-6)
+    loop = drawn["Forces of springs and hinges"].traces[0]
+    column = results.labels("spring/force").index(loop["name"])
+    np.testing.assert_allclose(loop["x"], results.history("spring/deformation")[:, column], rtol=1e-6)
+    assert all(p.x.endswith("]") and p.y.endswith("]") for p in drawn.values()), "units on every axis"
+
+
+def test_a_long_curve_keeps_its_extremes() -> None:
+    t = np.linspace(0.0, 100.0, 123_457)
+    values = np.sin(t) + 0.01 * np.cos(997.0 * t)
+    values[77_777] = 31.0
+    x, y = thinned(t, values)
+    assert len(x) <= MOST_POINTS + 2 and (np.diff(x) > 0.0).all() and (x[0], x[-1]) == (0.0, 100.0)
+    assert y.max() == 31.0 and y.min() == values.min()
+    np.testing.assert_array_equal(values[np.searchsorted(t, x)], y)
+    for some in np.array_split(np.arange(len(t)), 500):  # nothing larger is left out anywhere
+        near = (x >= t[some[0]] - 0.1) & (x <= t[some[-1]] + 0.1)
+        assert y[near].max() >= values[some].max() and y[near].min() <= values[some].min()
+
+
+def test_the_same_results_give_the_same_page(done: Results) -> None:
+    assert page(done) == page(done)
+
+
+def test_a_run_that_stopped_says_so_above(tmp_path: Path) -> None:
+    with Results.open(
+        sample.write(tmp_path / "s.h5", status="stopped", message="A501 <it> moves")
+    ) as stopped:
+        head = page(stopped).split("<section")[0]
+    assert "THE ANALYSIS DID NOT COMPLETE" in head and "A501 &lt;it&gt; moves" in head
+
+
+def test_the_command_writes_beside_the_results_or_where_it_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = sample.write(tmp_path / "s.h5")
+    assert main(["report", str(path), "--html"]) == 0
+    assert main(["report", str(path), "--html", str(tmp_path / "other.html"), "--brief"]) == 0
+    assert capsys.readouterr().out.split() == [str(tmp_path / "s.html"), str(tmp_path / "other.html")]
+    with Results.open(path) as results:
+        assert (tmp_path / "s.html").read_text("utf-8") == page(results)
+        assert (tmp_path / "other.html").read_text("utf-8") == page(results, only=SECTIONS[0][1])
+
+
+def test_without_plotly_the_cure_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "plotly.offline", None)
+    assert main(["report", str(sample.write(tmp_path / "s.h5")), "--html"]) == 2
+    assert 'needs plotly: pip install "pound-solve[html]"' in capsys.readouterr().err
+    assert not (tmp_path / "s.html").exists()
