@@ -485,6 +485,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "The samples are used as they stand. The file may have been edited, scaled or cut, or its header "
         "may belong to the record before processing. Compare it with the agency's file.",
     ),
+    "R410": (
+        "no one motion to be replaced",
+        "The motions of a sweep take the place of the one line under EQUAKE. Name the records of a deck "
+        "with several lines, or none, by PARAMs.",
+    ),
     "A501": (
         "unstable structure",
         "The stiffness matrix is singular: some node can move without resistance. The message names"

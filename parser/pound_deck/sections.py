@@ -182,6 +182,13 @@ SECTIONS: Final = (
                 doc="elements with histories and envelopes; left out: all",
             ),
             Field(
+                "HISTORIES",
+                Kind.WORD,
+                default="YES",
+                words=("YES", "NO"),
+                doc="histories in the results file; NO: the tables of peaks only",
+            ),
+            Field(
                 "STOREYS",
                 Kind.WORD,
                 default="YES",

@@ -18,6 +18,7 @@ def run(
     params: Mapping[str, object] | None = None,
     *,
     out: str | Path | None = None,
+    name: str = "",
     records: Sequence[str | Path] = (),
     method: str | None = None,
     dt: float | None = None,
@@ -33,6 +34,8 @@ def run(
         PARAM values that replace the deck's, by name.
     out : str or Path, optional
         Folder of ``<deck>.rpt`` and ``<deck>.h5``; the deck's own if left out.
+    name : str, optional
+        Name of these files in place of the deck's, so that runs of one deck keep apart.
     records : sequence of str or Path, optional
         Folders where records are looked for, after the deck's.
     method : str, optional
@@ -49,6 +52,8 @@ def run(
 
     Raises
     ------
+    ValueError
+        The name is a path.
     pound_solve.driver.prepare.DeckError
         The deck has mistakes; the text names file, line and column of each.
     OSError
@@ -62,4 +67,4 @@ def run(
     texts = {name: str(value) for name, value in (params or {}).items()}
     folders = tuple(Path(r) for r in records)
     folder = None if out is None else Path(out)
-    return execute(Request(str(deck), texts, folder, folders, method, dt, tol))[1]
+    return execute(Request(str(deck), texts, folder, folders, method, dt, tol, name=name))[1]

@@ -29,6 +29,7 @@ ROOMS = (
     "driver",
     "__init__",
     "assess",
+    "sweep",
     "editor",
     "cli",
     "__main__",
@@ -70,6 +71,7 @@ WITHIN = {
         "writer",
         "reader",
         "page",
+        "sweep_file",
     ),
     "editor": (
         "reading",
@@ -88,8 +90,25 @@ WITHIN = {
         "notepad",
         "kate",
     ),
+    "sweep": (
+        "document",
+        "run",
+        "quantities",
+        "entry",
+        "records",
+        "study",
+        "limits",
+        "work",
+        "executors",
+        "lock",
+        "conduct",
+        "plan",
+        "table",
+        "session",
+    ),
     "driver": (
         "request",
+        "record_card",
         "identity",
         "outputs",
         "overrides",
@@ -103,7 +122,8 @@ WITHIN = {
 #: who may import a library, as paths below the two packages
 ONLY_IN = {
     "lark": {"cards.py"},
-    "h5py": {"results/reader.py", "results/writer.py"},
+    "h5py": {"results/reader.py", "results/writer.py", "results/sweep_file.py"},
+    "distributed": {"sweep/executors.py"},
     "tabulate": {"report/text.py"},
     "matplotlib": {"report/plot/style.py"},
     "numba": {"numerics/jit.py"},
@@ -171,7 +191,7 @@ def test_the_solver_takes_the_model_from_the_parser_and_only_the_top_reads_decks
     for path in SOLVER.rglob("*.py"):
         taken = {n.split(".")[1] for n in imported(path) if n.startswith("pound_deck.")}
         allowed = {"model", "schema", "diagnostics"}
-        if place(path).startswith(("driver/", "cli/", "assess/")):
+        if place(path).startswith(("driver/", "cli/", "assess/", "sweep/")):
             allowed |= {"reader"}
         if place(path).startswith("cli/"):
             allowed |= {"layout"}

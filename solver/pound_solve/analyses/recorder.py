@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Self
+from dataclasses import dataclass, replace
+from typing import Any, Final, Self
 
 import numpy as np
 
@@ -24,6 +24,15 @@ from pound_solve.structure.storeys import (
     storey_sums,
 )
 
+#: of a reduced system: how its inputs act, and the loads beside them
+_ACTING: Final = (
+    "constant",
+    "inputs",
+    "law_inputs",
+    "support_inputs",
+    "acceleration_inputs",
+    "force_inputs",
+)
 LARGEST = 1e100  #: magnitude of a sample: energies, which are products of samples, stay finite
 BLOCK, HELD = 256, 2**20  #: samples kept before they are written, and numbers of one kind in them, at most
 
@@ -94,6 +103,19 @@ class RecordedItems:
             found := tuple(buildings(structure)) if structure.model.output["STOREYS"] == "YES" else (),
             recorded_sums(system, supports, found),
         )
+
+    def holds_for(self, system: ReducedSystem) -> bool:
+        """Whether these are what another history of the same model records: its unknowns are the same, and
+        its inputs act alike.
+        """
+        own = self.system
+        return own.dofs == system.dofs and all(
+            np.array_equal(getattr(own, name), getattr(system, name)) for name in _ACTING
+        )
+
+    def again(self, system: ReducedSystem) -> RecordedItems:
+        """The same items of a history that they hold for."""
+        return replace(self, system=system)
 
     @property
     def widest(self) -> int:
