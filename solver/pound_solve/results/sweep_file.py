@@ -30,6 +30,7 @@ FILETYPE: Final = "pound-solve sweep"
 FORMAT_VERSION: Final = (1, 0)  #: major: old readers fail; minor: something was added
 RUN: Final = "run"  #: the first dimension
 HISTORIES: Final = "histories"
+ORDER: Final = "variables"  #: attribute with their names in order
 #: variables that differ between two sweeps of a study
 OF_THE_DAY: Final = ("cpu_seconds", "solve_seconds")
 _TEXT: Final = h5py.string_dtype()
@@ -215,6 +216,7 @@ def _write(file: h5py.File, sweep: Sweep) -> None:
     """Variables and their axes."""
     file.attrs.update({"filetype": FILETYPE, "format_version": np.array(FORMAT_VERSION)})
     file.attrs.update({key: storable(value) for key, value in sweep.about.items()})
+    file.attrs[ORDER] = list(sweep.variables)
     scales = {RUN: _dataset(file, RUN, sweep.variables[RUN])}
     scales[RUN].make_scale(RUN)
     for axis, labels in sweep.labels.items():
@@ -259,22 +261,17 @@ def _write_histories(file: h5py.File, number: int, kept: Mapping[str, NDArray[An
 
 def _read(file: h5py.File) -> tuple[dict[str, Variable], dict[str, tuple[str, ...]], dict[str, str]]:
     """Variables, labels and what else a file tells."""
-    axes = {RUN}
-    found = {name: item for name, item in file.items() if isinstance(item, h5py.Dataset)}
-    variables = dict[str, Variable]()
-    for name, item in found.items():
-        if name != RUN and item.is_scale:
-            axes.add(name)
-    for name, item in found.items():
-        if name in axes - {RUN}:
-            continue
+    variables, axes = dict[str, Variable](), dict[str, None]()
+    for name in map(_plain, file.attrs[ORDER]):
+        item = file[name]
         own = [_plain(v) for v in item[:]] if item.dtype.kind == "O" else item[:]
         values = np.array(own, object) if item.dtype.kind == "O" else item[:]
         axis = _plain(item.dims[1].keys()[0]) if len(item.shape) > 1 else ""
         told = (str(_plain(item.attrs.get(key, ""))) for key in ("units", "long_name"))
         variables[name] = Variable(values, axis, *told)
-    labels = {axis: tuple(str(_plain(v)) for v in found[axis][:]) for axis in axes - {RUN}}
-    known = ("filetype", "format_version")
+        axes |= {axis: None} if axis else {}
+    labels = {axis: tuple(str(_plain(v)) for v in file[axis][:]) for axis in axes}
+    known = ("filetype", "format_version", ORDER)
     return variables, labels, {k: str(_plain(v)) for k, v in file.attrs.items() if k not in known}
 
 

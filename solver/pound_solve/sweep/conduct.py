@@ -99,7 +99,7 @@ class Conductor:
                     for future in self._flying:
                         future.cancel()
         finally:
-            executor.shutdown(wait=False, cancel_futures=True)
+            executor.shutdown(wait=not self._flying, cancel_futures=True)
         return state
 
     def _round(self, executor: Executor, waiting: deque[Run], state: State) -> Executor:

@@ -98,7 +98,7 @@ class Document:
         """Put in an item of the command line, in place of that of the file."""
         table: Any = self.values
         for name in path[:-1]:
-            table = table.setdefault(name, {})
+            table = table[name] if isinstance(name, int) else table.setdefault(name, {})
         table[path[-1]] = value
         self.places[path] = Span(option, 1, 1, max(2, len(text) + 1))
         self.files[option] = text

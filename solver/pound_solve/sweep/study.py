@@ -109,7 +109,7 @@ class _Reader:
         numbers = {name: document.take((name,), float, 0.0) for name in ("dt", "tol", "seconds", "memory")}
         workers = document.take(("workers",), int, 0)
         for name, value in {**numbers, "workers": workers}.items():
-            if value < 0 or (value == 0 and document.at((name,)) is not None):
+            if value < 0 or document.at((name,)) == 0:
                 document.mistake("S603", f"{name} is above zero", (name,))
         measures = {s.measure for s in self.suites}
         if len(measures) > 1:
@@ -124,11 +124,9 @@ class _Reader:
         histories = tuple(self._histories())
         for deck in decks:
             self._tried(replace(base, deck=deck), combinations)
-        if has_errors(document.found):
-            raise StudyError(document.found, document.files)
+        self._stop_at_mistakes()
         runs = tuple(self._runs(base, decks, combinations))
-        if has_errors(document.found):
-            raise StudyError(document.found, document.files)
+        self._stop_at_mistakes()
         units = next(iter(self.models.values())).units
         return Study(
             document.name,
@@ -141,6 +139,14 @@ class _Reader:
             numbers["memory"] or None,
             histories,
         )
+
+    def _stop_at_mistakes(self) -> None:
+        """Raise where there are some, in the order of the study."""
+        found = self.document.found
+        order = {name: k for k, name in enumerate(self.document.files)}
+        found.sort(key=lambda d: (order.get(d.span.file, 0), d.span.line) if d.span else (-1, 0))
+        if has_errors(found):
+            raise StudyError(found, self.document.files)
 
     def _beside(self, name: str) -> Path:
         """A path of the study, which counts from its folder."""
