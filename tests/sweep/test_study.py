@@ -77,7 +77,9 @@ def test_a_record_of_the_deck_itself_counts_in_the_identity(tmp_path):
 
 
 def test_places_of_items_in_tables_lists_of_tables_and_dotted_keys():
-    text = 'a = 1\n[grid]\n  gap = [\n  1,\n 2]\nx.y = 3\n[[motions]]\nfiles = 1\n[[motions]]\n"files" = 2\n'
+    text = (
+        'a = 1\n[grid]\n  gap = [\n  1,\n 2]\nx.y = 3\n[[motions]]\nfiles = 1\n[[motions]]\n"files" = 2\n'
+    )
     found = {path: (s.line, s.column) for path, s in places(text, "f").items()}
     assert found == {
         ("a",): (1, 1),

@@ -15,7 +15,6 @@ from pound_solve.sweep.run import Run
 from pound_solve.sweep.work import Settings, carry_out
 
 INTERVAL: Final = 0.1  #: between two looks at the time [s]
-AHEAD: Final = 2  #: runs that wait at every worker, so that none is idle
 DEATHS: Final = 2  #: of processes that a run may cause when it is alone
 DIED: Final = "its process died: the system or the limit of time ended it, perhaps it took too much memory"
 
@@ -73,6 +72,7 @@ class Conductor:
         self, engine: Engine, settings: Settings, journal: Journal, report: Callable[[State], None]
     ) -> None:
         self.engine, self.settings, self.journal, self.report = engine, settings, journal, report
+        self._waiting = deque[Run]()
         self._flying = dict[Future[Entry], Run]()
         self._suspects = deque[Run]()
         self._deaths = dict[str, int]()
@@ -85,16 +85,16 @@ class Conductor:
         OSError
             The journal cannot be written.
         """
-        waiting = deque(runs)
-        state = State(len(waiting))
+        self._waiting.extend(runs)
+        state = State(len(self._waiting))
         executor = self.engine.start()
         try:
-            while waiting or self._suspects or self._flying:
+            while self._waiting or self._suspects or self._flying:
                 try:
-                    executor = self._round(executor, waiting, state)
+                    executor = self._round(executor, state)
                 except KeyboardInterrupt:
                     state.ending = True
-                    waiting.clear()
+                    self._waiting.clear()
                     self._suspects.clear()
                     for future in self._flying:
                         future.cancel()
@@ -102,13 +102,13 @@ class Conductor:
             executor.shutdown(wait=not self._flying, cancel_futures=True)
         return state
 
-    def _round(self, executor: Executor, waiting: deque[Run], state: State) -> Executor:
+    def _round(self, executor: Executor, state: State) -> Executor:
         """Hand runs out, wait for some, take them; return the executor, or a new one for one that broke."""
         alone = bool(self._suspects) or not state.done
-        most = 1 if alone else AHEAD * self.engine.workers
+        most = 1 if alone else self.engine.ahead
         broken = False
-        while len(self._flying) < most and (self._suspects or waiting):
-            run = (self._suspects or waiting).popleft()
+        while len(self._flying) < most and (self._suspects or self._waiting):
+            run = (self._suspects or self._waiting).popleft()
             try:
                 self._flying[executor.submit(carry_out, run, self.settings)] = run
             except BrokenExecutor:
@@ -131,8 +131,10 @@ class Conductor:
         """Take what a run has come to; False where its process died."""
         try:
             entry = future.result()
-        except CancelledError:
-            return True
+        except CancelledError:  # by an interruption, or by a scheduler that has gone
+            if not state.ending:
+                self._waiting.appendleft(run)
+            return state.ending
         except BrokenExecutor:
             deaths = self._deaths.get(run.identity, 0) + lone
             self._deaths[run.identity] = deaths
@@ -143,6 +145,11 @@ class Conductor:
             else:
                 self._note(Entry(run.identity, FAILED, DIED), state)
             return False
+        except OSError:  # the journal of the process cannot be written
+            raise
+        except Exception as err:  # what the executor says of a worker that died
+            self._note(Entry(run.identity, FAILED, f"{type(err).__name__}: {err}"), state)
+            return True
         if not self.engine.notes:
             self.journal.add(entry)
         state.done += 1

@@ -5,17 +5,23 @@ Both have the interface of `concurrent.futures.Executor`.
 
 from __future__ import annotations
 
+import logging
 import multiprocessing
 import os
 import signal
 import threading
 from collections.abc import Callable
-from concurrent.futures import Executor, ProcessPoolExecutor
-from typing import Final, NamedTuple
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from typing import Any, Final, NamedTuple, TypeVar
 
 DASK: Final = "dask"
+AHEAD, MANY = 2, 1000  #: runs that are handed out: for each process, and to a scheduler
+PATIENCE: Final = 60.0  #: with a scheduler that does not answer [s]
 #: environment variables by which builds of numpy's linear algebra limit their threads
 THREADS: Final = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
+
+
+_T = TypeVar("_T")
 
 
 class ExecutorError(Exception):
@@ -30,13 +36,16 @@ class Engine(NamedTuple):
     start : callable
         Makes the executor, anew where one has broken.
     workers : int
-        Runs at a time.
+        Runs at a time, as far as it is known.
+    ahead : int
+        Runs that are handed out at a time, so that no worker is idle.
     notes : bool
         Whether its processes write the journal themselves.
     """
 
     start: Callable[[], Executor]
     workers: int
+    ahead: int
     notes: bool
 
 
@@ -49,7 +58,7 @@ def engine(name: str, workers: int) -> Engine:
         Empty for processes of this machine; ``dask://host:port`` for the workers of that scheduler, and
         ``dask`` for a scheduler with workers of its own on this machine.
     workers : int
-        Processes; 0 for as many as there are processors.
+        Processes; 0 for as many as there are processors.  A scheduler has workers of its own.
 
     Raises
     ------
@@ -58,13 +67,16 @@ def engine(name: str, workers: int) -> Engine:
     """
     count = workers or processors()
     if not name:
-        return Engine(lambda: processes(count), count, True)
+        return Engine(lambda: processes(count), count, AHEAD * count, True)
     scheme, _, address = name.partition("://")
     if scheme != DASK:
         raise ExecutorError(
             f"--executor {name}: write dask://HOST:PORT, or dask for workers of its own here"
         )
-    return _dask(address, count)
+    own: dict[str, Any] = {"address": f"tcp://{address}"}
+    if not address:
+        own = {"n_workers": count, "threads_per_worker": 1, "dashboard_address": None}
+    return Engine(lambda: DaskExecutor(**own), count, MANY, False)
 
 
 def processors() -> int:
@@ -95,20 +107,40 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def _dask(address: str, count: int) -> Engine:
-    """The workers of a Dask scheduler."""
-    try:
-        from distributed import Client
-    except ImportError:
-        text = 'it needs Dask: pip install "pound-solve[cluster]"'
-        raise ExecutorError(text) from None
-    try:
-        client = (
-            Client(f"tcp://{address}", timeout=30)
-            if address
-            else Client(n_workers=count, threads_per_worker=1)
-        )
-    except OSError as err:
-        raise ExecutorError(f"no Dask scheduler answers at {address}: {err}") from None
-    threads = sum(client.nthreads().values())
-    return Engine(lambda: client.get_executor(pure=False), threads or count, False)
+class DaskExecutor(Executor):
+    """The workers of a Dask scheduler, whose runs end where this ends.
+
+    Parameters
+    ----------
+    options : mapping
+        Of a `distributed.Client`.
+
+    Raises
+    ------
+    ExecutorError
+        Dask is not installed, or no scheduler answers.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        try:
+            from distributed import Client
+        except ImportError:
+            raise ExecutorError('Dask is missing: pip install "pound-solve[cluster]"') from None
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost is told by the sweep
+        try:
+            self._client = Client(timeout=PATIENCE, set_as_default=False, **options)
+        except OSError as err:
+            raise ExecutorError(
+                f"no Dask scheduler answers at {options.get('address', '')}: {err}"
+            ) from None
+        self._inner = self._client.get_executor(pure=False)
+
+    def submit(self, fn: Callable[..., _T], /, *args: Any, **kwargs: Any) -> Future[_T]:
+        """Hand a call to a worker."""
+        future: Future[_T] = self._inner.submit(fn, *args, **kwargs)
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End the connection; what has not ended is cancelled unless it is waited for."""
+        self._inner.shutdown(wait=wait and not cancel_futures)
+        self._client.close()

@@ -6,11 +6,12 @@ its modes and the sums of forces that are recorded: the first run of a process m
 
 from __future__ import annotations
 
+import threading
 import time
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -86,6 +87,20 @@ def carry_out(run: Run, settings: Settings) -> Entry:
     OSError
         The journal cannot be written.
     """
+    with one_at_a_time():
+        return _carried_out(run, settings)
+
+
+@cache
+def one_at_a_time() -> threading.Lock:
+    """Lock of this process: a worker of Dask may have several threads, but CPU time, limits, and what runs
+    share belong to the process.
+    """
+    return threading.Lock()
+
+
+def _carried_out(run: Run, settings: Settings) -> Entry:
+    """See `carry_out`."""
     began = time.process_time()
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
