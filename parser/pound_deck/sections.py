@@ -185,8 +185,9 @@ SECTIONS: Final = (
                 "HISTORIES",
                 Kind.WORD,
                 default="YES",
-                words=("YES", "NO"),
-                doc="histories in the results file; NO: the tables of peaks only",
+                words=("YES", "PACKED", "NO"),
+                doc="histories in the results file; PACKED: compressed, which takes longer; "
+                "NO: times and tables only",
             ),
             Field(
                 "STOREYS",

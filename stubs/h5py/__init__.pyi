@@ -67,7 +67,6 @@ class Group(MutableMapping[str, Any]):  # datasets and groups
         maxshape: tuple[int | None, ...] | None = None,
         chunks: tuple[int, ...] | None = None,
         fletcher32: bool = False,
-        shuffle: bool = False,
         compression: str | None = None,
         compression_opts: int | None = None,
     ) -> Dataset: ...

@@ -77,9 +77,7 @@ def test_a_sweep_that_is_killed_goes_on_where_it_was(tmp_path):
             kills["sweep"] += 1
             break
         process.communicate()
-        if len(set(noted(path))) == len(
-            undisturbed
-        ):  # all done: another sweep, for what is left of the kills
+        if len(set(noted(path))) == len(undisturbed):  # all done: begin anew
             finish(path, undisturbed)
             for old in (path.parent / "walls.sweep/runs").iterdir():
                 old.unlink()
@@ -88,7 +86,7 @@ def test_a_sweep_that_is_killed_goes_on_where_it_was(tmp_path):
 
 
 def finish(path, undisturbed):
-    """Run what is left; nothing stands twice in the journal, and the table is that of an undisturbed sweep."""
+    """Run what is left; nothing stands twice in the journal, the table is that of an undisturbed sweep."""
     process = begun(path)
     _, errors = process.communicate(timeout=300)
     assert process.returncode == 0, errors
@@ -124,14 +122,3 @@ def test_an_interruption_ends_the_runs_that_have_begun_and_writes_the_table(tmp_
     found = Sweep.open(tmp_path / "walls.sweep/sweep.h5")
     assert sorted(found["identity"][found["status"] == "done"]) == sorted(done)
     assert set(found["status"]) == {"done", "missing"}
-
-
-def test_a_run_that_kills_its_process_is_found_and_told(tmp_path):
-    """Of all runs the one to blame fails; its reason is told, and the others are done."""
-    path = folder(tmp_path, "memory = 1E-3\nseconds = 1E3\n" + STUDY)
-    process = begun(path)
-    _, errors = process.communicate(timeout=300)
-    assert process.returncode == 1, errors
-    found = Sweep.open(tmp_path / "walls.sweep/sweep.h5")
-    assert set(found["status"]) == {"failed"}
-    assert all("memory" in m for m in found["message"]), set(found["message"])

@@ -4,6 +4,9 @@ import csv
 import json
 import math
 import multiprocessing
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -15,6 +18,8 @@ from pound_solve.loading.motions.piecewise import Piecewise
 from pound_solve.loading.spectrum import response_spectrum
 from pound_solve.results import ResultsError
 from pound_solve.results.sweep_file import OF_THE_DAY, Sweep
+from pound_solve.sweep.executors import Engine
+from pound_solve.sweep.limits import within
 from sweep.small import DECK, STUDY, Here, folder, record, session, swept
 
 
@@ -200,6 +205,50 @@ def test_limits_of_time_and_memory_end_a_run_with_its_reason(tmp_path):
     entry = found.entries[found.runs[0].identity]
     assert entry.status == "failed" and "more than 1e-09 s of CPU time" in entry.message
     assert math.isnan(entry.reached)
+
+
+def test_memory_is_bounded_within_a_run_and_free_after_it():
+    resource = pytest.importorskip("resource")
+    if not Path("/proc/self/statm").exists():
+        pytest.skip("the system tells no process what it holds")
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    with within(None, 100.0):
+        assert len(np.ones(2**20))
+        with pytest.raises(MemoryError):
+            np.ones(2**26)
+    assert resource.getrlimit(resource.RLIMIT_AS) == before and len(np.ones(2**26))
+
+
+class Fragile(Here):
+    """Breaks with one run, and the first time with the run before it, which it has held back till then."""
+
+    def __init__(self, culprit, died):
+        super().__init__()
+        self.culprit, self.died, self.held, self.broken = culprit, died, [], False
+
+    def submit(self, function, /, *args):
+        number = args[0].number
+        if self.broken:
+            raise BrokenProcessPool
+        if number == self.culprit or (number == self.culprit - 1 and not self.died):
+            self.held.append((number, Future()))
+            if number == self.culprit:
+                self.broken = True
+                self.died.append([n for n, _ in self.held])
+                for _, future in self.held:
+                    future.set_exception(BrokenProcessPool())
+            return self.held[-1][1]
+        return super().submit(function, *args)
+
+
+def test_a_run_whose_process_dies_is_found_among_others_and_told(tmp_path):
+    path, died = folder(tmp_path), []
+    out = session(path)
+    out.engine = Engine(lambda: Fragile(5, died), 1, 3, True)
+    out.carry_out(out.agenda.ahead, lambda state: None)
+    failed = [r.number for r in out.runs if out.entries[r.identity].status == "failed"]
+    assert failed == [5] and "process died" in out.entries[out.runs[4].identity].message
+    assert died == [[4, 5], [5], [5]]
 
 
 def test_two_sweeps_do_not_write_one_folder(tmp_path, capsys):

@@ -43,7 +43,7 @@ class RunOutput(Protocol):
         """Take the tables of a stage."""
         ...
 
-    def start_history(self, layout: Layout) -> None:
+    def start_history(self, layout: Layout, packed: bool = False) -> None:
         """Prepare for histories."""
         ...
 
@@ -255,7 +255,7 @@ class HistoryWriter:
         """Create the histories."""
         self.record.recorded = items
         self.record.layout = layout_of(items) if self._kept is None else {}
-        self.writer.start_history(self.record.layout)
+        self.writer.start_history(self.record.layout, self.record.model.output["HISTORIES"] == "PACKED")
 
     def append(self, block: SampleBlock) -> None:
         """Append some samples to all histories."""

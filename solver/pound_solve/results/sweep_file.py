@@ -250,7 +250,7 @@ def _write_histories(file: h5py.File, number: int, kept: Mapping[str, NDArray[An
             continue
         place = name.replace("/", "_")
         dataset = group.create_dataset(
-            place, data=rows, chunks=rows.shape, shuffle=True, compression="gzip", compression_opts=1
+            place, data=rows, chunks=rows.shape, compression="gzip", compression_opts=1
         )
         dataset.dims[0].attach_scale(time)
         for key in ("labels", "nodes", "unit"):

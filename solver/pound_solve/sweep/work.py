@@ -65,7 +65,7 @@ class Kept:
             if table.name in SOURCES:
                 self.rows[table.name] = rows_of(table.name, record)
 
-    def start_history(self, layout: Layout) -> None:
+    def start_history(self, layout: Layout, packed: bool = False) -> None:
         """Histories stay in memory, see `sequence.HistoryWriter`."""
 
     def append(self, block: Mapping[str, Array]) -> None:
