@@ -543,22 +543,23 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "S603": (
         "value of the wrong kind",
-        "The item takes a text, a number, a list or a table, or a number above zero. The message states which.",
+        "The item takes a text, a number, a list or a table, or a number above zero. The message states "
+        "which.",
     ),
     "S604": (
         "a file of the study is missing",
-        "The study names no deck, or no file fits a pattern. Paths and patterns count from the folder of the "
-        "study; on the command line, from the working folder.",
+        "The study names no deck, or no file fits a pattern. Paths and patterns count from the folder of "
+        "the study; on the command line, from the working folder.",
     ),
     "S605": (
         "items of a study contradict each other",
-        "A PARAM has values in two places, lists of zip differ in length, an intensity lacks an item, or two "
-        "runs are the same. The message states which.",
+        "A PARAM has values in two places, lists of zip differ in length, an intensity lacks an item, or "
+        "two runs are the same. The message states which.",
     ),
     "S606": (
         "a record cannot be used as the study says",
-        "The file of the record gives another unit, or the record cannot be scaled to the intensity. Records "
-        "that are read differently stand in [[motions]] tables of their own.",
+        "The file of the record gives another unit, or the record cannot be scaled to the intensity. "
+        "Records that are read differently stand in [[motions]] tables of their own.",
     ),
     "S607": (
         "a PARAM without effect",

@@ -14,11 +14,11 @@ from collections.abc import Callable
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from typing import Any, Final, NamedTuple, TypeVar
 
+from pound_solve.numerics import threads
+
 DASK: Final = "dask"
 AHEAD, MANY = 2, 1000  #: runs that are handed out: for each process, and to a scheduler
 PATIENCE: Final = 60.0  #: with a scheduler that does not answer [s]
-#: environment variables by which builds of numpy's linear algebra limit their threads
-THREADS: Final = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 
 
 _T = TypeVar("_T")
@@ -88,8 +88,7 @@ def processors() -> int:
 
 def processes(count: int) -> ProcessPoolExecutor:
     """Processes that know nothing of this one (spawn), one thread each."""
-    for name in THREADS:
-        os.environ.setdefault(name, "1")
+    threads.one()
     context = multiprocessing.get_context("spawn")
     return ProcessPoolExecutor(count, context, initializer=_begin)
 

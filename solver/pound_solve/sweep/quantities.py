@@ -157,3 +157,9 @@ def doubts(rows: Mapping[str, list[Fields]]) -> str:
     """The checks of one run whose verdict calls for a look."""
     looked = (row for row in rows.get("checks", ()) if row["verdict"].startswith("look"))
     return "; ".join(f"{row['check']}: {row['value']}, {row['verdict']}" for row in looked)
+
+
+def page() -> str:
+    """Table of all quantities for the manual."""
+    rows = (f"| `{q.name}` | {q.axis or 'none'} | `{q.unit}` | {q.doc} |" for q in QUANTITIES)
+    return "\n".join(["| quantity | labels | unit | meaning |", "|---|---|---|---|", *rows, ""])

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+from pound_solve.results.sweep_file import Sweep
 from pound_solve.sweep import plan, table
 from pound_solve.sweep.conduct import Conductor, State
+from pound_solve.sweep.document import Document
 from pound_solve.sweep.entry import DONE, ENDS, FAILED, Entry, Journal
-from pound_solve.sweep.executors import Engine
+from pound_solve.sweep.executors import Engine, engine
+from pound_solve.sweep.lock import locked
 from pound_solve.sweep.run import Run
-from pound_solve.sweep.study import Study
+from pound_solve.sweep.study import Study, read
 from pound_solve.sweep.work import Settings
 
 
@@ -86,3 +89,31 @@ class Session:
         yield f"{len(ends)} runs: {', '.join(counts)}" + (f"; {before} of them before" if before else "")
         others = [r for r, end in zip(self.runs, ends) if end not in (DONE, "")]
         yield from plan.reasons(others, self.entries)
+
+
+def run_study(path: str | Path, *, workers: int = 0, executor: str = "", retry: bool = False) -> Sweep:
+    """Carry out what is not done of a study, write its table and return it.
+
+    Parameters
+    ----------
+    path : str or Path
+        The study's file.
+    workers : int
+        Processes; 0 for those that the study names, else one for each processor.
+    executor : str
+        As ``--executor``, see `executors.engine`.
+    retry : bool
+        Try runs again that stopped or failed.
+
+    Raises
+    ------
+    StudyError
+        The study has mistakes; the text names the place of each.
+    BusyError, ExecutorError, ResultsError, OSError
+        Another sweep writes the folder; the executor cannot be had; a file cannot be read or written.
+    """
+    study = read(Document.read(str(path)))
+    with locked(study.out):
+        session = Session(study, engine(executor, workers or study.workers), retry=retry)
+        session.carry_out(session.agenda.ahead, lambda state: None)
+        return Sweep.open(session.write())
