@@ -9,9 +9,9 @@ Earthquake Spectra 20: 523-553), hunt and fill:
    they are close;
 3. the fill: the middle of the widest gap between levels that stand, as long as runs are left.
 
-A run collapses where it stops, where its demand reaches a limit, or where the curve has gone flat: its slope
-to the run before, below, is less than a share of that of its first point (FEMA 350 takes a fifth).  The next
-level follows from the points alone, so that an analysis which was interrupted goes on as it would have.
+A run collapses where it stops, where its demand reaches a limit, or where the curve has gone flat: its
+slope from the run below is less than a share of that of its first point (FEMA 350 takes a fifth).  The next
+level follows from the points alone, so that an analysis that was interrupted goes on as it would have.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 #: how a point counts
@@ -149,7 +150,7 @@ def _hunt(points: Sequence[Point], rules: Rules) -> float | None:
 def _fill(points: Sequence[Point], stands: float) -> float | None:
     """The middle of the widest gap between levels that stand, the lowest of several."""
     levels = [0.0, *(p.level for p in points if p.level <= stands)]
-    gaps = [high - low for low, high in zip(levels, levels[1:])]
+    gaps = [high - low for low, high in pairwise(levels)]
     if not gaps:
         return None
     widest = max(gaps)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from hashlib import blake2b
 from pathlib import Path
 
@@ -91,15 +92,35 @@ class Run:
         None where the deck's own motion acts.
     first : RecordFile or None
         The study's first record, under which the case is prepared, whichever of its runs comes first.
-    identity : str
-        Digest of all that its results depend on, see `identity`.
+    inputs : str
+        Digest of what the deck reads, see `digest_of_inputs`.
     """
 
     number: int
     case: Case
     shaking: Shaking | None
     first: RecordFile | None
-    identity: str
+    inputs: str
+
+    @cached_property
+    def identity(self) -> str:
+        """Digest of all that its results depend on; names and places of files do not count."""
+        shaking = self.shaking
+        own = {
+            "inputs": self.inputs,
+            "params": sorted((name.upper(), value) for name, value in self.case.params),
+            "method": [self.case.method, self.case.dt, self.case.tol],
+            "shaking": shaking and [shaking.record.sha256, sorted(shaking.record.items), shaking.scale],
+            "version": __version__,
+        }
+        return blake2b(json.dumps(own).encode(), digest_size=12).hexdigest()
+
+    def at(self, level: float) -> Run:
+        """The same run at another level of its record."""
+        if self.shaking is None:
+            raise ValueError("a run without a record has no level")
+        scale = self.shaking.scale * (level / self.shaking.level)
+        return replace(self, shaking=replace(self.shaking, scale=scale, level=level))
 
     @property
     def title(self) -> str:
@@ -110,23 +131,6 @@ class Run:
         return " ".join(own)
 
 
-def identity(case: Case, shaking: Shaking | None, inputs: Mapping[str, str]) -> str:
-    """Digest of all that the results of a run depend on.
-
-    Names and places of files do not count, their contents do.
-
-    Parameters
-    ----------
-    case : Case
-    shaking : Shaking or None
-    inputs : mapping of str to str
-        What the deck reads: the texts of the deck, its included files, digests of its own records.
-    """
-    own = {
-        "inputs": sorted(inputs.values()),
-        "params": sorted((name.upper(), value) for name, value in case.params),
-        "method": [case.method, case.dt, case.tol],
-        "shaking": shaking and [shaking.record.sha256, sorted(shaking.record.items), shaking.scale],
-        "version": __version__,
-    }
-    return blake2b(json.dumps(own).encode(), digest_size=12).hexdigest()
+def digest_of_inputs(inputs: Mapping[str, str]) -> str:
+    """Digest of what a deck reads: its text, its included files, digests of its own records."""
+    return blake2b(json.dumps(sorted(inputs.values())).encode(), digest_size=12).hexdigest()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from pound_solve.results.sweep_file import Sweep
@@ -64,6 +65,11 @@ class Session:
             size = sum(p.stat().st_size for p in self.journal.folder.iterdir()) / len(self.entries)
             left = len(self.agenda.ahead) - len(tried)
             yield from plan.estimate(tried, left, self.engine.workers, size)
+
+    def extend(self, runs: Sequence[Run]) -> None:
+        """Take these runs for those of the study."""
+        self.study = replace(self.study, runs=tuple(runs))
+        self.runs = self.study.runs
 
     def write(self) -> Path:
         """Write the table of the study; raises as `sweep_file.write`."""

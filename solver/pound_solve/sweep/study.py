@@ -25,7 +25,7 @@ from pound_solve.loading.records.base import RecordError
 from pound_solve.loading.records.known import find, load
 from pound_solve.sweep.document import Document, Path_
 from pound_solve.sweep.records import Suite, scaled
-from pound_solve.sweep.run import Case, Run, Shaking, identity
+from pound_solve.sweep.run import Case, Run, Shaking, digest_of_inputs
 
 MOST: Final = 10**6  #: runs
 ITEMS: Final = (
@@ -77,8 +77,14 @@ class Study:
     histories: tuple[str, ...] = ()
 
 
-def read(document: Document) -> Study:
+def read(document: Document, tables: Sequence[str] = ()) -> Study:
     """The study of a document.
+
+    Parameters
+    ----------
+    document : Document
+    tables : sequence of str
+        Tables of it that others read.
 
     Raises
     ------
@@ -87,15 +93,15 @@ def read(document: Document) -> Study:
     """
     if document.found:  # it is no TOML
         raise StudyError(document.found, document.files)
-    return _Reader(document).study()
+    return _Reader(document, tables).study()
 
 
 class _Reader:
     """Reads one document."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Document, tables: Sequence[str]) -> None:
         self.document = document
-        document.known((), ITEMS)
+        document.known((), (*ITEMS, *tables))
         self.folders = tuple(self._beside(f) for f in document.listed(("records",), (str,)))
         self.motions = document.tables("motions")
         self.suites = [Suite(document, n, self.folders) for n in range(len(self.motions))]
@@ -318,19 +324,19 @@ class _Reader:
             if len(decks) * len(combinations) * len(shakings or [None]) > MOST:
                 document.mistake("S605", f"the study has more than {MOST} runs")
                 return
-            read = dict[Params, dict[str, str]]()
+            read = dict[Params, str]()
             for params in combinations:
                 texts = tuple((n, v) for n, v in params if not _is_number(v))
                 if texts not in read:
-                    read[texts] = self._inputs(replace(base, deck=deck, params=params))
+                    read[texts] = digest_of_inputs(self._inputs(replace(base, deck=deck, params=params)))
                 case = replace(base, deck=deck, params=params)
                 for shaking in shakings or [None]:
-                    own = identity(case, shaking, read[texts])
-                    number = next(numbers)
-                    if seen.setdefault(own, number) != number:
-                        document.mistake("S605", f"runs {seen[own]} and {number} are the same")
+                    run = Run(next(numbers), case, shaking, first, read[texts])
+                    other = seen.setdefault(run.identity, run.number)
+                    if other != run.number:
+                        document.mistake("S605", f"runs {other} and {run.number} are the same")
                         return
-                    yield Run(number, case, shaking, first, own)
+                    yield run
 
     def _context(self, deck: str) -> LoadingContext:
         return loading.context(self.models[deck], Request(deck))
