@@ -14,13 +14,14 @@ import unicodedata
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Any, Final
 
+import numpy as np
 from numpy.typing import NDArray
 from tabulate import tabulate
 
 from pound_deck.model import Units
 from pound_solve.results import Results
 from pound_solve.results.contents import SECTIONS, TABLES
-from pound_solve.results.schema import Column, Table
+from pound_solve.results.schema import FORMATS, Column, Row, Table
 
 WIDTH: Final = 132  #: columns of the report
 _INDENT: Final = "  "
@@ -141,6 +142,12 @@ def block(units: Units, table: Table[Any], rows: NDArray[Any], note: str = "", m
     if lines and notes:
         lines += ["", *(_INDENT + line for line in textwrap.wrap(notes, WIDTH - len(_INDENT)))]
     return lines
+
+
+def printed(units: Units, table: Table[Any], rows: Iterable[Row], note: str = "") -> list[str]:
+    """Lines of a table that no file holds, from its rows; see `block`."""
+    kinds = [(c.name, "O" if c.is_text else FORMATS[c.fmt]) for c in table.columns]
+    return [line.rstrip() for line in block(units, table, np.array(list(rows), dtype=kinds), note)]
 
 
 def _body(units: Units, table: Table[Any], rows: NDArray[Any]) -> list[str]:

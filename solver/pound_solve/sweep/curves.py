@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple, Self
 
@@ -164,3 +164,11 @@ def curves(sweep: Sweep, asked: Asked) -> list[Curve]:
     for i, key in enumerate(zip(cases(sweep), sweep["record"].tolist())):
         groups.setdefault(key, []).append(i)
     return [Curve.of(*key, levels[own], found[own]) for key, own in groups.items()]
+
+
+def by_case(curves: Sequence[Curve]) -> dict[str, list[Curve]]:
+    """Curves by their case."""
+    out: dict[str, list[Curve]] = {}
+    for curve in curves:
+        out.setdefault(curve.case, []).append(curve)
+    return out

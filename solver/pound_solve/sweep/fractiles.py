@@ -10,10 +10,10 @@ import numpy as np
 
 from pound_deck.model import Units
 from pound_solve.numerics.types import Array
-from pound_solve.report.text import block
+from pound_solve.report.text import printed
 from pound_solve.results.schema import Column, Row, Table
 from pound_solve.results.sweep_file import Sweep
-from pound_solve.sweep.curves import COLLAPSE, Asked, Curve, curves, measure
+from pound_solve.sweep.curves import COLLAPSE, Asked, Curve, by_case, curves, measure
 from pound_solve.sweep.incremental import STANDS, Rules, collapse, demand_at, ends
 
 FRACTILES: Final = (0.16, 0.5, 0.84)
@@ -25,14 +25,6 @@ class Analysis(NamedTuple):
 
     curves: Sequence[Curve]
     rules: Rules
-
-
-def by_case(curves: Sequence[Curve]) -> dict[str, list[Curve]]:
-    """Curves by their case."""
-    out: dict[str, list[Curve]] = {}
-    for curve in curves:
-        out.setdefault(curve.case, []).append(curve)
-    return out
 
 
 def capacities(analysis: Analysis) -> Iterator[Row]:
@@ -86,15 +78,10 @@ def report(sweep: Sweep, asked: Asked, rules: Rules) -> Iterator[str]:
     for case, own in by_case(curves(sweep, asked)).items():
         analysis = Analysis(own, rules)
         yield from ("", case) if case else ("",)
-        yield from block(units, CAPACITIES, _structured(CAPACITIES, capacities(analysis)))
+        yield from printed(units, CAPACITIES, capacities(analysis))
         yield ""
-        yield from block(units, table, _structured(table, rows_of_fractiles(analysis)))
+        yield from printed(units, table, rows_of_fractiles(analysis))
         yield ""
-
-
-def _structured(table: Table[Analysis], rows: Iterator[Row]) -> np.ndarray[tuple[int], np.dtype[np.void]]:
-    kinds = [(c.name, "O" if c.is_text else "i8" if c.fmt == "int" else "f8") for c in table.columns]
-    return np.array(list(rows), dtype=kinds)
 
 
 CAPACITIES: Final = Table(
