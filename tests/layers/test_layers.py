@@ -105,6 +105,11 @@ WITHIN = {
         "plan",
         "table",
         "session",
+        "incremental",
+        "curves",
+        "hunt",
+        "fractiles",
+        "fragilities",
     ),
     "driver": (
         "request",

@@ -62,8 +62,10 @@ def aim(document: Document) -> Aim:
             document.mistake("S603", f"{name} is zero or above", (TABLE, name))
     if runs < 2:
         document.mistake("S603", "runs is two or more", (TABLE, "runs"))
-    if math.isnan(own["step"]) and document.at((TABLE,)) is not None:
-        document.mistake("S604", "[ida] needs step, the first step of its levels", (TABLE,), "step = 0.1")
+    if math.isnan(own["step"]):
+        own["step"] = 1.0
+        message = "the study needs a table [ida] with step, the first step of its levels"
+        document.mistake("S604", message, (TABLE,), "[ida] step = 0.1")
     if math.isnan(own["limit"]) and quantity == DEMAND:
         own["limit"] = LIMIT
     return Aim(
