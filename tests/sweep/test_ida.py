@@ -120,7 +120,7 @@ def test_contact_is_a_demand_like_any_other(tmp_path):
     [
         (('demand = "peak_drift"', 'demand = "drft"'), "S602", "no quantity drft"),
         (("step = 0.1", "step = -1"), "S603", "step is above zero"),
-        (("step = 0.1\n", ""), "S604", "needs step"),
+        (("step = 0.1\n", ""), "S604", "with step"),
         (("runs = 7", "runs = 1"), "S603", "two or more"),
         (("runs = 7", "rums = 7"), "S602", "no item rums"),
     ],
