@@ -11,6 +11,7 @@ from pound_solve.catalog import specs
 from pound_solve.editor import kate, notepad, textmate
 from pound_solve.report.deck_reference import deck_page
 from pound_solve.results.page import results_page
+from pound_solve.sweep import quantities
 from verification import cases
 
 MANUAL = Path(__file__).parents[1] / "manual"
@@ -46,6 +47,14 @@ def results() -> None:
     write("results.md", f"{head}{line}\n\n{results_page()}")
 
 
+def sweep() -> None:
+    """The quantities of a sweep, in a page that is written by hand."""
+    page = (MANUAL / "sweep.md").read_text(encoding="utf-8")
+    before, rest = page.split("<!-- quantities -->\n")
+    after = rest.partition("<!-- end -->")[2]
+    write("sweep.md", f"{before}<!-- quantities -->\n{quantities.page()}<!-- end -->{after}")
+
+
 def verification() -> None:
     """The page of verification, whose cases are run."""
     page = cases.page(cases.PAGE.read_text(encoding="utf-8"))
@@ -77,7 +86,9 @@ def highlighting() -> None:
         write(name, text)
 
 
-PARTS = {part.__name__: part for part in (messages, reference, results, loops, highlighting, verification)}
+PARTS = {
+    part.__name__: part for part in (messages, reference, results, sweep, loops, highlighting, verification)
+}
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)

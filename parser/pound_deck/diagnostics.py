@@ -1,6 +1,7 @@
 """Diagnostics: what is wrong, where, and what would be right; the numbered table of all messages.
 
-Codes: P1xx source text, P2xx cards and values, P3xx the model, R4xx records, A5xx stops of an analysis.
+Codes: P1xx source text, P2xx cards and values, P3xx the model, R4xx records, A5xx stops of an analysis,
+S6xx studies of many runs.
 """
 
 from __future__ import annotations
@@ -122,6 +123,7 @@ def messages_page() -> str:
         "P3": "The model",
         "R4": "Records",
         "A5": "Stops of an analysis",
+        "S6": "Studies of many runs",
     }
     out = [
         "# Messages",
@@ -490,6 +492,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "The samples are used as they stand. The file may have been edited, scaled or cut, or its header "
         "may belong to the record before processing. Compare it with the agency's file.",
     ),
+    "R410": (
+        "no one motion to be replaced",
+        "The motions of a sweep take the place of the one line under EQUAKE. Name the records of a deck "
+        "with several lines, or none, by PARAMs.",
+    ),
     "A501": (
         "unstable structure",
         "The stiffness matrix is singular: some node can move without resistance. The message names"
@@ -528,6 +535,39 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "disk full",
         "The disk has no room for the results. What was written before is kept. It replaces no older "
         "results: then it stays in the file whose name ends in .partial.h5. Make room, give another folder "
-        "with -o, or store less (OUTPUT EVERY, NODES, MEMBERS).",
+        "with -o, or store less (OUTPUT EVERY, NODES, MEMBERS, HISTORIES).",
+    ),
+    "S601": (
+        "the study is no TOML",
+        "The message names the line. A text stands in quotes, a list in brackets; a table begins with "
+        "[name], each of several tables of one name with [[name]].",
+    ),
+    "S602": (
+        "unknown item of a study",
+        "The study, or one of its tables, has no item of that name. The message names the nearest, or all.",
+    ),
+    "S603": (
+        "value of the wrong kind",
+        "The item takes a text, a number, a list or a table, or a number above zero. The message states "
+        "which.",
+    ),
+    "S604": (
+        "a file of the study is missing",
+        "The study names no deck, or no file fits a pattern. Paths and patterns count from the folder of "
+        "the study; on the command line, from the working folder.",
+    ),
+    "S605": (
+        "items of a study contradict each other",
+        "A PARAM has values in two places, lists of zip differ in length, an intensity lacks an item, or "
+        "two runs are the same. The message states which.",
+    ),
+    "S606": (
+        "a record cannot be used as the study says",
+        "The file of the record gives another unit, or the record cannot be scaled to the intensity. "
+        "Records that are read differently stand in [[motions]] tables of their own.",
+    ),
+    "S607": (
+        "a PARAM without effect",
+        "The deck uses the PARAM for its motion alone, and the records of the study replace that motion.",
     ),
 }

@@ -191,6 +191,14 @@ SECTIONS: Final = (
                 "pressed; 0: none",
             ),
             Field(
+                "HISTORIES",
+                Kind.WORD,
+                default="YES",
+                words=("YES", "PACKED", "NO"),
+                doc="histories in the results file; PACKED: compressed, which takes longer; "
+                "NO: times and tables only",
+            ),
+            Field(
                 "STOREYS",
                 Kind.WORD,
                 default="YES",

@@ -22,6 +22,7 @@ def run(
     params: Mapping[str, object] | None = None,
     *,
     out: str | Path | None = None,
+    name: str = "",
     records: Sequence[str | Path] = (),
     method: str | None = None,
     dt: float | None = None,
@@ -39,6 +40,8 @@ def run(
     out : str or Path, optional
         Folder of ``<deck>.rpt`` and ``<deck>.h5``; the deck's own if left out.  Results of a deck that is
         no file then stand in a temporary folder, which goes with the returned object.
+    name : str, optional
+        Name of these files in place of the deck's, so that runs of one deck keep apart.
     records : sequence of str or Path, optional
         Folders where records are looked for, after the deck's.
     method : str, optional
@@ -56,6 +59,8 @@ def run(
 
     Raises
     ------
+    ValueError
+        The name is a path.
     pound_solve.driver.prepare.DeckError
         The deck has mistakes; the text names file, line and column of each.
     OSError
@@ -72,7 +77,9 @@ def run(
     if isinstance(deck, Mapping):
         deck = Deck.from_sections(deck)
     if not isinstance(deck, Deck):
-        return execute(Request(str(deck), texts, folder, folders, method, dt, tol))[1]
+        return execute(Request(str(deck), texts, folder, folders, method, dt, tol, name=name))[1]
     unsaved = {os.path.realpath(PLACE): deck.text}
-    request = Request(PLACE, texts, folder, folders, method, dt, tol, unsaved=unsaved, name=deck.name)
+    request = Request(
+        PLACE, texts, folder, folders, method, dt, tol, unsaved=unsaved, name=name or deck.name
+    )
     return in_temporary_folder(request) if folder is None else execute(request)[1]

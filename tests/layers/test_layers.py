@@ -30,6 +30,7 @@ ROOMS = (
     "driver",
     "__init__",
     "assess",
+    "sweep",
     "editor",
     "cli",
     "__main__",
@@ -74,6 +75,7 @@ WITHIN = {
         "reader",
         "vtkhdf",
         "page",
+        "sweep_file",
     ),
     "editor": (
         "reading",
@@ -92,8 +94,30 @@ WITHIN = {
         "notepad",
         "kate",
     ),
+    "sweep": (
+        "document",
+        "run",
+        "quantities",
+        "entry",
+        "records",
+        "study",
+        "limits",
+        "work",
+        "executors",
+        "lock",
+        "conduct",
+        "plan",
+        "table",
+        "session",
+        "incremental",
+        "curves",
+        "hunt",
+        "fractiles",
+        "fragilities",
+    ),
     "driver": (
         "request",
+        "record_card",
         "identity",
         "outputs",
         "overrides",
@@ -107,7 +131,8 @@ WITHIN = {
 #: who may import a library, as paths below the two packages
 ONLY_IN = {
     "lark": {"cards.py"},
-    "h5py": {"results/reader.py", "results/writer.py", "results/vtkhdf.py"},
+    "h5py": {"results/reader.py", "results/writer.py", "results/vtkhdf.py", "results/sweep_file.py"},
+    "distributed": {"sweep/executors.py"},
     "tabulate": {"report/text.py"},
     "matplotlib": {"report/plot/style.py"},
     "pandas": {"results/frames.py", "results/reader.py"},
@@ -178,7 +203,7 @@ def test_the_solver_takes_the_model_from_the_parser_and_only_the_top_reads_decks
     for path in SOLVER.rglob("*.py"):
         taken = {n.split(".")[1] for n in imported(path) if n.startswith("pound_deck.")}
         allowed = {"model", "schema", "diagnostics"}
-        if place(path).startswith(("driver/", "cli/", "assess/")):
+        if place(path).startswith(("driver/", "cli/", "assess/", "sweep/")):
             allowed |= {"reader"}
         if place(path).startswith("cli/"):
             allowed |= {"layout"}

@@ -4,6 +4,7 @@ import errno
 import os
 import shutil
 from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
@@ -160,6 +161,72 @@ def test_an_open_older_result_stays_readable(tmp_path):
         own = first.history("node/u")
         pound_solve.run(write(tmp_path, strength=5)).close()
         assert (first.history("node/u") == own).all()
+
+
+def test_runs_in_a_loop_leave_open_results_alone_where_open_files_cannot_be_removed(tmp_path, monkeypatch):
+    """As on Windows: no locks, and an open file cannot be removed or replaced."""
+    held = set()
+
+    def guarded(own):
+        def call(*paths, **options):
+            if held & {str(p) for p in paths}:
+                raise PermissionError(errno.EACCES, "in use", str(paths[-1]))
+            return own(*paths, **options)
+
+        return call
+
+    monkeypatch.setattr(safe_file, "fcntl", None)
+    monkeypatch.setattr(Path, "unlink", guarded(Path.unlink))
+    monkeypatch.setattr(os, "replace", guarded(os.replace))
+    deck = write(tmp_path)
+    with pound_solve.run(deck) as first:
+        held.add(str(first.path))
+        own = first.history("node/u")
+        with pytest.raises(ResultsError, match="the results of this run are in"):
+            pound_solve.run(write(tmp_path, strength=5))
+        with Results.open(partial(first.path)) as second:
+            held.add(str(second.path))
+            other = second.history("node/u")
+            with pytest.raises(ResultsError, match=r"open in another run, or in a program that reads it"):
+                pound_solve.run(write(tmp_path, strength=6))
+            with pound_solve.run(deck, name="third") as third:
+                assert third.path.name == "third.h5" and third.path.with_suffix(".rpt").exists()
+            assert (second.history("node/u") == other).all()
+        assert (first.history("node/u") == own).all() and (own != other).any()
+
+
+def test_runs_of_one_deck_keep_apart_by_name(tmp_path, capsys):
+    deck = write(tmp_path)
+    for name in ("a", "b.2"):
+        assert main([str(deck), "--name", name, "--quiet"]) == 0
+        assert {p.name for p in tmp_path.glob(f"{name}.*")} == {f"{name}.h5", f"{name}.rpt"}
+    assert not deck.with_suffix(".h5").exists()
+    with pytest.raises(SystemExit):
+        main([str(deck), "--name", "sub/a"])
+    assert "--name: sub/a is a path" in capsys.readouterr().err
+    with pytest.raises(ValueError, match="is a path"):
+        pound_solve.run(deck, name="../a")
+
+
+def test_histories_may_be_packed_or_left_out(tmp_path):
+    """The tables are the same; packed histories are so to the last bit."""
+    deck = write(tmp_path, motion=QUAKE.format(a=3))
+    found = {}
+    for word in ("YES", "PACKED", "NO"):
+        own = tmp_path / f"{word}.inp"
+        own.write_text(f"{deck.read_text()} HISTORIES={word}\n".replace("0.001\n HIST", "0.001 HIST"))
+        found[word] = pound_solve.run(own)
+    whole, packed, none = found.values()
+    assert none.histories == ("time",) and len(none.time) == len(whole.time)
+    for name in whole.histories:
+        assert (whole.history(name) == packed.history(name)).all()
+    for name in set(whole.tables) - {"run_figures", "arrays", "imports", "options"}:
+        for other in (packed, none):
+            assert repr(whole.table(name)) == repr(other.table(name)), name
+    sizes = [results.path.stat().st_size for results in found.values()]
+    assert sizes[0] > 1.2 * sizes[1] and sizes[1] > 1.5 * sizes[2]
+    for results in found.values():
+        results.close()
 
 
 @pytest.mark.parametrize("suffix", [".h5", ".rpt", ".partial.rpt"])

@@ -13,10 +13,11 @@ import pytest
 from pound_solve.loading.forces import record as force_record
 from pound_solve.loading.forces import sine as force_sine
 from pound_solve.loading.forces import table as force_table
-from pound_solve.loading.motions import record, sine, synthetic, table
+from pound_solve.loading.motions import matched, record, sine, synthetic, table
 from pound_solve.loading.motions.base import METRE, LoadingContext, Motion
 from pound_solve.loading.motions.wave import fronts
 from pound_solve.loading.records.base import RecordError
+from pound_solve.loading.spectrum import response_spectrum
 
 
 def context(tmp_path: Path = Path(), length: str = "m", duration: float = 0.0) -> LoadingContext:
@@ -443,3 +444,44 @@ def test_specs_are_sound() -> None:
         assert {"DIRECTION", "SCALE", "SUPPORTS", "WAVE", "ABOUT"} <= set(names)
         assert module.SPEC.family == "motion" and module.SPEC.impl is module.build
         assert all(f.doc and f.doc[-1] != "." for f in module.SPEC.fields)
+
+
+class TestMatched:
+    POINTS = (0.05, 4.0, 0.15, 10.0, 0.5, 10.0, 2.0, 2.5, 4.0, 0.9)
+
+    def card(self, **given: Any) -> dict[str, Any]:
+        defaults = {f.name: f.default for f in matched.SPEC.fields}
+        return {**defaults, "SPECTRUM": self.POINTS, "DT": 0.00625, **given}
+
+    @pytest.mark.parametrize(("seed", "xi"), [(1, 0.05), (2, 0.05), (3, 0.02)])
+    def test_spectrum_is_met_between_the_periods_too(self, seed: int, xi: float) -> None:
+        motion = matched.build(self.card(SEED=seed, XI=xi), context())
+        t, sa = np.array(self.POINTS[::2]), np.array(self.POINTS[1::2])
+        periods = np.geomspace(t[0], t[-1], 401)
+        target = np.exp(np.interp(np.log(periods), np.log(t), np.log(sa)))
+        found = response_spectrum(motion.acceleration, periods, xi).psa[0]
+        assert np.abs(found / target - 1.0).max() < 0.08
+        assert motion.info["misfit"] <= 0.05
+
+    def test_ground_comes_to_rest_where_it_began(self) -> None:
+        a = matched.build(self.card(), context()).acceleration
+        velocity = a.integral()
+        assert abs(velocity.value(a.end)) < 1e-9 and abs(velocity.integral().value(a.end)) < 1e-8
+
+    def test_same_seed_same_motion(self) -> None:
+        one, two, other = (matched.build(self.card(SEED=s), context()) for s in (3, 3, 4))
+        assert np.array_equal(one.acceleration.coefs, two.acceleration.coefs)
+        assert not np.array_equal(one.acceleration.coefs, other.acceleration.coefs)
+
+    @pytest.mark.parametrize(
+        ("given", "why"),
+        [
+            ({"SPECTRUM": (0.1, 1.0, 0.5)}, "no whole pairs"),
+            ({"SPECTRUM": (0.5, 1.0, 0.1, 1.0)}, "do not rise"),
+            ({"DT": 0.05}, "too long for the period 0.05"),
+            ({"TOL": 0.01, "DURATION": 5.0}, "is met to .* % only, TOL=0.01"),
+        ],
+    )
+    def test_refusals(self, given: dict[str, Any], why: str) -> None:
+        with pytest.raises(RecordError, match=why):
+            matched.build(self.card(**given), context())

@@ -234,7 +234,12 @@ def output_times(every: float, end: float) -> Array:
 
 
 def run(
-    structure: Structure, state: static.StaticState, card: Card, loading: Loading, output: HistoryOutput
+    structure: Structure,
+    state: static.StaticState,
+    card: Card,
+    loading: Loading,
+    output: HistoryOutput,
+    like: RecordedItems | None = None,
 ) -> HistoryResult:
     """Integrate the motion of a structure.
 
@@ -247,6 +252,8 @@ def run(
         Of `SPEC`.
     loading : Loading
     output : HistoryOutput
+    like : RecordedItems, optional
+        What an earlier history of the same model recorded, whose motion may have been another.
 
     Raises
     ------
@@ -257,7 +264,7 @@ def run(
     if card["FROM"] == "REST":
         state = static.at_rest(structure)
     every = output_interval(structure.model, loading, end)
-    start, items, first_energy = _prepared(structure, state, loading, output_times(every, end))
+    start, items, first_energy = _prepared(structure, state, loading, output_times(every, end), like)
 
     def tell(t: float, doing: str) -> None:
         output.progress(t, end, doing)
@@ -283,7 +290,11 @@ def run(
 
 
 def _prepared(
-    structure: Structure, state: static.StaticState, loading: Loading, times: Array
+    structure: Structure,
+    state: static.StaticState,
+    loading: Loading,
+    times: Array,
+    like: RecordedItems | None,
 ) -> tuple[Start, RecordedItems, Array | None]:
     """Start of a history, what is recorded of it, and the energies at its start where it is taken up
     later.
@@ -300,7 +311,8 @@ def _prepared(
                 f"the saved state is of t = {saved.t:g}, the history ends at {end:g}"
             )
     system = reduction.build(structure, loading.motions, end, u, v, loading.forces)
-    items = RecordedItems.of(system, monitored(structure, system))
+    items = like.again(system) if like and like.holds_for(system) else None
+    items = items or RecordedItems.of(system, monitored(structure, system))
     if saved is not None:
         return restart.resume(saved, system, times), items, saved.first
     return begin(structure, system, u, v, state.states, state.u, times), items, None

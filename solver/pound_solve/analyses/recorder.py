@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Self
+from dataclasses import dataclass, replace
+from typing import Any, Final, Self
 
 import numpy as np
 
@@ -26,6 +26,15 @@ from pound_solve.structure.storeys import (
     storey_sums,
 )
 
+#: of a reduced system: how its inputs act, and the loads beside them
+_ACTING: Final = (
+    "constant",
+    "inputs",
+    "law_inputs",
+    "support_inputs",
+    "acceleration_inputs",
+    "force_inputs",
+)
 LARGEST = 1e100  #: magnitude of a sample: energies, which are products of samples, stay finite
 BLOCK, HELD = 256, 2**20  #: samples kept before they are written, and numbers of one kind in them, at most
 
@@ -97,12 +106,28 @@ class RecordedItems:
             recorded_sums(system, supports, found),
         )
 
+    def holds_for(self, system: ReducedSystem) -> bool:
+        """Whether these are what another history of the same model records: its unknowns are the same, and
+        its inputs act alike.
+        """
+        own = self.system
+        return own.dofs == system.dofs and all(
+            np.array_equal(getattr(own, name), getattr(system, name)) for name in _ACTING
+        )
+
+    def again(self, system: ReducedSystem) -> RecordedItems:
+        """The same items of a history that they hold for."""
+        return replace(self, system=system)
+
     @property
     def room(self) -> int:
         """Instants of close-ups that the deck has room for."""
         widths = 9 * len(self.nodes), len(self.outputs), *(len(x.constant) for x in self.sums.values())
         others = 1 + len(self.springs) + 2 * len(self.contacts) + len(self.drifts.names)
-        budget = self.system.structure.model.output["CLOSEUPS"] * MEGABYTE
+        output = self.system.structure.model.output
+        if output["HISTORIES"] == "NO":
+            return 0
+        budget = output["CLOSEUPS"] * MEGABYTE
         return int(budget / (8 * (sum(widths) + others)))
 
     @property

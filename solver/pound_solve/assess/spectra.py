@@ -6,7 +6,6 @@ are told as in any other deck.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,9 +16,9 @@ import numpy as np
 
 from pound_deck.diagnostics import Diagnostic, has_errors
 from pound_deck.model import Model, Units
-from pound_deck.reader import read_deck, read_text
+from pound_deck.reader import read_deck
 from pound_solve.catalog import catalog
-from pound_solve.driver import loading
+from pound_solve.driver import loading, record_card
 from pound_solve.driver.prepare import DeckError
 from pound_solve.driver.request import Request
 from pound_solve.loading.motions.piecewise import Piecewise
@@ -27,18 +26,6 @@ from pound_solve.results import Results
 
 SAMPLES: Final = 10  #: stored accelerations in the shortest period, below which they are too coarse
 WAYS: Final = MappingProxyType({"X": "X", "Y": "Y", "R": "R (rad)"})  #: names of directions
-_AROUND: Final = """UNITS kN m s
-NODES
- 1 0 0 FIX=XYR
- 2 1 0 FIX=YR
-ELEMENTS
- 1 SPRING 1 2
-PROPS
- SPRING SPRING KX=1
-ANALYSIS
- STATIC
-EQUAKE
-"""
 
 
 class SpectrumError(Exception):
@@ -82,18 +69,11 @@ def of_record(name: str, items: Sequence[str] = (), folders: Sequence[Path] = ()
     DeckError
         The record cannot be read, or an item is none of the card's.
     """
-    card = " ".join([f' RECORD "{name}"', *map(_item, items)])
-    model, found, files = read_text(f"{_AROUND}{card}\n", catalog(), name="spectrum")
+    model, found, files = record_card.read(name, items, "spectrum")
     source = _of_model(model, found, files, Request("spectrum", records=tuple(folders)))
     (acceleration,) = source.accelerations.values()
     title = " ".join([Path(name).name, *items])
     return Source(source.units, {title: acceleration}, source.warnings, source.files)
-
-
-def _item(text: str) -> str:
-    """An item as a deck writes it: a word with a slash, as of a unit, in quotes."""
-    name, _, value = " ".join(text.split()).partition("=")
-    return f'{name}="{value}"' if re.fullmatch(r"[A-Za-z]+/[A-Za-z]\w*", value) else f"{name}={value}"
 
 
 def of_deck(request: Request) -> Source:

@@ -46,7 +46,7 @@ def request(args: argparse.Namespace) -> Request:
     Raises
     ------
     SystemExit
-        The deck is a results file, or a --set is not NAME=VALUE.
+        The deck is a results file, a --set is not NAME=VALUE, or the name is a path.
     """
     from pound_solve.driver.run import Request
     from pound_solve.results import is_hdf5
@@ -56,8 +56,11 @@ def request(args: argparse.Namespace) -> Request:
         text = f"{args.deck} is a results file, not a deck: {readers}"
         raise SystemExit(complain(text, MISTAKES))
     given = vars(args)
-    own = {name: given[name] for name in ("method", "dt", "tol", "explain") if name in given}
-    return Request(args.deck, parameters(args.set), given.get("out"), tuple(args.records), **own)
+    own = {name: given[name] for name in ("method", "dt", "tol", "explain", "name") if name in given}
+    try:
+        return Request(args.deck, parameters(args.set), given.get("out"), tuple(args.records), **own)
+    except ValueError as err:
+        raise SystemExit(complain(f"--name: {err}", MISTAKES)) from None
 
 
 def parameters(items: Sequence[str]) -> dict[str, str]:

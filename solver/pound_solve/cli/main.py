@@ -16,11 +16,10 @@ from pound_solve.cli import verbs
 from pound_solve.cli.common import MISTAKES, STOPPED, complain
 from pound_solve.cli.interruption import Interruption
 from pound_solve.modules import modules_below
+from pound_solve.numerics import threads
 from pound_solve.version import __version__
 
 VERBS = tuple(name.rpartition(".")[2] for name in modules_below(verbs))
-#: environment variables by which builds of numpy's linear algebra limit their threads
-THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
 
 
 def parser() -> argparse.ArgumentParser:
@@ -52,10 +51,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             return complain(f"{words[0]} is neither a verb nor a deck{hint}", MISTAKES)
         words.insert(0, "run")
     args = parser().parse_args(words)
-    # set before numpy is imported: the last digits depend on the number of threads, and small matrices are
-    # slower with several
-    for name in THREADS:
-        os.environ.setdefault(name, "1")
+    threads.one()
     with Interruption() as args.interruption, warnings.catch_warnings():
         warnings.showwarning = _tell
         return _status(args.execute, args)

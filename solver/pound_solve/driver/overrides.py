@@ -1,4 +1,4 @@
-"""What the command line replaces in the deck: METHOD, DT and TOL of every HISTORY.
+"""What a request replaces in the deck: METHOD, DT and TOL of every HISTORY, and the ground motion.
 
 ``--set`` replaces PARAMs when the deck is read.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, Final
 
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model, Span
@@ -15,9 +15,16 @@ from pound_deck.schema import REQUIRED, Spec
 from pound_solve.catalog import catalog
 from pound_solve.driver.request import Request
 
+#: items of a motion that tell how it meets the structure
+MEETING: Final = ("DIRECTION", "SUPPORTS", "WAVE", "ABOUT")
+
 
 def overridden(model: Model, request: Request, found: list[Diagnostic]) -> Model:
-    """The model with ``--method``, ``--dt``, ``--tol`` in its HISTORY cards; mistakes go into `found`."""
+    """The model with ``--method``, ``--dt``, ``--tol`` in its HISTORY cards and with the motion of the
+    request; mistakes go into `found`.
+    """
+    if request.motion is not None:
+        model = with_motion(model, request.motion, found)
     given = {"DT": request.dt, "TOL": request.tol}
     if request.method is None and set(given.values()) == {None}:
         return model
@@ -31,6 +38,24 @@ def overridden(model: Model, request: Request, found: list[Diagnostic]) -> Model
             card = changed
         cards.append(card)
     return replace(model, analyses=tuple(cards))
+
+
+def with_motion(model: Model, motion: Card, found: list[Diagnostic]) -> Model:
+    """The model with a motion in place of the one under EQUAKE.
+
+    The record is the other motion's, with all that tells how it is read and scaled.  How it meets the
+    structure, the items `MEETING`, stays that of the deck's line.
+    """
+    if len(model.equake) != 1:
+        message = (
+            f"a motion takes the place of the one line under EQUAKE, and there are {len(model.equake)}"
+        )
+        place = model.equake[1].span if model.equake else None
+        found.append(Diagnostic("R410", message, place, "name the record by a PARAM"))
+        return model
+    (old,) = model.equake
+    values = {**motion.values, **{item: old.values[item] for item in MEETING}}
+    return replace(model, equake=(replace(motion, values=values),))
 
 
 def _changed(

@@ -11,7 +11,7 @@ from pound_deck.reader import read_deck
 from pound_solve.catalog import catalog
 from pound_solve.driver import loading
 from pound_solve.driver.outputs import overwritten
-from pound_solve.driver.overrides import overridden
+from pound_solve.driver.overrides import overridden, with_motion
 from pound_solve.driver.preflight import preflight
 from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
@@ -81,6 +81,31 @@ def assembled(
     if has_errors(found) or structure is None:
         raise DeckError(found, files)
     return Prepared(model, tuple(motions), tuple(forces), structure, tuple(found), files, saved)
+
+
+def shaken(ready: Prepared, request: Request) -> Prepared:
+    """The same structure under the motion of another request.
+
+    Parameters
+    ----------
+    ready : Prepared
+        Of a request that differs in its motion only.
+    request : Request
+        With a motion.
+
+    Raises
+    ------
+    DeckError
+        The record has mistakes.
+    """
+    assert request.motion is not None
+    found: list[Diagnostic] = []
+    model = with_motion(ready.model, request.motion, found)
+    motions = loading.motions(model, loading.context(model, request), found)
+    if has_errors(found):
+        raise DeckError(found, ready.files)
+    own = identity(model, motions, ready.forces)
+    return replace(ready, model=model, motions=tuple(motions), warnings=tuple(found), identity=own)
 
 
 def _assembled(model: Model, motions: Sequence[Motion]) -> Structure:

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from pound_deck.model import Card
+
 
 @dataclass(frozen=True)
 class Request:
@@ -28,7 +30,14 @@ class Request:
     unsaved : mapping of str to str
         Texts of an editor by real path, read in place of these files.
     name : str
-        Stem of the names of the output files; the deck's own if empty.
+        Name of report and results without their endings; empty for the deck's.
+    motion : Card or None
+        RECORD that takes the place of the deck's one line under EQUAKE, see `overrides.with_motion`.
+
+    Raises
+    ------
+    ValueError
+        The name is a path.
     """
 
     deck: str
@@ -41,6 +50,11 @@ class Request:
     explain: bool = False
     unsaved: Mapping[str, str] = field(default_factory=dict)
     name: str = ""
+    motion: Card | None = None
+
+    def __post_init__(self) -> None:
+        if self.name and Path(self.name).name != self.name:
+            raise ValueError(f"{self.name} is a path: a name stands without a folder")
 
     def path(self, suffix: str) -> Path:
         """Path of an output file."""

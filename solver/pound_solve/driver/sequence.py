@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 import numpy as np
 
@@ -12,17 +13,16 @@ from pound_deck.model import Card
 from pound_solve.analyses import history, modal, plausibility, pushover, restart, static
 from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.analyses.recorder import RecordedItems, SampleBlock
-from pound_solve.analyses.static_response import static_response
+from pound_solve.analyses.static_response import StaticResponse, static_response
 from pound_solve.driver.identity import identity
 from pound_solve.driver.prepare import Prepared
 from pound_solve.driver.request import Request
 from pound_solve.integrate.protocol import INTERRUPTED, Stop
 from pound_solve.numerics.types import Array
-from pound_solve.results import Writer
-from pound_solve.results.contents import closeups_of, layout_of, values_of
+from pound_solve.results.contents import HISTORIES, closeups_of, layout_of, values_of
 from pound_solve.results.record import RunRecord
 from pound_solve.results.safe_file import NoRoomError
-from pound_solve.results.schema import Stage
+from pound_solve.results.schema import Layout, Stage
 from pound_solve.results.words import text_of
 from pound_solve.structure.diaphragms import diaphragm_collisions
 from pound_solve.structure.reduction_checks import ReductionError
@@ -33,6 +33,60 @@ EXTREME = "of the deck that is far too large or too small"
 Progress: TypeAlias = Callable[[float, float, str], None]
 
 
+class RunOutput(Protocol):
+    """Where a run puts what it finds; `results.Writer` is one, which says what the calls mean."""
+
+    def text(self, name: str, text: str) -> None:
+        """Take a text of the input."""
+        ...
+
+    def tables(self, stage: Stage, record: RunRecord) -> None:
+        """Take the tables of a stage."""
+        ...
+
+    def start_history(self, layout: Layout, packed: bool = False) -> None:
+        """Prepare for histories."""
+        ...
+
+    def append(self, block: Mapping[str, Array]) -> None:
+        """Take some instants of all histories."""
+        ...
+
+    def stored(self, name: str) -> Array:
+        """Rows of a history so far."""
+        ...
+
+    def closeups(self, layout: Layout, blocks: Sequence[Mapping[str, Array]]) -> None:
+        """Take the close-ups of collisions."""
+        ...
+
+    def restart(self, state: Mapping[str, Array], identity: Mapping[str, str]) -> None:
+        """Take the state that a later run can be taken up from."""
+        ...
+
+
+@dataclass
+class Settled:
+    """What runs of one structure share: the first of them finds it, the others differ in their motion.
+
+    Attributes
+    ----------
+    static : StaticState or None
+        None before the first run.
+    response : StaticResponse or None
+        Of STATIC.
+    modal : ModalResult or None
+        Of MODAL.
+    items : RecordedItems or None
+        Of HISTORY, with the sums of forces that it records.
+    """
+
+    static: static.StaticState | None = None
+    response: StaticResponse | None = None
+    modal: modal.ModalResult | None = None
+    items: RecordedItems | None = None
+
+
 class AnalysisSequence:
     """The analyses of one deck.
 
@@ -41,16 +95,25 @@ class AnalysisSequence:
     ready : Prepared
     request : Request
         Tells which PARAMs do not come from the deck, and whether to explain.
-    writer : Writer
+    writer : RunOutput
     progress : callable or None
     began : float
         Reading of `time.perf_counter` when the run began.
+    settled : Settled, optional
+        That of earlier runs with the same model but for their motion.
     """
 
     def __init__(
-        self, ready: Prepared, request: Request, writer: Writer, progress: Progress | None, began: float
+        self,
+        ready: Prepared,
+        request: Request,
+        writer: RunOutput,
+        progress: Progress | None,
+        began: float,
+        settled: Settled | None = None,
     ) -> None:
         self.explain, self.writer = request.explain, writer
+        self.settled = settled or Settled()
         self.loading = history.Loading(ready.motions, ready.forces, ready.saved)
         self.record = RunRecord(
             ready.model,
@@ -61,7 +124,6 @@ class AnalysisSequence:
             began,
             diaphragm_collisions(ready.structure),
         )
-        self.record.stored = writer.stored
         self.record.warnings = ready.warnings
         self.output = HistoryWriter(self.record, writer, progress)
 
@@ -124,24 +186,28 @@ class AnalysisSequence:
         """The static state, if anything needs one; from here on the structure has the stiffness that the
         axial forces of that state give.
         """
-        structure = self.record.structure
+        structure, settled = self.record.structure, self.settled
         asked = bool(self._cards("STATIC"))
         needed = bool(self._cards("PUSHOVER")) or any(
             "STATIC" in (c.values.get("FROM"), c.values.get("AFTER")) for c in self.record.model.analyses
         )
-        if not (asked or needed or structure.geometric):
+        if settled.static is not None:
+            state = settled.static
+        elif not (asked or needed or structure.geometric):
             state = static.at_rest(structure)
         else:
             state = static.solve(structure)
+        settled.static = state
         if asked:
-            self.record.static = static_response(structure, state)
+            self.record.static = settled.response = settled.response or static_response(structure, state)
             self.record.checks.append(self.record.static.check)
             self._write(Stage.STATIC)
         self.record.structure = structure.stressed(state.axial).displaced(state.u)
         return state
 
     def _modal(self, card: Card, state: static.StaticState) -> None:
-        self.record.modal = modal.run(self.record.structure, state, card)
+        self.settled.modal = self.settled.modal or modal.run(self.record.structure, state, card)
+        self.record.modal = self.settled.modal
         self._write(Stage.MODAL)
 
     def _pushover(self, card: Card, state: static.StaticState) -> None:
@@ -153,8 +219,8 @@ class AnalysisSequence:
 
     def _history(self, card: Card, state: static.StaticState) -> None:
         record = self.record
-        found = history.run(record.structure, state, card, self.loading, self.output)
-        record.history = found
+        found = history.run(record.structure, state, card, self.loading, self.output, self.settled.items)
+        record.history, self.settled.items = found, found.items
         record.solve_seconds += found.seconds
         record.cpu_seconds += found.cpu_seconds
         self._write(Stage.HISTORY)
@@ -170,29 +236,41 @@ class AnalysisSequence:
 class HistoryWriter:
     """Where the samples of a history go (`history.HistoryOutput`): into the results file.
 
+    With OUTPUT HISTORIES=NO the file gets their times only; the samples stay in memory until the tables
+    that need them are made.
+
     Parameters
     ----------
     record : RunRecord
-    writer : Writer
+    writer : RunOutput
     progress : callable or None
     """
 
-    def __init__(self, record: RunRecord, writer: Writer, progress: Progress | None) -> None:
+    def __init__(self, record: RunRecord, writer: RunOutput, progress: Progress | None) -> None:
         self.record, self.writer, self._progress = record, writer, progress
+        self._kept: list[SampleBlock] | None = [] if record.model.output["HISTORIES"] == "NO" else None
+        self.record.stored = writer.stored if self._kept is None else self._rows
 
     def start(self, items: RecordedItems) -> None:
         """Create the histories."""
         self.record.recorded = items
-        self.record.layout = layout_of(items)
-        self.writer.start_history(self.record.layout)
+        self.record.layout = layout_of(items) if self._kept is None else {}
+        self.writer.start_history(self.record.layout, self.record.model.output["HISTORIES"] == "PACKED")
 
     def append(self, block: SampleBlock) -> None:
         """Append some samples to all histories."""
-        self.writer.append(values_of(block))
+        if self._kept is not None:
+            self._kept.append(block)
+        self.writer.append(values_of(block) if self._kept is None else {"time": block.t})
+
+    def _rows(self, name: str) -> Array:
+        """Rows of a history that is not stored, shape (n_times, \\*row)."""
+        return np.concatenate([HISTORIES[name].values(block) for block in self._kept or ()])
 
     def closeups(self, blocks: Iterable[SampleBlock]) -> None:
         """Store the close-ups of collisions."""
-        self.writer.closeups(self.record.layout, [closeups_of(block) for block in blocks])
+        if self._kept is None:
+            self.writer.closeups(self.record.layout, [closeups_of(block) for block in blocks])
 
     def save(self, state: Mapping[str, Array]) -> None:
         """Store the state that a later run can be taken up from."""

@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from pound_solve.report.text import block
+from pound_solve.report.text import printed
 from pound_solve.results import Results
 from pound_solve.results.columns import CONTACT
 from pound_solve.results.schema import Column, Row, Table
@@ -56,9 +56,7 @@ def text(results: Results, periods: Sequence[float] = (), damping: Sequence[floa
     SeparationError
         There is no contact or no history in the file.
     """
-    found = rows(SeparationRecord(results, periods, damping))
-    kinds = [(c.name, "O" if c.is_text else "f8") for c in TABLE.columns]
-    return "\n".join(line.rstrip() for line in block(results.units, TABLE, np.array(found, dtype=kinds)))
+    return "\n".join(printed(results.units, TABLE, rows(SeparationRecord(results, periods, damping))))
 
 
 def rows(record: SeparationRecord) -> list[Row]:

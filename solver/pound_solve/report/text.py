@@ -15,6 +15,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any, Final, NamedTuple
 
+import numpy as np
 from numpy.typing import NDArray
 from tabulate import tabulate
 
@@ -22,7 +23,7 @@ from pound_deck.model import Units
 from pound_solve.report.views import view_of
 from pound_solve.results import Results
 from pound_solve.results.contents import SECTIONS, TABLES
-from pound_solve.results.schema import Column, Table
+from pound_solve.results.schema import FORMATS, Column, Row, Table
 
 WIDTH: Final = 132  #: columns of the report
 _INDENT: Final = "  "
@@ -169,6 +170,12 @@ def _with_notes(lines: list[str], table: Table[Any], note: str) -> list[str]:
     if lines and notes:
         lines = [*lines, "", *(_INDENT + line for line in textwrap.wrap(notes, WIDTH - len(_INDENT)))]
     return lines
+
+
+def printed(units: Units, table: Table[Any], rows: Iterable[Row], note: str = "") -> list[str]:
+    """Lines of a table that no file holds, from its rows; see `block`."""
+    kinds = [(c.name, "O" if c.is_text else FORMATS[c.fmt]) for c in table.columns]
+    return [line.rstrip() for line in block(units, table, np.array(list(rows), dtype=kinds), note)]
 
 
 class Formatted(NamedTuple):

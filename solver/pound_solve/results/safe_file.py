@@ -224,12 +224,12 @@ def in_use(path: Path) -> bool:
 
 def _locked(path: Path) -> IO[bytes]:
     """The file at a path, opened and locked."""
+    if fcntl is None:
+        return _fresh(path)
     while True:
         disk = path.open("ab", 0)  # creates it where there is none
         disk.close()
         disk = path.open("r+b", 0)
-        if fcntl is None:
-            return disk
         try:
             fcntl.flock(disk, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as err:
@@ -248,6 +248,16 @@ def _locked(path: Path) -> IO[bytes]:
         except FileNotFoundError:
             pass
         disk.close()  # the run that held it has ended and moved it away in the meantime
+
+
+def _fresh(path: Path) -> IO[bytes]:
+    """A new file at a path where there are no locks, but no file that is open can be removed."""
+    try:
+        path.unlink(missing_ok=True)
+    except PermissionError as err:
+        text = f"{path}: open in another run, or in a program that reads it; close it, or give another name"
+        raise BusyError(text) from err
+    return path.open("x+b", 0)
 
 
 def _only_read(disk: IO[bytes]) -> bool:

@@ -217,13 +217,15 @@ class Writer:
             if rows is not None:
                 self.table(table.name, rows, table.remark(record))
 
-    def start_history(self, layout: Layout) -> None:
+    def start_history(self, layout: Layout, packed: bool = False) -> None:
         """Create the histories' datasets.
 
         Parameters
         ----------
         layout : mapping
             For each name of `HISTORIES` but ``time`` its `HistoryLayout`.
+        packed : bool
+            Compress them; no digit is lost.
 
         Raises
         ------
@@ -233,14 +235,14 @@ class Writer:
         if self._layout:
             raise ValueError("the histories are started already")
         with undisturbed():
-            self._create("time", HistoryLayout((), {"unit": "T"}))
+            self._create("time", HistoryLayout((), {"unit": "T"}), packed)
             for name, own in layout.items():
                 if name == "time" or name not in HISTORIES:
                     raise ValueError(f"no history {name!r} in HISTORIES")
-                self._create(name, HistoryLayout(*own))
+                self._create(name, HistoryLayout(*own), packed)
             self._commit()
 
-    def _create(self, name: str, layout: HistoryLayout) -> None:
+    def _create(self, name: str, layout: HistoryLayout, packed: bool) -> None:
         shape = tuple(layout.shape)
         self._layout[name] = shape
         if 0 in shape:
@@ -254,6 +256,8 @@ class Writer:
             chunks=(min(BLOCK, max(WIDEST // math.prod(shape), 1)), *shape),
             dtype="f8",
             fletcher32=True,
+            compression="gzip" if packed else None,
+            compression_opts=1 if packed else None,  # higher levels cost much and gain little
         )
         for key, value in attributes.items():
             items = _items(value)

@@ -17,7 +17,7 @@ _OWN = Path(__file__).parents[2]
 FOLDERS = (_OWN / "examples", _OWN.parents[1] / "examples")
 #: a row of the table of examples/README.md
 _ROW = re.compile(r"\| \[(\w+)\]\(\w+/README\.md\) \| (.+?) \| (.+?) \|")
-_KEPT = (".inp", ".inc", ".md", ".ipynb")
+_KEPT = (".inp", ".inc", ".md", ".ipynb", ".toml", ".slurm")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -61,7 +61,7 @@ def _needs(told: str) -> str:
 
 def _write(source: Path, out: Path) -> int:
     """Write an example; no file that is there is changed."""
-    files = sorted(path for path in source.iterdir() if path.suffix in _KEPT)
+    files = sorted(path for path in source.iterdir() if path.suffix in _KEPT or path.name == "Snakefile")
     there = [out / path.name for path in files if (out / path.name).exists()]
     if there:
         return common.complain(f"{there[0]} exists already: give another folder with -o")

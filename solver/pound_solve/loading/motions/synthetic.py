@@ -43,18 +43,13 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     RecordError
         R405 where DURATION is shorter than two steps.
     """
-    dt, duration = float(card_values["DT"]), float(card_values["DURATION"])
-    n = round(duration / dt) + 1
-    if n < 3:
-        raise RecordError("R405", f"DURATION={duration:g} is shorter than two steps DT={dt:g}")
-    if duration / dt > MOST_SAMPLES:
-        raise RecordError("R405", f"DT={dt:g} makes more than {MOST_SAMPLES} samples", "give a longer DT")
+    t = samples(card_values)
     wg, zg = float(card_values["WG"]), float(card_values["ZG"])
     wf = 0.1 * wg if card_values.get("WF") is None else float(card_values["WF"])
     zf = zg if card_values.get("ZF") is None else float(card_values["ZF"])
     seed = int(card_values["SEED"])
 
-    t = dt * np.arange(n, dtype=np.float64)
+    n, dt = len(t), float(card_values["DT"])
     noise = np.random.default_rng(seed).standard_normal(n)
     w = np.asarray(2 * np.pi * np.fft.rfftfreq(n, dt), dtype=np.float64)
     a = np.fft.irfft(np.fft.rfft(noise) * transfer(w, wg, zg, wf, zf), n)
@@ -74,6 +69,23 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
         }
         | {"seed": seed, "wg": wg, "zg": zg, "wf": wf, "zf": zf},
     )
+
+
+def samples(card_values: Mapping[str, Any]) -> Array:
+    """Times of the samples of a motion of length DURATION every DT.
+
+    Raises
+    ------
+    RecordError
+        R405 where DURATION is shorter than two steps, or has too many.
+    """
+    dt, duration = float(card_values["DT"]), float(card_values["DURATION"])
+    n = round(duration / dt) + 1
+    if n < 3:
+        raise RecordError("R405", f"DURATION={duration:g} is shorter than two steps DT={dt:g}")
+    if duration / dt > MOST_SAMPLES:
+        raise RecordError("R405", f"DT={dt:g} makes more than {MOST_SAMPLES} samples", "give a longer DT")
+    return dt * np.arange(n, dtype=np.float64)
 
 
 def transfer(w: Array, wg: float, zg: float, wf: float, zf: float) -> Any:
@@ -109,17 +121,22 @@ def envelope(t: Array, rise: float, strong: float, decay: float) -> Array:
     return up * down
 
 
+#: items of every motion that noise under an envelope makes
+ENVELOPE: Final = (
+    Field("SEED", Kind.INT, default=1, lo=0, doc="seed of the noise; the same seed gives the same motion"),
+    Field("DT", Kind.REAL, "T", default=0.01, above=0, doc="step of the samples"),
+    Field("DURATION", Kind.REAL, "T", default=20.0, above=0, doc="length of the motion"),
+    Field("RISE", Kind.REAL, "T", default=2.0, lo=0, doc="length of the rise of the envelope"),
+    Field("STRONG", Kind.REAL, "T", default=8.0, lo=0, doc="length of its constant part"),
+    Field("DECAY", Kind.REAL, "1/T", default=0.3, lo=0, doc="exponent of its fall"),
+)
+
 SPEC: Final = Spec(
     "motion",
     "SYNTHETIC",
     "filtered white noise of Clough and Penzien",
     (
         Field("PGA", Kind.REAL, "L/T^2", above=0, doc="peak ground acceleration"),
-        Field(
-            "SEED", Kind.INT, default=1, lo=0, doc="seed of the noise; the same seed gives the same motion"
-        ),
-        Field("DT", Kind.REAL, "T", default=0.01, above=0, doc="step of the samples"),
-        Field("DURATION", Kind.REAL, "T", default=20.0, above=0, doc="length of the motion"),
         Field(
             "WG",
             Kind.REAL,
@@ -145,9 +162,7 @@ SPEC: Final = Spec(
             above=0,
             doc="damping ratio of the second filter; left out: ZG",
         ),
-        Field("RISE", Kind.REAL, "T", default=2.0, lo=0, doc="length of the rise of the envelope"),
-        Field("STRONG", Kind.REAL, "T", default=8.0, lo=0, doc="length of its constant part"),
-        Field("DECAY", Kind.REAL, "1/T", default=0.3, lo=0, doc="exponent of its fall"),
+        *ENVELOPE,
         *COMMON,
     ),
     reference="Kanai 1957; Tajimi 1960; Clough & Penzien 1975; envelope: Jennings, Housner & Tsai 1968",

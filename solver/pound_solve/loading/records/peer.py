@@ -13,6 +13,7 @@ from pound_deck.schema import Spec
 from pound_solve.loading.records.base import Format, RawRecord, RecordError
 from pound_solve.loading.records.header import count, filled, positive, unit
 from pound_solve.loading.records.text import parse
+from pound_solve.numerics.types import Array
 
 _REAL: Final = r"([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[ED][+-]?\d+)?)"
 _NEW: Final = re.compile(rf"NPTS\s*=\s*(\d+)\s*,?\s*DT\s*=\s*{_REAL}", re.IGNORECASE)
@@ -20,6 +21,7 @@ _OLD: Final = re.compile(rf"^\s*(\d+)[\s,]+{_REAL}[\s,]+NPTS\s*,\s*DT\b", re.IGN
 _QUANTITY: Final = re.compile(r"\b(VELOCITY|DISPLACEMENT)\s+TIME", re.IGNORECASE)
 _UNIT: Final = re.compile(r"UNITS?\s+OF\s+([A-Z]+(?:/[A-Z0-9^*/]+)?)", re.IGNORECASE)
 _HEADER_LINES: Final = 12
+_PER_ROW: Final = 5
 
 
 def _counts(line: str) -> tuple[str, str] | None:
@@ -66,6 +68,21 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
         component=title[1].rsplit(",", 1)[-1].strip() if len(title) > 1 and "," in title[1] else "",
         title=title,
     ).checked()
+
+
+def written(title: str, values: Array, dt: float) -> str:
+    """A file of this format.
+
+    Parameters
+    ----------
+    title : str
+        One line.
+    values : ndarray, shape (n,), [gravity]
+    dt : float, [s]
+    """
+    head = (title, title, "ACCELERATION TIME SERIES IN UNITS OF G", f"NPTS= {len(values)}, DT= {dt!r} SEC")
+    rows = (values[k : k + _PER_ROW] for k in range(0, len(values), _PER_ROW))
+    return "\n".join([*head, *("".join(f"{x:18.10E}" for x in row) for row in rows), ""])
 
 
 SPEC: Final = Spec(

@@ -1,0 +1,90 @@
+"""Motions of a deck as record files: what its EQUAKE cards make, for other decks, studies and programs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from pound_deck.diagnostics import has_errors
+from pound_deck.reader import read_deck
+from pound_solve.catalog import catalog
+from pound_solve.driver import loading
+from pound_solve.driver.prepare import DeckError
+from pound_solve.driver.request import Request
+from pound_solve.loading.motions.base import Motion
+from pound_solve.loading.records import peer
+
+EQUAL: Final = 1e-9  #: share by which steps of equal length may differ: times are sums
+
+
+class MotionError(Exception):
+    """A motion that no file can hold; the message says why."""
+
+
+@dataclass(frozen=True)
+class MotionFile:
+    """One file.
+
+    Attributes
+    ----------
+    name : str
+        With its ending.
+    text : str
+    warning : str
+        What the file cannot hold; empty for nothing.
+    """
+
+    name: str
+    text: str
+    warning: str = ""
+
+
+def of_deck(request: Request, dt: float | None = None) -> Iterator[MotionFile]:
+    """Every translation under EQUAKE, in shares of the deck's gravity.
+
+    Parameters
+    ----------
+    request : Request
+    dt : float or None
+        Step of the samples [T]; None for that of the motion.
+
+    Raises
+    ------
+    DeckError
+        The deck or a record has mistakes.
+    MotionError
+        There is no motion, or one has no step of its own.
+    OSError
+        The deck cannot be read.
+    """
+    model, found, files = read_deck(request.deck, catalog(), request.params)
+    motions = [] if model is None else loading.motions(model, loading.context(model, request), found)
+    if model is None or has_errors(found):
+        raise DeckError(found, files)
+    own = [m for m in motions if m.direction != "R"]
+    if not own:
+        raise MotionError(f"{request.deck} has no motion along X or Y under EQUAKE")
+    for number, motion in enumerate(own, 1):
+        yield _file(number, motion, model.gravity, dt)
+
+
+def _file(number: int, motion: Motion, gravity: float, dt: float | None) -> MotionFile:
+    """File of one motion."""
+    name, a = str(motion.info["name"]), motion.acceleration
+    steps = np.diff(a.breaks)
+    equal = len(a.coefs) <= 2 and bool(np.ptp(steps) <= EQUAL * steps.mean())
+    if dt is None and not equal:
+        raise MotionError(f"{name} has no step of its own: give the step of its samples with --dt")
+    step = float(steps.mean()) if dt is None else dt
+    if dt is None:
+        step = float(f"{step:.12g}")  # of times that are sums
+    count = int(np.ceil((a.end - a.start) / step - EQUAL)) + 1
+    times = np.minimum(a.start + step * np.arange(count), a.end)
+    values = np.asarray(a.value(times)) / gravity
+    lost = "" if equal and dt is None else "between its samples the file holds straight lines"
+    stem = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_").lower()
+    return MotionFile(f"{number:02d}_{stem}.at2", peer.written(name, values, step), lost)

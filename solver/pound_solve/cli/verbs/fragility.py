@@ -1,0 +1,58 @@
+"""``pound-solve fragility``: lognormal fragilities from the runs of a sweep or an incremental analysis."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from pound_solve.cli import common
+
+SUMMARY = "fragilities with intervals of confidence from the runs of a sweep"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("sweep", help="results of a sweep or of ida (sweep.h5)")
+    text = "quantity of the sweep that counts, or collapse (default: storey_drift)"
+    parser.add_argument("--demand", default="storey_drift", metavar="NAME", help=text)
+    parser.add_argument("--label", default="", help="the one of its labels that counts (default: largest)")
+    parser.add_argument("--limit", default="", metavar="X,X,...", help="limits of the demand")
+    parser.add_argument(
+        "--method", default="", choices=("capacities", "stripes", "cloud"), help="default: what suits"
+    )
+    parser.add_argument("--confidence", type=_share, default=0.95, metavar="P", help="default 0.95")
+    parser.add_argument(
+        "--at", default="", metavar="X,X,...", help="print the probabilities at these levels"
+    )
+
+
+def _share(word: str) -> float:
+    """A number between 0 and 1."""
+    (value,) = common.numbers([word], "--confidence takes a number", argparse.ArgumentTypeError)
+    if not 0.0 < value < 1.0:
+        raise argparse.ArgumentTypeError(f"{word}: a level of confidence is between 0 and 1")
+    return value
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Fit the fragilities and print them."""
+    from pound_solve.results import ResultsError
+    from pound_solve.results.sweep_file import Sweep
+    from pound_solve.sweep import fragilities
+    from pound_solve.sweep.curves import Asked, CurveError
+
+    try:
+        limits, at = (
+            common.numbers(text.split(","), f"--{name} takes numbers", CurveError) if text else []
+            for name, text in (("limit", args.limit), ("at", args.at))
+        )
+        if min((*limits, *at), default=1.0) <= 0.0:
+            raise CurveError("limits and levels are above zero")
+        sweep, asked = Sweep.open(Path(args.sweep)), Asked(args.demand, args.label)
+        found = fragilities.fit(sweep, asked, limits, args.method, args.confidence)
+    except CurveError as err:
+        return common.complain(f"{args.sweep}: {err}", common.MISTAKES)
+    except ResultsError as err:
+        return common.complain(str(err))
+    print("\n".join(fragilities.report(sweep, asked, found, at)))
+    return common.DONE

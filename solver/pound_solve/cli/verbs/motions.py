@@ -1,0 +1,48 @@
+"""``pound-solve motions``: write the ground motions of a deck as record files."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from pound_solve.cli import common
+
+SUMMARY = "write the ground motions of a deck as record files (.at2), as for a study of many records"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    common.add_deck(parser)
+    parser.add_argument(
+        "--dt", type=float, metavar="DT", help="step of the samples (default: the motion's)"
+    )
+    parser.add_argument("-o", "--out", type=Path, metavar="DIR", default=Path(), help="folder of the files")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Write the files; none that is there is replaced."""
+    from pound_solve.assess import motion_files
+    from pound_solve.driver.prepare import DeckError
+
+    if args.dt is not None and not args.dt > 0.0:
+        return common.complain("--dt must be above zero", common.MISTAKES)
+    args.name = None
+    request = common.request(args)
+    try:
+        files = list(motion_files.of_deck(request, args.dt))
+    except DeckError as err:
+        print(err, file=sys.stderr)
+        return common.MISTAKES
+    except motion_files.MotionError as err:
+        return common.complain(str(err), common.MISTAKES)
+    if there := [f.name for f in files if (args.out / f.name).exists()]:
+        text = f"{args.out / there[0]} is there: give another folder with -o, or remove it"
+        return common.complain(text)
+    args.out.mkdir(parents=True, exist_ok=True)
+    for file in files:
+        if file.warning:
+            common.complain(f"warning: {file.name}: {file.warning}")
+        (args.out / file.name).write_text(file.text, encoding="ascii", errors="replace")
+        print(args.out / file.name)
+    return common.DONE

@@ -1,0 +1,163 @@
+"""``pound-solve sweep``: run a study, decks by PARAMs by records, and gather what the runs have come to."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pound_solve.cli import common
+from pound_solve.cli.progress import StatusLine
+
+if TYPE_CHECKING:
+    from pound_solve.sweep.conduct import State
+    from pound_solve.sweep.document import Document
+    from pound_solve.sweep.executors import Engine
+    from pound_solve.sweep.study import Study
+
+SUMMARY = "run a study: decks by values of PARAMs by records; one table of all runs"
+LISTS = ("scale", "pga", "sa")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("study", help="study (.toml), or a deck")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="NAME=V,V,...", help="values of a PARAM of the decks"
+    )
+    parser.add_argument(
+        "--motions", action="append", default=[], metavar="PATTERN", help="records, as 'suite/*.AT2'"
+    )
+    parser.add_argument(
+        "--item", action="append", default=[], metavar="NAME=VALUE", help="item of the records, as UNIT=GAL"
+    )
+    levels = parser.add_mutually_exclusive_group()
+    levels.add_argument("--scale", metavar="X,X,...", help="factors on the records")
+    levels.add_argument(
+        "--pga", metavar="X,X,...", help="peak accelerations to scale to, shares of gravity"
+    )
+    levels.add_argument("--sa", metavar="X,X,...", help="spectral accelerations likewise, with --period")
+    parser.add_argument("--period", type=float, metavar="T", help="period of --sa")
+    parser.add_argument("--damping", type=float, metavar="XI", help="damping ratio of --sa (default 0.05)")
+    parser.add_argument(
+        "--records", action="append", default=[], type=Path, metavar="DIR", help="folder with records"
+    )
+    common.add_method(parser)
+    parser.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder of the results")
+    parser.add_argument("--workers", type=int, metavar="N", help="processes (default: one a processor)")
+    parser.add_argument("--plan", action="store_true", help="tell what is to be run, and what it will take")
+    parser.add_argument("--retry", action="store_true", help="try runs again that stopped or failed")
+    parser.add_argument("--task", metavar="K/N", help="the K-th of N pieces, as of a job array; no table")
+    parser.add_argument("--executor", default="", metavar="WHERE", help="dask://HOST:PORT, or dask")
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Read the study, run what is not done, write the table."""
+    from pound_solve.results import ResultsError
+    from pound_solve.sweep.executors import ExecutorError, engine
+    from pound_solve.sweep.lock import BusyError, locked
+    from pound_solve.sweep.study import StudyError, read
+
+    try:
+        k, count = _piece(args.task)
+        study = read(_document(args))
+        with locked(study.out, f"{k}-of-{count}" if args.task else ""):
+            return _swept(args, study, engine(args.executor, study.workers), (k, count))
+    except StudyError as err:
+        print(err, file=sys.stderr)
+        return common.MISTAKES
+    except (ExecutorError, argparse.ArgumentTypeError) as err:
+        return common.complain(str(err), common.MISTAKES)
+    except (BusyError, ResultsError) as err:
+        return common.complain(str(err))
+
+
+def _piece(word: str | None) -> tuple[int, int]:
+    """Number of a piece, and how many there are."""
+    if word is None:
+        return 1, 1
+    k, _, count = word.partition("/")
+    if not (k.isdigit() and count.isdigit() and 1 <= int(k) <= int(count)):
+        raise argparse.ArgumentTypeError(f"--task {word}: write K/N with K from 1 to N")
+    return int(k), int(count)
+
+
+def _document(args: argparse.Namespace) -> Document:
+    """The study's file, or one for a deck, with what the command line gives."""
+    from pound_solve.sweep.document import Document
+
+    if args.study.endswith(".toml"):
+        out = Document.read(args.study)
+    else:
+        out = Document(str(Path(args.study).with_suffix("")), Path())
+        out.given(("deck",), args.study, "deck", args.study)
+    for item in args.set:
+        name, equals, value = item.partition("=")
+        if not equals or not name.strip():
+            raise argparse.ArgumentTypeError(f"--set {item}: write NAME=VALUE,VALUE,...")
+        values = [v.strip() for v in value.split(",")]
+        out.given(("grid", name.strip()), values, f"--set {name.strip()}", value)
+    _give_motions(args, out)
+    for name in ("method", "dt", "tol", "workers"):
+        if getattr(args, name) is not None:
+            out.given((name,), getattr(args, name), f"--{name}", str(getattr(args, name)))
+    if args.records:
+        out.given(
+            ("records",), [str(p.absolute()) for p in args.records], "--records", str(args.records[0])
+        )
+    if args.out:
+        out.given(("out",), str(args.out.absolute()), "--out", str(args.out))
+    return out
+
+
+def _give_motions(args: argparse.Namespace, out: Document) -> None:
+    """Put in the records of the command line, in place of all of the study's."""
+    from pound_solve.loading.records.known import known
+
+    options = {name: getattr(args, name) for name in (*LISTS, "period", "damping") if getattr(args, name)}
+    if not args.motions:
+        if options or args.item:
+            option = next(iter(options), "item")
+            raise argparse.ArgumentTypeError(f"--{option} belongs to --motions")
+        return
+    files = [m if known(m) else str(Path(m).expanduser().absolute()) for m in args.motions]
+    out.values["motions"] = [{}]
+    out.given(("motions", 0, "files"), files, "--motions", " ".join(args.motions))
+    for name, value in options.items():
+        own = value
+        if name in LISTS:
+            words = value.split(",")
+            own = common.numbers(words, f"--{name} takes numbers", argparse.ArgumentTypeError)
+        out.given(("motions", 0, name), own, f"--{name}", str(value))
+    for item in args.item:
+        name, equals, value = item.partition("=")
+        if not equals:
+            raise argparse.ArgumentTypeError(f"--item {item}: write NAME=VALUE")
+        out.given(("motions", 0, name.strip().lower()), value.strip(), f"--item {name}", value)
+
+
+def _swept(args: argparse.Namespace, study: Study, engine: Engine, piece: tuple[int, int]) -> int:
+    """Run what is ahead, and write the table; with --plan a trial only."""
+    from pound_solve.sweep.session import Session
+
+    session, line = Session(study, engine, piece, args.retry), StatusLine(args.quiet)
+
+    def report(state: State) -> None:
+        line.show(state.text)
+        args.interruption.check()
+
+    if args.plan:
+        print("\n".join(session.plan()))
+    tried = session.carry_out(session.trial() if args.plan else session.agenda.ahead, report)
+    line.clear()
+    if args.plan:
+        print("\n".join(session.estimate(tried)))
+        return common.DONE
+    path = session.write() if args.task is None else None
+    if not args.quiet:
+        print("\n".join(session.summary()))
+        if path is not None:
+            print(f"{path.with_suffix('.csv')}\n{path}")
+    return common.DONE if session.whole else common.STOPPED

@@ -1,0 +1,280 @@
+"""The file of a sweep: runs by quantities, with dimension scales, which xarray opens as it is.
+
+Every dataset has ``run`` as its first dimension; a quantity with labels has the axis of its labels as its
+second.  What a run does not have is NaN or an empty text.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Self
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_solve.results.form import ResultsError, storable
+from pound_solve.results.place import partial
+from pound_solve.results.safe_file import SafeFile, undisturbed
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+    from xarray import Dataset
+
+FILETYPE: Final = "pound-solve sweep"
+FORMAT_VERSION: Final = (1, 0)  #: major: old readers fail; minor: something was added
+RUN: Final = "run"  #: the first dimension
+HISTORIES: Final = "histories"
+ORDER: Final = "variables"  #: attribute with their names in order
+#: variables that differ between two sweeps of a study
+OF_THE_DAY: Final = ("cpu_seconds", "solve_seconds")
+_TEXT: Final = h5py.string_dtype()
+_DAMAGE: Final = (OSError, RuntimeError, KeyError, ValueError, TypeError)
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One variable of a sweep.
+
+    Attributes
+    ----------
+    values : ndarray, shape (n_runs,) or (n_runs, n_labels)
+        Numbers, or texts as objects.
+    axis : str
+        Name of the second dimension; empty for none.
+    unit, doc : str
+    """
+
+    values: NDArray[Any]
+    axis: str = ""
+    unit: str = ""
+    doc: str = ""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What all runs of a sweep have come to.
+
+    Attributes
+    ----------
+    variables : mapping of str to Variable
+        In the order of the file.
+    labels : mapping of str to tuple of str
+        Labels of every axis.
+    about : mapping of str to str
+        Study, version of the program, units.
+    path : Path or None
+        The file that it was read from.
+    """
+
+    variables: Mapping[str, Variable]
+    labels: Mapping[str, tuple[str, ...]]
+    about: Mapping[str, str] = field(default_factory=dict)
+    path: Path | None = None
+
+    def __len__(self) -> int:
+        return len(self.variables[RUN].values)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """Values of a variable, shape (n_runs,) or (n_runs, n_labels)."""
+        return self.variables[name].values
+
+    @classmethod
+    def open(cls, path: str | Path) -> Self:
+        """Read a file.
+
+        Raises
+        ------
+        ResultsError
+            There is no such file, or it is not one of a sweep.
+        """
+        if not Path(path).is_file():
+            raise ResultsError(f"{path}: no such file")
+        try:
+            with h5py.File(path, "r") as file:
+                if file.attrs.get("filetype") != FILETYPE:
+                    raise ResultsError(f"{path}: an HDF5 file, but not one of a sweep")
+                if int(file.attrs["format_version"][0]) > FORMAT_VERSION[0]:
+                    raise ResultsError(f"{path}: written by a later version of the program")
+                return cls(*_read(file), Path(path))
+        except _DAMAGE as err:
+            raise ResultsError(f"{path}: damaged file: {err}") from err
+
+    def columns(self) -> Iterator[tuple[str, Sequence[Any]]]:
+        """Every column of a flat table with its name; that of a quantity with labels is ``name label``."""
+        for name, own in self.variables.items():
+            if not own.axis:
+                yield name, own.values.tolist()
+            else:
+                for label, values in zip(self.labels[own.axis], own.values.T):
+                    yield f"{name} {label}", values.tolist()
+
+    def to_pandas(self) -> DataFrame:
+        """One row a run, one column a number; needs the extra ``data``."""
+        from pandas import DataFrame
+
+        return DataFrame(dict(self.columns())).set_index(RUN)
+
+    def to_xarray(self) -> Dataset:
+        """Variables with their dimensions and labels; needs the extra ``data``."""
+        from xarray import Dataset
+
+        data = {
+            name: (
+                (RUN, own.axis) if own.axis else RUN,
+                own.values,
+                {"units": own.unit, "long_name": own.doc},
+            )
+            for name, own in self.variables.items()
+            if name != RUN
+        }
+        coords = {RUN: self[RUN], **{axis: list(own) for axis, own in self.labels.items()}}
+        return Dataset(data, coords, dict(self.about))
+
+    def history(self, run: int, name: str) -> tuple[NDArray[Any], NDArray[Any], tuple[str, ...]]:
+        """A history that the sweep has kept: times [T], rows, labels of the columns.
+
+        Parameters
+        ----------
+        run : int
+            Number of the run, from 1.
+        name : str
+            As in a results file, ``storey/drift``.
+
+        Raises
+        ------
+        ResultsError
+            The file does not hold it.
+        """
+        try:
+            with h5py.File(str(self.path), "r") as file:
+                group = file[f"{HISTORIES}/{run}"]
+                own = group[name.replace("/", "_")]
+                labels = tuple(str(_plain(v)) for v in own.attrs.get("labels", ()))
+                return group["time"][:], own[:], labels
+        except _DAMAGE as err:
+            raise ResultsError(f"{self.path}: no history {name} of run {run}") from err
+
+
+def write(
+    sweep: Sweep, path: Path, histories: Iterable[tuple[int, Mapping[str, NDArray[Any]]]] = ()
+) -> None:
+    """Write a sweep: whole, or not at all.
+
+    Parameters
+    ----------
+    sweep : Sweep
+    path : Path
+        It gets the ending .h5, and .csv for the table.
+    histories : iterable of (number, histories)
+        Of runs that have kept some: times, rows, labels and units.
+
+    Raises
+    ------
+    ResultsError
+        The disk is full, or another program writes the file.
+    OSError
+        The folder cannot be written.
+    """
+    own = partial(path)
+    disk = SafeFile(own)
+    try:
+        with undisturbed(), h5py.File(disk, "w", libver=("v108", "v108")) as file:
+            _write(file, sweep)
+            for number, kept in histories:
+                _write_histories(file, number, kept)
+        with undisturbed():
+            disk.commit()
+            disk.end()
+    except BaseException:
+        disk.remove()
+        raise
+    disk.close()
+    table = path.with_suffix(".csv")
+    with partial(table).open("w", newline="", encoding="utf-8") as text:
+        writer = csv.writer(text)
+        names, columns = zip(*sweep.columns())
+        writer.writerow(names)
+        writer.writerows([_cell(v) for v in row] for row in zip(*columns))
+    os.replace(partial(table), table)
+    os.replace(own, path)
+
+
+def _cell(value: object) -> object:
+    """A value of the table; nothing for what a run does not have."""
+    if isinstance(value, float):
+        return "" if math.isnan(value) else repr(value)
+    return value
+
+
+def _write(file: h5py.File, sweep: Sweep) -> None:
+    """Variables and their axes."""
+    file.attrs.update({"filetype": FILETYPE, "format_version": np.array(FORMAT_VERSION)})
+    file.attrs.update({key: storable(value) for key, value in sweep.about.items()})
+    file.attrs[ORDER] = list(sweep.variables)
+    scales = {RUN: _dataset(file, RUN, sweep.variables[RUN])}
+    scales[RUN].make_scale(RUN)
+    for axis, labels in sweep.labels.items():
+        scales[axis] = _dataset(file, axis, Variable(np.array(labels, object)))
+        scales[axis].make_scale(axis)
+    for name, own in sweep.variables.items():
+        if name != RUN:
+            dataset = _dataset(file, name, own)
+            for at, axis in enumerate((RUN, own.axis) if own.axis else (RUN,)):
+                dataset.dims[at].attach_scale(scales[axis])
+
+
+def _dataset(file: h5py.Group, name: str, own: Variable) -> h5py.Dataset:
+    """One dataset with its unit and its meaning."""
+    texts = own.values.dtype.kind == "O"
+    data = np.array([storable(v) for v in own.values.tolist()], object) if texts else own.values
+    out = file.create_dataset(name, data=data, dtype=_TEXT if texts else None)
+    for key, value in (("units", own.unit), ("long_name", own.doc)):
+        if value:
+            out.attrs[key] = value
+    return out
+
+
+def _write_histories(file: h5py.File, number: int, kept: Mapping[str, NDArray[Any]]) -> None:
+    """Histories of one run in a group of its own."""
+    group = file.create_group(f"{HISTORIES}/{number}")
+    time = group.create_dataset("time", data=kept["time"])
+    time.make_scale("time")
+    for name, rows in kept.items():
+        if name == "time" or "|" in name:
+            continue
+        place = name.replace("/", "_")
+        dataset = group.create_dataset(
+            place, data=rows, chunks=rows.shape, compression="gzip", compression_opts=1
+        )
+        dataset.dims[0].attach_scale(time)
+        for key in ("labels", "nodes", "unit"):
+            if f"{name}|{key}" in kept:
+                texts = [storable(str(v)) for v in kept[f"{name}|{key}"]]
+                dataset.attrs.create(key, np.array(texts, object), dtype=_TEXT)
+
+
+def _read(file: h5py.File) -> tuple[dict[str, Variable], dict[str, tuple[str, ...]], dict[str, str]]:
+    """Variables, labels and what else a file tells."""
+    variables, axes = dict[str, Variable](), dict[str, None]()
+    for name in map(_plain, file.attrs[ORDER]):
+        item = file[name]
+        own = [_plain(v) for v in item[:]] if item.dtype.kind == "O" else item[:]
+        values = np.array(own, object) if item.dtype.kind == "O" else item[:]
+        axis = _plain(item.dims[1].keys()[0]) if len(item.shape) > 1 else ""
+        told = (str(_plain(item.attrs.get(key, ""))) for key in ("units", "long_name"))
+        variables[name] = Variable(values, axis, *told)
+        axes |= {axis: None} if axis else {}
+    labels = {axis: tuple(str(_plain(v)) for v in file[axis][:]) for axis in axes}
+    known = ("filetype", "format_version", ORDER)
+    return variables, labels, {k: str(_plain(v)) for k, v in file.attrs.items() if k not in known}
+
+
+def _plain(value: Any) -> Any:
+    """Python's own text for what h5py gives."""
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else value

@@ -1,0 +1,174 @@
+"""Curves of a sweep: the demand of one record over its levels, for every case of PARAMs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, NamedTuple, Self
+
+import numpy as np
+
+from pound_solve.numerics.types import Array
+from pound_solve.results.sweep_file import RUN, Sweep
+from pound_solve.sweep.entry import DONE, STOPPED
+from pound_solve.sweep.incremental import Point
+
+LEVELS: Final = ("sa", "pga", "scale")  #: variables that tell how strong a record is, the best first
+PARAM: Final = "PARAM "  #: how the description of a PARAM's variable begins
+COLLAPSE: Final = "collapse"  #: demand that is infinite where a run stopped early, else zero
+
+
+class Asked(NamedTuple):
+    """What counts as the demand.
+
+    Attributes
+    ----------
+    quantity : str
+        Of a sweep, or `COLLAPSE`.
+    label : str
+        The one of its labels that counts; empty for the largest of all.
+    """
+
+    quantity: str
+    label: str = ""
+
+
+class CurveError(Exception):
+    """A sweep that does not hold what is asked for; the message says why."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One record at several levels.
+
+    Attributes
+    ----------
+    case : str
+        PARAMs and deck, as far as they differ in the sweep.
+    record : str
+    points : tuple of Point
+        In the order of their levels.
+    left_out : int
+        Runs that failed or have not ended.
+    """
+
+    case: str
+    record: str
+    points: tuple[Point, ...]
+    left_out: int = 0
+
+    @classmethod
+    def of(cls, case: str, record: str, levels: Iterable[float], found: Iterable[float]) -> Self:
+        """The curve of some runs by their levels and demands."""
+        pairs = sorted(zip(levels, found))
+        points = tuple(Point(float(x), float(d)) for x, d in pairs if not math.isnan(d))
+        return cls(case, record, points, len(pairs) - len(points))
+
+
+def measure(sweep: Sweep) -> str:
+    """Variable of the levels.
+
+    Raises
+    ------
+    CurveError
+        The runs have no levels: the decks' own motions act.
+    """
+    for name in LEVELS:
+        if name in sweep.variables:
+            return name
+    raise CurveError("its runs have no levels: the study needs [[motions]] with scale, pga or sa")
+
+
+def demand(status: str, reached: float, values: Mapping[str, float], asked: Asked) -> float:
+    """Demand of one run: infinite where it stopped on its way, NaN where it has none.
+
+    Parameters
+    ----------
+    status : str
+        See `entry`.
+    reached : float
+        Last time of its history; NaN without one.
+    values : mapping of str to float
+        The quantity that is asked for, by its labels.
+    asked : Asked
+
+    Raises
+    ------
+    CurveError
+        The run has not the label that is asked for.
+    """
+    if status == STOPPED and math.isfinite(reached):
+        return math.inf
+    if status != DONE:
+        return math.nan
+    if asked.quantity == COLLAPSE:
+        return 0.0
+    if asked.label and asked.label not in values:
+        raise CurveError(f"{asked.quantity} has no {asked.label}: there are {', '.join(values) or 'none'}")
+    own = [values[asked.label]] if asked.label else values.values()
+    return max((abs(x) for x in own if not math.isnan(x)), default=math.nan)
+
+
+def demands(sweep: Sweep, asked: Asked) -> Array:
+    """Demand of every run, see `demand`.
+
+    Raises
+    ------
+    CurveError
+        The sweep has not the quantity or the label.
+    """
+    there = [n for n, v in sweep.variables.items() if n != RUN and v.values.dtype.kind in "fi"]
+    if asked.quantity not in (COLLAPSE, *there):
+        raise CurveError(
+            f"there is no quantity {asked.quantity}: there are {', '.join((COLLAPSE, *there))}"
+        )
+    rows = _rows(sweep, asked.quantity)
+    return np.array([demand(*row, asked) for row in zip(sweep["status"], sweep["reached"], rows)])
+
+
+def _rows(sweep: Sweep, quantity: str) -> Iterator[Mapping[str, float]]:
+    """Values of a quantity in every run by their labels."""
+    if quantity == COLLAPSE:
+        return iter([{}] * len(sweep))
+    own = sweep.variables[quantity]
+    labels = sweep.labels[own.axis] if own.axis else ("",)
+    return (dict(zip(labels, map(float, row))) for row in own.values.reshape(len(sweep), len(labels)))
+
+
+def cases(sweep: Sweep) -> list[str]:
+    """Case of every run in words: what differs between the runs of its deck and PARAMs."""
+    names = [n for n, v in sweep.variables.items() if v.doc.startswith(PARAM)]
+    varied = [n for n in ("deck", *names) if len({str(x) for x in sweep[n]}) > 1]
+    return [
+        ", ".join(str(sweep[n][i]) if n == "deck" else f"{n}={_short(sweep[n][i])}" for n in varied)
+        for i in range(len(sweep))
+    ]
+
+
+def _short(value: object) -> str:
+    """A value of a PARAM."""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def curves(sweep: Sweep, asked: Asked) -> list[Curve]:
+    """Every record of every case, in the order of the sweep.
+
+    Raises
+    ------
+    CurveError
+        See `measure` and `demands`.
+    """
+    levels, found = np.asarray(sweep[measure(sweep)], np.float64), demands(sweep, asked)
+    groups: dict[tuple[str, str], list[int]] = {}
+    for i, key in enumerate(zip(cases(sweep), sweep["record"].tolist())):
+        groups.setdefault(key, []).append(i)
+    return [Curve.of(*key, levels[own], found[own]) for key, own in groups.items()]
+
+
+def by_case(curves: Sequence[Curve]) -> dict[str, list[Curve]]:
+    """Curves by their case."""
+    out: dict[str, list[Curve]] = {}
+    for curve in curves:
+        out.setdefault(curve.case, []).append(curve)
+    return out

@@ -1,0 +1,186 @@
+"""The file of a study: TOML, the place of every item in it, and the mistakes found there."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+from pound_deck.diagnostics import Diagnostic, suggest
+from pound_deck.model import Span
+
+Path_ = tuple[str | int, ...]  #: of an item: names of tables, numbers in lists of tables, its own name
+_T = TypeVar("_T")
+
+_KEY: Final = r"""(?:[A-Za-z0-9_-]+|"[^"\n]*"|'[^'\n]*')"""
+_KEYS: Final = rf"{_KEY}(?:\s*\.\s*{_KEY})*"
+_ITEM: Final = re.compile(rf"\s*({_KEYS})\s*=")
+_TABLE: Final = re.compile(rf"\s*(\[\[?)\s*({_KEYS})\s*\]")
+_WHERE: Final = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)")
+#: what TOML calls the values, in words
+_WORDS: Final = {str: "a text", int: "a whole number", float: "a number", list: "a list", dict: "a table"}
+
+
+def places(text: str, file: str) -> dict[Path_, Span]:
+    """Place of every item and table that begins a line, by its path."""
+    out: dict[Path_, Span] = {}
+    table: Path_ = ()
+    counts: dict[Path_, int] = {}
+    for number, line in enumerate(text.splitlines(), 1):
+        if found := _TABLE.match(line):
+            table = _names(found[2])
+            if found[1] == "[[":
+                counts[table] = counts.get(table, -1) + 1
+                table = (*table, counts[table])
+            where = table
+        elif found := _ITEM.match(line):
+            where = (*table, *_names(found[1]))
+        else:
+            continue
+        start = len(line) - len(line.lstrip())
+        out.setdefault(where, Span(file, number, start + 1, len(line.rstrip()) + 1))
+    return out
+
+
+def _names(keys: str) -> Path_:
+    return tuple(key.strip("\"'") for key in re.findall(_KEY, keys))
+
+
+@dataclass
+class Document:
+    """A study as it was written, and what is wrong with it.
+
+    Attributes
+    ----------
+    name : str
+        Its file as the user gave it, or a word for the command line.
+    folder : Path
+        From which its paths count.
+    values : dict
+        As TOML gives them.
+    places : dict of Span by path
+    files : dict of str by name
+        Texts that places point into.
+    found : list of Diagnostic
+    """
+
+    name: str
+    folder: Path
+    values: dict[str, Any] = field(default_factory=dict)
+    places: dict[Path_, Span] = field(default_factory=dict)
+    files: dict[str, str] = field(default_factory=dict)
+    found: list[Diagnostic] = field(default_factory=list)
+
+    @classmethod
+    def read(cls, path: str) -> Document:
+        """Read a file; raises OSError where it cannot be read."""
+        text = Path(path).read_bytes().decode("utf-8-sig", "replace")
+        out = cls(path, Path(path).parent, files={path: text}, places=places(text, path))
+        try:
+            out.values = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as err:
+            out._no_toml(str(err), text)
+        return out
+
+    def _no_toml(self, message: str, text: str) -> None:
+        """Tell where the file is no TOML."""
+        lines = text.splitlines() or [""]
+        where = _WHERE.search(message)
+        line, column = (int(where[1]), int(where[2])) if where and where[1] else (len(lines), 1)
+        said = _WHERE.sub("", message)
+        hint = "a text stands in quotes, a list in brackets: gap = [0.01, 0.02]"
+        self.found.append(Diagnostic("S601", said, Span(self.name, line, column, column + 1), hint))
+
+    def given(self, path: Path_, value: object, option: str, text: str) -> None:
+        """Put in an item of the command line, in place of that of the file."""
+        table: Any = self.values
+        for name in path[:-1]:
+            table = table[name] if isinstance(name, int) else table.setdefault(name, {})
+        table[path[-1]] = value
+        self.places[path] = Span(option, 1, 1, max(2, len(text) + 1))
+        self.files[option] = text
+
+    def place(self, path: Path_) -> Span | None:
+        """Place of an item, or of the innermost table around it that has one."""
+        for end in range(len(path), 0, -1):
+            if path[:end] in self.places:
+                return self.places[path[:end]]
+        return Span(self.name, 1, 1, 2) if self.name in self.files else None
+
+    def mistake(self, code: str, message: str, path: Path_ = (), hint: str = "") -> None:
+        """Note a mistake at an item."""
+        self.found.append(Diagnostic(code, message, self.place(path), hint))
+
+    def at(self, path: Path_) -> Any:
+        """Value of an item; None where there is none."""
+        value: Any = self.values
+        for name in path:
+            inside = isinstance(value, list) and isinstance(name, int) and name < len(value)
+            if not inside and not (isinstance(value, dict) and name in value):
+                return None
+            value = value[name]
+        return value
+
+    def known(self, path: Path_, names: Iterable[str]) -> None:
+        """Note the items of a table that are none of the known ones."""
+        names = list(names)
+        table = self.at(path)
+        for key in table if isinstance(table, dict) else ():
+            if key not in names:
+                where = ".".join(str(p) for p in path if isinstance(p, str)) or "a study"
+                hint = suggest(key, names) or f"it has {', '.join(names)}"
+                self.mistake("S602", f"{where} has no item {key}", (*path, key), hint)
+
+    def take(self, path: Path_, kind: type[_T], default: _T) -> _T:
+        """Value of an item of a kind, the default where it is left out or wrong."""
+        value = self.at(path)
+        if value is None:
+            return default
+        if kind is float and isinstance(value, int) and not isinstance(value, bool):
+            value = float(value)
+        if not isinstance(value, kind) or isinstance(value, bool) != (kind is bool):
+            self.mistake(
+                "S603", f"{path[-1]} is {_WORDS.get(kind, 'true or false')}, not {_told(value)}", path
+            )
+            return default
+        return value
+
+    def listed(self, path: Path_, kinds: tuple[type, ...]) -> list[Any]:
+        """Values of an item that is a list or stands for a list of one; empty where it is left out."""
+        value = self.at(path)
+        values = value if isinstance(value, list) else [] if value is None else [value]
+        for own in values:
+            if not isinstance(own, kinds) or isinstance(own, bool):
+                kind = " or ".join(_WORDS[k] for k in kinds if k is not int or float not in kinds)
+                self.mistake("S603", f"{path[-1]} takes {kind}, not {_told(own)}", path)
+                return []
+        if value is not None and not values:
+            self.mistake("S603", f"{path[-1]} is an empty list", path, "give it a value or leave it out")
+        return values
+
+    def tables(self, name: str) -> list[Mapping[str, Any]]:
+        """A list of tables, ``[[name]]``, or the one table of ``[name]``."""
+        value = self.values.get(name)
+        if isinstance(value, dict):  # its items keep their places under a number
+            self.values[name] = value = [value]
+            for path, place in list(self.places.items()):
+                if path[:1] == (name,) and path[1:2] != (0,):
+                    self.places[name, 0, *path[1:]] = place
+        if value is None:
+            return []
+        if not isinstance(value, list) or not all(isinstance(v, dict) for v in value):
+            self.mistake("S603", f"{name} is a table, not {_told(value)}", (name,), f"write [[{name}]]")
+            return []
+        return value
+
+
+def _told(value: object) -> str:
+    """A value in a message."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, dict):
+        return "a table"
+    return repr(value)[:60]

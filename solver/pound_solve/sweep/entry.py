@@ -1,0 +1,139 @@
+"""What a run has come to, and the journal in which every process notes its own.
+
+A process appends one line to a file of its own when a run has ended, by one call of the system: whoever is
+killed loses at most the runs that have not ended.  A line that was cut short, by a full disk or the loss of
+power, is passed over, and its run counts as not run.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from pound_solve.numerics.types import Array
+from pound_solve.sweep.quantities import Values
+
+#: how a run ends: with all, with what it had when it stopped, or with nothing
+DONE, STOPPED, FAILED = ENDS = ("done", "stopped", "failed")
+ENDING: Final = ".jsonl"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What one run has come to.
+
+    Attributes
+    ----------
+    identity : str
+    status : str
+        One of `ENDS`.
+    message : str
+        Why it stopped or failed.
+    doubt : str
+        Checks of the run that call for a look.
+    reached : float
+        Last time of the history [T]; NaN without one.
+    cpu, solve : float
+        CPU time of all of it, and of the method alone [s].
+    values : mapping
+        Quantities, see `quantities`.
+    at : float
+        When it ended [s since 1970].
+    histories : mapping
+        Of those that are kept: times and rows, labels and unit; not in the journal's line.
+    """
+
+    identity: str
+    status: str
+    message: str = ""
+    doubt: str = ""
+    reached: float = float("nan")
+    cpu: float = 0.0
+    solve: float = 0.0
+    values: Values = field(default_factory=dict)
+    at: float = field(default_factory=time.time)
+    histories: Mapping[str, Array] = field(default_factory=dict)
+
+
+class Journal:
+    """The journal of a study, a folder.
+
+    Parameters
+    ----------
+    folder : Path
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def add(self, entry: Entry) -> None:
+        """Note what a run has come to, in this process' own file.
+
+        Raises
+        ------
+        OSError
+            The disk is full, or the folder cannot be written; nothing is noted then.
+        """
+        self.folder.mkdir(parents=True, exist_ok=True)
+        if entry.histories:
+            self._keep(entry)
+        own = {k: v for k, v in asdict(entry).items() if k != "histories"}
+        line = json.dumps(own).encode() + b"\n"
+        path = self.folder / f"{platform.node() or 'local'}-{os.getpid()}{ENDING}"
+        with path.open("ab", 0) as file:
+            size = file.tell()
+            if size and not _ends_a_line(path):
+                line = b"\n" + line
+            try:
+                written = file.write(line)
+                if written != len(line):
+                    raise OSError(28, "No space left on device", str(path))
+            except OSError:
+                file.truncate(size)
+                raise
+
+    def _keep(self, entry: Entry) -> None:
+        """Write the histories of a run beside the journal, whole or not at all."""
+        path = self.histories(entry.identity)
+        part = path.with_suffix(f".{os.getpid()}.part")
+        with part.open("wb") as file:
+            np.savez(file, allow_pickle=False, **entry.histories)
+        os.replace(part, path)
+
+    def histories(self, identity: str) -> Path:
+        """File of the histories of a run."""
+        return self.folder / f"{identity}.npz"
+
+    def entries(self) -> dict[str, Entry]:
+        """What every run has come to, by its identity: the end that is done, else the latest."""
+        out: dict[str, Entry] = {}
+        for entry in self._all():
+            old = out.get(entry.identity)
+            if old is None or (entry.status == DONE, entry.at) > (old.status == DONE, old.at):
+                out[entry.identity] = entry
+        return out
+
+    def _all(self) -> Iterator[Entry]:
+        for path in sorted(self.folder.glob(f"*{ENDING}")):
+            with path.open("rb") as file:
+                for line in file:
+                    try:
+                        own: dict[str, Any] = json.loads(line)
+                        yield Entry(**own)
+                    except (ValueError, TypeError):  # a line that was cut short
+                        continue
+
+
+def _ends_a_line(path: Path) -> bool:
+    """Whether the last line of a file is whole."""
+    with path.open("rb") as file:
+        file.seek(-1, os.SEEK_END)
+        return file.read(1) == b"\n"

@@ -1,0 +1,145 @@
+"""What carries runs out: processes of this machine, or the workers of a Dask scheduler.
+
+Both have the interface of `concurrent.futures.Executor`.
+"""
+
+from __future__ import annotations
+
+import logging
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from typing import Any, Final, NamedTuple, TypeVar
+
+from pound_solve.numerics import threads
+
+DASK: Final = "dask"
+AHEAD, MANY = 2, 1000  #: runs that are handed out: for each process, and to a scheduler
+PATIENCE: Final = 60.0  #: with a scheduler that does not answer [s]
+
+
+_T = TypeVar("_T")
+
+
+class ExecutorError(Exception):
+    """The executor cannot be had; the text says why."""
+
+
+class Engine(NamedTuple):
+    """How runs are carried out.
+
+    Attributes
+    ----------
+    start : callable
+        Makes the executor, anew where one has broken.
+    workers : int
+        Runs at a time, as far as it is known.
+    ahead : int
+        Runs that are handed out at a time, so that no worker is idle.
+    notes : bool
+        Whether its processes write the journal themselves.
+    """
+
+    start: Callable[[], Executor]
+    workers: int
+    ahead: int
+    notes: bool
+
+
+def engine(name: str, workers: int) -> Engine:
+    """The engine of a name.
+
+    Parameters
+    ----------
+    name : str
+        Empty for processes of this machine; ``dask://host:port`` for the workers of that scheduler, and
+        ``dask`` for a scheduler with workers of its own on this machine.
+    workers : int
+        Processes; 0 for as many as there are processors.  A scheduler has workers of its own.
+
+    Raises
+    ------
+    ExecutorError
+        There is no such executor, or it cannot be reached.
+    """
+    count = workers or processors()
+    if not name:
+        return Engine(lambda: processes(count), count, AHEAD * count, True)
+    scheme, _, address = name.partition("://")
+    if scheme != DASK:
+        raise ExecutorError(
+            f"--executor {name}: write dask://HOST:PORT, or dask for workers of its own here"
+        )
+    own: dict[str, Any] = {"address": f"tcp://{address}"}
+    if not address:
+        own = {"n_workers": count, "threads_per_worker": 1, "dashboard_address": None}
+    return Engine(lambda: DaskExecutor(**own), count, MANY, False)
+
+
+def processors() -> int:
+    """Processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def processes(count: int) -> ProcessPoolExecutor:
+    """Processes that know nothing of this one (spawn), one thread each."""
+    threads.one()
+    context = multiprocessing.get_context("spawn")
+    return ProcessPoolExecutor(count, context, initializer=_begin)
+
+
+def _begin() -> None:
+    """A worker ends what it does when the user interrupts, and ends with the process that began it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+class DaskExecutor(Executor):
+    """The workers of a Dask scheduler, whose runs end where this ends.
+
+    Parameters
+    ----------
+    options : mapping
+        Of a `distributed.Client`.
+
+    Raises
+    ------
+    ExecutorError
+        Dask is not installed, or no scheduler answers.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        try:
+            from distributed import Client
+        except ImportError:
+            raise ExecutorError('Dask is missing: pip install "pound-solve[cluster]"') from None
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost is told by the sweep
+        try:
+            self._client = Client(timeout=PATIENCE, set_as_default=False, **options)
+        except OSError as err:
+            raise ExecutorError(
+                f"no Dask scheduler answers at {options.get('address', '')}: {err}"
+            ) from None
+        self._inner = self._client.get_executor(pure=False)
+
+    def submit(self, fn: Callable[..., _T], /, *args: Any, **kwargs: Any) -> Future[_T]:
+        """Hand a call to a worker."""
+        future: Future[_T] = self._inner.submit(fn, *args, **kwargs)
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End the connection; what has not ended is cancelled unless it is waited for."""
+        self._inner.shutdown(wait=wait and not cancel_futures)
+        self._client.close()

@@ -1,0 +1,126 @@
+"""Tables of an incremental analysis: the capacity of every record, and fractiles over the level."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from pound_deck.model import Units
+from pound_solve.numerics.types import Array
+from pound_solve.report.text import printed
+from pound_solve.results.schema import Column, Row, Table
+from pound_solve.results.sweep_file import Sweep
+from pound_solve.sweep.curves import COLLAPSE, Asked, Curve, by_case, curves, measure
+from pound_solve.sweep.incremental import STANDS, Rules, collapse, demand_at, ends
+
+FRACTILES: Final = (0.16, 0.5, 0.84)
+ROWS: Final = 12  #: levels of the table of fractiles
+
+
+class Analysis(NamedTuple):
+    """Curves of one case, and how they are judged."""
+
+    curves: Sequence[Curve]
+    rules: Rules
+
+
+def capacities(analysis: Analysis) -> Iterator[Row]:
+    """Where every record brings the structure down."""
+    for curve in analysis.curves:
+        stands, falls = collapse(curve.points, analysis.rules)
+        how = [end for end in ends(curve.points, analysis.rules) if end != STANDS]
+        remark = how[0] if how else "stands"
+        if curve.left_out:
+            remark += f"; {curve.left_out} runs failed or are missing"
+        yield curve.record, len(curve.points), stands, falls if how else math.nan, remark
+
+
+def levels(analysis: Analysis) -> Array:
+    """Levels of the table of fractiles: equal steps up to the highest that some record stands."""
+    tops = [collapse(c.points, analysis.rules)[0] for c in analysis.curves]
+    return np.linspace(0.0, max(tops, default=0.0), ROWS + 1)[1:]
+
+
+def fractiles(analysis: Analysis, at: Sequence[float] | Array) -> Array:
+    """Demand that a share `FRACTILES` of the records do not exceed, shape (n_levels, 3).
+
+    Infinite where so many have collapsed; NaN where a record was not run so far.
+    """
+    found = np.array([[demand_at(c.points, analysis.rules, x) for c in analysis.curves] for x in at])
+    with np.errstate(invalid="ignore"):  # between two that have collapsed
+        out = np.quantile(found, FRACTILES, axis=1, method="inverted_cdf")
+    return np.asarray(out.T)
+
+
+def rows_of_fractiles(analysis: Analysis) -> Iterator[Row]:
+    """Fractiles at some levels."""
+    at = levels(analysis)
+    for level, values in zip(at, fractiles(analysis, at)):
+        yield (level, *(x if math.isfinite(x) else math.nan for x in values))
+
+
+def report(sweep: Sweep, asked: Asked, rules: Rules) -> Iterator[str]:
+    """Both tables of every case, as the report prints tables.
+
+    Raises
+    ------
+    CurveError
+        See `curves`.
+    """
+    force, length, time = sweep.about["units"].split()
+    units = Units(force, length, time, given=True)
+    unit = "" if asked.quantity == COLLAPSE else sweep.variables[asked.quantity].unit
+    table = fractile_table(measure(sweep), unit)
+    yield f"Demand: {asked.quantity} {asked.label}".rstrip()
+    for case, own in by_case(curves(sweep, asked)).items():
+        analysis = Analysis(own, rules)
+        yield from ("", case) if case else ("",)
+        yield from printed(units, CAPACITIES, capacities(analysis))
+        yield ""
+        yield from printed(units, table, rows_of_fractiles(analysis))
+        yield ""
+
+
+CAPACITIES: Final = Table(
+    name="capacities",
+    title="Capacities of the records",
+    place=0,
+    stages=(),  # it is printed, not stored
+    columns=(
+        Column("record", "record", doc="record"),
+        Column("runs", "runs", fmt="int", doc="runs of it"),
+        Column("stands", "highest level\nthat stands", "-", "short", doc="below the first that collapses"),
+        Column("falls", "lowest level\nthat collapses", "-", "short", doc="NaN where none does"),
+        Column("end", "how", doc="what counts as its collapse"),
+    ),
+    rows=capacities,
+    note="A record collapses the structure where its run stops, where the demand reaches the limit, or "
+    "where the curve has gone flat.",
+    sample=(("elcentro.at2", 12, 0.9, 0.95, "stopped"), ("kobe.at2", 12, 1.2, math.nan, STANDS)),
+)
+
+
+def fractile_table(measure: str, unit: str) -> Table[Analysis]:
+    """The table of fractiles for a measure of the levels and the dimensions of the demand."""
+    names = [f"{100 * q:.0f} %" for q in FRACTILES]
+    return Table(
+        name="fractiles",
+        title="Fractiles of the demand",
+        place=0,
+        stages=(),
+        columns=(
+            Column("level", f"level\n{measure}", "-", "short", doc="level of all records"),
+            *(
+                Column(
+                    f"q{n}", f"demand\n{name}", unit, "num", doc=f"not exceeded by {name} of the records"
+                )
+                for n, name in enumerate(names)
+            ),
+        ),
+        rows=rows_of_fractiles,
+        note="Nothing stands where so many records have collapsed, or a record was not run so far.",
+        sample=((0.5, 0.004, 0.006, 0.01), (1.0, 0.009, 0.02, math.nan)),
+    )

@@ -1,0 +1,146 @@
+"""The course of an incremental dynamic analysis: rounds of runs, each one level further on every record.
+
+The levels of the study are the first ones.  What has ended is in the journal, and the next levels follow
+from it, so that an analysis that was interrupted goes on where it was.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+from pound_deck.diagnostics import suggest
+from pound_solve.sweep.conduct import State
+from pound_solve.sweep.curves import COLLAPSE, Asked, Curve, CurveError, demand
+from pound_solve.sweep.document import Document
+from pound_solve.sweep.incremental import Rules, next_level
+from pound_solve.sweep.quantities import QUANTITIES
+from pound_solve.sweep.run import Run
+from pound_solve.sweep.session import Session
+
+TABLE: Final = "ida"  #: of a study
+DEMAND: Final = "storey_drift"
+LIMIT: Final = 0.1  #: of the demand by default, if that is the default
+ITEMS: Final = ("demand", "label", "step", "growth", "top", "runs", "close", "limit", "slope")
+FRACTILES: Final = (0.16, 0.5, 0.84)
+
+
+@dataclass(frozen=True)
+class Aim:
+    """What an analysis looks for.
+
+    Attributes
+    ----------
+    asked : Asked
+    rules : Rules
+    """
+
+    asked: Asked
+    rules: Rules
+
+
+def aim(document: Document) -> Aim:
+    """Read the table ``[ida]`` of a study; its mistakes are noted in the document."""
+    document.take((TABLE,), dict, {})
+    document.known((TABLE,), ITEMS)
+    quantity = document.take((TABLE, "demand"), str, DEMAND)
+    names = [COLLAPSE, *(q.name for q in QUANTITIES)]
+    if quantity not in names:
+        hint = suggest(quantity, names) or f"there are {', '.join(names)}"
+        document.mistake("S602", f"there is no quantity {quantity}", (TABLE, "demand"), hint)
+    label = document.take((TABLE, "label"), str, "")
+    own = {name: document.take((TABLE, name), float, math.nan) for name in ITEMS[2:] if name != "runs"}
+    runs = document.take((TABLE, "runs"), int, 12)
+    for name in ("step", "top", "close", "limit"):
+        if own[name] <= 0.0:
+            document.mistake("S603", f"{name} is above zero", (TABLE, name))
+    for name in ("growth", "slope"):
+        if own[name] < 0.0:
+            document.mistake("S603", f"{name} is zero or above", (TABLE, name))
+    if runs < 2:
+        document.mistake("S603", "runs is two or more", (TABLE, "runs"))
+    if math.isnan(own["step"]):
+        own["step"] = 1.0
+        message = "the study needs a table [ida] with step, the first step of its levels"
+        document.mistake("S604", message, (TABLE,), "[ida] step = 0.1")
+    if math.isnan(own["limit"]) and quantity == DEMAND:
+        own["limit"] = LIMIT
+    return Aim(
+        Asked(quantity, label), Rules(runs=runs, **{k: v for k, v in own.items() if not math.isnan(v)})
+    )
+
+
+class Hunt:
+    """Rounds of runs.
+
+    Parameters
+    ----------
+    session : Session
+        Of the study, whose levels are the first.
+    aim : Aim
+
+    Raises
+    ------
+    CurveError
+        The study has no [[motions]].
+    """
+
+    def __init__(self, session: Session, aim: Aim) -> None:
+        if not session.study.measure:
+            raise CurveError(
+                "an incremental analysis needs records: give [[motions]] with scale, pga or sa"
+            )
+        self.session, self.aim = session, aim
+        self.runs = list(session.study.runs)
+
+    def carry_out(self, report: Callable[[State], None]) -> None:
+        """Run until every record is done, or an interruption."""
+        ahead: Sequence[Run] = self.session.agenda.ahead
+        while True:
+            done = self.session.carry_out(ahead, report)
+            if len(done) < len(ahead):
+                break  # it was interrupted
+            fresh = list(self._next())
+            if not fresh:
+                break
+            self.runs += fresh
+            ahead = [r for r in fresh if r.identity not in self.session.entries]
+        self._settle()
+
+    def _groups(self) -> Iterator[list[Run]]:
+        """Runs of every record of every case, in the order of their levels."""
+
+        def level(run: Run) -> float:
+            return run.shaking.level if run.shaking else 0.0
+
+        groups: dict[object, list[Run]] = {}
+        for run in self.runs:
+            groups.setdefault((run.case, run.shaking and run.shaking.record), []).append(run)
+        return (sorted(own, key=level) for own in groups.values())
+
+    def _settle(self) -> None:
+        """Number the runs in the order of cases, records and levels."""
+        runs = itertools.chain.from_iterable(self._groups())
+        self.session.extend(tuple(replace(run, number=n) for n, run in enumerate(runs, 1)))
+
+    def _next(self) -> Iterator[Run]:
+        """The next level of every record that is not done."""
+        for own in self._groups():
+            curve = self._curve(own)
+            if curve.left_out or not curve.points:
+                continue  # a run failed: what it would have told is not known
+            level = next_level(curve.points, self.aim.rules)
+            if level is not None:
+                yield own[0].at(level)
+
+    def _curve(self, runs: Sequence[Run]) -> Curve:
+        """What the runs of one record have come to."""
+        asked, levels, found = self.aim.asked, [], []
+        for run in runs:
+            entry = self.session.entries[run.identity]
+            levels.append(run.shaking.level if run.shaking else 0.0)
+            found.append(demand(entry.status, entry.reached, entry.values.get(asked.quantity, {}), asked))
+        return Curve.of("", "", levels, found)

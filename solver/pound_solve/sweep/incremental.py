@@ -1,0 +1,200 @@
+r"""Incremental dynamic analysis: the levels at which one record is run, one after the other.
+
+The rules are those of Vamvatsikos and Cornell (2002, Earthquake Engng Struct. Dyn. 31: 491-514; 2004,
+Earthquake Spectra 20: 523-553), hunt and fill:
+
+1. the hunt: steps that grow by a constant amount, :math:`\Delta_i = \Delta + (i - 1)\,\delta`, until a run
+   collapses or the highest level is reached;
+2. the bracket: a third of the way from the highest level that stands to the lowest that collapses, until
+   they are close;
+3. the fill: the middle of the widest gap between levels that stand, as long as runs are left.
+
+A run collapses where it stops, where its demand reaches a limit, or where the curve has gone flat: its
+slope from the run below is less than a share of that of its first point (FEMA 350 takes a fifth).  The next
+level follows from the points alone, so that an analysis that was interrupted goes on as it would have.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final, NamedTuple
+
+#: how a point counts
+STANDS, STOPPED, BEYOND, FLAT = "stands", "stopped", "beyond the limit", "flat"
+THIRD: Final = 1.0 / 3.0
+SAME: Final = 1e-9  #: levels that are closer, relatively, are one
+
+
+class Point(NamedTuple):
+    """One run.
+
+    Attributes
+    ----------
+    level : float
+        Intensity.
+    demand : float
+        What the structure is asked for; infinite where the run stopped.
+    """
+
+    level: float
+    demand: float
+
+
+@dataclass(frozen=True)
+class Rules:
+    """How levels are chosen.
+
+    Attributes
+    ----------
+    step, growth : float
+        First step of the hunt, and by how much each next one is longer.
+    top : float
+        Highest level.
+    runs : int
+        Of one record, at most.
+    close : float
+        Bracket of the collapse, relative to its lower end, that is close enough.
+    limit : float
+        Demand that counts as collapse.
+    slope : float
+        Share of the first slope below which the curve is flat; 0 for never.
+    """
+
+    step: float
+    growth: float = 0.0
+    top: float = math.inf
+    runs: int = 12
+    close: float = 0.1
+    limit: float = math.inf
+    slope: float = 0.2
+
+
+def ends(points: Sequence[Point], rules: Rules) -> list[str]:
+    """How every point counts, in the order of their levels (`points` must be so)."""
+    out: list[str] = []
+    first = before = None
+    for point in points:
+        if not math.isfinite(point.demand):
+            out.append(STOPPED)
+            continue
+        if point.demand >= rules.limit:
+            out.append(BEYOND)
+            continue
+        flat = False
+        if first is not None and before is not None and point.demand > before.demand:
+            slope = (point.level - before.level) / (point.demand - before.demand)
+            flat = slope < rules.slope * first.level / first.demand
+        out.append(FLAT if flat else STANDS)
+        before = point
+        if first is None and point.demand > 0.0:
+            first = point
+    return out
+
+
+def collapse(points: Sequence[Point], rules: Rules) -> tuple[float, float]:
+    """Levels between which a record brings the structure down.
+
+    Parameters
+    ----------
+    points : sequence of Point
+        In the order of their levels.
+    rules : Rules
+
+    Returns
+    -------
+    stands, falls : float
+        The lowest that collapses, infinite where none does, and the highest that stands below it.
+    """
+    stands = 0.0
+    for point, end in zip(points, ends(points, rules)):
+        if end != STANDS:
+            return stands, point.level
+        stands = point.level
+    return stands, math.inf
+
+
+def next_level(points: Sequence[Point], rules: Rules) -> float | None:
+    """The level of the next run; None where the record is done.
+
+    Parameters
+    ----------
+    points : sequence of Point
+        At least one, in the order of their levels.
+    rules : Rules
+    """
+    if len(points) >= rules.runs:
+        return None
+    stands, falls = collapse(points, rules)
+    if falls == math.inf:
+        return _hunt(points, rules) or _fill(points, stands)
+    if falls - stands > rules.close * max(stands, rules.close * falls):
+        return stands + THIRD * (falls - stands)
+    return _fill(points, stands)
+
+
+def _hunt(points: Sequence[Point], rules: Rules) -> float | None:
+    """The next step up; None at the top."""
+    highest = points[-1].level
+    if highest >= rules.top * (1.0 - SAME):
+        return None
+    # steps are counted by levels, not by runs, so that levels that are given beside the hunt do no harm
+    level, step = points[0].level, rules.step
+    while level <= highest * (1.0 + SAME):
+        level, step = level + step, step + rules.growth
+    return min(level, rules.top)
+
+
+def _fill(points: Sequence[Point], stands: float) -> float | None:
+    """The middle of the widest gap between levels that stand, the lowest of several."""
+    levels = [0.0, *(p.level for p in points if p.level <= stands)]
+    gaps = [high - low for low, high in pairwise(levels)]
+    if not gaps:
+        return None
+    widest = max(gaps)
+    at = next(i for i, gap in enumerate(gaps) if gap >= widest * (1.0 - SAME))
+    return levels[at] + 0.5 * gaps[at]
+
+
+def capacity(points: Sequence[Point], rules: Rules, demand: float) -> tuple[float, bool]:
+    """Level at which a demand is first reached, and whether it is: else the highest level that was run.
+
+    Straight lines join the points, from the origin on.  Where the record collapses before, the capacity is
+    in the middle of the bracket.
+    """
+    stands, falls = collapse(points, rules)
+    below = Point(0.0, 0.0)
+    for point in points:
+        if point.level > stands:
+            break
+        if point.demand >= demand:
+            share = (demand - below.demand) / (point.demand - below.demand)
+            return below.level + share * (point.level - below.level), True
+        below = point
+    if falls == math.inf:
+        return stands, False
+    return 0.5 * (stands + falls), True
+
+
+def demand_at(points: Sequence[Point], rules: Rules, level: float) -> float:
+    """Demand at a level: infinite from the middle of the bracket of a collapse on, as `capacity` has it.
+
+    NaN beyond the highest level of a record that stands.
+    """
+    stands, falls = collapse(points, rules)
+    if level > stands * (1.0 + SAME):
+        if falls == math.inf:
+            return math.nan
+        if level >= 0.5 * (stands + falls):
+            return math.inf
+    below = Point(0.0, 0.0)
+    for point in points:
+        if point.level > stands:
+            break
+        if point.level >= level:
+            share = (level - below.level) / (point.level - below.level)
+            return below.demand + share * (point.demand - below.demand)
+        below = point
+    return below.demand

@@ -1,0 +1,165 @@
+"""What a sweep keeps of every run: quantities, each a column of a table of the report."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, Final, TypeAlias
+
+from pound_solve.analyses.history import RESIDUAL
+from pound_solve.results.contents import TABLES
+from pound_solve.results.record import RunRecord
+
+Values: TypeAlias = dict[str, dict[str, float]]  #: of one run: by quantity and by label
+Fields: TypeAlias = Mapping[str, Any]  #: of one row of a table, by column
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One quantity.
+
+    Attributes
+    ----------
+    name : str
+    axis : str
+        What its labels are; empty for one number a run.
+    unit : str
+        Dimensions, as of a column.
+    doc : str
+    table : str
+        Table whose rows hold it.
+    label : callable
+        Label of a row; None leaves the row out.
+    value : callable
+        Value in a row.
+    """
+
+    name: str
+    axis: str
+    unit: str
+    doc: str
+    table: str
+    label: Callable[[Fields], str | None]
+    value: Callable[[Fields], float]
+
+
+def _largest(row: Fields) -> float:
+    return float(max(abs(row["max"]), abs(row["min"])))
+
+
+def _of(column: str) -> Callable[[Fields], float]:
+    return lambda row: float(row[column])
+
+
+def _named(column: str) -> Callable[[Fields], str]:
+    return lambda row: str(row[column])
+
+
+def _storey(row: Fields) -> str:
+    return f"{row['building']} {row['storey']}"
+
+
+def _hinge(row: Fields) -> str | None:
+    return None if math.isnan(row["ductility"]) else f"{row['element']} {row['component']}"
+
+
+def _building(quantity: str) -> Callable[[Fields], str | None]:
+    return lambda row: str(row["building"]) if row["quantity"] == quantity else None
+
+
+def _first_mode(row: Fields) -> str | None:
+    return "" if row["mode"] == 1 else None
+
+
+def _number(row: Fields) -> float:
+    try:
+        return float(row["value"])
+    except ValueError:  # a check that is told in words
+        return math.nan
+
+
+def _check(begin: str) -> Callable[[Fields], str | None]:
+    return lambda row: "" if row["check"].startswith(begin) else None
+
+
+def _each(
+    table: str,
+    axis: str,
+    label: Callable[[Fields], str | None],
+    own: Sequence[tuple[str, str, str, Callable[[Fields], float]]],
+) -> Iterator[Quantity]:
+    """Quantities of one table with the same labels."""
+    return (Quantity(name, axis, unit, doc, table, label, value) for name, unit, doc, value in own)
+
+
+QUANTITIES: Final = (
+    Quantity("period", "", "T", "period of the first mode of MODAL", "modes", _first_mode, _of("period")),
+    *_each("drift_envelope", "drift", _named("name"), (
+        ("peak_drift", "L", "largest absolute drift", _largest),
+        ("drift_ratio", "-", "largest absolute drift over its height", _of("ratio_max")),
+    )),
+    *_each("contact_summary", "contact", _named("contact"), (
+        ("closures", "-", "number of collisions", _of("closures")),
+        ("contact_force", "F", "largest compression", _of("peak_force")),
+        ("penetration", "L", "largest overlap", _of("peak_penetration")),
+        ("impulse", "F*T", "impulse of all collisions", _of("impulse")),
+        ("contact_loss", "F*L", "energy lost in the contact", _of("energy_lost")),
+        ("min_gap", "L", "smallest gap, negative while in contact", _of("min_gap")),
+    )),
+    Quantity(
+        "base_shear", "building", "F", "largest absolute base shear",
+        "base_envelope", _building("shear X"), _largest,
+    ),
+    Quantity(
+        "overturning_moment", "building", "F*L", "largest absolute overturning moment",
+        "base_envelope", _building("moment"), _largest,
+    ),
+    *_each("storey_envelope", "storey", _storey, (
+        ("storey_drift", "-", "largest absolute drift ratio", _of("drift")),
+        ("residual_drift", "-", "drift ratio at the end", _of("residual")),
+        ("storey_shear", "F", "largest absolute shear", _of("shear")),
+        ("floor_acceleration", "L/T^2", "largest absolute total acceleration", _of("acceleration")),
+    )),
+    *_each("spring_envelope", "hinge", _hinge, (
+        ("ductility", "-", "largest absolute deformation over yield", _of("ductility")),
+    )),
+    *_each("checks", "", _check(RESIDUAL), (
+        ("energy_residual", "-", "largest energy residual over the largest energy", _number),
+    )),
+    *_each("checks", "", _check("estimated error"), (
+        ("error_estimate", "-", "error of the peaks by the estimate of AUTO", _number),
+    )),
+)  # fmt: skip
+#: tables that the quantities are taken from, with their columns
+SOURCES: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {q.table: tuple(c.name for c in TABLES[q.table].columns) for q in QUANTITIES}
+)
+
+
+def taken(rows: Mapping[str, list[Fields]]) -> Values:
+    """The quantities of one run from the rows of its tables."""
+    out: Values = {}
+    for q in QUANTITIES:
+        own = {label: q.value(row) for row in rows.get(q.table, ()) if (label := q.label(row)) is not None}
+        if own:
+            out[q.name] = own
+    return out
+
+
+def rows_of(table: str, record: RunRecord) -> list[Fields]:
+    """Rows of a table of a run, by column."""
+    return [dict(zip(SOURCES[table], row)) for row in TABLES[table].rows(record) or ()]
+
+
+def doubts(rows: Mapping[str, list[Fields]]) -> str:
+    """The checks of one run whose verdict calls for a look."""
+    looked = (row for row in rows.get("checks", ()) if row["verdict"].startswith("look"))
+    return "; ".join(f"{row['check']}: {row['value']}, {row['verdict']}" for row in looked)
+
+
+def page() -> str:
+    """Table of all quantities for the manual."""
+    rows = (f"| `{q.name}` | {q.axis or 'none'} | `{q.unit}` | {q.doc} |" for q in QUANTITIES)
+    return "\n".join(["| quantity | labels | unit | meaning |", "|---|---|---|---|", *rows, ""])

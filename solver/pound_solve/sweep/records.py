@@ -1,0 +1,225 @@
+"""The records of a study: found by name or pattern, read once to see that they can be, and scaled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Final
+
+from pound_deck.diagnostics import Diagnostic, has_errors, hints, suggest
+from pound_deck.model import Card
+from pound_solve.catalog import catalog
+from pound_solve.driver import record_card
+from pound_solve.driver.overrides import MEETING
+from pound_solve.loading.motions import record
+from pound_solve.loading.motions.base import LoadingContext, Motion
+from pound_solve.loading.records.base import RecordError
+from pound_solve.loading.records.known import find, known, load
+from pound_solve.loading.spectrum import response_spectrum
+from pound_solve.sweep.document import Document, Path_
+from pound_solve.sweep.run import RecordFile, Shaking
+
+#: items of [[motions]] that are none of a RECORD line
+FILES, LEVELS, OSCILLATOR = "files", ("scale", "pga", "sa"), ("period", "damping")
+NOT_OF_A_STUDY: Final = ("FILE", "SCALE", *MEETING)  #: of a RECORD line
+DAMPING: Final = 0.05
+
+
+class Suite:
+    """One table of [[motions]]: records that are read alike, and their levels.
+
+    Parameters
+    ----------
+    document : Document
+        Receives the mistakes.
+    number : int
+        Of the table.
+    folders : sequence of Path
+        Where records are looked for.
+    """
+
+    def __init__(self, document: Document, number: int, folders: Sequence[Path]) -> None:
+        self.document, self.path, self.folders = document, ("motions", number), folders
+        self.measure, self.levels = self._levels()
+        self.period, self.damping = self._oscillator()
+        self.items = tuple(self._items())
+        self.records = tuple(self._records())
+
+    def _levels(self) -> tuple[str, list[float]]:
+        """What the levels measure, and their values."""
+        given = [name for name in LEVELS if self.document.at((*self.path, name)) is not None]
+        for name in given[1:]:
+            message = f"{name} stands beside {given[0]}: one of them tells how strong the records are"
+            self.document.mistake("S605", message, (*self.path, name))
+        measure = given[0] if given else "scale"
+        levels = [float(x) for x in self.document.listed((*self.path, measure), (int, float))]
+        if measure != "scale" and not all(x > 0.0 for x in levels):
+            self.document.mistake("S605", f"{measure} is above zero", (*self.path, measure))
+        return measure, levels or [1.0]
+
+    def _oscillator(self) -> tuple[float, float]:
+        """Period [T] and damping ratio of the oscillator whose response is the intensity."""
+        period = self.document.take((*self.path, "period"), float, 0.0)
+        damping = self.document.take((*self.path, "damping"), float, DAMPING)
+        if self.measure == "sa" and not period > 0.0:
+            self.document.mistake(
+                "S605", "sa needs the period of its oscillator, above zero", (*self.path, "sa")
+            )
+        if not 0.0 <= damping < 1.0:
+            message = "damping is a ratio from 0 to below 1"
+            self.document.mistake("S605", message, (*self.path, "damping"))
+        for name in OSCILLATOR:
+            if self.measure != "sa" and self.document.at((*self.path, name)) is not None:
+                self.document.mistake("S605", f"{name} belongs to sa", (*self.path, name))
+        return period, damping
+
+    def _items(self) -> Iterator[str]:
+        """Items of the RECORD line by which the records are read."""
+        fields = {f.name for spec in catalog().family("record").values() for f in spec.fields}
+        fields |= {f.name for f in record.SPEC.fields}
+        own = {name.lower() for name in fields if name not in NOT_OF_A_STUDY}
+        words = [FILES, *LEVELS, *OSCILLATOR, *sorted(own)]
+        for name, value in dict(self.document.at(self.path) or {}).items():
+            if name in (FILES, *LEVELS, *OSCILLATOR):
+                continue
+            path = (*self.path, name)
+            if name.upper() in NOT_OF_A_STUDY:
+                message = f"{name} is told by the deck's line under EQUAKE, whose record the sweep replaces"
+                self.document.mistake("S602", message, path, "leave it out")
+            elif name.lower() not in own:
+                hint = hints(suggest(name, words), "items of a RECORD line tell how its records are read")
+                self.document.mistake("S602", f"motions has no item {name}", path, hint)
+            elif isinstance(value, str | int | float) and not isinstance(value, bool):
+                yield f"{name.upper()}={value}"
+            else:
+                self.document.mistake("S603", f"{name} takes a text or a number", path)
+
+    def _records(self) -> Iterator[RecordFile]:
+        """Every record once, in the order of their names within a pattern."""
+        path = (*self.path, FILES)
+        names = self.document.listed(path, (str,))
+        if not names and self.document.at(path) is None:
+            self.document.mistake(
+                "S604", "motions names no files", self.path, 'write files = ["suite/*.AT2"]'
+            )
+        seen = set[str]()
+        for name in names:
+            for file in self._matched(name, path):
+                if str(file) not in seen:
+                    seen.add(str(file))
+                    yield from self._read(str(file), path)
+
+    def _matched(self, name: str, path: Path_) -> list[str]:
+        """Files of a pattern, or the one file or known record of a name."""
+        if known(name) is not None:
+            return [name]
+        if any(c in name for c in "*?["):
+            base = self.document.folder
+            pattern = Path(name)
+            root = Path(pattern.anchor) if pattern.anchor else base
+            relative = str(pattern.relative_to(pattern.anchor)) if pattern.anchor else name
+            found = sorted(str(p.absolute()) for p in root.glob(relative) if p.is_file())
+            if not found:
+                where = root.absolute()
+                message = f"no file fits {name}"
+                self.document.mistake("S604", message, path, f"patterns count from {where}")
+            return found
+        try:
+            return [str(find(name, (self.document.folder, *self.folders)).absolute())]
+        except RecordError as err:
+            self.document.mistake(err.code, err.message, path, err.hint)
+            return []
+
+    def _read(self, file: str, path: Path_) -> Iterator[RecordFile]:
+        """The record, if it can be read as the study says."""
+        name = file if known(file) else Path(file).name
+        place = self.document.place(path)
+        own = RecordFile(name, file, self.items, "", place)
+        try:
+            _, digest = load(find(file))
+            card = card_of(own)
+            found = record.samples(card.values, LoadingContext(9.81))
+        except RecordError as err:
+            self.document.mistake(err.code, err.message, path, err.hint)
+            return
+        except UnreadableError as err:
+            self.document.found += [replace(d, span=place) for d in err.diagnostics]
+            return
+        unit, told = card.values["UNIT"], found.raw.unit
+        if unit is not None and told and told != {"GAL": "CM/S2"}.get(unit, unit):
+            message = f"{name} says that it is in {told}, not in {unit}"
+            hint = "leave unit out where files tell theirs, or give this one a [[motions]] of its own"
+            self.document.mistake("S606", message, (*self.path, "unit"), hint)
+        yield replace(own, sha256=digest)
+
+    def shakings(self, context: LoadingContext) -> Iterator[Shaking]:
+        """Every record at every level.
+
+        Parameters
+        ----------
+        context : LoadingContext
+            Of a deck: its unit of length and its gravity.
+        """
+        for own in self.records:
+            measured = self._measured(own, context)
+            for level in self.levels:
+                if measured is None:
+                    yield Shaking(own, level, level)
+                elif measured > 0.0:
+                    yield Shaking(own, level * context.gravity / measured, level)
+
+    def _measured(self, own: RecordFile, context: LoadingContext) -> float | None:
+        """Intensity of the record as it is [L/T^2]; None where its levels are factors."""
+        if self.measure == "scale":
+            return None
+        try:
+            acceleration = unscaled(own, context).acceleration
+            if self.measure == "pga":
+                out = abs(acceleration.peak()[1])
+            else:
+                out = float(response_spectrum(acceleration, self.period, self.damping).psa[0, 0])
+        except (RecordError, ValueError) as err:
+            self.document.mistake("S606", f"{own.name}: {err}", (*self.path, self.measure))
+            return 0.0
+        if not out > 0.0:
+            message = f"{own.name} has no acceleration that could be scaled"
+            self.document.mistake("S606", message, (*self.path, FILES))
+        return out
+
+
+class UnreadableError(Exception):
+    """The items by which a record is to be read are wrong."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
+        super().__init__("; ".join(d.message for d in diagnostics))
+        self.diagnostics = tuple(diagnostics)
+
+
+@lru_cache(maxsize=256)
+def card_of(own: RecordFile) -> Card:
+    """RECORD card of a record, unscaled; its place is the study's.
+
+    Raises
+    ------
+    UnreadableError
+    """
+    model, found, _ = record_card.read(own.file, own.items, own.name)
+    if model is None or has_errors(found):
+        raise UnreadableError(found)
+    (card,) = model.equake
+    return replace(card, span=own.place, spans={}) if own.place else replace(card, spans={})
+
+
+def scaled(shaking: Shaking) -> Card:
+    """RECORD card of a shaking."""
+    card = card_of(shaking.record)
+    return replace(card, values={**card.values, "SCALE": shaking.scale})
+
+
+def unscaled(own: RecordFile, context: LoadingContext) -> Motion:
+    """The motion of a record as it is."""
+    card = card_of(own)
+    motion: Motion = card.spec.impl(card.values, context)
+    return motion

@@ -1,0 +1,136 @@
+"""One run of a study: a deck with its PARAMs, and the record that shakes it; its identity."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from hashlib import blake2b
+from pathlib import Path
+
+from pound_deck.model import Span
+from pound_solve.version import __version__
+
+
+@dataclass(frozen=True)
+class RecordFile:
+    """A record as a study names it.
+
+    Attributes
+    ----------
+    name : str
+        Its file without folder, or the name of a known record.
+    file : str
+        Its whole path, or the name of a known record.
+    items : tuple of str
+        ``NAME=value``: how it is read, as on a RECORD line.
+    sha256 : str
+        Of the file.
+    place : Span or None
+        Where the study names it.
+    """
+
+    name: str
+    file: str
+    items: tuple[str, ...]
+    sha256: str
+    place: Span | None = None
+
+
+@dataclass(frozen=True)
+class Shaking:
+    """A record and its strength.
+
+    Attributes
+    ----------
+    record : RecordFile
+    scale : float
+        Factor on the record.
+    level : float
+        What the study asks for: the factor, or the intensity in shares of gravity.
+    """
+
+    record: RecordFile
+    scale: float
+    level: float
+
+
+@dataclass(frozen=True)
+class Case:
+    """A deck with its PARAMs: what runs that differ in their shaking alone share.
+
+    Attributes
+    ----------
+    deck : str
+    params : tuple of (name, value)
+        PARAMs that replace the deck's, texts as on the command line.
+    records : tuple of Path
+        Folders where records are looked for.
+    method, dt, tol : str or None, float or None
+        Replace those of HISTORY.
+    """
+
+    deck: str
+    params: tuple[tuple[str, str], ...] = ()
+    records: tuple[Path, ...] = ()
+    method: str | None = None
+    dt: float | None = None
+    tol: float | None = None
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run.
+
+    Attributes
+    ----------
+    number : int
+        From 1.
+    case : Case
+    shaking : Shaking or None
+        None where the deck's own motion acts.
+    first : RecordFile or None
+        The study's first record, under which the case is prepared, whichever of its runs comes first.
+    inputs : str
+        Digest of what the deck reads, see `digest_of_inputs`.
+    """
+
+    number: int
+    case: Case
+    shaking: Shaking | None
+    first: RecordFile | None
+    inputs: str
+
+    @cached_property
+    def identity(self) -> str:
+        """Digest of all that its results depend on; names and places of files do not count."""
+        shaking = self.shaking
+        own = {
+            "inputs": self.inputs,
+            "params": sorted((name.upper(), value) for name, value in self.case.params),
+            "method": [self.case.method, self.case.dt, self.case.tol],
+            "shaking": shaking and [shaking.record.sha256, sorted(shaking.record.items), shaking.scale],
+            "version": __version__,
+        }
+        return blake2b(json.dumps(own).encode(), digest_size=12).hexdigest()
+
+    def at(self, level: float) -> Run:
+        """The same run at another level of its record."""
+        if self.shaking is None:
+            raise ValueError("a run without a record has no level")
+        scale = self.shaking.scale * (level / self.shaking.level)
+        return replace(self, shaking=replace(self.shaking, scale=scale, level=level))
+
+    @property
+    def title(self) -> str:
+        """The run in words."""
+        own = [Path(self.case.deck).name, *(f"{k}={v}" for k, v in self.case.params)]
+        if self.shaking is not None:
+            own += [self.shaking.record.name, f"x {self.shaking.scale:.6g}"]
+        return " ".join(own)
+
+
+def digest_of_inputs(inputs: Mapping[str, str]) -> str:
+    """Digest of what a deck reads: its text, its included files, digests of its own records."""
+    return blake2b(json.dumps(sorted(inputs.values())).encode(), digest_size=12).hexdigest()

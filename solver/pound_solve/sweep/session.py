@@ -1,0 +1,125 @@
+"""One call of a sweep: what is to be run of a study, its conduct, and the table that it ends with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from pound_solve.results.sweep_file import Sweep
+from pound_solve.sweep import plan, table
+from pound_solve.sweep.conduct import Conductor, State
+from pound_solve.sweep.document import Document
+from pound_solve.sweep.entry import DONE, ENDS, FAILED, Entry, Journal
+from pound_solve.sweep.executors import Engine, engine
+from pound_solve.sweep.lock import locked
+from pound_solve.sweep.run import Run
+from pound_solve.sweep.study import Study, read
+from pound_solve.sweep.work import Settings
+
+
+class Session:
+    """One call of a sweep.
+
+    Parameters
+    ----------
+    study : Study
+    engine : Engine
+    piece : tuple of int
+        Number of the piece that is run, from 1, and how many there are.
+    retry : bool
+        Try runs again that stopped or failed.
+    """
+
+    def __init__(
+        self, study: Study, engine: Engine, piece: tuple[int, int] = (1, 1), retry: bool = False
+    ) -> None:
+        self.study, self.engine = study, engine
+        self.journal = Journal(study.out / "runs")
+        self.entries = self.journal.entries()
+        self.runs = plan.piece(study.runs, *piece)
+        self.agenda = plan.Agenda.of(self.runs, self.entries, retry)
+
+    def plan(self) -> Iterator[str]:
+        """What is to be run, in words."""
+        return plan.lines(self.study, self.agenda, self.entries)
+
+    def trial(self) -> list[Run]:
+        """The first, the middle and the last of the runs ahead."""
+        ahead = self.agenda.ahead
+        return list(dict.fromkeys(ahead[i] for i in (0, len(ahead) // 2, -1))) if ahead else []
+
+    def carry_out(self, runs: Sequence[Run], report: Callable[[State], None]) -> list[Entry]:
+        """Carry runs out; return what those have come to that have ended."""
+        study = self.study
+        folder = self.journal.folder if self.engine.notes else None
+        settings = Settings(folder, study.seconds, study.memory, study.histories)
+        if runs:
+            Conductor(self.engine, settings, self.journal, report).run(runs)
+            self.entries = self.journal.entries()
+        return [self.entries[r.identity] for r in runs if r.identity in self.entries]
+
+    def estimate(self, tried: Sequence[Entry]) -> Iterator[str]:
+        """What the runs ahead will take beside those that were tried, in words."""
+        if tried:
+            size = sum(p.stat().st_size for p in self.journal.folder.iterdir()) / len(self.entries)
+            left = len(self.agenda.ahead) - len(tried)
+            yield from plan.estimate(tried, left, self.engine.workers, size)
+
+    def extend(self, runs: Sequence[Run]) -> None:
+        """Take these runs for those of the study."""
+        self.study = replace(self.study, runs=tuple(runs))
+        self.runs = self.study.runs
+
+    def write(self) -> Path:
+        """Write the table of the study; raises as `sweep_file.write`."""
+        return table.write(self.study, self.journal, self.entries)
+
+    @property
+    def ends(self) -> list[str]:
+        """How every run has ended; empty for those that have not."""
+        return [self.entries[r.identity].status if r.identity in self.entries else "" for r in self.runs]
+
+    @property
+    def whole(self) -> bool:
+        """Whether every run has ended, and none failed."""
+        return not set(self.ends) & {"", FAILED}
+
+    def summary(self) -> Iterator[str]:
+        """What the runs have come to, in words."""
+        ends = self.ends
+        counts = [f"{ends.count(end)} {end}" for end in ENDS if end in ends]
+        if "" in ends:
+            counts.append(f"{ends.count('')} not run")
+        before = len(self.runs) - len(self.agenda.ahead)
+        yield f"{len(ends)} runs: {', '.join(counts)}" + (f"; {before} of them before" if before else "")
+        others = [r for r, end in zip(self.runs, ends) if end not in (DONE, "")]
+        yield from plan.reasons(others, self.entries)
+
+
+def run_study(path: str | Path, *, workers: int = 0, executor: str = "", retry: bool = False) -> Sweep:
+    """Carry out what is not done of a study, write its table and return it.
+
+    Parameters
+    ----------
+    path : str or Path
+        The study's file.
+    workers : int
+        Processes; 0 for those that the study names, else one for each processor.
+    executor : str
+        As ``--executor``, see `executors.engine`.
+    retry : bool
+        Try runs again that stopped or failed.
+
+    Raises
+    ------
+    StudyError
+        The study has mistakes; the text names the place of each.
+    BusyError, ExecutorError, ResultsError, OSError
+        Another sweep writes the folder; the executor cannot be had; a file cannot be read or written.
+    """
+    study = read(Document.read(str(path)))
+    with locked(study.out):
+        session = Session(study, engine(executor, workers or study.workers), retry=retry)
+        session.carry_out(session.agenda.ahead, lambda state: None)
+        return Sweep.open(session.write())

@@ -1,0 +1,388 @@
+"""A study: decks with values of their PARAMs, under records of several strengths; all of its runs.
+
+Everything that is wrong with it is told in one pass: its own items, its records, and its decks with the
+first of their values.
+"""
+
+from __future__ import annotations
+
+import csv
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+from pound_deck.diagnostics import Diagnostic, has_errors, render, suggest
+from pound_deck.model import Model
+from pound_deck.reader import read_deck
+from pound_solve.catalog import catalog
+from pound_solve.driver import loading
+from pound_solve.driver.prepare import DeckError, prepare
+from pound_solve.driver.request import Request
+from pound_solve.loading.motions.base import LoadingContext
+from pound_solve.loading.records.base import RecordError
+from pound_solve.loading.records.known import find, load
+from pound_solve.sweep.document import Document, Path_
+from pound_solve.sweep.records import Suite, scaled
+from pound_solve.sweep.run import Case, Run, Shaking, digest_of_inputs
+
+MOST: Final = 10**6  #: runs
+ITEMS: Final = (
+    "deck", "decks", "records", "out", "method", "dt", "tol", "workers", "seconds", "memory", "histories",
+    "grid", "zip", "cases", "motions",
+)  # fmt: skip
+
+Params = tuple[tuple[str, str], ...]
+
+
+class StudyError(Exception):
+    """A study has mistakes; the text tells all of them."""
+
+    def __init__(self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
+        super().__init__(render(diagnostics, files))
+        self.diagnostics, self.files = tuple(diagnostics), dict(files)
+
+
+@dataclass(frozen=True)
+class Study:
+    """What is run, and how.
+
+    Attributes
+    ----------
+    name : str
+    out : Path
+        Folder of its results.
+    runs : tuple of Run
+    units : tuple of str
+        Force, length and time of all its decks.
+    measure : str
+        What `Shaking.level` is: ``scale``, ``pga`` or ``sa``; empty where the decks' own motions act.
+    workers : int
+        Processes; 0 for as many as the machine has processors.
+    seconds, memory : float or None
+        CPU time [s] and memory [MB] that one run may take.
+    histories : tuple of str
+        Histories that are kept of every run.
+    """
+
+    name: str
+    out: Path
+    runs: tuple[Run, ...]
+    units: tuple[str, str, str]
+    measure: str
+    workers: int
+    seconds: float | None
+    memory: float | None
+    histories: tuple[str, ...] = ()
+
+
+def read(document: Document, tables: Sequence[str] = ()) -> Study:
+    """The study of a document.
+
+    Parameters
+    ----------
+    document : Document
+    tables : sequence of str
+        Tables of it that others read.
+
+    Raises
+    ------
+    StudyError
+        It has mistakes: all that can be told at once.
+    """
+    if document.found:  # it is no TOML
+        raise StudyError(document.found, document.files)
+    return _Reader(document, tables).study()
+
+
+class _Reader:
+    """Reads one document."""
+
+    def __init__(self, document: Document, tables: Sequence[str]) -> None:
+        self.document = document
+        document.known((), (*ITEMS, *tables))
+        self.folders = tuple(self._beside(f) for f in document.listed(("records",), (str,)))
+        self.motions = document.tables("motions")
+        self.suites = [Suite(document, n, self.folders) for n in range(len(self.motions))]
+        self.models = dict[str, Model]()
+
+    def study(self) -> Study:
+        """The whole study, if nothing is wrong."""
+        document = self.document
+        decks, combinations = list(self._decks()), self._combinations()
+        own = {name: document.take((name,), str, "") for name in ("out", "method")}
+        numbers = {name: document.take((name,), float, 0.0) for name in ("dt", "tol", "seconds", "memory")}
+        workers = document.take(("workers",), int, 0)
+        for name, value in {**numbers, "workers": workers}.items():
+            if value < 0 or document.at((name,)) == 0:
+                document.mistake("S603", f"{name} is above zero", (name,))
+        measures = {s.measure for s in self.suites}
+        if len(measures) > 1:
+            message = (
+                f"the tables [[motions]] give {' and '.join(sorted(measures))}: give all the same measure"
+            )
+            document.mistake("S605", message, ("motions",))
+        base = Case(
+            "", (), self.folders, own["method"] or None, numbers["dt"] or None, numbers["tol"] or None
+        )
+        self._names(decks, combinations)
+        histories = tuple(self._histories())
+        for deck in decks:
+            self._tried(replace(base, deck=deck), combinations)
+        self._stop_at_mistakes()
+        runs = tuple(self._runs(base, decks, combinations))
+        self._stop_at_mistakes()
+        units = next(iter(self.models.values())).units
+        return Study(
+            document.name,
+            self._out(own["out"]),
+            runs,
+            (units.force, units.length, units.time),
+            "".join(measures),
+            workers,
+            numbers["seconds"] or None,
+            numbers["memory"] or None,
+            histories,
+        )
+
+    def _stop_at_mistakes(self) -> None:
+        """Raise where there are some, in the order of the study."""
+        found = self.document.found
+        order = {name: k for k, name in enumerate(self.document.files)}
+        found.sort(key=lambda d: (order.get(d.span.file, 0), d.span.line) if d.span else (-1, 0))
+        if has_errors(found):
+            raise StudyError(found, self.document.files)
+
+    def _beside(self, name: str) -> Path:
+        """A path of the study, which counts from its folder."""
+        return (self.document.folder / Path(name).expanduser()).absolute()
+
+    def _out(self, given: str) -> Path:
+        """Folder of the results."""
+        return self._beside(given or Path(self.document.name).stem + ".sweep")
+
+    def _decks(self) -> Iterator[str]:
+        """Paths of all decks; a pattern stands for the files that it fits."""
+        document = self.document
+        given = [name for name in ("deck", "decks") if document.at((name,)) is not None]
+        if len(given) != 1:
+            message = "deck stands beside decks" if given else "the study names no deck"
+            document.mistake("S604", message, (given[-1],) if given else (), 'write deck = "model.inp"')
+        for item in given:
+            for name in document.listed((item,), (str,)):
+                found = [self._beside(name)]
+                if any(c in name for c in "*?["):
+                    found = sorted(p.absolute() for p in document.folder.glob(name))
+                    if not found:
+                        document.mistake("S604", f"no deck fits {name}", (item,))
+                for path in found:
+                    if path.is_file():
+                        yield str(path)
+                    else:
+                        document.mistake("S604", f"there is no deck {path}", (item,))
+
+    def _histories(self) -> Iterator[str]:
+        """Names of the histories that are kept."""
+        from pound_solve.results.contents import HISTORIES
+
+        for name in self.document.listed(("histories",), (str,)):
+            if name in HISTORIES:
+                yield name
+            else:
+                hint = suggest(name, HISTORIES) or f"there are {', '.join(HISTORIES)}"
+                self.document.mistake("S602", f"there is no history {name}", ("histories",), hint)
+
+    def _combinations(self) -> list[Params]:
+        """Values of PARAMs of every case."""
+        document = self.document
+        grid: list[list[Params]] = [
+            [((n, v),) for v in self._values(("grid", n))] for n in self._table("grid")
+        ]
+        side = {n: self._values(("zip", n)) for n in self._table("zip")}
+        lengths = {n: len(v) for n, v in side.items()}
+        if len(set(lengths.values())) > 1:
+            told = ", ".join(f"{n} has {k}" for n, k in lengths.items())
+            document.mistake("S605", f"lists under zip are of one length: {told}", ("zip",))
+        rows = self._cases()
+        parts = [*grid]
+        if side:
+            parts.append([tuple(zip(side, values)) for values in zip(*side.values())])
+        if rows is not None:
+            parts.append(rows)
+        return [tuple(itertools.chain(*own)) for own in itertools.product(*parts)]
+
+    def _table(self, name: str) -> dict[str, Any]:
+        """One table of lists; empty where there is none."""
+        return self.document.take((name,), dict, {})
+
+    def _values(self, path: Path_) -> list[str]:
+        """Values of one PARAM as texts."""
+        return [v if isinstance(v, str) else repr(v) for v in self.document.listed(path, (str, int, float))]
+
+    def _cases(self) -> list[Params] | None:
+        """Rows of the file of cases: its first line names the PARAMs."""
+        document, path = self.document, ("cases",)
+        name = document.take(path, str, "")
+        if not name:
+            return None
+        file = self._beside(name)
+        try:
+            text = file.read_text("utf-8-sig")
+        except (OSError, UnicodeDecodeError) as err:
+            document.mistake("S604", f"{name} cannot be read: {err}", path)
+            return []
+        lines = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
+        if len(lines) < 2:
+            document.mistake("S605", f"{name} has no cases below its line of names", path)
+            return []
+        names = [cell.strip() for cell in lines[0]]
+        for number, row in enumerate(lines[1:], 2):
+            if len(row) != len(names):
+                message = f"{name}, case {number - 1}: {len(row)} values for {len(names)} names"
+                document.mistake("S605", message, path)
+        self.columns = names
+        return [tuple(zip(names, (cell.strip() for cell in row))) for row in lines[1:]]
+
+    def _sources(self) -> Iterator[tuple[str, Path_]]:
+        """Every PARAM with the place that gives it values."""
+        for table in ("grid", "zip"):
+            for name in self._table(table):
+                yield name, (table, name)
+        for name in getattr(self, "columns", ()):
+            yield name, ("cases",)
+
+    def _names(self, decks: Sequence[str], combinations: Sequence[Params]) -> None:
+        """Note PARAMs that are given twice; read the decks."""
+        seen: dict[str, Path_] = {}
+        for name, path in self._sources():
+            if name.upper() in seen:
+                message = f"{name} has values here and under {seen[name.upper()][0]}"
+                self.document.mistake("S605", message, path)
+            seen[name.upper()] = path
+        if not combinations:
+            return
+        for deck in decks:
+            model, found, files = read_deck(deck, catalog(), dict(combinations[0]))
+            self._told(found, files)
+            if model is not None:
+                self.models[deck] = model
+
+    def _told(self, found: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
+        """Note mistakes of a deck; those of a value at the study's item."""
+        places = {f"--set {name}": path for name, path in self._sources()}
+        for d in found:
+            if d.severity != "error":
+                continue
+            if d.span is not None and d.span.file in places:
+                d = replace(d, span=self.document.place(places[d.span.file]))
+            if d not in self.document.found:
+                self.document.found.append(d)
+        self.document.files.update({n: t for n, t in files.items() if n not in places})
+
+    def _tried(self, case: Case, combinations: Sequence[Params]) -> None:
+        """Prepare the first run of a deck, and look whether every PARAM has an effect."""
+        if case.deck not in self.models:
+            return
+        first = next((r for s in self.suites for r in s.records), None)
+        motion = scaled(Shaking(first, 1.0, 1.0)) if first else None
+        if self.suites and not first:
+            return  # its records are told already
+        try:
+            ready = prepare(request_of(replace(case, params=combinations[0]), motion))
+        except DeckError as err:
+            self._told(err.diagnostics, err.files)
+            return
+        self.models[case.deck] = ready.model
+        here, there = ready.model.units, next(iter(self.models.values())).units
+        if (here.force, here.length, here.time) != (there.force, there.length, there.time):
+            message = f"{Path(case.deck).name} has other units than {Path(next(iter(self.models))).name}"
+            self.document.mistake("S605", message, ("decks",))
+        for name, path in self._sources():
+            self._effective(name, path, case, combinations)
+
+    def _effective(self, name: str, path: Path_, case: Case, combinations: Sequence[Params]) -> None:
+        """Note a PARAM on which nothing of the deck depends but the motion that the study replaces."""
+        first = dict(combinations[0])
+        other = next((dict(c)[name] for c in combinations if dict(c)[name] != first[name]), None)
+        if other is None or not self.suites:
+            return
+        models = [read_deck(case.deck, catalog(), values)[0] for values in (first, {**first, name: other})]
+        if None not in models and len({_contents(m) for m in models if m is not None}) == 1:
+            deck = Path(case.deck).name
+            message = f"{name} changes nothing in {deck} but the motion, which [[motions]] replaces"
+            self.document.mistake("S607", message, path, "leave it out, or leave out [[motions]]")
+
+    def _runs(self, base: Case, decks: Sequence[str], combinations: Sequence[Params]) -> Iterator[Run]:
+        """All runs; those of one case follow one another."""
+        document = self.document
+        first = next((r for s in self.suites for r in s.records), None)
+        numbers, seen = itertools.count(1), dict[str, int]()
+        for deck in decks:
+            context = self._context(deck)
+            shakings: list[Shaking | None] = [x for s in self.suites for x in s.shakings(context)]
+            if len(decks) * len(combinations) * len(shakings or [None]) > MOST:
+                document.mistake("S605", f"the study has more than {MOST} runs")
+                return
+            read = dict[Params, str]()
+            for params in combinations:
+                texts = tuple((n, v) for n, v in params if not _is_number(v))
+                if texts not in read:
+                    read[texts] = digest_of_inputs(self._inputs(replace(base, deck=deck, params=params)))
+                case = replace(base, deck=deck, params=params)
+                for shaking in shakings or [None]:
+                    run = Run(next(numbers), case, shaking, first, read[texts])
+                    other = seen.setdefault(run.identity, run.number)
+                    if other != run.number:
+                        document.mistake("S605", f"runs {other} and {run.number} are the same")
+                        return
+                    yield run
+
+    def _context(self, deck: str) -> LoadingContext:
+        return loading.context(self.models[deck], Request(deck))
+
+    def _inputs(self, case: Case) -> dict[str, str]:
+        """Texts of a deck and its included files, digests of the files that it reads beside them."""
+        model, found, files = read_deck(case.deck, catalog(), dict(case.params))
+        if model is None:
+            self._told(found, files)
+            return {}
+        out = dict(model.files)
+        context = loading.context(model, request_of(case))
+        for card in (*(() if self.suites else model.equake), *model.forces):
+            if card.values.get("FILE"):
+                try:
+                    out[str(card["FILE"])] = load(find(str(card["FILE"]), context.search_path))[1]
+                except RecordError as err:
+                    place = card.place("FILE")
+                    self.document.found.append(Diagnostic(err.code, err.message, place, err.hint))
+        for card in model.analyses:
+            if card.values.get("RESTART"):
+                out["RESTART"] = load(Path(case.deck).parent / card["RESTART"])[1]
+        return out
+
+
+def request_of(case: Case, motion: Any = None) -> Request:
+    """Request of a run of a case."""
+    return Request(
+        case.deck,
+        dict(case.params),
+        records=case.records,
+        method=case.method,
+        dt=case.dt,
+        tol=case.tol,
+        motion=motion,
+    )
+
+
+def _contents(model: Model) -> str:
+    """All of a model but its motion and its PARAMs."""
+    return repr(replace(model, params={}, equake=(), files={}))
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,125 @@
+"""The table of a sweep: runs by quantities, made of the journal in the order of the study."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pound_deck.model import Units
+from pound_solve.results import sweep_file
+from pound_solve.results.sweep_file import RUN, Sweep, Variable
+from pound_solve.sweep.entry import Entry, Journal
+from pound_solve.sweep.quantities import QUANTITIES
+from pound_solve.sweep.run import Run
+from pound_solve.sweep.study import Study
+from pound_solve.version import __version__
+
+MISSING = "missing"  #: status of a run that has not ended
+
+
+def table(study: Study, entries: Mapping[str, Entry]) -> Sweep:
+    """What the runs of a study have come to.
+
+    Parameters
+    ----------
+    study : Study
+    entries : mapping of str to Entry
+        By identity.
+    """
+    found = [entries.get(run.identity) or Entry(run.identity, MISSING) for run in study.runs]
+    units = Units(*study.units, given=True)
+    labels: dict[str, tuple[str, ...]] = {}
+    for q in QUANTITIES:
+        if q.axis:
+            own = (name for e in found for name in e.values.get(q.name, ()))
+            labels[q.axis] = tuple(dict.fromkeys((*labels.get(q.axis, ()), *own)))
+    variables = {**_inputs(study), **_ends(found, units)}
+    for q in QUANTITIES:
+        if q.axis and not labels[q.axis]:
+            continue
+        names = labels[q.axis] if q.axis else ("",)
+        values = np.array([[e.values.get(q.name, {}).get(n, np.nan) for n in names] for e in found])
+        shaped = values if q.axis else values[:, 0]
+        variables[q.name] = Variable(shaped, q.axis, units.text(q.unit), q.doc)
+    about = {
+        "study": Path(study.name).name,
+        "program_version": __version__,
+        "units": " ".join(study.units),
+    }
+    return Sweep(variables, {axis: own for axis, own in labels.items() if own}, about)
+
+
+def write(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Path:
+    """Write the file and the CSV of a study; return the path of the former, see `sweep_file.write`."""
+    path = study.out / "sweep.h5"
+    sweep_file.write(table(study, entries), path, _histories(study.runs, journal))
+    return path
+
+
+def _histories(runs: Sequence[Run], journal: Journal) -> Iterator[tuple[int, Mapping[str, NDArray[Any]]]]:
+    """Number and histories of every run that has kept some, one after the other."""
+    for run in runs:
+        path = journal.histories(run.identity)
+        if path.is_file():
+            with np.load(path) as kept:
+                yield run.number, dict(kept)
+
+
+def _inputs(study: Study) -> dict[str, Variable]:
+    """What the study gives to every run."""
+    runs = study.runs
+    out = {
+        RUN: Variable(np.array([r.number for r in runs], np.int64), doc="number of the run"),
+        "identity": Variable(_texts(r.identity for r in runs), doc="digest of all that the run depends on"),
+        "deck": Variable(_texts(Path(r.case.deck).name for r in runs), doc="deck"),
+    }
+    if study.measure:
+        own = [r.shaking for r in runs if r.shaking is not None]
+        out["record"] = Variable(_texts(s.record.name for s in own), doc="record")
+        out["scale"] = Variable(np.array([s.scale for s in own]), doc="factor on the record")
+        if study.measure != "scale":
+            what = {"pga": "peak ground acceleration", "sa": "pseudo-acceleration"}[study.measure]
+            doc = f"{what} that the record is scaled to, in shares of gravity"
+            out[study.measure] = Variable(np.array([s.level for s in own]), doc=doc)
+    taken = {*out, *(q.name for q in QUANTITIES), *(q.axis for q in QUANTITIES), *_ENDS}
+    for name in dict.fromkeys(n for r in runs for n, _ in r.case.params):
+        values = [dict(r.case.params).get(name, "") for r in runs]
+        own_name = f"{name} (PARAM)" if name in taken else name
+        out[own_name] = Variable(_numbers(values), doc=f"PARAM {name}")
+    return out
+
+
+_ENDS = ("status", "message", "doubt", "reached", "cpu_seconds", "solve_seconds")
+
+
+def _ends(found: Sequence[Entry], units: Units) -> dict[str, Variable]:
+    """How every run has ended."""
+    return dict(
+        zip(
+            _ENDS,
+            (
+                Variable(_texts(e.status for e in found), doc="done, stopped, failed or missing"),
+                Variable(_texts(e.message for e in found), doc="why it stopped or failed"),
+                Variable(_texts(e.doubt for e in found), doc="checks that call for a look"),
+                Variable(np.array([e.reached for e in found]), "", units.text("T"), "end of the history"),
+                Variable(np.array([e.cpu for e in found]), "", "s", "CPU time of the run"),
+                Variable(np.array([e.solve for e in found]), "", "s", "CPU time of its method"),
+            ),
+        )
+    )
+
+
+def _texts(values: Iterable[str]) -> NDArray[Any]:
+    return np.array(list(values), object)
+
+
+def _numbers(values: Sequence[str]) -> NDArray[Any]:
+    """Numbers, or texts where one of them is none."""
+    try:
+        return np.array([float(v) if v else np.nan for v in values])
+    except ValueError:
+        return _texts(values)

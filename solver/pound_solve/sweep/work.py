@@ -1,0 +1,182 @@
+"""What a process does with one run: prepare, analyse, keep its quantities; within limits.
+
+Runs of one case, a deck with its PARAMs, share its parsed deck, its assembled structure, its static state,
+its modes and the sums of forces that are recorded: the first run of a process makes them.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from pound_solve.driver.prepare import DeckError, Prepared, prepare, shaken
+from pound_solve.driver.sequence import AnalysisSequence, Settled
+from pound_solve.numerics.types import Array
+from pound_solve.results.contents import HISTORIES, tables_at
+from pound_solve.results.record import RunRecord
+from pound_solve.results.schema import Layout, Stage
+from pound_solve.sweep.entry import DONE, FAILED, STOPPED, Entry, Journal
+from pound_solve.sweep.limits import Clock, TooLongError, within
+from pound_solve.sweep.quantities import SOURCES, Fields, doubts, rows_of, taken
+from pound_solve.sweep.records import UnreadableError, scaled
+from pound_solve.sweep.run import Case, RecordFile, Run, Shaking
+from pound_solve.sweep.study import request_of
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What all runs of a study have in common.
+
+    Attributes
+    ----------
+    journal : Path or None
+        Where the process notes what a run has come to; None: whoever has asked for the run does.
+    seconds, memory : float or None
+        CPU time [s] and memory [MB] that a run may take.
+    histories : tuple of str
+        Histories that are kept.
+    """
+
+    journal: Path | None
+    seconds: float | None = None
+    memory: float | None = None
+    histories: tuple[str, ...] = ()
+
+
+class Kept:
+    """Takes of a run the rows of the tables that quantities are made from (`sequence.RunOutput`)."""
+
+    def __init__(self) -> None:
+        self.rows = dict[str, list[Fields]]()
+
+    def text(self, name: str, text: str) -> None:
+        """Texts of the input are the study's."""
+
+    def tables(self, stage: Stage, record: RunRecord) -> None:
+        """Make the rows of a stage."""
+        for table in tables_at(stage):
+            if table.name in SOURCES:
+                self.rows[table.name] = rows_of(table.name, record)
+
+    def start_history(self, layout: Layout, packed: bool = False) -> None:
+        """Histories stay in memory, see `sequence.HistoryWriter`."""
+
+    def append(self, block: Mapping[str, Array]) -> None:
+        """See `start_history`."""
+
+    def stored(self, name: str) -> Array:
+        """There is no history without an analysis that makes it."""
+        raise KeyError(name)
+
+    def closeups(self, layout: Layout, blocks: Sequence[Mapping[str, Array]]) -> None:
+        """A sweep keeps none."""
+
+    def restart(self, state: Mapping[str, Array], identity: Mapping[str, str]) -> None:
+        """No run goes on from one of a sweep."""
+
+
+def carry_out(run: Run, settings: Settings) -> Entry:
+    """Run, and note what has come of it.
+
+    Raises
+    ------
+    OSError
+        The journal cannot be written.
+    """
+    with one_at_a_time():
+        return _carried_out(run, settings)
+
+
+@cache
+def one_at_a_time() -> threading.Lock:
+    """Lock of this process: a worker of Dask may have several threads, but CPU time, limits, and what runs
+    share belong to the process.
+    """
+    return threading.Lock()
+
+
+def _carried_out(run: Run, settings: Settings) -> Entry:
+    """See `carry_out`."""
+    began = time.process_time()
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        try:
+            with within(settings.seconds, settings.memory) as clock:
+                entry = _analysed(run, settings, clock)
+        except (DeckError, UnreadableError) as err:
+            entry = Entry(run.identity, FAILED, str(err))
+        except TooLongError:
+            entry = Entry(run.identity, FAILED, f"it takes more than {settings.seconds:g} s of CPU time")
+        except MemoryError:
+            most = f"{settings.memory:g} MB" if settings.memory else "the machine has"
+            entry = Entry(run.identity, FAILED, f"it takes more memory than {most}")
+        except Exception as err:
+            text = f"a fault of the program, not of the deck: {type(err).__name__}: {err}"
+            entry = Entry(run.identity, FAILED, text)
+    if told:
+        text = f"arithmetic at the limits of floating point ({told[0].message})"
+        entry = replace(entry, doubt="; ".join(filter(None, [entry.doubt, text])))
+    entry = replace(entry, cpu=time.process_time() - began)
+    if settings.journal is not None:
+        Journal(settings.journal).add(entry)
+        entry = replace(entry, histories={})
+    return entry
+
+
+def _analysed(run: Run, settings: Settings, clock: Clock) -> Entry:
+    """Run the analyses."""
+    motion = scaled(run.shaking) if run.shaking else None
+    request = request_of(run.case, motion)
+    ready, settled = prepared(run.case, run.first)
+    if motion is not None:
+        ready = shaken(ready, request)
+    kept = Kept()
+    sequence = AnalysisSequence(ready, request, kept, clock, time.perf_counter(), settled)
+    message = sequence.run()
+    record = sequence.record
+    found = getattr(record, "history", None)
+    started = found is not None and found.recorder.started
+    return Entry(
+        run.identity,
+        STOPPED if message else DONE,
+        message,
+        doubts(kept.rows),
+        found.recorder.reached if found and started else float("nan"),
+        solve=record.cpu_seconds,
+        values=taken(kept.rows),
+        histories=histories_of(record, settings.histories) if started else {},
+    )
+
+
+@lru_cache(maxsize=2)
+def prepared(case: Case, first: RecordFile | None) -> tuple[Prepared, Settled]:
+    """A case under the study's first record, and what its runs share."""
+    motion = scaled(Shaking(first, 1.0, 1.0)) if first else None
+    ready = prepare(request_of(case, motion))
+    output = replace(ready.model.output, values={**ready.model.output.values, "HISTORIES": "NO"})
+    return replace(ready, model=replace(ready.model, output=output)), Settled()
+
+
+def histories_of(record: RunRecord, names: tuple[str, ...]) -> dict[str, Array]:
+    """Some histories of a run with their times, labels and units, by ``name``, ``name|labels``, ..."""
+    out: dict[str, Array] = {}
+    if record.recorded is None or not names:
+        return out
+    for name in ("time", *names):
+        shape, attributes = HISTORIES[name].layout(record.recorded)
+        if 0 in shape:
+            continue
+        out[name] = record.stored(name)
+        for key in ("labels", "nodes", "element", "quantity"):
+            if key in attributes:
+                out[f"{name}|{key}"] = np.array([str(x) for x in np.atleast_1d(attributes[key])])
+        units = np.atleast_1d(attributes.get("unit", ""))
+        out[f"{name}|unit"] = np.array([record.model.units.text(str(u)) for u in units])
+    return out
