@@ -68,6 +68,8 @@ class Case:
         Folders where records are looked for.
     method, dt, tol : str or None, float or None
         Replace those of HISTORY.
+    texts : str
+        Digest of the deck and its included files when the study was read.
     """
 
     deck: str
@@ -76,6 +78,7 @@ class Case:
     method: str | None = None
     dt: float | None = None
     tol: float | None = None
+    texts: str = ""
 
 
 @dataclass(frozen=True)
@@ -108,6 +111,11 @@ class Run:
         if self.shaking is not None:
             own += [self.shaking.record.name, f"x {self.shaking.scale:.6g}"]
         return " ".join(own)
+
+
+def digest_of(files: Mapping[str, str]) -> str:
+    """Digest of texts, whatever their names."""
+    return blake2b(json.dumps(sorted(files.values())).encode(), digest_size=12).hexdigest()
 
 
 def identity(case: Case, shaking: Shaking | None, inputs: Mapping[str, str]) -> str:
