@@ -1,9 +1,11 @@
 """Sweeps: their numbers are those of single runs, and nothing is run twice or lost."""
 
 import csv
+import errno
 import json
 import math
 import multiprocessing
+import os
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
@@ -18,8 +20,12 @@ from pound_solve.loading.motions.piecewise import Piecewise
 from pound_solve.loading.spectrum import response_spectrum
 from pound_solve.results import ResultsError
 from pound_solve.results.sweep_file import OF_THE_DAY, Sweep
+from pound_solve.sweep import executors, run_study
+from pound_solve.sweep import session as sessions
+from pound_solve.sweep.entry import Entry, Journal
 from pound_solve.sweep.executors import Engine
 from pound_solve.sweep.limits import within
+from pound_solve.sweep.work import prepared
 from sweep.small import DECK, STUDY, Here, folder, record, session, swept
 
 
@@ -278,3 +284,73 @@ def test_the_plan_tells_what_is_ahead(tmp_path, capsys):
     assert main(["sweep", str(path), "--plan", "--task", "1/2"]) == 0
     assert "done before, skipped: 2" in capsys.readouterr().out
     assert not (tmp_path / "walls.sweep/sweep.h5").exists()
+
+
+@pytest.mark.parametrize("name", ["wall.inp", "second.txt"])
+def test_a_file_that_changes_while_the_sweep_runs_fails_the_runs_that_need_it(tmp_path, name):
+    out = session(folder(tmp_path))
+    out.carry_out(out.agenda.ahead[:1], lambda state: None)
+    file = tmp_path / name
+    file.write_text(file.read_text().replace("0", "0.0", 1) if name[0] == "s" else DECK + "! later\n")
+    prepared.cache_clear()
+    out.carry_out(out.agenda.ahead[1:], lambda state: None)
+    told = {r.shaking.record.name: out.entries[r.identity] for r in out.runs[1:]}
+    assert told["second.txt"].status == "failed"
+    assert f"{name} was changed while the sweep ran" in told["second.txt"].message
+    assert (told["first.txt"].status == "done") == (name == "second.txt")
+
+
+def test_a_disk_that_is_full_ends_the_sweep_in_words_and_loses_nothing(tmp_path, monkeypatch, capsys):
+    path = folder(tmp_path)
+    add, noted = Journal.add, []
+
+    def full(self, entry):
+        if len(noted) == 5:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self.folder))
+        add(self, entry)
+        noted.append(entry)
+
+    here = Here()
+    monkeypatch.setattr(executors, "engine", lambda name, workers: Engine(lambda: here, 1, 1, True))
+    monkeypatch.setattr(Journal, "add", full)
+    assert main(["sweep", str(path)]) == 3
+    assert "No space left on device" in capsys.readouterr().err
+    monkeypatch.setattr(Journal, "add", add)
+    assert main(["sweep", str(path)]) == 0
+    assert "16 done; 5 of them before" in capsys.readouterr().out and here.runs == 17
+
+
+def test_a_line_that_the_disk_takes_in_part_is_taken_back(tmp_path):
+    journal = Journal(tmp_path)
+    journal.add(Entry("first", "done"))
+    (path,) = tmp_path.iterdir()
+    path.write_bytes(path.read_bytes() + b'{"identity": "sec')
+    journal.add(Entry("third", "stopped", "A503", values={"drift": {"a": float("nan"), "b": 0.1 + 0.2}}))
+    found = journal.entries()
+    assert list(found) == ["first", "third"] and found["third"].message == "A503"
+    (_, (identity, values)) = journal.values(found)
+    assert identity == "third" and values["drift"]["b"] == 0.1 + 0.2 and math.isnan(values["drift"]["a"])
+
+
+def test_histories_that_are_asked_for_later_are_made(tmp_path):
+    path = folder(tmp_path)
+    swept(path)
+    path.write_text('histories = "drift"\n' + STUDY)
+    assert len(session(path).agenda.ahead) == 16
+
+
+def test_warnings_about_the_deck_are_told_once(tmp_path, capsys, monkeypatch):
+    path = folder(
+        tmp_path, STUDY.replace("scale = [1, 2.5]", "scale = [1]"), DECK.replace("GAP=gap", "GAP=-gap")
+    )
+    here = Here()
+    monkeypatch.setattr(executors, "engine", lambda name, workers: Engine(lambda: here, 1, 1, True))
+    main(["sweep", str(path)])
+    assert capsys.readouterr().err.count("warning P") == 1
+
+
+def test_a_study_is_carried_out_from_python(tmp_path, monkeypatch):
+    here = Here()
+    monkeypatch.setattr(sessions, "engine", lambda name, workers: Engine(lambda: here, 1, 1, True))
+    found = run_study(folder(tmp_path))
+    assert isinstance(found, Sweep) and len(found) == here.runs == 16

@@ -104,8 +104,7 @@ def shaken(ready: Prepared, request: Request) -> Prepared:
     motions = loading.motions(model, loading.context(model, request), found)
     if has_errors(found):
         raise DeckError(found, ready.files)
-    own = identity(model, motions, ready.forces)
-    return replace(ready, model=model, motions=tuple(motions), warnings=tuple(found), identity=own)
+    return replace(ready, model=model, motions=tuple(motions), warnings=tuple(found))
 
 
 def _assembled(model: Model, motions: Sequence[Motion]) -> Structure:

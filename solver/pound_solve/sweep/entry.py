@@ -12,7 +12,7 @@ import os
 import platform
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -113,13 +113,23 @@ class Journal:
         return self.folder / f"{identity}.npz"
 
     def entries(self) -> dict[str, Entry]:
-        """What every run has come to, by its identity: the end that is done, else the latest."""
+        """What every run has come to, by its identity: the end that is done, else the latest.
+
+        Their values, which may be many, stay in the journal, see `values`.
+        """
         out: dict[str, Entry] = {}
         for entry in self._all():
             old = out.get(entry.identity)
             if old is None or (entry.status == DONE, entry.at) > (old.status == DONE, old.at):
-                out[entry.identity] = entry
+                out[entry.identity] = replace(entry, values={})
         return out
+
+    def values(self, entries: Mapping[str, Entry]) -> Iterator[tuple[str, Values]]:
+        """Identity and values of each of some entries, in the order of the journal."""
+        for entry in self._all():
+            own = entries.get(entry.identity)
+            if own is not None and (own.status, own.at) == (entry.status, entry.at):
+                yield entry.identity, entry.values
 
     def _all(self) -> Iterator[Entry]:
         for path in sorted(self.folder.glob(f"*{ENDING}")):

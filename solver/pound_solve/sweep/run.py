@@ -69,6 +69,8 @@ class Case:
         Folders where records are looked for.
     method, dt, tol : str or None, float or None
         Replace those of HISTORY.
+    texts : str
+        Digest of the deck and its included files when the study was read.
     """
 
     deck: str
@@ -77,6 +79,7 @@ class Case:
     method: str | None = None
     dt: float | None = None
     tol: float | None = None
+    texts: str = ""
 
 
 @dataclass(frozen=True)
@@ -93,7 +96,7 @@ class Run:
     first : RecordFile or None
         The study's first record, under which the case is prepared, whichever of its runs comes first.
     inputs : str
-        Digest of what the deck reads, see `digest_of_inputs`.
+        Digest of what the deck reads, see `digest_of`.
     """
 
     number: int
@@ -131,6 +134,6 @@ class Run:
         return " ".join(own)
 
 
-def digest_of_inputs(inputs: Mapping[str, str]) -> str:
-    """Digest of what a deck reads: its text, its included files, digests of its own records."""
-    return blake2b(json.dumps(sorted(inputs.values())).encode(), digest_size=12).hexdigest()
+def digest_of(files: Mapping[str, str]) -> str:
+    """Digest of texts, whatever their names."""
+    return blake2b(json.dumps(sorted(files.values())).encode(), digest_size=12).hexdigest()

@@ -25,7 +25,7 @@ from pound_solve.loading.records.base import RecordError
 from pound_solve.loading.records.known import find, load
 from pound_solve.sweep.document import Document, Path_
 from pound_solve.sweep.records import Suite, scaled
-from pound_solve.sweep.run import Case, Run, Shaking, digest_of_inputs
+from pound_solve.sweep.run import Case, Run, Shaking, digest_of
 
 MOST: Final = 10**6  #: runs
 ITEMS: Final = (
@@ -64,6 +64,8 @@ class Study:
         CPU time [s] and memory [MB] that one run may take.
     histories : tuple of str
         Histories that are kept of every run.
+    warnings : str
+        About the decks with the first of their values.
     """
 
     name: str
@@ -75,6 +77,7 @@ class Study:
     seconds: float | None
     memory: float | None
     histories: tuple[str, ...] = ()
+    warnings: str = ""
 
 
 def read(document: Document, tables: Sequence[str] = ()) -> Study:
@@ -106,6 +109,8 @@ class _Reader:
         self.motions = document.tables("motions")
         self.suites = [Suite(document, n, self.folders) for n in range(len(self.motions))]
         self.models = dict[str, Model]()
+        self.histories = tuple(self._histories())
+        self.warned: list[Diagnostic] = []
 
     def study(self) -> Study:
         """The whole study, if nothing is wrong."""
@@ -127,7 +132,6 @@ class _Reader:
             "", (), self.folders, own["method"] or None, numbers["dt"] or None, numbers["tol"] or None
         )
         self._names(decks, combinations)
-        histories = tuple(self._histories())
         for deck in decks:
             self._tried(replace(base, deck=deck), combinations)
         self._stop_at_mistakes()
@@ -143,7 +147,8 @@ class _Reader:
             workers,
             numbers["seconds"] or None,
             numbers["memory"] or None,
-            histories,
+            self.histories,
+            self._warnings(),
         )
 
     def _stop_at_mistakes(self) -> None:
@@ -153,6 +158,10 @@ class _Reader:
         found.sort(key=lambda d: (order.get(d.span.file, 0), d.span.line) if d.span else (-1, 0))
         if has_errors(found):
             raise StudyError(found, self.document.files)
+
+    def _warnings(self) -> str:
+        """Warnings about the decks, with their lines."""
+        return render(self.warned, self.document.files)
 
     def _beside(self, name: str) -> Path:
         """A path of the study, which counts from its folder."""
@@ -294,6 +303,8 @@ class _Reader:
             self._told(err.diagnostics, err.files)
             return
         self.models[case.deck] = ready.model
+        self.warned += ready.warnings
+        self.document.files.update(ready.files)
         here, there = ready.model.units, next(iter(self.models.values())).units
         if (here.force, here.length, here.time) != (there.force, there.length, there.time):
             message = f"{Path(case.deck).name} has other units than {Path(next(iter(self.models))).name}"
@@ -324,14 +335,16 @@ class _Reader:
             if len(decks) * len(combinations) * len(shakings or [None]) > MOST:
                 document.mistake("S605", f"the study has more than {MOST} runs")
                 return
-            read = dict[Params, str]()
+            read = dict[Params, tuple[str, str]]()
             for params in combinations:
                 texts = tuple((n, v) for n, v in params if not _is_number(v))
                 if texts not in read:
-                    read[texts] = digest_of_inputs(self._inputs(replace(base, deck=deck, params=params)))
-                case = replace(base, deck=deck, params=params)
+                    found, own_texts = self._inputs(replace(base, deck=deck, params=params))
+                    read[texts] = digest_of(found), own_texts
+                inputs, own_texts = read[texts]
+                case = replace(base, deck=deck, params=params, texts=own_texts)
                 for shaking in shakings or [None]:
-                    run = Run(next(numbers), case, shaking, first, read[texts])
+                    run = Run(next(numbers), case, shaking, first, inputs)
                     other = seen.setdefault(run.identity, run.number)
                     if other != run.number:
                         document.mistake("S605", f"runs {other} and {run.number} are the same")
@@ -341,13 +354,15 @@ class _Reader:
     def _context(self, deck: str) -> LoadingContext:
         return loading.context(self.models[deck], Request(deck))
 
-    def _inputs(self, case: Case) -> dict[str, str]:
-        """Texts of a deck and its included files, digests of the files that it reads beside them."""
+    def _inputs(self, case: Case) -> tuple[dict[str, str], str]:
+        """Texts of a deck and its included files, digests of the files that it reads beside them, and what
+        is kept of its runs; the digest of the texts alone.
+        """
         model, found, files = read_deck(case.deck, catalog(), dict(case.params))
         if model is None:
             self._told(found, files)
-            return {}
-        out = dict(model.files)
+            return {}, ""
+        out = dict(model.files) | ({"histories": " ".join(self.histories)} if self.histories else {})
         context = loading.context(model, request_of(case))
         for card in (*(() if self.suites else model.equake), *model.forces):
             if card.values.get("FILE"):
@@ -359,7 +374,7 @@ class _Reader:
         for card in model.analyses:
             if card.values.get("RESTART"):
                 out["RESTART"] = load(Path(case.deck).parent / card["RESTART"])[1]
-        return out
+        return out, digest_of(model.files)
 
 
 def request_of(case: Case, motion: Any = None) -> Request:

@@ -13,7 +13,7 @@ from pound_deck.model import Units
 from pound_solve.results import sweep_file
 from pound_solve.results.sweep_file import RUN, Sweep, Variable
 from pound_solve.sweep.entry import Entry, Journal
-from pound_solve.sweep.quantities import QUANTITIES
+from pound_solve.sweep.quantities import QUANTITIES, Values
 from pound_solve.sweep.run import Run
 from pound_solve.sweep.study import Study
 from pound_solve.version import __version__
@@ -21,42 +21,56 @@ from pound_solve.version import __version__
 MISSING = "missing"  #: status of a run that has not ended
 
 
-def table(study: Study, entries: Mapping[str, Entry]) -> Sweep:
+def table(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Sweep:
     """What the runs of a study have come to.
 
     Parameters
     ----------
     study : Study
+    journal : Journal
+        Holds the values, which are read twice, one run after the other: for their labels, then themselves.
     entries : mapping of str to Entry
         By identity.
     """
     found = [entries.get(run.identity) or Entry(run.identity, MISSING) for run in study.runs]
     units = Units(*study.units, given=True)
-    labels: dict[str, tuple[str, ...]] = {}
-    for q in QUANTITIES:
-        if q.axis:
-            own = (name for e in found for name in e.values.get(q.name, ()))
-            labels[q.axis] = tuple(dict.fromkeys((*labels.get(q.axis, ()), *own)))
+    place = {run.identity: k for k, run in enumerate(study.runs)}
+    own = {e.identity: e for e in found}
+    labels = _labels(place, journal.values(own))
+    arrays = {q.name: np.full((len(found), len(labels.get(q.axis, ()))), np.nan) for q in QUANTITIES}
+    column = {axis: {name: k for k, name in enumerate(names)} for axis, names in labels.items()}
+    for identity, values in journal.values(own):
+        for q in QUANTITIES:
+            for label, value in values.get(q.name, {}).items():
+                arrays[q.name][place[identity], column[q.axis][label]] = value
     variables = {**_inputs(study), **_ends(found, units)}
     for q in QUANTITIES:
-        if q.axis and not labels[q.axis]:
-            continue
-        names = labels[q.axis] if q.axis else ("",)
-        values = np.array([[e.values.get(q.name, {}).get(n, np.nan) for n in names] for e in found])
-        shaped = values if q.axis else values[:, 0]
-        variables[q.name] = Variable(shaped, q.axis, units.text(q.unit), q.doc)
+        if q.axis in labels:
+            shaped = arrays[q.name] if q.axis else arrays[q.name][:, 0]
+            variables[q.name] = Variable(shaped, q.axis, units.text(q.unit), q.doc)
     about = {
         "study": Path(study.name).name,
         "program_version": __version__,
         "units": " ".join(study.units),
     }
-    return Sweep(variables, {axis: own for axis, own in labels.items() if own}, about)
+    return Sweep(variables, {axis: names for axis, names in labels.items() if axis}, about)
+
+
+def _labels(place: Mapping[str, int], values: Iterable[tuple[str, Values]]) -> dict[str, tuple[str, ...]]:
+    """Labels of every axis in the order in which the runs have them, whatever the order of the journal."""
+    first: dict[str, dict[str, tuple[int, int]]] = {"": {"": (0, 0)}}
+    for identity, own in values:
+        for q in QUANTITIES:
+            seen = first.setdefault(q.axis, {}) if q.name in own else {}
+            for k, label in enumerate(own.get(q.name, ())):
+                seen[label] = min(seen.get(label, (place[identity], k)), (place[identity], k))
+    return {axis: tuple(sorted(seen, key=seen.__getitem__)) for axis, seen in first.items()}
 
 
 def write(study: Study, journal: Journal, entries: Mapping[str, Entry]) -> Path:
     """Write the file and the CSV of a study; return the path of the former, see `sweep_file.write`."""
     path = study.out / "sweep.h5"
-    sweep_file.write(table(study, entries), path, _histories(study.runs, journal))
+    sweep_file.write(table(study, journal, entries), path, _histories(study.runs, journal))
     return path
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import threading
 import time
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from pathlib import Path
@@ -26,7 +26,7 @@ from pound_solve.sweep.entry import DONE, FAILED, STOPPED, Entry, Journal
 from pound_solve.sweep.limits import Clock, TooLongError, within
 from pound_solve.sweep.quantities import SOURCES, Fields, doubts, rows_of, taken
 from pound_solve.sweep.records import UnreadableError, scaled
-from pound_solve.sweep.run import Case, RecordFile, Run, Shaking
+from pound_solve.sweep.run import Case, RecordFile, Run, Shaking, digest_of
 from pound_solve.sweep.study import request_of
 
 
@@ -48,6 +48,10 @@ class Settings:
     seconds: float | None = None
     memory: float | None = None
     histories: tuple[str, ...] = ()
+
+
+class ChangedError(Exception):
+    """A file is not as it was when the study was read."""
 
 
 class Kept:
@@ -110,7 +114,7 @@ def _carried_out(run: Run, settings: Settings) -> Entry:
         try:
             with within(settings.seconds, settings.memory) as clock:
                 entry = _analysed(run, settings, clock)
-        except (DeckError, UnreadableError) as err:
+        except (DeckError, UnreadableError, ChangedError) as err:
             entry = Entry(run.identity, FAILED, str(err))
         except TooLongError:
             entry = Entry(run.identity, FAILED, f"it takes more than {settings.seconds:g} s of CPU time")
@@ -135,8 +139,10 @@ def _analysed(run: Run, settings: Settings, clock: Clock) -> Entry:
     motion = scaled(run.shaking) if run.shaking else None
     request = request_of(run.case, motion)
     ready, settled = prepared(run.case, run.first)
-    if motion is not None:
+    if run.shaking is not None:
         ready = shaken(ready, request)
+        if any(m.info["sha256"] != run.shaking.record.sha256 for m in ready.motions):
+            raise ChangedError(f"{run.shaking.record.name} was changed while the sweep ran")
     kept = Kept()
     sequence = AnalysisSequence(ready, request, kept, clock, time.perf_counter(), settled)
     message = sequence.run()
@@ -160,6 +166,8 @@ def prepared(case: Case, first: RecordFile | None) -> tuple[Prepared, Settled]:
     """A case under the study's first record, and what its runs share."""
     motion = scaled(Shaking(first, 1.0, 1.0)) if first else None
     ready = prepare(request_of(case, motion))
+    if case.texts != digest_of(ready.model.files):
+        raise ChangedError(f"{case.deck} was changed while the sweep ran")
     output = replace(ready.model.output, values={**ready.model.output.values, "HISTORIES": "NO"})
     return replace(ready, model=replace(ready.model, output=output)), Settled()
 

@@ -63,6 +63,8 @@ def execute(args: argparse.Namespace) -> int:
     try:
         k, count = _piece(args.task)
         study = read(_document(args))
+        if study.warnings and not args.quiet:
+            print(study.warnings, file=sys.stderr)
         with locked(study.out, f"{k}-of-{count}" if args.task else ""):
             return _swept(args, study, engine(args.executor, study.workers), (k, count))
     except StudyError as err:
