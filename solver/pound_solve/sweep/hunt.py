@@ -95,6 +95,7 @@ class Hunt:
             )
         self.session, self.aim = session, aim
         self.runs = list(session.study.runs)
+        self._demands: dict[str, float] = {}  # by identity
 
     def carry_out(self, report: Callable[[State], None]) -> None:
         """Run until every record is done, or an interruption."""
@@ -128,6 +129,7 @@ class Hunt:
 
     def _next(self) -> Iterator[Run]:
         """The next level of every record that is not done."""
+        self._learn()
         for own in self._groups():
             curve = self._curve(own)
             if curve.left_out or not curve.points:
@@ -138,9 +140,14 @@ class Hunt:
 
     def _curve(self, runs: Sequence[Run]) -> Curve:
         """What the runs of one record have come to."""
-        asked, levels, found = self.aim.asked, [], []
-        for run in runs:
-            entry = self.session.entries[run.identity]
-            levels.append(run.shaking.level if run.shaking else 0.0)
-            found.append(demand(entry.status, entry.reached, entry.values.get(asked.quantity, {}), asked))
-        return Curve.of("", "", levels, found)
+        levels = [run.shaking.level if run.shaking else 0.0 for run in runs]
+        return Curve.of("", "", levels, [self._demands[run.identity] for run in runs])
+
+    def _learn(self) -> None:
+        """Take the demands of the runs that have ended since."""
+        asked, ended = self.aim.asked, self.session.entries
+        fresh = {r.identity: ended[r.identity] for r in self.runs if r.identity not in self._demands}
+        for identity, values in self.session.journal.values(fresh):
+            entry = fresh[identity]
+            own = values.get(asked.quantity, {})
+            self._demands[identity] = demand(entry.status, entry.reached, own, asked)

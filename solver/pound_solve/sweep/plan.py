@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final
 
 from pound_solve.sweep.entry import DONE, Entry
@@ -80,7 +81,7 @@ def reasons(runs: Sequence[Run], entries: Mapping[str, Entry]) -> Iterator[str]:
     """Some runs that are not done, each with its reason in one line."""
     for run in runs[:SHOWN]:
         entry = entries[run.identity]
-        reason = (entry.message.splitlines() or [""])[0]
+        reason = (entry.message.splitlines() or [""])[0].replace(f"{Path(run.case.deck).parent}/", "")
         yield f"  run {run.number} {run.title}: {entry.status}: {reason[:_WIDEST]}"
     if len(runs) > SHOWN:
         yield f"  and {len(runs) - SHOWN} more"
