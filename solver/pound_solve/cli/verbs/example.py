@@ -18,6 +18,8 @@ FOLDERS = (_OWN / "examples", _OWN.parents[1] / "examples")
 #: a row of the table of examples/README.md
 _ROW = re.compile(r"\| \[(\w+)\]\(\w+/README\.md\) \| (.+?) \| (.+?) \|")
 _KEPT = (".inp", ".inc", ".md", ".ipynb")
+#: how the files are run that are run by themselves
+_RUN = {".inp": "pound-solve", ".ipynb": "jupyter lab"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -68,7 +70,7 @@ def _write(source: Path, out: Path) -> int:
     out.mkdir(parents=True, exist_ok=True)
     for path in files:
         (out / path.name).write_bytes(path.read_bytes())
-        if path.suffix == ".inp":
-            print(f"pound-solve {out / path.name}")
+        if path.suffix in _RUN:
+            print(f"{_RUN[path.suffix]} {out / path.name}")
     print(f"{out / 'README.md'}")
     return common.DONE
