@@ -32,9 +32,15 @@ def test_an_example_is_written_whole_and_checks(
 ) -> None:
     out = tmp_path / "a" / "b"
     assert main(["example", name, "-o", str(out)]) == 0
-    commands = [line for line in capsys.readouterr().out.splitlines() if line.startswith("pound-solve ")]
-    decks = [Path(line.removeprefix("pound-solve ")) for line in commands]
-    assert decks == sorted(out.glob("*.inp")) and decks
+    commands = capsys.readouterr().out.splitlines()
+    decks, notebooks = (
+        [Path(line.removeprefix(how)) for line in commands if line.startswith(how)]
+        for how in ("pound-solve ", "jupyter lab ")
+    )
+    assert decks == sorted(out.glob("*.inp")) and notebooks == sorted(out.glob("*.ipynb"))
+    assert decks or notebooks
+    for notebook in notebooks:
+        assert notebook.read_bytes() == (EXAMPLES / name / notebook.name).read_bytes()
     for deck in decks:
         assert deck.read_bytes() == (EXAMPLES / name / deck.name).read_bytes()
         # what is not there can be a record alone, never an included file

@@ -17,7 +17,9 @@ _OWN = Path(__file__).parents[2]
 FOLDERS = (_OWN / "examples", _OWN.parents[1] / "examples")
 #: a row of the table of examples/README.md
 _ROW = re.compile(r"\| \[(\w+)\]\(\w+/README\.md\) \| (.+?) \| (.+?) \|")
-_KEPT = (".inp", ".inc", ".md", ".ipynb", ".toml", ".slurm")
+_KEPT = (".inp", ".inc", ".md", ".ipynb", ".toml", ".slurm", "")
+#: how the files are run that are run by themselves
+_RUN = {".inp": "pound-solve", ".ipynb": "jupyter lab"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -61,14 +63,14 @@ def _needs(told: str) -> str:
 
 def _write(source: Path, out: Path) -> int:
     """Write an example; no file that is there is changed."""
-    files = sorted(path for path in source.iterdir() if path.suffix in _KEPT or path.name == "Snakefile")
+    files = sorted(path for path in source.iterdir() if path.suffix in _KEPT)
     there = [out / path.name for path in files if (out / path.name).exists()]
     if there:
         return common.complain(f"{there[0]} exists already: give another folder with -o")
     out.mkdir(parents=True, exist_ok=True)
     for path in files:
         (out / path.name).write_bytes(path.read_bytes())
-        if path.suffix == ".inp":
-            print(f"pound-solve {out / path.name}")
+        if path.suffix in _RUN:
+            print(f"{_RUN[path.suffix]} {out / path.name}")
     print(f"{out / 'README.md'}")
     return common.DONE
