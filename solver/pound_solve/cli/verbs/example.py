@@ -63,7 +63,7 @@ def _needs(told: str) -> str:
 
 def _write(source: Path, out: Path) -> int:
     """Write an example; no file that is there is changed."""
-    files = sorted(path for path in source.iterdir() if path.suffix in _KEPT)
+    files = sorted(path for path in source.iterdir() if path.is_file() and path.suffix in _KEPT)
     there = [out / path.name for path in files if (out / path.name).exists()]
     if there:
         return common.complain(f"{there[0]} exists already: give another folder with -o")
