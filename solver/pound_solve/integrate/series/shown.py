@@ -17,8 +17,8 @@ from pound_solve.laws.functions import Tables
 from pound_solve.numerics.crests import NODES
 from pound_solve.numerics.types import Index
 
-MOST_HELD = 2**20  #: numbers of the steps and of the intervals that are kept, at most
-MOST_STEPS, FEWEST = 2048, 8  #: of these
+MOST_HELD = 2**21  #: numbers of the steps and of the intervals that are kept, at most
+MOST_STEPS, FEWEST = 4096, 8  #: of these
 STEPS, INTERVALS = range(2)  #: places in `Shown.kept`
 
 
