@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
+import re
 import tempfile
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-from cases import DISTRIBUTED, Record, Test, Variant
+from cases import Test
+from choices import Record
 
 import pound_solve
 from pound_solve.driver.run import DeckError
@@ -21,10 +23,11 @@ PLACES = tuple(f"B{b} storey {s} {end}" for b in (1, 2) for s in (1, 2) for end 
 
 @dataclass(frozen=True)
 class Hit:
-    """One collision: floor, time [s], approach speed [m/s], peak force and plateau of the force [kN]."""
+    """One collision: floor, time and length [s], approach speed [m/s], peak force and plateau of it [kN]."""
 
     floor: int
     t: float
+    lasts: float
     approach: float
     peak: float
     plateau: float
@@ -47,7 +50,6 @@ class Run:
 
     record: str
     test: str
-    variant: str
     right: dict[str, float]
     left: dict[str, float]
     hits: tuple[Hit, ...]
@@ -58,35 +60,44 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """One run to be made."""
+    """One run to be made; the deck takes those of `params` that it has."""
 
     record: Record
     test: Test
-    variant: Variant
+    params: Mapping[str, object]
     folders: tuple[Path, ...]
 
 
-def write_deck(job: Job, folder: Path) -> Path:
-    """The deck of a job and what it includes: the example's, with the variant's changes."""
+def write_deck(job: Job, folder: Path) -> tuple[Path, set[str]]:
+    """The deck of a job and what it includes, with the test's changes; and the PARAMs that it has."""
+    names: set[str] = set()
     for source in (job.test.deck, *job.test.deck.parent.glob("*.inc")):
         text = source.read_text(encoding="utf-8")
-        if job.variant.rebuild and source == DISTRIBUTED:
-            text = job.variant.rebuild(text)
-        for old, new in (*job.test.edits, *job.variant.edits):
+        for old, new in job.test.edits:
             text = text.replace(old, new)
         text = text.replace("RECORD  record  SCALE", f"RECORD  record  {job.record.items}  SCALE")
         if source == job.test.deck:  # peaks do not hang on what is stored, but time does
             text += "\nOUTPUT\n   EVERY=1\n"
+            names |= params_of(text)
+        elif f'INCLUDE "{source.name}"' in job.test.deck.read_text(encoding="utf-8"):
+            names |= params_of(text)
         (folder / source.name).write_text(text, encoding="utf-8")
-    return folder / job.test.deck.name
+    return folder / job.test.deck.name, names
+
+
+def params_of(text: str) -> set[str]:
+    """Names of a deck's PARAMs."""
+    cards = re.findall(r"^PARAM([^!\n]*)", text, re.M)
+    return {name for card in cards for name in re.findall(r"(\w+) *=", card)}
 
 
 def solve(job: Job) -> Run:
     """Run one job in a folder of its own."""
-    name = f"{job.record.name}, {job.variant.name}, test {job.test.name}"
+    name = f"{job.record.name}, test {job.test.name}, {dict(job.params)}"
     with tempfile.TemporaryDirectory() as folder:
-        deck = write_deck(job, Path(folder))
-        params = {**job.test.params, **job.record.params, **job.variant.params}
+        deck, names = write_deck(job, Path(folder))
+        given = {**job.params, **job.test.params, **job.record.params}
+        params = {k: v for k, v in given.items() if k in names}
         try:
             results = pound_solve.run(
                 deck, params, records=job.folders, method=job.test.method, dt=job.test.dt
@@ -108,6 +119,7 @@ def gather(job: Job, results: pound_solve.results.Results) -> Run:
         Hit(
             int(str(row["contact"])[-1]),
             float(row["t_start"]),
+            float(row["t_end"]) - float(row["t_start"]),
             float(row["approach_velocity"]),
             float(row["peak_force"]),
             float(row["plateau_force"]),
@@ -118,7 +130,6 @@ def gather(job: Job, results: pound_solve.results.Results) -> Run:
     return Run(
         job.record.name,
         job.test.name,
-        job.variant.name,
         {place: 1e3 * float(row["max"]) for place, row in rows.items()},
         {place: -1e3 * float(row["min"]) for place, row in rows.items()},
         hits,
