@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -53,11 +53,12 @@ def system(name: str, law: str, method: str | None = None, dt: float | None = No
     return Test(name, LUMPED, {}, (("LAW=KELVIN_VOIGT  K=kc  C=cc  TENSION=stick", f"LAW={law}"),), method, dt)
 
 
-def until(name: str, duration: float) -> Test:
+def until(name: str, duration: float, pair: Pair = PAIR) -> Test:
     """The lumped buildings with the exact restitution and another duration; released at zero force."""
-    xi = restitution.no_tension_ratio(PAIR.e)
-    k = PAIR.mass * (restitution.no_tension_time(xi) / duration) ** 2
-    return lumped(name, k, 2.0 * xi * (k * PAIR.mass) ** 0.5)
+    xi = restitution.no_tension_ratio(pair.e)
+    k = pair.mass * (restitution.no_tension_time(xi) / duration) ** 2
+    params = {"kc": repr(k), "cc": repr(2.0 * xi * (k * pair.mass) ** 0.5), "stick": '"NO"'}
+    return Test(name, LUMPED, params, (), "EXACT")
 
 
 TESTS = (
@@ -68,6 +69,13 @@ TESTS = (
     *(distributed(n) for n in (1, 2, 3, 4, 5, 20)),
 )
 EXACT_EQUIVALENT = Test("0(exact)", EQUIVALENT, {"model": '"EXACT"'}, (), "EXACT")
+#: the same restitution with other durations: twice the centroid of the bars' force, its impulse over its first
+#: value, and the time the bars touch
+CANDIDATES = (
+    until("0(centroid)", 2 * PAIR.centroid),
+    until("0(impulse)", PAIR.impulse / PAIR.force),
+    until("0(touch)", PAIR.duration),
+)
 FINER = (distributed(50), distributed(100, "CENTRAL", 2e-5), distributed(200, "CENTRAL", 1e-5))
 E = 0.65  #: restitution that is usual for concrete
 #: stiffness of the Hertz laws [kN/m^1.5]: at 0.3 m/s the peak force of the linear spring k_D, no dashpot
@@ -89,3 +97,18 @@ SYSTEMS = (
     Test("equivalent lumped mass, exact", EQUIVALENT, {"model": '"EXACT"'}),
     Test("distributed masses, n = 20", DISTRIBUTED, {"n": 20}),
 )
+FACTORS = (0.5, 0.6, 0.7, 0.74, 0.7499, 0.7501, 0.76, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5)  #: on k_D1; Z1 = Z2 at 0.75
+
+
+def stiffened() -> Iterator[tuple[float, tuple[Test, ...]]]:
+    """Equivalent contacts and distributed masses with other stiffnesses of the first diaphragm."""
+    for factor in FACTORS:
+        kd1 = factor * KD1
+        pair = Pair(Diaphragm(1600 / G, kd1), Diaphragm(3000 / G, KD2))
+        changed = {"kd1": repr(kd1)}
+        yield factor, (
+            Test("0(equiv)", EQUIVALENT, {"model": '"PAPER"', **changed}, (), "EXACT"),
+            Test("0(exact)", EQUIVALENT, {"model": '"EXACT"', **changed}, (), "EXACT"),
+            until("0(touch)", pair.duration, pair),
+            Test("20", DISTRIBUTED, {"n": 20, "ka": repr(min(kd1, KD2)), **changed}, (), "EXACT"),
+        )

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import tempfile
+import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from cases import Test
 from choices import Record
@@ -148,12 +151,52 @@ def found(record: Record, folders: Sequence[Path]) -> bool:
     return True
 
 
-def solve_all(jobs: Iterable[Job], tell: Callable[[int, int], None]) -> list[Run]:
-    """Run jobs on all cores; `tell` is called with how many are done, of how many."""
+def solve_all(
+    jobs: Iterable[Job], store: Path, tell: Callable[[int, int], None], processes: int | None = None
+) -> list[tuple[Run, float]]:
+    """Run jobs in processes; `tell` is called with how many are done, of how many.
+
+    Parameters
+    ----------
+    store : Path
+        File of all runs made, in lines of JSON: what stands in it is not run again.
+    processes : int, optional
+        As many as there are cores.
+
+    Returns
+    -------
+    list
+        Of every job its run, and its CPU time [s].
+    """
     jobs = list(jobs)
-    out = []
-    with ProcessPoolExecutor(max_workers=os.cpu_count()) as pool:
-        for run in pool.map(solve, jobs):
-            out.append(run)
-            tell(len(out), len(jobs))
-    return out
+    kept: dict[str, tuple[Run, float]] = {}
+    if store.exists():
+        for line in store.read_text(encoding="utf-8").splitlines():
+            name, run, cost = json.loads(line)
+            kept[name] = read_run(run), cost
+    wanted = {key(job): job for job in jobs if key(job) not in kept}
+    with store.open("a", encoding="utf-8") as stream, ProcessPoolExecutor(processes or os.cpu_count()) as pool:
+        for n, (name, (run, cost)) in enumerate(zip(wanted, pool.map(timed, wanted.values()))):
+            kept[name] = run, cost
+            stream.write(json.dumps([name, asdict(run), cost]) + "\n")
+            stream.flush()
+            tell(n + 1, len(wanted))
+    return [kept[key(job)] for job in jobs]
+
+
+def timed(job: Job) -> tuple[Run, float]:
+    """A run, and its CPU time [s]."""
+    began = time.process_time()
+    return solve(job), time.process_time() - began
+
+
+def key(job: Job) -> str:
+    """A run's name among those kept."""
+    test = [job.test.deck.name, dict(job.test.params), job.test.edits, job.test.method, job.test.dt, job.test.name]
+    return json.dumps([job.record.params, job.record.items, test, dict(job.params)], sort_keys=True)
+
+
+def read_run(kept: Mapping[str, Any]) -> Run:
+    """A run from its fields, as `dataclasses.asdict` gives them."""
+    hits = tuple(Hit(**hit) for hit in kept["hits"])
+    return Run(**{**kept, "hits": hits, "forces": tuple(kept["forces"]), "closures": tuple(kept["closures"])})
