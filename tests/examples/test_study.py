@@ -77,7 +77,9 @@ def study(monkeypatch):
 def run_of(study, test, record="El Centro", drift=10.0, closures=(0, 1), hits=()):
     runs = study("runs")
     places = dict.fromkeys(runs.PLACES, drift)
-    return runs.Run(record, test, places, places, tuple(runs.Hit(*h) for h in hits), (0.0, 1.0), closures, 0.0)
+    return runs.Run(
+        record, test, places, places, tuple(runs.Hit(*h) for h in hits), (0.0, 1.0), closures, 0.0
+    )
 
 
 @pytest.mark.parametrize(
@@ -142,7 +144,7 @@ def test_waves_have_the_momenta_of_table_i(study):
         1.0: (one * after, two * (2 * (1 - tau) * v_c + (2 * tau - 1) * free)),
     }
     for share, momenta in wanted.items():
-        x1, x2, speed, _ = waves.waves(pair, 60)(share)
+        x1, _, speed, _ = waves.waves(pair, 60)(share)
         n = len(x1)
         found = one * speed[:n].mean(), two * speed[n:].mean()
         assert found == pytest.approx(momenta, abs=1e-12)
@@ -156,7 +158,10 @@ def test_pictures_are_there(quick):
 
 def test_the_page_of_the_manual_is_that_of_a_run(quick):
     page = (ROOT / "manual" / "cole2011-study.md").read_text(encoding="utf-8")
-    for heading in ("El Centro, literal reading", "The collision (Figures 1 to 5, Tables I to III, Eqs 1 to 14)"):
+    for heading in (
+        "El Centro, literal reading",
+        "The collision (Figures 1 to 5, Tables I to III, Eqs 1 to 14)",
+    ):
         ours, theirs = rows(section(quick[0], heading)), rows(section(page, heading))
         assert len(ours) == len(theirs)
         for a, b in zip(ours, theirs):

@@ -99,10 +99,12 @@ def characteristics(z1: Any, n1: int, z2: Any, n2: int, steps: int) -> tuple[Any
 
 @pytest.mark.parametrize("n2", [100, 97])
 def test_the_closed_form_over_the_whole_range_of_masses_and_periods(n2: int) -> None:
-    """m1/m2 from 0.01 to 100, T1/T2 from 0.01 to 1: impulse, centroid and duration, and the bars never meet twice."""
+    """m1/m2 from 0.01 to 100, T1/T2 from 0.01 to 1: impulse, centroid, duration; the bars never meet twice."""
     ratios = np.logspace(-2, 2, 41)
     for n1 in (1, 2, 3, 7, 10, 19, 33, 48, 49, 50, 51, 66, 80, 96, n2):
-        impulse, moment, last, again = characteristics(2 * ratios * n2 / n1, n1, np.full(41, 2.0), n2, 3 * n2)
+        impulse, moment, last, again = characteristics(
+            2 * ratios * n2 / n1, n1, np.full(41, 2.0), n2, 3 * n2
+        )
         assert not again
         columns = (ratios, impulse / n2, moment / impulse / n2, last / n2)
         for mass_ratio, i, centroid, end in zip(*(c.tolist() for c in columns)):
@@ -267,7 +269,9 @@ def test_equal_bars_have_the_contact_of_the_paper() -> None:
     """No energy is left in either: an elastic contact of one period, whatever the model."""
     alike = {"MASSES": (2.0, 2.0), "DIAPHRAGMS": (50.0, 50.0)}
     build = catalog().family("contact")["EQUIVALENT"].impl
-    exact, paper = (build({"GAP": 0, "TENSION": "NO", "R": 1.0, **alike, "MODEL": m}, 1.0) for m in ("EXACT", "PAPER"))
+    exact, paper = (
+        build({"GAP": 0, "TENSION": "NO", "R": 1.0, **alike, "MODEL": m}, 1.0) for m in ("EXACT", "PAPER")
+    )
     assert (exact.k, exact.c) == pytest.approx((paper.k, 0.0), rel=1e-12, abs=1e-9)
     assert exact.k == pytest.approx(math.pi**2 * 50.0 / 8.0, rel=1e-12)
 
@@ -322,7 +326,7 @@ ANALYSIS
 @pytest.mark.parametrize("tension", ["NO", "YES"])
 @pytest.mark.parametrize("model", ["PAPER", "EXACT"])
 def test_a_free_collision_in_a_deck(model: str, tension: str, r: float, tmp_path: Path) -> None:
-    """Restitution, duration and centroid of the collision itself are those that the contact was made for."""
+    """Restitution, duration and centroid of the collision are those that the contact was made for."""
     deck = tmp_path / "free.inp"
     deck.write_text(FREE.format(model=model, tension=tension, r=r), encoding="utf-8")
     with run(deck, out=tmp_path) as results:

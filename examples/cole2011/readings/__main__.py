@@ -1,8 +1,8 @@
 """How the paper's statements fare over many readings: ``python examples/cole2011/readings -o FOLDER``.
 
-A reading is a structure (strength, damping, columns) and a record for each earthquake.  Every structure is run once
-under every record; the readings are all combinations.  Runs are kept in ``FOLDER/runs.jsonl``: a run that was
-stopped goes on where it was.  Writes ``readings.md``, the robustness table.
+A reading is a structure (strength, damping, columns) and a record for each earthquake.  Every structure is
+run once under every record; the readings are all combinations.  Runs are kept in ``FOLDER/runs.jsonl``: what
+was stopped goes on where it was.  Writes ``readings.md``, the robustness table.
 """
 
 from __future__ import annotations
@@ -30,12 +30,16 @@ def arguments(argv: Sequence[str] | None) -> argparse.Namespace:
         "--records", type=Path, action="append", default=[], help="folder with records of no package"
     )
     parser.add_argument("--processes", type=int, default=1, metavar="N")
-    parser.add_argument("--structures", type=int, default=len(STRUCTURES), help="how many, from the first on")
+    parser.add_argument(
+        "--structures", type=int, default=len(STRUCTURES), help="how many, from the first on"
+    )
     parser.add_argument("--manual", type=Path, metavar="FILE", help="write the table to this page as well")
     return parser.parse_args(argv)
 
 
-def cells(structures: Sequence[Structure], records: Sequence[Record], folders: tuple[Path, ...]) -> Iterator[Job]:
+def cells(
+    structures: Sequence[Structure], records: Sequence[Record], folders: tuple[Path, ...]
+) -> Iterator[Job]:
     """All runs: every structure under every record with every test."""
     for structure in structures:
         for record in records:

@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from cases import CANDIDATES, EXACT_EQUIVALENT, FINER, SYSTEMS, TESTS, Test, stiffened
 from chapter import Study, write
 from choices import EL_CENTRO, LITERAL, READINGS, VARIANTS, Reading, Record, disturbed
-from runs import Job, Run, found, solve_all
+from runs import Job, found, solve_all
 
 #: tests that every variant runs
 SPARSE = ("0(10)", "0(1)", "0(0.1)", "0(equiv)", "1", "2", "5", "20")
@@ -58,7 +58,9 @@ def records_of(reading: Reading, folders: Sequence[Path]) -> tuple[list[Record],
         taken += there[:1]
         if there[:1] != [group[0]]:
             instead = f"{there[0].says} in its place" if there else "left out"
-            told.append(f"{reading.name} reading, {group[0].name}: {group[0].says} ({group[0].file}): {instead}")
+            told.append(
+                f"{reading.name} reading, {group[0].name}: {group[0].says} ({group[0].file}): {instead}"
+            )
     return taken, told
 
 
@@ -67,21 +69,33 @@ def plan(folders: tuple[Path, ...], quick: bool) -> tuple[list[tuple[tuple[str, 
     jobs: list[tuple[tuple[str, ...], Job]] = []
     left_out: list[str] = []
 
-    def add(place: tuple[str, ...], record: Record, tests: Iterable[Test], params: Mapping[str, object]) -> None:
+    def add(
+        place: tuple[str, ...], record: Record, tests: Iterable[Test], params: Mapping[str, object]
+    ) -> None:
         jobs.extend((place, Job(record, test, params, folders)) for test in tests)
 
     for reading in (LITERAL,) if quick else READINGS:
         records, told = records_of(reading, folders)
         left_out += told
         for record in records[:1] if quick else records:
-            add(("reading", reading.name, record.name), record, (*TESTS, EXACT_EQUIVALENT, *CANDIDATES), reading.params)
+            add(
+                ("reading", reading.name, record.name),
+                record,
+                (*TESTS, EXACT_EQUIVALENT, *CANDIDATES),
+                reading.params,
+            )
     if quick:
         return jobs, []
     add(("systems",), EL_CENTRO, SYSTEMS, {})
     add(("finer",), EL_CENTRO, FINER, {})
     for variant in VARIANTS[1:]:
         if found(variant.record, folders):
-            add(("variant", variant.name), variant.record, [t for t in TESTS if t.name in SPARSE], variant.params)
+            add(
+                ("variant", variant.name),
+                variant.record,
+                [t for t in TESTS if t.name in SPARSE],
+                variant.params,
+            )
         else:
             left_out.append(f"variant: {variant.name}")
     for factor, tests in stiffened():
@@ -113,7 +127,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     write(page, drawn, study)
     for name in left_out:
         print(f"left out, its record is missing: {name}")
-    print(f"{len(runs)} runs, {sum(cost for _, cost in solved):.0f} s of CPU time; in {time.perf_counter() - began:.0f} s; {page}")
+    print(
+        f"{len(runs)} runs, {sum(cost for _, cost in solved):.0f} s of CPU time; in "
+        f"{time.perf_counter() - began:.0f} s; {page}"
+    )
     return 0
 
 

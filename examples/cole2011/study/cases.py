@@ -50,7 +50,9 @@ def distributed(n: int, method: str = "EXACT", dt: float | None = None) -> Test:
 
 def system(name: str, law: str, method: str | None = None, dt: float | None = None) -> Test:
     """The lumped buildings with another contact law."""
-    return Test(name, LUMPED, {}, (("LAW=KELVIN_VOIGT  K=kc  C=cc  TENSION=stick", f"LAW={law}"),), method, dt)
+    return Test(
+        name, LUMPED, {}, (("LAW=KELVIN_VOIGT  K=kc  C=cc  TENSION=stick", f"LAW={law}"),), method, dt
+    )
 
 
 def until(name: str, duration: float, pair: Pair = PAIR) -> Test:
@@ -69,7 +71,8 @@ TESTS = (
     *(distributed(n) for n in (1, 2, 3, 4, 5, 20)),
 )
 EXACT_EQUIVALENT = Test("0(exact)", EQUIVALENT, {"model": '"EXACT"'}, (), "EXACT")
-#: the same restitution with other durations: twice the centroid of the bars' force, its impulse over its first
+#: the same restitution with other durations: twice the centroid of the bars' force, its impulse over
+#: its first
 #: value, and the time the bars touch
 CANDIDATES = (
     until("0(centroid)", 2 * PAIR.centroid),
@@ -97,7 +100,21 @@ SYSTEMS = (
     Test("equivalent lumped mass, exact", EQUIVALENT, {"model": '"EXACT"'}),
     Test("distributed masses, n = 20", DISTRIBUTED, {"n": 20}),
 )
-FACTORS = (0.5, 0.6, 0.7, 0.74, 0.7499, 0.7501, 0.76, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5)  #: on k_D1; Z1 = Z2 at 0.75
+FACTORS = (
+    0.5,
+    0.6,
+    0.7,
+    0.74,
+    0.7499,
+    0.7501,
+    0.76,
+    0.8,
+    0.9,
+    1.0,
+    1.1,
+    1.25,
+    1.5,
+)  #: on k_D1; Z1 = Z2 at 0.75
 
 
 def stiffened() -> Iterator[tuple[float, tuple[Test, ...]]]:
@@ -106,9 +123,12 @@ def stiffened() -> Iterator[tuple[float, tuple[Test, ...]]]:
         kd1 = factor * KD1
         pair = Pair(Diaphragm(1600 / G, kd1), Diaphragm(3000 / G, KD2))
         changed = {"kd1": repr(kd1)}
-        yield factor, (
-            Test("0(equiv)", EQUIVALENT, {"model": '"PAPER"', **changed}, (), "EXACT"),
-            Test("0(exact)", EQUIVALENT, {"model": '"EXACT"', **changed}, (), "EXACT"),
-            until("0(touch)", pair.duration, pair),
-            Test("20", DISTRIBUTED, {"n": 20, "ka": repr(min(kd1, KD2)), **changed}, (), "EXACT"),
+        yield (
+            factor,
+            (
+                Test("0(equiv)", EQUIVALENT, {"model": '"PAPER"', **changed}, (), "EXACT"),
+                Test("0(exact)", EQUIVALENT, {"model": '"EXACT"', **changed}, (), "EXACT"),
+                until("0(touch)", pair.duration, pair),
+                Test("20", DISTRIBUTED, {"n": 20, "ka": repr(min(kd1, KD2)), **changed}, (), "EXACT"),
+            ),
         )

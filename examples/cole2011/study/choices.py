@@ -44,12 +44,20 @@ class Record:
 EL_CENTRO = Record("El Centro", "ELCENTRO_270", -1, 1, says="PEER 270 × (−1), first 10 s", step=0.01)
 EL_CENTRO_OWN = replace(EL_CENTRO, sign=1, says="PEER 270, first 10 s")
 EL_CENTRO_OLD = Record(
-    "El Centro", "elcentro_1940_ew_smc_g_0p02.dat", 1, 1, 0, "COLUMN=2", "older processing, 0.214 g, first 10 s"
+    "El Centro",
+    "elcentro_1940_ew_smc_g_0p02.dat",
+    1,
+    1,
+    0,
+    "COLUMN=2",
+    "older processing, 0.214 g, first 10 s",
 )
 SCT = "mexico_1985_sct_t_ns_ew_ud_g_0p02.txt"
 MEXICO = Record("Mexico City", SCT, 1, 2, 43, "COLUMN=3", "SCT E-W, 43 to 53 s")
 MEXICO_STRONG = Record("Mexico City", SCT, -1, 2, 54.02, "COLUMN=3", "SCT E-W × (−1), 54.02 to 64.02 s")
-LOMA_PRIETA = Record("Loma Prieta", "CORRALITOS_000", -1, 1, says="Corralitos 000 × (−1), first 10 s", step=0.005)
+LOMA_PRIETA = Record(
+    "Loma Prieta", "CORRALITOS_000", -1, 1, says="Corralitos 000 × (−1), first 10 s", step=0.005
+)
 CORRALITOS_OWN = replace(LOMA_PRIETA, sign=1, says="Corralitos 000, first 10 s")
 GILROY_3 = Record(
     "Loma Prieta", "loma_prieta_1989_gilroy3_000_p695_121021.txt", 1, 1, 0, "COLUMN=2",
@@ -90,28 +98,66 @@ LITERAL = Reading(
     ((EL_CENTRO,), (MEXICO,), (LOMA_PRIETA,)),
     (
         ("storey yield", "Table IV", "printed: 2400 and 1400 kN a storey"),
-        ("damping", "Rayleigh 5 % at both sway modes; diaphragms undamped", "usual ratio; a stiffness-proportional part damps waves in the diaphragms, which the theory does not"),
-        ("columns", "at both ends of each diaphragm, elastic-plastic", "Figure 8 draws columns at the ends; no hardening is named"),
-        ("contact", "n times the softer k_D; the dashpot of 0(equiv) lets go at zero force", "Figure 4: k_C is that of the adjacent element; a contact does not pull"),
+        (
+            "damping",
+            "Rayleigh 5 % at both sway modes; diaphragms undamped",
+            "usual ratio; a stiffness-proportional part damps waves in the diaphragms, which the theory "
+            "does not",
+        ),
+        (
+            "columns",
+            "at both ends of each diaphragm, elastic-plastic",
+            "Figure 8 draws columns at the ends; no hardening is named",
+        ),
+        (
+            "contact",
+            "n times the softer k_D; the dashpot of 0(equiv) lets go at zero force",
+            "Figure 4: k_C is that of the adjacent element; a contact does not pull",
+        ),
         ("El Centro", EL_CENTRO.says, "component and length as printed; with this sign floor 1 collides"),
-        ("Mexico City", MEXICO.says, "component and factor as printed; where the long-period motion begins"),
+        (
+            "Mexico City",
+            MEXICO.says,
+            "component and factor as printed; where the long-period motion begins",
+        ),
         ("Loma Prieta", LOMA_PRIETA.says, "component as printed; the most used station of the event"),
     ),
-)  # fmt: skip
+)
 BEST = Reading(
     "best",
     {"fy1": 4800, "fy2": 2800, "xi": 0.03, "slabs": 1, "bays": "n", "hard": 0.02, "stick": '"YES"'},
     ((EL_CENTRO_OLD, EL_CENTRO), (MEXICO_STRONG,), (GILROY_3, GILROY_2, LOMA_PRIETA)),
     (
-        ("storey yield", "twice Table IV", "the yield as if entered for each of a storey's columns; a poster of the authors has the same values as \"Yield load\""),
-        ("damping", "Rayleigh 3 % at both sway modes, diaphragms included", "the program of the paper applies Rayleigh damping to all members of a model"),
-        ("columns", "at all nodes of a diaphragm, shared out like its mass, bilinear with 2 % hardening", "the paper speaks of \"all columns that are connected to that diaphragm\"; 2 % is a usual hardening"),
-        ("contact", "n times the softer k_D; 0(equiv) holds until the overlap is gone", "Figure 4; Eq. 15 is that of a contact that pulls"),
+        (
+            "storey yield",
+            "twice Table IV",
+            "the yield as if entered for each column of a storey; a poster of the authors has the same values as "
+            "'Yield load'",
+        ),
+        (
+            "damping",
+            "Rayleigh 3 % at both sway modes, diaphragms included",
+            "the program of the paper applies Rayleigh damping to all members of a model",
+        ),
+        (
+            "columns",
+            "at all nodes of a diaphragm, shared out like its mass, bilinear with 2 % hardening",
+            "the paper speaks of 'all columns that are connected to that diaphragm'; 2 % is a usual hardening",
+        ),
+        (
+            "contact",
+            "n times the softer k_D; 0(equiv) holds until the overlap is gone",
+            "Figure 4; Eq. 15 is that of a contact that pulls",
+        ),
         ("El Centro", EL_CENTRO_OLD.says, "the processing that was in use before the PEER collection"),
-        ("Mexico City", MEXICO_STRONG.says, "the strong part: the paper's motion makes building 2 yield moderately"),
+        (
+            "Mexico City",
+            MEXICO_STRONG.says,
+            "the strong part: the paper's motion makes building 2 yield moderately",
+        ),
         ("Loma Prieta", GILROY_3.says, "a N-S component of the event with its strong part early"),
     ),
-)  # fmt: skip
+)
 READINGS = (LITERAL, BEST)
 
 

@@ -40,7 +40,8 @@ class Drift:
 
 
 def drifts(runs: Iterable[Run], benchmark: Run, strength: float = 1.0) -> Iterator[Drift]:
-    """Every test's drifts against the benchmark of the same record; `strength` is that of Table IV times."""
+    """Every test's drifts against the benchmark of the same record; `strength` is that of Table IV "
+    "times."""
     for run in runs:
         for place in PLACES:
             for direction in ("left", "right"):

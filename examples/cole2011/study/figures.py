@@ -142,7 +142,9 @@ def snapshots(path: Path) -> None:
     for axes, (name, share) in zip(axes_of(figure, 3, 2, sharex=True, sharey=True), INSTANTS.items()):
         x1, x2, v, f = every(share)
         for x, part in ((x1, slice(0, len(x1))), (x2, slice(len(x1), None))):
-            axes.step(x, v[part], where="mid", color=COLOURS["El Centro"], label="velocity" if x is x1 else None)
+            axes.step(
+                x, v[part], where="mid", color=COLOURS["El Centro"], label="velocity" if x is x1 else None
+            )
             axes.step(
                 x, f[part], where="mid", color=COLOURS["Mexico City"], linewidth=1,
                 label="force over that of Eq. 11" if x is x1 else None,

@@ -26,7 +26,8 @@ PLACES = tuple(f"B{b} storey {s} {end}" for b in (1, 2) for s in (1, 2) for end 
 
 @dataclass(frozen=True)
 class Hit:
-    """One collision: floor, time and length [s], approach speed [m/s], peak force and plateau of it [kN]."""
+    """One collision: floor, time and length [s], approach speed [m/s], peak force and plateau of it "
+    "[kN]."""
 
     floor: int
     t: float
@@ -175,7 +176,10 @@ def solve_all(
             name, run, cost = json.loads(line)
             kept[name] = read_run(run), cost
     wanted = {key(job): job for job in jobs if key(job) not in kept}
-    with store.open("a", encoding="utf-8") as stream, ProcessPoolExecutor(processes or os.cpu_count()) as pool:
+    with (
+        store.open("a", encoding="utf-8") as stream,
+        ProcessPoolExecutor(processes or os.cpu_count()) as pool,
+    ):
         for n, (name, (run, cost)) in enumerate(zip(wanted, pool.map(timed, wanted.values()))):
             kept[name] = run, cost
             stream.write(json.dumps([name, asdict(run), cost]) + "\n")
@@ -192,11 +196,20 @@ def timed(job: Job) -> tuple[Run, float]:
 
 def key(job: Job) -> str:
     """A run's name among those kept."""
-    test = [job.test.deck.name, dict(job.test.params), job.test.edits, job.test.method, job.test.dt, job.test.name]
+    test = [
+        job.test.deck.name,
+        dict(job.test.params),
+        job.test.edits,
+        job.test.method,
+        job.test.dt,
+        job.test.name,
+    ]
     return json.dumps([job.record.params, job.record.items, test, dict(job.params)], sort_keys=True)
 
 
 def read_run(kept: Mapping[str, Any]) -> Run:
     """A run from its fields, as `dataclasses.asdict` gives them."""
     hits = tuple(Hit(**hit) for hit in kept["hits"])
-    return Run(**{**kept, "hits": hits, "forces": tuple(kept["forces"]), "closures": tuple(kept["closures"])})
+    return Run(
+        **{**kept, "hits": hits, "forces": tuple(kept["forces"]), "closures": tuple(kept["closures"])}
+    )

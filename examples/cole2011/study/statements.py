@@ -31,7 +31,8 @@ class Form:
 
 FORMS = {
     "traditional": Form(
-        "All traditional lumped models have at least 10 % error, regardless of the location of the drift", 653,
+        "All traditional lumped models have at least 10 % error, regardless of the location of the "
+        "drift", 653,
         "every error is 10 % or more",
         "each model has such an error in each storey of each building, under some record",
     ),
@@ -64,7 +65,8 @@ FORMS = {
         "floor 1 collides under El Centro and under no other record",
     ),
     "yielding": Form(
-        "El Centro induces little, Mexico City moderate, Loma Prieta significant inelastic deformation", 652,
+        "El Centro induces little, Mexico City moderate, Loma Prieta significant inelastic "
+        "deformation", 652,
         "ductilities rise in this order, that of El Centro is at most 2 and that of Loma Prieta above 1",
         "ductilities rise in this order",
     ),
@@ -81,12 +83,14 @@ FORMS = {
         "the mean error under El Centro is larger at floor 1 than at floor 2",
     ),
     "all tests": Form(
-        "Without the traditional models all results above 1000 kN are within 15 %, and all except two within "
+        "Without the traditional models all results above 1000 kN are within 15 %, and all except two "
+        "within "
         "10 % (Figure 14, El Centro)", 653,
         "both", "within 15 %",
     ),
     "major": Form(
-        "The force is accurately calculated for major collisions (above 2000 kN) in all tests (Figure 14)", 653,
+        "The force is accurately calculated for major collisions (above 2000 kN) in all tests (Figure "
+        "14)", 653,
         "within 15 % of every recorded peak above 2000 kN, traditional models too",
     ),
 }  # fmt: skip
@@ -94,7 +98,8 @@ FORMS = {
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the runs say of a statement; None where they have nothing to judge it by, or the form is none."""
+    """What the runs say of a statement; None where they have nothing to judge it by, or the form is "
+    "none."""
 
     strict: bool | None
     lenient: bool | None
@@ -168,16 +173,15 @@ def underestimate(found: Sequence[Drift]) -> Verdict:
     return Verdict(
         3 * len(low) >= len(errors),
         seen == every,
-        f"{len(low)} of {len(errors)} errors are negative; {len(seen)} of {len(every)} models and records have "
+        f"{len(low)} of {len(errors)} errors are negative; {len(seen)} of {len(every)} models and "
+        f"records have "
         "one beyond -1 %",
     )
 
 
 def like_one_element(found: Sequence[Drift]) -> Verdict:
     equiv, one = mean(some(found, "0(equiv)")), mean(some(found, "1"))
-    return Verdict(
-        equiv <= 1.25 * one, equiv <= 1.5 * one, f"mean errors {equiv:.2f} % and {one:.2f} %"
-    )
+    return Verdict(equiv <= 1.25 * one, equiv <= 1.5 * one, f"mean errors {equiv:.2f} % and {one:.2f} %")
 
 
 def only_one_beyond(found: Sequence[Drift]) -> Verdict:
@@ -203,7 +207,8 @@ def two_elements(found: Sequence[Drift]) -> Verdict:
     return Verdict(
         small == len(errors),
         scaled < 5,
-        f"{small} of {len(errors)} errors are below 5 %, the largest is {worst(errors):.1f} %; relative to no less "
+        f"{small} of {len(errors)} errors are below 5 %, the largest is {worst(errors):.1f} %; relative "
+        f"to no less "
         f"than half the yield drift it is {scaled:.1f} %",
     )
 
