@@ -99,7 +99,7 @@ def characteristics(z1: Any, n1: int, z2: Any, n2: int, steps: int) -> tuple[Any
 
 @pytest.mark.parametrize("n2", [100, 97])
 def test_the_closed_form_over_the_whole_range_of_masses_and_periods(n2: int) -> None:
-    """m1/m2 from 0.01 to 100, T1/T2 from 0.01 to 1: impulse, centroid, duration; the bars never meet twice."""
+    """m1/m2 from 0.01 to 100, T1/T2 from 0.01 to 1: impulse, centroid, duration; none meet twice."""
     ratios = np.logspace(-2, 2, 41)
     for n1 in (1, 2, 3, 7, 10, 19, 33, 48, 49, 50, 51, 66, 80, 96, n2):
         impulse, moment, last, again = characteristics(

@@ -131,8 +131,8 @@ BEST = Reading(
         (
             "storey yield",
             "twice Table IV",
-            "the yield as if entered for each column of a storey; a poster of the authors has the same values as "
-            "'Yield load'",
+            "the yield as if entered for each column of a storey; a poster of the authors has the same "
+            "values as 'Yield load'",
         ),
         (
             "damping",
@@ -142,7 +142,8 @@ BEST = Reading(
         (
             "columns",
             "at all nodes of a diaphragm, shared out like its mass, bilinear with 2 % hardening",
-            "the paper speaks of 'all columns that are connected to that diaphragm'; 2 % is a usual hardening",
+            "the paper speaks of 'all columns that are connected to that diaphragm'; "
+            "2 % is a usual hardening",
         ),
         (
             "contact",
