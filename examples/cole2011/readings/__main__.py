@@ -1,8 +1,8 @@
 """How the paper's statements fare over many readings: ``python examples/cole2011/readings -o FOLDER``.
 
 A reading is a structure (strength, damping, columns) and a record for each earthquake.  Every structure
-is run once under every record; the readings are all combinations.  Runs are kept in ``FOLDER/runs.jsonl``: what
-was stopped goes on where it was.  Writes ``readings.md``, the robustness table.
+is run once under every record; the readings are all combinations.  Runs are kept in
+``FOLDER/runs.jsonl``: what was stopped goes on where it was.  Writes ``readings.md``, the robustness table.
 """
 
 from __future__ import annotations

@@ -9,10 +9,12 @@ stiffnesses:
 .. math:: \omega\bar t = \frac{e}{1+e}(\omega t_r + 2\xi), \qquad k = m\omega^2, \qquad c = 2\xi m\omega
 
 with the damping ratio and the time of release :math:`t_r` that belong to :math:`e` (`restitution`); of a
-contact with tension :math:`\bar t` is the centroid of its push.  MODEL=PAPER is Eqs 14 to 17 and 22 of
-Cole et al. (2011): their restitution, the shorter collision period as duration, and the relation of a contact with
-tension whatever TENSION says; the report shows the restitution that comes of it.  R < 1 is the plasticity
-index of Eq 22; the centroid is left at that of the elastic collision, as there the duration.
+contact with tension :math:`\bar t` is the centroid of its push.
+
+MODEL=PAPER is Eqs 14 to 17 and 22 of Cole et al. (2011): their restitution, the shorter collision period as
+duration, and the relation of a contact with tension whatever TENSION says; the report shows the restitution
+that comes of it.  R < 1 is the plasticity index of Eq 22; the centroid is left at that of the elastic
+collision, as there the duration.
 """
 
 from __future__ import annotations
