@@ -63,10 +63,11 @@ STRUCTURES = (
 )
 RECORDS = (
     (
-        EL_CENTRO, EL_CENTRO_OWN, EL_CENTRO_OLD, replace(EL_CENTRO_OLD, sign=-1),
-        replace(EL_CENTRO, start=2.05),
+        EL_CENTRO, EL_CENTRO_OWN, EL_CENTRO_OLD,
+        replace(EL_CENTRO_OLD, sign=-1, says=EL_CENTRO_OLD.says + " × (−1)"),
+        replace(EL_CENTRO, start=2.05, says="PEER 270 × (−1), 2.05 to 12.05 s"),
     ),
-    (MEXICO, MEXICO_STRONG, replace(MEXICO_STRONG, sign=1)),
+    (MEXICO, MEXICO_STRONG, replace(MEXICO_STRONG, sign=1, says="SCT E-W, 54.02 to 64.02 s")),
     (LOMA_PRIETA, CORRALITOS_OWN, GILROY_3, GILROY_2, CAPITOLA),
 )  # fmt: skip
 Cells = dict[tuple[Structure, Record], list[Run]]
