@@ -153,7 +153,7 @@ def test_waves_have_the_momenta_of_table_i(study):
 def test_pictures_are_there(quick):
     text, folder = quick
     named = re.findall(r"!\[[^]]+\]\(([^)]+)\)", text)
-    assert len(named) == 8 and all((folder / name).stat().st_size > 5000 for name in named)
+    assert len(named) == 9 and all((folder / name).stat().st_size > 5000 for name in named)
 
 
 def test_the_page_of_the_manual_is_that_of_a_run(quick):
@@ -167,7 +167,7 @@ def test_the_page_of_the_manual_is_that_of_a_run(quick):
         for a, b in zip(ours, theirs):
             assert a[:5] == b[:5]  # residuals are rounding, and differ between machines
     pictures = re.findall(r"\]\((study/[^)]+\.svg)\)", page)
-    assert len(pictures) == 13 and all((ROOT / "manual" / name).exists() for name in pictures)
+    assert len(pictures) == 15 and all((ROOT / "manual" / name).exists() for name in pictures)
 
 
 def test_a_record_that_is_missing_is_told(study, tmp_path):

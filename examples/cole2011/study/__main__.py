@@ -120,7 +120,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     args.out.mkdir(parents=True, exist_ok=True)
     solved = solve_all([job for _, job in jobs], args.out / "runs.jsonl", progress, args.processes)
     runs = [(place, run) for (place, _), (run, _) in zip(jobs, solved)]
-    study = Study(runs, left_out)
+    used = {reading.name: records_of(reading, folders)[0] for reading in READINGS}
+    study = Study(runs, used, folders, left_out)
     page = args.manual / "cole2011-study.md" if args.manual else args.out / "study.md"
     drawn = page.parent / "study" if args.manual else page.parent
     drawn.mkdir(parents=True, exist_ok=True)

@@ -227,7 +227,9 @@ def pictures(folder: Path, study: Study) -> dict[str, Path]:
     }
     for name in study.readings:
         paper = study.paper(name)
+        records = [r for r in study.records[name] if r.name in paper]
         drawn |= {
+            f"figure 9 {name}": partial(figures.inputs, records, study.folders, 10.0),
             f"figure 11 {name}": partial(figures.drift_errors, paper, 1),
             f"figure 12 {name}": partial(figures.drift_errors, paper, 2),
             f"figure 13 {name}": partial(figures.figure_13, paper, PAIR.force, "peak"),
@@ -290,7 +292,11 @@ def opening(study: Study, shown: Shown) -> list[str]:
         "and the usual value elsewhere. The best reading is the one of some thousand combinations under "
         "which most "
         "statements hold; that it was found so is no proof that the authors ran it.",
-        *(f"### The {name} reading\n\n{readings_table(name)}" for name in study.readings),
+        *(
+            f"### The {name} reading\n\n{readings_table(name)}\n\n"
+            + shown(f"figure 9 {name}", f"Scaled input (Figure 9), {name} reading")
+            for name in study.readings
+        ),
         "### How statements are judged",
         "A statement is judged as written, and where its words allow it in a lenient form. Errors are "
         "relative to "

@@ -6,13 +6,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from cases import PAIR, TESTS
+from cases import PAIR, TESTS, G
+from choices import Record
 from errors import Prediction, benchmark_of, drifts, predictions
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from runs import PLACES, Run
 from waves import INSTANTS, waves
 
+from pound_solve.assess.spectra import of_record
 from pound_solve.report.plot import style
 from pound_solve.theory.two_bars import Diaphragm, Pair
 
@@ -110,6 +112,21 @@ def pair(mass_ratio: float, period_ratio: float) -> Pair:
 
 #: equivalent contacts that are compared, and what they are
 CONTACTS = {"0(equiv)": "Eqs 14-17", "0(touch)": "time of touch", "0(exact)": "impulse and centroid"}
+
+
+def inputs(records: Sequence[Record], folders: Sequence[Path], length: float, path: Path) -> None:
+    """Figure 9: the accelerations that were used, with sign, factor and window."""
+    figure = style.figure(9, 1.7 * len(records))
+    times = np.linspace(0.0, length, 2001)
+    for axes, record in zip(axes_of(figure, len(records), 1, sharex=True), records):
+        source = of_record(record.file, (*record.items.split(), f"START={record.start!r}"), folders)
+        (found,) = source.accelerations.values()
+        shown = record.sign * record.scale * found.value(times) / G
+        axes.plot(times, shown, color=COLOURS[record.name], linewidth=0.8)
+        axes.set_title(f"{record.name}: {record.says}, times {record.scale:g}", fontsize=8)
+        axes.set_ylabel("g", fontsize=8)
+    figure.axes[-1].set_xlabel("time [s]")
+    style.save(figure, path)
 
 
 def over_stiffness(groups: Mapping[float, Sequence[Run]], path: Path) -> None:

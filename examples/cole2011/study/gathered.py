@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
+from pathlib import Path
 
 from cases import TESTS
+from choices import Record
 from runs import Run
 
 Group = list[Run]
@@ -19,11 +21,22 @@ class Study:
     runs : iterable of (place, Run)
         The place is ``reading, name, record``; ``systems``; ``finer``; ``variant, name``; ``stiffness,
         factor``; or ``disturbed, reading, record, number``.
+    records : mapping
+        Records of every reading.
+    folders : sequence of Path
+        Where they are found.
     left_out : sequence of str
         What was left out, or done otherwise, for want of a record.
     """
 
-    def __init__(self, runs: Iterable[tuple[tuple[str, ...], Run]], left_out: Sequence[str]) -> None:
+    def __init__(
+        self,
+        runs: Iterable[tuple[tuple[str, ...], Run]],
+        records: Mapping[str, Sequence[Record]],
+        folders: Sequence[Path],
+        left_out: Sequence[str],
+    ) -> None:
+        self.records, self.folders = records, folders
         self._groups: dict[tuple[str, ...], Group] = {}
         for place, run in runs:
             self._groups.setdefault(place, []).append(run)
