@@ -150,6 +150,42 @@ def test_waves_have_the_momenta_of_table_i(study):
         assert found == pytest.approx(momenta, abs=1e-12)
 
 
+def test_readings_are_all_combinations_and_their_shares(study):
+    """Two structures, two records of El Centro, one of the others: four readings, floor 1 in one."""
+    robustness, choices = study("robustness"), study("choices")
+    tests = ("0(10)", "0(0.1)", "0(equiv)", "0(exact)", "1", "2", "5", "20")
+    done = {}
+    for n, structure in enumerate(robustness.STRUCTURES[:2]):
+        for record in (choices.EL_CENTRO, choices.EL_CENTRO_OLD, choices.MEXICO, choices.LOMA_PRIETA):
+            meets = n == 0 and record is choices.EL_CENTRO_OLD
+            done[structure, record] = [
+                run_of(study, test, record.name, closures=(int(meets), 1)) for test in tests
+            ]
+    readings = robustness.judged(done)
+    assert len(readings) == 4
+    row = next(r for r in robustness.robust(readings) if r[0].startswith("El Centro was the only"))
+    assert row[1:3] == ["4", "25 %"]
+    best = robustness.leading(readings)[0]
+    assert best[5] == choices.EL_CENTRO_OLD.says and best[1] == "1"
+    # equal runs have no error: all below 5 %, and no model 10 % wrong
+    shares = {r[0].split()[0]: r[2] for r in robustness.robust(readings)}
+    assert (shares["With"], shares["All"]) == ("100 %", "0 %")
+    text = robustness.page(done, 1.0, ["Mexico City: a file"])
+    assert "4 readings: 2 structures under 4 records" in text and "Mexico City: a file" in text
+
+
+def test_statements_that_never_hold_together_are_told(study):
+    robustness, statements = study("robustness"), study("statements")
+
+    def reading(*holding):
+        verdicts = {key: statements.Verdict(key in holding, None, "") for key in statements.FORMS}
+        return robustness.STRUCTURES[0], (), verdicts
+
+    pairs = robustness.excluded([reading("floor 1", "major"), reading("major", "far ends"), reading()])
+    words = statements.FORMS["far ends"].statement, statements.FORMS["floor 1"].statement
+    assert [(p[0], p[2]) for p in pairs] == [words]
+
+
 def test_pictures_are_there(quick):
     text, folder = quick
     named = re.findall(r"!\[[^]]+\]\(([^)]+)\)", text)

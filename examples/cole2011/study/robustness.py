@@ -145,7 +145,9 @@ def models(done: Cells) -> list[list[str]]:
 
 
 def spread(values: Sequence[float]) -> str:
-    """Three quantiles."""
+    """Three quantiles, where there are values."""
+    if not values:
+        return "-"
     return " / ".join(f"{x:.1f}" for x in np.quantile(values, (0.05, 0.5, 0.95)))
 
 
