@@ -13,6 +13,7 @@ from cases import BENCHMARK, CANDIDATES, EXACT_EQUIVALENT, PAIR
 from choices import READINGS
 from errors import benchmark_of, by_test, drifts, worst
 from gathered import Group, Study
+from practice import practice
 from runs import PLACES, Run
 from statements import FORMS, forces, judge, mean, sensitivity, some
 from tabulate import tabulate
@@ -421,5 +422,14 @@ def write(page: Path, folder: Path, study: Study) -> None:
     def shown(name: str, text: str) -> str:
         return f"![{text}]({files[name].relative_to(page.parent).as_posix()})"
 
-    parts = [*opening(study, shown), *evidence(study, shown), *contacts(study, shown), *rest(study)]
+    cells = [
+        (STRENGTH[name], group) for name, groups in study.readings.items() for group in groups.values()
+    ]
+    parts = [
+        *opening(study, shown),
+        *evidence(study, shown),
+        *contacts(study, shown),
+        *practice(cells),
+        *rest(study),
+    ]
     page.write_text("\n\n".join(parts) + "\n", encoding="utf-8", newline="\n")

@@ -156,7 +156,11 @@ BEST = Reading(
             MEXICO_STRONG.says,
             "the strong part: the paper's motion makes building 2 yield moderately",
         ),
-        ("Loma Prieta", GILROY_3.says, "a N-S component of the event with its strong part early"),
+        (
+            "Loma Prieta",
+            GILROY_3.says,
+            "a N-S component of the event with its strong part in the first 10 s",
+        ),
     ),
 )
 READINGS = (LITERAL, BEST)

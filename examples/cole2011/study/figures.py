@@ -170,7 +170,7 @@ def snapshots(path: Path) -> None:
         axes.set_title(name, fontsize=9)
     figure.axes[0].legend(fontsize=7)
     for axes in figure.axes[-2:]:
-        axes.set_xlabel("diaphragm 1 | diaphragm 2: place, as a share of the way of a wave in T2 / 2")
+        axes.set_xlabel("left of 0 diaphragm 1; 1 is the far end of 2")
     style.save(figure, path)
 
 

@@ -6,10 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import combinations, product
-from statistics import fmean
 
-import numpy as np
-from cases import BENCHMARK
 from choices import (
     CAPITOLA,
     CORRALITOS_OWN,
@@ -23,7 +20,7 @@ from choices import (
     MEXICO_STRONG,
     Record,
 )
-from errors import benchmark_of, by_test, drifts
+from practice import practice
 from runs import Run
 from statements import FORMS, Verdict, judge
 from tabulate import tabulate
@@ -125,46 +122,6 @@ def leading(readings: Sequence[Judged], most: int = 10) -> list[list[str]]:
     ]  # fmt: skip
 
 
-def models(done: Cells) -> list[list[str]]:
-    """Mean and largest drift errors of every model over structures and records: 5 %, 50 % and 95 % of "
-    "the cells."""
-    rows = []
-    for name in dict.fromkeys(run.test for runs in done.values() for run in runs):
-        if name == BENCHMARK:
-            continue
-        means, most, force = [], [], []
-        for (structure, _), runs in done.items():
-            bench, run = benchmark_of(runs), by_test(runs)[name]
-            found = [abs(d.scaled) for d in drifts([run], bench, structure.strength)]
-            means.append(fmean(found))
-            most.append(max(found))
-            if bench.forces[1] > 500:
-                force.append(100 * (run.forces[1] / bench.forces[1] - 1))
-        rows.append([name, *(spread(x) for x in (means, most, force))])
-    return rows
-
-
-def spread(values: Sequence[float]) -> str:
-    """Three quantiles, where there are values."""
-    if not values:
-        return "-"
-    return " / ".join(f"{x:.1f}" for x in np.quantile(values, (0.05, 0.5, 0.95)))
-
-
-def beats(done: Cells) -> str:
-    """How often the contact by the exact theory has smaller drift errors than the paper's."""
-    better = 0
-    for (structure, _), runs in done.items():
-        errors = {
-            name: fmean(
-                abs(d.scaled) for d in drifts([by_test(runs)[name]], benchmark_of(runs), structure.strength)
-            )
-            for name in ("0(equiv)", "0(exact)")
-        }
-        better += errors["0(exact)"] < errors["0(equiv)"]
-    return f"{better} of {len(done)}"
-
-
 def page(done: Cells, seconds: float, left_out: Sequence[str]) -> str:
     """The robustness page.
 
@@ -208,13 +165,7 @@ def page(done: Cells, seconds: float, left_out: Sequence[str]) -> str:
         else "None: any two that hold somewhere hold together somewhere.",
         "## The readings under which most statements hold",
         table(leading(readings), ["statements", *head, "El Centro", "Mexico City", "Loma Prieta"]),
-        "## For today's practice: when is a lumped floor good enough?",
-        "Errors of each model against 20 elements over all structures and records, as 5 % / 50 % / 95 % "
-        "of the cells: drift "
-        "errors relative to no less than half the yield drift; peak force of floor 2 where it is above "
-        "500 kN.",
-        table(models(done), ["model", "mean drift error [%]", "largest drift error [%]", "peak force [%]"]),
-        *advice(done),
+        *practice([(structure.strength, runs) for (structure, _), runs in done.items()]),
         "## What was run",
         table(
             [
@@ -234,22 +185,3 @@ def page(done: Cells, seconds: float, left_out: Sequence[str]) -> str:
         ),
     ]
     return "\n\n".join(parts) + "\n"
-
-
-def advice(done: Cells) -> list[str]:
-    """The answer to the paper's question."""
-    return [
-        f"- The contact with the impulse and the centroid of the bars' force (`LAW=EQUIVALENT`, "
-        f"`0(exact)`) has a smaller mean "
-        f"drift error than the paper's in {beats(done)} cells.",
-        "- A stiff spring between lumped floors (0(10)) is wrong in force by a multiple and is no "
-        "conservative choice for "
-        "drifts; a soft one (0(0.1)) is wrong in force the other way. Neither stiffness is a property "
-        "of the floors.",
-        "- Lumped floors are good enough where drifts are asked for and the contact is `LAW=EQUIVALENT "
-        "DIAPHRAGMS=kD1,kD2`: restitution "
-        "and stiffness then follow from masses and axial stiffnesses, and no value has to be chosen.",
-        "- Where contact forces, or drifts at the far ends of long floors, matter, take distributed "
-        "masses; the table says what "
-        "2 and 5 elements leave.",
-    ]
