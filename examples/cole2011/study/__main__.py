@@ -24,6 +24,8 @@ from runs import Job, found, solve_all
 SPARSE = ("0(10)", "0(equiv)", "1", "2", "20")
 #: tests of a slightly disturbed record
 FEWER = ("0(exact)", "2", "20")
+#: what may be left out
+PARTS = ("systems", "finer", "variant", "stiffness", "disturbed")
 
 
 def arguments(argv: Sequence[str] | None) -> argparse.Namespace:
@@ -40,6 +42,9 @@ def arguments(argv: Sequence[str] | None) -> argparse.Namespace:
         help="write the manual's chapter instead: DIR/cole2011-study.md",
     )
     parser.add_argument("--quick", action="store_true", help="El Centro and the literal reading alone")
+    parser.add_argument(
+        "--without", action="append", default=[], choices=PARTS, help="leave a part out; the text says so"
+    )
     parser.add_argument("--processes", type=int, metavar="N", help="default: one a core")
     return parser.parse_args(argv)
 
@@ -117,6 +122,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         print('El Centro is missing: pip install "pound-solve[records]"', file=sys.stderr)
         return 3
     jobs, left_out = plan(folders, args.quick)
+    jobs = [(place, job) for place, job in jobs if place[0] not in args.without]
+    left_out += [f"the part `{part}`, on demand" for part in args.without]
     args.out.mkdir(parents=True, exist_ok=True)
     solved = solve_all([job for _, job in jobs], args.out / "runs.jsonl", progress, args.processes)
     runs = [(place, run) for (place, _), (run, _) in zip(jobs, solved)]

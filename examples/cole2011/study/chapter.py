@@ -259,9 +259,7 @@ def opening(study: Study, shown: Shown) -> list[str]:
         "are those of the paper.",
     ]
     if study.left_out:
-        parts.append(
-            "Records that were not at hand:\n\n" + "\n".join(f"- {line}" for line in study.left_out)
-        )
+        parts.append("Left out, or done otherwise:\n\n" + "\n".join(f"- {line}" for line in study.left_out))
     return [
         *parts,
         "## The collision (Figures 1 to 5, Tables I to III, Eqs 1 to 14)",
