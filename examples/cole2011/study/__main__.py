@@ -134,7 +134,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     drawn.mkdir(parents=True, exist_ok=True)
     write(page, drawn, study)
     for name in left_out:
-        print(f"left out, its record is missing: {name}")
+        print(f"left out, or done otherwise: {name}")
     print(
         f"{len(runs)} runs, {sum(cost for _, cost in solved):.0f} s of CPU time; in "
         f"{time.perf_counter() - began:.0f} s; {page}"
