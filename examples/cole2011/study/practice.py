@@ -33,7 +33,8 @@ def practice(cells: Sequence[Cell]) -> list[str]:
         f"diaphragms' force, has a smaller mean drift error than the paper's 0(equiv) in "
         f"{beats(cells, '0(equiv)')} "
         f"cases, than one element in {beats(cells, '1')}, than two in {beats(cells, '2')}.",
-        "- Restitution and stiffness then follow from masses and axial stiffnesses. No value has to be chosen. "
+        "- Restitution and stiffness then follow from masses and axial stiffnesses. No value has to "
+        "be chosen. "
         "The usual stiffnesses, 10, 1 and 0.1 times k_D, have larger median errors than any other row, and "
         "the choice among them decides whether the force is several times too large or too small.",
         "- Lumped floors with this contact are good enough where drifts are asked for and the mean "
