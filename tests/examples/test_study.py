@@ -199,7 +199,7 @@ def test_the_page_of_the_manual_is_that_of_a_run(quick):
         "The collision (Figures 1 to 5, Tables I to III, Eqs 1 to 14)",
     ):
         ours, theirs = rows(section(quick[0], heading)), rows(section(page, heading))
-        assert len(ours) == len(theirs)
+        assert 10 < len(ours) <= len(theirs)  # the page has the other records, too
         for a, b in zip(ours, theirs):
             assert a[:5] == b[:5]  # residuals are rounding, and differ between machines
     pictures = re.findall(r"\]\((study/[^)]+\.svg)\)", page)
