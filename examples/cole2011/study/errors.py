@@ -13,9 +13,22 @@ TOGETHER = (
 )
 
 
+YIELD = {"B1": 1e3 * 2400 / 420000, "B2": 1e3 * 1400 / 350000}  #: drift at yield [mm], Table IV
+
+
 @dataclass(frozen=True)
 class Drift:
-    """Drift of a place in one direction: of a test [mm], and its error against the benchmark [%]."""
+    """Drift of a place in one direction, of a test, against the benchmark.
+
+    Attributes
+    ----------
+    value : float
+        Drift of the test [mm].
+    error : float
+        Relative to the benchmark's drift [%].
+    scaled : float
+        The same, relative to no less than half the yield drift [%].
+    """
 
     record: str
     test: str
@@ -23,16 +36,19 @@ class Drift:
     direction: str
     value: float
     error: float
+    scaled: float
 
 
-def drifts(runs: Iterable[Run], benchmark: Run) -> Iterator[Drift]:
-    """Every test's drifts against the benchmark of the same record."""
+def drifts(runs: Iterable[Run], benchmark: Run, strength: float = 1.0) -> Iterator[Drift]:
+    """Every test's drifts against the benchmark of the same record; `strength` is that of Table IV "
+    "times."""
     for run in runs:
         for place in PLACES:
             for direction in ("left", "right"):
                 value, exact = getattr(run, direction)[place], getattr(benchmark, direction)[place]
                 error = 100 * (value / exact - 1) if exact > 0 else float("nan")
-                yield Drift(run.record, run.test, place, direction, value, error)
+                scaled = 100 * (value - exact) / max(exact, 0.5 * strength * YIELD[place[:2]])
+                yield Drift(run.record, run.test, place, direction, value, error, scaled)
 
 
 @dataclass(frozen=True)

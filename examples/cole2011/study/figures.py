@@ -6,12 +6,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from cases import PAIR, TESTS
+from cases import PAIR, TESTS, G
+from choices import Record
 from errors import Prediction, benchmark_of, drifts, predictions
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from runs import PLACES, Run
+from waves import INSTANTS, waves
 
+from pound_solve.assess.spectra import of_record
 from pound_solve.report.plot import style
 from pound_solve.theory.two_bars import Diaphragm, Pair
 
@@ -105,6 +108,70 @@ def figure_14(group: Sequence[Run], per_speed: float, of: str, path: Path) -> No
 def pair(mass_ratio: float, period_ratio: float) -> Pair:
     """Two diaphragms of these ratios; the second has unit mass and period."""
     return Pair(Diaphragm(mass_ratio, 4 * mass_ratio / period_ratio**2), Diaphragm(1.0, 4.0))
+
+
+#: equivalent contacts that are compared, and what they are
+CONTACTS = {"0(equiv)": "Eqs 14-17", "0(touch)": "time of touch", "0(exact)": "impulse and centroid"}
+
+
+def inputs(records: Sequence[Record], folders: Sequence[Path], length: float, path: Path) -> None:
+    """Figure 9: the accelerations that were used, with sign, factor and window."""
+    figure = style.figure(9, 1.7 * len(records))
+    times = np.linspace(0.0, length, 2001)
+    for axes, record in zip(axes_of(figure, len(records), 1, sharex=True), records):
+        source = of_record(record.file, (*record.items.split(), f"START={record.start!r}"), folders)
+        (found,) = source.accelerations.values()
+        shown = record.sign * record.scale * found.value(times) / G
+        axes.plot(times, shown, color=COLOURS[record.name], linewidth=0.8)
+        axes.set_title(f"{record.name}: {record.says}, times {record.scale:g}", fontsize=8)
+        axes.set_ylabel("g", fontsize=8)
+    figure.axes[-1].set_xlabel("time [s]")
+    style.save(figure, path)
+
+
+def over_stiffness(groups: Mapping[float, Sequence[Run]], path: Path) -> None:
+    """Peak force of floor 2, and mean drift error, of the equivalent contacts over the stiffness k_D1."""
+    figure = style.figure(9, 4.2)
+    left, right = axes_of(figure, 1, 2, sharex=True)
+    for colour, (name, label) in zip(COLOURS.values(), CONTACTS.items()):
+        runs = [next(r for r in group if r.test == name) for group in groups.values()]
+        errors = [
+            np.mean([abs(d.error) for d in drifts([run], benchmark_of(group))])
+            for run, group in zip(runs, groups.values())
+        ]
+        left.plot(list(groups), [r.forces[1] for r in runs], "o-", color=colour, markersize=3, label=label)
+        right.plot(list(groups), errors, "o-", color=colour, markersize=3)
+    left.plot(list(groups), [benchmark_of(g).forces[1] for g in groups.values()], "k:", label="20 elements")
+    for axes in (left, right):
+        axes.axvline(0.75, color="0.6", linewidth=0.8)
+        axes.set_xlabel("k_D1 over that of Table IV; Z1 = Z2 at 0.75")
+    left.set_ylabel("peak force of floor 2 [kN]")
+    right.set_ylabel("mean drift error [%]")
+    left.legend(fontsize=7)
+    style.save(figure, path)
+
+
+def snapshots(path: Path) -> None:
+    """Figure 5: velocity and compression along two bars with T1 = 0.75 T2 and Z1 = 0.75 Z2."""
+    figure = style.figure(9, 7)
+    pair_ = pair(0.5625, 0.75)  # m1/m2 = Z1 T1 / (Z2 T2)
+    every = waves(pair_, 60)
+    for axes, (name, share) in zip(axes_of(figure, 3, 2, sharex=True, sharey=True), INSTANTS.items()):
+        x1, x2, v, f = every(share)
+        for x, part in ((x1, slice(0, len(x1))), (x2, slice(len(x1), None))):
+            axes.step(
+                x, v[part], where="mid", color=COLOURS["El Centro"], label="velocity" if x is x1 else None
+            )
+            axes.step(
+                x, f[part], where="mid", color=COLOURS["Mexico City"], linewidth=1,
+                label="force over that of Eq. 11" if x is x1 else None,
+            )  # fmt: skip
+        axes.axvline(0, color="0.4", linewidth=0.8)
+        axes.set_title(name, fontsize=9)
+    figure.axes[0].legend(fontsize=7)
+    for axes in figure.axes[-2:]:
+        axes.set_xlabel("left of 0 diaphragm 1; 1 is the far end of 2")
+    style.save(figure, path)
 
 
 def figure_6(path: Path) -> None:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import tempfile
-from collections.abc import Callable, Iterable, Sequence
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
-from cases import DISTRIBUTED, Record, Test, Variant
+from cases import Test
+from choices import Record
 
 import pound_solve
 from pound_solve.driver.run import DeckError
@@ -21,10 +26,12 @@ PLACES = tuple(f"B{b} storey {s} {end}" for b in (1, 2) for s in (1, 2) for end 
 
 @dataclass(frozen=True)
 class Hit:
-    """One collision: floor, time [s], approach speed [m/s], peak force and plateau of the force [kN]."""
+    """One collision: floor, time and length [s], approach speed [m/s], peak force and plateau of it "
+    "[kN]."""
 
     floor: int
     t: float
+    lasts: float
     approach: float
     peak: float
     plateau: float
@@ -47,7 +54,6 @@ class Run:
 
     record: str
     test: str
-    variant: str
     right: dict[str, float]
     left: dict[str, float]
     hits: tuple[Hit, ...]
@@ -58,35 +64,44 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """One run to be made."""
+    """One run to be made; the deck takes those of `params` that it has."""
 
     record: Record
     test: Test
-    variant: Variant
+    params: Mapping[str, object]
     folders: tuple[Path, ...]
 
 
-def write_deck(job: Job, folder: Path) -> Path:
-    """The deck of a job and what it includes: the example's, with the variant's changes."""
+def write_deck(job: Job, folder: Path) -> tuple[Path, set[str]]:
+    """The deck of a job and what it includes, with the test's changes; and the PARAMs that it has."""
+    names: set[str] = set()
     for source in (job.test.deck, *job.test.deck.parent.glob("*.inc")):
         text = source.read_text(encoding="utf-8")
-        if job.variant.rebuild and source == DISTRIBUTED:
-            text = job.variant.rebuild(text)
-        for old, new in (*job.test.edits, *job.variant.edits):
+        for old, new in job.test.edits:
             text = text.replace(old, new)
         text = text.replace("RECORD  record  SCALE", f"RECORD  record  {job.record.items}  SCALE")
         if source == job.test.deck:  # peaks do not hang on what is stored, but time does
             text += "\nOUTPUT\n   EVERY=1\n"
+            names |= params_of(text)
+        elif f'INCLUDE "{source.name}"' in job.test.deck.read_text(encoding="utf-8"):
+            names |= params_of(text)
         (folder / source.name).write_text(text, encoding="utf-8")
-    return folder / job.test.deck.name
+    return folder / job.test.deck.name, names
+
+
+def params_of(text: str) -> set[str]:
+    """Names of a deck's PARAMs."""
+    cards = re.findall(r"^PARAM([^!\n]*)", text, re.M)
+    return {name for card in cards for name in re.findall(r"(\w+) *=", card)}
 
 
 def solve(job: Job) -> Run:
     """Run one job in a folder of its own."""
-    name = f"{job.record.name}, {job.variant.name}, test {job.test.name}"
+    name = f"{job.record.name}, test {job.test.name}, {dict(job.params)}"
     with tempfile.TemporaryDirectory() as folder:
-        deck = write_deck(job, Path(folder))
-        params = {**job.test.params, **job.record.params, **job.variant.params}
+        deck, names = write_deck(job, Path(folder))
+        given = {**job.params, **job.test.params, **job.record.params}
+        params = {k: v for k, v in given.items() if k in names}
         try:
             results = pound_solve.run(
                 deck, params, records=job.folders, method=job.test.method, dt=job.test.dt
@@ -108,6 +123,7 @@ def gather(job: Job, results: pound_solve.results.Results) -> Run:
         Hit(
             int(str(row["contact"])[-1]),
             float(row["t_start"]),
+            float(row["t_end"]) - float(row["t_start"]),
             float(row["approach_velocity"]),
             float(row["peak_force"]),
             float(row["plateau_force"]),
@@ -118,7 +134,6 @@ def gather(job: Job, results: pound_solve.results.Results) -> Run:
     return Run(
         job.record.name,
         job.test.name,
-        job.variant.name,
         {place: 1e3 * float(row["max"]) for place, row in rows.items()},
         {place: -1e3 * float(row["min"]) for place, row in rows.items()},
         hits,
@@ -137,12 +152,64 @@ def found(record: Record, folders: Sequence[Path]) -> bool:
     return True
 
 
-def solve_all(jobs: Iterable[Job], tell: Callable[[int, int], None]) -> list[Run]:
-    """Run jobs on all cores; `tell` is called with how many are done, of how many."""
+def solve_all(
+    jobs: Iterable[Job], store: Path, tell: Callable[[int, int], None], processes: int | None = None
+) -> list[tuple[Run, float]]:
+    """Run jobs in processes; `tell` is called with how many are done, of how many.
+
+    Parameters
+    ----------
+    store : Path
+        File of all runs made, in lines of JSON: what stands in it is not run again.
+    processes : int, optional
+        As many as there are cores.
+
+    Returns
+    -------
+    list
+        Of every job its run, and its CPU time [s].
+    """
     jobs = list(jobs)
-    out = []
-    with ProcessPoolExecutor(max_workers=os.cpu_count()) as pool:
-        for run in pool.map(solve, jobs):
-            out.append(run)
-            tell(len(out), len(jobs))
-    return out
+    kept: dict[str, tuple[Run, float]] = {}
+    if store.exists():
+        for line in store.read_text(encoding="utf-8").splitlines():
+            name, run, cost = json.loads(line)
+            kept[name] = read_run(run), cost
+    wanted = {key(job): job for job in jobs if key(job) not in kept}
+    with (
+        store.open("a", encoding="utf-8") as stream,
+        ProcessPoolExecutor(processes or os.cpu_count()) as pool,
+    ):
+        for n, (name, (run, cost)) in enumerate(zip(wanted, pool.map(timed, wanted.values()))):
+            kept[name] = run, cost
+            stream.write(json.dumps([name, asdict(run), cost]) + "\n")
+            stream.flush()
+            tell(n + 1, len(wanted))
+    return [kept[key(job)] for job in jobs]
+
+
+def timed(job: Job) -> tuple[Run, float]:
+    """A run, and its CPU time [s]."""
+    began = time.process_time()
+    return solve(job), time.process_time() - began
+
+
+def key(job: Job) -> str:
+    """A run's name among those kept."""
+    test = [
+        job.test.deck.name,
+        dict(job.test.params),
+        job.test.edits,
+        job.test.method,
+        job.test.dt,
+        job.test.name,
+    ]
+    return json.dumps([job.record.params, job.record.items, test, dict(job.params)], sort_keys=True)
+
+
+def read_run(kept: Mapping[str, Any]) -> Run:
+    """A run from its fields, as `dataclasses.asdict` gives them."""
+    hits = tuple(Hit(**hit) for hit in kept["hits"])
+    return Run(
+        **{**kept, "hits": hits, "forces": tuple(kept["forces"]), "closures": tuple(kept["closures"])}
+    )

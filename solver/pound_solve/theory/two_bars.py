@@ -175,6 +175,25 @@ class Pair:
         return self._ordered[0].mass * (1.0 - self._kept)
 
     @property
+    def centroid(self) -> float:
+        """First moment of the contact force about the touch, over the impulse [T].
+
+        Unlike `duration` it is continuous where the impedances or the periods of the bars become equal.
+        """
+        one, two = self._ordered
+        if self.paper_holds:
+            return 0.5 * one.period
+        if one.period == 0.0:  # exp(-a t/T2) until T2
+            a = 2.0 * two.mass / one.mass
+            return two.period * (1.0 / a - 1.0 / math.expm1(a))
+        whole, rest = divmod(two.period / one.period, 1.0)
+        lost = 2.0 * self.force / one.impedance  # 1 - rho, without its rounding
+        left = math.exp(whole * math.log1p(-lost))
+        steps = (1.0 - left) / lost
+        mean = 0.5 + (1.0 - lost) / lost - whole * left / (1.0 - left)
+        return one.period * (steps * mean + rest * left * (whole + 0.5 * rest)) / (steps + rest * left)
+
+    @property
     def alpha(self) -> tuple[float, float]:
         """Influence coefficients of distributed masses, exact everywhere [-]."""
         half = 0.5 * self.impulse

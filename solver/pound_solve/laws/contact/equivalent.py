@@ -1,16 +1,20 @@
-r"""Equivalent contact of two rigid floors: Kelvin-Voigt with the restitution and the duration that two
-diaphragms with distributed mass would have.
+r"""Equivalent contact of two rigid floors: a Kelvin-Voigt contact after which their centres of mass move as
+those of two diaphragms with distributed mass.
 
-:mod:`pound_solve.theory.two_bars` gives both from the masses and from the axial stiffnesses DIAPHRAGMS.
-With :math:`\omega t_r` the time of release that belongs to the damping ratio (`restitution`),
+:mod:`pound_solve.theory.two_bars` gives the contact force of the diaphragms from the masses and from the
+axial stiffnesses DIAPHRAGMS.  A contact has two constants.  MODEL=EXACT gives it the impulse
+:math:`(1+e)m\Delta v` and the centroid :math:`\bar t` of that force, both continuous in all masses and
+stiffnesses:
 
-.. math:: k = m\Bigl(\frac{\omega t_r}{T}\Bigr)^2, \qquad c = 2\xi\sqrt{k m}
+.. math:: \omega\bar t = \frac{e}{1+e}(\omega t_r + 2\xi), \qquad k = m\omega^2, \qquad c = 2\xi m\omega
 
-MODEL=PAPER is Eqs 14 to 17 and 22 of Cole et al. (2011): their restitution and duration, and the relation
-of a contact with tension whatever TENSION says; the report shows the restitution that comes of it.
-MODEL=EXACT takes the restitution and duration of the exact theory, and the relation that is exact for
-TENSION.  R < 1 is the plasticity index of Eq 22; the duration is left at that of the elastic collision, as
-there.
+with the damping ratio and the time of release :math:`t_r` that belong to :math:`e` (`restitution`); of a
+contact with tension :math:`\bar t` is the centroid of its push.
+
+MODEL=PAPER is Eqs 14 to 17 and 22 of Cole et al. (2011): their restitution, the shorter collision period as
+duration, and the relation of a contact with tension whatever TENSION says; the report shows the restitution
+that comes of it.  R < 1 is the plasticity index of Eq 22; the centroid is left at that of the elastic
+collision, as there the duration.
 """
 
 from __future__ import annotations
@@ -52,17 +56,17 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         raise ValueError(
             f"Eq. 14 of Cole et al. gives a restitution of {e:.4g}, which no contact has: take MODEL=EXACT"
         )
-    duration = min(d.period for d in (pair.first, pair.second)) if paper else pair.duration
-    if paper or tension:
-        xi = restitution.sticky_ratio(e)
-        released = math.pi / math.sqrt(1.0 - xi * xi)
+    xi = restitution.sticky_ratio(e) if paper or tension else restitution.no_tension_ratio(e)
+    if paper:
+        duration = min(d.period for d in (pair.first, pair.second))
+        omega = math.pi / math.sqrt(1.0 - xi * xi) / duration
+        note = f"duration {duration:.5g}, Eqs 14-17 of Cole et al. 2011"
     else:
-        xi = restitution.no_tension_ratio(e)
-        released = restitution.no_tension_time(xi)
-    k = reduced_mass * (released / duration) ** 2
-    c = 2.0 * xi * math.sqrt(k * reduced_mass)
+        omega = restitution.push_centroid(xi) / pair.centroid
+        note = f"centroid {pair.centroid:.5g}, exact theory"
+    k = reduced_mass * omega * omega
+    c = 2.0 * xi * reduced_mass * omega
     e_given = (restitution.sticky if tension else restitution.no_tension)(xi)
-    note = f"duration {duration:.5g}, " + ("Eqs 14-17 of Cole et al. 2011" if paper else "exact theory")
     return Built(Law(RULE, (k, c, values["GAP"], float(tension))), k, c, xi, e, e_given, note)
 
 

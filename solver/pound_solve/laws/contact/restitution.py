@@ -16,6 +16,9 @@ the motion is :math:`\delta = (v_0/\omega_d) e^{-\xi\omega t}\sin\omega_d t`;
 
 (Schwager and Poeschel 2007, Granular Matter 9: 465-469, give the same result); e = exp(-2) at xi = 1.
 
+Its impulse is :math:`(1 + e) m v_0`; :math:`\int f t\,dt = m v_0 e (t_r + 2\xi/\omega)` by parts, as
+:math:`f = 0` leaves :math:`\delta = (c/k) e v_0`.
+
 *One-sided* (the dashpot acts in approach only): the motion reverses at half that time,
 :math:`\arccos(\xi)/\omega_d`, and the spring releases its energy at that instant, so that this restitution
 is the root of the one above.
@@ -80,6 +83,12 @@ def no_tension_ratio(e: float) -> float:
     while no_tension(high) > e:
         high *= 2.0
     return _root(lambda xi: no_tension(xi) - e, 0.0, high)
+
+
+def push_centroid(xi: float) -> float:
+    """Centroid of the force until it is zero, after the touch, times the undamped frequency [-]."""
+    e = no_tension(xi)
+    return e * (no_tension_time(xi) + 2.0 * xi) / (1.0 + e)
 
 
 def one_sided(xi: float) -> float:
