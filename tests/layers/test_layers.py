@@ -93,6 +93,7 @@ WITHIN = {
         "identity",
         "outputs",
         "overrides",
+        "reading",
         "loading",
         "preflight",
         "prepare",

@@ -218,14 +218,12 @@ def test_moved_supports_are_not_held_by_mass_damping():
         ("RAYLEIGH XI=0.05 ALPHA=1 OMEGA=1,2", "not both", "XI"),
         ("RAYLEIGH OMEGA=1,2", "go with XI", "OMEGA"),
         ("RAYLEIGH MODES=1,2 ALPHA=1", "go with XI", "MODES"),
-        ("RAYLEIGH XI=0.05 MODES=1,99", "modes only", "MODES"),
         ("RAYLEIGH XI=0.05,0.02 OMEGA=3,3", "lies between", "XI"),
         ("RAYLEIGH XI=0.05,0.11 OMEGA=3,6", "between 0.025 and 0.1", "XI"),
         ("RAYLEIGH XI=0.05,0.02 OMEGA=3,6", "between 0.025 and 0.1", "XI"),
         ("MODAL XI=0.05,0.02 OMEGA=1,2 MODES=1,2", "XI needs the circular", "XI"),
         ("MODAL XI=0.05,0.04,0.03 OMEGA=1,2", "3 values for 2 frequencies", "XI"),
         ("MODAL XI=0.05 MODES=2,2", "the same (", "MODES"),
-        ("MODAL XI=0.05 MODES=1,99", "modes only", "MODES"),
         ("MODAL XI=0.05 OVER=MODE", "OVER needs OMEGA or MODES", "OVER"),
         ("MODAL XI=0.05,0.01 MODES=1,2 BEYOND=LINEAR", "the line falls", "BEYOND"),
         ("CAUGHEY XI=0.05", "XI needs the circular", "XI"),
@@ -241,6 +239,34 @@ def test_contradictions_are_diagnostics(card, words, item):
     assert found.code == "P332" and words in found.message
     line = len(FRAME.splitlines()) + 3
     assert found.span.line == line and found.span.column == 3 + card.index(item) + len(item)
+
+
+@pytest.mark.parametrize("card", ["MODAL XI=0.05", "RAYLEIGH XI=0.05", "CAUGHEY XI=0.05"])
+def test_a_mode_beyond_the_last_is_the_last(card):
+    last = len(frame(f" {card} MODES=1,2").free_vibration.omega)
+    told, plain = frame(f" {card} MODES=1,99"), frame(f" {card} MODES=1,{last}")
+    (found,) = told.remarks
+    assert (found.code, found.severity) == ("P346", "warning") and f"the last one, {last}," in found.message
+    assert np.array_equal(told.damping, plain.damping) and not plain.remarks
+
+
+def test_one_mode_stands_for_both_of_a_line():
+    text = """
+NODES
+ 1 0 0 FIX=XYR
+ 2 1 0 FIX=YR
+ELEMENTS
+ 1 S 1 2
+PROPS
+ S SPRING KX=4
+WEIGHTS
+ 2 9.81
+DAMPING
+ MODAL XI=0.05,0.05 MODES=1,2 BEYOND=LINEAR
+"""
+    assert structure_of(text).damping[0, 0] == pytest.approx(2 * 0.05 * 2.0, rel=1e-14)
+    with pytest.raises(AssemblyError, match="the same"):
+        structure_of(text.replace("0.05,0.05", "0.05,0.02"))
 
 
 def test_a_rigid_body_mode_carries_no_ratio():

@@ -7,13 +7,12 @@ from dataclasses import dataclass, field, replace
 
 from pound_deck.diagnostics import Diagnostic, has_errors, render
 from pound_deck.model import Model
-from pound_deck.reader import read_deck
-from pound_solve.catalog import catalog
 from pound_solve.driver import loading
 from pound_solve.driver.identity import identity
 from pound_solve.driver.outputs import overwritten
 from pound_solve.driver.overrides import overridden
 from pound_solve.driver.preflight import preflight
+from pound_solve.driver.reading import read
 from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import Motion
@@ -59,7 +58,12 @@ def prepare(request: Request) -> Prepared:
     OSError
         The deck cannot be read.
     """
-    return assembled(request, *read_deck(request.deck, catalog(), request.params, request.unsaved))
+    deck = read(request)
+    try:
+        ready = assembled(request, deck.model, deck.found, deck.files)
+    except DeckError as err:
+        raise DeckError(deck.moved(err.diagnostics, request.deck), deck.files) from None
+    return replace(ready, warnings=tuple(deck.moved(ready.warnings, request.deck)))
 
 
 def assembled(

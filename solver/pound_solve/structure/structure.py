@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
 from pound_solve.numerics import modes
 from pound_solve.numerics.matrices import Matrix, entries, gathered, least_squares
@@ -61,6 +62,8 @@ class Structure:
         Part of the damping that acts between nodes, beside the dashpots of elements.
     carried : ndarray, shape (n_geometric,)
         Axial forces that the geometric stiffness is made of [F].
+    remarks : list of Diagnostic
+        Warnings of the assembly.
     basis : Matrix, shape (n_free, n_free), or None
         Z where modes are sought among the motions u = Z u alone, see `tied`.
     """
@@ -87,6 +90,7 @@ class Structure:
     proportional: tuple[Proportional, ...] = ()
     carried: Array = field(default_factory=lambda: np.zeros(0))
     basis: Matrix | None = None
+    remarks: list[Diagnostic] = field(default_factory=list)
 
     @property
     def n_free(self) -> int:

@@ -35,13 +35,12 @@ def add_damping(structure: Structure, mass: Sequence[MassBlock]) -> list[Diagnos
     Returns
     -------
     list of Diagnostic
-        The cards that are at fault.
+        The cards that are at fault, and warnings.
     """
     sources, problems = _Sources(structure, mass), list[Diagnostic]()
-    context = DampingContext(sources.mass, sources.modes)
     betas = np.zeros((2, len(structure.laws)))  # of the tangent and of the secant stiffness
     for card in structure.model.damping:
-        group = _group(card, context, problems)
+        group = _group(card, sources, problems)
         if group is None:
             continue
         for matrix in _matrices(structure, group):
@@ -62,8 +61,13 @@ def add_damping(structure: Structure, mass: Sequence[MassBlock]) -> list[Diagnos
     return problems
 
 
-def _group(card: Card, context: DampingContext, problems: list[Diagnostic]) -> Group | None:
+def _group(card: Card, sources: _Sources, problems: list[Diagnostic]) -> Group | None:
     """Damping of one card; None where it is at fault."""
+
+    def warn(message: str, item: str) -> None:
+        problems.append(Diagnostic("P346", message, card.place(item), severity="warning"))
+
+    context = DampingContext(sources.mass, sources.modes, warn)
     try:
         group: Group = card.spec.impl(card, context)
     except DampingError as err:

@@ -33,10 +33,13 @@ class DampingContext:
     modes : callable
         ``modes(nodes or None, count)``: the `count` slowest modes, or more (None: all), of the initial
         structure, or of the building that these nodes make up, over all unknowns.
+    warn : callable
+        ``warn(message, item)`` tells of an item of the card that is not taken as it stands.
     """
 
     mass: Callable[[Collection[int] | None], matrices.Matrix]
     modes: Callable[[Collection[int] | None, int | None], Modes]
+    warn: Callable[[str, str], None]
 
     def from_modes(self, modes: Modes, rates: Array) -> matrices.Matrix:
         r"""Return :math:`M \Phi\,\mathrm{diag}(2\xi_n\omega_n)\,\Phi^T M`, shape (n_free, n_free): full.
@@ -102,19 +105,20 @@ class DampingError(Exception):
         self.item = item
 
 
-def frequencies(card: Card, omega: Callable[[], Array]) -> Array:
-    """Circular frequencies that OMEGA or MODES of a card name.
+def frequencies(card: Card, omega: Callable[[], Array], context: DampingContext) -> Array:
+    """Circular frequencies that OMEGA or MODES of a card name; a mode beyond the last one is the last one.
 
     Parameters
     ----------
     card : Card
     omega : callable
         Returns those of the modes; called only where MODES are given.
+    context : DampingContext
 
     Raises
     ------
     DampingError
-        Both or neither are given, a mode does not exist, or is a rigid-body mode.
+        Both or neither are given, there is no mode, or one is a rigid-body mode.
     """
     if (card["OMEGA"] is None) == (card["MODES"] is None):
         raise DampingError(
@@ -123,9 +127,12 @@ def frequencies(card: Card, omega: Callable[[], Array]) -> Array:
     if card["OMEGA"] is not None:
         return np.array(card["OMEGA"])
     known = omega()
+    if not len(known):
+        raise DampingError("the structure has no mode", "MODES")
     if max(card["MODES"]) > len(known):
-        raise DampingError(f"the structure has {len(known)} modes only", "MODES")
-    out = known[np.array(card["MODES"]) - 1]
+        text = f"there is no mode {max(card['MODES'])}: the last one, {len(known)}, is taken in its place"
+        context.warn(text, "MODES")
+    out = known[np.minimum(card["MODES"], len(known)) - 1]
     if not out.all():
         raise DampingError(
             "a mode of zero frequency cannot carry a damping ratio: is a support (FIX) missing?", "MODES"

@@ -54,7 +54,7 @@ def rates(omega: Array, at: Array, xi: Array) -> Array:
 def build(card: Card, context: DampingContext) -> Group:
     """Damping of the whole structure, or of one building of several."""
     modes = context.modes(card["NODES"], None)
-    at = frequencies(card, lambda: modes.omega)
+    at = frequencies(card, lambda: modes.omega, context)
     xi = ratios(card, len(at))
     apart(at, "OMEGA" if card["OMEGA"] is not None else "MODES")
     given = rates(modes.omega, at, xi)

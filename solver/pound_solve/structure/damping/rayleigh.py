@@ -63,7 +63,7 @@ def build(card: Card, context: DampingContext) -> Group:
     if card["XI"] is not None:
         if alpha is not None or beta is not None:
             raise DampingError("give ALPHA and BETA, or XI with OMEGA or MODES, not both", "XI")
-        w1, w2 = frequencies(card, lambda: context.modes(None, max(card["MODES"])).omega)
+        w1, w2 = frequencies(card, lambda: context.modes(None, max(card["MODES"])).omega, context)
         x1, x2 = ratios(card, 2)
         alpha, beta = coefficients((x1, x2), (w1, w2))
         how = f"XI {values(card['XI'])} at omega {w1:.6g} and {w2:.6g}"
