@@ -50,7 +50,9 @@ def damping(control: Control, draft: Draft) -> None:
         raise mistake("L604", text, place, "0, 1, 6 Rayleigh; 2, 3 ratios over frequency")
     ratios = control["C1"], control["C2"]
     if min(ratios) < 0.0:
-        raise mistake("L603", "a damping ratio is below zero", control.place("C1"), "C1 and C2 are percents")
+        raise mistake(
+            "L603", "a damping ratio is below zero", control.place("C1"), "C1 and C2 are percents"
+        )
     if not any(ratios):
         return
     card, item, known = _DAMPING[code]
@@ -82,7 +84,9 @@ def runs(control: Control, loaded: bool, draft: Draft) -> None:
         notes = []
     if code in (EARTHQUAKE, FORCES):
         if control["TIME"] <= 0.0:
-            raise mistake("L603", "TIME is not above zero", control.place("TIME"), "the length of the history")
+            raise mistake(
+                "L603", "TIME is not above zero", control.place("TIME"), "the length of the history"
+            )
         text = f"HISTORY {number(control['TIME'])} METHOD=NEWMARK DT={number(control['DT'])}"
         draft.add("ANALYSIS", text, control.place("TIME"), notes)
         notes = []

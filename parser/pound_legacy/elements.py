@@ -52,9 +52,9 @@ def read(rows: Rows, last: int, kinds: int, nodes: dict[int, Node], draft: Draft
 def _member(found: Row, last: int, kinds: int, before: Member | None, nodes: dict[int, Node]) -> Member:
     id_, kind, i, j = found.wholes(NAMES[:4], 4)
     first = before.id if before else 0
-    if not first < id_ <= last:
-        text = f"member {id_} does not lie above {first} and up to NMEM, {last}"
-        raise mistake("L608", text, found.items[0].span, "members stand in ascending order and end with NMEM")
+    if not first < id_ <= last or (not first and id_ > 1):
+        text = f"member {id_} does not follow {first} on the way to NMEM, {last}"
+        raise mistake("L608", text, found.items[0].span, "members ascend from 1 to NMEM")
     if not 1 <= kind <= kinds:
         text = f"property set {kind} does not lie between 1 and NTYPE, {kinds}"
         raise mistake("L608", text, found.items[1].span, "correct the number or NTYPE")

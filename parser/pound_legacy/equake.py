@@ -17,7 +17,12 @@ from pound_legacy.lines import Item, Row, row
 
 NAMES: Final = ("IBERG", "ISTART", "DELTAT", "ASCALE", "END", "VEL", "DIS", "TSCALE")
 _COUNTED: Final = 3
-_FORMATS: Final = {0: "FORMAT=COLUMNS COLUMN=0", 1: "FORMAT=BERG", 3: "FORMAT=COLUMNS TIMES=2 COLUMN=3", 6: "FORMAT=COLUMNS COLUMN=0"}
+_FORMATS: Final = {
+    0: "FORMAT=COLUMNS COLUMN=0",
+    1: "FORMAT=BERG",
+    3: "FORMAT=COLUMNS TIMES=2 COLUMN=3",
+    6: "FORMAT=COLUMNS COLUMN=0",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,9 +80,13 @@ def record(found: Row, appended: Appended, separate: File | None, draft: Draft, 
     if begin:
         items.append(f"START={number(begin)}")
     if v["END"] > 0.0:
-        notes.append(draft.doubt(found.item(4).span, f"END {number(v['END'])}: the record is cut at this time"))
+        notes.append(
+            draft.doubt(found.item(4).span, f"END {number(v['END'])}: the record is cut at this time")
+        )
         if v["END"] <= begin:
-            raise mistake("L604", "END comes before the start", found.item(4).span, "-1 takes the whole record")
+            raise mistake(
+                "L604", "END comes before the start", found.item(4).span, "-1 takes the whole record"
+            )
         items.append(f"DURATION={number(v['END'] - begin)}")
     if v["TSCALE"] not in (0.0, 1.0):
         notes.append(draft.doubt(found.item(7).span, "TSCALE multiplies the times of the record"))
@@ -87,16 +96,22 @@ def record(found: Row, appended: Appended, separate: File | None, draft: Draft, 
     return " ".join(items)
 
 
-def _plain(v: dict[str, float], code: int, found: Row, draft: Draft, notes: list[str], items: list[str]) -> float:
+def _plain(
+    v: dict[str, float], code: int, found: Row, draft: Draft, notes: list[str], items: list[str]
+) -> float:
     """Time at which a record without counters begins to act; adds the step."""
-    reading = {0: "one step DELTAT from number to number", 1: "pairs of time and acceleration", 6: "as 0"}[code]
+    reading = {0: "one step DELTAT from number to number", 1: "pairs of time and acceleration", 6: "as 0"}[
+        code
+    ]
     if code == 6:
         draft.rest("IBERG 6: accelerations at the step DELTAT in a file of their own")
     else:
         notes.append(draft.doubt(found.items[0].span, f"IBERG {code}: {reading}"))
     start = found.item(1).whole("ISTART")
     if start not in (0, 1):
-        raise mistake("L604", f"ISTART {start}", found.items[1].span, "take the first lines out, and write 1")
+        raise mistake(
+            "L604", f"ISTART {start}", found.items[1].span, "take the first lines out, and write 1"
+        )
     if code != 1:
         if v["DELTAT"] <= 0.0:
             raise mistake("L603", "DELTAT is not above zero", found.items[2].span, "the step of the record")
@@ -108,7 +123,9 @@ def scale(found: Row, factor: float, draft: Draft) -> float:
     """Factor on the numbers of the record that makes shares of gravity of them."""
     divisor = found.item(3).real("ASCALE")
     if divisor == 0.0:
-        raise mistake("L603", "ASCALE is zero", found.items[3].span, "1 for shares of gravity, 9810 for mm/s2")
+        raise mistake(
+            "L603", "ASCALE is zero", found.items[3].span, "1 for shares of gravity, 9810 for mm/s2"
+        )
     if divisor != 1.0:
         draft.rest("ASCALE divides the record into shares of gravity")
     return factor / divisor
@@ -135,12 +152,15 @@ def _data(appended: Appended, separate: File | None, found: Row) -> _Data:
 
 def _time_of_counter(counter: int, data: _Data, found: Row) -> float:
     """Time of the line with a counter."""
+    name = found.span.file if data.first else data.file.name
     for k, raw in enumerate(data.rows(), data.first or 1):
-        line = row("", k, raw)
+        line = row(name, k, raw)
         if line and not line.word and len(line.items) > 2 and _is(line.items[0], counter):
             return line.items[1].real("time")
     text = f"no line of the record has the counter {counter} (ISTART)"
-    raise mistake("L608", text, found.item(1).span, "format 3 is a line START, then counter, time, acceleration")
+    raise mistake(
+        "L608", text, found.item(1).span, "format 3 is a line START, then counter, time, acceleration"
+    )
 
 
 def _is(item: Item, counter: int) -> bool:

@@ -24,7 +24,9 @@ def text_of(name: str) -> str:
     with open(name, "rb") as stream:
         data = stream.read(MAX_BYTES + 1)
     if len(data) > MAX_BYTES:
-        raise Mistake(Diagnostic("L612", f"{name} exceeds 256 MB", Span(name, 1, 1, 2), "part deck and record"))
+        raise Mistake(
+            Diagnostic("L612", f"{name} exceeds 256 MB", Span(name, 1, 1, 2), "part deck and record")
+        )
     return "\n".join(_decoded(data).splitlines())
 
 

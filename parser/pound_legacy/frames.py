@@ -77,7 +77,11 @@ def _initial(given: PropertySet, code: int, notes: list[str]) -> str:
         raise mistake("L604", f"ICOND {code} is not known", given.rows.here, "0 to 3")
     found = given.rows.next("the initial forces: " + " ".join(names))
     v = dict(zip(names, found.reals(names, len(names))))
-    notes.append(given.draft.doubt(found.span, f"ICOND {code}: initial {' '.join(names)}, tension and sagging positive"))
+    notes.append(
+        given.draft.doubt(
+            found.span, f"ICOND {code}: initial {' '.join(names)}, tension and sagging positive"
+        )
+    )
     axial = f"N0={number(v['N0'])}" if "N0" in v else ""
     moments = f"M0={numbers((v['MI0'], v['MJ0']))}" if "MI0" in v else ""
     return " ".join(x for x in (axial, moments) if x)

@@ -112,7 +112,9 @@ def write(control: Control, draft: Draft) -> None:
 def _fixed_format(control: Control) -> None:
     if control.whole("IFMT"):
         text = "IFMT is not 0: items in fixed columns"
-        raise mistake("L604", text, control.place("IFMT"), "write the items with blanks between, and IFMT 0")
+        raise mistake(
+            "L604", text, control.place("IFMT"), "write the items with blanks between, and IFMT 0"
+        )
 
 
 def _mass(control: Control, draft: Draft) -> None:
@@ -131,7 +133,9 @@ def _geometry(control: Control, draft: Draft) -> None:
     code, place = control.whole("INLGEO"), control.place("INLGEO")
     words = {0: "SMALL", 1: "PDELTA", 2: "LARGE"}
     if code not in words:
-        raise mistake("L604", f"INLGEO {code} is not known", place, "0 small, 1 P-Delta, 2 large displacements")
+        raise mistake(
+            "L604", f"INLGEO {code} is not known", place, "0 small, 1 P-Delta, 2 large displacements"
+        )
     notes = [draft.doubt(place, f"INLGEO {code}: GEOMETRY {words[code]}")] if code else []
     draft.add("", f"GEOMETRY {words[code]}", place, notes)
 

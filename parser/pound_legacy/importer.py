@@ -19,7 +19,9 @@ from pound_legacy.recognise import control_lines, in_space
 #: heads of sections
 _HEADS: Final = ("NODES", "DRIFT", "ELEMENTS", "PROPS", "WEIGHTS", "LOADS", "SHAPE", "DAMPING", "EQUAKE")
 _NEEDED: Final = ("NODES", "ELEMENTS", "PROPS")
-_RUN: Final = "pound-solve import DECK -o model.inp marks it in a deck of this program; check it there, and run that"
+_RUN: Final = (
+    "pound-solve import DECK -o model.inp marks it in a deck of this program; check it there, and run that"
+)
 _MOST_LINES: Final = 200_000  #: before the record
 
 
@@ -43,7 +45,9 @@ class Translation:
 
     def moved(self, found: Sequence[Diagnostic], name: str) -> list[Diagnostic]:
         """Diagnostics of the new deck, called `name`, at the lines of the old one."""
-        return [replace(d, span=self._origin(d.span)) if d.span and d.span.file == name else d for d in found]
+        return [
+            replace(d, span=self._origin(d.span)) if d.span and d.span.file == name else d for d in found
+        ]
 
     def _origin(self, span: Span) -> Span:
         return next((place for place in reversed(self.origins[: span.line]) if place), span)
@@ -81,7 +85,8 @@ def translate(
     _translate(sections, control, (File(own or name, text), list(records)), catalog, draft)
     if run:
         draft.report[:] = [
-            replace(d, severity="error", hint=_RUN) if d.code in ("L605", "L609") else d for d in draft.report
+            replace(d, severity="error", hint=_RUN) if d.code in ("L605", "L609") else d
+            for d in draft.report
         ]
     draft.report.append(_ground(draft, Span(name, 1, 1, 2)))
     draft.report.sort(key=lambda d: (d.span.line, d.span.column) if d.span else (0, 0))
@@ -113,7 +118,9 @@ def _outline(
     here = Span(name, 1, 1, 2)
     first = control_lines(text)
     if not first:
-        raise Mistake(Diagnostic("L610", f"{name} is no deck of Ruaumoko-2D", here, "it has no control lines"))
+        raise Mistake(
+            Diagnostic("L610", f"{name} is no deck of Ruaumoko-2D", here, "it has no control lines")
+        )
     if in_space(first):
         what = "this is a deck of Ruaumoko-3D; this program reads plane structures only"
         raise Mistake(Diagnostic("L601", what, here, "model one of its frames as a plane deck"))
@@ -178,6 +185,13 @@ def _translate(
         option = head.items[1] if len(head.items) > 1 else None
         attempt(lambda: nodal.weights(sections["WEIGHTS"].rows, option, control["GRAV"], points, draft))
     loaded = "LOADS" in sections and nodal.loads(sections["LOADS"].rows, points, draft)
+    if "DAMPING" in sections:
+        draft.add(
+            "DAMPING",
+            "",
+            sections["DAMPING"].head.span,
+            [draft.lose(sections["DAMPING"].head.span, "DAMPING")],
+        )
     attempt(lambda: analysis.damping(control, draft))
     attempt(lambda: analysis.runs(control, loaded, draft))
     attempt(lambda: _excite(sections, control, files, points, draft))
@@ -211,7 +225,7 @@ def _excite(
 
 def _ground(draft: Draft, here: Span) -> Diagnostic:
     """On what ground the deck was read."""
-    text = "read as a deck of Ruaumoko-2D: its items are those of a deck whose results are known"
+    text = "read as a deck of Ruaumoko-2D: but for what is marked, as one whose results are known"
     if draft.evidence:
         text += "; by decks of others: " + "; ".join(draft.evidence)
     return Diagnostic("L606", text, here, "the page Coming from Ruaumoko says what is known", "warning")

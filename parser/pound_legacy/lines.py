@@ -39,10 +39,14 @@ class Item:
             It is no number, or beyond all magnitudes.
         """
         if not self.numeric:
-            raise mistake("L603", f"{name} is {self.text[:40]!r}, not a number", self.span, "write a number")
+            raise mistake(
+                "L603", f"{name} is {self.text[:40]!r}, not a number", self.span, "write a number"
+            )
         value = float(self.text.translate(_D_EXPONENT))
         if not math.isfinite(value) or abs(value) > MOST:
-            raise mistake("L603", f"{name} is {self.text[:40]}, beyond {MOST:g}", self.span, "check the columns")
+            raise mistake(
+                "L603", f"{name} is {self.text[:40]}, beyond {MOST:g}", self.span, "check the columns"
+            )
         return value
 
     def whole(self, name: str) -> int:
@@ -55,7 +59,9 @@ class Item:
         """
         value = self.real(name)
         if value != round(value) or abs(value) > 1e9:
-            raise mistake("L603", f"{name} is {self.text[:40]}, not a whole number", self.span, "check the columns")
+            raise mistake(
+                "L603", f"{name} is {self.text[:40]}, not a whole number", self.span, "check the columns"
+            )
         return int(value)
 
 
@@ -158,7 +164,9 @@ class Rows:
             The section ends before it.
         """
         if not self.more:
-            raise mistake("L602", f"the section ends before {what}", self.here, "add the lines that are missing")
+            raise mistake(
+                "L602", f"the section ends before {what}", self.here, "add the lines that are missing"
+            )
         found = self.rows[self.at]
         self.here, self.at = found.span, self.at + 1
         return found

@@ -26,5 +26,7 @@ def read(code: int, rows: Rows, place: Span, draft: Draft, notes: list[str]) -> 
     if code not in _WORDS or gone or cycle:
         text = f"ILOS {code} with DUCT3 {number(gone)} and RCYC {number(cycle)}"
         raise mistake("L604", text, place, "ILOS 1 and 3 without DUCT3 and RCYC are carried over")
-    notes.append(draft.doubt(found.span, "the line of the loss of strength stands before those of the rule"))
+    notes.append(
+        draft.doubt(found.span, "the line of the loss of strength stands before those of the rule")
+    )
     return f"ILOS={_WORDS[code]} DUCT1={number(begin)} DUCT2={number(end)} RDUCT={number(left)}"

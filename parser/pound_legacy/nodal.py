@@ -13,7 +13,9 @@ WEIGHTS: Final = ("N", "WX", "WY", "MZ")
 LOADS: Final = ("N", "FX", "FY", "MZ")
 
 
-def _lines(rows: Rows, names: tuple[str, ...], nodes: dict[int, Node], draft: Draft) -> list[tuple[Row, int, list[float]]]:
+def _lines(
+    rows: Rows, names: tuple[str, ...], nodes: dict[int, Node], draft: Draft
+) -> list[tuple[Row, int, list[float]]]:
     """Lines of a list: the node, and its values; mistakes are reported, and the line is left out."""
     out: list[tuple[Row, int, list[float]]] = []
     for found in rows:
@@ -39,7 +41,9 @@ def weights(rows: Rows, option: Item | None, gravity: float, nodes: dict[int, No
     for found, id_, values in _lines(rows, WEIGHTS, nodes, draft):
         if id_ in done and (any(values) or any(done[id_])):
             draft.report.append(
-                Diagnostic("L604", f"node {id_} has two weights", found.span, "write their sum, or one of them")
+                Diagnostic(
+                    "L604", f"node {id_} has two weights", found.span, "write their sum, or one of them"
+                )
             )
         done[id_] = values
         if any(values):

@@ -69,9 +69,9 @@ def _node(found: Row, last: int, before: Node | None) -> Node:
     found.need(NAMES, 3)
     x, y = found.item(1).real("X"), found.item(2).real("Y")
     first = 0 if before is None else before.id
-    if not first < id_ <= last:
-        text = f"node {id_} does not lie above {first} and up to NNP, {last}"
-        raise mistake("L608", text, found.items[0].span, "nodes stand in ascending order and end with NNP")
+    if not first < id_ <= last or (not first and id_ > 1):
+        text = f"node {id_} does not follow {first} on the way to NNP, {last}"
+        raise mistake("L608", text, found.items[0].span, "nodes ascend from 1 to NNP")
     for k, code in enumerate(codes[:3]):
         if code not in (_FREE, _FIXED, _SLAVED):
             text = f"NF{k + 1} is {code}"

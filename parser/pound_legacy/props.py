@@ -55,13 +55,17 @@ def _kind(head: Row, expected: int) -> str:
     """Type of the property set that a line begins."""
     if head.item(0).whole("the number of a property set") != expected or len(head.items) < 2:
         text = f"a line `{expected} TYPE` should begin property set {expected}"
-        raise mistake("L608", text, head.span, "sets stand in ascending order; one may have a line too many")
+        raise mistake(
+            "L608", text, head.span, "sets stand in ascending order; one may have a line too many"
+        )
     word = head.items[1].text.strip("\"'").upper()
     if word in OTHERS:
         text = f"{word}: no source states its lines"
         raise mistake("L604", text, head.items[1].span, "write the property set in the new language")
     if word not in READERS:
-        raise mistake("L604", f"{head.items[1].text[:40]} is no type of member", head.items[1].span, "SPRING or FRAME")
+        raise mistake(
+            "L604", f"{head.items[1].text[:40]} is no type of member", head.items[1].span, "SPRING or FRAME"
+        )
     return word
 
 

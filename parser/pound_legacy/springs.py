@@ -38,11 +38,15 @@ def read(given: PropertySet, label: str) -> None:
         text = f"ITYPE {kind}: a SPRING whose components act on each other"
         raise mistake("L604", text, found.items[0].span, "only ITYPE 1 is carried over")
     if damaged:
-        raise mistake("L604", f"IDAMG {damaged}: the line of the index is not known", found.items[3].span, "0")
+        raise mistake(
+            "L604", f"IDAMG {damaged}: the line of the index is not known", found.items[3].span, "0"
+        )
     if len(found.items) > len(NAMES) and any(i.text != "0" for i in found.items[len(NAMES) :]):
         notes.append(given.draft.lose(found.items[len(NAMES)].span, "items behind RT"))
     if weight:
-        notes.append(given.draft.lose(found.items[7].span, f"WGT {number(weight)} of a spring", "add WEIGHTS"))
+        notes.append(
+            given.draft.lose(found.items[7].span, f"WGT {number(weight)} of a spring", "add WEIGHTS")
+        )
     _axes(given, stiff, found, notes)
     items = [f"{name}={number(k)}" for name, k in zip(_STIFF, stiff) if k]
     if code:

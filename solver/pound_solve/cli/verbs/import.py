@@ -15,7 +15,9 @@ SUMMARY = "make a deck of this program of one of Ruaumoko-2D; comments say how i
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("deck", type=Path, help="deck of Ruaumoko-2D")
-    parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="new deck (default: standard output)")
+    parser.add_argument(
+        "-o", "--out", type=Path, metavar="FILE", help="new deck (default: standard output)"
+    )
     parser.add_argument(
         "--record",
         action="append",

@@ -118,7 +118,9 @@ def _column(width: int, timed: int, column: int | None) -> int:
         raise RecordError("R405", f"COLUMN={column}, but the file has {width} columns")
     if column == timed:
         raise RecordError(
-            "R405", f"COLUMN={timed} is the time", "take another column, or give DT= if no column is the time"
+            "R405",
+            f"COLUMN={timed} is the time",
+            "take another column, or give DT= if no column is the time",
         )
     return column - 1
 
