@@ -388,7 +388,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P332": (
         "damping contradictory or not computable",
-        "The options of the DAMPING line exclude each other, two of the modes they name are the same, or a ratio "
+        "The options of the DAMPING line exclude each other, two of the modes they name are the same, "
+        "or a ratio "
         "comes out negative. The message states which; the manual's page on damping has the ranges.",
     ),
     "P334": (
@@ -446,7 +447,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P346": (
         "mode beyond the last (warning)",
-        "MODES of a damping model names a mode that the structure does not have. The last mode is taken in its "
+        "MODES of a damping model names a mode that the structure does not have. The last mode is taken "
+        "in its "
         "place.",
     ),
     "R401": (
@@ -538,23 +540,28 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "L602": (
         "line incomplete",
-        "A line of the old deck ends before an item that must stand, or a section before a line that must. The "
+        "A line of the old deck ends before an item that must stand, or a section before a line that "
+        "must. The "
         "message names what is missing. Items left out at the end of a line are zero where they may be.",
     ),
     "L603": (
         "no such number",
-        "An item of the old deck is no number, not a whole one, or outside its limits. A line with an item too "
+        "An item of the old deck is no number, not a whole one, or outside its limits. A line with an "
+        "item too "
         "few or too many puts the numbers behind it into the wrong columns.",
     ),
     "L604": (
         "code not known",
-        "A code of the old deck asks for something whose lines no source states, or that this program does not "
+        "A code of the old deck asks for something whose lines no source states, or that this program "
+        "does not "
         "have. Write that part in the language of this program.",
     ),
     "L605": (
         "read by convention (warning)",
-        "No source confirms what the item means; it is read as it is remembered. `pound-solve import` marks it "
-        "in the new deck. Where an old deck is run without import this is an error: a result must not hang on it.",
+        "No source confirms what the item means; it is read as it is remembered. `pound-solve import` "
+        "marks it "
+        "in the new deck. Where an old deck is run without import this is an error: a result must not "
+        "hang on it.",
     ),
     "L606": (
         "ground of the reading (warning)",
@@ -562,7 +569,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "L607": (
         "section or line out of place",
-        "A section of the old deck is missing or stands twice, or lines follow the last one that its counts name.",
+        "A section of the old deck is missing or stands twice, or lines follow the last one that its "
+        "counts name.",
     ),
     "L608": (
         "number out of order or unknown",
@@ -571,17 +579,20 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "L609": (
         "not carried over (warning)",
-        "An item of the old deck has no counterpart, or what it does is not known. Where an old deck is run "
+        "An item of the old deck has no counterpart, or what it does is not known. Where an old deck is "
+        "run "
         "without import this is an error.",
     ),
     "L610": (
         "no old deck",
-        "`pound-solve import` reads decks of Ruaumoko-2D: a title, four lines of control numbers, then NODES. "
+        "`pound-solve import` reads decks of Ruaumoko-2D: a title, four lines of control numbers, then "
+        "NODES. "
         "Decks of this program need no import.",
     ),
     "L611": (
         "record in a file of its own",
-        "No record follows in the old deck. Name its file: `pound-solve import DECK --record FILE -o model.inp`.",
+        "No record follows in the old deck. Name its file: `pound-solve import DECK --record FILE -o "
+        "model.inp`.",
     ),
     "L612": (
         "old deck too large",

@@ -1,8 +1,9 @@
-"""EQUAKE: ``IBERG ISTART DELTAT ASCALE END VEL DIS TSCALE``, then the record, or a record in a file of its own.
+"""EQUAKE: ``IBERG ISTART DELTAT ASCALE END VEL DIS TSCALE``, then the record, or a record in a file of its
+own.
 
-Formats: 3 is a line START, then lines of counter, time and acceleration, of which that with the counter ISTART
-acts at t = 0; 1 (Berg) pairs of time and acceleration; 0 (Caltech) and 6 accelerations at the step DELTAT.
-ASCALE divides the numbers into shares of gravity.
+Formats: 3 is a line START, then lines of counter, time and acceleration, of which that with the counter
+ISTART acts at t = 0; 1 (Berg) pairs of time and acceleration; 0 (Caltech) and 6 accelerations at the step
+DELTAT. ASCALE divides the numbers into shares of gravity.
 """
 
 from __future__ import annotations
@@ -35,7 +36,9 @@ class File:
 
 @dataclass(frozen=True, slots=True)
 class Appended:
-    """What follows the lines of EQUAKE: the file, and the number of the first line that may hold a record."""
+    """What follows the lines of EQUAKE: the file, and the number of the first line that may hold a
+    record.
+    """
 
     file: File
     first: int

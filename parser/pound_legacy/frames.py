@@ -1,7 +1,7 @@
 """FRAME: a member with hinges.  The order of all its items is recalled; no deck with results holds one.
 
-``ITYPE IPIN ICOND IHYST ILOS IDAMG ICOL IGA IDUCT``, ``E G A AS I WGT END1 END2 FJ1 FJ2``, with ICOND the initial
-forces, and with a rule ``RA RF H1 H2``, the strengths, the loss of strength, the lines of the rule.
+``ITYPE IPIN ICOND IHYST ILOS IDAMG ICOL IGA IDUCT``, ``E G A AS I WGT END1 END2 FJ1 FJ2``, with ICOND the
+initial forces, and with a rule ``RA RF H1 H2``, the strengths, the loss of strength, the lines of the rule.
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ A node named by KUP has no effect beside NF 0 or 1.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 from pound_deck.diagnostics import Diagnostic, Mistake, mistake
@@ -162,5 +163,5 @@ def drifts(rows: Rows, levels: int, nodes: dict[int, Node], draft: Draft) -> Non
         text = f"DRIFT lists {len(listed)} nodes, and NLEVEL is {levels}"
         draft.report.append(Diagnostic("L608", text, rows.here, "correct the list or NLEVEL"))
     draft.rest("DRIFT: levels from the base up")
-    for k, ((low, _), (high, found)) in enumerate(zip(listed, listed[1:]), 1):
+    for k, ((low, _), (high, found)) in enumerate(pairwise(listed), 1):
         draft.add("DRIFT", f'"level {k}" {low} {high}', found.span)

@@ -22,7 +22,7 @@ def control_lines(text: str) -> list[Row]:
     """Lines of control of an old deck, empty where the text is none."""
     head = text[:HEAD].splitlines()
     rows = (found for number, raw in enumerate(head[1:], 2) if (found := row("", number, raw)))
-    out = []
+    out: list[Row] = []
     for found in islice(rows, _LINES):
         if found.word == "NODES":
             long = sum(len(r.items) >= _LEAST and _mostly_numbers(r) for r in out)

@@ -1,6 +1,7 @@
 """SPRING: stiffnesses, yield forces and a rule of the components x (from I to J), y and rotation.
 
-``ITYPE IHYST ILOS IDAMG KX KY GJ WGT RF RT``, with a rule ``FX+ FX- FY+ FY- MZ+ MZ-``, with a loss of strength
+``ITYPE IHYST ILOS IDAMG KX KY GJ WGT RF RT``, with a rule ``FX+ FX- FY+ FY- MZ+ MZ-``, with a loss of
+strength
 ``DUCT1 DUCT2 RDUCT DUCT3 RCYC``, then the lines of the rule once for each component.
 """
 

@@ -1,26 +1,28 @@
 r"""Schoettler-Restrepo: a pinched rule for concrete with a cracking point (Ruaumoko's rule 52).
 
-One side at a time (`mirror`), with the yield force :math:`F_y > 0` and :math:`k` the initial stiffness.  The
-backbone goes with :math:`k` to the crack point of force :math:`F_{cr} F_y`, on to the yield point at
+One side at a time (`mirror`), with the yield force :math:`F_y > 0` and :math:`k` the initial stiffness.
+The backbone goes with :math:`k` to the crack point of force :math:`F_{cr} F_y`, on to the yield point at
 :math:`d_y = F_y / (\rho k)`, and beyond it with the slope :math:`r \rho k`.
 
-* A side whose largest deformation ever is :math:`d_m` (at first the crack point), force :math:`F_m`, unloads
-  with :math:`k_u = \rho k (d_m/d_y)^{-\alpha}`.  It is not stiffer than :math:`k`, nor softer than the secant
-  :math:`F_m/d_m` (ours).
+* A side whose largest deformation ever is :math:`d_m` (at first the crack point), force :math:`F_m`,
+  unloads with :math:`k_u = \rho k (d_m/d_y)^{-\alpha}`.  It is not stiffer than :math:`k`, nor softer than
+  the secant :math:`F_m/d_m` (ours).
 * From zero force at :math:`d_0` the other side is loaded to the pinch point
 
   .. math:: d_P = \tfrac12 (d_m' - d_y'), \qquad F_P = \pi F_m
 
-  (:math:`d_m', d_y'` of the side just left, none below zero) and from there to :math:`(d_m, F_m)`, where the
-  backbone goes on; straight to :math:`(d_m, F_m)` where the pinch point lies behind, or not below that line.
+  (:math:`d_m', d_y'` of the side just left, none below zero) and from there to :math:`(d_m, F_m)`, where
+  the backbone goes on; straight to :math:`(d_m, F_m)` where the pinch point lies behind, or not below that
+  line.
 * A reversal short of the pinch point (:math:`d < d_P`; before both sides have yielded :math:`F < \pi F_m`)
   begins an inner loop: then either side is loaded to its *corner*, its last reversal, and on from there.  A
-  corner that is passed moves to the next reversal.  A reversal beyond the pinch point ends the inner loop.
+  reversal before the corner changes nothing.  One beyond it becomes the corner or, beyond the pinch point,
+  too, ends the inner loop.
 * A motion that turns while it unloads returns along the same line.
 
 The branches were found from the forces that the old program gives for one record, of ductilities up to 2.05
-(:math:`r = 0.06, F_{cr} = \rho = 0.99, \alpha = 0.4, \pi = 0.3`); the factor 1/2 of :math:`d_P` may stand for a
-parameter that was not varied.  The inner loops are the least certain part.  What happens beyond the ductility
+(:math:`r = 0.06, F_{cr} = \rho = 0.99, \alpha = 0.4, \pi = 0.3`); the factor 1/2 of :math:`d_P` may stand
+for a parameter that was not varied.  What happens beyond the ductility
 DULT is not known: the backbone goes on, and the report warns.
 
 Internal variables: largest deformation of each side; whether an inner loop is on; corner of each side; the
@@ -28,8 +30,8 @@ point where the present line began; the last reversal, and the branch that it le
 
 References
 ----------
-Schoettler MJ, Restrepo JI: the model, as Ruaumoko's rule 52; Carr AJ, Ruaumoko (no equations are published in
-its openly readable parts).
+Schoettler MJ, Restrepo JI: the model, as Ruaumoko's rule 52; Carr AJ, Ruaumoko (no equations are published
+in its openly readable parts).
 """
 
 from __future__ import annotations
@@ -183,11 +185,9 @@ def reverse(p: Numbers, at: int, m: Numbers, x: float, f: float) -> Numbers:
     plus, minus, inner = m[0:3]
     if at < UNLOADING:
         plus, minus = (max(plus, x), minus) if s > 0.0 else (plus, max(minus, x))
-    before = short(p, s, m, x, f) and at >= UNLOADING
     own = corner(s, m)
-    if not before or inner == 0.0 or x > own[0]:
-        own = (x, f)
-    inner = 1.0 if before else 0.0
+    if at < TO_CORNER or at >= TO_PINCH:
+        own, inner = (x, f), 1.0 if at >= UNLOADING and short(p, s, m, x, f) else 0.0
     if s > 0.0:
         return (plus, minus, inner, own[0], own[1], m[5], m[6], m[7], m[8], x, f, float(at))
     return (plus, minus, inner, m[3], m[4], own[0], own[1], m[7], m[8], x, f, float(at))
@@ -271,7 +271,8 @@ SPEC = Spec(
             above=0.0,
             below=1.0,
             count=(1, 2),
-            doc="force of the crack point as a share of the yield force, positive and negative side; one value: "
+            doc="force of the crack point as a share of the yield force, positive and negative side; "
+            "one value: "
             "both",
         ),
         Field(

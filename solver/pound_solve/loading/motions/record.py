@@ -1,7 +1,7 @@
 """RECORD: a recorded ground acceleration, straight lines between its samples.
 
-LINES takes a part of the file.  START and DURATION cut the record in its own time; TSCALE then stretches what
-is left.  Outside of the
+LINES takes a part of the file.  START and DURATION cut the record in its own time; TSCALE then stretches
+what is left.  Outside of the
 record, and after the cut, the acceleration is zero.
 """
 
@@ -120,8 +120,8 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
 
 
 def _lines(text: str, span: tuple[int, int] | None) -> str:
-    """Text of the lines of a file from the first to the last of `span`; all others are blank, so that messages
-    count lines as they stand in the file.
+    """Text of the lines of a file from the first to the last of `span`; all others are blank, so that
+    messages count lines as they stand in the file.
     """
     if span is None:
         return text

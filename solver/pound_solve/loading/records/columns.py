@@ -1,7 +1,8 @@
 """Tables of numbers: a column of samples, or time and acceleration, or many columns.
 
-Without DT the first column, or that of TIMES, is the time [s]; with DT no column is.  Blanks, tabs, commas or semicolons part
-the numbers.  Lines at the head that are not all numbers are titles, and what follows a ``#`` is a comment.
+Without DT the first column, or that of TIMES, is the time [s]; with DT no column is.  Blanks, tabs, commas
+or semicolons part the numbers.  Lines at the head that are not all numbers are titles, and what follows a
+``#`` is a comment.
 """
 
 from __future__ import annotations

@@ -2,8 +2,9 @@
 
 The deformation is the displacement of J less that of I along the component; with one node only it is the
 displacement of that node against the ground.  The components lie along the global axes unless ANGLE turns
-them; ANGLE=MEMBER turns x into the line from I to J.  Forces make no moment unless ARM says where between the
-nodes the spring sits: rigid arms join it to them there, so that a force across the line turns both nodes.
+them; ANGLE=MEMBER turns x into the line from I to J.  Forces make no moment unless ARM says where between
+the nodes the spring sits: rigid arms join it to them there, so that a force across the line turns both
+nodes.
 """
 
 from __future__ import annotations
