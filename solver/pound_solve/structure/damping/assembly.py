@@ -65,7 +65,7 @@ def _group(card: Card, sources: _Sources, problems: list[Diagnostic]) -> Group |
     """Damping of one card; None where it is at fault."""
 
     def warn(message: str, item: str) -> None:
-        problems.append(Diagnostic("P346", message, card.place(item), severity="warning"))
+        problems.append(Diagnostic("P346", message, card.place(item), "name modes that there are", "warning"))
 
     context = DampingContext(sources.mass, sources.modes, warn)
     try:
