@@ -14,6 +14,8 @@ from scipy.optimize import brentq
 
 from decks import structure_of
 from pound_solve.analyses import modal
+from pound_solve.driver.prepare import DeckError, prepare
+from pound_solve.driver.request import Request
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
@@ -835,3 +837,71 @@ def test_diaphragms_of_the_manual():
         drifts = [np.abs(ran.column("drift_envelope", x)).max() for x in ("max", "min")]
         peaks = [f"{x:.0f}" for x in ran.column("contact_summary", "peak_force")]
         assert row == [f"{abs(ran.column('modes', 'damping')[4]):.2f}", *peaks, f"{1000 * max(drifts):.2f}"]
+
+
+LOADED = """
+NODES
+ 1 0 0 FIX=XYR
+ 2 1 0 FIX=YR
+ELEMENTS
+ 1 S 1 2
+PROPS
+ S SPRING KX=4 FX=1 RULE=BILINEAR R=0.25
+GRAVITY 1
+WEIGHTS
+ 2 1
+LOADS
+ 2 2
+DAMPING
+ {card} AFTER={after}
+ANALYSIS
+ MODAL 1 AFTER=STATIC
+"""
+
+
+@pytest.mark.parametrize(
+    ("card", "after", "c"),
+    [
+        ("MODAL XI=0.05", "REST", 2 * 0.05 * 2.0),
+        ("MODAL XI=0.05", "STATIC", 2 * 0.05 * 1.0),  # yielded: stiffness 1 of 4
+        ("CAUGHEY XI=0.05 MODES=1", "STATIC", 2 * 0.05 * 1.0),
+        ("RAYLEIGH XI=0.05 MODES=1,1", "REST", 0.05 * 2.0 + 0.05 / 2.0 * 4.0),
+        ("RAYLEIGH XI=0.05 MODES=1,1", "STATIC", 0.05 * 1.0 + 0.05 / 1.0 * 4.0),  # of the initial stiffness
+    ],
+)
+def test_damping_on_modes_of_the_loaded_structure(tmp_path, card, after, c):
+    deck = tmp_path / "loaded.inp"
+    deck.write_text(LOADED.format(card=card, after=after))
+    structure = prepare(Request(str(deck))).structure
+    assert structure.damping[0, 0] == pytest.approx(c, rel=1e-12)
+    assert len(structure.damping_texts) == 1
+
+
+def test_the_secant_dashpots_of_the_loaded_structure_are_part_of_the_initial_damping(tmp_path):
+    deck = tmp_path / "loaded.inp"
+    deck.write_text(LOADED.format(card="RAYLEIGH XI=0.05 MODES=1,1 STIFFNESS=SECANT", after="STATIC"))
+    structure = prepare(Request(str(deck))).structure
+    assert structure.damping[0, 0] == pytest.approx(0.05) and structure.laws[0].secant == pytest.approx(
+        0.05
+    )
+    assert structure.initial_damping[0, 0] == pytest.approx(0.05 + 0.05 * 4.0)
+
+
+@pytest.mark.parametrize(
+    ("card", "words"),
+    [
+        ("RAYLEIGH ALPHA=1", "whose MODES"),
+        ("MODAL XI=0.05,0.04,0.03 OMEGA=1,2", "3 values for 2 frequencies"),
+    ],
+)
+def test_mistakes_of_damping_on_loaded_modes_are_told_before_the_run(tmp_path, card, words):
+    deck = tmp_path / "loaded.inp"
+    deck.write_text(LOADED.format(card=card, after="STATIC"))
+    with pytest.raises(DeckError, match=words):
+        prepare(Request(str(deck)))
+
+
+def test_a_static_state_that_does_not_exist_is_left_to_the_analysis(tmp_path):
+    deck = tmp_path / "loaded.inp"
+    deck.write_text(LOADED.format(card="MODAL XI=0.05", after="STATIC").replace("R=0.25", "R=0"))
+    assert prepare(Request(str(deck))).structure.damping[0, 0] == 0.0

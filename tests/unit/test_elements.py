@@ -268,7 +268,9 @@ PROPS
 """
 
 
-@pytest.mark.parametrize(("kind", "x", "y", "r"), [("SPRING", "KX", "KY", "KR"), ("DASHPOT", "CX", "CY", "CR")])
+@pytest.mark.parametrize(
+    ("kind", "x", "y", "r"), [("SPRING", "KX", "KY", "KR"), ("DASHPOT", "CX", "CY", "CR")]
+)
 def test_components_along_the_member_and_across_it(kind, x, y, r):
     """A line of length 5 with the direction (0.6, 0.8): x along it, y to its left."""
     s = structure_of(INCLINED.format(kind=kind, items=f"{x}=10 {y}=20 {r}=30"))

@@ -61,7 +61,7 @@ def assemble(model: Model, moved: Collection[Dof] = (), self_weight: bool = True
         raise AssemblyError(elements.problems)
     dofs = number(model.nodes, moved, [f for p in elements.ordered() for f in p.internal()])
     structure = _joined(model, dofs, elements)
-    structure.remarks = add_damping(structure, elements.mass)
+    structure.remarks = add_damping(structure)
     if has_errors(structure.remarks):
         raise AssemblyError(structure.remarks)
     return structure
@@ -81,6 +81,7 @@ def _joined(model: Model, dofs: DofMap, elements: _Elements) -> Structure:
         stiffness=stiffness,
         initial_stiffness=stiffness + weighted(law_rows, [s.k0 for s in laws]),
         mass=dofs.assembled((b.dofs, b.matrix) for b in mass),
+        mass_blocks=tuple(mass),
         damping=dashpots,
         initial_damping=dashpots,
         loads=loads,

@@ -16,6 +16,7 @@ from pound_solve.structure.corotational import CorotationalMembers
 from pound_solve.structure.damping.base import Proportional
 from pound_solve.structure.dofs import Dof, DofMap
 from pound_solve.structure.elements.base import ElementMatrix, Geometric, LawSpring, Output, Parts
+from pound_solve.structure.mass import MassBlock
 
 
 @dataclass
@@ -62,6 +63,8 @@ class Structure:
         Part of the damping that acts between nodes, beside the dashpots of elements.
     carried : ndarray, shape (n_geometric,)
         Axial forces that the geometric stiffness is made of [F].
+    mass_blocks : tuple of MassBlock
+        What `mass` is the sum of.
     remarks : list of Diagnostic
         Warnings of the assembly.
     basis : Matrix, shape (n_free, n_free), or None
@@ -73,6 +76,7 @@ class Structure:
     stiffness: Matrix
     initial_stiffness: Matrix
     mass: Matrix
+    mass_blocks: tuple[MassBlock, ...]
     damping: Matrix
     initial_damping: Matrix
     loads: Array

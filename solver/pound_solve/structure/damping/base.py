@@ -62,6 +62,16 @@ class DampingContext:
         return np.asarray((weighted * rates) @ weighted.T)
 
 
+AFTER = Field(
+    "AFTER",
+    Kind.WORD,
+    default="REST",
+    words=("REST", "STATIC"),
+    doc="whose modes are meant: those of the structure at rest, or of the loaded one, as of MODAL "
+    "AFTER=STATIC",
+)  #: of the models that are made of modes
+
+
 class Proportional(NamedTuple):
     """Damping `beta` [T] times the initial stiffness of the elements of property sets (None: of all);
     `laws` False: without that of hysteretic laws.

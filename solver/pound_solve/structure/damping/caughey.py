@@ -26,6 +26,7 @@ from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.numerics.types import Array
 from pound_solve.structure.damping.base import (
+    AFTER,
     BUILDING,
     DampingContext,
     DampingError,
@@ -107,6 +108,7 @@ SPEC = Spec(
         ),
         Field("MODES", Kind.INT, default=None, count=(1, 12), lo=1, doc="the same by modes"),
         BUILDING,
+        AFTER,
     ),
     reference="Caughey 1960",
     impl=build,

@@ -23,6 +23,7 @@ from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.numerics.types import Array
 from pound_solve.structure.damping.base import (
+    AFTER,
     BUILDING,
     DampingContext,
     DampingError,
@@ -135,6 +136,7 @@ SPEC = Spec(
             doc="what the ratio is linear in: the frequency, or the number of the mode",
         ),
         BUILDING,
+        AFTER,
     ),
     code=4,
     reference="Wilson & Penzien 1972",

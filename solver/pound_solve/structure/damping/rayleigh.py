@@ -22,6 +22,7 @@ from __future__ import annotations
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.structure.damping.base import (
+    AFTER,
     DampingContext,
     DampingError,
     Dashpots,
@@ -59,6 +60,8 @@ def coefficients(xi: tuple[float, float], w: tuple[float, float]) -> tuple[float
 def build(card: Card, context: DampingContext) -> Group:
     """Damping of one group."""
     alpha, beta = card["ALPHA"], card["BETA"]
+    if card["AFTER"] == "STATIC" and card["MODES"] is None:
+        raise DampingError("AFTER says whose MODES are meant", "AFTER")
     how = "ALPHA and BETA given"
     if card["XI"] is not None:
         if alpha is not None or beta is not None:
@@ -127,6 +130,7 @@ SPEC = Spec(
             default=None,
             doc="property sets of the stiffness part; left out: all but contacts",
         ),
+        AFTER,
     ),
     code=0,
     reference="Clough & Penzien 1993, section 12-5",
