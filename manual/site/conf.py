@@ -59,7 +59,11 @@ myst_heading_anchors = 4  # anchors as a repository page has them
 # ---------------------------------------------------------------- API reference
 
 API = ROOT / "manual/api"  # generated, and ignored by git
-PACKAGES = {"pound_solve": ROOT / "solver/pound_solve", "pound_deck": ROOT / "parser/pound_deck"}
+PACKAGES = {
+    "pound_solve": ROOT / "solver/pound_solve",
+    "pound_deck": ROOT / "parser/pound_deck",
+    "pound_legacy": ROOT / "parser/pound_legacy",
+}
 # a name that a module passes on is described where it is defined
 autodoc_default_options = {"members": True, "show-inheritance": True, "ignore-module-all": True}
 autodoc_member_order = "bysource"

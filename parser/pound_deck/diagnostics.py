@@ -1,7 +1,7 @@
 """Diagnostics: what is wrong, where, and what would be right; the numbered table of all messages.
 
 Codes: P1xx source text, P2xx cards and values, P3xx the model, R4xx records, A5xx stops of an analysis,
-S6xx studies of many runs.
+S6xx studies of many runs, L6xx decks of Ruaumoko.
 """
 
 from __future__ import annotations
@@ -124,6 +124,7 @@ def messages_page() -> str:
         "R4": "Records",
         "A5": "Stops of an analysis",
         "S6": "Studies of many runs",
+        "L6": "Decks of Ruaumoko",
     }
     out = [
         "# Messages",
@@ -171,7 +172,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P109": ("nothing after &", "A line ends in &, but no continuation line follows. Remove the &."),
     "P110": (
         "line too long",
-        "A line with its continuations exceeds 100 000 characters. Split it into several cards, or "
+        "A line with its continuations exceeds 2 000 000 characters. Split it into several cards, or "
         "use a range.",
     ),
     "P201": (
@@ -388,7 +389,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P332": (
         "damping contradictory or not computable",
-        "The options of the DAMPING line exclude each other, the modes they name do not exist, or a ratio "
+        "The options of the DAMPING line exclude each other, two of the modes they name are the same, "
+        "or a ratio "
         "comes out negative. The message states which; the manual's page on damping has the ranges.",
     ),
     "P334": (
@@ -448,6 +450,12 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "too many steps or rows",
         "DT divides the history into more than 100 000 000 steps, or OUTPUT EVERY into more than 5 000 000 "
         "stored rows. The message gives the count, and the shortest interval that is allowed.",
+    ),
+    "P346": (
+        "mode beyond the last (warning)",
+        "MODES of a damping model names a mode that the structure does not have. The last mode is taken "
+        "in its "
+        "place.",
     ),
     "R401": (
         "record not found",
@@ -569,5 +577,69 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "S607": (
         "a PARAM without effect",
         "The deck uses the PARAM for its motion alone, and the records of the study replace that motion.",
+    ),
+    "L601": (
+        "deck in space",
+        "The deck is one of Ruaumoko-3D. This program reads plane structures only.",
+    ),
+    "L602": (
+        "line incomplete",
+        "A line of the old deck ends before an item that must stand, or a section before a line that "
+        "must. The "
+        "message names what is missing. Items left out at the end of a line are zero where they may be.",
+    ),
+    "L603": (
+        "no such number",
+        "An item of the old deck is no number, not a whole one, or outside its limits. A line with an "
+        "item too "
+        "few or too many puts the numbers behind it into the wrong columns.",
+    ),
+    "L604": (
+        "code not known",
+        "A code of the old deck asks for something whose lines no source states, or that this program "
+        "does not "
+        "have. Write that part in the language of this program.",
+    ),
+    "L605": (
+        "read by convention (warning)",
+        "No source confirms what the item means; it is read as it is remembered. `pound-solve import` "
+        "marks it "
+        "in the new deck. Where an old deck is run without import this is an error: a result must not "
+        "hang on it.",
+    ),
+    "L606": (
+        "ground of the reading (warning)",
+        "Tells that the deck was read as one of Ruaumoko-2D, and what of it rests on decks of others.",
+    ),
+    "L607": (
+        "section or line out of place",
+        "A section of the old deck is missing or stands twice, or lines follow the last one that its "
+        "counts name.",
+    ),
+    "L608": (
+        "number out of order or unknown",
+        "A node, member, property set or counter is not defined, or does not ascend up to the count of the "
+        "control lines. Often a line is missing or stands too much.",
+    ),
+    "L609": (
+        "not carried over (warning)",
+        "An item of the old deck has no counterpart, or what it does is not known. Where an old deck is "
+        "run "
+        "without import this is an error.",
+    ),
+    "L610": (
+        "no old deck",
+        "`pound-solve import` reads decks of Ruaumoko-2D: a title, four lines of control numbers, then "
+        "NODES. "
+        "Decks of this program need no import.",
+    ),
+    "L611": (
+        "record in a file of its own",
+        "No record follows in the old deck. Name its file: `pound-solve import DECK --record FILE -o "
+        "model.inp`.",
+    ),
+    "L612": (
+        "old deck too large",
+        "The file exceeds 256 MB. Put its record into a file of its own.",
     ),
 }

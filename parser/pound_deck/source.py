@@ -14,7 +14,7 @@ from pound_deck.model import Span
 MAX_BYTES: Final = 8_000_000
 MAX_DEPTH: Final = 20
 MAX_INCLUDES: Final = 1000
-MAX_LINE: Final = 100_000
+MAX_LINE: Final = 2_000_000
 
 _COMMENT: Final = re.compile(r""""[^"]*"|'[^']*'|(!)""")
 INCLUDE: Final = re.compile(r"\s*INCLUDE(?![\w.])\s*(?!=)(.*)", re.IGNORECASE | re.DOTALL)

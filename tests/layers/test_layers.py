@@ -10,7 +10,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-DECK, SOLVER = ROOT / "parser/pound_deck", ROOT / "solver/pound_solve"
+DECK, LEGACY, SOLVER = (
+    ROOT / name for name in ("parser/pound_deck", "parser/pound_legacy", "solver/pound_solve")
+)
 
 #: rooms from the bottom to the top: a module may import its own room and those below
 ROOMS = (
@@ -121,6 +123,7 @@ WITHIN = {
         "identity",
         "outputs",
         "overrides",
+        "reading",
         "loading",
         "preflight",
         "prepare",
@@ -157,11 +160,11 @@ NUMERICS = (
 
 
 def modules():
-    return [*DECK.rglob("*.py"), *SOLVER.rglob("*.py")]
+    return [p for package in (DECK, LEGACY, SOLVER) for p in package.rglob("*.py")]
 
 
 def place(path):
-    return path.relative_to(DECK if path.is_relative_to(DECK) else SOLVER).as_posix()
+    return path.relative_to(next(p for p in (DECK, LEGACY, SOLVER) if path.is_relative_to(p))).as_posix()
 
 
 def imported(path):
@@ -191,6 +194,22 @@ def test_the_parser_knows_nothing_of_the_solver_nor_of_numbers():
     allowed = set(sys.stdlib_module_names) | {"lark", "pound_deck"}
     for path in DECK.rglob("*.py"):
         assert {name.split(".")[0] for name in imported(path)} <= allowed, path
+
+
+def test_old_decks_are_read_with_the_parts_of_the_parser_that_hold_no_grammar():
+    allowed = {"pound_deck.diagnostics", "pound_deck.model", "pound_deck.schema", "pound_deck.source"}
+    for path in LEGACY.rglob("*.py"):
+        for name in imported(path):
+            package = name.split(".")[0]
+            own = package in sys.stdlib_module_names or package == "pound_legacy"
+            assert own or name.rpartition(".")[0] in allowed or name in allowed, f"{path}: {name}"
+
+
+def test_only_the_driver_and_the_verb_read_old_decks():
+    users = {
+        place(p) for p in SOLVER.rglob("*.py") if any(n.startswith("pound_legacy") for n in imported(p))
+    }
+    assert users == {"driver/reading.py", "cli/verbs/import.py"}
 
 
 @pytest.mark.parametrize("library", ONLY_IN)

@@ -32,9 +32,9 @@ class TestRecord:
         (tmp_path / "made_up.txt").write_text(text)
         return record.build({"FILE": "made_up.txt", "FORMAT": "AUTO", **card}, context(tmp_path, length))
 
-    def refused(self, code: str, tmp_path: Path, **card: Any) -> str:
+    def refused(self, code: str, tmp_path: Path, text: str = TEXT, **card: Any) -> str:
         with pytest.raises(RecordError) as caught:
-            self.build(tmp_path, **card)
+            self.build(tmp_path, text, **card)
         assert caught.value.code == code
         return str(caught.value)
 
@@ -73,6 +73,27 @@ class TestRecord:
         motion = self.build(tmp_path, UNIT="M/S2", SCALE=-2.0)
         assert motion.acceleration.value(2.0) == pytest.approx(0.8)
         assert motion.info["scale"] == -2.0 and motion.info["pga"] == pytest.approx(0.8)
+
+    def test_lines_of_a_larger_file(self, tmp_path: Path) -> None:
+        text = f"a deck\n1 2\n{self.TEXT}the end\n7 8\n"
+        for name in ("COLUMNS", "AUTO"):
+            a = self.build(tmp_path, text, UNIT="DECK", FORMAT=name, LINES=(3, 6)).acceleration
+            assert (a.end, float(a.value(2.0))) == (4.0, -0.4)
+        said = self.refused("R402", tmp_path, text=text, FORMAT="COLUMNS", LINES=(3, 7))
+        assert "line 7" in said  # as it stands in the file
+        for span in ((3, 9), (4, 3)):
+            assert "the file has 8 lines" in self.refused("R405", tmp_path, text=text, LINES=span)
+
+    def test_times_in_another_column(self, tmp_path: Path) -> None:
+        text = "9 0.0 0.1 7\n9 0.5 0.2 7\n9 2.0 0.3 7\n"
+        a = self.build(tmp_path, text, UNIT="DECK", FORMAT="COLUMNS", TIMES=2, COLUMN=3).acceleration
+        assert (a.end, float(a.value(0.5))) == (2.0, 0.2)
+        assert "COLUMN=2 is the time" in self.refused(
+            "R405", tmp_path, text=text, FORMAT="COLUMNS", TIMES=2, COLUMN=2
+        )
+        assert "TIMES=5" in self.refused("R405", tmp_path, text=text, FORMAT="COLUMNS", TIMES=5, COLUMN=2)
+        swapped = "0.1 0\n0.2 1\n"
+        assert self.build(tmp_path, swapped, UNIT="DECK", FORMAT="COLUMNS", TIMES=2).info["pga"] == 0.2
 
     def test_start_between_samples(self, tmp_path: Path) -> None:
         a = self.build(tmp_path, UNIT="DECK", START=0.5).acceleration

@@ -14,6 +14,8 @@ from scipy.optimize import brentq
 
 from decks import structure_of
 from pound_solve.analyses import modal
+from pound_solve.driver.prepare import DeckError, prepare
+from pound_solve.driver.request import Request
 from pound_solve.laws.automaton import (
     REVERSAL_DOWN,
     REVERSAL_UP,
@@ -218,14 +220,12 @@ def test_moved_supports_are_not_held_by_mass_damping():
         ("RAYLEIGH XI=0.05 ALPHA=1 OMEGA=1,2", "not both", "XI"),
         ("RAYLEIGH OMEGA=1,2", "go with XI", "OMEGA"),
         ("RAYLEIGH MODES=1,2 ALPHA=1", "go with XI", "MODES"),
-        ("RAYLEIGH XI=0.05 MODES=1,99", "modes only", "MODES"),
         ("RAYLEIGH XI=0.05,0.02 OMEGA=3,3", "lies between", "XI"),
         ("RAYLEIGH XI=0.05,0.11 OMEGA=3,6", "between 0.025 and 0.1", "XI"),
         ("RAYLEIGH XI=0.05,0.02 OMEGA=3,6", "between 0.025 and 0.1", "XI"),
         ("MODAL XI=0.05,0.02 OMEGA=1,2 MODES=1,2", "XI needs the circular", "XI"),
         ("MODAL XI=0.05,0.04,0.03 OMEGA=1,2", "3 values for 2 frequencies", "XI"),
         ("MODAL XI=0.05 MODES=2,2", "the same (", "MODES"),
-        ("MODAL XI=0.05 MODES=1,99", "modes only", "MODES"),
         ("MODAL XI=0.05 OVER=MODE", "OVER needs OMEGA or MODES", "OVER"),
         ("MODAL XI=0.05,0.01 MODES=1,2 BEYOND=LINEAR", "the line falls", "BEYOND"),
         ("CAUGHEY XI=0.05", "XI needs the circular", "XI"),
@@ -241,6 +241,34 @@ def test_contradictions_are_diagnostics(card, words, item):
     assert found.code == "P332" and words in found.message
     line = len(FRAME.splitlines()) + 3
     assert found.span.line == line and found.span.column == 3 + card.index(item) + len(item)
+
+
+@pytest.mark.parametrize("card", ["MODAL XI=0.05", "RAYLEIGH XI=0.05", "CAUGHEY XI=0.05"])
+def test_a_mode_beyond_the_last_is_the_last(card):
+    last = len(frame(f" {card} MODES=1,2").free_vibration.omega)
+    told, plain = frame(f" {card} MODES=1,99"), frame(f" {card} MODES=1,{last}")
+    (found,) = told.remarks
+    assert (found.code, found.severity) == ("P346", "warning") and f"the last one, {last}," in found.message
+    assert np.array_equal(told.damping, plain.damping) and not plain.remarks
+
+
+def test_one_mode_stands_for_both_of_a_line():
+    text = """
+NODES
+ 1 0 0 FIX=XYR
+ 2 1 0 FIX=YR
+ELEMENTS
+ 1 S 1 2
+PROPS
+ S SPRING KX=4
+WEIGHTS
+ 2 9.81
+DAMPING
+ MODAL XI=0.05,0.05 MODES=1,2 BEYOND=LINEAR
+"""
+    assert structure_of(text).damping[0, 0] == pytest.approx(2 * 0.05 * 2.0, rel=1e-14)
+    with pytest.raises(AssemblyError, match="the same"):
+        structure_of(text.replace("0.05,0.05", "0.05,0.02"))
 
 
 def test_a_rigid_body_mode_carries_no_ratio():
@@ -809,3 +837,71 @@ def test_diaphragms_of_the_manual():
         drifts = [np.abs(ran.column("drift_envelope", x)).max() for x in ("max", "min")]
         peaks = [f"{x:.0f}" for x in ran.column("contact_summary", "peak_force")]
         assert row == [f"{abs(ran.column('modes', 'damping')[4]):.2f}", *peaks, f"{1000 * max(drifts):.2f}"]
+
+
+LOADED = """
+NODES
+ 1 0 0 FIX=XYR
+ 2 1 0 FIX=YR
+ELEMENTS
+ 1 S 1 2
+PROPS
+ S SPRING KX=4 FX=1 RULE=BILINEAR R=0.25
+GRAVITY 1
+WEIGHTS
+ 2 1
+LOADS
+ 2 2
+DAMPING
+ {card} AFTER={after}
+ANALYSIS
+ MODAL 1 AFTER=STATIC
+"""
+
+
+@pytest.mark.parametrize(
+    ("card", "after", "c"),
+    [
+        ("MODAL XI=0.05", "REST", 2 * 0.05 * 2.0),
+        ("MODAL XI=0.05", "STATIC", 2 * 0.05 * 1.0),  # yielded: stiffness 1 of 4
+        ("CAUGHEY XI=0.05 MODES=1", "STATIC", 2 * 0.05 * 1.0),
+        ("RAYLEIGH XI=0.05 MODES=1,1", "REST", 0.05 * 2.0 + 0.05 / 2.0 * 4.0),
+        ("RAYLEIGH XI=0.05 MODES=1,1", "STATIC", 0.05 * 1.0 + 0.05 / 1.0 * 4.0),  # of the initial stiffness
+    ],
+)
+def test_damping_on_modes_of_the_loaded_structure(tmp_path, card, after, c):
+    deck = tmp_path / "loaded.inp"
+    deck.write_text(LOADED.format(card=card, after=after))
+    structure = prepare(Request(str(deck))).structure
+    assert structure.damping[0, 0] == pytest.approx(c, rel=1e-12)
+    assert len(structure.damping_texts) == 1
+
+
+def test_the_secant_dashpots_of_the_loaded_structure_are_part_of_the_initial_damping(tmp_path):
+    deck = tmp_path / "loaded.inp"
+    deck.write_text(LOADED.format(card="RAYLEIGH XI=0.05 MODES=1,1 STIFFNESS=SECANT", after="STATIC"))
+    structure = prepare(Request(str(deck))).structure
+    assert structure.damping[0, 0] == pytest.approx(0.05) and structure.laws[0].secant == pytest.approx(
+        0.05
+    )
+    assert structure.initial_damping[0, 0] == pytest.approx(0.05 + 0.05 * 4.0)
+
+
+@pytest.mark.parametrize(
+    ("card", "words"),
+    [
+        ("RAYLEIGH ALPHA=1", "whose MODES"),
+        ("MODAL XI=0.05,0.04,0.03 OMEGA=1,2", "3 values for 2 frequencies"),
+    ],
+)
+def test_mistakes_of_damping_on_loaded_modes_are_told_before_the_run(tmp_path, card, words):
+    deck = tmp_path / "loaded.inp"
+    deck.write_text(LOADED.format(card=card, after="STATIC"))
+    with pytest.raises(DeckError, match=words):
+        prepare(Request(str(deck)))
+
+
+def test_a_static_state_that_does_not_exist_is_left_to_the_analysis(tmp_path):
+    deck = tmp_path / "loaded.inp"
+    deck.write_text(LOADED.format(card="MODAL XI=0.05", after="STATIC").replace("R=0.25", "R=0"))
+    assert prepare(Request(str(deck))).structure.damping[0, 0] == 0.0

@@ -255,3 +255,46 @@ def test_assembly_does_not_change_the_model():
     model = model_of(CONTACT.format(ends="1 2", angle="", fix1="", fix2="", fix3="FIX=XYR"))
     a, b = assemble(model), assemble(model)
     assert np.array_equal(a.stiffness, b.stiffness) and np.array_equal(a.mass, b.mass)
+
+
+INCLINED = """
+NODES
+ 1 1 2
+ 2 4 6
+ELEMENTS
+ 1 S 1 2
+PROPS
+ S {kind} ANGLE=MEMBER {items}
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "x", "y", "r"), [("SPRING", "KX", "KY", "KR"), ("DASHPOT", "CX", "CY", "CR")]
+)
+def test_components_along_the_member_and_across_it(kind, x, y, r):
+    """A line of length 5 with the direction (0.6, 0.8): x along it, y to its left."""
+    s = structure_of(INCLINED.format(kind=kind, items=f"{x}=10 {y}=20 {r}=30"))
+    k = np.asarray(s.stiffness if kind == "SPRING" else s.damping)
+    u = np.zeros(6)
+    u[3:] = 0.6, 0.8, 0.0
+    assert k @ u == pytest.approx([-6.0, -8.0, 0.0, 6.0, 8.0, 0.0])
+    u[3:] = -0.8, 0.6, 0.0
+    assert k @ u == pytest.approx([16.0, -12.0, 0.0, -16.0, 12.0, 0.0])
+
+
+@pytest.mark.parametrize("arm", [0.0, 0.3, 1.0])
+def test_a_spring_on_rigid_arms_carries_its_couple(arm):
+    """No force by a motion as a rigid body, and forces in equilibrium: the moments are those about ARM."""
+    k = np.asarray(structure_of(INCLINED.format(kind="SPRING", items=f"KX=10 KY=20 ARM={arm}")).stiffness)
+    for rigid in ([1, 0, 0, 1, 0, 0], [0, 1, 0, 0, 1, 0], [-2, 1, 1, -6, 4, 1]):
+        assert k @ np.array(rigid, float) == pytest.approx(np.zeros(6), abs=1e-12)
+    f = k @ np.array([0, 0, 0, -0.8, 0.6, 0.0])  # across the line, to its left
+    assert f == pytest.approx([16, -12, -100 * arm, -16, 12, -100 * (1 - arm)])
+
+
+@pytest.mark.parametrize("items", ["ARM=0.5", "ANGLE=MEMBER"])
+def test_a_spring_without_a_line_has_no_axis_and_no_arm(items):
+    text = INCLINED.format(kind="SPRING", items="KX=1").replace("ANGLE=MEMBER", items)
+    for changed in (text.replace(" 2 4 6", " 2 1 2"), text.replace(" 1 S 1 2", " 1 S 1")):
+        with pytest.raises(AssemblyError, match=r"the nodes coincide|needs a node J"):
+            structure_of(changed)

@@ -33,6 +33,32 @@ def table(text: str) -> tuple[list[float], list[float]]:
     return numbers[::2], numbers[1::2]
 
 
+# ---------------------------------------------------------------------- Schoettler and Restrepo
+
+SCHOETTLER: dict[str, Any] = {"R": 0.1, "FCR": (0.8,), "RHO": (0.5,), "PINCH": 0.25}
+
+
+def test_schoettler_unloads_softer_with_a_power_of_the_ductility() -> None:
+    law = rule("SCHOETTLER_RESTREPO", **SCHOETTLER | {"ALFA": 0.5})
+    assert forces(law, [8.0, 7.0])[1] == pytest.approx(22.0 - 5.0 * 2.0**-0.5, rel=1e-14)
+
+
+def test_schoettler_inner_loop_goes_to_its_corners() -> None:
+    """Both sides have yielded; a reversal at 1, short of the pinch point at 2, begins an inner loop: down
+    to the last reversal of the other side straight, and up again to the corner at 1 before the pinch point.
+    """
+    walk = Walk(rule("SCHOETTLER_RESTREPO", **SCHOETTLER)).move(8.0, -8.0, 1.0)
+    corner = 5.5 * 4.6 / 5.6
+    assert walk.force == pytest.approx(corner, rel=1e-13)
+    foot = 1.0 - corner / 5.0
+    assert walk.move(-4.0).force == pytest.approx(-22.0 * (foot + 4.0) / (foot + 8.0), rel=1e-12)
+    back = -4.0 - walk.force / 5.0
+    x = 0.5 * (back + 1.0)
+    assert walk.move(x).force == pytest.approx(corner * (x - back) / (1.0 - back), rel=1e-12)
+    assert walk.move(2.0).force == pytest.approx(5.5, rel=1e-12)
+    assert walk.move(8.0).force == pytest.approx(22.0, rel=1e-12)
+
+
 # ---------------------------------------------------------------------- flag-shaped
 
 

@@ -45,6 +45,24 @@ def failures(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
         yield f"damage index of {len(failed)} springs and hinges", f"{max(failed):.3g}", text
 
 
+def unknown(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
+    """Rules that went beyond the ductility DULT up to which they are known."""
+    for i, spring in enumerate(structure.laws):
+        card = structure.model.props[structure.model.elements[spring.element].prop]
+        if spring.yields is None or card.values.get("DULT") is None:
+            continue
+        peak, limits = outcome.peaks.deformation[i], card["DULT"]
+        reached = (peak.high / spring.yields[0], peak.low / spring.yields[1])
+        for ductility, limit in zip(reached, (limits[0], limits[-1])):
+            if ductility > limit:
+                text = f"look: beyond DULT={limit:g} the rule {spring.rule} is not known"
+                yield (
+                    f"ductility of {spring.component} of element {spring.element}",
+                    f"{ductility:.3g}",
+                    text,
+                )
+
+
 def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
     """Contacts pressed together by more than an elastic contact means."""
     model = structure.model
@@ -83,6 +101,7 @@ def shortest_members(model: Model) -> dict[int, float]:
 RULES: Final[Sequence[Callable[[Structure, HistoryResult, Outcome], Iterator[Check]]]] = (
     drifts,
     failures,
+    unknown,
     overlaps,
 )
 

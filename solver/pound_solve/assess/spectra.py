@@ -16,10 +16,9 @@ import numpy as np
 
 from pound_deck.diagnostics import Diagnostic, has_errors
 from pound_deck.model import Model, Units
-from pound_deck.reader import read_deck
-from pound_solve.catalog import catalog
 from pound_solve.driver import loading, record_card
 from pound_solve.driver.prepare import DeckError
+from pound_solve.driver.reading import read
 from pound_solve.driver.request import Request
 from pound_solve.loading.motions.piecewise import Piecewise
 from pound_solve.results import Results
@@ -88,7 +87,8 @@ def of_deck(request: Request) -> Source:
     OSError
         The deck cannot be read.
     """
-    source = _of_model(*read_deck(request.deck, catalog(), request.params), request)
+    deck = read(request)
+    source = _of_model(deck.model, deck.found, deck.files, request)
     if not source.accelerations:
         raise SpectrumError(f"{request.deck} has no motion under EQUAKE")
     return source

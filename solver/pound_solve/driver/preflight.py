@@ -128,5 +128,5 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
 
 
 def preflight(structure: Structure) -> list[Diagnostic]:
-    """What all checks find: mistakes and warnings."""
-    return [found for check in CHECKS for found in check(structure)]
+    """What the assembly and all checks find: mistakes and warnings."""
+    return [*structure.remarks, *(found for check in CHECKS for found in check(structure))]

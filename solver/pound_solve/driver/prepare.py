@@ -5,19 +5,23 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from pound_deck.diagnostics import Diagnostic, has_errors, render
 from pound_deck.model import Model
-from pound_deck.reader import read_deck
-from pound_solve.catalog import catalog
+from pound_solve.analyses import static
+from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.driver import loading
 from pound_solve.driver.outputs import overwritten
 from pound_solve.driver.overrides import overridden, with_motion
 from pound_solve.driver.preflight import preflight
+from pound_solve.driver.reading import read
 from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import Motion
 from pound_solve.numerics.types import Array
 from pound_solve.structure.assembly import AssemblyError, assemble
+from pound_solve.structure.damping.assembly import add_damping
 from pound_solve.structure.reduction import moved_supports
 from pound_solve.structure.structure import Structure
 
@@ -56,7 +60,12 @@ def prepare(request: Request) -> Prepared:
     OSError
         The deck cannot be read.
     """
-    return assembled(request, *read_deck(request.deck, catalog(), request.params, request.unsaved))
+    deck = read(request)
+    try:
+        ready = assembled(request, deck.model, deck.found, deck.files)
+    except DeckError as err:
+        raise DeckError(deck.moved(err.diagnostics, request.deck), deck.files) from None
+    return replace(ready, warnings=tuple(deck.moved(ready.warnings, request.deck)))
 
 
 def assembled(
@@ -114,7 +123,29 @@ def _assembled(model: Model, motions: Sequence[Motion]) -> Structure:
     if any(c["GRAVITY"] == "YES" for c in statics):
         model = _weighed(model)
     self_weight = all(c["SELF_WEIGHT"] == "YES" for c in statics)
-    return assemble(model, moved_supports(motions, fixed), self_weight)
+    structure = assemble(model, moved_supports(motions, fixed), self_weight)
+    if any(card.values.get("AFTER") == "STATIC" for card in model.damping):
+        _damp_loaded(structure)
+    return structure
+
+
+def _damp_loaded(structure: Structure) -> None:
+    """Add the damping that is made of modes in the static state.
+
+    Raises
+    ------
+    AssemblyError
+        A card is at fault.
+    """
+    try:
+        state = static.solve(structure)
+        loaded = static.after(structure.stressed(state.axial).displaced(state.u), state)
+    except (InstabilityError, np.linalg.LinAlgError, ArithmeticError):
+        return  # the analysis tells it
+    found = add_damping(structure, loaded)
+    structure.remarks += found
+    if has_errors(found):
+        raise AssemblyError(found)
 
 
 def _weighed(model: Model) -> Model:

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from pound_deck.diagnostics import Diagnostic
+from pound_deck.diagnostics import Diagnostic, has_errors
 from pound_deck.model import Card, Element, Model
 from pound_solve.numerics.matrices import weighted
 from pound_solve.numerics.types import Array
@@ -61,8 +61,9 @@ def assemble(model: Model, moved: Collection[Dof] = (), self_weight: bool = True
         raise AssemblyError(elements.problems)
     dofs = number(model.nodes, moved, [f for p in elements.ordered() for f in p.internal()])
     structure = _joined(model, dofs, elements)
-    if problems := add_damping(structure, elements.mass):
-        raise AssemblyError(problems)
+    structure.remarks = add_damping(structure)
+    if has_errors(structure.remarks):
+        raise AssemblyError(structure.remarks)
     return structure
 
 
@@ -80,6 +81,7 @@ def _joined(model: Model, dofs: DofMap, elements: _Elements) -> Structure:
         stiffness=stiffness,
         initial_stiffness=stiffness + weighted(law_rows, [s.k0 for s in laws]),
         mass=dofs.assembled((b.dofs, b.matrix) for b in mass),
+        mass_blocks=tuple(mass),
         damping=dashpots,
         initial_damping=dashpots,
         loads=loads,

@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
 from pound_solve.numerics import modes
 from pound_solve.numerics.matrices import Matrix, entries, gathered, least_squares
@@ -15,6 +16,7 @@ from pound_solve.structure.corotational import CorotationalMembers
 from pound_solve.structure.damping.base import Proportional
 from pound_solve.structure.dofs import Dof, DofMap
 from pound_solve.structure.elements.base import ElementMatrix, Geometric, LawSpring, Output, Parts
+from pound_solve.structure.mass import MassBlock
 
 
 @dataclass
@@ -61,6 +63,10 @@ class Structure:
         Part of the damping that acts between nodes, beside the dashpots of elements.
     carried : ndarray, shape (n_geometric,)
         Axial forces that the geometric stiffness is made of [F].
+    mass_blocks : tuple of MassBlock
+        What `mass` is the sum of.
+    remarks : list of Diagnostic
+        Warnings of the assembly.
     basis : Matrix, shape (n_free, n_free), or None
         Z where modes are sought among the motions u = Z u alone, see `tied`.
     """
@@ -70,6 +76,7 @@ class Structure:
     stiffness: Matrix
     initial_stiffness: Matrix
     mass: Matrix
+    mass_blocks: tuple[MassBlock, ...]
     damping: Matrix
     initial_damping: Matrix
     loads: Array
@@ -87,6 +94,7 @@ class Structure:
     proportional: tuple[Proportional, ...] = ()
     carried: Array = field(default_factory=lambda: np.zeros(0))
     basis: Matrix | None = None
+    remarks: list[Diagnostic] = field(default_factory=list)
 
     @property
     def n_free(self) -> int:

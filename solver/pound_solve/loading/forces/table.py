@@ -31,7 +31,7 @@ SPEC: Final = Spec(
         Field(
             "POINTS",
             Kind.REAL,
-            count=(4, 4000),
+            count=(4, 400_000),
             doc="time, factor, time, factor, ...; straight lines between them, zero outside; "
             "a time that stands twice is a jump",
         ),

@@ -1,6 +1,7 @@
 """RECORD: a recorded ground acceleration, straight lines between its samples.
 
-START and DURATION cut the record in its own time; TSCALE then stretches what is left.  Outside of the
+LINES takes a part of the file.  START and DURATION cut the record in its own time; TSCALE then stretches
+what is left.  Outside of the
 record, and after the cut, the acceleration is zero.
 """
 
@@ -65,6 +66,7 @@ def samples(card_values: Mapping[str, Any], context: LoadingContext) -> RecordSa
     path = find(str(card_values["FILE"]), context.search_path)
     text, digest = load(path)
     try:
+        text = _lines(text, card_values.get("LINES"))
         raw: RawRecord = formats()[card_values.get("FORMAT", "AUTO")].impl.read(text, card_values)
         start, duration = float(card_values.get("START", 0.0)), card_values.get("DURATION")
         t, values = _window(raw.t, raw.values, start, duration)
@@ -117,6 +119,24 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     )
 
 
+def _lines(text: str, span: tuple[int, int] | None) -> str:
+    """Text of the lines of a file from the first to the last of `span`; all others are blank, so that
+    messages count lines as they stand in the file.
+    """
+    if span is None:
+        return text
+    lines = text.splitlines()
+    first, last = span
+    if not first <= last <= len(lines):
+        raise RecordError(
+            "R405",
+            f"LINES={first},{last}, but the file has {len(lines)} lines",
+            "write the number of the first line and that of the last",
+            "LINES",
+        )
+    return "\n" * (first - 1) + "\n".join(lines[first - 1 : last])
+
+
 def _unit(raw: RawRecord, wanted: str | None) -> tuple[str, list[str]]:
     """Unit of the samples, and warnings about it."""
     if wanted is None:
@@ -155,6 +175,14 @@ def step(raw: RawRecord) -> float | None:
 #: what of a file acts, and when
 FIELDS: Final = (
     Field("FORMAT", Kind.FAMILY, default="AUTO", family="record", doc="how the file is written"),
+    Field(
+        "LINES",
+        Kind.INT,
+        default=None,
+        lo=1,
+        count=(2, 2),
+        doc="first and last line of the file that hold the record; left out: all",
+    ),
     Field(
         "START",
         Kind.REAL,

@@ -72,7 +72,7 @@ SPEC: Final = Spec(
         Field(
             "POINTS",
             Kind.REAL,
-            count=(4, 4000),
+            count=(4, 400_000),
             doc="time, acceleration, time, acceleration, ... in the deck's units; straight lines between "
             "them, zero outside; a time that stands twice is a jump",
         ),

@@ -25,7 +25,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     """
     if not text.strip():
         raise RecordError("R402", "the file is empty")
-    start = head(text)
+    start = head(text.lstrip())  # LINES leaves blank ones
     if foe := foreign.unread(start):
         raise foe
     known = formats()

@@ -1,7 +1,8 @@
 """Tables of numbers: a column of samples, or time and acceleration, or many columns.
 
-Without DT the first column is the time [s]; with DT no column is.  Blanks, tabs, commas or semicolons part
-the numbers.  Lines at the head that are not all numbers are titles, and what follows a ``#`` is a comment.
+Without DT the first column, or that of TIMES, is the time [s]; with DT no column is.  Blanks, tabs, commas
+or semicolons part the numbers.  Lines at the head that are not all numbers are titles, and what follows a
+``#`` is a comment.
 """
 
 from __future__ import annotations
@@ -28,6 +29,13 @@ FIELDS: Final = (
         default=None,
         lo=0,
         doc="column of the acceleration, counted from 1; 0: all numbers in turn; left out: the only one",
+    ),
+    Field(
+        "TIMES",
+        Kind.INT,
+        default=1,
+        lo=1,
+        doc="column of the times, counted from 1, where DT is left out",
     ),
 )
 
@@ -57,7 +65,7 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
     ----------
     text : str
     options : mapping
-        ``DT`` [s] and ``COLUMN``, each a number or None.
+        ``DT`` [s] and ``COLUMN``, each a number or None, and ``TIMES``.
 
     Raises
     ------
@@ -81,11 +89,12 @@ def read(text: str, options: Mapping[str, Any]) -> RawRecord:
             "put # before lines that are no data; samples that fill the lines one after another: COLUMN=0",
         )
     table = values.reshape(-1, width)
-    k = _column(width, dt, column)
+    timed = 0 if dt is not None else options.get("TIMES", 1)
+    k = _column(width, timed, column)
     if dt is not None:
         return RawRecord(table[:, k].copy(), dt=float(dt), title=head, component=_label(column)).checked()
     return RawRecord(
-        table[:, k].copy(), times=table[:, 0].copy(), title=head, component=_label(column)
+        table[:, k].copy(), times=table[:, timed - 1].copy(), title=head, component=_label(column)
     ).checked()
 
 
@@ -93,23 +102,26 @@ def _label(column: int | None) -> str:
     return "" if column is None else f"column {column}"
 
 
-def _column(width: int, dt: float | None, column: int | None) -> int:
-    """0-based column of the acceleration in a table of `width` columns."""
-    timed = dt is None
+def _column(width: int, timed: int, column: int | None) -> int:
+    """0-based column of the acceleration in a table of `width` columns, of which `timed` is the time."""
     if timed and width == 1:
         raise RecordError("R405", "the file has one column and no times", "give the step with DT=")
-    least = 2 if timed else 1
+    if timed > width:
+        raise RecordError("R405", f"TIMES={timed}, but the file has {width} columns", item="TIMES")
+    least = 2 if timed == 1 else 1
     if column is None:
-        if width != least:
+        if width != (2 if timed else 1):
             raise RecordError(
                 "R405", f"the file has {width} columns", f"say with COLUMN={least}..{width} which one acts"
             )
-        return width - 1
+        column = 3 - timed if timed else 1
     if column > width:
         raise RecordError("R405", f"COLUMN={column}, but the file has {width} columns")
-    if column < least:
+    if column == timed:
         raise RecordError(
-            "R405", "COLUMN=1 is the time", "take another column, or give DT= if column 1 is no time"
+            "R405",
+            f"COLUMN={timed} is the time",
+            "take another column, or give DT= if no column is the time",
         )
     return column - 1
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,31 +18,34 @@ from pound_solve.structure.damping.base import DampingContext, DampingError, Das
 from pound_solve.structure.damping.secant import SecantLaw
 from pound_solve.structure.dofs import label
 from pound_solve.structure.elements.base import Role
-from pound_solve.structure.mass import MassBlock
 from pound_solve.structure.structure import Structure
 
 MECHANISM = "the modes that this damping needs cannot be computed: the structure is a mechanism"
 
 
-def add_damping(structure: Structure, mass: Sequence[MassBlock]) -> list[Diagnostic]:
+def add_damping(structure: Structure, loaded: Structure | None = None) -> list[Diagnostic]:
     """Add the damping of the DAMPING cards to the matrices and laws of an assembled structure.
 
     Parameters
     ----------
     structure : Structure
         Its dashpots are assembled; its damping matrices, laws and damping texts are extended.
-    mass : sequence of MassBlock
+    loaded : Structure or None
+        With the stiffness of the static state: the cards with AFTER=STATIC are added.  None: all others
+        are.
 
     Returns
     -------
     list of Diagnostic
-        The cards that are at fault.
+        The cards that are at fault, and warnings.
     """
-    sources, problems = _Sources(structure, mass), list[Diagnostic]()
-    context = DampingContext(sources.mass, sources.modes, sources.building)
-    betas = np.zeros((2, len(structure.laws)))  # of the tangent and of the secant stiffness
+    sources, problems = _Sources(structure, loaded or structure), list[Diagnostic]()
+    # of the tangent and of the secant stiffness
+    betas = np.array([[s.beta for s in structure.laws], [s.secant for s in structure.laws]])
     for card in structure.model.damping:
-        group = _group(card, context, problems)
+        if (card.values.get("AFTER") == "STATIC") != (loaded is not None):
+            continue
+        group = _group(card, sources, problems)
         if group is None:
             continue
         for matrix in _matrices(structure, group):
@@ -63,8 +66,15 @@ def add_damping(structure: Structure, mass: Sequence[MassBlock]) -> list[Diagnos
     return problems
 
 
-def _group(card: Card, context: DampingContext, problems: list[Diagnostic]) -> Group | None:
+def _group(card: Card, sources: _Sources, problems: list[Diagnostic]) -> Group | None:
     """Damping of one card; None where it is at fault."""
+
+    def warn(message: str, item: str) -> None:
+        problems.append(
+            Diagnostic("P346", message, card.place(item), "name modes that there are", "warning")
+        )
+
+    context = DampingContext(sources.mass, sources.modes, sources.building, warn)
     try:
         group: Group = card.spec.impl(card, context)
     except DampingError as err:
@@ -125,10 +135,10 @@ def _at_supports(structure: Structure, c: Matrix) -> Matrix:
 
 @dataclass(frozen=True)
 class _Sources:
-    """Matrices and modes of a structure or of a part of it, for `DampingContext`."""
+    """Matrices of a structure or of a part of it, and modes of `vibrating`, for `DampingContext`."""
 
     structure: Structure
-    blocks: Sequence[MassBlock]
+    vibrating: Structure
 
     def building(self, name: str) -> Collection[int]:
         """Nodes of the building of that name.
@@ -148,7 +158,7 @@ class _Sources:
         if nodes is None:
             return self.structure.mass
         chosen, terms = frozenset(nodes), []
-        for where, at, matrix in self.blocks:
+        for where, at, matrix in self.structure.mass_blocks:
             inside = np.array([f[1] < 3 and f[0] in chosen for f in at])
             if not matrix[np.ix_(inside, ~inside)].any():  # lumped: each node has its own
                 terms.append((at, np.where(inside[:, None] & inside, matrix, 0.0)))
@@ -165,7 +175,7 @@ class _Sources:
         DampingError
             The nodes cannot move, or are not all of a building.
         """
-        structure, n = self.structure, self.structure.n_free
+        structure, n = self.vibrating, self.vibrating.n_free
         if nodes is None:
             return structure.vibration(count)
         k, m = structure.initial_stiffness[:n, :n], structure.mass[:n, :n]

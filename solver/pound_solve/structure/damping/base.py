@@ -41,11 +41,14 @@ class DampingContext:
         structure, or of the building that these nodes make up, over all unknowns.
     building : callable
         ``building(name)``: nodes of the building of that name.
+    warn : callable
+        ``warn(message, item)`` tells of an item of the card that is not taken as it stands.
     """
 
     mass: Callable[[Collection[int] | None], matrices.Matrix]
     modes: Callable[[Collection[int] | None, int | None], Modes]
     building: Callable[[str], Collection[int]]
+    warn: Callable[[str, str], None]
 
     def nodes(self, card: Card) -> Collection[int] | None:
         """Nodes of the BUILDING of a card, or its NODES; None: all.
@@ -81,6 +84,16 @@ class DampingContext:
         n = len(modes.shapes)
         weighted = mass[:n, :n] @ modes.shapes
         return np.asarray((weighted * rates) @ weighted.T)
+
+
+AFTER = Field(
+    "AFTER",
+    Kind.WORD,
+    default="REST",
+    words=("REST", "STATIC"),
+    doc="whose modes are meant: those of the structure at rest, or of the loaded one, as of MODAL "
+    "AFTER=STATIC",
+)  #: of the models that are made of modes
 
 
 class Chosen(NamedTuple):
@@ -138,19 +151,20 @@ class DampingError(Exception):
         self.item = item
 
 
-def frequencies(card: Card, omega: Callable[[], Array]) -> Array:
-    """Circular frequencies that OMEGA or MODES of a card name.
+def frequencies(card: Card, omega: Callable[[], Array], context: DampingContext) -> Array:
+    """Circular frequencies that OMEGA or MODES of a card name; a mode beyond the last one is the last one.
 
     Parameters
     ----------
     card : Card
     omega : callable
         Returns those of the modes; called only where MODES are given.
+    context : DampingContext
 
     Raises
     ------
     DampingError
-        Both or neither are given, a mode does not exist, or is a rigid-body mode.
+        Both or neither are given, there is no mode, or one is a rigid-body mode.
     """
     if (card["OMEGA"] is None) == (card["MODES"] is None):
         raise DampingError(
@@ -159,10 +173,15 @@ def frequencies(card: Card, omega: Callable[[], Array]) -> Array:
     if card["OMEGA"] is not None:
         return np.array(card["OMEGA"])
     known = omega()
+    if not len(known):
+        raise DampingError("the structure has no mode", "MODES")
     if max(card["MODES"]) > len(known):
         whole = "the building" if card["BUILDING"] else "the structure"
-        raise DampingError(f"{whole} has {len(known)} modes only", "MODES")
-    out = known[np.array(card["MODES"]) - 1]
+        text = (
+            f"{whole} has no mode {max(card['MODES'])}: its last one, {len(known)}, is taken in its place"
+        )
+        context.warn(text, "MODES")
+    out = known[np.minimum(card["MODES"], len(known)) - 1]
     if not out.all():
         raise DampingError(
             "a mode of zero frequency cannot carry a damping ratio: is a support (FIX) missing?", "MODES"

@@ -26,6 +26,7 @@ from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.numerics.types import Array
 from pound_solve.structure.damping.base import (
+    AFTER,
     BUILDING,
     NODES,
     DampingContext,
@@ -55,7 +56,7 @@ def rates(omega: Array, at: Array, xi: Array) -> Array:
 def build(card: Card, context: DampingContext) -> Group:
     """Damping of the whole structure, or of one building of several."""
     modes = context.modes(context.nodes(card), None)
-    at = frequencies(card, lambda: modes.omega)
+    at = frequencies(card, lambda: modes.omega, context)
     xi = ratios(card, len(at))
     apart(at, "OMEGA" if card["OMEGA"] is not None else "MODES")
     given = rates(modes.omega, at, xi)
@@ -109,6 +110,7 @@ SPEC = Spec(
         Field("MODES", Kind.INT, default=None, count=(1, 12), lo=1, doc="the same by modes"),
         BUILDING,
         NODES,
+        AFTER,
     ),
     reference="Caughey 1960",
     impl=build,

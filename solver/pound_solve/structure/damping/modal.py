@@ -23,6 +23,7 @@ from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.numerics.types import Array
 from pound_solve.structure.damping.base import (
+    AFTER,
     BUILDING,
     NODES,
     DampingContext,
@@ -59,18 +60,22 @@ def listed(card: Card, omega: Array) -> tuple[Array, str]:
     return xi, f"XI {values(given)}{rest}"
 
 
-def interpolated(card: Card, omega: Array) -> tuple[Array, str]:
+def interpolated(card: Card, omega: Array, context: DampingContext) -> tuple[Array, str]:
     """Ratio of every mode on straight lines between those given, and words."""
-    at = frequencies(card, lambda: omega)
+    at = frequencies(card, lambda: omega, context)
     item = "OMEGA" if card["OMEGA"] is not None else "MODES"
     x, name = omega, "omega"
     if card["OVER"] == "MODE":
         if card["MODES"] is None:
             raise DampingError("OVER=MODE needs the ratios at MODES", "OVER")
-        x, at, name = np.arange(1.0, len(omega) + 1.0), np.array(card["MODES"], float), "mode"
+        x, name = np.arange(1.0, len(omega) + 1.0), "mode"
+        at = np.minimum(card["MODES"], len(omega)).astype(float)
     given = ratios(card, len(at))
     if len(at) < 2:
         raise DampingError("a line needs two points; XI alone is the same for all modes", item)
+    beyond = card["MODES"] is not None and max(card["MODES"]) > len(omega)
+    if beyond and (at == at[0]).all() and (given == given[0]).all():  # the last mode stands for all of them
+        return np.full(len(omega), given[0]), f"XI {given[0]:.6g} of every mode"
     apart(at, item)
     straight = card["BEYOND"] == "LINEAR"
     xi = through(x, at, given, straight)
@@ -89,7 +94,7 @@ def build(card: Card, context: DampingContext) -> Group:
     """Damping of the whole structure, or of one building of several."""
     modes = context.modes(context.nodes(card), None)
     points = card["OMEGA"] is not None or card["MODES"] is not None
-    xi, text = (interpolated if points else listed)(card, modes.omega)
+    xi, text = interpolated(card, modes.omega, context) if points else listed(card, modes.omega)
     return Group(context.from_modes(modes, 2.0 * xi * modes.omega), None, text)
 
 
@@ -133,6 +138,7 @@ SPEC = Spec(
         ),
         BUILDING,
         NODES,
+        AFTER,
     ),
     code=4,
     reference="Wilson & Penzien 1972",

@@ -23,6 +23,7 @@ from __future__ import annotations
 from pound_deck.model import Card
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.structure.damping.base import (
+    AFTER,
     BUILDING,
     Chosen,
     DampingContext,
@@ -63,11 +64,13 @@ def build(card: Card, context: DampingContext) -> Group:
     """Damping of one group."""
     alpha, beta, nodes = card["ALPHA"], card["BETA"], context.nodes(card)
     own = nodes if card["BUILDING"] else None
+    if card["AFTER"] == "STATIC" and card["MODES"] is None:
+        raise DampingError("AFTER says whose MODES are meant", "AFTER")
     how = "ALPHA and BETA given"
     if card["XI"] is not None:
         if alpha is not None or beta is not None:
             raise DampingError("give ALPHA and BETA, or XI with OMEGA or MODES, not both", "XI")
-        w1, w2 = frequencies(card, lambda: context.modes(own, max(card["MODES"])).omega)
+        w1, w2 = frequencies(card, lambda: context.modes(own, max(card["MODES"])).omega, context)
         x1, x2 = ratios(card, 2)
         alpha, beta = coefficients((x1, x2), (w1, w2))
         how = f"XI {values(card['XI'])} at omega {w1:.6g} and {w2:.6g}"
@@ -133,6 +136,7 @@ SPEC = Spec(
             default=None,
             doc="property sets of the stiffness part; left out: all but contacts",
         ),
+        AFTER,
     ),
     code=0,
     reference="Clough & Penzien 1993, section 12-5",

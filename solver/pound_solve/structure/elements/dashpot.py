@@ -19,7 +19,7 @@ from pound_solve.structure.elements.base import (
     Role,
     signed,
 )
-from pound_solve.structure.elements.spring import components
+from pound_solve.structure.elements.spring import PLACEMENT, components
 
 LIMITS, PLAYS = {"X": "FX", "Y": "FY", "R": "MR"}, {"X": "GAPX", "Y": "GAPY", "R": "GAPR"}
 
@@ -72,7 +72,7 @@ SPEC = Spec(
         ),
         Field("CY", Kind.REAL, "F*T/L", default=0.0, lo=0, doc="force at the rate one along local y"),
         Field("CR", Kind.REAL, "F*L*T", default=0.0, lo=0, doc="moment at the rate one"),
-        Field("ANGLE", Kind.REAL, "deg", default=0.0, doc="angle of local x from global x, anticlockwise"),
+        *PLACEMENT,
         Field("LAW", Kind.FAMILY, default="FLUID", family="damper", doc="damper law"),
         Field(
             "FX",

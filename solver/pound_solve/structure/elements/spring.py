@@ -2,10 +2,14 @@
 
 The deformation is the displacement of J less that of I along the component; with one node only it is the
 displacement of that node against the ground.  The components lie along the global axes unless ANGLE turns
-them.  A spring has no length of its own: its forces make no moment.
+them; ANGLE=MEMBER turns x into the line from I to J.  Forces make no moment unless ARM says where between
+the nodes the spring sits: rigid arms join it to them there, so that a force across the line turns both
+nodes.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
@@ -25,22 +29,59 @@ from pound_solve.structure.elements.base import (
 
 
 def components(context: ElementContext) -> list[tuple[str, tuple[Dof, ...], tuple[float, ...]]]:
-    """Name, DOFs and row of the components X, Y and R."""
-    ax, ay = axes(context.prop["ANGLE"])
-    i, j = context.i.id, None if context.j is None else context.j.id
+    """Name, DOFs and row of the components X, Y and R.
+
+    Raises
+    ------
+    ElementError
+        ANGLE=MEMBER or ARM without a line from I to J.
+    """
+    ax, ay = _axes(context)
+    rotation = [(2, 1.0)]
     out = []
-    for name, direction in (
-        ("X", ((0, ax[0]), (1, ax[1]))),
-        ("Y", ((0, ay[0]), (1, ay[1]))),
-        ("R", ((2, 1.0),)),
+    for name, at_i, at_j in (
+        ("X", _at(ax, context, True), _at(ax, context, False)),
+        ("Y", _at(ay, context, True), _at(ay, context, False)),
+        ("R", rotation, rotation),
     ):
-        parts = tuple(p for p in direction if p[1] != 0.0)
-        if j is None:
-            dofs, row = tuple((i, d) for d, _ in parts), tuple(f for _, f in parts)
+        if context.j is None:
+            terms = [((context.i.id, d), f) for d, f in at_i]
         else:
-            dofs = tuple((j, d) for d, _ in parts) + tuple((i, d) for d, _ in parts)
-            row = tuple(f for _, f in parts) + tuple(-f for _, f in parts)
-        out.append((name, dofs, row))
+            terms = [((context.j.id, d), f) for d, f in at_j] + [((context.i.id, d), -f) for d, f in at_i]
+        terms = [term for term in terms if term[1] != 0.0]
+        out.append((name, tuple(dof for dof, _ in terms), tuple(f for _, f in terms)))
+    return out
+
+
+def _line(context: ElementContext, item: str) -> tuple[float, float]:
+    """From I to J [L]; raises where there is no line."""
+    if context.j is None:
+        raise ElementError(f"{item} needs a node J", item)
+    line = context.j.x - context.i.x, context.j.y - context.i.y
+    if line == (0.0, 0.0):
+        raise ElementError(f"the nodes coincide: {item} needs a line from I to J", item)
+    return line
+
+
+def _axes(context: ElementContext) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Directions of x and y."""
+    angle = context.prop["ANGLE"]
+    if angle != "MEMBER":
+        return axes(angle)
+    dx, dy = _line(context, "ANGLE")
+    length = math.hypot(dx, dy)
+    ax = dx / length, dy / length
+    return ax, (-ax[1], ax[0])
+
+
+def _at(way: tuple[float, float], context: ElementContext, first: bool) -> list[tuple[int, float]]:
+    """Displacement of the spring's end at node I (or J) along a direction: direction of the DOF, factor."""
+    out = [(0, way[0]), (1, way[1])]
+    arm = context.prop["ARM"]
+    if arm is not None:
+        dx, dy = _line(context, "ARM")
+        share = arm if first else arm - 1.0
+        out.append((2, share * (dx * way[1] - dy * way[0])))
     return out
 
 
@@ -80,6 +121,28 @@ def build(context: ElementContext) -> Parts:
     return parts
 
 
+#: how the components of SPRING and DASHPOT lie
+PLACEMENT = (
+    Field(
+        "ANGLE",
+        Kind.REAL,
+        "deg",
+        default=0.0,
+        words=("MEMBER",),
+        doc="angle of local x from global x, anticlockwise; MEMBER: x runs from I to J",
+    ),
+    Field(
+        "ARM",
+        Kind.REAL,
+        "-",
+        default=None,
+        lo=0,
+        hi=1,
+        doc="where on the line I-J it sits, as a share from I: rigid arms join it to the nodes; "
+        "left out: its forces make no moment",
+    ),
+)
+
 SPEC = Spec(
     "element",
     "SPRING",
@@ -88,7 +151,7 @@ SPEC = Spec(
         Field("KX", Kind.REAL, "F/L", default=0.0, lo=0, doc="stiffness along local x"),
         Field("KY", Kind.REAL, "F/L", default=0.0, lo=0, doc="stiffness along local y"),
         Field("KR", Kind.REAL, "F*L", default=0.0, lo=0, doc="rotational stiffness"),
-        Field("ANGLE", Kind.REAL, "deg", default=0.0, doc="angle of local x from global x, anticlockwise"),
+        *PLACEMENT,
         Field(
             "FX",
             Kind.REAL,

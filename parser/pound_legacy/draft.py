@@ -1,0 +1,89 @@
+"""The deck that comes of an old one: its lines, how each was read, and what was wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Final
+
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Span
+
+#: of the new deck, in their order; lines of the first stand in no section
+ORDER: Final = (
+    "",
+    "NODES",
+    "DRIFT",
+    "ELEMENTS",
+    "PROPS",
+    "WEIGHTS",
+    "LOADS",
+    "DAMPING",
+    "FORCES",
+    "EQUAKE",
+    "ANALYSIS",
+    "OUTPUT",
+)
+CONVENTION: Final = "BY CONVENTION"  #: marks in the new deck what no source confirms
+_CHECK: Final = "compare it with your manual of Ruaumoko or a listing of the deck"
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A line of the new deck, its comments, and the line of the old deck that it comes from."""
+
+    text: str
+    span: Span
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(slots=True)
+class Draft:
+    """Lines of the new deck by section, and what is to be said of them.
+
+    Attributes
+    ----------
+    report : list of Diagnostic
+        Mistakes; readings by convention and losses are warnings.
+    evidence : list of str
+        Items that decks of others confirm.
+    """
+
+    report: list[Diagnostic] = field(default_factory=list)
+    sections: dict[str, list[Entry]] = field(default_factory=lambda: {name: [] for name in ORDER})
+    evidence: list[str] = field(default_factory=list)
+
+    def add(self, section: str, text: str, span: Span, notes: Iterable[str] = ()) -> None:
+        """Add a line."""
+        self.sections[section].append(Entry(text, span, tuple(notes)))
+
+    def doubt(self, span: Span, reading: str) -> str:
+        """Tell that an item is read by convention; returns the comment that marks it."""
+        self.report.append(Diagnostic("L605", f"by convention, {reading}", span, _CHECK, "warning"))
+        return f"{CONVENTION}: {reading}"
+
+    def lose(self, span: Span, what: str, cure: str = "add it to the new deck by hand") -> str:
+        """Tell that something is not carried over; returns the comment that marks it."""
+        self.report.append(Diagnostic("L609", f"not carried over: {what}", span, cure, "warning"))
+        return f"NOT CARRIED OVER: {what}"
+
+    def rest(self, reading: str) -> None:
+        """Remember that decks of others confirm a reading."""
+        if reading not in self.evidence:
+            self.evidence.append(reading)
+
+
+def number(value: float) -> str:
+    """A number as a deck writes it, all its digits."""
+    return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)
+
+
+def numbers(values: Iterable[float]) -> str:
+    """Values of one item."""
+    return ",".join(map(number, values))
+
+
+def quoted(text: str) -> str:
+    """A text in quotes that it does not hold."""
+    bare = "".join(c for c in text if c.isprintable())
+    return f'"{bare}"' if '"' not in bare else "'" + bare.replace("'", " ") + "'"

@@ -1,0 +1,88 @@
+"""ELEMENTS: ``N MT I J K L IOUT``; members that are left out have both ends one node further."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from pound_deck.diagnostics import Diagnostic, Mistake, mistake
+from pound_legacy.draft import Draft
+from pound_legacy.lines import Row, Rows
+from pound_legacy.nodes import Node
+
+NAMES: Final = ("N", "MT", "I", "J", "K", "L", "IOUT")
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A member: number, property set, end nodes, and its line."""
+
+    id: int
+    kind: int
+    i: int
+    j: int
+    row: Row
+
+
+def read(rows: Rows, last: int, kinds: int, nodes: dict[int, Node], draft: Draft) -> dict[int, Member]:
+    """Members by number, up to `last`; mistakes in a line are reported, and the line is left out."""
+    out: dict[int, Member] = {}
+    before: Member | None = None
+    for found in rows:
+        try:
+            member = _member(found, last, kinds, before, nodes)
+            between = _between(before, member, nodes, draft) if before else []
+        except Mistake as error:
+            if error.diagnostic:
+                draft.report.append(error.diagnostic)
+            continue
+        out |= {m.id: m for m in (*between, member)}
+        before = member
+        if member.id == last:
+            break
+    if rows.more:
+        text = "lines follow the last member that NMEM counts"
+        draft.report.append(Diagnostic("L607", text, rows.peek().span, "correct NMEM, or take them out"))
+    if not out or max(out) != last:
+        text = f"ELEMENTS end with member {max(out, default=0)}, and NMEM is {last}"
+        draft.report.append(Diagnostic("L608", text, rows.here, "add the members, or correct NMEM"))
+    return out
+
+
+def _member(found: Row, last: int, kinds: int, before: Member | None, nodes: dict[int, Node]) -> Member:
+    id_, kind, i, j = found.wholes(NAMES[:4], 4)
+    first = before.id if before else 0
+    if not first < id_ <= last or (not first and id_ > 1):
+        text = f"member {id_} does not follow {first} on the way to NMEM, {last}"
+        raise mistake("L608", text, found.items[0].span, "members ascend from 1 to NMEM")
+    if not 1 <= kind <= kinds:
+        text = f"property set {kind} does not lie between 1 and NTYPE, {kinds}"
+        raise mistake("L608", text, found.items[1].span, "correct the number or NTYPE")
+    for k, node in ((2, i), (3, j)):
+        if node not in nodes:
+            raise mistake("L608", f"there is no node {node}", found.items[k].span, "correct the number")
+    return Member(id_, kind, i, j, found)
+
+
+def _between(before: Member, after: Member, nodes: dict[int, Node], draft: Draft) -> list[Member]:
+    """Members that are generated between two that are given."""
+    out = []
+    for id_ in range(before.id + 1, after.id):
+        step = id_ - before.id
+        i, j = before.i + step, before.j + step
+        if i not in nodes or j not in nodes:
+            text = f"member {id_} is left out, and nodes {i} and {j} for it are not both there"
+            raise mistake("L608", text, after.row.span, "write the members out")
+        out.append(Member(id_, before.kind, i, j, before.row))
+    if out:
+        what = f"members {before.id + 1} to {after.id - 1} are as {before.id}, each one node further"
+        draft.doubt(after.row.span, what)
+    return out
+
+
+def write(members: dict[int, Member], draft: Draft) -> None:
+    """Add the lines of ELEMENTS."""
+    for member in members.values():
+        made = member.id != member.row.items[0].whole("N")
+        notes = [f"generated: line {member.row.span.line} of the old deck"] if made else []
+        draft.add("ELEMENTS", f"{member.id:6} P{member.kind} {member.i} {member.j}", member.row.span, notes)

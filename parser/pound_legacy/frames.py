@@ -1,0 +1,126 @@
+"""FRAME: a member with hinges.  The order of all its items is recalled; no deck with results holds one.
+
+``ITYPE IPIN ICOND IHYST ILOS IDAMG ICOL IGA IDUCT``, ``E G A AS I WGT END1 END2 FJ1 FJ2``, with ICOND the
+initial forces, and with a rule ``RA RF H1 H2``, the strengths, the loss of strength, the lines of the rule.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from pound_deck.diagnostics import mistake
+from pound_legacy import loss, rules
+from pound_legacy.draft import number, numbers
+from pound_legacy.lines import Row
+from pound_legacy.property_set import PropertySet
+
+OPTIONS: Final = ("ITYPE", "IPIN", "ICOND", "IHYST", "ILOS", "IDAMG", "ICOL", "IGA", "IDUCT")
+SECTION: Final = ("E", "G", "A", "AS", "I", "WGT", "END1", "END2", "FJ1", "FJ2")
+HINGES: Final = ("RA", "RF", "H1", "H2")
+BEAM: Final = ("PYT", "PYC", "MZ1+", "MZ1-", "MZ2+", "MZ2-")
+COLUMN: Final = ("PYC", "PB", "MB", "M1B", "M2B", "M0", "PYT")
+INITIAL: Final = ("N0", "MI0", "MJ0")
+_PINS: Final = ("NONE", "I", "J", "BOTH")
+_BEAM, _CONCRETE = 1, 2
+
+
+def read(given: PropertySet, label: str) -> None:
+    """Add the property set.
+
+    Raises
+    ------
+    Mistake
+        A line is missing, an item is no number, or its type or rule cannot be carried over.
+    """
+    notes = [label] if label else []
+    options = given.rows.next("the options of a FRAME: " + " ".join(OPTIONS))
+    kind, pin, initial, code, losing, damaged, *rest = options.wholes(OPTIONS, 4)
+    if kind not in (_BEAM, _CONCRETE):
+        text = f"ITYPE {kind}: a kind of FRAME that is not carried over"
+        raise mistake("L604", text, options.items[0].span, "1 one-component beam, 2 concrete beam-column")
+    if not 0 <= pin < len(_PINS):
+        raise mistake("L604", f"IPIN {pin} is not known", options.items[1].span, "0 to 3")
+    if damaged or any(rest[:2]):
+        text = "IDAMG, ICOL and IGA: what they add to the lines is not known"
+        raise mistake("L604", text, options.span, "write 0")
+    section = given.rows.next("the section of a FRAME: " + " ".join(SECTION))
+    notes.append(given.draft.doubt(section.span, f"the order of a FRAME's section is {' '.join(SECTION)}"))
+    items = _section(section, pin)
+    if initial:
+        items.append(_initial(given, initial, notes))
+    word = "FRAME"
+    if code and not given.elastic:
+        word, more = _hinges(given, (kind, code, losing), section, options, notes)
+        items.append(more)
+    elif code:
+        _hinges(given, (kind, code, losing), section, options, notes)
+        notes.append("elastic run: IPLAS 0")
+    given.draft.add("PROPS", " ".join([f"P{given.number}", word, *items]), options.span, notes)
+
+
+def _section(found: Row, pin: int) -> list[str]:
+    """Items of the section and of the ends."""
+    v = dict(zip(SECTION, found.reals(SECTION, 5)))
+    out = [f"{name}={number(v[name])}" for name in ("E", "A", "I")]
+    if v["AS"]:
+        out += [f"G={number(v['G'])}", f"AS={number(v['AS'])}"]
+    out += [f"{name}={number(v[name])}" for name in ("WGT", "END1", "END2") if v[name]]
+    if v["FJ1"] or v["FJ2"]:
+        out.append(f"FJ={numbers((v['FJ1'], v['FJ2']))}")
+    return [*out, f"PIN={_PINS[pin]}"] if pin else out
+
+
+def _initial(given: PropertySet, code: int, notes: list[str]) -> str:
+    """Initial forces: the axial force (ICOND 1), the end moments (2), or both (3)."""
+    names = {1: INITIAL[:1], 2: INITIAL[1:], 3: INITIAL}.get(code)
+    if names is None:
+        raise mistake("L604", f"ICOND {code} is not known", given.rows.here, "0 to 3")
+    found = given.rows.next("the initial forces: " + " ".join(names))
+    v = dict(zip(names, found.reals(names, len(names))))
+    notes.append(
+        given.draft.doubt(
+            found.span, f"ICOND {code}: initial {' '.join(names)}, tension and sagging positive"
+        )
+    )
+    axial = f"N0={number(v['N0'])}" if "N0" in v else ""
+    moments = f"M0={numbers((v['MI0'], v['MJ0']))}" if "MI0" in v else ""
+    return " ".join(x for x in (axial, moments) if x)
+
+
+def _hinges(
+    given: PropertySet, codes: tuple[int, int, int], section: Row, options: Row, notes: list[str]
+) -> tuple[str, str]:
+    """Kind of element in the new deck, and the items of its hinges."""
+    kind, code, losing = codes
+    name = rules.named(code, options.items[3].span, given.catalog)
+    hinges = given.rows.next("the hinges: " + " ".join(HINGES))
+    _, ratio, *lengths = hinges.reals(HINGES, 2)
+    if 0.0 in lengths:
+        notes.append(given.draft.doubt(hinges.span, "a hinge length of 0 is 1.0"))
+    lp = numbers(x or 1.0 for x in lengths)
+    strengths = given.rows.next("the strengths of a FRAME: " + " ".join(BEAM if kind == _BEAM else COLUMN))
+    word, items = (_beam if kind == _BEAM else _column)(given, strengths, notes)
+    lost = loss.read(losing, given.rows, options.items[4].span, given.draft, notes) if losing else ""
+    rule = rules.read(code, given.rows, ratio, given.draft, notes)
+    return word, " ".join(x for x in (items, f"LP={lp}", f"RULE={name}", rule, lost) if x)
+
+
+def _beam(given: PropertySet, found: Row, notes: list[str]) -> tuple[str, str]:
+    """Yield moments of the one-component beam."""
+    tension, compression, *moments = found.reals(BEAM, 4)
+    notes.append(given.draft.doubt(found.span, f"the order of a beam's strengths is {' '.join(BEAM)}"))
+    if tension or compression:
+        notes.append(given.draft.lose(found.span, "axial yield PYT and PYC", "BEAM_COLUMN has interaction"))
+    if not any(moments):
+        raise mistake("L604", "a hinge without a yield moment", found.span, f"the line is {' '.join(BEAM)}")
+    second = moments[2:] if any(moments[2:]) else moments[:2]
+    return "FRAME", f"MI={numbers(moments[:2])} MJ={numbers(second)}"
+
+
+def _column(given: PropertySet, found: Row, notes: list[str]) -> tuple[str, str]:
+    """Diagram of a concrete column, moments alike on both sides."""
+    crush, balance, mb, m1b, m2b, m0, tension = found.reals(COLUMN, 7)
+    notes.append(given.draft.doubt(found.span, f"the order of a column's strengths is {' '.join(COLUMN)}"))
+    axial = (-abs(crush), -abs(balance), -abs(balance) * 2 / 3, -abs(balance) / 3, 0.0, abs(tension))
+    corners = [x for pair in zip(axial, (0.0, mb, m1b, m2b, m0, 0.0)) for x in pair]
+    return "BEAM_COLUMN", f"NM={numbers(corners)}"

@@ -1,0 +1,255 @@
+"""From the text of an old deck to a deck of this program."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+from pound_deck.diagnostics import Diagnostic, Mistake, has_errors
+from pound_deck.model import Span
+from pound_deck.schema import Catalog
+from pound_legacy import analysis, elements, header, nodal, nodes, props
+from pound_legacy.draft import CONVENTION, ORDER, Draft
+from pound_legacy.equake import File
+from pound_legacy.header import Control
+from pound_legacy.lines import Row, Rows, row
+from pound_legacy.recognise import control_lines, in_space
+
+#: heads of sections
+_HEADS: Final = ("NODES", "DRIFT", "ELEMENTS", "PROPS", "WEIGHTS", "LOADS", "SHAPE", "DAMPING", "EQUAKE")
+_NEEDED: Final = ("NODES", "ELEMENTS", "PROPS")
+_RUN: Final = (
+    "pound-solve import DECK -o model.inp marks it in a deck of this program; check it there, and run that"
+)
+_MOST_LINES: Final = 200_000  #: before the record
+
+
+@dataclass(frozen=True, slots=True)
+class Translation:
+    """A deck that was read.
+
+    Attributes
+    ----------
+    text : str
+        The new deck, empty where the old one has mistakes.
+    origins : tuple of Span or None
+        For each line of `text`, from the first, its line in the old deck.
+    report : tuple of Diagnostic
+        Mistakes, what was read by convention, what was not carried over; spans are in the old deck.
+    """
+
+    text: str
+    origins: tuple[Span | None, ...]
+    report: tuple[Diagnostic, ...]
+
+    def moved(self, found: Sequence[Diagnostic], name: str) -> list[Diagnostic]:
+        """Diagnostics of the new deck, called `name`, at the lines of the old one."""
+        return [
+            replace(d, span=self._origin(d.span)) if d.span and d.span.file == name else d for d in found
+        ]
+
+    def _origin(self, span: Span) -> Span:
+        return next((place for place in reversed(self.origins[: span.line]) if place), span)
+
+
+def translate(
+    name: str, text: str, catalog: Catalog, records: Sequence[File] = (), own: str = "", run: bool = False
+) -> Translation:
+    """Read an old deck.
+
+    Parameters
+    ----------
+    name : str
+        Of its file, for the places of messages.
+    text : str
+    catalog : Catalog
+        Knows which hysteresis rules there are.
+    records : sequence of File
+        Files of records that do not follow in the deck: horizontal, vertical.
+    own : str
+        Name by which the new deck finds the old one, which holds the record.
+    run : bool
+        The new deck is run at once: readings by convention are errors.
+
+    Returns
+    -------
+    Translation
+    """
+    draft = Draft()
+    lines = text.splitlines()
+    try:
+        sections, control = _outline(name, text, lines, draft)
+    except Mistake as error:
+        return Translation("", (), tuple([error.diagnostic] if error.diagnostic else []))
+    _translate(sections, control, (File(own or name, text), list(records)), catalog, draft)
+    if run:
+        draft.report[:] = [
+            replace(d, severity="error", hint=_RUN) if d.code in ("L605", "L609") else d
+            for d in draft.report
+        ]
+    draft.report.append(_ground(draft, Span(name, 1, 1, 2)))
+    draft.report.sort(key=lambda d: (d.span.line, d.span.column) if d.span else (0, 0))
+    if has_errors(draft.report):
+        return Translation("", (), tuple(draft.report))
+    title = lines[0].strip() if lines else ""
+    new, origins = _written(title, name, draft)
+    return Translation(new, origins, tuple(draft.report))
+
+
+@dataclass(frozen=True, slots=True)
+class _Section:
+    """A section's head and its lines; the record behind EQUAKE is not among them."""
+
+    head: Row
+    rows: Rows
+
+
+def _outline(
+    name: str, text: str, lines: list[str], draft: Draft
+) -> tuple[Mapping[str, _Section], Control]:
+    """Control lines, and the others by section.
+
+    Raises
+    ------
+    Mistake
+        The deck is none of the kind, is one in space, or its control lines are incomplete.
+    """
+    here = Span(name, 1, 1, 2)
+    first = control_lines(text)
+    if not first:
+        raise Mistake(
+            Diagnostic("L610", f"{name} is no deck of Ruaumoko-2D", here, "it has no control lines")
+        )
+    if in_space(first):
+        what = "this is a deck of Ruaumoko-3D; this program reads plane structures only"
+        raise Mistake(Diagnostic("L601", what, here, "model one of its frames as a plane deck"))
+    begins: list[Row] = []
+    sections: dict[str, _Section] = {}
+    current: list[Row] | None = None
+    for number, raw in enumerate(lines[1:_MOST_LINES], 2):
+        found = row(name, number, raw)
+        if found is None:
+            continue
+        if found.word in _HEADS:
+            if found.word in sections:
+                what = f"{found.word} stands twice"
+                draft.report.append(Diagnostic("L607", what, found.span, "join the two"))
+            sections[found.word] = _Section(found, Rows([], found.span))
+            current = sections[found.word].rows.rows
+        elif current is None:
+            begins.append(found)
+        else:
+            current.append(found)
+            if "EQUAKE" in sections and len(current) == 2:
+                break
+    for missing in (w for w in _NEEDED if w not in sections):
+        draft.report.append(Diagnostic("L607", f"there is no section {missing}", here, "add it"))
+    return sections, header.read(begins, here)
+
+
+def _translate(
+    sections: Mapping[str, _Section],
+    control: Control,
+    files: tuple[File, list[File]],
+    catalog: Catalog,
+    draft: Draft,
+) -> None:
+    """Fill the draft, section by section."""
+
+    def attempt(step: Callable[[], object]) -> None:
+        try:
+            step()
+        except Mistake as error:
+            if error.diagnostic:
+                draft.report.append(error.diagnostic)
+
+    attempt(lambda: header.write(control, draft))
+    points = {}
+    if "NODES" in sections:
+        points = nodes.read(sections["NODES"].rows, control.whole("NNP"), draft)
+        nodes.write(points, draft)
+    if "DRIFT" in sections:
+        nodes.drifts(sections["DRIFT"].rows, control.whole("NLEVEL"), points, draft)
+    members = {}
+    if "ELEMENTS" in sections:
+        counts = control.whole("NMEM"), control.whole("NTYPE")
+        members = elements.read(sections["ELEMENTS"].rows, *counts, points, draft)
+        elements.write(members, draft)
+    if "PROPS" in sections:
+        elastic = not control.whole("IPLAS")
+        rows = sections["PROPS"].rows
+        props.read(rows, control.whole("NTYPE"), members, points, elastic, catalog, draft)
+    if "WEIGHTS" in sections:
+        head = sections["WEIGHTS"].head
+        option = head.items[1] if len(head.items) > 1 else None
+        attempt(lambda: nodal.weights(sections["WEIGHTS"].rows, option, control["GRAV"], points, draft))
+    loaded = "LOADS" in sections and nodal.loads(sections["LOADS"].rows, points, draft)
+    if "DAMPING" in sections:
+        draft.add(
+            "DAMPING",
+            "",
+            sections["DAMPING"].head.span,
+            [draft.lose(sections["DAMPING"].head.span, "DAMPING")],
+        )
+    attempt(lambda: analysis.damping(control, draft))
+    attempt(lambda: analysis.runs(control, loaded, draft))
+    attempt(lambda: _excite(sections, control, files, points, draft))
+
+
+def _excite(
+    sections: Mapping[str, _Section],
+    control: Control,
+    files: tuple[File, list[File]],
+    points: dict[int, nodes.Node],
+    draft: Draft,
+) -> None:
+    """Add what moves the structure."""
+    code = analysis.kind(control)
+    if code not in (analysis.EARTHQUAKE, analysis.FORCES):
+        return
+    if "EQUAKE" not in sections:
+        what = "a history without a section EQUAKE"
+        draft.report.append(Diagnostic("L607", what, control.place("IPANAL"), "add it"))
+        return
+    rows = sections["EQUAKE"].rows
+    if code == analysis.EARTHQUAKE:
+        analysis.motions(rows, control, *files, draft)
+        return
+    shape = nodal.shape(sections["SHAPE"].rows, points, draft) if "SHAPE" in sections else []
+    if not shape:
+        what = "a force history without a SHAPE"
+        draft.report.append(Diagnostic("L607", what, control.place("IPANAL"), "add the section SHAPE"))
+    analysis.forces(rows, control, shape, *files, draft)
+
+
+def _ground(draft: Draft, here: Span) -> Diagnostic:
+    """On what ground the deck was read."""
+    text = "read as a deck of Ruaumoko-2D: but for what is marked, as one whose results are known"
+    if draft.evidence:
+        text += "; by decks of others: " + "; ".join(draft.evidence)
+    return Diagnostic("L606", text, here, "the page Coming from Ruaumoko says what is known", "warning")
+
+
+def _written(title: str, name: str, draft: Draft) -> tuple[str, tuple[Span | None, ...]]:
+    """Text of the new deck, and where its lines come from."""
+    lines: list[tuple[str, Span | None]] = [
+        (f"TITLE {_plain(title)}", None),
+        (f"! Read from the Ruaumoko-2D deck {_plain(name)}.", None),
+        (f"! No source confirms what is marked {CONVENTION}: compare it with a manual or a listing.", None),
+    ]
+    for section in ORDER:
+        entries = draft.sections[section]
+        if not entries:
+            continue
+        lines += [("", None), *([(section, None)] if section else [])]
+        for entry in entries:
+            lines += [(f"   ! {_plain(note)}", entry.span) for note in entry.notes]
+            if entry.text:
+                lines.append((f"   {entry.text}" if section else entry.text, entry.span))
+    return "\n".join(text for text, _ in lines) + "\n", tuple(span for _, span in lines)
+
+
+def _plain(text: str) -> str:
+    """A text of one line."""
+    return "".join(c for c in text if c.isprintable())

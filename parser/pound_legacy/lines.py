@@ -1,0 +1,172 @@
+"""Data lines of an old deck: blanks part the items, ``!`` starts a comment, blank lines are free."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from pound_deck.diagnostics import mistake
+from pound_deck.model import Span
+from pound_deck.source import without_comment
+
+_ITEM: Final = re.compile(r"""'[^']*'|"[^"]*"|[^\s,]+""")
+_NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?")
+MOST: Final = 1e30  #: magnitude of a number
+MOST_ITEMS: Final = 200  #: of a line; more are no card
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """One item and its place."""
+
+    text: str
+    span: Span
+
+    @property
+    def numeric(self) -> bool:
+        """Whether it is a number."""
+        return is_number(self.text)
+
+    def real(self, name: str) -> float:
+        """Value of the item called `name`.
+
+        Raises
+        ------
+        Mistake
+            It is no number, or beyond all magnitudes.
+        """
+        if not self.numeric:
+            raise mistake(
+                "L603", f"{name} is {self.text[:40]!r}, not a number", self.span, "write a number"
+            )
+        value = float(self.text.translate(_D_EXPONENT))
+        if not math.isfinite(value) or abs(value) > MOST:
+            raise mistake(
+                "L603", f"{name} is {self.text[:40]}, beyond {MOST:g}", self.span, "check the columns"
+            )
+        return value
+
+    def whole(self, name: str) -> int:
+        """Value of a whole item; ``1.0`` is one, too.
+
+        Raises
+        ------
+        Mistake
+            It is no whole number.
+        """
+        value = self.real(name)
+        if value != round(value) or abs(value) > 1e9:
+            raise mistake(
+                "L603", f"{name} is {self.text[:40]}, not a whole number", self.span, "check the columns"
+            )
+        return int(value)
+
+
+_D_EXPONENT: Final = str.maketrans("Dd", "EE")
+
+
+def is_number(text: str) -> bool:
+    """Whether a text is one number, with an exponent of E or D."""
+    return _NUMBER.fullmatch(text) is not None
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A data line: its items and its place."""
+
+    items: tuple[Item, ...]
+    span: Span
+
+    @property
+    def word(self) -> str:
+        """First item in capitals, if it is no number, else empty."""
+        first = self.items[0]
+        return "" if first.numeric else first.text.upper()
+
+    def item(self, k: int) -> Item:
+        """Item by position; a zero where the line is shorter."""
+        return self.items[k] if k < len(self.items) else Item("0", self.span)
+
+    def reals(self, names: Sequence[str], least: int = 0) -> list[float]:
+        """Values of the items called `names`; those left out at the end are zero.
+
+        Raises
+        ------
+        Mistake
+            The line has fewer items than `least`, or one is no number.
+        """
+        self.need(names, least)
+        return [self.item(k).real(name) for k, name in enumerate(names)]
+
+    def wholes(self, names: Sequence[str], least: int = 0) -> list[int]:
+        """Whole values, likewise."""
+        self.need(names, least)
+        return [self.item(k).whole(name) for k, name in enumerate(names)]
+
+    def need(self, names: Sequence[str], least: int) -> None:
+        """Raise a Mistake where the line has fewer items than `least`."""
+        if len(self.items) < least:
+            missing = ", ".join(names[len(self.items) : least])
+            what = f"the line holds {len(self.items)} of at least {least} items: {missing} missing"
+            raise mistake("L602", what, self.span, f"the line is {' '.join(names)}")
+
+
+def row(file: str, number: int, raw: str) -> Row | None:
+    """Data line of a physical one; None where it has no data."""
+    code = without_comment(raw)
+    if not code or code.isspace():
+        return None
+    items = []
+    for found in _ITEM.finditer(code):
+        items.append(Item(found[0], Span(file, number, found.start() + 1, found.end() + 1)))
+        if len(items) == MOST_ITEMS:
+            break
+    if not items:
+        return None
+    return Row(tuple(items), Span(file, number, items[0].span.column, items[-1].span.end))
+
+
+class Rows:
+    """The data lines of a section, one after another.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+    here : Span
+        Place of the section's head, for what is missing.
+    """
+
+    def __init__(self, rows: Sequence[Row], here: Span) -> None:
+        self.rows, self.here, self.at = list(rows), here, 0
+
+    def __iter__(self) -> Iterator[Row]:
+        while self.more:
+            yield self.next("a line")
+
+    @property
+    def more(self) -> bool:
+        """Whether there is another line."""
+        return self.at < len(self.rows)
+
+    def peek(self) -> Row:
+        """The next line, which stays."""
+        return self.rows[self.at]
+
+    def next(self, what: str) -> Row:
+        """Take the next line.
+
+        Raises
+        ------
+        Mistake
+            The section ends before it.
+        """
+        if not self.more:
+            raise mistake(
+                "L602", f"the section ends before {what}", self.here, "add the lines that are missing"
+            )
+        found = self.rows[self.at]
+        self.here, self.at = found.span, self.at + 1
+        return found

@@ -1,0 +1,67 @@
+"""WEIGHTS ``N WX WY MZ``, LOADS ``N FX FY MZ`` and SHAPE ``N SX SY SM``: lists by node."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from pound_deck.diagnostics import Diagnostic, Mistake, mistake
+from pound_legacy.draft import Draft, number
+from pound_legacy.lines import Item, Row, Rows
+from pound_legacy.nodes import Node
+
+WEIGHTS: Final = ("N", "WX", "WY", "MZ")
+LOADS: Final = ("N", "FX", "FY", "MZ")
+
+
+def _lines(
+    rows: Rows, names: tuple[str, ...], nodes: dict[int, Node], draft: Draft
+) -> list[tuple[Row, int, list[float]]]:
+    """Lines of a list: the node, and its values; mistakes are reported, and the line is left out."""
+    out: list[tuple[Row, int, list[float]]] = []
+    for found in rows:
+        try:
+            id_, values = found.item(0).whole("N"), found.reals(names, 2)[1:]
+            if id_ not in nodes:
+                raise mistake("L608", f"there is no node {id_}", found.items[0].span, "correct the number")
+        except Mistake as error:
+            if error.diagnostic:
+                draft.report.append(error.diagnostic)
+            continue
+        out.append((found, id_, values))
+    return out
+
+
+def weights(rows: Rows, option: Item | None, gravity: float, nodes: dict[int, Node], draft: Draft) -> None:
+    """Add the weights; option 1 of the section's head says that they are masses."""
+    scale, notes = 1.0, []
+    if option is not None and option.whole("the option of WEIGHTS"):
+        scale = gravity
+        notes.append(draft.doubt(option.span, "WEIGHTS 1: the values are masses"))
+    done: dict[int, list[float]] = {}
+    for found, id_, values in _lines(rows, WEIGHTS, nodes, draft):
+        if id_ in done and (any(values) or any(done[id_])):
+            draft.report.append(
+                Diagnostic(
+                    "L604", f"node {id_} has two weights", found.span, "write their sum, or one of them"
+                )
+            )
+        done[id_] = values
+        if any(values):
+            text = f"{id_:6} {' '.join(number(scale * x) for x in values)}"
+            draft.add("WEIGHTS", text, found.span, notes)
+            notes = []
+
+
+def loads(rows: Rows, nodes: dict[int, Node], draft: Draft) -> bool:
+    """Add the loads; whether there are any."""
+    some = False
+    for found, id_, values in _lines(rows, LOADS, nodes, draft):
+        if any(values):
+            some = True
+            draft.add("LOADS", f"{id_:6} {' '.join(map(number, values))}", found.span)
+    return some
+
+
+def shape(rows: Rows, nodes: dict[int, Node], draft: Draft) -> list[tuple[Row, int, list[float]]]:
+    """Lines of SHAPE: what a force history is multiplied by at each node."""
+    return [line for line in _lines(rows, ("N", "SX", "SY", "SM"), nodes, draft) if any(line[2])]

@@ -1,0 +1,167 @@
+"""NODES: ``N X Y NF1 NF2 NF3 KUP1 KUP2 KUP3 IOUT``, and DRIFT, a list of nodes from the base up.
+
+NF is 0 free, 1 fixed, 2 slaved to the node KUP.  Nodes that are left out lie evenly between those given.
+A node named by KUP has no effect beside NF 0 or 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+from pound_deck.diagnostics import Diagnostic, Mistake, mistake
+from pound_legacy.draft import Draft, number
+from pound_legacy.lines import Row, Rows
+
+NAMES: Final = ("N", "X", "Y", "NF1", "NF2", "NF3", "KUP1", "KUP2", "KUP3", "IOUT")
+_LETTERS: Final = "XYR"
+_FREE, _FIXED, _SLAVED = 0, 1, 2
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A node: number, coordinates [L], codes and masters of its directions, and its line."""
+
+    id: int
+    x: float
+    y: float
+    codes: tuple[int, ...]
+    masters: tuple[int, ...]
+    row: Row
+
+
+def read(rows: Rows, last: int, draft: Draft) -> dict[int, Node]:
+    """Nodes by number, up to `last`; those that are generated lie between their neighbours.
+
+    Mistakes in a line are reported, and the line is left out.
+    """
+    out: dict[int, Node] = {}
+    before: Node | None = None
+    for found in rows:
+        if found.word and not out:  # names of the columns
+            continue
+        try:
+            node = _node(found, last, before)
+        except Mistake as error:
+            _keep(error, draft)
+            continue
+        if before is not None and node.id > before.id + 1:
+            out |= {n.id: n for n in _between(before, node, draft)}
+        out[node.id], before = node, node
+        if node.id == last:
+            break
+    _rest(rows, draft)
+    if not out or max(out) != last:
+        text = f"NODES end with node {max(out, default=0)}, and NNP is {last}"
+        draft.report.append(Diagnostic("L608", text, rows.here, "add the nodes, or correct NNP"))
+    return out
+
+
+def _rest(rows: Rows, draft: Draft) -> None:
+    """Tell of lines behind the last one that counts."""
+    if rows.more:
+        text = "lines follow the last node that NNP counts"
+        draft.report.append(Diagnostic("L607", text, rows.peek().span, "correct NNP, or take them out"))
+
+
+def _node(found: Row, last: int, before: Node | None) -> Node:
+    id_, *codes = (found.item(k).whole(NAMES[k]) for k in (0, *range(3, 9)))
+    found.need(NAMES, 3)
+    x, y = found.item(1).real("X"), found.item(2).real("Y")
+    first = 0 if before is None else before.id
+    if not first < id_ <= last or (not first and id_ > 1):
+        text = f"node {id_} does not follow {first} on the way to NNP, {last}"
+        raise mistake("L608", text, found.items[0].span, "nodes ascend from 1 to NNP")
+    for k, code in enumerate(codes[:3]):
+        if code not in (_FREE, _FIXED, _SLAVED):
+            text = f"NF{k + 1} is {code}"
+            raise mistake("L604", text, found.item(3 + k).span, "0 free, 1 fixed, 2 slaved to KUP")
+        if code == _SLAVED and not 0 < codes[3 + k] <= last:
+            text = f"NF{k + 1} is 2 and KUP{k + 1} is {codes[3 + k]}, no node"
+            raise mistake("L608", text, found.item(6 + k).span, "KUP is the node that it follows")
+    return Node(id_, x, y, tuple(codes[:3]), tuple(codes[3:6]), found)
+
+
+def _between(before: Node, after: Node, draft: Draft) -> list[Node]:
+    """Nodes that lie evenly between two that are given."""
+    count = after.id - before.id
+    what = f"nodes {before.id + 1} to {after.id - 1} lie evenly between {before.id} and {after.id}"
+    if before.codes != after.codes or before.masters != after.masters:
+        text = f"{what}, and these have different supports"
+        error = Diagnostic("L604", text, after.row.span, "write the nodes between them out")
+        draft.report.append(error)
+    draft.doubt(after.row.span, f"{what}, with their supports")
+    out = []
+    for k in range(1, count):
+        share = k / count
+        x = before.x + share * (after.x - before.x)
+        y = before.y + share * (after.y - before.y)
+        out.append(Node(before.id + k, x, y, after.codes, after.masters, after.row))
+    return out
+
+
+def write(nodes: dict[int, Node], draft: Draft) -> None:
+    """Add the lines of NODES."""
+    for node in nodes.values():
+        try:
+            items, notes = _slaved(node, nodes, draft)
+        except Mistake as error:
+            _keep(error, draft)
+            continue
+        fixed = "".join(c for c, code in zip(_LETTERS, node.codes) if code == _FIXED)
+        text = f"{node.id:6} {number(node.x):>12} {number(node.y):>12}"
+        text += (f"  FIX={fixed}" if fixed else "") + items
+        if node.id != node.row.items[0].whole("N"):
+            notes.append(f"generated, between those given: line {node.row.span.line} of the old deck")
+        draft.add("NODES", text, node.row.span, notes)
+
+
+def _slaved(node: Node, nodes: dict[int, Node], draft: Draft) -> tuple[str, list[str]]:
+    """Items of a node that follows another, and comments."""
+    ways = [k for k in range(3) if node.codes[k] == _SLAVED]
+    if not ways:
+        return "", []
+    masters = {node.masters[k] for k in ways}
+    place = node.row.item(3 + ways[0]).span
+    if len(masters) > 1:
+        text = f"node {node.id} follows several nodes: {', '.join(map(str, sorted(masters)))}"
+        raise mistake("L604", text, place, "a node of the new deck has one MASTER")
+    (master,) = masters
+    letters = "".join(_LETTERS[k] for k in ways)
+    level = master in nodes and nodes[master].y == node.y
+    notes = []
+    if letters == "X" and level:
+        draft.rest("NF 2: slaved to the node KUP")
+    else:
+        reading = f"node {node.id} follows {master} along {letters} with a rigid arm"
+        notes.append(draft.doubt(place, reading))
+    return f"  SLAVED={letters} MASTER={master}", notes
+
+
+def _keep(error: Mistake, draft: Draft) -> None:
+    if error.diagnostic:
+        draft.report.append(error.diagnostic)
+
+
+def drifts(rows: Rows, levels: int, nodes: dict[int, Node], draft: Draft) -> None:
+    """Add the lines of DRIFT: each storey between neighbours in the list."""
+    listed: list[tuple[int, Row]] = []
+    for found in rows:
+        for item in found.items:
+            try:
+                id_ = item.whole("a node of DRIFT")
+            except Mistake as error:
+                _keep(error, draft)
+                continue
+            if id_ not in nodes:
+                text = f"DRIFT names node {id_}, which NODES do not hold"
+                draft.report.append(Diagnostic("L608", text, item.span, "correct the number"))
+                continue
+            listed.append((id_, found))
+    if len(listed) != levels:
+        text = f"DRIFT lists {len(listed)} nodes, and NLEVEL is {levels}"
+        draft.report.append(Diagnostic("L608", text, rows.here, "correct the list or NLEVEL"))
+    draft.rest("DRIFT: levels from the base up")
+    for k, ((low, _), (high, found)) in enumerate(pairwise(listed), 1):
+        draft.add("DRIFT", f'"level {k}" {low} {high}', found.span)

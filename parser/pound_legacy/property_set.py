@@ -1,0 +1,33 @@
+"""What the reader of a property set is given."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pound_deck.schema import Catalog
+from pound_legacy.draft import Draft
+from pound_legacy.lines import Rows
+from pound_legacy.nodes import Node
+
+
+@dataclass(frozen=True, slots=True)
+class PropertySet:
+    """A property set: its number, its lines from the second on, the ends of its members.
+
+    Attributes
+    ----------
+    elastic : bool
+        The deck asks for elastic members (IPLAS 0).
+    """
+
+    number: int
+    rows: Rows
+    ends: list[tuple[Node, Node]]
+    elastic: bool
+    catalog: Catalog
+    draft: Draft
+
+    @property
+    def lengths(self) -> list[float]:
+        """Lengths of its members [L]."""
+        return [((b.x - a.x) ** 2 + (b.y - a.y) ** 2) ** 0.5 for a, b in self.ends]

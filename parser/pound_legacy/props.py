@@ -1,0 +1,84 @@
+"""PROPS: ``N TYPE [label]``, then the lines of the type; each type has a file."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from pound_deck.diagnostics import Diagnostic, Mistake, mistake
+from pound_deck.schema import Catalog
+from pound_legacy import frames, springs
+from pound_legacy.draft import Draft
+from pound_legacy.elements import Member
+from pound_legacy.lines import Row, Rows
+from pound_legacy.nodes import Node
+from pound_legacy.property_set import PropertySet
+
+READERS: Final = {"SPRING": springs.read, "FRAME": frames.read}
+#: of the old program, in words; their lines are not known
+OTHERS: Final = (
+    *("BEAM", "WALL", "DAMPER", "DASHPOT", "TENDON", "CONTACT", "MULTISPRING", "MASONRY", "MACRO"),
+    *("QUADRILATERAL", "FOUNDATION", "COMPOUND", "INTERACTION"),
+)
+
+
+def read(
+    rows: Rows,
+    count: int,
+    members: dict[int, Member],
+    nodes: dict[int, Node],
+    elastic: bool,
+    catalog: Catalog,
+    draft: Draft,
+) -> None:
+    """Add the property sets; mistakes in one are reported, and its lines are left out."""
+    for expected in range(1, count + 1):
+        try:
+            head = rows.next(f"property set {expected}")
+            kind = _kind(head, expected)
+        except Mistake as error:
+            _keep(error, draft)
+            return
+        note = " ".join(item.text for item in head.items[2:])[:60].strip("\"'")
+        own = [m for m in members.values() if m.kind == expected]
+        places = [(nodes[m.i], nodes[m.j]) for m in own]
+        try:
+            READERS[kind](PropertySet(expected, rows, places, elastic, catalog, draft), note)
+        except Mistake as error:
+            _keep(error, draft)
+            _skip(rows)
+    if rows.more:
+        text = "lines follow the last property set that NTYPE counts"
+        draft.report.append(Diagnostic("L607", text, rows.peek().span, "correct NTYPE, or take them out"))
+
+
+def _kind(head: Row, expected: int) -> str:
+    """Type of the property set that a line begins."""
+    if head.item(0).whole("the number of a property set") != expected or len(head.items) < 2:
+        text = f"a line `{expected} TYPE` should begin property set {expected}"
+        raise mistake(
+            "L608", text, head.span, "sets stand in ascending order; one may have a line too many"
+        )
+    word = head.items[1].text.strip("\"'").upper()
+    if word in OTHERS:
+        text = f"{word}: no source states its lines"
+        raise mistake("L604", text, head.items[1].span, "write the property set in the new language")
+    if word not in READERS:
+        raise mistake(
+            "L604", f"{head.items[1].text[:40]} is no type of member", head.items[1].span, "SPRING or FRAME"
+        )
+    return word
+
+
+def _skip(rows: Rows) -> None:
+    """Go to the next line that begins a property set: a number and a word."""
+    while rows.more and not _begins(rows.peek()):
+        rows.next("a line")
+
+
+def _begins(found: Row) -> bool:
+    return len(found.items) > 1 and found.items[0].numeric and not found.items[1].numeric
+
+
+def _keep(error: Mistake, draft: Draft) -> None:
+    if error.diagnostic:
+        draft.report.append(error.diagnostic)

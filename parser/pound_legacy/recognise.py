@@ -1,0 +1,45 @@
+"""Whether a text is a deck of Ruaumoko: a title, control lines of numbers alone, then NODES.
+
+In a deck of this program no line of numbers stands before the first section.
+"""
+
+from __future__ import annotations
+
+from itertools import islice
+from typing import Final
+
+from pound_legacy.lines import Row, row
+
+HEAD: Final = 20_000  #: characters that decide
+_LINES = (
+    14  #: data lines that are looked at: the title, up to six of control and some that are out of place
+)
+_LEAST = 6  #: items of a control line
+_CONTROL_2D = 4  #: control lines of a plane deck
+
+
+def control_lines(text: str) -> list[Row]:
+    """Lines of control of an old deck, empty where the text is none."""
+    head = text[:HEAD].splitlines()
+    rows = (found for number, raw in enumerate(head[1:], 2) if (found := row("", number, raw)))
+    out: list[Row] = []
+    for found in islice(rows, _LINES):
+        if found.word == "NODES":
+            long = sum(len(r.items) >= _LEAST and _mostly_numbers(r) for r in out)
+            return out if long >= _CONTROL_2D - 1 and out[0].items[0].numeric else []
+        out.append(found)
+    return []
+
+
+def is_legacy(text: str) -> bool:
+    """Whether a text is an old deck, plane or in space."""
+    return bool(control_lines(text))
+
+
+def in_space(rows: list[Row]) -> bool:
+    """Whether control lines are those of a deck in space: it has a line of six numbers for the view."""
+    return len(rows) > _CONTROL_2D and len(rows[0].items) < 11
+
+
+def _mostly_numbers(found: Row) -> bool:
+    return 2 * sum(item.numeric for item in found.items) > len(found.items)

@@ -1,0 +1,138 @@
+"""Parameters of hysteresis rules, in the order of the old deck, for those whose order is known or recalled.
+
+Rule 52 stands in a deck with known results.  The orders of all others are recalled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final, NamedTuple
+
+from pound_deck.diagnostics import mistake
+from pound_deck.model import Span
+from pound_deck.schema import Catalog
+from pound_legacy.draft import Draft, number, numbers
+from pound_legacy.lines import Row, Rows
+
+Values = dict[str, float]
+
+
+class Layout(NamedTuple):
+    """Items of a rule's lines, and what they are in the new deck.
+
+    `write` makes the items of the new deck of the values, the post-yield ratio R among them; `losses` names
+    values that have no counterpart unless they are what is given with them.
+    """
+
+    lines: tuple[tuple[str, ...], ...]
+    write: Callable[[Values], str]
+    losses: tuple[tuple[str, float], ...] = ()
+
+
+def _ratio(v: Values) -> str:
+    return f"R={number(v['R'])}"
+
+
+def _nothing(v: Values) -> str:
+    return ""
+
+
+def _alfa(v: Values) -> str:
+    return f"R={number(v['R'])} ALFA={number(v['ALFA'])}"
+
+
+def _ramberg_osgood(v: Values) -> str:
+    return f"N={number(v['R-exponent'])}"
+
+
+def _takeda(v: Values) -> str:
+    return f"{_alfa(v)} BETA={number(v['BETA'])}"
+
+
+def _slack(v: Values) -> str:
+    grow = "" if v["IMODE"] == 0 else " GROW=NO"
+    return f"R={number(v['R'])} SLACK={numbers((v['GAP+'], v['GAP-']))}{grow}"
+
+
+def _stewart(v: Values) -> str:
+    items = {"PTRI": v["PTRI"], "PUNL": v["PUNL"], "BETA": v["BETA"], "ALPHA": v["ALPHA"]}
+    given = " ".join(f"{name}={number(x)}" for name, x in items.items())
+    return (
+        f"R={number(v['R'])} FU={number(v['FU'])} FI={number(v['FI'])} "
+        f"SLACK={numbers((v['GAP+'], v['GAP-']))} {given}"
+    )
+
+
+def _schoettler(v: Values) -> str:
+    pairs = {"FCR": ("Fcr+", "Fcr-"), "RHO": ("Rho+", "Rho-"), "DULT": ("Dult+", "Dult-")}
+    given = " ".join(f"{name}={number(v[a])},{number(v[b])}" for name, (a, b) in pairs.items())
+    return f"R={number(v['R'])} {given} ALFA={number(v['ALFA'])} PINCH={number(v['PINCH'])}"
+
+
+LAYOUTS: Final = {
+    0: Layout((), _nothing),
+    1: Layout((), _nothing),
+    2: Layout((), _ratio),
+    3: Layout((("R-exponent",),), _ramberg_osgood),
+    4: Layout((("ALFA", "BETA", "NF", "KKK"),), _takeda, (("NF", 1.0), ("KKK", 1.0))),
+    5: Layout((("GAP+", "GAP-", "IMODE"),), _slack),
+    7: Layout((), _ratio),
+    9: Layout(
+        (("FU", "FI", "PTRI", "PUNL", "GAP+", "GAP-", "BETA", "ALPHA", "LOOP"),), _stewart, (("LOOP", 0.0),)
+    ),
+    10: Layout((("ALFA",),), _alfa),
+    11: Layout((("ALFA",),), _alfa),
+    12: Layout((("ALFA",),), _alfa),
+    52: Layout(
+        (
+            ("Kneg", "Rbeg", "Fcr+", "Fcr-", "Rho+", "Rho-", "Dult+", "Dult-", "IOP"),
+            ("ALFA", "BETA", "PINCH", "KAPPA+", "FRESID", "DFACTOR"),
+        ),
+        _schoettler,
+        (("Kneg", 1.0), ("IOP", 0.0), ("BETA", 0.0), ("DFACTOR", 0.0)),
+    ),
+}
+CERTAIN: Final = (0, 1, 2, 7, 52)  #: rules without parameters, and the one of a deck with known results
+
+
+def named(code: int, place: Span, catalog: Catalog) -> str:
+    """Name of a rule that can be carried over.
+
+    Raises
+    ------
+    Mistake
+        The order of its parameters is not known, or this program does not have it.
+    """
+    spec = catalog.by_code("hysteresis", code)
+    if spec is None or code not in LAYOUTS:
+        have = ", ".join(str(c) for c in sorted(LAYOUTS) if catalog.by_code("hysteresis", c))
+        text = f"IHYST {code}: this rule is not carried over"
+        raise mistake("L604", text, place, f"rules that are: {have}")
+    return spec.name
+
+
+def read(code: int, rows: Rows, ratio: float, draft: Draft, notes: list[str]) -> str:
+    """Items of the new deck of the next set of lines of a rule.
+
+    Raises
+    ------
+    Mistake
+        A line is missing or holds something else.
+    """
+    layout, values = LAYOUTS[code], {"R": ratio}
+    first: Row | None = None
+    for names in layout.lines:
+        found = rows.next(f"the parameters of rule {code}: {' '.join(names)}")
+        first = first or found
+        values |= zip(names, found.reals(names, 1))
+    if first is not None:
+        if code not in CERTAIN:
+            order = " ".join(" ".join(names) for names in layout.lines)
+            notes.append(draft.doubt(first.span, f"rule {code} has the parameters {order}"))
+        for name, usual in layout.losses:
+            if values[name] != usual:
+                what = f"{name} {number(values[name])} of rule {code} (what it does is not known)"
+                notes.append(draft.lose(first.span, what))
+        if code == 52 and values["Rbeg"] != ratio:
+            notes.append(draft.lose(first.span, f"Rbeg {number(values['Rbeg'])} beside RF {number(ratio)}"))
+    return layout.write(values)

@@ -1,0 +1,100 @@
+"""SPRING: stiffnesses, yield forces and a rule of the components x (from I to J), y and rotation.
+
+``ITYPE IHYST ILOS IDAMG KX KY GJ WGT RF RT``, with a rule ``FX+ FX- FY+ FY- MZ+ MZ-``, with a loss of
+strength
+``DUCT1 DUCT2 RDUCT DUCT3 RCYC``, then the lines of the rule once for each component.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from pound_deck.diagnostics import mistake
+from pound_legacy import loss, rules
+from pound_legacy.draft import number, numbers
+from pound_legacy.lines import Row
+from pound_legacy.property_set import PropertySet
+
+NAMES: Final = ("ITYPE", "IHYST", "ILOS", "IDAMG", "KX", "KY", "GJ", "WGT", "RF", "RT")
+FORCES: Final = ("FX+", "FX-", "FY+", "FY-", "MZ+", "MZ-")
+_STIFF: Final = ("KX", "KY", "KR")
+_STRONG: Final = ("FX", "FY", "MR")
+
+
+def read(given: PropertySet, label: str) -> None:
+    """Add the property set.
+
+    Raises
+    ------
+    Mistake
+        A line is missing, an item is no number, or its type or rule cannot be carried over.
+    """
+    notes = [label] if label else []
+    found = given.rows.next("the line of a SPRING: " + " ".join(NAMES))
+    kind, code, losing, damaged = (found.item(k).whole(NAMES[k]) for k in range(4))
+    stiff = [found.item(k).real(NAMES[k]) for k in (4, 5, 6)]
+    weight, rf, rt = (found.item(k).real(NAMES[k]) for k in (7, 8, 9))
+    found.need(NAMES, 8)
+    if kind != 1:
+        text = f"ITYPE {kind}: a SPRING whose components act on each other"
+        raise mistake("L604", text, found.items[0].span, "only ITYPE 1 is carried over")
+    if damaged:
+        raise mistake(
+            "L604", f"IDAMG {damaged}: the line of the index is not known", found.items[3].span, "0"
+        )
+    if len(found.items) > len(NAMES) and any(i.text != "0" for i in found.items[len(NAMES) :]):
+        notes.append(given.draft.lose(found.items[len(NAMES)].span, "items behind RT"))
+    if weight:
+        notes.append(
+            given.draft.lose(found.items[7].span, f"WGT {number(weight)} of a spring", "add WEIGHTS")
+        )
+    _axes(given, stiff, found, notes)
+    items = [f"{name}={number(k)}" for name, k in zip(_STIFF, stiff) if k]
+    if code:
+        items.append(_yielding(given, code, losing, stiff, (rf, rf, rt), found, notes))
+    text = " ".join([f"P{given.number}", "SPRING", *items, "ANGLE=MEMBER" if any(given.lengths) else ""])
+    given.draft.add("PROPS", text.rstrip(), found.span, notes)
+
+
+def _axes(given: PropertySet, stiff: list[float], found: Row, notes: list[str]) -> None:
+    """Tell how the axes of the components lie, and what a length does."""
+    if any(length == 0.0 for length in given.lengths) and stiff[0] != stiff[1]:
+        notes.append(given.draft.doubt(found.span, "a spring without length has x along global x"))
+        if any(given.lengths):
+            text = f"some springs of set {given.number} have a length and some have none"
+            raise mistake("L604", text, found.span, "give them two property sets")
+    if any(given.lengths) and stiff[1]:
+        reading = "a transverse force of a spring with a length makes no moment; ARM= gives it one"
+        notes.append(given.draft.doubt(found.items[5].span, reading))
+
+
+def _yielding(
+    given: PropertySet,
+    code: int,
+    losing: int,
+    stiff: list[float],
+    ratios: tuple[float, float, float],
+    found: Row,
+    notes: list[str],
+) -> str:
+    """Items of the components that yield."""
+    name = rules.named(code, found.items[1].span, given.catalog)
+    strong = given.rows.next("the yield forces: " + " ".join(FORCES))
+    forces = strong.reals(FORCES)
+    lost = loss.read(losing, given.rows, found.items[2].span, given.draft, notes) if losing else ""
+    sets = [rules.read(code, given.rows, r, given.draft, notes) for r in ratios]
+    yielding = [k for k in range(3) if stiff[k] and (forces[2 * k] or forces[2 * k + 1])]
+    for k in range(3):
+        if stiff[k] and k not in yielding:
+            notes.append(given.draft.doubt(strong.span, f"without yield forces {_STIFF[k]} is elastic"))
+    if given.elastic:
+        notes.append("elastic run: IPLAS 0")
+        return ""
+    if not yielding:
+        return ""
+    if len({sets[k] for k in yielding}) > 1:
+        text = "the components that yield have different parameters"
+        raise mistake("L604", text, strong.span, "give each component a spring of its own")
+    chosen = ",".join(name if k in yielding else "ELASTIC" for k in range(3))
+    limits = [f"{_STRONG[k]}={numbers(forces[2 * k : 2 * k + 2])}" for k in yielding]
+    return " ".join(x for x in (*limits, f"RULE={chosen}", sets[yielding[0]], lost) if x)

@@ -1,0 +1,80 @@
+"""From a deck's file to its model, be it a deck of this program or one of Ruaumoko-2D."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final, NamedTuple
+
+from pound_deck.diagnostics import Diagnostic, Mistake, has_errors
+from pound_deck.model import Model
+from pound_deck.reader import read_deck, read_text
+from pound_legacy.equake import File
+from pound_legacy.files import recognised, text_of
+from pound_legacy.importer import Translation, translate
+from pound_solve.catalog import catalog
+from pound_solve.driver.request import Request
+
+AS_READ: Final = " as read"  #: ends the name of the deck that was made of an old one
+
+
+class Deck(NamedTuple):
+    """A deck that was read.
+
+    Attributes
+    ----------
+    model : Model or None
+        None where there are mistakes.
+    found : list of Diagnostic
+    files : dict of str to str
+        Texts by the names in spans.
+    translation : Translation or None
+        Of an old deck.
+    """
+
+    model: Model | None
+    found: list[Diagnostic]
+    files: dict[str, str]
+    translation: Translation | None = None
+
+    def moved(self, found: Sequence[Diagnostic], name: str) -> list[Diagnostic]:
+        """Diagnostics that name lines of the file `name` that the user has."""
+        return self.translation.moved(found, name + AS_READ) if self.translation else list(found)
+
+
+def read(request: Request) -> Deck:
+    """Read the deck of a request.
+
+    Raises
+    ------
+    OSError
+        It cannot be read.
+    """
+    name = request.deck
+    if os.path.realpath(name) in request.unsaved or not recognised(name):
+        return Deck(*read_deck(name, catalog(), request.params, request.unsaved))
+    text, old = imported(name, own=Path(name).name, run=True)
+    files = {name: text}
+    if has_errors(old.report):
+        return Deck(None, list(old.report), files, old)
+    model, found, more = read_text(old.text, catalog(), request.params, name + AS_READ)
+    own = Deck(model, found, more | files, old)
+    return own._replace(found=[*old.report, *own.moved(found, name)])
+
+
+def imported(
+    name: str, records: Sequence[File] = (), own: str = "", run: bool = False
+) -> tuple[str, Translation]:
+    """Text of an old deck, and what was made of it; see `translate`.
+
+    Raises
+    ------
+    OSError
+        A file cannot be read.
+    """
+    try:
+        text = text_of(name)
+    except Mistake as error:
+        return "", Translation("", (), tuple([error.diagnostic] if error.diagnostic else []))
+    return text, translate(name, text, catalog(), records, own, run)

@@ -1,0 +1,311 @@
+r"""Schoettler-Restrepo: a pinched rule for concrete with a cracking point (Ruaumoko's rule 52).
+
+One side at a time (`mirror`), with the yield force :math:`F_y > 0` and :math:`k` the initial stiffness.
+The backbone goes with :math:`k` to the crack point of force :math:`F_{cr} F_y`, on to the yield point at
+:math:`d_y = F_y / (\rho k)`, and beyond it with the slope :math:`r \rho k`.
+
+* A side whose largest deformation ever is :math:`d_m` (at first the crack point), force :math:`F_m`,
+  unloads with :math:`k_u = \rho k (d_m/d_y)^{-\alpha}`.  It is not stiffer than :math:`k`, nor softer than
+  the secant :math:`F_m/d_m` (ours).
+* From zero force at :math:`d_0` the other side is loaded to the pinch point
+
+  .. math:: d_P = \tfrac12 (d_m' - d_y'), \qquad F_P = \pi F_m
+
+  (:math:`d_m', d_y'` of the side just left, none below zero) and from there to :math:`(d_m, F_m)`, where
+  the backbone goes on; straight to :math:`(d_m, F_m)` where the pinch point lies behind, or not below that
+  line.
+* A reversal short of the pinch point (:math:`d < d_P`; before both sides have yielded :math:`F < \pi F_m`)
+  begins an inner loop: then either side is loaded to its *corner*, its last reversal, and on from there.  A
+  reversal before the corner changes nothing.  One beyond it becomes the corner or, beyond the pinch point,
+  too, ends the inner loop.
+* A motion that turns while it unloads returns along the same line.
+
+The branches were found from the forces that the old program gives for one record, of ductilities up to 2.05
+(:math:`r = 0.06, F_{cr} = \rho = 0.99, \alpha = 0.4, \pi = 0.3`); the factor 1/2 of :math:`d_P` may stand
+for a parameter that was not varied.  What happens beyond the ductility
+DULT is not known: the backbone goes on, and the report warns.
+
+Internal variables: largest deformation of each side; whether an inner loop is on; corner of each side; the
+point where the present line began; the last reversal, and the branch that it left.
+
+References
+----------
+Schoettler MJ, Restrepo JI: the model, as Ruaumoko's rule 52; Carr AJ, Ruaumoko (no equations are published
+in its openly readable parts).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, above, below, linear
+from pound_solve.laws.hysteresis.backbone import ALFA, R
+from pound_solve.laws.mirror import both_sides, inward, need_both_sides, outward, pair, side, turns_inward
+
+# branches of the positive side; those of the negative side are one more
+ELASTIC, CRACKED, YIELDING, UNLOADING, TO_CORNER, TO_PINCH, TO_PEAK = 0, 1, 3, 5, 7, 9, 11
+# internal variables
+INNER, CORNERS, ORIGIN, TURN, LEFT = 2, 3, 7, 9, 11
+
+Point = tuple[float, float]  #: deformation and force, mirrored
+
+
+def of(p: Numbers, s: float) -> tuple[float, float, float, float]:
+    """Yield force, crack deformation and force, and yield deformation of a side."""
+    fy, share, rho = (p[1], p[5], p[7]) if s > 0.0 else (-p[2], p[6], p[8])
+    return fy, share * fy / p[0], share * fy, fy / (rho * p[0])
+
+
+def backbone(p: Numbers, s: float, x: float) -> tuple[float, float]:
+    """Slope and force of the backbone at a deformation beyond the crack."""
+    fy, xc, fc, xy = of(p, s)
+    if x >= xy:
+        slope = p[3] * fy / xy
+        return slope, fy + slope * (x - xy)
+    slope = (fy - fc) / (xy - xc)
+    return slope, fc + slope * (x - xc)
+
+
+def peak(p: Numbers, s: float, m: Numbers) -> Point:
+    """Largest deformation of a side and its force."""
+    x = m[0] if s > 0.0 else m[1]
+    return x, backbone(p, s, x)[1]
+
+
+def unloading(p: Numbers, s: float, x: float) -> float:
+    """Stiffness of unloading after a largest deformation `x`."""
+    fy, xc, _, xy = of(p, s)
+    if x <= xc:
+        return p[0]
+    soft = fy / xy * (x / xy) ** -p[4]
+    stiffness: float = max(min(p[0], soft), backbone(p, s, x)[1] / x)
+    return stiffness
+
+
+def softness(p: Numbers, s: float, m: Numbers) -> float:
+    """Stiffness of unloading of a side."""
+    return unloading(p, s, m[0] if s > 0.0 else m[1])
+
+
+def pinch(p: Numbers, s: float, m: Numbers) -> Point:
+    """Pinch point of a side."""
+    other = m[1] if s > 0.0 else m[0]
+    return max(0.5 * (other - of(p, -s)[3]), 0.0), p[9] * peak(p, s, m)[1]
+
+
+def corner(s: float, m: Numbers) -> Point:
+    """Corner of a side, or its last reversal while no inner loop is on; (0, 0): there was none."""
+    return (m[3], m[4]) if s > 0.0 else (m[5], m[6])
+
+
+def short(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
+    """Whether a point lies before the pinch point."""
+    xp, fp = pinch(p, s, m)
+    if m[0] > of(p, 1.0)[3] and m[1] > of(p, -1.0)[3]:
+        return x < xp
+    return f < fp
+
+
+def by_pinch(p: Numbers, s: float, m: Numbers, x: float, f: float) -> bool:
+    """Whether the way from a point to the peak leads over the pinch point."""
+    (xp, fp), (xt, ft) = pinch(p, s, m), peak(p, s, m)
+    flatter = (fp - f) * (xt - x) < (ft - f) * (xp - x)
+    return x < xp < xt and f <= fp < ft and flatter and ft - fp <= softness(p, s, m) * (xt - xp)
+
+
+def onward(p: Numbers, s: float, m: Numbers, x: float, f: float) -> int:
+    """Line that a loading side follows from a point on."""
+    return pair(TO_PINCH if by_pinch(p, s, m, x, f) else TO_PEAK, s)
+
+
+def end(p: Numbers, m: Numbers, at: int) -> Point:
+    """Point at which a loading line ends."""
+    s = side(at)
+    if at < TO_PINCH:
+        return corner(s, m)
+    return pinch(p, s, m) if at < TO_PEAK else peak(p, s, m)
+
+
+def started(m: Numbers, x: float, f: float) -> Numbers:
+    """Internal variables with the point where a line begins, mirrored."""
+    return (*m[0:7], x, f, m[9], m[10], m[11])
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: the crack points are the peaks."""
+    return ELASTIC, (of(p, 1.0)[1], of(p, -1.0)[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def line(p: Numbers, at: int, m: Numbers) -> tuple[float, float]:
+    """Slope of a loading line, and its force at zero deformation, mirrored."""
+    x0, f0 = m[ORIGIN], m[ORIGIN + 1]
+    x1, f1 = end(p, m, at)
+    slope = (f1 - f0) / (x1 - x0) if x1 > x0 else 0.0
+    return slope, f1 - slope * x1
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Elastic, along the backbone, unloading, or on a line of loading."""
+    if at == ELASTIC:
+        return linear(p[0], 0.0, above(of(p, 1.0)[1]), below(-of(p, -1.0)[1]))
+    s = side(at)
+    if at < UNLOADING:
+        xc, xy = of(p, s)[1], of(p, s)[3]
+        if at < YIELDING:
+            slope, f = backbone(p, s, xc)
+            return linear(slope, s * (f - slope * xc), turns_inward(s), outward(s, xy))
+        slope, f = backbone(p, s, xy)
+        return linear(slope, s * (f - slope * xy), turns_inward(s))
+    if at < TO_CORNER:
+        x, f, k = m[TURN], m[TURN + 1], softness(p, s, m)
+        return linear(k, s * (f - k * x), outward(s, x), inward(s, x - f / k))
+    slope, f = line(p, at, m)
+    return linear(slope, s * f, turns_inward(s), outward(s, end(p, m, at)[0]))
+
+
+def enter(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
+    """State on the backbone of a side."""
+    return pair(YIELDING if x >= of(p, s)[3] else CRACKED, s), m
+
+
+def load(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
+    """State at zero force, where a side begins to be loaded."""
+    m = started(m, x, 0.0)
+    xc, fc = corner(s, m)
+    if m[INNER] != 0.0 and x < xc and 0.0 < fc <= softness(p, s, m) * (xc - x):
+        return pair(TO_CORNER, s), m
+    return onward(p, s, m, x, 0.0), m
+
+
+def reverse(p: Numbers, at: int, m: Numbers, x: float, f: float) -> Numbers:
+    """Internal variables after a reversal: largest deformation, inner loop, corner, the point itself."""
+    s = side(at)
+    plus, minus, inner = m[0:3]
+    if at < UNLOADING:
+        plus, minus = (max(plus, x), minus) if s > 0.0 else (plus, max(minus, x))
+    own = corner(s, m)
+    if at < TO_CORNER or at >= TO_PINCH:
+        own, inner = (x, f), 1.0 if at >= UNLOADING and short(p, s, m, x, f) else 0.0
+    if s > 0.0:
+        return (plus, minus, inner, own[0], own[1], m[5], m[6], m[7], m[8], x, f, float(at))
+    return (plus, minus, inner, m[3], m[4], own[0], own[1], m[7], m[8], x, f, float(at))
+
+
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Crack, yield, reverse, return, come to zero force, or to the end of a line."""
+    if at == ELASTIC:
+        s = 1.0 if event == 0 else -1.0
+        return enter(p, m, s, of(p, s)[1])
+    s = side(at)
+    if UNLOADING <= at < TO_CORNER:
+        if event == 0:
+            return int(m[LEFT]), m
+        return load(p, m, -s, -(m[TURN] - m[TURN + 1] / softness(p, s, m)))
+    now = branch(p, at, m)
+    if event == 0:
+        return pair(UNLOADING, s), reverse(p, at, m, s * d, s * (now[0] * d + now[2]))
+    if at < YIELDING:
+        return pair(YIELDING, s), m
+    x, f = end(p, m, at)
+    if x >= peak(p, s, m)[0]:
+        return enter(p, m, s, x)
+    return onward(p, s, m, x, f) if at < TO_PINCH else pair(TO_PEAK, s), started(m, x, f)
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy recovered along the unloading line."""
+    if at == ELASTIC:
+        return 0.5 * f * f / p[0]
+    s = side(at)
+    x = m[0] if s > 0.0 else m[1]
+    if at < UNLOADING:
+        x = max(x, s * d)
+    return 0.5 * f * f / unloading(p, s, x)
+
+
+RULE = Rule(
+    (
+        *BranchKind.ELASTIC.named("elastic"),
+        *BranchKind.ELASTIC.named(*both_sides("cracked")),
+        *BranchKind.YIELDING.named(*both_sides("yielding")),
+        *BranchKind.ELASTIC.named(
+            *both_sides(
+                "unloading",
+                "reloading to the corner",
+                "reloading to the pinch point",
+                "reloading to the peak",
+            )
+        ),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+    parameters=10,
+    variables=12,
+)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two yield forces."""
+    need_both_sides(fy_plus, fy_minus)
+    fcr, rho = values["FCR"], values["RHO"]
+    p = (*(k, fy_plus, fy_minus, values["R"], values["ALFA"]), fcr[0], fcr[-1], rho[0], rho[-1])
+    return Law(RULE, (*p, values["PINCH"]))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "SCHOETTLER_RESTREPO",
+    "pinched, with cracking: reinforced concrete",
+    (
+        R,
+        ALFA,
+        Field(
+            "FCR",
+            Kind.REAL,
+            "-",
+            default=(0.5,),
+            above=0.0,
+            below=1.0,
+            count=(1, 2),
+            doc="force of the crack point as a share of the yield force, positive and negative side; "
+            "one value: "
+            "both",
+        ),
+        Field(
+            "RHO",
+            Kind.REAL,
+            "-",
+            default=(0.5,),
+            above=0.0,
+            below=1.0,
+            count=(1, 2),
+            doc="secant stiffness to the yield point as a share of the initial",
+        ),
+        Field(
+            "PINCH",
+            Kind.REAL,
+            "-",
+            default=1.0,
+            above=0.0,
+            hi=1.0,
+            doc="force of the pinch point as a share of that at the largest deformation; 1: no pinching",
+        ),
+        Field(
+            "DULT",
+            Kind.REAL,
+            "-",
+            default=None,
+            above=1.0,
+            count=(1, 2),
+            doc="ductility up to which the rule is known: beyond it the report warns; left out: none",
+        ),
+    ),
+    code=52,
+    reference="Ruaumoko rule 52, as its results show it",
+    sample="R=0.06 FCR=0.6 RHO=0.5 ALFA=0.4 PINCH=0.3",
+    impl=build,
+)

@@ -1,0 +1,72 @@
+"""Old decks changed at random: each is read or told, with places that exist; nothing else happens."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from legacy.decks import IN_SPACE, OSCILLATOR, PORTAL, STICK
+from pound_deck.diagnostics import has_errors
+from pound_deck.reader import read_text
+from pound_legacy.equake import File
+from pound_legacy.importer import translate
+from pound_legacy.recognise import is_legacy
+from pound_solve.catalog import catalog
+
+CATALOG = catalog()
+RECORD = File("quake.txt", "0.1\n" * 50)
+ITEMS = (
+    *("0", "-1", "1e400", "nan", "NODES", "PROPS", "EQUAKE", "START", "x", "99999999999", "1D3", "52", "'"),
+    *('"', "\0", "é", "!", "1e-320", "-0", "&", "SPRING", "FRAME", "4.5", "1000000", "100000"),
+)
+
+
+def damaged(text: str, rng: random.Random) -> str:
+    """A deck with one to six changes of lines, items or characters."""
+    lines = text.split("\n")
+    for _ in range(rng.choice((1, 1, 2, 3, 6))):
+        k = rng.randrange(len(lines))
+        items = lines[k].split(" ")
+        match rng.randrange(8):
+            case 0:
+                lines.insert(k, lines[rng.randrange(len(lines))])
+            case 1:
+                items[rng.randrange(len(items))] = rng.choice(ITEMS)
+                lines[k] = " ".join(items)
+            case 2:
+                del items[rng.randrange(len(items))]
+                lines[k] = " ".join(items)
+            case 3:
+                items.insert(rng.randrange(len(items) + 1), rng.choice(ITEMS))
+                lines[k] = " ".join(items)
+            case 4:
+                lines[k] = lines[k][: rng.randrange(len(lines[k]) + 1)]
+            case 5:
+                at = rng.randrange(len(lines[k]) + 1)
+                lines[k] = lines[k][:at] + chr(rng.randrange(1, 256)) + lines[k][at + 1 :]
+            case 6:
+                other = rng.randrange(len(lines))
+                lines[k], lines[other] = lines[other], lines[k]
+            case _:
+                lines = lines[: k + 1]
+    return "\n".join(lines)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_damaged_deck_is_read_or_told(seed):
+    rng = random.Random(seed)
+    ends = set()
+    for _ in range(60):
+        text = damaged(rng.choice((STICK, OSCILLATOR, PORTAL, IN_SPACE)), rng)
+        is_legacy(text)
+        records = [RECORD] if rng.random() < 0.7 else []
+        old = translate("old.dat", text, CATALOG, records, run=rng.random() < 0.3)
+        assert bool(old.text) != has_errors(old.report)
+        ends.add(bool(old.text))
+        for d in old.report:
+            assert d.span and 1 <= d.span.line <= max(len(text.splitlines()), 1)
+        if old.text:
+            _, found, _ = read_text(old.text, CATALOG, name="new")
+            assert all(d.span is None or d.span.file != "new" for d in old.moved(found, "new"))
+    assert ends == {True, False}

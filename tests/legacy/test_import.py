@@ -1,0 +1,258 @@
+"""Decks of Ruaumoko-2D: what comes of each item, on what ground, and where the mistakes stand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from legacy.decks import IN_SPACE, OSCILLATOR, PORTAL, STICK
+from pound_deck.diagnostics import MESSAGES, has_errors
+from pound_deck.reader import read_text
+from pound_legacy.equake import File
+from pound_legacy.importer import translate
+from pound_legacy.recognise import is_legacy
+from pound_solve.catalog import catalog
+from pound_solve.cli.main import main
+from pound_solve.driver.prepare import DeckError, prepare
+from pound_solve.driver.request import Request
+
+CATALOG = catalog()
+RECORD = File("quake.txt", "\n".join("0.1" for _ in range(50)))
+
+
+def read(text, *records, run=False):
+    return translate("old.dat", text, CATALOG, records, run=run)
+
+
+def model(text, *records):
+    old = read(text, *records)
+    assert not has_errors(old.report), old.report
+    new, found, _ = read_text(old.text, CATALOG)
+    assert new is not None, found
+    return new
+
+
+def codes(old):
+    return [d.code for d in old.report if d.code != "L606"]
+
+
+# ---------------------------------------------------------------------- recognised
+
+
+@pytest.mark.parametrize("text", [STICK, OSCILLATOR, PORTAL, IN_SPACE])
+def test_old_decks_are_recognised(text):
+    assert is_legacy(text)
+    assert is_legacy(text.replace("2 0 1 0 2 0 0 0 0 0 0", "2 0 l 0 2 0 0 0"))  # a slip, an item too few
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "TITLE x\nNODES\n 1 0 0 FIX=XYR\n 2 0 3\nELEMENTS\n 1 C 1 2\n",
+        "NODES\n 1 0 0\n 2 0 3\n 3 0 4\nNODES\n",
+        "one\n1 2 3 4 5 6 7 8\n1 2 3 4 5 6 7 8\n1 2 3 4 5 6 7 8\n1 2 3 4 5 6 7 8\n",
+    ],
+)
+def test_others_are_not(text):
+    assert not is_legacy(text)
+
+
+def test_a_deck_in_space_is_refused_in_one_sentence():
+    (found,) = read(IN_SPACE).report
+    assert found.code == "L601" and "plane" in found.message
+
+
+def test_what_is_no_old_deck():
+    assert [d.code for d in read("NODES\n 1 0 0\n").report] == ["L610"]
+
+
+# ---------------------------------------------------------------------- certain items
+
+
+def test_every_certain_item():
+    m = model(STICK)
+    assert m.title == "Two storeys of springs" and m.gravity == 9.81
+    assert (m.mass, m.geometry, m.units.length) == ("LUMPED", "SMALL", "m")
+    assert [(n.x, n.y, n.fixed, dict(n.slaved)) for n in m.nodes.values()] == [
+        (0.0, 0.0, "XYR", {}),
+        (3.0, 0.0, "YR", {}),
+        (6.0, 0.0, "YR", {}),  # KUP beside NF 0 has no effect
+    ]
+    assert [(e.prop, e.i, e.j) for e in m.elements.values()] == [("P1", 1, 2), ("P2", 2, 3)]
+    lower, upper = m.props["P1"], m.props["P2"]
+    assert (lower["KX"], lower["FX"], lower["R"]) == (6000.0, (12.0, -10.0), 0.05)
+    assert lower["RULE"] == ("BILINEAR", "ELASTIC", "ELASTIC") and lower["ANGLE"] == "MEMBER"
+    assert (upper["KX"], upper["RULE"]) == (5000.0, ("ELASTIC",))
+    assert [(w["NODES"], w["WX"], w["WY"]) for w in m.weights] == [((2,), 98.1, 0.0), ((3,), 49.05, 0.0)]
+    assert [(x["NODES"], x["FX"]) for x in m.loads] == [((3,), 0.5)]
+    assert [(d["I"], d["J"]) for d in m.drifts] == [(1, 3)]
+    (damping,) = m.damping
+    assert (damping.spec.name, damping["XI"], damping["MODES"]) == ("MODAL", (0.05, 0.05), (1, 2))
+    (motion,) = m.equake
+    assert (motion["FILE"], motion["START"], motion["SCALE"]) == ("old.dat", 0.01, 1.0)
+    assert [a.spec.name for a in m.analyses] == ["STATIC", "MODAL", "HISTORY"]
+    history = m.analyses[-1]
+    assert (history["T"], history["METHOD"], history["DT"]) == (0.4, "NEWMARK", 0.005)
+    assert m.output["EVERY"] == 0.01
+    assert codes(read(STICK, run=True)) == []
+
+
+def test_rule_52():
+    spring = model(OSCILLATOR).props["P1"]
+    given = {name: spring[name] for name in ("R", "FCR", "RHO", "DULT", "ALFA", "PINCH")}
+    assert given == {
+        "R": 0.06,
+        "FCR": (0.8, 0.7),
+        "RHO": (0.6, 0.5),
+        "DULT": (3.5, 3.0),
+        "ALFA": 0.4,
+        "PINCH": 0.3,
+    }
+    assert codes(read(OSCILLATOR, run=True)) == []
+
+
+def test_the_record_behind_the_deck_acts_from_the_line_that_istart_counts(tmp_path):
+    """Times of the file, not of the counters; the blank line within it ends nothing."""
+    deck = tmp_path / "old.dat"
+    deck.write_text(STICK)
+    ready = prepare(Request(str(deck)))
+    (motion,) = ready.motions
+    t = np.array([0.0, 0.01, 0.04, 0.05, 0.29])
+    assert motion.acceleration.value(t) == pytest.approx(
+        [0.0, 0.3 * 9.81, -0.2 * 9.81, 0.1 * 9.81, -0.1 * 9.81], abs=1e-9
+    )
+    assert [d.code for d in ready.warnings] == ["L606", "P318"]  # the drift is level
+
+
+def test_an_old_deck_runs_as_the_one_made_of_it(tmp_path, capsys):
+    deck = tmp_path / "old.dat"
+    deck.write_text(STICK)
+    assert main(["import", str(deck), "-o", str(tmp_path / "new.inp")]) == 0
+    assert "L606" in capsys.readouterr().err
+    assert main([str(deck), "--quiet"]) == 0 and main([str(tmp_path / "new.inp"), "--quiet"]) == 0
+    first, second = ((tmp_path / f"{stem}.rpt").read_text() for stem in ("old", "new"))
+    cut = [report[report.index("NODE ENVELOPE") : report.index("ENERGY")] for report in (first, second)]
+    assert cut[0] == cut[1]
+
+
+# ---------------------------------------------------------------------- what rests on convention
+
+
+def test_a_frame_is_imported_with_comments_and_not_run():
+    old = read(PORTAL, RECORD)
+    marked = [line for line in old.text.splitlines() if "BY CONVENTION" in line]
+    assert set(codes(old)) == {"L605"} and len(marked) == len(codes(old)) + 1  # one line explains the mark
+    m = model(PORTAL, RECORD)
+    column, beam = m.props["P1"], m.props["P2"]
+    assert (column["E"], column["A"], column["I"], column["END2"]) == (3e7, 0.16, 0.002, 0.2)
+    assert (column["RULE"], column["R"], column["ALFA"], column["MI"]) == ("TAKEDA", 0.03, 0.5, (120, -120))
+    assert (beam["RULE"], beam["M0"]) == ("ELASTIC", (30.0, -30.0))
+    assert (m.mass, m.geometry) == ("CONSISTENT", "PDELTA")
+    assert dict(m.nodes[3].slaved) == {"X": 2}
+    assert [(d.spec.name, d["XI"], d["STIFFNESS"]) for d in m.damping] == [
+        ("RAYLEIGH", (0.05, 0.03), "INITIAL")
+    ]
+    (motion,) = m.equake
+    assert (motion["FILE"], motion["DT"], motion["SCALE"]) == ("quake.txt", 0.02, 0.5 / 9.81)
+    ran = read(PORTAL, RECORD, run=True)
+    assert has_errors(ran.report) and not ran.text
+    assert "IBERG 6" in next(d.message for d in ran.report if d.code == "L606")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("2 0 1 0 2 0 0 0", "2 0 0 0 2 0 0 0", "stay elastic"),
+        ("2 0 1 0 2 0 0 0", "2 0 1 0 3 0 0 0", "BEYOND=CONSTANT"),
+        ("2 0 1 0 2 0 0 0", "1 0 1 0 2 0 0 0", "static and modal"),
+        ("2 3.0 0.0 0 1 1 0 0 0 0\n", "", "evenly between 1 and 3"),
+        ("1 1 1 2\n2 2 2 3", "2 1 1 2", "member 2 does not follow 0"),
+        ("WEIGHTS 0", "WEIGHTS 1", "masses"),
+        ("6000 0 0", "6000 100 0", "makes no moment"),
+        ("3 1 0.01 1 -1", "3 1 0.01 1 0.2", "cut at this time"),
+    ],
+)
+def test_conventions(old, new, words):
+    assert old in STICK
+    found = read(STICK.replace(old, new))
+    assert any(words in d.message for d in found.report), found.report
+
+
+def test_generated_nodes_lie_evenly():
+    text = STICK.replace("2 3.0 0.0 0 1 1 0 0 0 0\n", "").replace("1 0.0 0.0 1 1 1", "1 0.0 0.0 0 1 1")
+    m = model(text.replace("3 6.0 0.0 0 1 1 2 0", "3 6.0 1.0 0 1 1 0 0"))
+    assert (m.nodes[2].x, m.nodes[2].y, m.nodes[2].fixed) == (3.0, 0.5, "YR")
+
+
+# ---------------------------------------------------------------------- mistakes at their places
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code", "place"),
+    [
+        ("3 2 2 2 1 2 9.81", "3 2 2 2 1 2 g", "L603", (4, 13)),
+        ("3 2 2 2 1 2 9.81 5.0 5.0 0.005", "3 2 2 2 1 2 9.81 5.0 5.0 0", "L603", (4, 26)),
+        ("3 2 2 2 1", "3.5 2 2 2 1", "L603", (4, 1)),
+        ("3 2 2 2 1 2 9.81 5.0 5.0 0.005 0.4 1.0", "3 2 2 2 1 2", "L602", (4, 1)),
+        ("2 0 1 0 2 0 0", "2 0 1 0 4 0 0", "L604", (3, 9)),
+        ("2 0 1 0 2 0 0", "7 0 1 0 2 0 0", "L604", (3, 1)),
+        ("2 0 1 0 2 0 0", "2 1 1 0 2 0 0", "L604", (3, 3)),
+        ("2 3.0 0.0 0 1 1", "2 3.0 0.0 5 1 1", "L604", (10, 11)),
+        ("3 6.0 0.0", "4 6.0 0.0", "L608", (11, 1)),
+        ("2 2 2 3", "2 2 2 9", "L608", (18, 7)),
+        ("2 2 2 3", "2 3 2 3", "L608", (18, 3)),
+        ("1 2 0 0 6000", "1 45 0 0 6000", "L604", (22, 3)),
+        ("1 2 0 0 6000", "2 2 0 0 6000", "L604", (22, 1)),
+        ("2 SPRING", "2 WALL", "L604", (24, 3)),
+        ("3 49.05 0 0", "8 49.05 0 0", "L608", (29, 1)),
+        ("3 1 0.01 1 -1", "3 9 0.01 1 -1", "L608", (36, 3)),
+        ("3 1 0.01 1 -1", "2 1 0.01 1 -1", "L604", (36, 1)),
+        ("3 1 0.01 1 -1", "3 1 0.01 0 -1", "L603", (36, 10)),
+        ("ELEMENTS 0", "! gone", "L607", (1, 1)),
+        ("WEIGHTS 0", "NODES", "L607", (27, 1)),
+        ("2 0 1 0 2 0 0 0 0 0 0", "2 0 1 0 2 0 0 1 0 0 0", "L609", (3, 15)),
+    ],
+)
+def test_a_mistake_stands_at_its_place(old, new, code, place):
+    assert old in STICK
+    found = [d for d in read(STICK.replace(old, new, 1)).report if d.code == code]
+    assert place in [(d.span.line, d.span.column) for d in found], (
+        found,
+        read(STICK.replace(old, new, 1)).report,
+    )
+    assert all(d.hint for d in found)
+
+
+def test_a_record_in_a_file_of_its_own_must_be_named():
+    assert "L611" in codes(read(PORTAL))
+
+
+def test_all_messages_of_old_decks_are_in_use():
+    assert {c for c in MESSAGES if c.startswith("L")} == {f"L6{n:02}" for n in range(1, 13)}
+
+
+def test_a_mistake_of_the_model_is_told_at_the_old_line(tmp_path):
+    deck = tmp_path / "old.dat"
+    deck.write_text(STICK.replace("12 -10 0 0 0 0", "12 10 0 0 0 0"))
+    with pytest.raises(DeckError) as caught:
+        prepare(Request(str(deck)))
+    (found,) = [d for d in caught.value.diagnostics if d.severity == "error"]
+    assert (found.span.file, found.span.line) == (str(deck), 22)
+
+
+def test_three_formats_of_separate_records():
+    for code, items in (("0", {"FORMAT": "COLUMNS", "COLUMN": 0, "DT": 0.02}), ("1", {"FORMAT": "BERG"})):
+        (motion,) = model(PORTAL.replace("6 1 0.02", f"{code} 1 0.02"), RECORD).equake
+        assert {name: motion[name] for name in items} == items
+
+
+def test_the_verb_refuses_what_it_cannot_read(tmp_path, capsys):
+    deck = tmp_path / "old.dat"
+    deck.write_text("NODES\n 1 0 0\n")
+    assert main(["import", str(deck)]) == 2 and "L610" in capsys.readouterr().err
+    deck.write_text(STICK)
+    assert main(["import", str(deck), "-o", str(deck)]) == 2
+    assert deck.read_text() == STICK
+    assert main(["import", str(deck)]) == 0 and capsys.readouterr().out.startswith("TITLE Two storeys")
+    assert main(["import", str(tmp_path / "none.dat")]) == 3
