@@ -187,7 +187,6 @@ VARIANTS = (
     Variant("hardening 2 %", {"hard": 0.02}),
     Variant("hardening 5 %", {"hard": 0.05}),
     Variant("damped diaphragms", {"slabs": 1}),
-    Variant("columns at all nodes", {"bays": "n"}),
     Variant("contact of the stiffer element", {"ka": "kd1"}),
     Variant("contact of the harmonic mean", {"ka": "2*kd1*kd2/(kd1+kd2)"}),
 )
