@@ -160,12 +160,16 @@ def test_the_verbs_print_tables(tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("POUND_COMPILE", "0")
     path = study(tmp_path, "limit = 0.2")
     hunted(path)
-    assert main(["ida", str(path), "--workers", "1"]) == 0
+    picture = tmp_path / "pictures/ida.svg"
+    assert main(["ida", str(path), "--workers", "1", "--picture", str(picture)]) == 0
+    assert "peak drift storey" not in picture.read_text() and "peak drift [m]" in picture.read_text()
     out = capsys.readouterr().out
     assert "highest level" in out and "84 %" in out and "14 of them before" in out
     file = str(tmp_path / "walls.sweep/sweep.h5")
     words = ["fragility", file, "--demand", "peak_drift"]
-    assert main([*words, "--limit", "0.05,0.1", "--at", "0.2,0.5"]) == 0
+    picture = tmp_path / "pictures/fragility.svg"
+    assert main([*words, "--limit", "0.05,0.1", "--at", "0.2,0.5", "--picture", str(picture)]) == 0
+    assert "limit 0.1" in picture.read_text()
     assert "dispersion" in capsys.readouterr().out
     assert main(words) == 2
     assert main(["fragility", file, "--limit", "x"]) == 2

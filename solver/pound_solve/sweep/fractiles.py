@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from types import MappingProxyType
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from pound_deck.model import Units
 from pound_solve.numerics.types import Array
+from pound_solve.report.plot import suites
 from pound_solve.report.text import printed
 from pound_solve.results.schema import Column, Row, Table
 from pound_solve.results.sweep_file import Sweep
@@ -17,6 +19,13 @@ from pound_solve.sweep.curves import COLLAPSE, Asked, Curve, by_case, curves, me
 from pound_solve.sweep.incremental import STANDS, Rules, collapse, demand_at, ends
 
 FRACTILES: Final = (0.16, 0.5, 0.84)
+LEVEL_NAMES: Final = MappingProxyType(
+    {
+        "sa": "Sa / gravity [-]",
+        "pga": "peak acceleration / gravity [-]",
+        "scale": "factor on the record [-]",
+    }
+)
 ROWS: Final = 12  #: levels of the table of fractiles
 
 
@@ -82,6 +91,35 @@ def report(sweep: Sweep, asked: Asked, rules: Rules) -> Iterator[str]:
         yield ""
         yield from printed(units, table, rows_of_fractiles(analysis))
         yield ""
+
+
+def drawn(sweep: Sweep, asked: Asked, rules: Rules) -> list[suites.Curves]:
+    """What a picture of the analysis shows of every case."""
+    out = []
+    for case, own in by_case(curves(sweep, asked)).items():
+        analysis = Analysis(own, rules)
+        at = np.append(0.0, levels(analysis))
+        found = np.vstack([np.zeros(len(FRACTILES)), fractiles(analysis, at[1:])])
+        named = [
+            (f"{100 * q:.0f} %", np.where(np.isfinite(x), x, np.nan)) for q, x in zip(FRACTILES, found.T)
+        ]
+        out.append(suites.Curves(case, [_line(c, rules) for c in own], at, named))
+    return out
+
+
+def _line(curve: Curve, rules: Rules) -> tuple[Array, Array]:
+    """Demands and levels of a record that stands, from the origin on."""
+    stands, _ = collapse(curve.points, rules)
+    own = [(0.0, 0.0), *((p.demand, p.level) for p in curve.points if p.level <= stands)]
+    x, y = np.array(own).T
+    return x, y
+
+
+def axes_of(sweep: Sweep, asked: Asked) -> tuple[str, str]:
+    """Names of the demand and of the level, with their units."""
+    unit = "-" if asked.quantity == COLLAPSE else sweep.variables[asked.quantity].unit or "-"
+    demand = " ".join(filter(None, [asked.quantity.replace("_", " "), asked.label, f"[{unit}]"]))
+    return demand, LEVEL_NAMES[measure(sweep)]
 
 
 CAPACITIES: Final = Table(

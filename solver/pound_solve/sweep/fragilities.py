@@ -10,6 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from pound_deck.model import Units
+from pound_solve.report.plot import suites
 from pound_solve.report.text import printed
 from pound_solve.results.schema import Column, Row, Table
 from pound_solve.results.sweep_file import Sweep
@@ -26,6 +27,7 @@ from pound_solve.theory.fragility import (
 #: only a run that stops brings the structure down; a limit of the demand is a limit of its own
 STOPS: Final = Rules(step=1.0, slope=0.0)
 FEWEST: Final = 3  #: levels of a record that make a curve
+POINTS: Final = 200  #: of a curve that is drawn
 DIGITS: Final = 4  #: of probabilities that are printed
 
 
@@ -180,6 +182,25 @@ def _probable(found: Sequence[Fitted], at: Sequence[float]) -> Iterator[Row]:
     for f in found:
         values = f.fragility.probability(at) if f.fragility else np.full(len(at), math.nan)
         yield f.case, f.limit, *np.round(values, DIGITS).tolist()
+
+
+def drawn(found: Sequence[Fitted]) -> list[suites.Fragilities]:
+    """What a picture shows of the fragilities that could be fitted."""
+    out = []
+    most = max((x for f in found for x, _, _ in f.observed), default=0.0)
+    at = np.linspace(0.0, most, POINTS)[1:]
+    for f in found:
+        if f.fragility is not None:
+            limit = "" if math.isnan(f.limit) else f"limit {f.limit:g}"
+            level, exceeded, runs = np.array(f.observed, np.float64).T
+            title = ", ".join(filter(None, [f.case, limit])) or "collapse"
+            own, seen = f.fragility, (level, exceeded / runs) if f.method == "stripes" else (at[:0], at[:0])
+            out.append(
+                suites.Fragilities(
+                    title, at, own.probability(at), seen, own.median, tuple(own.median_interval)
+                )
+            )
+    return out
 
 
 def fragility_table(unit: str, level: float) -> Table[Sequence[Fitted]]:

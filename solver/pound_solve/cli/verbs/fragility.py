@@ -13,6 +13,7 @@ SUMMARY = "fragilities with intervals of confidence from the runs of a sweep"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("sweep", help="results of a sweep or of ida (sweep.h5)")
+    parser.add_argument("--picture", type=common.picture, metavar="FILE", help="draw the curves")
     text = "quantity of the sweep that counts, or collapse (default: storey_drift)"
     parser.add_argument("--demand", default="storey_drift", metavar="NAME", help=text)
     parser.add_argument("--label", default="", help="the one of its labels that counts (default: largest)")
@@ -36,10 +37,15 @@ def _share(word: str) -> float:
 
 def execute(args: argparse.Namespace) -> int:
     """Fit the fragilities and print them."""
+    from pound_solve.report.plot import suites
     from pound_solve.results import ResultsError
     from pound_solve.results.sweep_file import Sweep
     from pound_solve.sweep import fragilities
     from pound_solve.sweep.curves import Asked, CurveError
+    from pound_solve.sweep.fractiles import axes_of
+
+    if not common.drawable(args.picture):
+        return common.MISTAKES
 
     try:
         limits, at = (
@@ -55,4 +61,6 @@ def execute(args: argparse.Namespace) -> int:
     except ResultsError as err:
         return common.complain(str(err))
     print("\n".join(fragilities.report(sweep, asked, found, at)))
+    if args.picture:
+        suites.fragilities(fragilities.drawn(found), axes_of(sweep, asked)[1], args.picture)
     return common.DONE

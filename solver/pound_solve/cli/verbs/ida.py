@@ -25,6 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--workers", type=int, metavar="N", help="processes (default: one a processor)")
     parser.add_argument("--retry", action="store_true", help="try runs again that stopped or failed")
     parser.add_argument("--executor", default="", metavar="WHERE", help="dask://HOST:PORT, or dask")
+    parser.add_argument("--picture", type=common.picture, metavar="FILE", help="draw curves and fractiles")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
 
@@ -39,6 +40,8 @@ def execute(args: argparse.Namespace) -> int:
     from pound_solve.sweep.session import Session
     from pound_solve.sweep.study import StudyError, read
 
+    if not common.drawable(args.picture):
+        return common.MISTAKES
     document = Document.read(args.study)
     if args.out:
         document.given(("out",), str(args.out.absolute()), "--out", str(args.out))
@@ -61,6 +64,9 @@ def execute(args: argparse.Namespace) -> int:
 
 def _hunted(args: argparse.Namespace, session: Session, aim: Aim) -> int:
     """Run the rounds and tell what was found."""
+    from pound_solve.report.plot import suites
+    from pound_solve.results.sweep_file import Sweep
+    from pound_solve.sweep import fractiles
     from pound_solve.sweep.hunt import Hunt
 
     line = StatusLine(args.quiet)
@@ -72,11 +78,12 @@ def _hunted(args: argparse.Namespace, session: Session, aim: Aim) -> int:
     Hunt(session, aim).carry_out(report)
     line.clear()
     path = session.write()
+    sweep = Sweep.open(path)
+    if args.picture:
+        cases = fractiles.drawn(sweep, aim.asked, aim.rules)
+        suites.incremental(cases, *fractiles.axes_of(sweep, aim.asked), args.picture)
     if not args.quiet:
-        from pound_solve.results.sweep_file import Sweep
-        from pound_solve.sweep import fractiles
-
-        print("\n".join(fractiles.report(Sweep.open(path), aim.asked, aim.rules)))
+        print("\n".join(fractiles.report(sweep, aim.asked, aim.rules)))
         print("\n".join(session.summary()))
         print(f"{path.with_suffix('.csv')}\n{path}")
     return common.DONE if session.whole else common.STOPPED

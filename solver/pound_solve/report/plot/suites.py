@@ -1,0 +1,99 @@
+"""Pictures of many runs: curves of an incremental dynamic analysis with fractiles, and fragilities."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from pound_solve.numerics.types import Array
+from pound_solve.report.plot import style
+
+
+class Curves(NamedTuple):
+    """Records of one case.
+
+    Attributes
+    ----------
+    title : str
+    records : sequence of (Array, Array)
+        Demands and levels of every record, from the origin on.
+    levels : ndarray, shape (n,)
+    fractiles : sequence of (str, Array)
+        Name of a fractile, and its demands at the levels; infinite beyond the collapse.
+    """
+
+    title: str
+    records: Sequence[tuple[Array, Array]]
+    levels: Array
+    fractiles: Sequence[tuple[str, Array]]
+
+
+class Fragilities(NamedTuple):
+    """One fragility.
+
+    Attributes
+    ----------
+    title : str
+    levels, probability : ndarray, shape (n,)
+    observed : tuple of two ndarray
+        Levels, and shares of the runs there that exceed the limit.
+    median, interval : float, (float, float)
+        Median and the ends of its interval.
+    """
+
+    title: str
+    levels: Array
+    probability: Array
+    observed: tuple[Array, Array]
+    median: float
+    interval: tuple[float, float]
+
+
+def incremental(cases: Sequence[Curves], demand: str, level: str, path: Path) -> None:
+    """Draw the curves of every case, demand along x as usual.
+
+    Parameters
+    ----------
+    cases : sequence of Curves
+    demand, level : str
+        Names of the axes with their units.
+    path : Path
+        File, whose ending names the format.
+
+    Raises
+    ------
+    ImportError
+        matplotlib is not installed.
+    OSError
+        The file cannot be written.
+    """
+    figure, all_axes = style.panels(len(cases), "", (4.2, 3.4))
+    for n, (axes, case) in enumerate(zip(all_axes, cases)):
+        style.grid(axes, demand, "" if n else level)
+        for k, (x, y) in enumerate(case.records):
+            axes.plot(
+                x, y, color="0.65", linewidth=0.8, marker=".", markersize=3, label="" if k else "records"
+            )
+        for k, (name, values) in enumerate(case.fractiles):
+            axes.plot(values, case.levels, **style.stroke(k), label=name)
+        axes.set_xlim(left=0.0)
+        axes.set_ylim(bottom=0.0)
+        axes.set_title(case.title)
+    style.legend(all_axes[len(cases) - 1])
+    style.save(figure, path)
+
+
+def fragilities(found: Sequence[Fragilities], level: str, path: Path) -> None:
+    """Draw the curves with what was observed, and the median with its interval; see `incremental`."""
+    figure = style.figure(6.4, 4.2)
+    axes = style.grid(figure.add_subplot(), level, "probability [-]")
+    for k, own in enumerate(found):
+        look = style.stroke(k)
+        axes.plot(own.levels, own.probability, **look, label=own.title)
+        axes.plot(*own.observed, "o", color=look["color"], markersize=3)
+        axes.plot(own.interval, (0.5, 0.5), color=look["color"], linewidth=1.0, marker="|")
+    axes.set_ylim(0.0, 1.0)
+    axes.set_xlim(left=0.0)
+    style.legend(axes)
+    style.save(figure, path)
