@@ -196,9 +196,7 @@ def drawn(found: Sequence[Fitted]) -> list[suites.Fragilities]:
             title = ", ".join(filter(None, [f.case, limit])) or "collapse"
             own, seen = f.fragility, (level, exceeded / runs) if f.method == "stripes" else (at[:0], at[:0])
             out.append(
-                suites.Fragilities(
-                    title, at, own.probability(at), seen, own.median, tuple(own.median_interval)
-                )
+                suites.Fragilities(title, at, own.probability(at), seen, own.median, own.median_interval)
             )
     return out
 
