@@ -147,8 +147,8 @@ def test_a_table_that_a_verb_needs_and_a_file_lacks_is_named(tmp_path, capsys):
     with h5py.File(path, "r+") as file:
         del file["tables/nodes"]
         file.attrs["format_version"] = [1, 1]
-    assert main(["plot", str(path), "-o", str(tmp_path / "p")]) == 3
-    assert "no table 'nodes' in this file" in capsys.readouterr().err
+    assert main(["plot", str(path), "frame", "-o", str(tmp_path / "p")]) == 2
+    assert "lacks what the picture frame needs: nodes" in capsys.readouterr().err
 
 
 def test_the_seal_is_the_crc_32_of_all_before_it(tmp_path):

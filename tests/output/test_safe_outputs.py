@@ -220,7 +220,7 @@ def test_histories_may_be_packed_or_left_out(tmp_path):
     assert none.histories == ("time",) and len(none.time) == len(whole.time)
     for name in whole.histories:
         assert (whole.history(name) == packed.history(name)).all()
-    for name in set(whole.tables) - {"run_figures", "arrays", "imports", "options"}:
+    for name in set(whole.tables) - {"run_figures", "arrays", "imports", "options", "warnings"}:
         for other in (packed, none):
             assert repr(whole.table(name)) == repr(other.table(name)), name
     sizes = [results.path.stat().st_size for results in found.values()]

@@ -225,11 +225,13 @@ def test_a_second_signal_ends_the_process_at_once(monkeypatch):
     monkeypatch.setattr(os, "_exit", sys.exit)
     with pytest.raises(KeyboardInterrupt), Interruption() as interruption:
         os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(5)  # until it arrives
     with pytest.raises(KeyboardInterrupt):  # a library may have kept the first one back
         interruption.check()
     interruption.check()
     with pytest.raises(SystemExit, match="130"), interruption:
         os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(5)
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="signals")

@@ -98,7 +98,6 @@ def damped(card: str) -> object:
         (" MODAL XI=0.05 BUILDING=C\n", "there is no building 'C'; the buildings are A, B"),
         (" MODAL XI=0.05 BUILDING=A NODES=3\n", "BUILDING stands for all nodes of a building"),
         (" RAYLEIGH ALPHA=0.1 BUILDING=A NODES=3\n", "BUILDING stands for all nodes of a building"),
-        (" RAYLEIGH XI=0.05 MODES=1,4 BUILDING=B\n", "the building has 3 modes only"),
     ],
 )
 def test_what_is_refused(card: str, message: str) -> None:

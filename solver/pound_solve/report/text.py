@@ -128,18 +128,46 @@ def incomplete(results: Results) -> tuple[str, ...]:
 
 def _block(results: Results, table: Table[Any], limit: int | None) -> list[str]:
     """Lines of one table of the file with its notes; none when it has no rows."""
-    view, units = view_of(table.name, whole=limit == 0), results.units
-    if view is not None:
-        lines = []
-        for own in view(results):
-            shaped = _body(units, replace(table, columns=own.columns, group=""), own.rows)
-            lines += ["", *([_INDENT + own.title, ""] if own.title else []), *shaped]
-        return _with_notes(lines[1:], table, results.note(table.name))
-    rows, more = excerpt(results, table, limit)
-    return block(results.units, table, rows, results.note(table.name), more)
+    lines = []
+    for own in shown(results, table, limit):
+        lines += ["", *([_INDENT + own.title, ""] if own.title else [])]
+        lines += _body(results.units, own.table, own.rows)
+        if own.more:
+            lines += ["", _INDENT + own.more]
+    return _with_notes(lines[1:], table, results.note(table.name))
 
 
-def excerpt(results: Results, table: Table[Any], limit: int | None) -> tuple[NDArray[Any], str]:
+class Shown(NamedTuple):
+    """A part of a table as a report shows it.
+
+    Attributes
+    ----------
+    title : str
+        Line above it; empty for none.
+    table : Table
+        With the columns of the part.
+    rows : ndarray, structured
+    more : str
+        A line on the rows that are left out; empty for none.
+    """
+
+    title: str
+    table: Table[Any]
+    rows: NDArray[Any]
+    more: str = ""
+
+
+def shown(results: Results, table: Table[Any], limit: int | None) -> list[Shown]:
+    """Parts of a table of the file, in the shape in which it reads best; `limit` as of `render`."""
+    view = view_of(table.name, whole=limit == 0)
+    if view is None:
+        return [Shown("", table, *_excerpt(results, table, limit))]
+    return [
+        Shown(own.title, replace(table, columns=own.columns, group=""), own.rows) for own in view(results)
+    ]
+
+
+def _excerpt(results: Results, table: Table[Any], limit: int | None) -> tuple[NDArray[Any], str]:
     """Rows of a table that a report shows, and a line on those left out; `limit` as of `render`."""
     rows = results.table(table.name)
     most = table.limit if limit is None or not table.limit else limit

@@ -169,7 +169,7 @@ class Results:
                 out[name] = THERE.hexdigest()
 
         for group in self._file:
-            if group != "history":
+            if group != "history" and isinstance(self._file[group], h5py.Group):
                 self._file[group].visititems(lambda name, item, group=group: take(f"{group}/{name}", item))
         for name, dataset in self._datasets.items():
             take(f"history/{name}", dataset)

@@ -14,7 +14,7 @@ from itertools import accumulate
 from typing import Any, Final, NamedTuple
 
 from pound_solve.report.html.pictures import Picture, pictures
-from pound_solve.report.text import excerpt, formatted, incomplete
+from pound_solve.report.text import Shown, formatted, incomplete, shown
 from pound_solve.results import Results
 from pound_solve.results.contents import SECTIONS, TABLES
 from pound_solve.results.schema import Table
@@ -116,23 +116,34 @@ def _figure(place: str, picture: Picture) -> str:
 
 
 def _table(results: Results, table: Table[Any], number: str, limit: int | None) -> Iterator[str]:
-    """A table with its notes; nothing where it has nothing to show."""
-    rows, more = excerpt(results, table, limit)
-    columns, heads, cells, blocks = formatted(results.units, table, rows)
-    if not columns:
+    """A table with its notes, in one part or several; nothing where it has nothing to show."""
+    parts = [line for own in shown(results, table, limit) for line in _part(results, own)]
+    if not parts:
         return
     yield f"<h3>{number} {escape(table.title)}</h3>\n"
-    yield f'<div class="wide"><table id="{table.name}">\n<thead><tr>'
+    yield from parts
+    notes = (table.note, results.note(table.name))
+    yield from (f'<p class="note">{escape(text)}</p>\n' for text in notes if text)
+
+
+def _part(results: Results, own: Shown) -> Iterator[str]:
+    """A part of a table."""
+    columns, heads, cells, blocks = formatted(results.units, own.table, own.rows)
+    if not columns:
+        return
+    if own.title:
+        yield f"<p>{escape(own.title)}</p>\n"
+    yield f'<div class="wide"><table class="{own.table.name}">\n<thead><tr>'
     kinds = ["text" if c.is_text else "number" for c in columns]
     for column, kind in zip(columns, kinds):
         head = escape(heads[column.name]).replace("\n", "<br>")
         yield f'<th class="{kind}" aria-sort="none"><button type="button">{head}</button></th>'
     yield "</tr></thead>\n<tbody>\n"
-    starts = set(accumulate(blocks[:-1])) if len(blocks) < len(rows) else set()
+    starts = set(accumulate(blocks[:-1])) if len(blocks) < len(own.rows) else set()
     for place, row in enumerate(zip(*(cells[c.name] for c in columns))):
         yield '<tr class="block">' if place in starts else "<tr>"
         yield from (f'<td class="{kind}">{escape(cell)}</td>' for kind, cell in zip(kinds, row))
         yield "</tr>\n"
     yield "</tbody></table></div>\n"
-    notes = (more, table.note, results.note(table.name))
-    yield from (f'<p class="note">{escape(text)}</p>\n' for text in notes if text)
+    if own.more:
+        yield f'<p class="note">{escape(own.more)}</p>\n'

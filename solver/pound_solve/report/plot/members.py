@@ -39,12 +39,13 @@ def _words(results: Results, kind: str) -> list[set[str]]:
     elif kind == "contact":
         labels = results.labels("contact/force") if "contact/force" in results.histories else ()
         number = {contact_name(e): int(e["element"]) for e in elements}
-        numbers = [number[label] for label in labels]
+        numbers = [number.get(label, 0) for label in labels]
     else:
         numbers = members(results)
         labels = tuple(map(str, numbers))
     return [
-        {word.lower() for word in (label, str(n), names[n]) if word} for label, n in zip(labels, numbers)
+        {word.lower() for word in (label, str(n), names.get(n, "")) if word}
+        for label, n in zip(labels, numbers)
     ]
 
 
