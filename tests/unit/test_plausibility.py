@@ -108,7 +108,6 @@ def test_an_overlap_beyond_what_the_law_means_is_told(tmp_path):
         ("TABLE DEPTHS=0.001,0.002 FORCES=100,300", 0.002),
         ("RUBBER_BUMPER K=1E6 E=0.6 THICKNESS=0.003 KU=1E8", 0.003),
         ("RUBBER_BUMPER K=1E6 E=0.6", np.inf),
-        ("BILINEAR_IMPACT KH=1E7 E=0.6 DM=0.001", 0.001),
         ("KELVIN_VOIGT K=1E6 E=0.6", np.inf),
     ],
 )

@@ -159,9 +159,8 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         at = speed(k1, k2, dy, values["DM"], reduced_mass)
         relation = values["RELATION"].lower()
         note = f"{relation} relation of E; e depends on the speed: as given at {at:.4g}, which reaches DM"
-    limit = math.inf if plain else values["DM"]
     law = Law(RULE, (k1, k2, dy, values["GAP"]))
-    return Built(law, k1, 0.0, 0.0, required, given, note, limit=limit)
+    return Built(law, k1, 0.0, 0.0, required, given, note)
 
 
 def constants(values: Mapping[str, Any]) -> tuple[float, float, float]:
