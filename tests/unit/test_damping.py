@@ -248,7 +248,7 @@ def test_a_mode_beyond_the_last_is_the_last(card):
     last = len(frame(f" {card} MODES=1,2").free_vibration.omega)
     told, plain = frame(f" {card} MODES=1,99"), frame(f" {card} MODES=1,{last}")
     (found,) = told.remarks
-    assert (found.code, found.severity) == ("P346", "warning") and f"its last, {last}," in found.message
+    assert (found.code, found.severity) == ("P346", "warning") and f"its last one, {last}," in found.message
     assert np.array_equal(told.damping, plain.damping) and not plain.remarks
 
 
