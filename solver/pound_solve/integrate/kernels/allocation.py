@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pound_solve.integrate.kernels import state
-from pound_solve.integrate.kernels.state import MOST_SHOWN, Product, Rows, Scheme
+from pound_solve.integrate.kernels.state import Product, Rows, Scheme
 from pound_solve.integrate.protocol import MonitoredOutputs, Start
 from pound_solve.integrate.tracker import Extremes
 from pound_solve.laws.automaton import EVENTS, Rule
@@ -24,6 +24,9 @@ from pound_solve.structure.reduction import ReducedSystem
 #: samples and transitions kept between two visits of Python, which cost 2 ms each
 SAMPLES, TRANSITIONS, TIES = 1024, 4096, 64
 MOST_HELD = 2**20  #: numbers of one kind in those samples, at most, but for two
+FEWEST_SHOWN = (
+    64  #: motions of one step, and of whole steps between two visits, that envelopes see at least
+)
 INSTANT = 1e-6  #: share of the longest step that the time which tells massless velocities keeps below
 FULL_DIAGONAL = 0.25  #: part of a diagonal from which its zeros cost less than naming its entries
 
@@ -358,8 +361,8 @@ def buffers(n: int, n_laws: int, which: Index, acting: Index) -> state.Buffers:
     """
     samples = min(SAMPLES, max(MOST_HELD // (3 * max(n, n_laws, 1)), 2))
     log = TRANSITIONS + 16 * n_laws
-    # the parts of a step, which events cut, have room in any case
-    shown = MOST_SHOWN * log + max(min(16 * SAMPLES, MOST_HELD // max(3 * len(which) + len(acting), 3)), 2)
+    # half of it is for the parts of one step, which events cut
+    shown = 2 * max(min(16 * SAMPLES, MOST_HELD // max(3 * len(which) + len(acting), 3)), FEWEST_SHOWN)
     u, v, a = np.zeros((3, samples, n))
     force, stored, lost, dashpot = np.zeros((4, samples, n_laws))
     return state.Buffers(

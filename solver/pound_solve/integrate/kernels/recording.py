@@ -131,8 +131,11 @@ def take_first_sample(
 
 
 def store_motion(laws: Laws, step: Step, buffers: Buffers, rules: Tables, run: Run, t: float) -> None:
-    """Keep the present motion for the envelopes."""
-    if len(buffers.which) + len(buffers.acting) == 0:
+    """Keep the present motion for the envelopes.
+
+    Of a step that is cut into more parts than there is room for, the others are passed over.
+    """
+    if len(buffers.which) + len(buffers.acting) == 0 or run.shown == len(buffers.shown_time):
         return
     at, now = run.shown, step.now
     buffers.shown_time[at] = t

@@ -22,8 +22,6 @@ LOGGED = (
     10  #: columns of `Buffers.log`: law, branches before and after, t, d, v, force; peak, its time, impulse
 )
 
-MOST_SHOWN = 2  #: motions that envelopes see of a part of a step: at its end, before and after an event
-
 
 class Run(Protocol):
     """Counters and clocks of a run: a numpy record."""

@@ -29,7 +29,6 @@ from pound_solve.integrate.kernels.recording import (
 from pound_solve.integrate.kernels.state import (
     DONE,
     FULL,
-    MOST_SHOWN,
     NEWTON,
     PIVOT,
     RUNAWAY,
@@ -266,7 +265,7 @@ def advance(
         while run.step < steps[goal]:
             crowded = len(buffers.log) - run.logged < room or run.tied > len(buffers.ties) // 2
             # steps that have room
-            more = len(buffers.shown_time) - run.shown - MOST_SHOWN * len(buffers.log)
+            more = len(buffers.shown_time) // 2 - run.shown
             if crowded or more <= 0 or run.steps >= pause:
                 return FULL
             why = renew_factor(linear, laws, step, scheme, h, run)

@@ -29,7 +29,6 @@ from pound_solve.integrate.kernels.state import (
     CHATTER,
     CROWD,
     DONE,
-    MOST_SHOWN,
     NEWTON,
     PART,
     PIVOT,
@@ -286,8 +285,7 @@ def step_in_parts(
     most, curved = 100 + 8 * len(laws.rule), laws.curved.any()
     at = WHOLE if abs(length - h) <= 1e-9 * h else PART
     while left > 0.0:
-        full = run.shown + MOST_SHOWN > len(buffers.shown_time)
-        if full or len(buffers.log) - run.logged <= len(laws.coupled):
+        if len(buffers.log) - run.logged <= len(laws.coupled):
             return CROWD
         t, part = run.time, min(left, run.longest_part, longest)
         if at == PART or part < left:
