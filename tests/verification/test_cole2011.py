@@ -78,9 +78,10 @@ def test_finer_search_grid_finds_the_same_events() -> None:
     """REFINE halves the grid on which events are looked for: nothing may come or go, nor move beyond
     rounding."""
     text = DISTRIBUTED.read_text(encoding="utf-8")
-    fine = re.sub(r"^(\s*HISTORY\s+t)\s*$", r"\1  METHOD=EXACT REFINE=1", text, flags=re.M)
-    assert fine != text
-    a, b = run_text(text, {"n": 20}), run_text(fine, {"n": 20})
+    coarse = re.sub(r"^(\s*HISTORY\s+t)\s*$", r"\1  METHOD=EXACT", text, flags=re.M)
+    fine = coarse.replace("METHOD=EXACT", "METHOD=EXACT REFINE=1")
+    assert fine != coarse != text
+    a, b = run_text(coarse, {"n": 20}), run_text(fine, {"n": 20})
     events = [dict(zip(r.tables["run"]["item"], r.tables["run"]["value"])) for r in (a, b)]
     assert events[0]["events"] == events[1]["events"]
     assert int(events[1]["windows"]) > int(events[0]["windows"])  # the finer grid was used
