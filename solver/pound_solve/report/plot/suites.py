@@ -50,6 +50,7 @@ class Fragilities(NamedTuple):
     interval: tuple[float, float]
 
 
+@style.sheet()
 def incremental(cases: Sequence[Curves], demand: str, level: str, path: Path) -> None:
     """Draw the curves of every case, demand along x as usual.
 
@@ -84,6 +85,7 @@ def incremental(cases: Sequence[Curves], demand: str, level: str, path: Path) ->
     style.save(figure, path)
 
 
+@style.sheet()
 def fragilities(found: Sequence[Fragilities], level: str, path: Path) -> None:
     """Draw the curves with what was observed, and the median with its interval; see `incremental`."""
     figure = style.figure(6.4, 4.2)
