@@ -144,6 +144,12 @@ def test_mistakes_of_the_table_have_places(tmp_path, capsys, change, code, why):
     assert main(["ida", str(path)]) == 2 and why in capsys.readouterr().err
 
 
+def test_a_sweep_tells_whose_table_it_is(tmp_path, capsys):
+    assert main(["sweep", str(study(tmp_path))]) == 2
+    err = capsys.readouterr().err
+    assert "walls.toml:9:1: error S602: [ida] is a table of pound-solve ida" in err
+
+
 def test_what_a_sweep_does_not_hold_is_told(tmp_path):
     sweep, _ = hunted(study(tmp_path))
     for asked, why in (

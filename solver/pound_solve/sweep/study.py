@@ -11,6 +11,7 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Final
 
 from pound_deck.diagnostics import Diagnostic, has_errors, render, suggest
@@ -32,6 +33,9 @@ ITEMS: Final = (
     "deck", "decks", "records", "out", "method", "dt", "tol", "workers", "seconds", "memory", "histories",
     "grid", "zip", "cases", "motions",
 )  # fmt: skip
+
+#: tables that other verbs read
+OF_OTHERS: Final[Mapping[str, str]] = MappingProxyType({"ida": "pound-solve ida"})
 
 Params = tuple[tuple[str, str], ...]
 
@@ -104,7 +108,11 @@ class _Reader:
 
     def __init__(self, document: Document, tables: Sequence[str]) -> None:
         self.document = document
-        document.known((), (*ITEMS, *tables))
+        document.known((), (*ITEMS, *OF_OTHERS))
+        for name, verb in OF_OTHERS.items():
+            if name not in tables and document.at((name,)) is not None:
+                message = f"[{name}] is a table of {verb}, not of pound-solve sweep"
+                document.mistake("S602", message, (name,), f"run {verb}, or leave the table out")
         self.folders = tuple(self._beside(f) for f in document.listed(("records",), (str,)))
         self.motions = document.tables("motions")
         self.suites = [Suite(document, n, self.folders) for n in range(len(self.motions))]
