@@ -9,6 +9,7 @@ from typing import Final, NamedTuple, Self
 
 import numpy as np
 
+from pound_deck.model import Units
 from pound_solve.numerics.types import Array
 from pound_solve.results.sweep_file import RUN, Sweep
 from pound_solve.sweep.entry import DONE, STOPPED
@@ -78,6 +79,17 @@ def measure(sweep: Sweep) -> str:
         if name in sweep.variables:
             return name
     raise CurveError("its runs have no levels: the study needs [[motions]] with scale, pga or sa")
+
+
+def units_of(sweep: Sweep) -> Units:
+    """Force, length and time of the decks."""
+    force, length, time = sweep.about["units"].split()
+    return Units(force, length, time, given=True)
+
+
+def unit_of(sweep: Sweep, asked: Asked) -> str:
+    """Unit of the demand; empty for a collapse."""
+    return "" if asked.quantity == COLLAPSE else sweep.variables[asked.quantity].unit
 
 
 def demand(status: str, reached: float, values: Mapping[str, float], asked: Asked) -> float:

@@ -9,14 +9,13 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from pound_deck.model import Units
 from pound_solve.numerics.types import Array
 from pound_solve.report.plot import suites
 from pound_solve.report.text import printed
 from pound_solve.results.schema import Column, Row, Table
 from pound_solve.results.sweep_file import Sweep
-from pound_solve.sweep.curves import COLLAPSE, Asked, Curve, by_case, curves, measure
-from pound_solve.sweep.incremental import STANDS, Rules, collapse, demand_at, ends
+from pound_solve.sweep.curves import Asked, Curve, by_case, curves, measure, unit_of, units_of
+from pound_solve.sweep.incremental import STANDS, Rules, collapse, demand_at, ends, standing
 
 FRACTILES: Final = (0.16, 0.5, 0.84)
 LEVEL_NAMES: Final = MappingProxyType(
@@ -79,10 +78,8 @@ def report(sweep: Sweep, asked: Asked, rules: Rules) -> Iterator[str]:
     CurveError
         See `curves`.
     """
-    force, length, time = sweep.about["units"].split()
-    units = Units(force, length, time, given=True)
-    unit = "" if asked.quantity == COLLAPSE else sweep.variables[asked.quantity].unit
-    table = fractile_table(measure(sweep), unit)
+    units = units_of(sweep)
+    table = fractile_table(measure(sweep), unit_of(sweep, asked))
     yield f"Demand: {asked.quantity} {asked.label}".rstrip()
     for case, own in by_case(curves(sweep, asked)).items():
         analysis = Analysis(own, rules)
@@ -109,16 +106,14 @@ def drawn(sweep: Sweep, asked: Asked, rules: Rules) -> list[suites.Curves]:
 
 def _line(curve: Curve, rules: Rules) -> tuple[Array, Array]:
     """Demands and levels of a record that stands, from the origin on."""
-    stands, _ = collapse(curve.points, rules)
-    own = [(0.0, 0.0), *((p.demand, p.level) for p in curve.points if p.level <= stands)]
-    x, y = np.array(own).T
-    return x, y
+    levels, demands = np.array(standing(curve.points, rules)).T
+    return demands, levels
 
 
 def axes_of(sweep: Sweep, asked: Asked) -> tuple[str, str]:
     """Names of the demand and of the level, with their units."""
-    unit = "-" if asked.quantity == COLLAPSE else sweep.variables[asked.quantity].unit or "-"
-    demand = " ".join(filter(None, [asked.quantity.replace("_", " "), asked.label, f"[{unit}]"]))
+    unit = f"[{unit_of(sweep, asked) or '-'}]"
+    demand = " ".join(filter(None, [asked.quantity.replace("_", " "), asked.label, unit]))
     return demand, LEVEL_NAMES[measure(sweep)]
 
 

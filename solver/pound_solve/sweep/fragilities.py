@@ -9,12 +9,11 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from pound_deck.model import Units
 from pound_solve.report.plot import suites
 from pound_solve.report.text import printed
 from pound_solve.results.schema import Column, Row, Table
 from pound_solve.results.sweep_file import Sweep
-from pound_solve.sweep.curves import COLLAPSE, Asked, Curve, CurveError, by_case, curves
+from pound_solve.sweep.curves import COLLAPSE, Asked, Curve, CurveError, by_case, curves, unit_of, units_of
 from pound_solve.sweep.incremental import Rules, capacity
 from pound_solve.theory.fragility import (
     Fragility,
@@ -165,9 +164,7 @@ def _finite(x: float) -> float:
 
 def report(sweep: Sweep, asked: Asked, found: Sequence[Fitted], at: Sequence[float]) -> Iterator[str]:
     """The table of fragilities, and their probabilities at some levels, as the report prints tables."""
-    force, length, time = sweep.about["units"].split()
-    units = Units(force, length, time, given=True)
-    unit = "" if asked.quantity == COLLAPSE else sweep.variables[asked.quantity].unit
+    units, unit = units_of(sweep), unit_of(sweep, asked)
     sure = next((f.fragility.level for f in found if f.fragility is not None), math.nan)
     yield f"Demand: {asked.quantity} {asked.label}".rstrip()
     yield ""

@@ -25,7 +25,6 @@ TABLE: Final = "ida"  #: of a study
 DEMAND: Final = "storey_drift"
 LIMIT: Final = 0.1  #: of the demand by default, if that is the default
 ITEMS: Final = ("demand", "label", "step", "growth", "top", "runs", "close", "limit", "slope")
-FRACTILES: Final = (0.16, 0.5, 0.84)
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final, NamedTuple
 
+import numpy as np
+
 #: how a point counts
 STANDS, STOPPED, BEYOND, FLAT = "stands", "stopped", "beyond the limit", "flat"
 THIRD: Final = 1.0 / 3.0
@@ -158,24 +160,24 @@ def _fill(points: Sequence[Point], stands: float) -> float | None:
     return levels[at] + 0.5 * gaps[at]
 
 
+def standing(points: Sequence[Point], rules: Rules) -> list[Point]:
+    """The curve of a record up to the highest level that stands, from the origin on."""
+    stands, _ = collapse(points, rules)
+    return [Point(0.0, 0.0), *(p for p in points if p.level <= stands)]
+
+
 def capacity(points: Sequence[Point], rules: Rules, demand: float) -> tuple[float, bool]:
     """Level at which a demand is first reached, and whether it is: else the highest level that was run.
 
     Straight lines join the points, from the origin on.  Where the record collapses before, the capacity is
     in the middle of the bracket.
     """
-    stands, falls = collapse(points, rules)
-    below = Point(0.0, 0.0)
-    for point in points:
-        if point.level > stands:
-            break
+    for below, point in pairwise(standing(points, rules)):
         if point.demand >= demand:
             share = (demand - below.demand) / (point.demand - below.demand)
             return below.level + share * (point.level - below.level), True
-        below = point
-    if falls == math.inf:
-        return stands, False
-    return 0.5 * (stands + falls), True
+    stands, falls = collapse(points, rules)
+    return (stands, False) if falls == math.inf else (0.5 * (stands + falls), True)
 
 
 def demand_at(points: Sequence[Point], rules: Rules, level: float) -> float:
@@ -189,12 +191,5 @@ def demand_at(points: Sequence[Point], rules: Rules, level: float) -> float:
             return math.nan
         if level >= 0.5 * (stands + falls):
             return math.inf
-    below = Point(0.0, 0.0)
-    for point in points:
-        if point.level > stands:
-            break
-        if point.level >= level:
-            share = (level - below.level) / (point.level - below.level)
-            return below.demand + share * (point.demand - below.demand)
-        below = point
-    return below.demand
+    levels, demands = zip(*standing(points, rules))
+    return float(np.interp(level, levels, demands))
