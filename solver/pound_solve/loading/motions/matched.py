@@ -21,8 +21,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, RecordError, finish
-from pound_solve.loading.motions.synthetic import ENVELOPE, envelope, samples
+from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, RecordError
+from pound_solve.loading.motions.synthetic import ENVELOPE, envelope, of_samples, samples
 from pound_solve.loading.spectrum import response_spectrum
 from pound_solve.numerics.types import Array
 
@@ -83,20 +83,7 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
             "give another SEED, a longer STRONG, a smoother SPECTRUM or a larger TOL",
             "TOL",
         )
-    return finish(
-        card_values,
-        Piecewise.from_samples(t, a * float(card_values.get("SCALE", 1.0))),
-        context,
-        {
-            "kind": SPEC.name,
-            "name": f"{SPEC.name} SEED={seed}",
-            "unit": "DECK",
-            "npts": len(t),
-            "dt": dt,
-            "start": 0.0,
-        }
-        | {"seed": seed, "misfit": misfit},
-    )
+    return of_samples(SPEC, card_values, context, t, a, {"seed": seed, "misfit": misfit})
 
 
 def spectrum(points: Sequence[float], xi: float) -> Target:

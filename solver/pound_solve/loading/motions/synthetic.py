@@ -55,20 +55,29 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     a = np.fft.irfft(np.fft.rfft(noise) * transfer(w, wg, zg, wf, zf), n)
     a *= envelope(t, float(card_values["RISE"]), float(card_values["STRONG"]), float(card_values["DECAY"]))
     a *= float(card_values["PGA"]) / np.abs(a).max()
-    return finish(
-        card_values,
-        Piecewise.from_samples(t, a * float(card_values.get("SCALE", 1.0))),
-        context,
-        {
-            "kind": SPEC.name,
-            "name": f"{SPEC.name} SEED={seed}",
-            "unit": "DECK",
-            "npts": n,
-            "dt": dt,
-            "start": 0.0,
-        }
-        | {"seed": seed, "wg": wg, "zg": zg, "wf": wf, "zf": zf},
-    )
+    facts = {"seed": seed, "wg": wg, "zg": zg, "wf": wf, "zf": zf}
+    return of_samples(SPEC, card_values, context, t, a, facts)
+
+
+def of_samples(
+    spec: Spec,
+    card_values: Mapping[str, Any],
+    context: LoadingContext,
+    t: Array,
+    a: Array,
+    facts: Mapping[str, Any],
+) -> Motion:
+    """Motion of accelerations `a` [L/T^2] at the times `t` that a card asks for, see `samples`."""
+    own = {
+        "kind": spec.name,
+        "name": f"{spec.name} SEED={int(card_values['SEED'])}",
+        "unit": "DECK",
+        "npts": len(t),
+        "dt": float(card_values["DT"]),
+        "start": 0.0,
+    }
+    scaled = Piecewise.from_samples(t, a * float(card_values.get("SCALE", 1.0)))
+    return finish(card_values, scaled, context, own | dict(facts))
 
 
 def samples(card_values: Mapping[str, Any]) -> Array:
