@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from pound_solve.assess.law_test import (
@@ -115,6 +115,7 @@ def test_every_law_is_driven_to_its_end(spec: Any) -> None:
 
 
 @given(st.lists(st.floats(-5, 5), min_size=1, max_size=8), st.floats(0.0, 3.0), st.floats(0.0, 2.0))
+@example([2.0, 1.625, 1.75], 1.0, 2.0)  # let go with overlap left, pressed again before it is gone
 def test_rates_lose_energy_in_the_dashpot(path: list[float], rate: float, c: float) -> None:
     """Whatever the path: work is what is stored and lost, the loss never falls, the force never pulls."""
     found = trace(law("KELVIN_VOIGT", f"C={c!r}", "GAP=0.5"), path, rate)

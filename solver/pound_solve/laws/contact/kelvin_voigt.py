@@ -9,8 +9,8 @@ The dashpot is given as C, as damping ratio XI, or as restitution E.
 The relation of E to XI is the exact one of the form chosen, or by RELATION=PUBLISHED the published one,
 :math:`\xi = -\ln e / \sqrt{\pi^2 + \ln^2 e}`, which is exact only with tension.
 
-Energy: the dashpot's loss is the integral of :math:`c\dot\delta^2`; an overlap :math:`\delta_r` left at
-release loses :math:`\tfrac12 k\delta_r^2` as the contact element relaxes alone.
+Energy: the dashpot's loss is the integral of :math:`c\dot\delta^2`; of an overlap :math:`\delta_r` left at
+release the contact element loses :math:`\tfrac12 k(\delta_r^2 - \delta^2)` as it relaxes alone to :math:`\delta`.
 """
 
 from __future__ import annotations
@@ -59,8 +59,8 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
-    """Energy of the contact spring."""
-    return 0.5 * p[0] * (d - p[2]) ** 2 if at == PRESSED else 0.0
+    """Energy of the contact spring, which a released contact gives up to itself as the overlap goes."""
+    return 0.0 if at == OPEN else 0.5 * p[0] * (d - p[2]) ** 2
 
 
 RULE = Rule(
