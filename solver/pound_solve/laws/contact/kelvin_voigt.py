@@ -10,7 +10,8 @@ The relation of E to XI is the exact one of the form chosen, or by RELATION=PUBL
 :math:`\xi = -\ln e / \sqrt{\pi^2 + \ln^2 e}`, which is exact only with tension.
 
 Energy: the dashpot's loss is the integral of :math:`c\dot\delta^2`; of an overlap :math:`\delta_r` left at
-release the contact element loses :math:`\tfrac12 k(\delta_r^2 - \delta^2)` as it relaxes alone to :math:`\delta`.
+release the contact element loses :math:`\tfrac12 k(\delta_r^2 - \delta^2)` as it relaxes alone to
+:math:`\delta`.
 """
 
 from __future__ import annotations
