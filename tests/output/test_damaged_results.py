@@ -4,6 +4,7 @@ import random
 import struct
 import zlib
 from contextlib import suppress
+from io import BytesIO
 
 import h5py
 import numpy as np
@@ -12,6 +13,7 @@ import pytest
 from output import sample
 from pound_solve.cli.main import main
 from pound_solve.results import Results, ResultsError, Writer, seal
+from pound_solve.results.safe_file import SafeFile
 
 
 def everything(path):
@@ -151,10 +153,54 @@ def test_a_table_that_a_verb_needs_and_a_file_lacks_is_named(tmp_path, capsys):
     assert "lacks what the picture frame needs: nodes" in capsys.readouterr().err
 
 
-def test_the_seal_is_the_crc_32_of_all_before_it(tmp_path):
+def test_the_seal_is_the_crc_32_of_those_of_all_pages(tmp_path):
     data = sample.write(tmp_path / "a.h5").read_bytes()
     size, crc = struct.unpack("<QI", data[-12:])
-    assert size == len(data) - seal.LENGTH and crc == zlib.crc32(data[:size])
+    pages = [zlib.crc32(data[i : min(i + 2**15, size)]) for i in range(0, size, 2**15)]
+    assert len(pages) > 3 and size == len(data) - seal.LENGTH
+    assert crc == zlib.crc32(np.array(pages, "<u4").tobytes())
+
+
+def test_the_file_of_a_killed_run_is_sealed_too(tmp_path, monkeypatch):
+    """At every commit, whatever was written before; what lies behind the data is room, not data."""
+    path, rng = tmp_path / "a.h5", random.Random(1)
+    file = SafeFile(path)
+    for _ in range(60):
+        file.seek(rng.randrange(4 * file._size // 3 + 1))
+        file.write(memoryview(rng.randbytes(rng.choice([10, 1000, 100_000]))))
+        if rng.random() < 0.2:
+            file.truncate(rng.randrange(file._size))
+        file.commit()
+        data = bytearray(path.read_bytes())
+        assert seal.holds(BytesIO(data))
+        data[rng.randrange(file._size)] ^= 1 << rng.randrange(8)
+        assert seal.holds(BytesIO(data)) is False
+    file.end()
+    assert seal.holds(BytesIO(path.read_bytes()))
+    file.close()
+
+
+def test_a_file_whose_pages_are_being_laid_down_has_no_seal(tmp_path, monkeypatch):
+    """Killed amid a commit: the file is neither sealed nor told to be damaged."""
+    path = tmp_path / "a.h5"
+    file = SafeFile(path)
+    file.write(memoryview(bytes(range(256)) * 1000))
+    file.commit()
+    file.seek(0)
+    file.write(memoryview(b"again"))
+    seen = []
+    lay = SafeFile._lay
+    monkeypatch.setattr(
+        SafeFile,
+        "_lay",
+        lambda self, place, data: (
+            lay(self, place, data),
+            seen.append(seal.holds(BytesIO(path.read_bytes()))),
+        ),
+    )
+    file.commit()
+    assert seen == [None, None, True]
+    file.close()
 
 
 def test_what_a_user_adds_by_hdf5_is_no_damage_but_told(tmp_path, capsys):

@@ -111,7 +111,7 @@ class Results:
         try:
             with self.path.open("rb") as file:
                 sealed = holds(file)
-            if sealed is False and not damaged:
+            if sealed is False and not damaged and not in_use(self.path):
                 raise ResultsError(f"{path}: {NOT_AS_WRITTEN}")
             self._file = h5py.File(path, "r")
         except OSError as err:
@@ -141,7 +141,7 @@ class Results:
         self.units = Units(force, length, time, given=True)
         #: ``done``, ``stopped``, ``running``, or ``killed`` where it says so but nobody writes it any more
         self.status: str = _plain(attrs["status"])
-        if self.status == "running" and not in_use(self.path):
+        if self.status == "running" and in_use(self.path) is False:
             self.status = "killed"
         self._sealed = (major, minor) >= SEALED_SINCE
         self._complete = self.status in STATUSES and self._sealed

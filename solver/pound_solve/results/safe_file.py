@@ -7,6 +7,9 @@ A file whose disk is full therefore stands as the last commit left it.
 
 Some room stays reserved behind the data until the file is closed, so that the end of a run on a full disk
 can still be told.
+
+Each commit seals the file, see `seal`, so that the file of a run that was killed has a checksum, too.
+While pages are laid down it has none.
 """
 
 from __future__ import annotations
@@ -15,19 +18,18 @@ import errno
 import os
 import signal
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Final
 
 from pound_solve.results.form import ResultsError
-from pound_solve.results.seal import LENGTH, seal
+from pound_solve.results.seal import LENGTH, PAGE, checksums, seal
 
 try:
     import fcntl
 except ImportError:  # Windows, whose open files no other program can rename or remove
     fcntl = None  # type: ignore[assignment]
 
-PAGE: Final = 2**15  #: bytes kept together
 RESERVE: Final = 4 * PAGE  #: room held behind the data
 
 
@@ -76,6 +78,8 @@ class SafeFile:
         self.path = path
         self._disk = _locked(path)
         self._pages: dict[int, bytearray] = {}
+        self._sums: list[int] = []  # checksums of the pages on the disk
+        self._sealed = 0  # where the seal stands
         self._place = 0
         self._size = self._committed = self._room = 0
         self._reserve = RESERVE
@@ -154,18 +158,37 @@ class SafeFile:
             The disk is full: nothing was written, and all that was kept is forgotten.
         """
         try:
-            self._make_room(self._size + self._reserve)
+            self._make_room(self._size + self._reserve + LENGTH)
         except NoRoomError:
             self._reserve = 0  # what is left to be told may use it
             self.forget()
             raise
-        for number in sorted(
-            self._pages, reverse=True
-        ):  # the head of the file, which tells of the rest, last
-            self._disk.seek(number * PAGE)
-            self._disk.write(self._pages[number])
+        self._lay(self._sealed, bytes(LENGTH))
+        for number in sorted(self._pages, reverse=True):  # the head, which tells of the rest, last
+            self._lay(number * PAGE, self._pages[number])
+        self._sum_up(sorted(self._pages))
         self._pages.clear()
         self._committed = self._size
+        self._seal(self._room - LENGTH)
+
+    def _seal(self, place: int) -> None:
+        """Seal what stands on the disk, at the end of the file."""
+        self._sealed = place
+        self._lay(place, seal(self._sums, self._committed))
+
+    def _lay(self, place: int, data: bytes | bytearray) -> None:
+        self._disk.seek(place)
+        self._disk.write(data)
+
+    def _sum_up(self, changed: list[int]) -> None:
+        """Checksums of the pages that changed, those from the former end to the new one among them."""
+        count = -(-self._size // PAGE)
+        ends = range(min(self._committed, self._size) // PAGE, count)
+        self._sums = self._sums[:count] + [0] * (count - len(self._sums))
+        for number in {*changed, *ends}:
+            if number < count:
+                start = number * PAGE
+                self._sums[number] = next(checksums(self._disk, start, min(start + PAGE, self._size)))
 
     def forget(self) -> None:
         """Return to the last commit."""
@@ -186,17 +209,10 @@ class SafeFile:
         self._room = size
 
     def end(self) -> None:
-        """Seal the file, if the disk has room, and give the reserve back; from here on others may read the
-        file, not write it.
-        """
-        end = self._committed
-        with suppress(NoRoomError):
-            self._make_room(end + LENGTH)
-            own = seal(self._disk, end)
-            self._disk.seek(end)
-            end += self._disk.write(own)
-        self._disk.truncate(end)
-        self._room = end
+        """Give the reserve back and seal the file; from here on others may read the file, not write it."""
+        self._seal(self._committed)
+        self._disk.truncate(self._committed + LENGTH)
+        self._room = self._committed + LENGTH
         if fcntl is not None:
             fcntl.flock(self._disk, fcntl.LOCK_SH)
 
@@ -210,10 +226,10 @@ class SafeFile:
         self._disk.close()
 
 
-def in_use(path: Path) -> bool:
-    """Whether a program writes the file; True where that cannot be told."""
+def in_use(path: Path) -> bool | None:
+    """Whether a program writes the file; None where that cannot be told."""
     if fcntl is None:
-        return True
+        return None
     with path.open("rb") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)

@@ -1,9 +1,11 @@
-"""The seal of a results file: a checksum of all its bytes, which holds before HDF5 sees the first of them.
+"""The seal of a results file: a checksum of its bytes, compared before HDF5 sees the first of them.
 
-HDF5 trusts what it reads: a damaged heap can keep it busy without an end.  The seal stands behind the last
-byte of HDF5, which takes no notice of it.  A program that changes the file by HDF5 drops the seal, because
-HDF5 ends a file where its own data end; digests of the parts, see `form`, then tell what is as it was
-written.
+HDF5 trusts what it reads: a damaged heap can keep it busy without an end.  The seal is the last thing in
+the file, behind all that HDF5 wrote; HDF5 takes no notice of it.  A program that changes the file by HDF5
+drops the seal, because HDF5 ends a file where its own data end; digests of the parts, see `form`, then
+tell what is as it was written.
+
+The checksum is one of checksums of pages, so that a file that grows is sealed again at little cost.
 """
 
 from __future__ import annotations
@@ -11,32 +13,38 @@ from __future__ import annotations
 import os
 import struct
 import zlib
+from collections.abc import Iterator, Sequence
 from typing import IO, Final
 
-#: a mark, the number of bytes before the seal, their CRC-32
+PAGE: Final = 2**15  #: bytes with a checksum of their own
+#: a mark, the number of bytes that the seal knows, the CRC-32 of the CRC-32s of their pages
 _SEAL: Final = struct.Struct("<8sQI")
 _MARK: Final = b"\x93POUND\r\n"
 LENGTH: Final = _SEAL.size
-_BLOCK: Final = 2**18  #: bytes read at once
 
 
-def seal(file: IO[bytes], size: int) -> bytes:
-    """The seal of the first `size` bytes of a file."""
-    file.seek(0)
-    crc = 0
-    while size_left := size - file.tell():
-        block = file.read(min(_BLOCK, size_left))
-        if not block:
-            break
-        crc = zlib.crc32(block, crc)
-    return _SEAL.pack(_MARK, size, crc)
+def checksums(file: IO[bytes], start: int, end: int) -> Iterator[int]:
+    """CRC-32s of the pages of a file from one that begins at `start`; the last page ends at `end`."""
+    file.seek(start)
+    while start < end:
+        page = file.read(min(PAGE, end - start))
+        yield zlib.crc32(page)
+        start += PAGE
+
+
+def seal(pages: Sequence[int], size: int) -> bytes:
+    """The seal of `size` bytes whose pages have these checksums."""
+    return _SEAL.pack(_MARK, size, zlib.crc32(struct.pack(f"<{len(pages)}I", *pages)))
 
 
 def holds(file: IO[bytes]) -> bool | None:
     """Whether the bytes of a file are those that were sealed; None where it has no seal."""
-    size = file.seek(0, os.SEEK_END) - LENGTH
-    if size < 0:
+    end = file.seek(0, os.SEEK_END) - LENGTH
+    if end < 0:
         return None
-    file.seek(size)
+    file.seek(end)
     found = file.read(LENGTH)
-    return seal(file, size) == found if found.startswith(_MARK) else None
+    if not found.startswith(_MARK):
+        return None
+    size = _SEAL.unpack(found)[1]
+    return size <= end and seal(list(checksums(file, 0, size)), size) == found
