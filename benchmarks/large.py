@@ -17,8 +17,6 @@ from pathlib import Path
 
 from scale import chain, deck, row
 
-LIMIT = 120.0  #: CPU seconds that a process may take
-
 
 def crowd(n):
     """n equal bodies that strike n walls at one instant."""
@@ -57,7 +55,7 @@ CASES = {
 }
 
 
-def cost(folder, text, options):
+def cost(folder, text, options, limit):
     """CPU seconds, peak memory [MB] and how a process ended: its exit status, or a signal."""
     path = Path(folder, "large.inp")
     path.write_text(text, encoding="utf-8")
@@ -67,7 +65,7 @@ def cost(folder, text, options):
         ended, status, used = os.wait4(process, os.WNOHANG)
         if ended:
             return used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, os.waitstatus_to_exitcode(status)
-        if spent(process) > LIMIT:
+        if spent(process) > limit:
             os.kill(process, 9)
         time.sleep(0.1)
 
@@ -86,19 +84,23 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--only", nargs="+", default=list(CASES), metavar="NAME", help="; ".join(CASES))
     parser.add_argument("--most", type=float, default=math.inf, help="leave out larger sizes")
+    parser.add_argument("--limit", type=float, default=120.0, help="CPU seconds that a process may take")
     args = parser.parse_args()
     print("| what grows | size | method | CPU s | exponent | memory, MB | exponent |")
     print("|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
-        least = cost(folder, chain(1), STEPS)
+        least = cost(folder, chain(1), STEPS, args.limit)
         for name in args.only:
             make, sizes, methods = CASES[name]
             for options in methods:
                 method, before = options[1] if options else "AUTO", None
                 for size in (s for s in sizes if s <= args.most):
-                    *used, status = cost(folder, make(size), options)
+                    *used, status = cost(folder, make(size), options, args.limit)
                     if status:
-                        print(f"| {name} | {size} | {method} | > {used[0]:.0f} | - | {used[1]:.0f} | - |")
+                        print(
+                            f"| {name} | {size} | {method} | > {used[0]:.0f} | - | {used[1]:.0f} | - |",
+                            flush=True,
+                        )
                         break
                     slopes = ["-", "-"]
                     if before:
