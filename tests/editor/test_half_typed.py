@@ -41,7 +41,7 @@ PIECES = [
     "\t",
 ]
 SORTS = ("node", "element", "property set", "PARAM")
-quiet = settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+quiet = settings(max_examples=100, suppress_health_check=[HealthCheck.too_slow])
 
 
 @quiet

@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[2]
 DECKS = [*sorted((ROOT / "examples").rglob("*.in[pc]")), *sorted((ROOT / "tests").rglob("*.inp"))]
 #: what stands between two items; a line that goes on may hold comments
 GAPS = ["  ", "\t", "       ", " &\n", "  &  ! goes on\n\n! between\n   "]
-quiet = settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+quiet = settings(max_examples=100, suppress_health_check=[HealthCheck.too_slow])
 
 
 def text_of(path):

@@ -46,9 +46,7 @@ WORDS = (
     + list("()=,+-*/^'\"!&#\n\n\n ")
     + ["TO", "BY", "END", "1e999", "nan", "INCLUDE", "&\n", "\t"]
 )
-quiet = settings(
-    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+quiet = settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 def check_reading(text, catalog):

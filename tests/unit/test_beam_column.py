@@ -106,7 +106,7 @@ def test_springs_of_a_steel_section():
     assert made.shift == pytest.approx(0.0, abs=1e-15) and made.skew < 1e-14
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(corners=symmetric_diagrams())
 def test_every_symmetric_diagram_is_that_of_its_springs(corners):
     made = springs(corners)
@@ -158,7 +158,7 @@ def skew_by_hand(a: Array, b: Array) -> float:
 # ---------------------------------------------------------------------- the member
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(corners=symmetric_diagrams(), lp=st.floats(0.02, 0.1), ends=st.sampled_from(["I", "J", "BOTH"]))
 def test_elastic_it_is_a_frame(corners, lp, ends):
     """Also where the diagram is lopsided and its springs couple stretch and bend."""

@@ -102,7 +102,7 @@ class Impact:
 
 
 @pytest.mark.parametrize(("name", "items"), FORMS, ids=IDS)
-@settings(max_examples=3, deadline=None, phases=(Phase.explicit, Phase.generate))
+@settings(max_examples=3, phases=(Phase.explicit, Phase.generate))
 @given(
     e=st.floats(0.05, 1.0),
     v0=st.floats(0.01, 10.0),

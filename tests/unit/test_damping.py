@@ -187,7 +187,7 @@ CARDS = st.one_of(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(cards=st.lists(CARDS, min_size=1, max_size=3), mass=st.sampled_from(["LUMPED", "CONSISTENT"]))
 def test_damping_is_symmetric_and_takes_energy(cards, mass):
     c = frame("\n".join(" " + x for x in cards), mass).damping

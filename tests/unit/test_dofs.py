@@ -38,7 +38,7 @@ def test_moved_supports_come_last_and_are_no_unknowns():
     assert f.terms[1, 0] == ((2, 1.0),) and f.terms[1, 2] == ()
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(x=st.floats(-5, 5), y=st.floats(-5, 5), u=st.tuples(*[st.floats(-1, 1)] * 3))
 def test_a_slave_moves_as_a_rigid_body_with_its_master(x, y, u):
     """The slave stands before its master in the deck: order must not matter."""

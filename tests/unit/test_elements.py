@@ -37,7 +37,7 @@ def test_directions_drop_what_is_rounding_of_coordinates():
     assert direction(3.0, -4.0) == (0.6, -0.8)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     angle=st.floats(-180, 180),
     f=st.tuples(st.floats(-9, 9), st.floats(-9, 9), st.floats(-9, 9)),
@@ -104,7 +104,7 @@ def test_yield_forces_are_signed():
         structure_of("NODES\n 1 0 0\nELEMENTS\n 4 S 1\nPROPS\n S SPRING KX=1 FX=5,5 RULE=ELASTO_PLASTIC")
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(angle=st.floats(-180, 180))
 def test_dashpot_is_a_spring_on_velocities(angle):
     head = "NODES\n 1 0 0\n 2 1 0.5\nELEMENTS\n 4 S 1 2\nPROPS\n S "

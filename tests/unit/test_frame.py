@@ -107,7 +107,7 @@ def balanced(s: Solved, force, moment):
 
 
 @pytest.mark.parametrize("shear", [False, True])
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(angle=angles, n=st.floats(0.5, 20.0), px=st.floats(-9, 9), py=st.floats(-9, 9), m=st.floats(-9, 9))
 def test_cantilever_with_tip_loads(shear, angle, n, px, py, m):
     fx, fy = stationary(angle, px, py)
@@ -128,7 +128,7 @@ def test_cantilever_with_tip_loads(shear, angle, n, px, py, m):
 
 
 @pytest.mark.parametrize("shear", [False, True])
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     angle=angles,
     n=st.floats(0.5, 20.0),
@@ -158,7 +158,7 @@ def test_cantilever_with_member_loads(shear, angle, n, wx, wy, p, at):
 
 @pytest.mark.parametrize("pin", ["NONE", "I", "J", "BOTH"])
 @pytest.mark.parametrize("shear", [False, True])
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(angle=angles, n=st.floats(0.5, 20.0), w=st.floats(-9, 9), p=st.floats(-9, 9), at=st.floats(0, 1))
 def test_clamped_member_with_pins(pin, shear, angle, n, w, p, at):
     """Both nodes clamped, the pins in the member: end forces and reactions by the force method."""
@@ -211,7 +211,7 @@ def test_self_weight_is_a_load_and_can_be_switched_off(angle):
     assert not np.any(off.u[2]) and off.structure.mass.any()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     angle=angles,
     n=st.floats(1.0, 20.0),
@@ -285,7 +285,7 @@ def test_cantilever_with_end_blocks_in_closed_form():
     close(s.reaction[1], [0.0, -p, -p * n])
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(angle=angles, px=st.floats(-5, 5), py=st.floats(-5, 5))
 def test_rotating_the_model_changes_no_scalar(angle, px, py):
     """A bent with shear deformation, end blocks, a pin and springs, turned as a whole with its loads."""
@@ -375,7 +375,7 @@ LOADS
     close(other.force[1, "shear J"], -first.force[1, "shear I"])
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(angle=angles, at=st.floats(0, 1))
 def test_axial_bar_hands_on_loads_without_moments(angle, at):
     """I = 0: half of a uniform load to each end, a point load by the lever rule, no moment on any node."""
@@ -407,7 +407,7 @@ LOADS
     close(s.reaction[1][1] + s.reaction[2][1], 10 + 2 * 2 * length)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     angle=angles,
     n=st.floats(1.0, 9.0),

@@ -58,7 +58,7 @@ def test_elastic_members_have_nothing_of_hinges():
     assert not s.laws and len(s.dofs.free) == 3 and not s.parts[7].internal()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     angle=st.floats(-180, 180),
     ends=st.tuples(st.floats(0, 0.5), st.floats(0, 0.5)),
@@ -84,7 +84,7 @@ def test_a_hinge_length_leaves_the_elastic_member_as_it_is(angle, ends, lp, fj, 
     close(b.reaction[1], a.reaction[1], 1e-10)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(k=st.tuples(st.floats(1e3, 1e7), st.floats(1e3, 1e7)), angle=st.floats(-180, 180))
 def test_a_hinge_stiffness_is_a_flexible_joint_before_yield(k, angle):
     """KH adds the rotation M/KH: the same as the elastic joint flexibility FJ = 1/KH."""

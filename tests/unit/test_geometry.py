@@ -70,7 +70,7 @@ def test_the_matrix_of_a_bent_member():
         assert g.matrix == pytest.approx(expected, abs=1e-15)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     x=st.floats(-5, 5),
     y=st.floats(1, 5),

@@ -222,7 +222,7 @@ def bounds(law: Law, sample: dict[str, Any], minus: float) -> Callable[[float, f
 numbers = st.lists(st.floats(-REACH, REACH), min_size=1, max_size=30)
 
 
-@settings(max_examples=12, derandomize=True, deadline=None)
+@settings(max_examples=12)
 @given(path=numbers)
 @every
 def test_any_history_keeps_within_the_backbone(law: Law, sample: dict[str, Any], path: list[float]) -> None:

@@ -174,7 +174,7 @@ goals = st.lists(st.floats(-16.0, 16.0), min_size=1, max_size=15)
 modes = st.tuples(*[st.sampled_from([0.0, 40.0, 200.0])] * 3)
 
 
-@settings(max_examples=60, derandomize=True, deadline=None)
+@settings(max_examples=60)
 @given(path=goals, modes=modes, r=st.sampled_from([0.0, 0.05, 0.2]))
 @every
 def test_no_force_beyond_the_virgin_backbone_nor_stiffer_than_at_first(
@@ -192,7 +192,7 @@ def test_no_force_beyond_the_virgin_backbone_nor_stiffer_than_at_first(
                 assert f <= max(2.0, cap * (1.0 - (abs(d) - 10.0) / 20.0)) + 1e-9
 
 
-@settings(max_examples=60, derandomize=True, deadline=None)
+@settings(max_examples=60)
 @given(path=goals, r=st.sampled_from([0.0, 0.05, 0.2]), residual=st.sampled_from([0.0, 0.3]))
 @every
 def test_without_deterioration_the_loss_never_falls(

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from paths import Walk
@@ -75,7 +75,6 @@ def test_a_flag_dissipates_its_area(r: float, beta: float, d: float) -> None:
     assert walk.work - before == pytest.approx(beta * (1.0 - r) * 10.0 * (d - 1.0), rel=1e-13)
 
 
-@settings(deadline=None)
 @given(
     st.lists(st.floats(-9.0, 9.0), min_size=1, max_size=20),
     st.sampled_from([0.0, 0.2]),

@@ -242,7 +242,7 @@ def test_reversals_beyond_the_memory() -> None:
         assert forces(law, [*path, far])[-1] == pytest.approx(expected, rel=1e-12)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.lists(st.floats(-9.0, 9.0), min_size=1, max_size=40))
 def test_any_history_stays_inside_the_outermost_loop(path: list[float]) -> None:
     """Between the branches from the largest deformation so far and from its mirror image."""

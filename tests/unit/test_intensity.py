@@ -105,7 +105,7 @@ def test_the_quadrature_of_the_spectrum_intensity() -> None:
     assert housner(ground) == pytest.approx(expected, rel=3e-3)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 1000), st.floats(0.1, 10.0))
 def test_properties(seed: int, factor: float) -> None:
     rng = np.random.default_rng(seed)

@@ -198,7 +198,7 @@ def judge(c: Array, end: float, tol: float) -> None:
         assert fine.max() > tol - slack
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=400)
 @given(
     c=polynomials,
     end=st.sampled_from([1.0, 0.37, 1e-3]),
@@ -213,7 +213,7 @@ def test_no_rise_is_missed(c: Array, end: float, tol: float) -> None:
     judge(c, end, tol)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(roots=st.lists(st.floats(-0.5, 1.5), min_size=1, max_size=7), sign=st.sampled_from([-1.0, 1.0]))
 def test_the_first_rise_among_known_roots(roots: list[float], sign: float) -> None:
     """Well apart, they are found; a value above zero at the start is no rise."""
@@ -236,7 +236,6 @@ def test_the_first_rise_among_known_roots(roots: list[float], sign: float) -> No
     assert found == pytest.approx(rises[0], abs=noise(c) / steep + 4 * EPS)
 
 
-@settings(deadline=None)
 @given(at=st.floats(0.05, 0.95), narrow=st.floats(1e-4, 0.04), bend=st.floats(0.5, 20))
 def test_two_crossings_however_near_are_not_passed(at: float, narrow: float, bend: float) -> None:
     """-bend (s - a)(s - b), above zero between: as high as bend (b - a)^2 / 4, well above 1e-12."""
@@ -249,7 +248,6 @@ def test_two_crossings_however_near_are_not_passed(at: float, narrow: float, ben
     assert found <= at + within + 4 * noise(c) / (bend * narrow)
 
 
-@settings(deadline=None)
 @given(at=st.floats(0.0, 1.0), bend=st.floats(0.1, 30), lift=st.floats(-1.0, 0.99))
 def test_a_touch_that_rises_by_less_than_the_tolerance_is_none(at: float, bend: float, lift: float) -> None:
     tol = 1e-10
@@ -303,7 +301,7 @@ def test_a_rise_at_the_start() -> None:
 # ---------------------------------------------------------------- extremes
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=400)
 @given(c=polynomials, end=st.sampled_from([1.0, 0.4, 1e-3]))
 @example(c=np.array([2.0]), end=1.0)
 @example(c=with_roots(*[0.5] * 8, lead=-1.0), end=1.0)
@@ -329,7 +327,7 @@ def test_an_interval_of_no_length_is_its_start() -> None:
     assert polynomial_roots.first_rise(p, terms, 0.0, 1e-12) == -1.0
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(parts=waves, shift=st.floats(-1.5, 0.5), tiny=st.sampled_from([1.0, 1e-9, 1e-18]))
 def test_waves_are_searched_in_few_cells(
     halved: list[float], parts: list[tuple[float, float, float, float]], shift: float, tiny: float

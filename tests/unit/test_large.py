@@ -58,7 +58,7 @@ PROPS
 """
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     section=st.sampled_from(SECTIONS),
     turn=st.floats(-9.0, 9.0),
@@ -84,7 +84,7 @@ def test_a_member_that_moves_as_a_whole_has_no_forces(section, turn, shift):
     assert np.abs(s.member_forces(full)).max() < 1e-14 * size
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(section=st.sampled_from(SECTIONS), seed=st.integers(0, 2**32 - 1))
 def test_forces_are_the_gradient_of_the_potential_and_the_tangent_that_of_the_forces(section, seed):
     s = structure_of(member("LARGE", section, "N0=100 M0=20,30"))

@@ -40,7 +40,7 @@ def chain(n, free=False):
     return k, matrices.selection(n, i)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 10_000), st.integers(1, 12), st.integers(1, 12))
 def test_sparse_and_plain_say_the_same(seed, n, m):
     rng = np.random.default_rng(seed)
@@ -61,7 +61,7 @@ def test_sparse_and_plain_say_the_same(seed, n, m):
     )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 10_000), st.integers(2, 20))
 def test_the_factor_solves_and_counts_negative_eigenvalues(seed, n):
     rng = np.random.default_rng(seed)

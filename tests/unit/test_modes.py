@@ -214,7 +214,7 @@ WEIGHTS
     assert s.free_vibration.omega[1] == pytest.approx(math.sqrt(2e10), rel=1e-9)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.data())
 def test_random_systems(data):
     """Any K = B'B and lumped or consistent M, massless DOFs among them:

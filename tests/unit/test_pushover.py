@@ -606,7 +606,7 @@ LOADS
 # properties
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     strengths=st.lists(st.floats(0.5, 5), min_size=6, max_size=6),
     hard=st.floats(-0.05, 0.4),

@@ -54,7 +54,7 @@ def speeds(r: Ran) -> Array:
 
 
 @BOTH
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(
     st.floats(0.01, 100.0),
     st.floats(0.01, 100.0),
@@ -110,7 +110,7 @@ def test_what_is_symmetric_stays_symmetric(method: str) -> None:
     assert len(r.tables["collisions"]) == 2
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(2, 6), st.integers(0, 10**6))
 def test_impacts_keep_momentum_and_never_win_energy(n: int, seed: int) -> None:
     """Rows of any masses that all touch, each contact with an E of its own."""

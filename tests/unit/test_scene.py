@@ -284,7 +284,7 @@ ANALYSIS
     same_response(place)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.data())
 def test_random_frames_lose_nothing(data):
     """A pile of storeys with random damping groups and dashpots: harmonic response as assembled."""

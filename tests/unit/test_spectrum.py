@@ -167,7 +167,7 @@ def test_peaks_lie_between_the_samples() -> None:
     assert response_spectrum(ground, 1.0, 0.0).psa[0, 0] == pytest.approx(2.0, rel=1e-12)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 1000), st.floats(0.003, 20.0), st.floats(0.0, 0.9), st.floats(0.1, 10.0))
 def test_properties(seed: int, period: float, xi: float, factor: float) -> None:
     ground = noise(seed, 12)

@@ -165,7 +165,7 @@ LOADS
 """
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(gap=st.floats(-0.5, 0.5), load=st.floats(-50, 50))
 @example(gap=-0.1, load=-50.0)  # an overlap that the load pulls open
 @example(gap=-0.1, load=-5.0)  # and one that it does not
@@ -215,7 +215,7 @@ def test_a_contact_that_touches_only_for_a_while():
     assert s.state.events == 3
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(angle=st.floats(-180, 180), load=st.floats(1, 30))
 def test_an_oblique_contact_presses_along_its_normal(angle, load):
     """A node on an isotropic spring against a wall at any angle: u = (F - f n)/k, f the contact's force."""
@@ -385,7 +385,7 @@ def test_nothing_loaded_is_nothing_moved():
 # many springs at once
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     strengths=st.lists(st.floats(0.5, 5), min_size=9, max_size=9),
     loads=st.lists(st.floats(-12, 12), min_size=4, max_size=4),
@@ -533,7 +533,7 @@ LOADS
     assert rows["sum"] == pytest.approx((0, 0, 0), abs=1e-12)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(
     seats=st.lists(st.floats(-3, 3), min_size=8, max_size=8),
     loads=st.lists(st.floats(-50, 50), min_size=6, max_size=6),

@@ -251,7 +251,7 @@ def least_energy(k: Array, p: Array, rows: Array, gaps: Array) -> Array:
     raise AssertionError("none is in equilibrium")
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 10**6), st.integers(2, 5))
 def test_any_row_of_masses_finds_its_equilibrium(seed: int, n: int) -> None:
     """Masses on springs, contacts between neighbours and walls at both ends, some of them touching."""

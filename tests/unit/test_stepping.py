@@ -446,7 +446,7 @@ def test_a_curved_law_against_an_ode_solver(tmp_path):
     assert np.all(orders > 1.8) and errors[-1] < 1e-3, (errors, orders)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 10_000), st.integers(1, 40))
 def test_the_sparse_factor_and_its_updates(seed, n):
     rng = np.random.default_rng(seed)

@@ -127,7 +127,7 @@ ANALYSIS
 """
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     e1=st.floats(0.05, 1.0),
     e2=st.floats(0.05, 1.0),
