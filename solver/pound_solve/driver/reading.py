@@ -5,16 +5,18 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from pound_deck.diagnostics import Diagnostic, Mistake, has_errors
 from pound_deck.model import Model
 from pound_deck.reader import read_deck, read_text
-from pound_legacy.equake import File
 from pound_legacy.files import recognised, text_of
-from pound_legacy.importer import Translation, translate
 from pound_solve.catalog import catalog
 from pound_solve.driver.request import Request
+
+if TYPE_CHECKING:
+    from pound_legacy.equake import File
+    from pound_legacy.importer import Translation
 
 AS_READ: Final = " as read"  #: ends the name of the deck that was made of an old one
 
@@ -73,6 +75,8 @@ def imported(
     OSError
         A file cannot be read.
     """
+    from pound_legacy.importer import Translation, translate  # only old decks need it
+
     try:
         text = text_of(name)
     except Mistake as error:
