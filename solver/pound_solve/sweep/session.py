@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from pound_solve.results.sweep_file import Sweep
-from pound_solve.sweep import plan, table
+from pound_solve.sweep import plan, summary, table
 from pound_solve.sweep.conduct import Conductor, State
 from pound_solve.sweep.document import Document
 from pound_solve.sweep.entry import DONE, ENDS, FAILED, Entry, Journal
@@ -71,9 +71,22 @@ class Session:
         self.study = replace(self.study, runs=tuple(runs))
         self.runs = self.study.runs
 
-    def write(self) -> Path:
-        """Write the table of the study; raises as `sweep_file.write`."""
-        return table.write(self.study, self.journal, self.entries)
+    def write(
+        self, title: str = "sweep", made: Callable[[Sweep], Iterable[str]] = lambda sweep: ()
+    ) -> Path:
+        """Write the table of the study and the report; raises as `sweep_file.write`.
+
+        Parameters
+        ----------
+        title : str
+            Of the report.
+        made : callable
+            Lines of the report about what was made of the runs.
+        """
+        path = table.write(self.study, self.journal, self.entries)
+        sweep = Sweep.open(path)
+        summary.write(path, sweep, title, made(sweep))
+        return path
 
     @property
     def ends(self) -> list[str]:
