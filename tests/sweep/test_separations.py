@@ -103,7 +103,7 @@ def test_runs_tell_peaks_and_the_gap_that_they_need(free):
 
 
 def test_the_double_difference_is_near_under_noise_and_sums_are_not(free):
-    """The gap is needed to one side, the peaks are of both: half as many crests make it up to a tenth less."""
+    """The gap is needed to one side, the peaks are of both: half as many crests make it a little less."""
     found = [g for g in groups(free[0], Options()) if g.level == 1.0]
     (group,) = found
     rules = {rule.name: gap for rule, gap in zip(RULES, group.rules)}
@@ -227,7 +227,9 @@ def test_the_verb_writes_all_of_it(free, tmp_path, capsys):
     told = path.with_name("separation.rpt").read_text()
     assert "SEPARATION OF THE BUILDINGS" in told and "noise0.txt" in told and told.isascii()
     lines = path.with_name("separation.csv").read_text().splitlines()
-    assert lines[0].startswith("case,level,contact,rule,source,gap,") and len(lines) == 1 + 2 * (len(RULES) + 2)
+    assert lines[0].startswith("case,level,contact,rule,source,gap,") and len(lines) == 1 + 2 * (
+        len(RULES) + 2
+    )
     with h5py.File(path.with_name("separation.h5")) as file:
         assert file["probability"].shape == (16,) and file["gap"].attrs["units"] == "m"
         assert file["gap"].dims[0].keys() == ["row"]
