@@ -49,13 +49,22 @@ class Session:
         ahead = self.agenda.ahead
         return list(dict.fromkeys(ahead[i] for i in (0, len(ahead) // 2, -1))) if ahead else []
 
-    def carry_out(self, runs: Sequence[Run], report: Callable[[State], None]) -> list[Entry]:
-        """Carry runs out; return what those have come to that have ended."""
+    def conductor(self, report: Callable[[State], None]) -> Conductor:
+        """What carries runs of the study out, for a ``with``."""
         study = self.study
         folder = self.journal.folder if self.engine.notes else None
         settings = Settings(folder, study.seconds, study.memory, study.histories)
+        return Conductor(self.engine, settings, self.journal, report)
+
+    def carry_out(self, runs: Sequence[Run], report: Callable[[State], None]) -> list[Entry]:
+        """Carry runs out; return what those have come to that have ended."""
+        with self.conductor(report) as conductor:
+            return self.carry_on(conductor, runs)
+
+    def carry_on(self, conductor: Conductor, runs: Sequence[Run]) -> list[Entry]:
+        """The same by a conductor that has had others."""
         if runs:
-            Conductor(self.engine, settings, self.journal, report).run(runs)
+            conductor.run(runs)
             self.entries = self.journal.entries()
         return [self.entries[r.identity] for r in runs if r.identity in self.entries]
 
