@@ -99,6 +99,7 @@ WITHIN = {
     "sweep": (
         "document",
         "run",
+        "pairs",
         "quantities",
         "entry",
         "records",
@@ -110,12 +111,14 @@ WITHIN = {
         "conduct",
         "plan",
         "table",
-        "session",
         "incremental",
         "curves",
+        "summary",
+        "session",
         "hunt",
         "fractiles",
         "fragilities",
+        "separations",
     ),
     "driver": (
         "request",

@@ -11,10 +11,12 @@ from pound_deck.reader import read_text
 from pound_legacy.equake import File
 from pound_legacy.importer import translate
 from pound_legacy.recognise import is_legacy
+from pound_solve import run
 from pound_solve.catalog import catalog
 from pound_solve.cli.main import main
 from pound_solve.driver.prepare import DeckError, prepare
 from pound_solve.driver.request import Request
+from pound_solve.results.sweep_file import Sweep
 
 CATALOG = catalog()
 RECORD = File("quake.txt", "\n".join("0.1" for _ in range(50)))
@@ -256,3 +258,33 @@ def test_the_verb_refuses_what_it_cannot_read(tmp_path, capsys):
     assert deck.read_text() == STICK
     assert main(["import", str(deck)]) == 0 and capsys.readouterr().out.startswith("TITLE Two storeys")
     assert main(["import", str(tmp_path / "none.dat")]) == 3
+
+
+def test_motions_and_sweeps_read_old_decks_as_runs_do(tmp_path, capsys, monkeypatch):
+    """One way to a deck: the motion of an old one becomes a file, and records take its place in a sweep."""
+    monkeypatch.setenv("POUND_COMPILE", "0")
+    deck = tmp_path / "old.dat"
+    deck.write_text(STICK)
+    assert main(["motions", str(deck), "--dt", "0.01", "-o", str(tmp_path / "suite")]) == 0
+    assert len(list((tmp_path / "suite").glob("*.at2"))) == 1
+    study = tmp_path / "old.toml"
+    study.write_text('deck = "old.dat"\n[[motions]]\nfiles = ["suite/*.at2"]\nscale = [1, 2]\n')
+    assert main(["sweep", str(study), "--workers", "1", "--quiet"]) == 0
+    sweep = Sweep.open(tmp_path / "old.sweep/sweep.h5")
+    assert sweep["status"].tolist() == ["done", "done"] and sweep["deck"].tolist() == ["old.dat"] * 2
+    with run(deck, out=tmp_path) as results:
+        (own,) = results.table("drift_envelope")
+    peak = max(abs(own["max"]), abs(own["min"]))
+    assert sweep["peak_drift"][0, 0] == pytest.approx(peak, rel=1e-6)  # the file has seven digits
+    assert sweep["peak_drift"][1, 0] > 1.5 * peak
+
+
+def test_a_mistake_in_an_old_deck_has_its_line_in_every_verb(tmp_path, capsys):
+    deck = tmp_path / "old.dat"
+    deck.write_text(STICK.replace("3 6.0 0.0", "3 6.y 0.0"))
+    study = tmp_path / "old.toml"
+    study.write_text('deck = "old.dat"\n[[motions]]\nfiles = ["elcentro 180"]\n')
+    line = next(n for n, text in enumerate(deck.read_text().splitlines(), 1) if "6.y" in text)
+    for words in (["motions", str(deck)], ["spectrum", str(deck)], ["sweep", str(study)]):
+        assert main(words) == 2
+        assert f"old.dat:{line}:" in capsys.readouterr().err, words

@@ -78,7 +78,7 @@ class Here(Executor):
 
 def session(path, retry=False, piece=(1, 1), executor=None, notes=True):
     own = executor or Here()
-    return Session(read(Document.read(str(path))), Engine(lambda: own, 1, 1, notes), piece, retry)
+    return Session(read(Document.read(str(path))), Engine(lambda: own, 1, 1, 1, notes), piece, retry)
 
 
 def swept(path, **options):

@@ -45,7 +45,7 @@ def hunted(path, executor=None, stop=None):
     document = Document.read(str(path))
     aim = hunt.aim(document)
     own = executor or Here()
-    session = Session(read(document, (hunt.TABLE,)), Engine(lambda: own, 1, 1, True))
+    session = Session(read(document, (hunt.TABLE,)), Engine(lambda: own, 1, 1, 1, True))
 
     def report(state):
         if stop is not None and own.runs >= stop and not state.ending:

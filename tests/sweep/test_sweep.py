@@ -8,6 +8,7 @@ import multiprocessing
 import os
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
+from itertools import pairwise
 from pathlib import Path
 
 import h5py
@@ -250,11 +251,45 @@ class Fragile(Here):
 def test_a_run_whose_process_dies_is_found_among_others_and_told(tmp_path):
     path, died = folder(tmp_path), []
     out = session(path)
-    out.engine = Engine(lambda: Fragile(5, died), 1, 3, True)
+    out.engine = Engine(lambda: Fragile(5, died), 1, 1, 3, True)
     out.carry_out(out.agenda.ahead, lambda state: None)
     failed = [r.number for r in out.runs if out.entries[r.identity].status == "failed"]
     assert failed == [5] and "process died" in out.entries[out.runs[4].identity].message
     assert died == [[4, 5], [5], [5]]
+
+
+class Numbered(Here):
+    """Tells which executor had which runs."""
+
+    def __init__(self, had):
+        super().__init__()
+        self.own = []
+        had.append(self.own)
+
+    def submit(self, function, /, *args):
+        self.own.append(args[0])
+        return super().submit(function, *args)
+
+
+@pytest.mark.parametrize("lanes", [2, 3])
+def test_a_process_keeps_to_its_case(tmp_path, lanes):
+    """Every process prepares as few structures as there can be: cases are shared at the end only."""
+    had, out = [], session(folder(tmp_path))
+    out.engine = Engine(lambda: Numbered(had), lanes, lanes, 2, True)
+    out.carry_out(out.agenda.ahead, lambda state: None)
+    assert len(had) == lanes and sorted(r.number for own in had for r in own) == list(range(1, 17))
+    turns = [[a.case for a, b in pairwise(own) if a.case != b.case] for own in had]
+    assert all(len(cases) == len(set(cases)) for cases in turns)  # none comes back to an earlier case
+    assert sum(len({r.case for r in own}) for own in had) <= 4 + lanes - 1
+
+
+def test_processes_stay_between_the_rounds_of_a_study(tmp_path):
+    had, out = [], session(folder(tmp_path))
+    out.engine = Engine(lambda: Numbered(had), 1, 1, 1, True)
+    with out.conductor(lambda state: None) as conductor:
+        for begin in (0, 5, 10):
+            assert len(out.carry_on(conductor, out.agenda.ahead[begin : begin + 5])) == 5
+    assert len(had) == 1 and len(had[0]) == 15
 
 
 def test_two_sweeps_do_not_write_one_folder(tmp_path, capsys):
@@ -311,7 +346,7 @@ def test_a_disk_that_is_full_ends_the_sweep_in_words_and_loses_nothing(tmp_path,
         noted.append(entry)
 
     here = Here()
-    monkeypatch.setattr(executors, "engine", lambda name, workers: Engine(lambda: here, 1, 1, True))
+    monkeypatch.setattr(executors, "engine", lambda name, workers: Engine(lambda: here, 1, 1, 1, True))
     monkeypatch.setattr(Journal, "add", full)
     assert main(["sweep", str(path)]) == 3
     assert "No space left on device" in capsys.readouterr().err
@@ -344,13 +379,13 @@ def test_warnings_about_the_deck_are_told_once(tmp_path, capsys, monkeypatch):
         tmp_path, STUDY.replace("scale = [1, 2.5]", "scale = [1]"), DECK.replace("GAP=gap", "GAP=-gap")
     )
     here = Here()
-    monkeypatch.setattr(executors, "engine", lambda name, workers: Engine(lambda: here, 1, 1, True))
+    monkeypatch.setattr(executors, "engine", lambda name, workers: Engine(lambda: here, 1, 1, 1, True))
     main(["sweep", str(path)])
     assert capsys.readouterr().err.count("warning P") == 1
 
 
 def test_a_study_is_carried_out_from_python(tmp_path, monkeypatch):
     here = Here()
-    monkeypatch.setattr(sessions, "engine", lambda name, workers: Engine(lambda: here, 1, 1, True))
+    monkeypatch.setattr(sessions, "engine", lambda name, workers: Engine(lambda: here, 1, 1, 1, True))
     found = run_study(folder(tmp_path))
     assert isinstance(found, Sweep) and len(found) == here.runs == 16

@@ -95,3 +95,26 @@ def test_intervals_hold_the_truth_as_often_as_they_say(kind):
 def test_data_that_determine_nothing_are_refused(fit, why):
     with pytest.raises(FragilityError, match=why):
         fit()
+
+
+#: counts at intensities, runs at each, and what probit regression on the logarithm gives: exp(-a/b) and 1/b
+#: (statsmodels 0.15.0, GLM of the binomial family with the link Probit, converged to 1e-14)
+BAKER = (  # the example data that Baker published with the paper of 2015
+    [0.2, 0.3, 0.4, 0.6, 0.7, 0.8, 0.9, 1.0],
+    [0, 0, 0, 4, 6, 13, 12, 16],
+    40,
+    (1.07611579464, 0.42923720436),
+)
+PACKAGE = (  # the example of the public package pyFragility
+    [x / 1000 for x in (178, 274, 444, 560, 652, 790, 982, 1246)]
+    + [x / 1000 for x in (1564, 2014, 2417, 3021, 3625, 4028, 4431, 5035)],
+    [0, 0, 0, 0, 0, 4, 13, 23, 38, 41, 44, 45, 45, 45, 45, 45],
+    45,
+    (1.21944746820, 0.31006603946),
+)
+
+
+@pytest.mark.parametrize(("intensity", "exceeded", "runs", "peer"), [BAKER, PACKAGE])
+def test_stripes_agree_with_probit_regression(intensity, exceeded, runs, peer):
+    found = from_stripes(intensity, exceeded, [runs] * len(intensity))
+    assert (found.median, found.dispersion) == pytest.approx(peer, rel=1e-7)

@@ -9,11 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from pound_deck.diagnostics import has_errors
-from pound_deck.reader import read_deck
-from pound_solve.catalog import catalog
-from pound_solve.driver import loading
-from pound_solve.driver.prepare import DeckError
+from pound_solve.driver.prepare import ground
 from pound_solve.driver.request import Request
 from pound_solve.loading.motions.base import Motion
 from pound_solve.loading.records import peer
@@ -61,15 +57,12 @@ def of_deck(request: Request, dt: float | None = None) -> Iterator[MotionFile]:
     OSError
         The deck cannot be read.
     """
-    model, found, files = read_deck(request.deck, catalog(), request.params)
-    motions = [] if model is None else loading.motions(model, loading.context(model, request), found)
-    if model is None or has_errors(found):
-        raise DeckError(found, files)
-    own = [m for m in motions if m.direction != "R"]
+    deck = ground(request)
+    own = [m for m in deck.motions if m.direction != "R"]
     if not own:
         raise MotionError(f"{request.deck} has no motion along X or Y under EQUAKE")
     for number, motion in enumerate(own, 1):
-        yield _file(number, motion, model.gravity, dt)
+        yield _file(number, motion, deck.model.gravity, dt)
 
 
 def _file(number: int, motion: Motion, gravity: float, dt: float | None) -> MotionFile:

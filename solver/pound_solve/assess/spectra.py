@@ -14,11 +14,11 @@ from typing import Final
 
 import numpy as np
 
-from pound_deck.diagnostics import Diagnostic, has_errors
-from pound_deck.model import Model, Units
-from pound_solve.driver import loading, record_card
-from pound_solve.driver.prepare import DeckError
-from pound_solve.driver.reading import read
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Units
+from pound_solve.driver import record_card
+from pound_solve.driver.prepare import ground
+from pound_solve.driver.reading import Deck
 from pound_solve.driver.request import Request
 from pound_solve.loading.motions.piecewise import Piecewise
 from pound_solve.results import Results
@@ -68,8 +68,8 @@ def of_record(name: str, items: Sequence[str] = (), folders: Sequence[Path] = ()
     DeckError
         The record cannot be read, or an item is none of the card's.
     """
-    model, found, files = record_card.read(name, items, "spectrum")
-    source = _of_model(model, found, files, Request("spectrum", records=tuple(folders)))
+    card = Deck(*record_card.read(name, items, "spectrum"))
+    source = _of_motions(Request("spectrum", records=tuple(folders)), card)
     (acceleration,) = source.accelerations.values()
     title = " ".join([Path(name).name, *items])
     return Source(source.units, {title: acceleration}, source.warnings, source.files)
@@ -87,24 +87,19 @@ def of_deck(request: Request) -> Source:
     OSError
         The deck cannot be read.
     """
-    deck = read(request)
-    source = _of_model(deck.model, deck.found, deck.files, request)
+    source = _of_motions(request)
     if not source.accelerations:
         raise SpectrumError(f"{request.deck} has no motion under EQUAKE")
     return source
 
 
-def _of_model(
-    model: Model | None, found: list[Diagnostic], files: Mapping[str, str], request: Request
-) -> Source:
-    """Motions of a deck that was read."""
-    motions = [] if model is None else loading.motions(model, loading.context(model, request), found)
-    if model is None or has_errors(found):
-        raise DeckError(found, files)
+def _of_motions(request: Request, deck: Deck | None = None) -> Source:
+    """Motions of a deck, see `prepare.ground`."""
+    found = ground(request, deck)
     stem = Path(request.deck).stem
-    names = (f"{stem}: {n} {m.info['name']} {WAYS[m.direction]}" for n, m in enumerate(motions, 1))
-    own = {name: m.acceleration for name, m in zip(names, motions)}
-    return Source(model.units, own, [d for d in found if d.code.startswith("R")], files)
+    names = (f"{stem}: {n} {m.info['name']} {WAYS[m.direction]}" for n, m in enumerate(found.motions, 1))
+    own = {name: m.acceleration for name, m in zip(names, found.motions)}
+    return Source(found.model.units, own, [d for d in found.found if d.code.startswith("R")], found.files)
 
 
 def of_nodes(results: Results, nodes: Sequence[int], direction: str = "X") -> Source:

@@ -88,6 +88,14 @@ def picture(word: str) -> Path:
     return path
 
 
+def share(word: str) -> float:
+    """A level of confidence, between 0 and 1."""
+    (value,) = numbers([word], "--confidence takes a number", argparse.ArgumentTypeError)
+    if not 0.0 < value < 1.0:
+        raise argparse.ArgumentTypeError(f"{word}: a level of confidence is between 0 and 1")
+    return value
+
+
 def drawable(path: Path | None) -> bool:
     """Whether a picture that is asked for can be drawn; says what is missing before the work begins."""
     if path is None:

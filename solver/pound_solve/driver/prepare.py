@@ -15,7 +15,7 @@ from pound_solve.driver import loading
 from pound_solve.driver.outputs import overwritten
 from pound_solve.driver.overrides import overridden, with_motion
 from pound_solve.driver.preflight import preflight
-from pound_solve.driver.reading import read
+from pound_solve.driver.reading import Deck, read
 from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import Motion
@@ -48,6 +48,41 @@ class Prepared:
     warnings: tuple[Diagnostic, ...]
     files: Mapping[str, str]
     saved: Mapping[str, Array] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Ground:
+    """The ground motions of a deck, whose structure does not matter, and what is to be said of it."""
+
+    model: Model
+    motions: tuple[Motion, ...]
+    found: tuple[Diagnostic, ...]
+    files: Mapping[str, str]
+
+
+def ground(request: Request, deck: Deck | None = None) -> Ground:
+    """Motions of the EQUAKE cards of a deck, a wave as one for each place.
+
+    Parameters
+    ----------
+    request : Request
+    deck : Deck, optional
+        In place of that which the request names.
+
+    Raises
+    ------
+    DeckError
+        The deck or a record has mistakes.
+    OSError
+        The deck cannot be read.
+    """
+    deck = deck or read(request)
+    model, found = deck.model, list(deck.found)
+    motions = [] if model is None else loading.motions(model, loading.context(model, request), found)
+    found = deck.moved(found, request.deck)
+    if model is None or has_errors(found):
+        raise DeckError(found, deck.files)
+    return Ground(model, tuple(motions), tuple(found), deck.files)
 
 
 def prepare(request: Request) -> Prepared:

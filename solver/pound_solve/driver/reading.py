@@ -45,6 +45,11 @@ class Deck(NamedTuple):
         return self.translation.moved(found, name + AS_READ) if self.translation else list(found)
 
 
+def is_deck(name: str) -> bool:
+    """Whether a file is a deck, by its ending, or an old one, by its first lines."""
+    return name.endswith(".inp") or (os.path.isfile(name) and recognised(name))
+
+
 def read(request: Request) -> Deck:
     """Read the deck of a request.
 

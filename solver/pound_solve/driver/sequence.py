@@ -26,6 +26,7 @@ from pound_solve.results.schema import Layout, Stage
 from pound_solve.results.words import text_of
 from pound_solve.structure.diaphragms import diaphragm_collisions
 from pound_solve.structure.reduction_checks import ReductionError
+from pound_solve.structure.structure import Structure
 
 NO_ROOM = "A508 no room on the disk; what was written before is kept"
 EXTREME = "of the deck that is far too large or too small"
@@ -73,6 +74,8 @@ class Settled:
     ----------
     static : StaticState or None
         None before the first run.
+    structure : Structure or None
+        With the stiffness that the axial forces of this state give.
     response : StaticResponse or None
         Of STATIC.
     modal : ModalResult or None
@@ -82,6 +85,7 @@ class Settled:
     """
 
     static: static.StaticState | None = None
+    structure: Structure | None = None
     response: StaticResponse | None = None
     modal: modal.ModalResult | None = None
     items: RecordedItems | None = None
@@ -202,7 +206,8 @@ class AnalysisSequence:
             self.record.static = settled.response = settled.response or static_response(structure, state)
             self.record.checks.append(self.record.static.check)
             self._write(Stage.STATIC)
-        self.record.structure = structure.stressed(state.axial).displaced(state.u)
+        settled.structure = settled.structure or structure.stressed(state.axial).displaced(state.u)
+        self.record.structure = settled.structure
         return state
 
     def _modal(self, card: Card, state: static.StaticState) -> None:

@@ -20,9 +20,8 @@ from pound_solve.results import Results
 from pound_solve.results.columns import CONTACT
 from pound_solve.results.schema import Column, Row, Table
 from pound_solve.structure.elements.base import axes
-from pound_solve.theory.separation import correlation, double_difference
+from pound_solve.theory.separation import Peaks, correlation, own_mode
 
-TAKES_PART = 0.1  #: component of a mode, largest 1, from which it is taken for a building's own
 NAN: Final = math.nan
 FREE, MET = "free: nothing met", "pounding: something met"
 UNKNOWN = "; no DDC without periods and damping: MODAL SHAPES=YES, or --periods and --damping"
@@ -97,11 +96,8 @@ def _ddc(
     u1: float, u2: float, periods: tuple[float, float], damping: tuple[float, float]
 ) -> tuple[float, str]:
     """Double difference combination of two peaks; a remark where a period or a damping [%] is unknown."""
-    if u2 == 0.0 or u1 == 0.0:
-        return u1 + u2, ""  # one side does not move: no correlation
-    if math.isnan(sum(periods) + sum(damping)):
-        return NAN, UNKNOWN
-    return double_difference(u1, u2, correlation(*periods, *(xi / 100.0 for xi in damping))), ""
+    rho = correlation(*periods, *(xi / 100.0 for xi in damping))
+    return Peaks(u1, u2, rho).difference, UNKNOWN if math.isnan(rho) and u1 and u2 else ""
 
 
 def _peak(results: Results, node: int, direction: tuple[float, float]) -> float:
@@ -125,12 +121,8 @@ def _mode(results: Results, node: int, direction: tuple[float, float]) -> tuple[
         return NAN, NAN
     shapes, modes = results.table("mode_shapes"), results.table("modes")
     own = shapes[shapes["node"] == node]
-    taking = own["mode"][np.abs(own["x"] * direction[0] + own["y"] * direction[1]) >= TAKES_PART]
-    chosen = modes[np.isin(modes["mode"], taking)]
-    if not len(chosen):
-        return NAN, NAN
-    longest = chosen[np.argmax(chosen["period"])]
-    return float(longest["period"]), float(longest["damping"])
+    chosen = modes[np.isin(modes["mode"], own["mode"])]
+    return own_mode(own["x"] * direction[0] + own["y"] * direction[1], chosen["period"], chosen["damping"])
 
 
 TABLE = Table(

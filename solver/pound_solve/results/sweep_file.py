@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import math
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 FILETYPE: Final = "pound-solve sweep"
 FORMAT_VERSION: Final = (1, 0)  #: major: old readers fail; minor: something was added
 RUN: Final = "run"  #: the first dimension
+ROW: Final = "row"  #: that of a table that was made of a sweep
 HISTORIES: Final = "histories"
 ORDER: Final = "variables"  #: attribute with their names in order
 #: variables that differ between two sweeps of a study
@@ -83,6 +84,15 @@ class Sweep:
     def __getitem__(self, name: str) -> NDArray[Any]:
         """Values of a variable, shape (n_runs,) or (n_runs, n_labels)."""
         return self.variables[name].values
+
+    @staticmethod
+    def is_of(path: str | Path) -> bool:
+        """Whether a file holds a sweep, as far as its head tells."""
+        try:
+            with h5py.File(path, "r") as file:
+                return bool(file.attrs.get("filetype") == FILETYPE)
+        except _DAMAGE:
+            return False
 
     @classmethod
     def open(cls, path: str | Path) -> Self:
@@ -181,13 +191,44 @@ def write(
     OSError
         The folder cannot be written.
     """
+
+    def fill(file: h5py.File) -> None:
+        _write(file, sweep)
+        for number, kept in histories:
+            _write_histories(file, number, kept)
+
+    _put(path, fill, dict(sweep.columns()))
+
+
+def write_table(path: Path, columns: Mapping[str, Variable], about: Mapping[str, str]) -> None:
+    """Write a table that was made of a sweep, as HDF5 with dimension scales and as CSV; see `write`.
+
+    Parameters
+    ----------
+    path : Path
+    columns : mapping of str to Variable
+        Without a second dimension.
+    about : mapping of str to str
+    """
+
+    def fill(file: h5py.File) -> None:
+        file.attrs.update({key: storable(value) for key, value in about.items()})
+        count = len(next(iter(columns.values())).values) if columns else 0
+        scale = _dataset(file, ROW, Variable(np.arange(1, count + 1)))
+        scale.make_scale(ROW)
+        for name, own in columns.items():
+            _dataset(file, name, own).dims[0].attach_scale(scale)
+
+    _put(path, fill, {name: own.values.tolist() for name, own in columns.items()})
+
+
+def _put(path: Path, fill: Callable[[h5py.File], None], columns: Mapping[str, Sequence[Any]]) -> None:
+    """Write a file, and its columns as CSV beside it: whole, or not at all."""
     own = partial(path)
     disk = SafeFile(own)
     try:
         with undisturbed(), h5py.File(disk, "w", libver=("v108", "v108")) as file:
-            _write(file, sweep)
-            for number, kept in histories:
-                _write_histories(file, number, kept)
+            fill(file)
         with undisturbed():
             disk.commit()
             disk.end()
@@ -198,9 +239,8 @@ def write(
     table = path.with_suffix(".csv")
     with partial(table).open("w", newline="", encoding="utf-8") as text:
         writer = csv.writer(text)
-        names, columns = zip(*sweep.columns())
-        writer.writerow(names)
-        writer.writerows([_cell(v) for v in row] for row in zip(*columns))
+        writer.writerow(columns)
+        writer.writerows([_cell(v) for v in row] for row in zip(*columns.values()))
     os.replace(partial(table), table)
     os.replace(own, path)
 

@@ -7,11 +7,11 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, Self
 
 from pound_solve.sweep.entry import FAILED, Entry, Journal
 from pound_solve.sweep.executors import Engine
-from pound_solve.sweep.run import Run
+from pound_solve.sweep.run import Case, Run
 from pound_solve.sweep.work import Settings, carry_out
 
 INTERVAL: Final = 0.1  #: between two looks at the time [s]
@@ -53,10 +53,28 @@ class State:
         return f"{self.done} of {self.total} runs{failed}{ahead}"
 
 
-class Conductor:
-    """Carries runs out.
+@dataclass
+class Lane:
+    """One executor and what it has been given.
 
-    The first run goes alone: what it compiles, the others load.  Runs whose processes die are tried again
+    Attributes
+    ----------
+    executor : Executor
+    flying : dict of Future to Run
+    case : Case or None
+        That of its latest run, whose structure its process keeps.
+    """
+
+    executor: Executor
+    flying: dict[Future[Entry], Run] = field(default_factory=dict)
+    case: Case | None = None
+
+
+class Conductor:
+    """Carries runs out, and ends its processes where the block of a ``with`` ends.
+
+    The first run goes alone: what it compiles, the others load.  A process takes the runs of one case as
+    long as there are any, so that it prepares few structures.  Runs whose processes die are tried again
     one by one, so that it shows which of them is to blame.
 
     Parameters
@@ -72,10 +90,19 @@ class Conductor:
         self, engine: Engine, settings: Settings, journal: Journal, report: Callable[[State], None]
     ) -> None:
         self.engine, self.settings, self.journal, self.report = engine, settings, journal, report
-        self._waiting = deque[Run]()
-        self._flying = dict[Future[Entry], Run]()
+        self._waiting: dict[Case, deque[Run]] = {}
+        self._lanes = list[Lane]()
         self._suspects = deque[Run]()
         self._deaths = dict[str, int]()
+        self._begun = False  # whether a run has ended, and kernels are compiled
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        for lane in self._lanes:
+            lane.executor.shutdown(wait=not lane.flying, cancel_futures=True)
+        self._lanes.clear()
 
     def run(self, runs: Iterable[Run]) -> State:
         """Carry runs out; after an interruption, end those that have begun.
@@ -85,47 +112,87 @@ class Conductor:
         OSError
             The journal cannot be written.
         """
-        self._waiting.extend(runs)
-        state = State(len(self._waiting))
-        executor = self.engine.start()
-        try:
-            while self._waiting or self._suspects or self._flying:
-                try:
-                    executor = self._round(executor, state)
-                except KeyboardInterrupt:
-                    state.ending = True
-                    self._waiting.clear()
-                    self._suspects.clear()
-                    for future in self._flying:
-                        future.cancel()
-        finally:
-            executor.shutdown(wait=not self._flying, cancel_futures=True)
+        state = State(0)
+        for run in runs:
+            self._waiting.setdefault(run.case, deque()).append(run)
+            state.total += 1
+        while self._waiting or self._suspects or self._flying:
+            try:
+                self._round(state)
+            except KeyboardInterrupt:
+                state.ending = True
+                self._waiting.clear()
+                self._suspects.clear()
+                for future in self._flying:
+                    future.cancel()
         return state
 
-    def _round(self, executor: Executor, state: State) -> Executor:
-        """Hand runs out, wait for some, take them; return the executor, or a new one for one that broke."""
-        alone = bool(self._suspects) or not state.done
-        most = 1 if alone else self.engine.ahead
-        broken = False
-        while len(self._flying) < most and (self._suspects or self._waiting):
-            run = (self._suspects or self._waiting).popleft()
+    @property
+    def _flying(self) -> dict[Future[Entry], Lane]:
+        """What was handed out, and to whom."""
+        return {future: lane for lane in self._lanes for future in lane.flying}
+
+    def _round(self, state: State) -> None:
+        """Hand runs out, wait for some, take them; a lane that broke gets a new executor."""
+        for lane in self._open():
+            self._fill(lane)
+        self.report(state)
+        flying = self._flying
+        ended, _ = wait(flying, timeout=INTERVAL, return_when=FIRST_COMPLETED)
+        lone, broken = len(flying) == 1, list[Lane]()
+        for future in ended:
+            lane = flying[future]
+            if not self._take(future, lane.flying.pop(future), lone, state) and lane not in broken:
+                broken.append(lane)
+        for lane in broken:
+            for future in wait(lane.flying).done:  # the others of an executor that broke
+                self._take(future, lane.flying.pop(future), False, state)
+            self._renew(lane)
+
+    def _open(self) -> list[Lane]:
+        """Lanes that may take runs: one for a run that is to go alone, else all of the engine."""
+        alone = bool(self._suspects) or not self._begun
+        wanted = 1 if alone else min(self.engine.lanes, max(len(self._lanes), self._ahead()))
+        while len(self._lanes) < wanted:
+            self._lanes.append(Lane(self.engine.start()))
+        if not alone:
+            return self._lanes
+        return [] if self._flying else self._lanes[:1]
+
+    def _ahead(self) -> int:
+        """Runs that wait."""
+        return sum(map(len, self._waiting.values()))
+
+    def _fill(self, lane: Lane) -> None:
+        """Hand runs to a lane."""
+        most = 1 if self._suspects or not self._begun else self.engine.ahead
+        while len(lane.flying) < most and (self._suspects or self._waiting):
+            run = self._suspects.popleft() if self._suspects else self._next(lane)
             try:
-                self._flying[executor.submit(carry_out, run, self.settings)] = run
+                future = lane.executor.submit(carry_out, run, self.settings)
             except BrokenExecutor:
                 self._suspects.appendleft(run)
-                broken = True
-                break
-        self.report(state)
-        ended, _ = wait(self._flying, timeout=INTERVAL, return_when=FIRST_COMPLETED)
-        lone = len(self._flying) == 1
-        for future in ended:
-            broken |= not self._take(future, self._flying.pop(future), lone, state)
-        if not broken:
-            return executor
-        for future in wait(self._flying).done:  # the others of an executor that broke
-            self._take(future, self._flying.pop(future), False, state)
-        executor.shutdown(wait=False, cancel_futures=True)
-        return self.engine.start()
+                self._renew(lane)
+                return
+            lane.flying[future], lane.case = run, run.case
+
+    def _renew(self, lane: Lane) -> None:
+        """Give a lane another executor for the one that broke."""
+        lane.executor.shutdown(wait=False, cancel_futures=True)
+        lane.executor = self.engine.start()
+
+    def _next(self, lane: Lane) -> Run:
+        """The next run of the lane's case; else of a case that no other lane has; else of the longest."""
+        held = {other.case for other in self._lanes if other is not lane}
+        case = lane.case
+        if case is None or case not in self._waiting:
+            free = (c for c in self._waiting if c not in held)
+            case = next(free, None) or max(self._waiting, key=lambda c: len(self._waiting[c]))
+        runs = self._waiting[case]
+        run = runs.popleft()
+        if not runs:
+            del self._waiting[case]
+        return run
 
     def _take(self, future: Future[Entry], run: Run, lone: bool, state: State) -> bool:
         """Take what a run has come to; False where its process died."""
@@ -133,7 +200,7 @@ class Conductor:
             entry = future.result()
         except CancelledError:  # by an interruption, or by a scheduler that has gone
             if not state.ending:
-                self._waiting.appendleft(run)
+                self._waiting.setdefault(run.case, deque()).appendleft(run)
             return state.ending
         except BrokenExecutor:
             deaths = self._deaths.get(run.identity, 0) + lone
@@ -152,6 +219,7 @@ class Conductor:
             return True
         if not self.engine.notes:
             self.journal.add(entry)
+        self._begun = True
         state.done += 1
         state.failed += entry.status == FAILED
         return True
@@ -159,5 +227,6 @@ class Conductor:
     def _note(self, entry: Entry, state: State) -> None:
         """Note a failure that no process could note."""
         self.journal.add(entry)
+        self._begun = True
         state.done += 1
         state.failed += 1

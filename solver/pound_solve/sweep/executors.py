@@ -17,7 +17,7 @@ from typing import Any, Final, NamedTuple, TypeVar
 from pound_solve.numerics import threads
 
 DASK: Final = "dask"
-AHEAD, MANY = 2, 1000  #: runs that are handed out: for each process, and to a scheduler
+AHEAD, MANY = 2, 1000  #: runs that are handed out: to each process, and to a scheduler
 PATIENCE: Final = 60.0  #: with a scheduler that does not answer [s]
 
 
@@ -37,14 +37,18 @@ class Engine(NamedTuple):
         Makes the executor, anew where one has broken.
     workers : int
         Runs at a time, as far as it is known.
+    lanes : int
+        Executors: one for each process of this machine, so that each keeps its own structures; a scheduler
+        is one.
     ahead : int
-        Runs that are handed out at a time, so that no worker is idle.
+        Runs that an executor is given at a time, so that no worker is idle.
     notes : bool
         Whether its processes write the journal themselves.
     """
 
     start: Callable[[], Executor]
     workers: int
+    lanes: int
     ahead: int
     notes: bool
 
@@ -67,7 +71,7 @@ def engine(name: str, workers: int) -> Engine:
     """
     count = workers or processors()
     if not name:
-        return Engine(lambda: processes(count), count, AHEAD * count, True)
+        return Engine(process, count, count, AHEAD, True)
     scheme, _, address = name.partition("://")
     if scheme != DASK:
         raise ExecutorError(
@@ -76,7 +80,7 @@ def engine(name: str, workers: int) -> Engine:
     own: dict[str, Any] = {"address": f"tcp://{address}"}
     if not address:
         own = {"n_workers": count, "threads_per_worker": 1, "dashboard_address": None}
-    return Engine(lambda: DaskExecutor(**own), count, MANY, False)
+    return Engine(lambda: DaskExecutor(**own), count, 1, MANY, False)
 
 
 def processors() -> int:
@@ -86,11 +90,11 @@ def processors() -> int:
     return os.cpu_count() or 1
 
 
-def processes(count: int) -> ProcessPoolExecutor:
-    """Processes that know nothing of this one (spawn), one thread each."""
+def process() -> ProcessPoolExecutor:
+    """A process that knows nothing of this one (spawn), with one thread."""
     threads.one()
     context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(count, context, initializer=_begin)
+    return ProcessPoolExecutor(1, context, initializer=_begin)
 
 
 def _begin() -> None:

@@ -99,15 +99,16 @@ class Hunt:
     def carry_out(self, report: Callable[[State], None]) -> None:
         """Run until every record is done, or an interruption."""
         ahead: Sequence[Run] = self.session.agenda.ahead
-        while True:
-            done = self.session.carry_out(ahead, report)
-            if len(done) < len(ahead):
-                break  # it was interrupted
-            fresh = list(self._next())
-            if not fresh:
-                break
-            self.runs += fresh
-            ahead = [r for r in fresh if r.identity not in self.session.entries]
+        with self.session.conductor(report) as conductor:
+            while True:
+                done = self.session.carry_on(conductor, ahead)
+                if len(done) < len(ahead):
+                    break  # it was interrupted
+                fresh = list(self._next())
+                if not fresh:
+                    break
+                self.runs += fresh
+                ahead = [r for r in fresh if r.identity not in self.session.entries]
         self._settle()
 
     def _groups(self) -> Iterator[list[Run]]:

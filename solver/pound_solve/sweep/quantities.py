@@ -11,6 +11,8 @@ from typing import Any, Final, TypeAlias
 from pound_solve.analyses.history import RESIDUAL
 from pound_solve.results.contents import TABLES
 from pound_solve.results.record import RunRecord
+from pound_solve.results.schema import Stage, Table
+from pound_solve.sweep.pairs import PAIRS
 
 Values: TypeAlias = dict[str, dict[str, float]]  #: of one run: by quantity and by label
 Fields: TypeAlias = Mapping[str, Any]  #: of one row of a table, by column
@@ -108,6 +110,9 @@ QUANTITIES: Final = (
         ("contact_loss", "F*L", "energy lost in the contact", _of("energy_lost")),
         ("min_gap", "L", "smallest gap, negative while in contact", _of("min_gap")),
     )),
+    *_each(PAIRS.name, "contact", _named("contact"), [
+        (c.name, c.unit, c.doc, _of(c.name)) for c in PAIRS.columns[1:]
+    ]),
     Quantity(
         "base_shear", "building", "F", "largest absolute base shear",
         "base_envelope", _building("shear X"), _largest,
@@ -132,9 +137,9 @@ QUANTITIES: Final = (
         ("error_estimate", "-", "error of the peaks by the estimate of AUTO", _number),
     )),
 )  # fmt: skip
-#: tables that the quantities are taken from, with their columns
-SOURCES: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
-    {q.table: tuple(c.name for c in TABLES[q.table].columns) for q in QUANTITIES}
+#: tables that the quantities are taken from
+SOURCES: Final[Mapping[str, Table[RunRecord]]] = MappingProxyType(
+    {q.table: PAIRS if q.table == PAIRS.name else TABLES[q.table] for q in QUANTITIES}
 )
 
 
@@ -148,9 +153,12 @@ def taken(rows: Mapping[str, list[Fields]]) -> Values:
     return out
 
 
-def rows_of(table: str, record: RunRecord) -> list[Fields]:
-    """Rows of a table of a run, by column."""
-    return [dict(zip(SOURCES[table], row)) for row in TABLES[table].rows(record) or ()]
+def rows_at(stage: Stage, record: RunRecord) -> Iterator[tuple[str, list[Fields]]]:
+    """Name of every source of a stage, and its rows by column."""
+    for name, table in SOURCES.items():
+        if stage in table.stages:
+            columns = [c.name for c in table.columns]
+            yield name, [dict(zip(columns, row)) for row in table.rows(record) or ()]
 
 
 def doubts(rows: Mapping[str, list[Fields]]) -> str:

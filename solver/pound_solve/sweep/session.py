@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from pound_solve.results.sweep_file import Sweep
-from pound_solve.sweep import plan, table
+from pound_solve.sweep import plan, summary, table
 from pound_solve.sweep.conduct import Conductor, State
 from pound_solve.sweep.document import Document
 from pound_solve.sweep.entry import DONE, ENDS, FAILED, Entry, Journal
@@ -49,13 +49,22 @@ class Session:
         ahead = self.agenda.ahead
         return list(dict.fromkeys(ahead[i] for i in (0, len(ahead) // 2, -1))) if ahead else []
 
-    def carry_out(self, runs: Sequence[Run], report: Callable[[State], None]) -> list[Entry]:
-        """Carry runs out; return what those have come to that have ended."""
+    def conductor(self, report: Callable[[State], None]) -> Conductor:
+        """What carries runs of the study out, for a ``with``."""
         study = self.study
         folder = self.journal.folder if self.engine.notes else None
         settings = Settings(folder, study.seconds, study.memory, study.histories)
+        return Conductor(self.engine, settings, self.journal, report)
+
+    def carry_out(self, runs: Sequence[Run], report: Callable[[State], None]) -> list[Entry]:
+        """Carry runs out; return what those have come to that have ended."""
+        with self.conductor(report) as conductor:
+            return self.carry_on(conductor, runs)
+
+    def carry_on(self, conductor: Conductor, runs: Sequence[Run]) -> list[Entry]:
+        """The same by a conductor that has had others."""
         if runs:
-            Conductor(self.engine, settings, self.journal, report).run(runs)
+            conductor.run(runs)
             self.entries = self.journal.entries()
         return [self.entries[r.identity] for r in runs if r.identity in self.entries]
 
@@ -71,9 +80,22 @@ class Session:
         self.study = replace(self.study, runs=tuple(runs))
         self.runs = self.study.runs
 
-    def write(self) -> Path:
-        """Write the table of the study; raises as `sweep_file.write`."""
-        return table.write(self.study, self.journal, self.entries)
+    def write(
+        self, title: str = "sweep", made: Callable[[Sweep], Iterable[str]] = lambda sweep: ()
+    ) -> Path:
+        """Write the table of the study and the report; raises as `sweep_file.write`.
+
+        Parameters
+        ----------
+        title : str
+            Of the report.
+        made : callable
+            Lines of the report about what was made of the runs.
+        """
+        path = table.write(self.study, self.journal, self.entries)
+        sweep = Sweep.open(path)
+        summary.write(path, sweep, title, made(sweep))
+        return path
 
     @property
     def ends(self) -> list[str]:

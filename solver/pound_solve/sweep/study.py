@@ -16,10 +16,9 @@ from typing import Any, Final
 
 from pound_deck.diagnostics import Diagnostic, has_errors, render, suggest
 from pound_deck.model import Model
-from pound_deck.reader import read_deck
-from pound_solve.catalog import catalog
 from pound_solve.driver import loading
 from pound_solve.driver.prepare import DeckError, prepare
+from pound_solve.driver.reading import read as read_deck
 from pound_solve.driver.request import Request
 from pound_solve.loading.motions.base import LoadingContext
 from pound_solve.loading.records.base import RecordError
@@ -280,10 +279,10 @@ class _Reader:
         if not combinations:
             return
         for deck in decks:
-            model, found, files = read_deck(deck, catalog(), dict(combinations[0]))
-            self._told(found, files)
-            if model is not None:
-                self.models[deck] = model
+            read = read_deck(Request(deck, dict(combinations[0])))
+            self._told(read.found, read.files)
+            if read.model is not None:
+                self.models[deck] = read.model
 
     def _told(self, found: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
         """Note mistakes of a deck; those of a value at the study's item."""
@@ -326,7 +325,7 @@ class _Reader:
         other = next((dict(c)[name] for c in combinations if dict(c)[name] != first[name]), None)
         if other is None or not self.suites:
             return
-        models = [read_deck(case.deck, catalog(), values)[0] for values in (first, {**first, name: other})]
+        models = [read_deck(Request(case.deck, own)).model for own in (first, {**first, name: other})]
         if None not in models and len({_contents(m) for m in models if m is not None}) == 1:
             deck = Path(case.deck).name
             message = f"{name} changes nothing in {deck} but the motion, which [[motions]] replaces"
@@ -366,9 +365,10 @@ class _Reader:
         """Texts of a deck and its included files, digests of the files that it reads beside them, and what
         is kept of its runs; the digest of the texts alone.
         """
-        model, found, files = read_deck(case.deck, catalog(), dict(case.params))
+        deck = read_deck(request_of(case))
+        model = deck.model
         if model is None:
-            self._told(found, files)
+            self._told(deck.found, deck.files)
             return {}, ""
         out = dict(model.files) | ({"histories": " ".join(self.histories)} if self.histories else {})
         context = loading.context(model, request_of(case))

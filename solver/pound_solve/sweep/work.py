@@ -19,12 +19,12 @@ import numpy as np
 from pound_solve.driver.prepare import DeckError, Prepared, prepare, shaken
 from pound_solve.driver.sequence import AnalysisSequence, Settled
 from pound_solve.numerics.types import Array
-from pound_solve.results.contents import HISTORIES, tables_at
+from pound_solve.results.contents import HISTORIES
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Layout, Stage
 from pound_solve.sweep.entry import DONE, FAILED, STOPPED, Entry, Journal
 from pound_solve.sweep.limits import Clock, TooLongError, within
-from pound_solve.sweep.quantities import SOURCES, Fields, doubts, rows_of, taken
+from pound_solve.sweep.quantities import Fields, doubts, rows_at, taken
 from pound_solve.sweep.records import UnreadableError, scaled
 from pound_solve.sweep.run import Case, RecordFile, Run, Shaking, digest_of
 from pound_solve.sweep.study import request_of
@@ -65,9 +65,7 @@ class Kept:
 
     def tables(self, stage: Stage, record: RunRecord) -> None:
         """Make the rows of a stage."""
-        for table in tables_at(stage):
-            if table.name in SOURCES:
-                self.rows[table.name] = rows_of(table.name, record)
+        self.rows |= rows_at(stage, record)
 
     def start_history(self, layout: Layout, packed: bool = False) -> None:
         """Histories stay in memory, see `sequence.HistoryWriter`."""

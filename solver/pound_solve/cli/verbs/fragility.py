@@ -21,18 +21,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--method", default="", choices=("capacities", "stripes", "cloud"), help="default: what suits"
     )
-    parser.add_argument("--confidence", type=_share, default=0.95, metavar="P", help="default 0.95")
+    parser.add_argument("--confidence", type=common.share, default=0.95, metavar="P", help="default 0.95")
     parser.add_argument(
         "--at", default="", metavar="X,X,...", help="print the probabilities at these levels"
     )
-
-
-def _share(word: str) -> float:
-    """A number between 0 and 1."""
-    (value,) = common.numbers([word], "--confidence takes a number", argparse.ArgumentTypeError)
-    if not 0.0 < value < 1.0:
-        raise argparse.ArgumentTypeError(f"{word}: a level of confidence is between 0 and 1")
-    return value
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -40,7 +32,7 @@ def execute(args: argparse.Namespace) -> int:
     from pound_solve.report.plot import suites
     from pound_solve.results import ResultsError
     from pound_solve.results.sweep_file import Sweep
-    from pound_solve.sweep import fragilities
+    from pound_solve.sweep import fragilities, summary
     from pound_solve.sweep.curves import Asked, CurveError
     from pound_solve.sweep.fractiles import axes_of
 
@@ -56,11 +48,13 @@ def execute(args: argparse.Namespace) -> int:
             raise CurveError("limits and levels are above zero")
         sweep, asked = Sweep.open(Path(args.sweep)), Asked(args.demand, args.label)
         found = fragilities.fit(sweep, asked, limits, args.method, args.confidence)
+        lines = list(fragilities.report(sweep, asked, found, at))
+        told = summary.write(Path(args.sweep).with_name("fragility.h5"), sweep, "fragilities", lines)
     except CurveError as err:
         return common.complain(f"{args.sweep}: {err}", common.MISTAKES)
     except ResultsError as err:
         return common.complain(str(err))
-    print("\n".join(fragilities.report(sweep, asked, found, at)))
+    print("\n".join([*lines, str(told)]))
     if args.picture:
         suites.fragilities(fragilities.drawn(found), axes_of(sweep, asked)[1], args.picture)
     return common.DONE

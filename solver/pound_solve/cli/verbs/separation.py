@@ -1,18 +1,24 @@
-"""``pound-solve separation``: the separation that two buildings need, from the peaks of their analyses."""
+"""``pound-solve separation``: the separation that two buildings need, from one run or those of a sweep."""
 
 from __future__ import annotations
 
 import argparse
 import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
 from pound_solve.cli import common
 
-SUMMARY = "separation of the buildings by ABS, SRSS and DDC from the peaks of a results file"
+if TYPE_CHECKING:
+    from pound_solve.sweep.separations import Options
+
+SUMMARY = "separation of the buildings by ABS, SRSS, DDC and codes; of a sweep: probability of contact"
+OF_SWEEPS: Final = ("gap", "raise", "confidence", "picture")  #: options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("results", help="results file (.h5)")
+    parser.add_argument("results", help="results file (.h5), or results of a sweep or of ida (sweep.h5)")
     parser.add_argument(
         "--periods",
         type=_two,
@@ -23,6 +29,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--damping", type=_two, default=(), metavar="X1,X2", help="in percent, in place of the modes'"
     )
+    own = parser.add_argument_group("of a sweep")
+    own.add_argument("--gap", metavar="X,X,...", help="gaps at which probabilities are asked for")
+    text = "factors of codes on elastic displacements: Cd/Ie, q (default 1,1)"
+    own.add_argument("--raise", type=_two, metavar="A1,A2", help=text)
+    own.add_argument("--confidence", type=common.share, metavar="P", help="default 0.95")
+    own.add_argument("--picture", type=common.picture, metavar="FILE", help="draw the probabilities")
 
 
 def _two(word: str) -> tuple[float, float]:
@@ -40,10 +52,68 @@ def execute(args: argparse.Namespace) -> int:
     """Print the separations."""
     from pound_solve.report import separation
     from pound_solve.results import Results, ResultsError
+    from pound_solve.results.sweep_file import Sweep
 
+    if Sweep.is_of(args.results):
+        return _of_sweep(args)
+    if given := next((name for name in OF_SWEEPS if getattr(args, name) is not None), ""):
+        return common.complain(f"--{given} needs the runs of a sweep: sweep.h5", common.MISTAKES)
     try:
         with Results.open(args.results) as results:
             print(separation.text(results, args.periods, args.damping))
     except (ResultsError, separation.SeparationError) as err:
         return common.complain(str(err))
     return common.DONE
+
+
+def _of_sweep(args: argparse.Namespace) -> int:
+    """Print the probabilities, and write them beside the file of the sweep."""
+    from pound_solve.report.plot import suites
+    from pound_solve.results import ResultsError
+    from pound_solve.results.sweep_file import Sweep, write_table
+    from pound_solve.sweep import separations, summary
+    from pound_solve.sweep.curves import CurveError, units_of
+
+    if not common.drawable(args.picture):
+        return common.MISTAKES
+    path = Path(args.results).with_name("separation.h5")
+    try:
+        options = _options(args)
+        sweep = Sweep.open(args.results)
+        found = separations.groups(sweep, options)
+        lines = list(separations.report(sweep, found, options))
+        write_table(path, separations.variables(sweep, found, options), sweep.about)
+        told = summary.write(path, sweep, "separation of the buildings", lines)
+    except CurveError as err:
+        return common.complain(f"{args.results}: {err}", common.MISTAKES)
+    except ResultsError as err:
+        return common.complain(str(err))
+    print("\n".join(lines))
+    print(f"{told}\n{path.with_suffix('.csv')}\n{path}")
+    if args.picture:
+        gap = f"gap [{units_of(sweep).length}]"
+        suites.separations(separations.drawn(sweep, found, options), gap, args.picture)
+    return common.DONE
+
+
+def _options(args: argparse.Namespace) -> Options:
+    """Options of the command line.
+
+    Raises
+    ------
+    CurveError
+        One of them makes no sense.
+    """
+    from pound_solve.sweep.curves import CurveError
+    from pound_solve.sweep.separations import Options
+    from pound_solve.theory.separation import correlation
+
+    if bool(args.periods) != bool(args.damping):
+        raise CurveError("--periods and --damping stand together: the correlation needs both")
+    gaps = common.numbers(args.gap.split(","), "--gap takes numbers", CurveError) if args.gap else []
+    if min(gaps, default=1.0) <= 0.0:
+        raise CurveError("gaps are above zero")
+    own = {"raised": getattr(args, "raise"), "level": args.confidence}
+    if args.periods:
+        own["correlation"] = correlation(*args.periods, *(xi / 100.0 for xi in args.damping))
+    return Options(gaps, **{name: value for name, value in own.items() if value is not None})

@@ -141,10 +141,11 @@ def _curves(args: argparse.Namespace) -> tuple[Units, list[Curve]]:
 def _source(name: str, args: argparse.Namespace) -> Source:
     """Motions of one file."""
     from pound_solve.assess import spectra
+    from pound_solve.driver.reading import is_deck
     from pound_solve.driver.request import Request
     from pound_solve.results import Results, is_hdf5
 
-    kind = "deck" if name.endswith(".inp") else "record"
+    kind = "deck" if is_deck(name) else "record"
     if name.endswith(".h5") or is_hdf5(name):
         kind = "results file"
     for option, to in (("node", "results file"), ("set", "deck"), ("item", "record")):

@@ -7,14 +7,10 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pound_solve.cli import common
-from pound_solve.cli.progress import StatusLine
+from pound_solve.cli import common, studies
 
 if TYPE_CHECKING:
-    from pound_solve.sweep.conduct import State
     from pound_solve.sweep.document import Document
-    from pound_solve.sweep.executors import Engine
-    from pound_solve.sweep.study import Study
 
 SUMMARY = "run a study: decks by values of PARAMs by records; one table of all runs"
 LISTS = ("scale", "pga", "sa")
@@ -44,36 +40,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--records", action="append", default=[], type=Path, metavar="DIR", help="folder with records"
     )
     common.add_method(parser)
-    parser.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder of the results")
-    parser.add_argument("--workers", type=int, metavar="N", help="processes (default: one a processor)")
+    studies.add_conduct(parser)
     parser.add_argument("--plan", action="store_true", help="tell what is to be run, and what it will take")
-    parser.add_argument("--retry", action="store_true", help="try runs again that stopped or failed")
     parser.add_argument("--task", metavar="K/N", help="the K-th of N pieces, as of a job array; no table")
-    parser.add_argument("--executor", default="", metavar="WHERE", help="dask://HOST:PORT, or dask")
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Read the study, run what is not done, write the table."""
-    from pound_solve.results import ResultsError
-    from pound_solve.sweep.executors import ExecutorError, engine
-    from pound_solve.sweep.lock import BusyError, locked
-    from pound_solve.sweep.study import StudyError, read
-
-    try:
-        k, count = _piece(args.task)
-        study = read(_document(args))
-        if study.warnings and not args.quiet:
-            print(study.warnings, file=sys.stderr)
-        with locked(study.out, f"{k}-of-{count}" if args.task else ""):
-            return _swept(args, study, engine(args.executor, study.workers), (k, count))
-    except StudyError as err:
-        print(err, file=sys.stderr)
-        return common.MISTAKES
-    except (ExecutorError, argparse.ArgumentTypeError) as err:
-        return common.complain(str(err), common.MISTAKES)
-    except (BusyError, ResultsError) as err:
-        return common.complain(str(err))
+    return studies.carried_out(args.study, lambda: _swept(args))
 
 
 def _piece(word: str | None) -> tuple[int, int]:
@@ -102,15 +76,14 @@ def _document(args: argparse.Namespace) -> Document:
         values = [v.strip() for v in value.split(",")]
         out.given(("grid", name.strip()), values, f"--set {name.strip()}", value)
     _give_motions(args, out)
-    for name in ("method", "dt", "tol", "workers"):
+    for name in ("method", "dt", "tol"):
         if getattr(args, name) is not None:
             out.given((name,), getattr(args, name), f"--{name}", str(getattr(args, name)))
     if args.records:
         out.given(
             ("records",), [str(p.absolute()) for p in args.records], "--records", str(args.records[0])
         )
-    if args.out:
-        out.given(("out",), str(args.out.absolute()), "--out", str(args.out))
+    studies.give_conduct(args, out)
     return out
 
 
@@ -140,26 +113,25 @@ def _give_motions(args: argparse.Namespace, out: Document) -> None:
         out.given(("motions", 0, name.strip().lower()), value.strip(), f"--item {name}", value)
 
 
-def _swept(args: argparse.Namespace, study: Study, engine: Engine, piece: tuple[int, int]) -> int:
+def _swept(args: argparse.Namespace) -> int:
     """Run what is ahead, and write the table; with --plan a trial only."""
+    from pound_solve.sweep.executors import engine
+    from pound_solve.sweep.lock import locked
     from pound_solve.sweep.session import Session
+    from pound_solve.sweep.study import read
 
-    session, line = Session(study, engine, piece, args.retry), StatusLine(args.quiet)
-
-    def report(state: State) -> None:
-        line.show(state.text)
-        args.interruption.check()
-
-    if args.plan:
-        print("\n".join(session.plan()))
-    tried = session.carry_out(session.trial() if args.plan else session.agenda.ahead, report)
-    line.clear()
-    if args.plan:
-        print("\n".join(session.estimate(tried)))
-        return common.DONE
-    path = session.write() if args.task is None else None
-    if not args.quiet:
-        print("\n".join(session.summary()))
-        if path is not None:
-            print(f"{path.with_suffix('.csv')}\n{path}")
-    return common.DONE if session.whole else common.STOPPED
+    k, count = _piece(args.task)
+    study = read(_document(args))
+    if study.warnings and not args.quiet:
+        print(study.warnings, file=sys.stderr)
+    with locked(study.out, f"{k}-of-{count}" if args.task else ""):
+        session = Session(study, engine(args.executor, study.workers), (k, count), args.retry)
+        progress = studies.Progress(args)
+        if args.plan:
+            print("\n".join(session.plan()))
+        tried = session.carry_out(session.trial() if args.plan else session.agenda.ahead, progress)
+        progress.end()
+        if args.plan:
+            print("\n".join(session.estimate(tried)))
+            return common.DONE
+        return studies.ended(args, session, session.write() if args.task is None else None)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -21,6 +22,7 @@ from pound_solve.loading.records.base import RawRecord, RecordError
 from pound_solve.loading.records.known import find, known, load
 from pound_solve.numerics.types import Array
 
+KEPT: Final = 8  #: records whose samples are kept for the next run of the same process
 _UNITS: Final = ("G", "M/S2", "CM/S2", "GAL", "MM/S2", "DECK")
 
 
@@ -67,13 +69,24 @@ def samples(card_values: Mapping[str, Any], context: LoadingContext) -> RecordSa
     text, digest = load(path)
     try:
         text = _lines(text, card_values.get("LINES"))
-        raw: RawRecord = formats()[card_values.get("FORMAT", "AUTO")].impl.read(text, card_values)
+        options = tuple((name, value) for name, value in card_values.items() if name != "SCALE")
+        raw = _parsed(text, card_values.get("FORMAT", "AUTO"), options)
         start, duration = float(card_values.get("START", 0.0)), card_values.get("DURATION")
         t, values = _window(raw.t, raw.values, start, duration)
     except RecordError as error:
         raise error.within(path.name) from None
     raw = replace(raw, notes=tuple(f"{path.name}: {note}" for note in raw.notes))
     return RecordSamples(t * float(card_values.get("TSCALE", 1.0)), values, raw, path, digest)
+
+
+@lru_cache(maxsize=KEPT)
+def _parsed(text: str, reader: str, options: tuple[tuple[str, Any], ...]) -> RawRecord:
+    """Samples of a text by the reader of a format: suites take the same record at many strengths."""
+    raw: RawRecord = formats()[reader].impl.read(text, dict(options))
+    for samples in (raw.values, raw.times):
+        if samples is not None:
+            samples.setflags(write=False)
+    return raw
 
 
 def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:

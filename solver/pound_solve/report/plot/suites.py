@@ -1,4 +1,6 @@
-"""Pictures of many runs: curves of an incremental dynamic analysis with fractiles, and fragilities."""
+"""Pictures of many runs: curves of an incremental dynamic analysis with fractiles, fragilities, and
+probabilities of contact.
+"""
 
 from __future__ import annotations
 
@@ -50,6 +52,28 @@ class Fragilities(NamedTuple):
     interval: tuple[float, float]
 
 
+class Contacts(NamedTuple):
+    """Probability of contact of one case at one level.
+
+    Attributes
+    ----------
+    title : str
+    gaps : ndarray, shape (n,)
+    seen : ndarray, shape (n, 3)
+        Share of the runs that meet, and its interval.
+    fitted : ndarray, shape (n,)
+        Probability by a distribution; NaN without one.
+    rules : sequence of (str, float)
+        Names of rules, and the gaps that they ask for.
+    """
+
+    title: str
+    gaps: Array
+    seen: Array
+    fitted: Array
+    rules: Sequence[tuple[str, float]]
+
+
 @style.sheet()
 def incremental(cases: Sequence[Curves], demand: str, level: str, path: Path) -> None:
     """Draw the curves of every case, demand along x as usual.
@@ -98,4 +122,25 @@ def fragilities(found: Sequence[Fragilities], level: str, path: Path) -> None:
     axes.set_ylim(0.0, 1.0)
     axes.set_xlim(left=0.0)
     style.legend(axes)
+    style.save(figure, path)
+
+
+@style.sheet()
+def separations(found: Sequence[Contacts], gap: str, path: Path) -> None:
+    """Draw the probability of contact against the gap, with the gaps of the rules; see `incremental`."""
+    figure, all_axes = style.panels(len(found), "", (4.2, 3.4))
+    for n, (axes, own) in enumerate(zip(all_axes, found)):
+        style.grid(axes, gap, "" if n else "probability of contact [-]")
+        share, low, high = own.seen.T
+        axes.fill_between(own.gaps, low, high, color="0.88", step="post", label="interval")
+        axes.step(own.gaps, share, where="post", color="0.35", label="runs")
+        axes.plot(own.gaps, own.fitted, "--", color="0.35", linewidth=1.0, label="lognormal")
+        for k, (name, at) in enumerate(own.rules):
+            look = style.stroke(k)
+            axes.axvline(at, color=look["color"], linestyle=look["linestyle"], linewidth=1.2, label=name)
+        axes.set_ylim(0.0, 1.0)
+        axes.set_xlim(left=0.0)
+        axes.set_title(own.title)
+    most = max(range(len(found)), key=lambda n: len(found[n].rules))
+    style.legend(all_axes[len(found) - 1], all_axes[most].get_legend_handles_labels()[0])
     style.save(figure, path)

@@ -1,0 +1,80 @@
+"""What verbs that carry out studies share: arguments, mistakes, the line of progress, what they print."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pound_solve.cli import common
+from pound_solve.cli.progress import StatusLine
+
+if TYPE_CHECKING:
+    from pound_solve.sweep.conduct import State
+    from pound_solve.sweep.document import Document
+    from pound_solve.sweep.session import Session
+
+
+def add_conduct(parser: argparse.ArgumentParser) -> None:
+    """Add the options on how runs are carried out."""
+    parser.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder of the results")
+    parser.add_argument("--workers", type=int, metavar="N", help="processes (default: one a processor)")
+    parser.add_argument("--retry", action="store_true", help="try runs again that stopped or failed")
+    parser.add_argument("--executor", default="", metavar="WHERE", help="dask://HOST:PORT, or dask")
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+
+
+def give_conduct(args: argparse.Namespace, document: Document) -> None:
+    """Put in what the options say in place of items of the study."""
+    if args.out:
+        document.given(("out",), str(args.out.absolute()), "--out", str(args.out))
+    if args.workers is not None:
+        document.given(("workers",), args.workers, "--workers", str(args.workers))
+
+
+def carried_out(study: str, work: Callable[[], int]) -> int:
+    """Exit status of some work on a study; mistakes are told, and what else keeps it from being done."""
+    from pound_solve.results import ResultsError
+    from pound_solve.sweep.curves import CurveError
+    from pound_solve.sweep.executors import ExecutorError
+    from pound_solve.sweep.lock import BusyError
+    from pound_solve.sweep.study import StudyError
+
+    try:
+        return work()
+    except StudyError as err:
+        print(err, file=sys.stderr)
+        return common.MISTAKES
+    except argparse.ArgumentTypeError as err:
+        return common.complain(str(err), common.MISTAKES)
+    except (CurveError, ExecutorError) as err:
+        return common.complain(f"{study}: {err}", common.MISTAKES)
+    except (BusyError, ResultsError) as err:
+        return common.complain(str(err))
+
+
+class Progress:
+    """The line that shows how far a study is; a call may raise KeyboardInterrupt."""
+
+    def __init__(self, args: argparse.Namespace) -> None:
+        self.line, self.interruption = StatusLine(args.quiet), args.interruption
+
+    def __call__(self, state: State) -> None:
+        """Show the state."""
+        self.line.show(state.text)
+        self.interruption.check()
+
+    def end(self) -> None:
+        """Clear the line."""
+        self.line.clear()
+
+
+def ended(args: argparse.Namespace, session: Session, path: Path | None) -> int:
+    """Tell what the runs have come to and where their table is; the exit status."""
+    if not args.quiet:
+        print("\n".join(session.summary()))
+        if path is not None:
+            print("\n".join(str(path.with_suffix(ending)) for ending in (".rpt", ".csv", ".h5")))
+    return common.DONE if session.whole else common.STOPPED

@@ -1,0 +1,300 @@
+"""The report of a sweep in words and tables: what was run, what failed, fractiles, worst runs, checks.
+
+Nothing in it depends on the day, the machine or the order in which runs ended.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import textwrap
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from pound_deck.model import Units
+from pound_solve.numerics.types import Array, Index
+from pound_solve.report.text import WIDTH, printed
+from pound_solve.results.form import ResultsError
+from pound_solve.results.place import partial
+from pound_solve.results.schema import Column, Row, Table
+from pound_solve.results.sweep_file import RUN, Sweep
+from pound_solve.sweep.curves import LEVELS, PARAM, Asked, cases, demands, units_of
+from pound_solve.sweep.entry import DONE
+
+FRACTILES: Final = (0.16, 0.5, 0.84)
+SHOWN: Final = (
+    "drift_ratio", "peak_drift", "storey_drift", "residual_drift", "ductility", "closures", "contact_force",
+    "needed_gap", "base_shear", "floor_acceleration",
+)  # fmt: skip
+GROUPS: Final = 64  #: cases and levels that are told apart
+VALUES: Final = 20  #: of a PARAM or a level, and records, that are named
+ROWS: Final = 100  #: runs that are listed
+ALL: Final = "all runs"
+
+
+def write(path: Path, sweep: Sweep, title: str, more: Iterable[str] = ()) -> Path:
+    """Write the report beside a file of results, with its name and the ending .rpt; return its path.
+
+    Raises
+    ------
+    ResultsError
+        It cannot be written.
+    """
+    out = path.with_suffix(".rpt")
+    try:
+        partial(out).write_text(text(sweep, title, more), encoding="ascii", errors="replace", newline="\n")
+        os.replace(partial(out), out)
+    except OSError as err:
+        raise ResultsError(f"{err.filename}: {err.strerror}") from err
+    return out
+
+
+def text(sweep: Sweep, title: str, more: Iterable[str] = ()) -> str:
+    """The report.
+
+    Parameters
+    ----------
+    sweep : Sweep
+    title : str
+        What was done with the runs.
+    more : iterable of str
+        Lines of what was made of them; they follow what was run and what failed.
+    """
+    units = units_of(sweep)
+    parts = [("what was run", list(_run(sweep)))]
+    parts.append(("runs without all results", printed(units, FAILURES, failures(sweep))))
+    parts.append((title, list(more)))
+    parts.append(("fractiles of the runs", _fractiles(sweep, units)))
+    parts.append(("worst runs", printed(units, WORST, worst(sweep))))
+    parts.append(("checks", list(_checks(sweep, units))))
+    lines = list(_banner(sweep, title))
+    for number, (heading, body) in enumerate((p for p in parts if p[1]), 1):
+        lines += [f"{number}  {heading.upper()}", "=" * WIDTH, "", *body, "", ""]
+    return "\n".join(line.rstrip() for line in lines).rstrip() + "\n"
+
+
+def _banner(sweep: Sweep, title: str) -> Iterator[str]:
+    about = sweep.about
+    force, length, time = about["units"].split()
+    yield "=" * WIDTH
+    yield f" POUND-SOLVE {about['program_version']}     {title.upper()}"
+    yield ""
+    yield f" Study {about['study']}"
+    yield f" Units: force {force}, length {length}, time {time}"
+    yield "=" * WIDTH
+    yield from ("", "")
+
+
+def _run(sweep: Sweep) -> Iterator[str]:
+    """Counts, decks, PARAMs, records, levels."""
+    status = sweep["status"].tolist()
+    counts = ", ".join(f"{status.count(end)} {end}" for end in dict.fromkeys(sorted(status)))
+    yield from _line("runs", f"{len(status)}: {counts}")
+    params = [(n, v.doc.removeprefix(PARAM)) for n, v in sweep.variables.items() if v.doc.startswith(PARAM)]
+    named = [("deck", "decks"), *params, ("record", "records"), *((name, name) for name in _levels(sweep))]
+    for name, word in named:
+        if name in sweep.variables:
+            yield from _line(word, _values(sweep[name].tolist()))
+
+
+def _line(word: str, told: str) -> list[str]:
+    return textwrap.wrap(
+        told, WIDTH, initial_indent=f"  {word:<12}  ", subsequent_indent=" " * 16, break_long_words=False
+    )
+
+
+def _values(values: Sequence[Any]) -> str:
+    """Distinct values, or what they lie between."""
+    own = list(dict.fromkeys(values))
+    numbers = all(isinstance(v, float) for v in own)
+    words = [f"{v:.6g}" for v in sorted(own)] if numbers else [str(v) for v in own]
+    if len(words) <= VALUES:
+        return ", ".join(words)
+    return f"{len(words)} from {words[0]} to {words[-1]}" if numbers else f"{len(words)}, {words[0]} first"
+
+
+def failures(sweep: Sweep) -> list[Row]:
+    """One row for each run that is not done."""
+    titles = _titles(sweep)
+    out = [
+        (run, title, status, (message.splitlines() or [""])[0])
+        for run, title, status, message in zip(
+            sweep[RUN].tolist(), titles, sweep["status"].tolist(), sweep["message"].tolist()
+        )
+        if status != DONE
+    ]
+    return out[:ROWS] + [(0, f"and {len(out) - ROWS} more", "", "")] * (len(out) > ROWS)
+
+
+def _titles(sweep: Sweep) -> list[str]:
+    """What tells every run from the others."""
+    names = [name for name in ("record", *_levels(sweep)) if name in sweep.variables]
+    return [
+        ", ".join(filter(None, [case, *(_told(sweep[n][i], n) for n in names)]))
+        for i, case in enumerate(cases(sweep))
+    ]
+
+
+def _levels(sweep: Sweep) -> list[str]:
+    """Variable of the levels, if there is one."""
+    return [name for name in LEVELS if name in sweep.variables][:1]
+
+
+def _told(value: Any, name: str) -> str:
+    return f"{name} {value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _shown(sweep: Sweep) -> Iterator[tuple[str, Array]]:
+    """Name of every quantity that is shown, and the largest of its labels in each run; infinite where a run
+    stopped on its way, NaN where it has none.
+    """
+    for name in SHOWN:
+        if name in sweep.variables:
+            values = demands(sweep, Asked(name))
+            if np.isfinite(values).any():
+                yield name, values
+
+
+def _groups(sweep: Sweep) -> dict[str, Index]:
+    """Runs by case and level, or by case, or all: as finely as several runs are in each."""
+    named = cases(sweep)
+    levels = [""] * len(named)
+    for name in _levels(sweep):
+        levels = [f"{name} {x:.6g}" for x in sweep[name].tolist()]
+    for keys in ([", ".join(filter(None, key)) for key in zip(named, levels)], named):
+        count = len(set(keys))
+        if count <= GROUPS and 2 * count <= len(keys):
+            return {key or ALL: np.flatnonzero(np.array(keys) == key) for key in dict.fromkeys(keys)}
+    return {ALL: np.arange(len(named))}
+
+
+def fractiles(sweep: Sweep) -> Iterator[Row]:
+    """One row for each quantity and group."""
+    groups = _groups(sweep)
+    for name, values in _shown(sweep):
+        for key, own in groups.items():
+            found = values[own]
+            found = found[~np.isnan(found)]
+            if len(found):
+                yield name, key, len(found), *np.quantile(found, FRACTILES, method="inverted_cdf").tolist()
+
+
+class _Worst(NamedTuple):
+    """Largest value of a quantity that is finite."""
+
+    name: str
+    place: int
+    value: float
+    label: str
+
+
+def _worst(sweep: Sweep) -> Iterator[_Worst]:
+    for name, values in _shown(sweep):
+        at = int(np.nanargmax(np.where(np.isfinite(values), values, np.nan)))
+        own = sweep.variables[name]
+        label = ""
+        if own.axis:
+            label = sweep.labels[own.axis][int(np.nanargmax(np.abs(own.values[at])))]
+        yield _Worst(name, at, float(values[at]), label)
+
+
+def worst(sweep: Sweep) -> Iterator[Row]:
+    """One row for each quantity."""
+    titles = _titles(sweep)
+    for w in _worst(sweep):
+        unit = sweep.variables[w.name].unit
+        yield (
+            w.name,
+            f"{w.value:.5g} {unit}".removesuffix(" -"),
+            w.label,
+            int(sweep[RUN][w.place]),
+            titles[w.place],
+        )
+
+
+def _fractiles(sweep: Sweep, units: Units) -> list[str]:
+    """The table of fractiles, one part for each quantity with its unit."""
+    rows, out = list(fractiles(sweep)), list[str]()
+    for name in dict.fromkeys(row[0] for row in rows):
+        unit = sweep.variables[name].unit
+        out += [f"  {name} [{unit or '-'}]", ""]
+        out += [*printed(units, FRACTILE_TABLE, [row[1:] for row in rows if row[0] == name]), ""]
+    return out[:-1]
+
+
+def _checks(sweep: Sweep, units: Units) -> Iterator[str]:
+    """The largest energy residual, and runs whose checks call for a look."""
+    if "energy_residual" in sweep.variables:
+        own = np.asarray(sweep["energy_residual"], np.float64)
+        if not np.isnan(own).all():
+            at = int(np.nanargmax(own))
+            what = "largest energy residual over the largest energy of its run"
+            yield f"  {what}: {own[at]:.1e}, run {sweep[RUN][at]}"
+    looked = [(run, what) for run, what in zip(sweep[RUN].tolist(), sweep["doubt"].tolist()) if what]
+    yield f"  runs whose checks call for a look: {len(looked)} of {len(sweep)}"
+    if looked:
+        yield from ("", *printed(units, DOUBTS, looked[:ROWS]))
+        if len(looked) > ROWS:
+            yield from ("", f"  and {len(looked) - ROWS} more: column doubt of the table of runs")
+
+
+_RUN_COLUMN: Final = Column("run", fmt="int", doc="number of the run", zero="...")
+FAILURES: Final = Table(
+    name="failures",
+    title="Runs without all results",
+    place=0,
+    stages=(),  # it is printed, not stored
+    columns=(
+        _RUN_COLUMN,
+        Column("title", "case, record, level", doc="what tells the run from others"),
+        Column("status", doc="stopped, failed or missing"),
+        Column("reason", doc="why"),
+    ),
+    rows=failures,
+    sample=((17, "gap=0.02, elcentro.at2, scale 2", "stopped", "A502 at t = 4.1 s: no equilibrium"),),
+)
+FRACTILE_TABLE: Final = Table(
+    name="fractiles_of_runs",
+    title="Fractiles of the runs",
+    place=0,
+    stages=(),
+    columns=(
+        Column("group", "case, level", doc="runs that are taken together"),
+        Column("runs", fmt="int", doc="runs that tell"),
+        *(
+            Column(f"q{n}", f"{100 * q:.0f} %", "", "short", doc="not exceeded")
+            for n, q in enumerate(FRACTILES)
+        ),
+    ),
+    rows=fractiles,
+    sample=(("gap=0.02, pga 0.4", 8, 0.01, 0.02, math.inf),),
+)
+WORST: Final = Table(
+    name="worst_runs",
+    title="Worst runs",
+    place=0,
+    stages=(),
+    columns=(
+        Column("quantity", doc="quantity of the sweep"),
+        Column("value", "largest", doc="largest value of all runs that did not stop"),
+        Column("label", "where", doc="its label"),
+        _RUN_COLUMN,
+        Column("title", "case, record, level", doc="what tells the run from others"),
+    ),
+    rows=worst,
+    sample=(("contact_force", "1234.5 kN", "floor 1", 17, "gap=0.02, elcentro.at2, scale 2"),),
+)
+DOUBTS: Final = Table(
+    name="doubts",
+    title="Checks that call for a look",
+    place=0,
+    stages=(),
+    columns=(_RUN_COLUMN, Column("doubt", "check", doc="check and its verdict")),
+    rows=lambda rows: rows,
+    sample=(
+        (17, "largest energy residual over the largest energy: 2.00e-02, look: energy is lost or made"),
+    ),
+)
