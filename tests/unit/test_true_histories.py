@@ -13,6 +13,8 @@ from pound_deck.reader import read_text
 from pound_solve import run
 from pound_solve.analyses.closeups import Peaks
 from pound_solve.catalog import catalog
+from pound_solve.driver.request import Request
+from pound_solve.driver.run import execute
 from pound_solve.integrate.protocol import Motion
 from pound_solve.numerics.crests import NODES, crests, may_exceed
 from pound_solve.report.export import export_csv
@@ -224,6 +226,27 @@ def test_close_ups_without_room_for_peaks_say_so(tmp_path: Path) -> None:
     heights = few.closeup("contact/force")[1].max(axis=1)
     for c in collisions[:2]:
         assert np.isclose(heights, c["peak_force"], rtol=1e-10).any()
+
+
+def test_a_run_that_is_broken_off_keeps_its_close_ups(tmp_path: Path) -> None:
+    """Up to where it came: those of a whole run until then."""
+    whole = history(tmp_path, "EXACT", 0.1)
+    first, second, _ = whole.table("collisions")
+
+    def broken(t: float, end: float, doing: str) -> None:
+        if t > second["t_end"]:
+            raise KeyboardInterrupt
+
+    request = Request(str(tmp_path / "EXACT_0.1.inp"), out=tmp_path / "broken")
+    _, found, _ = execute(request, broken)
+    with found:
+        assert found.status == "stopped"
+        t, force = found.closeup("contact/force")
+    other, right = whole.closeup("contact/force")
+    until = other <= second["t_end"]
+    assert t[: until.sum()] == pytest.approx(other[until], abs=1e-12)
+    assert force[: until.sum(), 0] == pytest.approx(right[until, 0], abs=1e-9)
+    assert np.isclose(force, first["peak_force"], rtol=1e-10).any() and t[-1] < 1.4
 
 
 def test_close_ups_go_into_csv(tmp_path: Path) -> None:
