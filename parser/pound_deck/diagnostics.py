@@ -414,9 +414,10 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "the structure, and neither INITIAL nor FORCES set it in motion. Fix its base in that direction.",
     ),
     "P338": (
-        "name of no single building",
+        "name of no single building, or of no floor",
         "A line of BUILDINGS names nodes that elements do not connect, a building that has a name, or a "
-        "name given before. A building is all that elements and slaving connect; contacts do not.",
+        "name given before; or its FLOORS are nodes elsewhere, or where nothing has mass. A building is "
+        "all that elements and slaving connect; contacts do not.",
     ),
     "P339": (
         "building damped twice, or not at all (warning)",

@@ -157,6 +157,13 @@ SECTIONS: Final = (
         (
             Field("NAME", Kind.TEXT, doc="name in the report", positional=True),
             Field("NODES", Kind.NODES, doc="one or more of its nodes"),
+            Field(
+                "FLOORS",
+                Kind.NODES,
+                default=None,
+                doc="a node at each of its floors; left out: the highest level of nodes with mass, and all "
+                "that have a tenth of the mass of the heaviest",
+            ),
         ),
     ),
     Spec(
@@ -184,11 +191,11 @@ SECTIONS: Final = (
             Field(
                 "CLOSEUPS",
                 Kind.REAL,
-                default=16.0,
+                default=4.0,
                 lo=0.0,
                 hi=1e5,
-                doc="megabytes at most of histories at every instant of the method while a contact is "
-                "pressed; 0: none",
+                doc="megabytes at most of histories at the instants of the method while a contact is "
+                "pressed, and at the peaks of its force; 0: none",
             ),
             Field(
                 "HISTORIES",

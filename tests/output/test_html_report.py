@@ -22,6 +22,7 @@ from pound_solve.report.text import render
 from pound_solve.report.views import view_of
 from pound_solve.results import Results
 from pound_solve.results.contents import SECTIONS
+from unit.test_reactions import STACK
 
 plotly = pytest.importorskip("plotly.offline")
 
@@ -211,6 +212,27 @@ def test_pictures_show_the_numbers_of_the_file(results: Results) -> None:
     column = results.labels("spring/force").index(loop["name"])
     np.testing.assert_allclose(loop["x"], results.history("spring/deformation")[:, column], rtol=1e-6)
     assert all(p.x.endswith("]") and p.y.endswith("]") for p in drawn.values()), "units on every axis"
+
+
+def test_profiles_show_both_sides_of_every_storey() -> None:
+    two = STACK.format(h=3, joint=4.5, light=20, roof=50, names="")
+    motion = "EQUAKE\n SINE AMPLITUDE=4 PERIOD=0.5 DURATION=0.4\n"
+    deck = f"UNITS kN m s\nGRAVITY 10\n{two}{motion}ANALYSIS\n HISTORY 0.5 METHOD=EXACT\n"
+    with run(Deck(deck)) as results:
+        drawn = {p.title: p for p in pictures(results)}
+        extremes, levels = results.table("storey_extremes"), results.table("storey_envelope")["level"]
+    for quantity, title in (
+        ("drift ratio", "Extreme drift ratios over the height"),
+        ("shear", "Extreme storey shears over the height"),
+        ("floor acceleration", "Extreme floor accelerations over the height"),
+    ):
+        own = extremes[extremes["quantity"] == quantity]
+        right, left = drawn[title].traces
+        assert (right["name"], left["name"]) == ("building 1, to the right", "building 1, to the left")
+        np.testing.assert_allclose(right["x"], own["max"], rtol=1e-6)
+        np.testing.assert_allclose(left["x"], own["min"], rtol=1e-6)
+        np.testing.assert_allclose([right["y"], left["y"]], [levels, levels], rtol=1e-6)
+        assert right["line"]["color"] == left["line"]["color"] and len(own) == 3
 
 
 def test_a_long_curve_keeps_its_extremes() -> None:

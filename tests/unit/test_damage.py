@@ -40,6 +40,14 @@ def test_monotonic_push() -> None:
     assert found.total == pytest.approx(0.75 + 0.1 * 5 / 8, rel=1e-14)
 
 
+def test_what_lies_beyond_yield_is_plastic() -> None:
+    assert damage.plastic((4.0, -7.0), (1.0, -2.0)) == 5.0  # 3 on the other side
+    assert damage.plastic((0.5, -1.0), (1.0, -2.0)) == 0.0
+    assert damage.plastic((-3.0, -5.0), (1.0, -2.0)) == 3.0  # it was on one side only
+    assert damage.plastic((4.0, -1.0), (0.0, -2.0)) == 0.0  # no strength on the other side
+    assert math.isnan(damage.plastic((4.0, -7.0), None))
+
+
 def test_cycles() -> None:
     """To 4, -4 and 4 times yield: 3 + 6 + 6 yield deformations of plastic flow."""
     law = elasto_plastic.build({}, K, FY, -FY)

@@ -244,3 +244,40 @@ def test_a_massless_mechanism_is_an_error():
     k = np.array([[1.0, 0, 0], [0, 1, -1], [0, -1, 1]])
     with pytest.raises(np.linalg.LinAlgError):
         modes.solve(k, np.diag([1.0, 0, 0]))
+
+
+PAIR = """
+GRAVITY 9.81
+NODES
+ 1 0 0 FIX=XYR
+ 2 TO 3 0 3 TO 6 FIX=YR
+ 11 5 0 FIX=XYR
+ 12 5 3 FIX=YR
+ELEMENTS
+ 1 S 1 2
+ 2 S 2 3
+ 3 T 11 12
+ 9 HIT 2 12
+PROPS
+ S SPRING KX=4.2e5
+ T SPRING KX={k!r}
+ HIT CONTACT GAP=0.1 K=1e6
+WEIGHTS
+ 2,3,12 1600
+BUILDINGS
+ "low" NODES=12
+"""
+
+
+def test_modes_belong_to_buildings():
+    """Each building vibrates on its own; where a period of both is the same, no mode belongs to one."""
+    found = modal.kinetic_shares(structure_of(PAIR.format(k=3e5)), 3)
+    assert [(s.mode, s.building) for s in found] == [(1, "building 1"), (2, "low"), (3, "building 1")]
+    assert [s.kinetic for s in found] == pytest.approx([100.0] * 3, rel=1e-12)
+    s = structure_of(PAIR.format(k=4.2e5 * (3 - math.sqrt(5)) / 2))
+    shares = {(x.mode, x.building): x.kinetic for x in modal.kinetic_shares(s, 3)}
+    for mode in (1, 2, 3):
+        assert sum(x for (n, _), x in shares.items() if n == mode) == pytest.approx(100.0, abs=0.2)
+    assert shares[3, "building 1"] == pytest.approx(100.0, rel=1e-12)
+    held = sum(x for (n, name), x in shares.items() if name == "low" and n < 3)
+    assert held == pytest.approx(100.0, abs=0.2)

@@ -90,6 +90,51 @@ def test_a_hinge_that_its_rule_fails_is_told(tmp_path):
         assert (worst == ["failed"]) == failed
 
 
+FRAME = """UNITS kN m s
+GRAVITY 9.81
+NODES
+ 1 TO 2  0 TO 5  0   FIX=XYR
+ 11 TO 12  0 TO 5  3
+ELEMENTS
+ 1 TO 2  COL  1 TO 2  11 TO 12
+ 3 BEAM 11 12
+PROPS
+ COL FRAME E=27E6 A=0.2 I=1E-3 LP=0.3 MI=100 MJ=200 RULE=BILINEAR R=0.02 {items}
+ BEAM FRAME E=27E6 A=0.2 I=1E-2
+WEIGHTS
+ 11 TO 12 200
+EQUAKE
+ SINE AMPLITUDE={a} PERIOD=0.5 DURATION=1
+ANALYSIS
+ HISTORY 1
+"""
+
+
+@pytest.mark.parametrize(
+    ("items", "a", "told"), [("", 6.0, True), ("DUCTU=30", 6.0, False), ("", 2.0, False)]
+)
+def test_a_hinge_turned_beyond_ordinary_members_is_told(tmp_path, items, a, told):
+    """Where the deck does not say how far hinges go; a row holds both ends of a member."""
+    deck = tmp_path / "model.inp"
+    deck.write_text(FRAME.format(items=items, a=a))
+    results = pound_solve.run(deck)
+    springs = {(r["element"], r["component"]): r for r in results.table("spring_envelope")}
+    worst = results.table("worst_hinges")
+    assert sorted(worst["element"]) == [1, 2]
+    for row in worst:
+        ends = [springs[row["element"], f"hinge {end}"] for end in "IJ"]
+        weak, strong = sorted(ends, key=lambda r: -r["ductility"])
+        assert row["component"] == weak["component"]
+        assert (row["ductility"], row["ductility_other"]) == (weak["ductility"], strong["ductility"])
+        at_yield = 100 * 0.3 / 27e3
+        turned = max(weak["deformation_max"], -weak["deformation_min"])
+        assert row["rotation"] == pytest.approx(turned - at_yield, rel=1e-12)
+        assert (row["rotation"] > 0.02) == (a == 6.0)
+        assert (row["state"] == "look: beyond ordinary rotations") == told
+    found = [c for c in looks(results) if c.startswith("plastic rotation of 2 hinges, largest hinge I")]
+    assert bool(found) == told and ("FEMA 356" in first_page(results)) == told
+
+
 @pytest.mark.full
 def test_an_overlap_beyond_what_the_law_means_is_told(tmp_path):
     """Points of a table that end at 2 mm."""

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import pound_solve
+from decks import structure_of
+from pound_solve.structure.buildings import buildings
 
 SDOF = """UNITS kN m s
 NODES
@@ -236,3 +238,55 @@ def test_storeys_may_be_left_out(tmp_path):
     assert not any("base shear" in check for check in lean.table("checks")["check"])
     assert (lean.history("node/u") == whole.history("node/u")).all()
     assert (lean.history("reaction") == whole.history("reaction")).all()
+
+
+STACK = """NODES
+ 1 TO 2    0 TO 5   0     FIX=XYR
+ 11 TO 12  0 TO 5   {h}
+ 13        0        {joint}
+ 21 TO 22  0 TO 5   6
+ELEMENTS
+ 1 TO 2  COL  1 TO 2  11 TO 12
+ 3       COL  11  13
+ 4       COL  13  21
+ 5       COL  12  22
+ 6       BEAM 11 12
+ 7       BEAM 21 22
+PROPS
+ COL FRAME E=2E7 A=0.04 I=2E-4
+ BEAM FRAME E=2E7 A=0.04 I=2E-4
+WEIGHTS
+ 11 TO 12  50
+ 21 TO 22  {roof}
+ 13        {light}
+{names}
+"""
+
+
+@pytest.mark.parametrize(
+    ("light", "roof", "names", "levels"),
+    [
+        (9.0, 50.0, "", [3, 6]),  # less than a tenth of the 100 of the heaviest level
+        (11.0, 50.0, "", [3, 4.5, 6]),
+        (9.0, 2.0, "", [3, 6]),  # the highest level is a floor, however light
+        (9.0, 50.0, 'BUILDINGS\n "A" NODES=1 FLOORS=12,13,22', [3, 4.5, 6]),
+        (11.0, 50.0, 'BUILDINGS\n "A" NODES=1 FLOORS=11,22', [3, 6]),
+    ],
+)
+def test_floors_are_heavy_levels_or_those_that_the_deck_names(light, roof, names, levels):
+    deck = STACK.format(h=3, joint=4.5, light=light, roof=roof, names=names)
+    (found,) = buildings(structure_of(deck))
+    assert found.levels == pytest.approx([0, *levels], abs=1e-12)
+    assert found.mass == pytest.approx((100 + 2 * roof + light) / 9.81, rel=1e-9)
+
+
+def test_the_shear_of_a_storey_has_the_inertia_of_joints_within_it(tmp_path):
+    """A joint of 2 kN above the middle of the second storey, which is no floor."""
+    text = "UNITS kN m s\nGRAVITY 10\n" + STACK.format(h=3, joint=5, light=2, roof=50, names="")
+    motion = "EQUAKE\n SINE AMPLITUDE=4 PERIOD=0.5 DURATION=1\n"
+    r = run(tmp_path, text + motion + "OUTPUT\n EVERY=0.01\nANALYSIS\n HISTORY 1 METHOD=EXACT\n")
+    assert r.table("storey_envelope")["storey"].tolist() == [1, 2]
+    shear = r.history("storey/shear")
+    above = inertia(r, {21: 5.0, 22: 5.0, 13: 0.2})
+    assert np.abs(shear[:, 1] + above).max() < 1e-9 * np.abs(shear).max()
+    assert np.abs(shear[:, 0] + above + inertia(r, {11: 5.0, 12: 5.0})).max() < 1e-9 * np.abs(shear).max()

@@ -1,9 +1,12 @@
 """STUDY: errors, orders and extrapolation by hand; advice that holds for motions it has not seen."""
 
+import itertools
 import math
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -179,6 +182,24 @@ def test_the_step_that_the_advice_names_meets_its_error_under_another_motion(tmp
     found = {(t.method, t.setting): t.error for t in other.trials}
     for (method, target), setting in advised.items():
         assert found[method, setting] <= target
+
+
+@pytest.mark.parametrize("leaping", ["perf_counter", "process_time"])
+def test_only_cpu_time_breaks_a_run_off(two, monkeypatch, leaping):
+    """A clock that leaps by an hour at each reading: the clock on the wall breaks nothing off, that of
+    the process does.
+    """
+    hours = itertools.count(0.0, 3600.0)
+    clocks = {name: getattr(time, name) for name in ("perf_counter", "process_time")}
+    clocks[leaping] = lambda: next(hours)
+    monkeypatch.setattr(study, "time", SimpleNamespace(**clocks))
+    plan = Plan(("NEWMARK", "CENTRAL"), steps=(0.005, 0.0025, 0.00125), repeat=1)
+    if leaping == "perf_counter":
+        found, _ = study.run(two, plan)
+        assert [t.stopped for t in found.trials] == [""] * 4  # two of NEWMARK made the reference
+    else:
+        with pytest.raises(StudyError, match="longer than --longest"):
+            study.run(two, plan)
 
 
 def test_a_run_that_stops_is_a_row_and_two_studies_differ_in_times_only(two, capsys):

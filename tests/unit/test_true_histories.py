@@ -11,7 +11,11 @@ import pytest
 from kernels import steps_alone
 from pound_deck.reader import read_text
 from pound_solve import run
+from pound_solve.analyses.closeups import Peaks
 from pound_solve.catalog import catalog
+from pound_solve.driver.request import Request
+from pound_solve.driver.run import execute
+from pound_solve.integrate.protocol import Motion
 from pound_solve.numerics.crests import NODES, crests, may_exceed
 from pound_solve.report.export import export_csv
 from pound_solve.results import Results
@@ -170,15 +174,79 @@ def test_close_ups_are_the_motion(tmp_path: Path) -> None:
     assert "energy" not in found.closeups
 
 
-def test_close_ups_keep_within_their_budget(tmp_path: Path) -> None:
-    """Where it binds the report says from when on; 0 stores none; peaks find room longest."""
-    none = history(tmp_path, "TAYLOR", 0.1, "CLOSEUPS=0")
+def bytes_of_closeups(found: Results) -> int:
+    """Of all histories in close-up, the times among them."""
+    width = sum(found.closeup(name)[1][0].size for name in found.closeups) + 1
+    return 8 * width * len(found.closeup("contact/gap")[0])
+
+
+def told_of_closeups(found: Results) -> list[tuple[str, str, str]]:
+    return [c.tolist() for c in found.table("checks") if "close-ups" in c["check"]]
+
+
+def test_close_ups_thin_out_within_their_budget(tmp_path: Path) -> None:
+    """Every collision stays in them at its true peak, with fewer of its instants; 0 stores none."""
+    none = history(tmp_path, "EXACT", 0.1, "CLOSEUPS=0")
     assert none.closeups == () and none.course("contact/force")[0].tolist() == none.time.tolist()
-    few = history(tmp_path, "TAYLOR", 0.1, "CLOSEUPS=0.02")
-    width = sum(few.closeup(name)[1][0].size for name in few.closeups) + 1
-    assert 0 < 8 * width * len(few.closeup("contact/gap")[0]) <= 20000
-    (told,) = [c for c in few.table("checks") if "close-ups" in c["check"]]
-    assert "CLOSEUPS" in told["verdict"]
+    whole = history(tmp_path, "EXACT", 0.1)
+    budget = 0.3 * bytes_of_closeups(whole) / 1e6
+    few = history(tmp_path, "EXACT", 0.1, f"CLOSEUPS={budget:g}")
+    assert 0.4 * 1e6 * budget < bytes_of_closeups(few) <= 1e6 * budget * 1.0001
+    assert told_of_closeups(whole) == []
+    ((told, every, verdict),) = told_of_closeups(few)
+    assert told.startswith("instants of collisions") and int(every) in (4, 8) and "CLOSEUPS" in verdict
+    t, force = few.closeup("contact/force")
+    kept = set(whole.closeup("contact/force")[0])
+    assert kept.issuperset(t)
+    for c in few.table("collisions"):
+        own = (t >= c["t_start"] - 1e-9) & (t <= c["t_end"] + 1e-9)
+        assert force[own].max() == pytest.approx(c["peak_force"], rel=1e-10)
+
+
+def test_of_each_collision_the_largest_peak_stays() -> None:
+    """Two contacts, whose numbers of collisions go up where those of contacts go down."""
+    contact, collision = np.array([0, 0, 1, 0, 1, 1, 0]), np.array([1, 1, 0, 2, 1, 1, 2])
+    height, t = np.array([5.0, 7.0, 3.0, 1.0, 6.0, 4.0, 2.0]), np.arange(7.0)
+    motion = Motion(t, *(t[None] for _ in Motion._fields[1:]))
+    found = Peaks(motion, contact, collision, height, height > 3.0).largest()
+    assert found.motion.t.tolist() == [1.0, 2.0, 4.0, 6.0] == found.motion.u[0].tolist()
+    assert found.height.tolist() == [7.0, 3.0, 6.0, 2.0]
+
+
+def test_close_ups_without_room_for_peaks_say_so(tmp_path: Path) -> None:
+    """Room for two peaks, of more collisions: the first stay, and the report names the time after."""
+    whole = history(tmp_path, "EXACT", 0.1)
+    collisions = whole.table("collisions")
+    row = bytes_of_closeups(whole) / len(whole.closeup("contact/gap")[0])
+    few = history(tmp_path, "EXACT", 0.1, f"CLOSEUPS={11 * row / 1e6:g}")
+    assert len(collisions) == 3 and len(few.closeup("contact/gap")[0]) <= 11
+    ((told, since, verdict),) = told_of_closeups(few)
+    assert told.startswith("time from which on") and verdict.startswith("look")
+    assert float(since) == pytest.approx(collisions["t_peak"][2], abs=1e-3)
+    heights = few.closeup("contact/force")[1].max(axis=1)
+    for c in collisions[:2]:
+        assert np.isclose(heights, c["peak_force"], rtol=1e-10).any()
+
+
+def test_a_run_that_is_broken_off_keeps_its_close_ups(tmp_path: Path) -> None:
+    """Up to where it came: those of a whole run until then."""
+    whole = history(tmp_path, "EXACT", 0.1)
+    first, second, _ = whole.table("collisions")
+
+    def broken(t: float, end: float, doing: str) -> None:
+        if t > second["t_end"]:
+            raise KeyboardInterrupt
+
+    request = Request(str(tmp_path / "EXACT_0.1.inp"), out=tmp_path / "broken")
+    _, found, _ = execute(request, broken)
+    with found:
+        assert found.status == "stopped"
+        t, force = found.closeup("contact/force")
+    other, right = whole.closeup("contact/force")
+    until = other <= second["t_end"]
+    assert t[: until.sum()] == pytest.approx(other[until], abs=1e-12)
+    assert force[: until.sum(), 0] == pytest.approx(right[until, 0], abs=1e-9)
+    assert np.isclose(force, first["peak_force"], rtol=1e-10).any() and t[-1] < 1.4
 
 
 def test_close_ups_go_into_csv(tmp_path: Path) -> None:

@@ -1,20 +1,63 @@
 """Close-ups: the motion at the method's own instants while a contact is pressed, and at every peak of its
 force, so that a stored history shows a collision as it was, however far apart its samples are.
+
+Where the room does not suffice, every second instant goes, from all collisions alike, and again as often as
+needed; of the peaks of a contact's force the largest of each collision stay.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
 from pound_solve.integrate.protocol import Course, Motion
 from pound_solve.numerics.crests import NODES, crests, on_nodes
-from pound_solve.numerics.types import Array, Index
+from pound_solve.numerics.types import Array, Flags, Index
 
-FOR_PEAKS = 0.25  #: share of the room that is kept for peaks of forces
-MEGABYTE = 10**6  #: of `OUTPUT CLOSEUPS`
-BLOCK = 1024  #: instants that are handed out at a time, at most
+FOR_PEAKS: Final = 0.25  #: share of the room that is kept for peaks of forces
+MEGABYTE: Final = 10**6  #: of `OUTPUT CLOSEUPS`
+BLOCK: Final = 1024  #: instants that are handed out at a time, at most
+
+
+@dataclass(frozen=True, eq=False)
+class Peaks:
+    """The motion at peaks of the contacts' forces.
+
+    Attributes
+    ----------
+    motion : Motion
+    contact, collision : ndarray of int, shape (n_peaks,)
+        Number of the contact, and how often it was pressed anew before.
+    height : ndarray, shape (n_peaks,)
+        The force [F].
+    own : ndarray of bool, shape (n_peaks,)
+        Whether the peak lies at an instant of the method.
+    """
+
+    motion: Motion
+    contact: Index
+    collision: Index
+    height: Array
+    own: Flags
+
+    def at(self, chosen: Index | Flags) -> Peaks:
+        """Some of them."""
+        return Peaks(
+            _at(self.motion, chosen),
+            self.contact[chosen],
+            self.collision[chosen],
+            self.height[chosen],
+            self.own[chosen],
+        )
+
+    def largest(self) -> Peaks:
+        """The largest of each collision."""
+        order = np.lexsort((self.height, self.collision, self.contact))
+        last = np.append(np.diff(self.contact[order]) | np.diff(self.collision[order]) != 0, True)
+        return self.at(np.sort(order[last]))
 
 
 class Closeups:
@@ -29,15 +72,20 @@ class Closeups:
 
     Attributes
     ----------
+    every : int
+        Of the instants of collisions one in so many was kept.
     full : float
-        Time from which on only peaks were kept, or nothing; infinite where all were [T].
+        Time from which on peaks found no room, either; infinite where all collisions have theirs [T].
     """
 
     def __init__(self, contacts: Index, room: int) -> None:
         self.contacts, self.room = contacts, room
-        self.full = np.inf
-        self._kept: list[Motion] = []
-        self._count = 0
+        self.every, self.full = 1, np.inf
+        self._instants: list[Motion] = []
+        self._peaks: list[Peaks] = []
+        self._seen = 0
+        self._pressed = np.zeros(len(contacts), bool)
+        self._collisions = np.zeros(len(contacts), np.int64)
 
     def blank(self) -> Closeups:
         """Return one that has seen nothing."""
@@ -45,39 +93,60 @@ class Closeups:
 
     def widen(self, other: Closeups) -> None:
         """Count in what another one has kept."""
-        self._kept += other._kept
-        self._count, self.full = self._count + other._count, min(self.full, other.full)
+        self._instants += other._instants
+        self.every, self.full = max(self.every, other.every), min(self.full, other.full)
+        for peaks in other._peaks:
+            self._keep(replace(peaks, collision=peaks.collision + 1 + self._collisions[peaks.contact]))
+        self._collisions = self._collisions + 1 + other._collisions
+        self._thin()
 
     def take(self, course: Course) -> None:
         """Keep what belongs to collisions."""
         forces = course.motion.law_forces[self.contacts]
-        pressed = (forces != 0.0).any(axis=0)
-        if self.room == 0 or not pressed.any():
+        pressed = forces != 0.0
+        before = np.column_stack([self._pressed, pressed[:, :-1]])
+        collisions = self._collisions[:, None] + np.cumsum(pressed & ~before, axis=1)
+        self._pressed, self._collisions = pressed[:, -1].copy(), collisions[:, -1]
+        any_ = pressed.any(axis=0)
+        if self.room == 0 or not any_.any():
             return
-        near = pressed.copy()  # with one instant before and after
-        near[1:] |= pressed[:-1]
-        near[:-1] |= pressed[1:]
-        kept = [_at(course.motion, np.flatnonzero(near)), *self._peaks(course, forces)]
-        limits = (1.0 - FOR_PEAKS) * self.room, self.room
-        fitting = []
-        for motion, limit in zip(kept, limits):
-            count = max(min(len(motion.t), int(limit) - self._count), 0)
-            if count < len(motion.t):
-                self.full = min(self.full, float(motion.t[count]))
-            fitting.append(_at(motion, np.arange(count)))
-            self._count += count
-        found = _joined(fitting)
-        self._kept.append(_at(found, np.argsort(found.t, kind="stable")))
+        near = any_.copy()  # with one instant before and after
+        near[1:] |= any_[:-1]
+        near[:-1] |= any_[1:]
+        chosen = np.flatnonzero(near)
+        number = self._seen + np.arange(len(chosen))
+        self._seen += len(chosen)
+        self._instants.append(_at(course.motion, chosen[number % self.every == 0]))
+        self._keep(self._peaks_of(course, forces, collisions))
+        self._thin()
 
-    def _peaks(self, course: Course, forces: Array) -> Iterator[Motion]:
-        """The motion at the peaks of the forces that lie between the instants, if it is known there."""
-        if course.within is None:
+    def _keep(self, peaks: Peaks) -> None:
+        """Keep peaks; where there are too many, the largest of each collision."""
+        if self.full < np.inf:
             return
+        self._peaks.append(peaks)
+        most = int(FOR_PEAKS * self.room)
+        if sum(len(p.height) for p in self._peaks) > most:
+            whole = joined_peaks(self._peaks).largest()
+            self.full = float(whole.motion.t[most:].min(initial=np.inf))
+            self._peaks = [whole.at(np.arange(min(most, len(whole.height))))]
+
+    def _thin(self) -> None:
+        """Leave out every second instant as long as there are too many."""
+        most = max(int((1.0 - FOR_PEAKS) * self.room), 1)
+        while sum(len(m.t) for m in self._instants) > most:
+            whole = _joined(self._instants)
+            self._instants = [_at(whole, np.arange(0, len(whole.t), 2))]
+            self.every *= 2
+
+    def _peaks_of(self, course: Course, forces: Array, collisions: Index) -> Peaks:
+        """The motion at the peaks of the forces: at an instant, or between two, if it is known there."""
         wide = np.pad(forces, ((0, 0), (1, 1)), constant_values=-np.inf)
-        tops = (forces > 0.0) & (forces >= wide[:, :-2]) & (forces > wide[:, 2:])
-        row, top = np.nonzero(tops)
-        if not len(row):
-            return
+        row, top = np.nonzero((forces > 0.0) & (forces >= wide[:, :-2]) & (forces > wide[:, 2:]))
+        at_instants = np.ones(len(row), bool)
+        found = Peaks(_at(course.motion, top), row, collisions[row, top], forces[row, top], at_instants)
+        if course.within is None or not len(row):
+            return found
         cells = np.unique(np.concatenate([top, np.maximum(top - 1, 0)]))
         motion = course.within(cells, NODES)
         own = motion.law_forces[self.contacts].reshape(len(forces), len(cells), -1)
@@ -86,7 +155,7 @@ class Closeups:
         earlier = high_before > high
         chosen = np.where(earlier, sides[1], sides[0])
         place = np.where(earlier, place_before, place)
-        inner = (place > 0.0) & (place < 1.0)  # else it is an instant that is kept
+        inner = (place > 0.0) & (place < 1.0)
         chosen, place = chosen[inner], place[inner]
         t = course.motion.t[cells[chosen]] + place * course.lengths[cells[chosen]]
         weights = on_nodes(place)
@@ -94,22 +163,39 @@ class Closeups:
         def at(x: Array) -> Array:
             return np.asarray((x.reshape(len(x), len(cells), -1)[:, chosen] * weights).sum(axis=2))
 
-        yield Motion(t, *map(at, motion[1:]))
+        between = replace(
+            found.at(inner),
+            motion=Motion(t, *map(at, motion[1:])),
+            height=np.maximum(high, high_before)[inner],
+            own=np.zeros(len(t), bool),
+        )
+        return joined_peaks([found.at(~inner), between])
 
     def blocks(self) -> Iterator[Motion]:
         """What was kept, in the order of time."""
-        if self._count:
-            whole = _joined(self._kept)
+        kept = list(self._instants)
+        if self._peaks:
+            peaks = joined_peaks(self._peaks)
+            # peaks at instants that are all there are no second time
+            kept.append(peaks.at(~peaks.own if self.every == 1 else np.ones(len(peaks.own), bool)).motion)
+        if kept:
+            whole = _joined(kept)
             whole = _at(whole, np.argsort(whole.t, kind="stable"))
             for first in range(0, len(whole.t), BLOCK):
                 yield _at(whole, np.arange(first, min(first + BLOCK, len(whole.t))))
 
 
-def _at(motion: Motion, chosen: Index) -> Motion:
+def joined_peaks(parts: Sequence[Peaks]) -> Peaks:
+    """The peaks of all."""
+    rest = zip(*((p.contact, p.collision, p.height, p.own) for p in parts))
+    return Peaks(_joined([p.motion for p in parts]), *map(np.concatenate, rest))
+
+
+def _at(motion: Motion, chosen: Index | Flags) -> Motion:
     """Some of the instants."""
     return Motion(*(x[..., chosen] for x in motion))
 
 
-def _joined(motions: list[Motion]) -> Motion:
+def _joined(motions: Sequence[Motion]) -> Motion:
     """The instants of all."""
     return Motion(*(np.concatenate(x, axis=-1) for x in zip(*motions)))

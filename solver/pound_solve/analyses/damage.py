@@ -55,6 +55,19 @@ def ductility(largest: Sides, yields: Sides | None) -> float:
     return max((d / y for d, y in zip(largest, yields or (0.0, 0.0)) if y), default=math.nan)
 
 
+def plastic(largest: Sides, yields: Sides | None) -> float:
+    """Largest deformation beyond first yield, of the side where it is larger, [L] or [rad]; NaN without
+    yield.
+
+    Parameters
+    ----------
+    largest, yields : tuple of float
+        Signed deformations, [L] or [rad].
+    """
+    beyond = [abs(d) - abs(y) if d * y > 0.0 else 0.0 for d, y in zip(largest, yields or (0.0, 0.0)) if y]
+    return max(0.0, *beyond) if beyond else math.nan
+
+
 def plastic_path(loss: float, k: float, yields: Sides | None) -> tuple[float, float]:
     """Plastic path [L] or [rad] on which yielding at the mean of both strengths loses `loss`,
     and its ratio to the mean deformation at yield.

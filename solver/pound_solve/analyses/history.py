@@ -31,7 +31,7 @@ from pound_solve.structure.structure import Structure
 
 RESIDUAL = "largest energy residual over the largest energy"  #: name of the check
 BALANCE = "base shear and overturning moment less inertia and loads, over the largest"
-CLOSEUPS = "time from which on close-ups of collisions found no room"
+CLOSEUPS = "time from which on peaks of collisions found no room in close-ups"
 ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
 
 SPEC = Spec(
@@ -162,9 +162,12 @@ class HistoryResult:
 
     def _closeups(self) -> Iterator[tuple[str, str, str]]:
         """Tell where the close-ups of collisions found no room."""
-        full = self.recorder.envelopes.closeups.full
-        if full < math.inf:
-            yield CLOSEUPS, f"{full:.6g}", "look: a larger OUTPUT CLOSEUPS keeps all"
+        closeups = self.recorder.envelopes.closeups
+        if closeups.full < math.inf:
+            yield CLOSEUPS, f"{closeups.full:.6g}", "look: a larger OUTPUT CLOSEUPS keeps all"
+        elif closeups.every > 1:
+            text = "good: all peaks are there; a larger OUTPUT CLOSEUPS keeps more"
+            yield "instants of collisions for one in their close-ups", str(closeups.every), text
 
     def _balance(self) -> Iterator[tuple[str, str, str]]:
         """Compare the base shear with inertia and loads, where there are buildings."""

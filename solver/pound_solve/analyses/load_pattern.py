@@ -49,7 +49,8 @@ class LoadPattern:
         self.mass = float(self._share(np.ones(n)).sum())
         self.forces = np.zeros(n)
         if kind == "LOADS":
-            self.forces = structure.loads[:n] * columns_of(model, dofs.free, own)
+            (columns,) = columns_of(model, dofs.free, [own])
+            self.forces[columns] = structure.loads[columns]
         elif kind == "FORCES":
             self.forces = dofs.row([(node, d) for node in nodes], card["FORCES"])[:n]
         elif kind == "UNIFORM":

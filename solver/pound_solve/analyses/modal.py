@@ -16,7 +16,7 @@ Chopra AK (2012), Dynamics of Structures, 4th edn, sections 13.1 and 13.2.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -25,8 +25,10 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.analyses import static
 from pound_solve.numerics.modes import moving_mass
 from pound_solve.numerics.types import Array
+from pound_solve.structure.buildings import buildings, columns_of
 from pound_solve.structure.structure import Structure
 
+TELLING: Final = 0.1  #: share of a mode's kinetic energy below which a building is not named [%]
 SPEC = Spec(
     "analysis",
     "MODAL",
@@ -84,6 +86,14 @@ class Mode(NamedTuple):
     share_y: float
 
 
+class Share(NamedTuple):
+    """Share of a building in the kinetic energy of a mode [%]."""
+
+    mode: int
+    building: str
+    kinetic: float
+
+
 @dataclass(frozen=True)
 class ModalResult:
     """What a modal analysis found.
@@ -91,6 +101,8 @@ class ModalResult:
     Attributes
     ----------
     modes : list of Mode
+    shares : list of Share
+        Of each mode those of the buildings that have a `TELLING` one.
     shapes : ndarray, shape (n_modes, n_nodes, 3), or None
         With a largest component of 1; None where they are not asked for.
     loaded : bool
@@ -98,6 +110,7 @@ class ModalResult:
     """
 
     modes: list[Mode]
+    shares: list[Share]
     shapes: Array | None
     loaded: bool
 
@@ -109,7 +122,7 @@ def run(structure: Structure, state: static.StaticState, card: Card) -> ModalRes
         structure = static.after(structure, state)
     found = natural_modes(structure, card["MODES"])
     shapes = mode_shapes(structure, len(found)) if card["SHAPES"] == "YES" else None
-    return ModalResult(found, shapes, loaded)
+    return ModalResult(found, kinetic_shares(structure, len(found)), shapes, loaded)
 
 
 def natural_modes(structure: Structure, wanted: int | None) -> list[Mode]:
@@ -141,6 +154,26 @@ def natural_modes(structure: Structure, wanted: int | None) -> list[Mode]:
             row += [gamma, gamma**2, 100 * gamma**2 / float(total[d]) if total[d] > 0 else 0.0]
         out.append(Mode(i + 1, *row))
     return out
+
+
+def kinetic_shares(structure: Structure, count: int) -> list[Share]:
+    r"""Shares of the buildings in the kinetic energy of the lowest modes.
+
+    .. math:: \frac{\phi_b^T (M\phi)_b}{\phi^T M\phi}
+
+    over the unknowns b of a building; masses couple none with another, so that the shares add up to one.
+    """
+    shapes, n = structure.vibration(count).shapes[:, :count], structure.n_free
+    energy = shapes * (structure.mass[:n, :n] @ shapes)
+    found = buildings(structure)
+    columns = columns_of(structure.model, structure.dofs.free, [b.nodes for b in found])
+    shares = 100.0 * np.array([energy[own].sum(axis=0) for own in columns]) / energy.sum(axis=0)
+    return [
+        Share(i + 1, b.name, float(share))
+        for i in range(count)
+        for b, share in zip(found, shares[:, i])
+        if share >= TELLING
+    ]
 
 
 def mode_shapes(structure: Structure, count: int) -> Array:

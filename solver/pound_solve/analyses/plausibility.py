@@ -11,6 +11,7 @@ from typing import Final
 
 from pound_deck.model import Model
 from pound_solve.analyses.history import HistoryResult
+from pound_solve.analyses.spring_response import ORDINARY_ROTATION
 from pound_solve.integrate.protocol import Outcome
 from pound_solve.structure.structure import Structure
 
@@ -43,6 +44,21 @@ def failures(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
     if failed:
         text = "look: 1 is failure; the model goes on as if they held"
         yield f"damage index of {len(failed)} springs and hinges", f"{max(failed):.3g}", text
+
+
+def rotations(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
+    """Hinges turned further than ordinary members bear, where the deck does not say how far they go."""
+    far = [r for r in history.springs if r.beyond_ordinary]
+    if far:
+        worst = max(far, key=lambda r: r.rotation)
+        ends = f"{len(far)} hinges" if len(far) > 1 else "one hinge"
+        where = f"{worst.spring.component} of element {worst.spring.element}"
+        yield (
+            f"plastic rotation of {ends}, largest {where}",
+            f"{worst.rotation:.3g} rad, ductility {worst.ductility:.3g}",
+            f"look: concrete members lose strength from {ORDINARY_ROTATION:g} rad on (FEMA 356, Tables 6-7 "
+            "and 6-8); DUCTU states a limit of your own",
+        )
 
 
 def unknown(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
@@ -101,6 +117,7 @@ def shortest_members(model: Model) -> dict[int, float]:
 RULES: Final[Sequence[Callable[[Structure, HistoryResult, Outcome], Iterator[Check]]]] = (
     drifts,
     failures,
+    rotations,
     unknown,
     overlaps,
 )

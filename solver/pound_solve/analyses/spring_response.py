@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,12 @@ from pound_solve.integrate.tracker import Extreme
 from pound_solve.laws.automaton import STRENGTHLESS
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.structure import Structure
+
+#: plastic rotation from which on concrete members begin to lose strength [rad]: FEMA 356 (2000),
+#: Prestandard and commentary for the seismic rehabilitation of buildings, Tables 6-7 and 6-8, give 0.015 to
+#: 0.025 to beams and 0.012 to 0.02 to columns with ties that confine them
+ORDINARY_ROTATION: Final = 0.02
+ENDS: Final = ("DUCTU", "DULT", "DU")  #: items that say up to where a component holds, or is known
 
 
 class PlasticDeformation(NamedTuple):
@@ -58,6 +64,10 @@ class SpringResponse:
         None where the deck gives no ultimate ductility.
     failed : bool
         Its rule has taken all strength from it, as at an ultimate deformation.
+    rotation : float
+        Largest plastic rotation of a hinge [rad]; NaN for all that is none.
+    ends : bool
+        The deck says how far it goes: DUCTU, or an item of its rule (`ENDS`).
     """
 
     spring: LawSpring
@@ -69,6 +79,15 @@ class SpringResponse:
     plastic: PlasticDeformation | None
     damage: damage.Damage | None
     failed: bool
+    rotation: float
+    ends: bool
+
+    @property
+    def beyond_ordinary(self) -> bool:
+        """Whether a hinge of which the deck does not say how far it goes has turned beyond
+        `ORDINARY_ROTATION`.
+        """
+        return not self.ends and self.rotation > ORDINARY_ROTATION
 
     @property
     def deformation_unit(self) -> str:
@@ -103,6 +122,17 @@ def _response(
         index = damage.park_ang((d.high, d.low), loss, spring.k0, spring.yields, sides, card["PA_BETA"])
     ductility = damage.ductility((d.high, d.low), spring.yields)
     at = spring.law.rule.branches[outcome.states[i][0]]
+    turns = spring.unit == "F*L" and spring.component.startswith("hinge")
     return SpringResponse(
-        spring, peaks.force[i], d, peaks.yields[i], ductility, loss, plastic, index, at.name == STRENGTHLESS
+        spring,
+        peaks.force[i],
+        d,
+        peaks.yields[i],
+        ductility,
+        loss,
+        plastic,
+        index,
+        at.name == STRENGTHLESS,
+        damage.plastic((d.high, d.low), spring.yields) if turns else np.nan,
+        any(card.values.get(item) is not None for item in ENDS),
     )

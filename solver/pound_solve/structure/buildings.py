@@ -4,30 +4,32 @@ Elements and slaving connect nodes; contacts, and the friction in them, do not. 
 building.  A building bears the name that a card of BUILDINGS gives it, or ``building 1``, ``building 2``,
 ... in the order of their lowest numbers of nodes.
 
-The base of a building is its lowest support, or its lowest node where it has none.  Its floors are the
-levels above the base at which nodes have mass: nodes belong to one floor if their heights differ by no more
-than `SAME_LEVEL` of the height of the building.  A storey reaches from the floor below, or the base, to its
-floor, and is cut at the middle of its height.
+The base of a building is its lowest support, or its lowest node where it has none.  Nodes with mass above
+it make a level if their heights differ by no more than `SAME_LEVEL` of the height of the building.  Its
+floors are the levels that FLOORS names; without that, the highest one and all that have `LEAST` of the mass
+of the heaviest, which a joint within a column has not.  A storey reaches from the floor below, or the base,
+to its floor, and is cut at the middle of its height.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from pound_deck.diagnostics import Diagnostic
-from pound_deck.model import Model
+from pound_deck.model import Card, Model
 from pound_solve.numerics.graph import components
-from pound_solve.numerics.types import Array, Flags
+from pound_solve.numerics.types import Array, Index
 from pound_solve.structure.dofs import Dof
 from pound_solve.structure.structure import Structure
 
-SAME_LEVEL = 1e-3  #: share of a building's height by which nodes of one floor may differ in height
+SAME_LEVEL = 1e-3  #: share of a building's height by which nodes of one level may differ in height
+LEAST = 0.1  #: share of the mass of a building's heaviest level that makes a floor of another
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Floor:
     """A level of nodes with mass.
 
@@ -103,12 +105,67 @@ def buildings(structure: Structure) -> list[Building]:
     """The buildings of a structure, in the order of their lowest nodes."""
     along, up = (own_mass(structure, d) for d in range(2))
     found = [p for p in parts(structure.model) if any(along[n] or up[n] for n in p)]
-    named = {n: card.label for card in structure.model.buildings for n in card["NODES"]}
+    named = {n: card for card in structure.model.buildings for n in card["NODES"]}
     out = []
     for i, nodes in enumerate(found, 1):
-        name = next((named[n] for n in nodes if n in named), f"building {i}")
-        out.append(_building(structure.model, name, nodes, along, up))
+        card = next((named[n] for n in nodes if n in named), None)
+        stack = Levels(structure.model, nodes, along)
+        floors = stack.floors((card and card["FLOORS"]) or ())
+        mass = sum(along[n] for n in nodes) or sum(up[n] for n in nodes)
+        axis = float(np.mean([structure.model.nodes[n].x for n in stack.feet]))
+        name = card.label if card else f"building {i}"
+        out.append(Building(name, nodes, stack.base, axis, stack.feet, floors, mass))
     return out
+
+
+class Levels:
+    """Where a building begins, and its levels of nodes with mass.
+
+    Parameters
+    ----------
+    model : Model
+    nodes : sequence of int
+        Of the building.
+    heavy : mapping of int to float
+        Mass of every node along x [F T^2/L].
+
+    Attributes
+    ----------
+    base : float
+        Height of its base [L].
+    feet : tuple of int
+        The nodes at its base.
+    """
+
+    def __init__(self, model: Model, nodes: Sequence[int], heavy: Mapping[int, float]) -> None:
+        held = [n for n in nodes if "X" in model.nodes[n].fixed] or list(nodes)
+        self._height = height = {n: model.nodes[n].y for n in nodes}
+        self._close = SAME_LEVEL * (max(height.values()) - min(height.values()))
+        self.base = min(height[n] for n in held)
+        self.feet = tuple(n for n in held if height[n] <= self.base + self._close)
+        own: list[list[int]] = []
+        for n in sorted((n for n in nodes if heavy[n] > 0.0), key=lambda n: (height[n], n)):
+            if height[n] <= self.base + self._close:
+                continue
+            if own and height[n] <= height[own[-1][0]] + self._close:
+                own[-1].append(n)
+            else:
+                own.append([n])
+        self._levels = [_floor(nodes, heavy, height) for nodes in own]
+
+    def floors(self, named: Collection[int]) -> tuple[Floor, ...]:
+        """Those of the levels that are floors: of some nodes, or, where there are none, by their mass."""
+        if named:
+            at = [self.at(n) for n in named]
+            return tuple(level for level in self._levels if level in at)
+        heaviest = max((level.mass for level in self._levels), default=0.0)
+        last = self._levels[-1:]
+        return tuple(f for f in self._levels if f.mass >= LEAST * heaviest or f in last)
+
+    def at(self, node: int) -> Floor | None:
+        """The level at the height of a node, if there is one."""
+        near = (f for f in self._levels if abs(self._height[node] - f.level) <= self._close)
+        return next(near, None)
 
 
 def building(structure: Structure, name: str) -> Building:
@@ -126,18 +183,18 @@ def building(structure: Structure, name: str) -> Building:
     return found[name]
 
 
-def columns_of(model: Model, columns: Sequence[Dof], nodes: Collection[int]) -> Flags:
-    """Which columns belong to some nodes, or to what is inside the elements between them."""
-    own, elements = frozenset(nodes), model.elements
-    return np.array(
-        [
-            owner in own
-            if d < 3
-            else elements[owner].i in own and (elements[owner].j or elements[owner].i) in own
-            for owner, d in columns
-        ],
-        bool,
-    )
+def columns_of(model: Model, columns: Sequence[Dof], groups: Sequence[Collection[int]]) -> list[Index]:
+    """Columns of each of some groups of nodes, and of what is inside the elements between them."""
+    places: dict[int, list[tuple[int, int]]] = {}
+    for column, (owner, d) in enumerate(columns):
+        i, j = (owner, owner) if d < 3 else (model.elements[owner].i, model.elements[owner].j)
+        places.setdefault(i, []).append((column, j or i))
+    out = []
+    for nodes in groups:
+        own = frozenset(nodes)
+        found = sorted(column for i in own for column, j in places.get(i, ()) if j in own)
+        out.append(np.array(found, np.int64))
+    return out
 
 
 def misnamed(structure: Structure) -> list[Diagnostic]:
@@ -158,31 +215,23 @@ def misnamed(structure: Structure) -> list[Diagnostic]:
         elif card.label in names:
             message = f"two buildings have the name {card.label!r}"
             out.append(Diagnostic("P338", message, card.place("NAME"), "give another name"))
+        else:
+            out += _no_floors(structure, card, [n for n in of if of[n] == first])
         taken.setdefault(first, card.label)
         names.add(card.label)
     return out
 
 
-def _building(
-    model: Model, name: str, nodes: tuple[int, ...], along: dict[int, float], up: dict[int, float]
-) -> Building:
-    held = [n for n in nodes if "X" in model.nodes[n].fixed] or list(nodes)
-    height = {n: model.nodes[n].y for n in nodes}
-    base = min(height[n] for n in held)
-    close = SAME_LEVEL * (max(height.values()) - min(height.values()))
-    feet = tuple(n for n in held if height[n] <= base + close)
-    heavy = {n: along[n] for n in nodes}
-    mass = sum(heavy.values()) or sum(up[n] for n in nodes)
-    floors: list[list[int]] = []
-    for n in sorted((n for n in nodes if heavy[n] > 0.0), key=lambda n: (height[n], n)):
-        if height[n] <= base + close:
-            continue
-        if floors and height[n] <= height[floors[-1][0]] + close:
-            floors[-1].append(n)
-        else:
-            floors.append([n])
-    axis = float(np.mean([model.nodes[n].x for n in feet]))
-    return Building(name, nodes, base, axis, feet, tuple(_floor(f, heavy, height) for f in floors), mass)
+def _no_floors(structure: Structure, card: Card, nodes: Sequence[int]) -> Iterator[Diagnostic]:
+    """Nodes in FLOORS that are at no floor of the building."""
+    stack = Levels(structure.model, nodes, own_mass(structure, 0))
+    for n in card["FLOORS"] or ():
+        if n not in nodes:
+            message = f"node {n} of FLOORS is no node of {card.label!r}"
+            yield Diagnostic("P338", message, card.place("FLOORS"), "name nodes of this building")
+        elif stack.at(n) is None:
+            message = f"no node at the height of node {n} has mass along X above the base of {card.label!r}"
+            yield Diagnostic("P338", message, card.place("FLOORS"), "name a node of each floor")
 
 
 def own_mass(structure: Structure, d: int) -> dict[int, float]:
@@ -195,7 +244,7 @@ def own_mass(structure: Structure, d: int) -> dict[int, float]:
     return out
 
 
-def _floor(nodes: list[int], heavy: dict[int, float], height: dict[int, float]) -> Floor:
+def _floor(nodes: Sequence[int], heavy: Mapping[int, float], height: Mapping[int, float]) -> Floor:
     own = np.array([heavy[n] for n in nodes])
     level = float(own @ [height[n] for n in nodes] / own.sum())
     return Floor(tuple(nodes), own / own.sum(), level, float(own.sum()))

@@ -23,14 +23,14 @@ forces alone are those of the displaced structure; what these add to the end mom
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TypeAlias
 
 import numpy as np
 
 from pound_solve.numerics.matrices import Matrix, gathered
 from pound_solve.numerics.types import Array, Index
-from pound_solve.structure.buildings import Building
+from pound_solve.structure.buildings import Building, columns_of
 from pound_solve.structure.equations import Equations, LinearSums, Weights
 from pound_solve.structure.reduction import ReducedSystem
 
@@ -58,14 +58,14 @@ def imbalance_sums(equations: Equations, buildings: Sequence[Building]) -> Linea
 
 def storey_sums(equations: Equations, buildings: Sequence[Building]) -> LinearSums:
     """Shear and overturning moment of every storey, two sums each: of what is above on what is below."""
-    elements, geometric, places = list[Block](), list[Block](), _places(equations)
-    y = {n.id: n.y for n in equations.structure.model.nodes.values()}
-    for b in buildings:
-        for foot, top in zip(b.levels, b.levels[1:]):
-            above = _own(places, [n for n in b.nodes if y[n] > 0.5 * (foot + top)])
-            x, _, turn = equations.rigid_about(b.axis, foot, above)
-            elements.append((above, np.array([x, turn])))
-            geometric.append((above, np.array([x, 0.0 * turn])))
+    model, elements, geometric = equations.structure.model, list[Block](), list[Block]()
+    y = {n.id: n.y for n in model.nodes.values()}
+    feet = [(b, *ends) for b in buildings for ends in zip(b.levels, b.levels[1:])]
+    nodes = [[n for n in b.nodes if y[n] > 0.5 * (foot + top)] for b, foot, top in feet]
+    for (b, foot, _), above in zip(feet, columns_of(model, equations.columns, nodes)):
+        x, _, turn = equations.rigid_about(b.axis, foot, above)
+        elements.append((above, np.array([x, turn])))
+        geometric.append((above, np.array([x, 0.0 * turn])))
     own, turned = (_matrix(rows, equations) for rows in (elements, geometric))
     nothing = 0.0 * own
     return equations.sums(Weights(own, turned, nothing, nothing, nothing, nothing))
@@ -116,27 +116,8 @@ def _sums(system: ReducedSystem, motion: list[Matrix], inputs: list[Array], cons
 
 def _rigid(equations: Equations, buildings: Sequence[Building]) -> list[Block]:
     """Rigid motions of every building about the foot of its axis: three rows each."""
-    places = _places(equations)
-    columns = [_own(places, b.nodes) for b in buildings]
+    columns = columns_of(equations.structure.model, equations.columns, [b.nodes for b in buildings])
     return [(k, equations.rigid_about(b.axis, b.base, k)) for b, k in zip(buildings, columns)]
-
-
-def _places(equations: Equations) -> dict[int, list[tuple[int, int]]]:
-    """For each node its columns, and those inside the elements that begin at it, each with the node that
-    must belong to a building, too, if the column shall.
-    """
-    out: dict[int, list[tuple[int, int]]] = {}
-    elements = equations.structure.model.elements
-    for column, (owner, d) in enumerate(equations.columns):
-        i, j = (owner, owner) if d < 3 else (elements[owner].i, elements[owner].j)
-        out.setdefault(i, []).append((column, j or i))
-    return out
-
-
-def _own(places: Mapping[int, Sequence[tuple[int, int]]], nodes: Sequence[int]) -> Index:
-    """Columns of some nodes, and of what is inside the elements between them."""
-    own = frozenset(nodes)
-    return np.array(sorted(column for i in own for column, j in places.get(i, ()) if j in own), np.int64)
 
 
 def _matrix(blocks: Sequence[Block], equations: Equations) -> Matrix:

@@ -31,11 +31,22 @@ COURSES: Final = (
     ("contact/gap", "", "Gaps", "gap"),
     ("energy", "", "Energies", "energy"),
 )
+#: quantity in the table of storey extremes, title, name of the axis
 PROFILES: Final = (
-    ("drift", "Largest drift ratios over the height", "drift ratio"),
-    ("acceleration", "Largest floor accelerations over the height", "floor acceleration"),
-    ("shear", "Largest storey shears over the height", "storey shear"),
+    ("drift ratio", "Extreme drift ratios over the height", "drift ratio"),
+    ("floor acceleration", "Extreme floor accelerations over the height", "floor acceleration"),
+    ("shear", "Extreme storey shears over the height", "storey shear"),
 )
+COLOURS: Final = (
+    "#1f77b4",
+    "#ff7f0e",
+    "#2ca02c",
+    "#d62728",
+    "#9467bd",
+    "#8c564b",
+    "#e377c2",
+    "#7f7f7f",
+)  #: of buildings, whose two sides have one colour
 
 Trace: TypeAlias = dict[str, Any]
 
@@ -116,17 +127,25 @@ def _lines(name: str, ends: Sequence[tuple[int, int]], place: dict[int, Array], 
 
 
 def _profiles(results: Results) -> Iterator[Picture]:
-    """Peaks of the storeys over the height, one curve for each building."""
-    if not results.holds("storey_envelope"):
+    """Peaks of the storeys over the height to both sides, two curves for each building."""
+    if not (results.holds("storey_envelope") and results.holds("storey_extremes")):
         return
-    table, units = results.table("storey_envelope"), results.table_units("storey_envelope")
-    for column, title, name in PROFILES:
+    table, length = results.table("storey_extremes"), results.units.length
+    levels = {(r["building"], r["storey"]): r["level"] for r in results.table("storey_envelope")}
+    for quantity, title, name in PROFILES:
         traces = []
-        for building in dict.fromkeys(table["building"]):
-            own = table[table["building"] == building]
-            x, y = _numbers(own[column]), _numbers(own["level"])
-            traces.append({"name": _plain(building), "mode": "lines+markers", "x": x, "y": y})
-        yield Picture(title, "", f"{name} [{units[column]}]", f"level [{units['level']}]", traces)
+        rows = table[table["quantity"] == quantity]
+        for n, building in enumerate(dict.fromkeys(rows["building"])):
+            own = rows[rows["building"] == building]
+            y = _numbers(levels[building, storey] for storey in own["storey"])
+            colour = COLOURS[n % len(COLOURS)]
+            for side, column, dash in (("to the right", "max", "solid"), ("to the left", "min", "dash")):
+                line = {"color": colour, "dash": dash}
+                label = f"{_plain(building)}, {side}"
+                curve = {"name": label, "mode": "lines+markers", "line": line, "y": y}
+                traces.append(curve | {"x": _numbers(own[column])})
+        unit = rows["unit"][0] if len(rows) else ""
+        yield Picture(title, "", f"{name} [{unit}]", f"level [{length}]", traces)
 
 
 def _courses(results: Results) -> Iterator[Picture]:

@@ -15,12 +15,12 @@ ROOM = 0.05  #: left beside the curves, as a share of a decade
 
 
 def study(results: Results, choice: Choice) -> Any:
-    """Error against time to solve and against the number of steps, one curve a method."""
+    """Error against CPU time to solve and against the number of steps, one curve a method."""
     table = results.table("study")
     table = table[np.isfinite(table["seconds"])]
     # a run without error is drawn at the rounding of numbers
     worst = np.fmax(np.fmax(np.fmax(table["drift"], table["member"]), table["contact"]), 1e-16)
-    over = {"seconds": "time to solve [s]"}
+    over = {"seconds": "CPU time to solve [s]"}
     if table["steps"].any():
         over["steps"] = "steps"
     figure = style.figure(4.5 * len(over), 4.2, results.title)

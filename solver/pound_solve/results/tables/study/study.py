@@ -30,7 +30,7 @@ def remark(study: StudyRecord) -> str:
     """Tell what the errors are measured against, and whether the times can be trusted."""
     own = ", ".join(f"{e:.1e} ({kind})" for kind, e in study.reference.error.items() if math.isfinite(e))
     errors = f"; its own errors are about {own}." if own else "."
-    times = " Times are of the history alone, in a process that has loaded what it needs."
+    times = " Times are CPU times of the history alone, in a process that has loaded what it needs."
     return f"The reference is {study.reference.how}{errors}{times} {study.warning}".rstrip()
 
 
@@ -42,7 +42,7 @@ TABLE = Table(
     columns=(
         Column("method", doc="method of HISTORY"),
         Column("setting", doc="its step or tolerance as a deck has it"),
-        Column("seconds", "time to\nsolve [s]", fmt="short", doc="median time of the repeated runs"),
+        Column("seconds", "CPU time,\nsolve [s]", fmt="short", doc="median CPU time of the repeated runs"),
         Column("steps", fmt="int", doc="steps taken", zero="-"),
         Column("events", fmt="int", doc="changes of springs and contacts that were located"),
         Column(

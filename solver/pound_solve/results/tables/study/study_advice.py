@@ -32,7 +32,7 @@ TABLE = Table(
         Column("target", "largest\nerror", "-", "short", doc="error that must be met"),
         Column("method", doc="method of HISTORY; empty where no run is sure to meet it"),
         Column("setting", doc="its step or tolerance"),
-        Column("seconds", "time to\nsolve [s]", fmt="short", doc="time of that run"),
+        Column("seconds", "CPU time,\nsolve [s]", fmt="short", doc="CPU time of that run"),
         Column("error", "error\nfound", "-", "short", doc="largest error of that run"),
         Column("sure", "error\nallowed for", "-", "short", doc="that error with a safety margin"),
     ),

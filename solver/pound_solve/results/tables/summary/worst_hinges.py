@@ -15,33 +15,48 @@ if TYPE_CHECKING:
 MOST = 10  #: rows
 #: states by the damage index of Park and Ang
 STATES = ((1.0, "failed"), (0.4, "beyond repair"), (0.2, "moderate"), (0.1, "slight"), (0.0, "none"))
+BEYOND = "look: beyond ordinary rotations"
 
 
 def rows(run: RunRecord) -> list[Row] | None:
-    """The springs and hinges of the largest damage, or ductility where the deck gives no ultimate one."""
-    yielded = [r for r in run.history.springs if r.ductility > 1.0]
-    worst = sorted(yielded, key=_rank, reverse=True)[:MOST]
-    out = []
-    for r in worst:
-        index = r.damage.total if r.damage else math.nan
-        state = "failed" if r.failed else next((word for least, word in STATES if index >= least), "")
-        out.append(
-            (
-                r.spring.element,
-                r.spring.component,
-                r.spring.rule,
-                r.ductility,
-                r.yields,
-                r.loss,
-                index,
-                state,
-            )
-        )
-    return out or None
+    """The springs and members of the largest damage, or ductility where the deck gives no ultimate one; of
+    a member, its end that is worse off.
+    """
+    members: dict[tuple[int, str], list[SpringResponse]] = {}
+    for r in run.history.springs:
+        kind = "hinge" if _end(r) else r.spring.component
+        members.setdefault((r.spring.element, kind), []).append(r)
+    worst = [max(own, key=_rank) for own in members.values()]
+    other = {
+        id(w): [r.ductility for r in own if _end(r) != _end(w)] for w, own in zip(worst, members.values())
+    }
+    yielded = sorted((r for r in worst if r.ductility > 1.0), key=_rank, reverse=True)
+    return [_row(r, max(other[id(r)], default=math.nan)) for r in yielded[:MOST]] or None
+
+
+def _row(r: SpringResponse, other: float) -> Row:
+    s, index = r.spring, r.damage.total if r.damage else math.nan
+    own = s.element, s.component, s.rule, r.ductility, other, r.rotation, r.yields, r.loss
+    return *own, index, _state(r, index)
+
+
+def _state(r: SpringResponse, index: float) -> str:
+    if r.failed:
+        return "failed"
+    if r.beyond_ordinary:
+        return BEYOND
+    return next((word for least, word in STATES if index >= least), "")
+
+
+def _end(r: SpringResponse) -> str:
+    """End of a member at which a hinge is, I or J; empty for all that is no hinge."""
+    kind, _, rest = r.spring.component.partition(" ")
+    return rest[:1] if kind == "hinge" else ""
 
 
 def _rank(r: SpringResponse) -> tuple[float, float]:
-    return (r.damage.total if r.damage else -1.0, r.ductility)
+    """Damage, then ductility; what has none comes last."""
+    return (r.damage.total if r.damage else -1.0, r.ductility if r.ductility == r.ductility else -1.0)
 
 
 TABLE = Table(
@@ -54,17 +69,27 @@ TABLE = Table(
         Column("component", "comp.", doc="as in the spring envelopes"),
         Column("rule", doc="hysteresis rule"),
         Column("ductility", "ductility", "-", "short", doc="largest absolute deformation over yield"),
+        Column(
+            "ductility_other",
+            "at the\nother end",
+            "-",
+            "short",
+            doc="ductility at the other end of the member",
+        ),
+        Column(
+            "rotation", "plastic\nrotation", "rad", "short", doc="largest rotation of a hinge beyond yield"
+        ),
         Column("yield_events", "yield\nevents", fmt="int", doc="number of times that it began to yield"),
         Column("plastic_work", "plastic\nwork", "F*L", "short", doc="energy lost in hysteresis"),
         Column(
             "damage", "damage\nindex", "-", "short", doc="of Park and Ang; NaN without ultimate ductility"
         ),
-        Column("state", doc="state that the index stands for"),
+        Column("state", doc="state that the index stands for, or what to look at"),
     ),
     rows=rows,
-    note="All springs and hinges are in the section on members.",
+    note="Of a member the end that is worse off. All springs and hinges are in the section on members.",
     sample=(
-        (11, "hinge I", "TAKEDA", 11.22, 3, 20.91, 0.853, "beyond repair"),
-        (12, "X", "BILINEAR", 2.1, 1, 3.2, math.nan, ""),
+        (11, "hinge I", "TAKEDA", 11.22, 8.31, 0.0217, 3, 20.91, 0.853, "beyond repair"),
+        (12, "X", "BILINEAR", 2.1, math.nan, math.nan, 1, 3.2, math.nan, ""),
     ),
 )
