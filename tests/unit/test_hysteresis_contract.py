@@ -6,7 +6,7 @@ defaults if nothing must be given.  SAMPLES has further parameters to try.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import count
 from typing import Any
@@ -35,6 +35,7 @@ from pound_solve.laws.automaton import (
     linear,
     on_spring,
 )
+from pound_solve.laws.condensed import without
 from pound_solve.laws.hysteresis import bilinear
 from samples import values
 
@@ -168,6 +169,34 @@ def test_contract(law: Law, sample: dict[str, Any], clause: Callable[[Law, float
     clause(law, REACH)
 
 
+STRAIGHT = [
+    pytest.param(law, share, id=f"{case.id} less {share}")
+    for case in UNEQUAL
+    for law in case.values[:1]
+    for share in (0.25, 0.5)
+    if isinstance(law, Law) and not law.curved and share * law.rule.steepest(law.p) < 0.9 * law.p[0]
+]
+
+
+@pytest.mark.parametrize(("law", "share"), STRAIGHT)
+def test_contract_without_a_share_of_the_elastic_deformation(law: Law, share: float) -> None:
+    """The same contract (by rounding, two events at one place may change their order, so that the branch in
+    between differs), and the same forces at deformations that are smaller by that share of f / k.
+    """
+    less = without(law, share)
+    for clause in CLAUSES:
+        if clause is not contract.trying_changes_nothing:
+            clause(less, REACH)
+    for seed in range(3):
+        whole, part = Walk(law), Walk(less)
+        for goal in turning_points(seed, REACH):
+            whole.move(goal)
+            part.move(goal - share * whole.force / law.p[0])
+            assert part.force == pytest.approx(whole.force, abs=1e-9 * K * REACH)
+            gone = 0.5 * share * whole.force**2 / law.p[0]
+            assert part.work == pytest.approx(whole.work - gone, abs=1e-9 * K * REACH**2)
+
+
 @pytest.mark.parametrize(("law", "sample"), EQUAL)
 def test_symmetric_parameters_answer_symmetrically(law: Law, sample: dict[str, Any]) -> None:
     if any(len(v) == 2 for v in sample.values() if isinstance(v, tuple)):
@@ -264,6 +293,18 @@ def test_a_long_history(law: Law, sample: dict[str, Any]) -> None:
 def test_compiled_functions_give_the_same_numbers(name: str) -> None:
     laws = [p.values[0] for p in UNEQUAL if p.id.startswith(f"{name} ")]
     compiled = functions.tables([laws[0].rule])
+    compare(laws, compiled)
+
+
+@NUMBA
+@pytest.mark.parametrize("name", sorted({p.id.split()[0] for p in STRAIGHT}))
+def test_compiled_functions_of_a_law_without_a_share_of_its_deformation(name: str) -> None:
+    laws = [without(*p.values) for p in STRAIGHT if p.id.startswith(f"{name} ")][:4]
+    compare(laws, functions.tables([laws[0].rule]))
+
+
+def compare(laws: Sequence[Law], compiled: functions.Tables) -> None:
+    """Hold compiled functions to those of Python along a path."""
     branch, transition, recoverable, curve, power, _, smooth = (f[0] for f in compiled)
     for law in laws:
         rule = law.rule
