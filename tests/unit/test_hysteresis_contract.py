@@ -53,7 +53,11 @@ DEGRADING: list[dict[str, Any]] = [
     {"R": 0.02, "ALFA": 0.5, "ILOS": "EACH", **LOSS},
     {"ILOS": "LARGEST", **LOSS},
     {"ALFA": 1.0, "ILOS": "EACH", "DUCT1": 1.0, "DUCT2": 2.0, "RDUCT": 0.2},
+    {"R": 0.1, "ALFA": 0.4, "ILOS": "EACH", **LOSS, "DUCT3": 8.0},
+    {"R": 0.05, "ILOS": "LARGEST_RCYC", "RCYC": 8.0, **LOSS, "DUCT3": 7.0},
+    {"ILOS": "CYCLES", "DUCT1": 1.0, "DUCT2": 6.0, "RDUCT": 0.4},
 ]
+FALLING = [{n: v for n, v in sample.items() if n != "ALFA"} for sample in DEGRADING if "ILOS" in sample]
 #: at 0.045 (or 0.025) the cap; capacities that make the component fail on some paths, and not on others
 CAPPED: list[dict[str, Any]] = [
     {"DP": (0.03,), "DPC": (0.1,)},
@@ -71,7 +75,7 @@ CAPPED: list[dict[str, Any]] = [
 
 #: further parameters to try; what is left out has its default
 SAMPLES: dict[str, list[dict[str, Any]]] = {
-    "BILINEAR": [{"R": r} for r in (-0.1, 0.0, 0.05, 0.4, 0.9)],
+    "BILINEAR": [*({"R": r} for r in (-0.1, 0.0, 0.05, 0.4, 0.9)), *FALLING],
     "BILINEAR_ELASTIC": [{"R": r} for r in (0.0, 0.1, 0.7)],
     "BILINEAR_SLACK": [
         {"R": r, "SLACK": slack, "GROW": grow}
@@ -81,7 +85,7 @@ SAMPLES: dict[str, list[dict[str, Any]]] = {
     "BOUC_WEN": [{"R": 0.0, "N": 1.0}, {"R": 0.1, "N": 2.0}, {"R": 0.05, "N": 1.5, "BETA": 0.7}],
     "CLOUGH": DEGRADING,
     "DEGRADING_BILINEAR": DEGRADING,
-    "ELASTO_PLASTIC": [{}],
+    "ELASTO_PLASTIC": [{}, *({n: v for n, v in sample.items() if n != "R"} for sample in FALLING)],
     "FLAG_SHAPED": [{"R": r, "BETA": beta} for r, beta in ((0.0, 1.0), (0.1, 0.5), (0.4, 0.9), (0.9, 0.1))],
     "IMK_BILINEAR": CAPPED,
     "IMK_PEAK_ORIENTED": CAPPED,
