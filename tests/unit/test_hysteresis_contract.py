@@ -295,23 +295,20 @@ def test_a_long_history(law: Law, sample: dict[str, Any]) -> None:
 @NUMBA
 @pytest.mark.parametrize("name", sorted(RULES))
 def test_compiled_functions_give_the_same_numbers(name: str) -> None:
-    laws = [p.values[0] for p in UNEQUAL if p.id.startswith(f"{name} ")]
-    compiled = functions.tables([laws[0].rule])
-    compare(laws, compiled)
+    compare([p.values[0] for p in UNEQUAL if p.id.startswith(f"{name} ")])
 
 
 @NUMBA
 @pytest.mark.parametrize("name", sorted({p.id.split()[0] for p in STRAIGHT}))
 def test_compiled_functions_of_a_law_without_a_share_of_its_deformation(name: str) -> None:
-    laws = [without(*p.values) for p in STRAIGHT if p.id.startswith(f"{name} ")][:4]
-    compare(laws, functions.tables([laws[0].rule]))
+    compare([without(*p.values) for p in STRAIGHT if p.id.startswith(f"{name} ")][:4])
 
 
-def compare(laws: Sequence[Law], compiled: functions.Tables) -> None:
+def compare(laws: Sequence[Law]) -> None:
     """Hold compiled functions to those of Python along a path."""
-    branch, transition, recoverable, curve, power, _, smooth = (f[0] for f in compiled)
     for law in laws:
         rule = law.rule
+        branch, transition, recoverable, curve, power, _, smooth = (f[0] for f in functions.tables([rule]))
         p = law.p + (0.0,) * (functions.PARAMETERS - rule.parameters)
         rest = (0.0,) * (functions.VARIABLES - rule.variables)
         walk = Walk(law).move(*turning_points(3, REACH))
