@@ -11,19 +11,26 @@ from typing import Any
 import pound_solve.laws
 from pound_solve.laws import functions
 from pound_solve.laws.automaton import Rule
+from pound_solve.laws.condensed import condensed
 from pound_solve.modules import modules_below
 from pound_solve.numerics.jit import Function
 
 
 def rules() -> list[Rule]:
-    """All rules of the program, in the order of their modules."""
+    """All rules of the program, in the order of their modules, then those of long hinges."""
     found = [
         value
         for name in modules_below(pound_solve.laws)
         for value in vars(import_module(name)).values()
         if isinstance(value, Rule)
     ]
-    return list(dict.fromkeys(found))
+    shortened = [condensed(rule) for rule in found if may_lack_its_elastic_part(rule)]
+    return list(dict.fromkeys([*found, *shortened]))
+
+
+def may_lack_its_elastic_part(rule: Rule) -> bool:
+    """Whether a hinge may follow the rule and leave some of its elastic rotation to the beam."""
+    return rule.curve is None and ".hysteresis." in rule.branch.__module__
 
 
 def columns() -> list[list[Function]]:

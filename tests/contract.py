@@ -176,6 +176,16 @@ def stopping_on_the_way_changes_nothing(law: Law, reach: float) -> None:
             assert close(law.stored(broken.state, goal), stored, 1e-12 * law.p[0] * reach * reach)
 
 
+def no_branch_is_steeper_than_stated(law: Law, reach: float) -> None:
+    """What takes a share of its elastic deformation from a law of straight branches counts on that."""
+    if law.curved:
+        return
+    most = law.rule.steepest(law.p) * (1.0 + 1e-9)
+    for seed in SEEDS:
+        for state, d, _ in Walk(law).move(*turning_points(seed, reach)).visits:
+            assert law.force(state, d)[1] <= most, ("steeper than stated", state)
+
+
 CLAUSES = (
     starts_empty,
     trying_changes_nothing,
@@ -186,6 +196,7 @@ CLAUSES = (
     stored_energy_comes_back,
     closed_loops_dissipate,
     stopping_on_the_way_changes_nothing,
+    no_branch_is_steeper_than_stated,
 )
 
 

@@ -92,7 +92,7 @@ def _hinges(
 ) -> tuple[str, str]:
     """Kind of element in the new deck, and the items of its hinges."""
     kind, code, losing = codes
-    name = rules.named(code, options.items[3].span, given.catalog)
+    rule = rules.known(code, options.items[3].span, given.catalog)
     hinges = given.rows.next("the hinges: " + " ".join(HINGES))
     _, ratio, *lengths = hinges.reals(HINGES, 2)
     if 0.0 in lengths:
@@ -100,9 +100,11 @@ def _hinges(
     lp = numbers(x or 1.0 for x in lengths)
     strengths = given.rows.next("the strengths of a FRAME: " + " ".join(BEAM if kind == _BEAM else COLUMN))
     word, items = (_beam if kind == _BEAM else _column)(given, strengths, notes)
-    lost = loss.read(losing, given.rows, options.items[4].span, given.draft, notes) if losing else ""
-    rule = rules.read(code, given.rows, ratio, given.draft, notes)
-    return word, " ".join(x for x in (items, f"LP={lp}", f"RULE={name}", rule, lost) if x)
+    lost = ""
+    if losing:
+        lost = loss.read(losing, rule, given.rows, options.items[4].span, given.draft, notes)
+    own = rules.read(code, given.rows, ratio, given.draft, notes)
+    return word, " ".join(x for x in (items, f"LP={lp}", f"RULE={rule.name}", own, lost) if x)
 
 
 def _beam(given: PropertySet, found: Row, notes: list[str]) -> tuple[str, str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -43,11 +42,14 @@ class Item:
                 "L603", f"{name} is {self.text[:40]!r}, not a number", self.span, "write a number"
             )
         value = float(self.text.translate(_D_EXPONENT))
-        if not math.isfinite(value) or abs(value) > MOST:
-            raise mistake(
-                "L603", f"{name} is {self.text[:40]}, beyond {MOST:g}", self.span, "check the columns"
-            )
-        return value
+        if value == 0.0 or 1.0 / MOST <= abs(value) <= MOST:
+            return value
+        raise mistake(
+            "L603",
+            f"{name} is {self.text[:40]}: its magnitude is not within {1.0 / MOST:g} and {MOST:g}",
+            self.span,
+            "check the columns",
+        )
 
     def whole(self, name: str) -> int:
         """Value of a whole item; ``1.0`` is one, too.

@@ -6,27 +6,59 @@ from typing import Final
 
 from pound_deck.diagnostics import mistake
 from pound_deck.model import Span
+from pound_deck.schema import Spec
 from pound_legacy.draft import Draft, number
 from pound_legacy.lines import Rows
 
 NAMES: Final = ("DUCT1", "DUCT2", "RDUCT", "DUCT3", "RCYC")
-_WORDS: Final = {1: "EACH", 3: "LARGEST"}
+_WORDS: Final = {
+    1: "EACH",
+    2: "CYCLES",
+    3: "LARGEST",
+    4: "EACH_RCYC",
+    5: "EACH_SUDDEN",
+    6: "LARGEST_RCYC",
+    7: "LARGEST_SUDDEN",
+}
+_SUDDEN: Final = (5, 7)
+_COUNTING: Final = 4  #: the first code with RCYC
 
 
-def read(code: int, rows: Rows, place: Span, draft: Draft, notes: list[str]) -> str:
+def read(code: int, rule: Spec, rows: Rows, place: Span, draft: Draft, notes: list[str]) -> str:
     """Items of the new deck.
+
+    Parameters
+    ----------
+    code : int
+        ILOS, above zero.
+    rule : Spec
+        The hysteresis rule.
+    place : Span
+        Of the code.
 
     Raises
     ------
     Mistake
-        The line is missing, or this loss cannot be carried over.
+        The line is missing, the code is not known, or the rule takes no loss.
     """
     found = rows.next("the loss of strength: " + " ".join(NAMES))
     begin, end, left, gone, cycle = found.reals(NAMES, 3)
-    if code not in _WORDS or gone or cycle:
-        text = f"ILOS {code} with DUCT3 {number(gone)} and RCYC {number(cycle)}"
-        raise mistake("L604", text, place, "ILOS 1 and 3 without DUCT3 and RCYC are carried over")
+    if code not in _WORDS:
+        raise mistake("L604", f"ILOS {code} is not known", place, "0 to 7")
+    if rule.field("ILOS") is None:
+        text = f"ILOS {code}: {rule.name} has no loss of strength"
+        raise mistake("L604", text, place, "write 0, or take rule 1, 2, 4, 7, 10, 11 or 12")
     notes.append(
         draft.doubt(found.span, "the line of the loss of strength stands before those of the rule")
     )
-    return f"ILOS={_WORDS[code]} DUCT1={number(begin)} DUCT2={number(end)} RDUCT={number(left)}"
+    if code in _SUDDEN and not gone:  # what never happens
+        code -= 1
+    items = [f"ILOS={_WORDS[code]}", f"DUCT1={number(begin)}", f"DUCT2={number(end)}"]
+    items.append(f"RDUCT={number(left)}")
+    if gone:
+        items.append(f"DUCT3={number(gone)}")
+    if code >= _COUNTING:
+        items.append(f"RCYC={number(cycle)}")
+    elif cycle:
+        notes.append(f"RCYC {number(cycle)} has no effect with ILOS {code}")
+    return " ".join(items)

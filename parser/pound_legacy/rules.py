@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 from pound_deck.diagnostics import mistake
 from pound_deck.model import Span
-from pound_deck.schema import Catalog
+from pound_deck.schema import Catalog, Spec
 from pound_legacy.draft import Draft, number, numbers
 from pound_legacy.lines import Row, Rows
 
@@ -95,8 +95,8 @@ LAYOUTS: Final = {
 CERTAIN: Final = (0, 1, 2, 7, 52)  #: rules without parameters, and the one of a deck with known results
 
 
-def named(code: int, place: Span, catalog: Catalog) -> str:
-    """Name of a rule that can be carried over.
+def known(code: int, place: Span, catalog: Catalog) -> Spec:
+    """A rule that can be carried over.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def named(code: int, place: Span, catalog: Catalog) -> str:
         have = ", ".join(str(c) for c in sorted(LAYOUTS) if catalog.by_code("hysteresis", c))
         text = f"IHYST {code}: this rule is not carried over"
         raise mistake("L604", text, place, f"rules that are: {have}")
-    return spec.name
+    return spec
 
 
 def read(code: int, rows: Rows, ratio: float, draft: Draft, notes: list[str]) -> str:

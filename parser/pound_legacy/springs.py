@@ -78,10 +78,12 @@ def _yielding(
     notes: list[str],
 ) -> str:
     """Items of the components that yield."""
-    name = rules.named(code, found.items[1].span, given.catalog)
+    rule = rules.known(code, found.items[1].span, given.catalog)
     strong = given.rows.next("the yield forces: " + " ".join(FORCES))
     forces = strong.reals(FORCES)
-    lost = loss.read(losing, given.rows, found.items[2].span, given.draft, notes) if losing else ""
+    lost = ""
+    if losing:
+        lost = loss.read(losing, rule, given.rows, found.items[2].span, given.draft, notes)
     sets = [rules.read(code, given.rows, r, given.draft, notes) for r in ratios]
     yielding = [k for k in range(3) if stiff[k] and (forces[2 * k] or forces[2 * k + 1])]
     for k in range(3):
@@ -95,6 +97,6 @@ def _yielding(
     if len({sets[k] for k in yielding}) > 1:
         text = "the components that yield have different parameters"
         raise mistake("L604", text, strong.span, "give each component a spring of its own")
-    chosen = ",".join(name if k in yielding else "ELASTIC" for k in range(3))
+    chosen = ",".join(rule.name if k in yielding else "ELASTIC" for k in range(3))
     limits = [f"{_STRONG[k]}={numbers(forces[2 * k : 2 * k + 2])}" for k in yielding]
     return " ".join(x for x in (*limits, f"RULE={chosen}", sets[yielding[0]], lost) if x)

@@ -40,7 +40,7 @@ ROOMS = (
 #: folders within a room, likewise; what a room holds beside them may import all of them
 WITHIN = {
     "loading": ("records", "motions", "forces"),
-    "laws": ("automaton", "functions", "mirror", "contact", "damper", "hysteresis"),
+    "laws": ("automaton", "functions", "condensed", "mirror", "contact", "damper", "hysteresis"),
     "integrate": (
         "protocol",
         "costs",

@@ -181,6 +181,36 @@ def test_conventions(old, new, words):
     assert any(words in d.message for d in found.report), found.report
 
 
+@pytest.mark.parametrize(
+    ("code", "line", "items"),
+    [
+        (1, "2 6 0.5", {"ILOS": "EACH", "DUCT3": None, "RCYC": None}),
+        (2, "2 6 0.5 9 0", {"ILOS": "CYCLES", "DUCT3": 9.0}),
+        (3, "2 6 0.5 9 4", {"ILOS": "LARGEST", "DUCT3": 9.0, "RCYC": None}),
+        (4, "2 6 0.5 0 4", {"ILOS": "EACH_RCYC", "DUCT3": None, "RCYC": 4.0}),
+        (5, "2 6 0.5 9 4", {"ILOS": "EACH_SUDDEN", "DUCT3": 9.0, "RCYC": 4.0}),
+        (5, "2 6 0.5 0 4", {"ILOS": "EACH_RCYC", "DUCT3": None, "RCYC": 4.0}),
+        (6, "2 6 0.5 9", {"ILOS": "LARGEST_RCYC", "DUCT3": 9.0, "RCYC": 0.0}),
+        (7, "2 6 0.5 9 4", {"ILOS": "LARGEST_SUDDEN", "DUCT3": 9.0, "RCYC": 4.0}),
+    ],
+)
+def test_losses_of_strength(code, line, items):
+    text = STICK.replace("1 2 0 0 6000", f"1 2 {code} 0 6000").replace(
+        "12 -10 0 0 0 0", f"12 -10 0 0 0 0\n{line}"
+    )
+    card = model(text).props["P1"]
+    wanted = {"DUCT1": 2.0, "DUCT2": 6.0, "RDUCT": 0.5} | items
+    assert {name: card[name] for name in wanted} == wanted
+    assert "L605" in codes(read(text))
+
+
+def test_losses_that_are_refused():
+    for rule, code, line in ((2, 8, "2 6 0.5"), (5, 1, "2 6 0.5\n0.1 -0.1 0")):
+        text = STICK.replace("1 2 0 0 6000", f"1 {rule} {code} 0 6000")
+        found = codes(read(text.replace("12 -10 0 0 0 0", f"12 -10 0 0 0 0\n{line}")))
+        assert "L604" in found, rule
+
+
 def test_generated_nodes_lie_evenly():
     text = STICK.replace("2 3.0 0.0 0 1 1 0 0 0 0\n", "").replace("1 0.0 0.0 1 1 1", "1 0.0 0.0 0 1 1")
     m = model(text.replace("3 6.0 0.0 0 1 1 2 0", "3 6.0 1.0 0 1 1 0 0"))
@@ -211,6 +241,7 @@ def test_generated_nodes_lie_evenly():
         ("3 1 0.01 1 -1", "3 9 0.01 1 -1", "L608", (36, 3)),
         ("3 1 0.01 1 -1", "2 1 0.01 1 -1", "L604", (36, 1)),
         ("3 1 0.01 1 -1", "3 1 0.01 0 -1", "L603", (36, 10)),
+        ("3 1 0.01 1 -1", "3 1 0.01 1e-320 -1", "L603", (36, 10)),
         ("ELEMENTS 0", "! gone", "L607", (1, 1)),
         ("WEIGHTS 0", "NODES", "L607", (27, 1)),
         ("2 0 1 0 2 0 0 0 0 0 0", "2 0 1 0 2 0 0 1 0 0 0", "L609", (3, 15)),

@@ -265,7 +265,8 @@ ANALYSIS
         (nm(RC) + " LP=0.3 SKEW=0.05", "NM", r"is 5\.48 % of its half width away .* SKEW=0\.06 would"),
         (STEEL + " LP=0.3 RULE=ELASTIC", "RULE", "elastic beam-column is a FRAME"),
         (STEEL + " LP=0.3 PIN=BOTH", "", "no end is left"),
-        (STEEL + " LP=0.9", "LP", "less than LP=0.5"),
+        (STEEL + " LP=3.1", "LP", "longer than the flexible length, 3"),
+        (STEEL + " LP=0.9 RULE=BOUC_WEN N=2", "RULE", "curves: with it hinges have at most LP=0.45 here"),
         ("PY=-100,100 MP=3 LP=0.3", "PY", "positive, then negative"),
     ],
 )

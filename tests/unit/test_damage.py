@@ -13,13 +13,15 @@ from pound_solve.analyses import damage
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import Law, State, drive
 from pound_solve.laws.hysteresis import bilinear, bilinear_elastic, elasto_plastic, origin_centred
+from pound_solve.laws.hysteresis.backbone import LOSS
 from verification.cases import Ran, run_text
 
 pytestmark = pytest.mark.full
 
 K, FY = 100.0, 5.0
 DY = FY / K
-ORIGIN = {"R": 0.1, "ALFA": 0.0, "ILOS": "NONE", "DUCT1": None, "DUCT2": None, "RDUCT": None}
+KEPT = {f.name: f.default for f in LOSS}  # no loss of strength
+ORIGIN = {"R": 0.1, "ALFA": 0.0, **KEPT}
 
 
 def driven(law: Law, *turns: float) -> tuple[State, float]:
@@ -31,7 +33,7 @@ def driven(law: Law, *turns: float) -> tuple[State, float]:
 
 
 def test_monotonic_push() -> None:
-    law, last, beta, ultimate = elasto_plastic.build({}, K, FY, -FY), 6 * DY, 0.1, 8.0
+    law, last, beta, ultimate = elasto_plastic.build(KEPT, K, FY, -FY), 6 * DY, 0.1, 8.0
     _, loss = driven(law, last)
     assert loss == pytest.approx(FY * 5 * DY, rel=1e-14)
     found = damage.park_ang((last, 0.0), loss, K, (DY, -DY), (ultimate, ultimate), beta)
@@ -50,7 +52,7 @@ def test_what_lies_beyond_yield_is_plastic() -> None:
 
 def test_cycles() -> None:
     """To 4, -4 and 4 times yield: 3 + 6 + 6 yield deformations of plastic flow."""
-    law = elasto_plastic.build({}, K, FY, -FY)
+    law = elasto_plastic.build(KEPT, K, FY, -FY)
     _, loss = driven(law, 4 * DY, -4 * DY, 4 * DY)
     assert damage.plastic_path(loss, K, (DY, -DY)) == pytest.approx((15 * DY, 15.0), rel=1e-13)
     found = damage.park_ang((4 * DY, -4 * DY), loss, K, (DY, -DY), (10.0, 10.0), 0.05)
@@ -82,12 +84,12 @@ def test_whole() -> None:
 @pytest.mark.parametrize(
     "law, turns, left",
     [
-        (elasto_plastic.build({}, K, FY, -FY), (6 * DY,), 5 * DY),
-        (elasto_plastic.build({}, K, FY, -FY), (6 * DY, -3 * DY), -2 * DY),
-        (bilinear.build({"R": 0.1}, K, FY, -FY), (6 * DY,), (6 - 1.5) * DY),  # force 1 + 0.1 * 5
+        (elasto_plastic.build(KEPT, K, FY, -FY), (6 * DY,), 5 * DY),
+        (elasto_plastic.build(KEPT, K, FY, -FY), (6 * DY, -3 * DY), -2 * DY),
+        (bilinear.build({"R": 0.1, **KEPT}, K, FY, -FY), (6 * DY,), (6 - 1.5) * DY),  # force 1 + 0.1 * 5
         (bilinear_elastic.build({"R": 0.1}, K, FY, -FY), (6 * DY,), 0.0),
         (origin_centred.build(ORIGIN, K, FY, -FY), (6 * DY,), 0.0),
-        (elasto_plastic.build({}, K, FY, -FY), (6 * DY, 5 * DY), 5 * DY),  # at rest already
+        (elasto_plastic.build(KEPT, K, FY, -FY), (6 * DY, 5 * DY), 5 * DY),  # at rest already
     ],
 )
 def test_residual(law: Law, turns: tuple[float, ...], left: float) -> None:

@@ -455,6 +455,119 @@ MEMBER_LOADS
     assert s.state.events == 4
 
 
+# ---------------------------------------------------------------------- long hinges
+
+STEWART = "RULE=WAYNE_STEWART R=0.1 FU=150 FI=20 BETA=1.1 ALPHA=0.6 PUNL=2"
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    lengths=st.tuples(st.floats(0.1, 4.0), st.floats(0.1, 4.0)),
+    moments=st.tuples(st.floats(-400.0, 400.0), st.floats(-400.0, 400.0)),
+    ratio=st.floats(0.01, 0.9),
+)
+def test_rotations_of_a_beam_whose_hinges_are_of_any_length(lengths, moments, ratio):
+    """End moments on a simply supported beam: L/6EI (2 MI - MJ) and the like, sagging positive, and beyond
+    My the curvature (1/r - 1)(M - My)/EI over the length of the hinge.
+    """
+    n, my = 4.0, 150.0
+    text = f"""
+NODES
+ 1 0 0 FIX=XY
+ 2 {n} 0 FIX=Y
+ELEMENTS
+ 7 M 1 2
+PROPS
+ M FRAME {SECTION} MI={my} MJ={my} LP={lengths[0]!r},{lengths[1]!r} RULE=BILINEAR R={ratio!r}
+LOADS
+ 1 0 0 {-moments[0]!r}
+ 2 0 0 {moments[1]!r}
+"""
+    s = solved(text)
+    (mi, mj), over = moments, [math.copysign(max(abs(m) - my, 0.0), m) for m in moments]
+    plastic = [(1.0 / ratio - 1.0) * lp * m / EI for lp, m in zip(lengths, over)]
+    wanted = [-n / (6 * EI) * (2 * mi + mj) - plastic[0], n / (6 * EI) * (2 * mj + mi) + plastic[1]]
+    scale = n / EI * 400.0 / ratio
+    assert s.u[1][2] == pytest.approx(wanted[0], abs=1e-11 * scale)
+    assert s.u[2][2] == pytest.approx(wanted[1], abs=1e-11 * scale)
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    lp=st.tuples(st.floats(0.5, 3.0), st.floats(0.5, 3.0)),
+    fj=st.tuples(st.floats(0, 1e-4), st.floats(0, 1e-4)),
+    shear=st.booleans(),
+    rule=st.sampled_from(["BILINEAR", "TAKEDA ALFA=0.4", "IMK_BILINEAR DP=0.02 DPC=0.1"]),
+)
+def test_a_long_hinge_leaves_the_elastic_member_as_it_is(lp, fj, shear, rule):
+    common = f"FJ={fj[0]!r},{fj[1]!r} END1=0.2 " + (f"G={G!r} AS={AS!r}" if shear else "")
+    hinged = f" RULE={rule} LP={lp[0]!r},{lp[1]!r} MI=1e4 MJ=1e4"
+    a, b = (structure_of(member(common + x, 4.0, 20.0)).parts[7].initial().matrix for x in ("", hinged))
+    close(b, a, 1e-11)
+
+
+def test_the_ductility_of_a_long_hinge_is_that_of_its_curvature():
+    """(M/My - 1)/r + 1, whatever part of the rotation the beam behind it has."""
+    n, my, r = 4.0, 100.0, 0.1
+    for lp in (0.5, 1.0, 2.0, 4.0):
+        for share in (0.5, 1.7, -2.4):
+            s = structure_of(
+                member(f"MI={my} LP={lp} RULE=BILINEAR R={r}", n, loads=f" 2 0 {share * my / n}")
+            )
+            (hinge,), u = s.laws, static.solve(s).u
+            deformation = float(s.law_rows[0] @ u)
+            whole = hinge.whole(deformation, share * my)
+            curvature = share if abs(share) < 1 else math.copysign((abs(share) - 1.0) / r + 1.0, share)
+            assert whole * EI / (lp * my) == pytest.approx(curvature, rel=1e-10)
+            assert hinge.whole_stiffness == pytest.approx(EI / lp, rel=1e-14)
+
+
+@pytest.mark.parametrize("method", ["EXACT", "TAYLOR", "NEWMARK"])
+def test_a_cantilever_with_a_long_hinge_is_a_bilinear_oscillator(method):
+    """Its tip is k = 3EI/n^3 up to My/n, and beyond it the flexibility is more by (1/r - 1) Lp n^2/EI."""
+    n, my, r, mass = 4.0, 100.0, 0.1, 10.0
+    motion = f"""
+WEIGHTS
+ 2 {mass * 9.81}
+EQUAKE
+ SINE DIRECTION=Y AMPLITUDE=4 PERIOD=0.6
+OUTPUT
+ EVERY=0.05
+ANALYSIS
+ HISTORY 3 METHOD={method} {"DT=0.002" if method == "NEWMARK" else ""}
+END
+"""
+    for lp in (0.3, 2.0, 4.0):
+        cantilever = member(f"MI={my} LP={lp} RULE=BILINEAR R={r}", n) + motion
+        soft = n**3 / (3 * EI)
+        ratio = soft / (soft + (1 / r - 1) * lp * n**2 / EI)
+        oscillator = f"""
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 0 FIX=XR
+ELEMENTS
+ 7 S 1 2
+PROPS
+ S SPRING KY={1 / soft!r} FY={my / n!r} RULE=BILINEAR R={ratio!r}
+{motion}"""
+        a, b = (run_text(text) for text in (cantilever, oscillator))
+        ends = [
+            {
+                x["quantity"]: x
+                for x in run.tables["node_envelope"]
+                if x["node"] == 2 and x["direction"] == "Y"
+            }
+            for run in (a, b)
+        ]
+        assert a.tables["spring_envelope"]["yield_events"][0] > 5
+        # an event that a step meets is located to a part of the step
+        rel = 1e-5 if method == "NEWMARK" else 1e-9
+        for quantity in ("displacement", "velocity"):
+            for name in ("max", "min"):
+                one, other = (x[quantity][name] for x in ends)
+                assert one == pytest.approx(other, rel=rel), quantity
+
+
 # ---------------------------------------------------------------------- the card
 
 
@@ -469,10 +582,14 @@ MEMBER_LOADS
         ("KH=1e5", "KH", "no effect without a yield moment"),
         ("MI=100 PIN=I LP=0.3 RULE=BILINEAR", "MI", "end I is pinned"),
         ("MJ=-100,100 LP=0.3 RULE=BILINEAR", "MJ", "positive, then negative"),
-        ("MI=100 LP=1.01 RULE=BILINEAR", "LP", r"of the flexible length 4 they can have less than LP=1$"),
-        ("MI=100 MJ=100 LP=1 RULE=BILINEAR", "LP", "less than LP=0.6667$"),
-        ("MI=100 MJ=100 LP=1,0.2 RULE=BILINEAR", "LP", "less than LP=0.9"),
-        ("MI=100 PIN=J LP=1.4 RULE=BILINEAR", "LP", "less than LP=1.333$"),
+        ("MI=100 LP=4.1 RULE=BILINEAR", "LP", "4.1 is longer than the flexible length, 4$"),
+        (
+            "MI=100 MJ=100 LP=1,4.2 END1=0.3 RULE=BILINEAR",
+            "LP",
+            "4.2 is longer than the flexible length, 3.7",
+        ),
+        ("MI=100 LP=1 RULE=RAMBERG_OSGOOD N=5", "RULE", "curves: with it hinges have at most LP=0.9 here"),
+        (f"MI=100 LP=3.6 {STEWART}", "RULE", "too steeply: with it hinges have at most LP=0.9 here"),
     ],
 )
 def test_cards_that_do_not_fit_together(items, at, message):

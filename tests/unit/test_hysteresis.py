@@ -6,6 +6,7 @@ has more to show.  Every step is (deformation, force, energy lost so far), with 
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from paths import Walk, turning_points
 from pound_deck.schema import Kind
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import Law
+from verification.cases import run_text
 
 RULES = catalog().family("hysteresis")
 PAGE = (Path(__file__).parents[2] / "manual" / "hysteresis.md").read_text("utf-8")
@@ -392,6 +394,104 @@ def test_opensees_gives_the_same_forces(
     assert [walk.move(d).force for d in TURNS] == pytest.approx(forces, rel=1e-9)
 
 
+# ---------------------------------------------------------------------- loss of strength
+
+
+def left_at(law: Law, *path: float) -> float:
+    """Force of the law, without hardening, over its first yield force, at the end of a path."""
+    return Walk(law).move(*path).force / 20.0
+
+
+LOSS = {"DUCT1": 2.0, "DUCT2": 6.0, "RDUCT": 0.5}
+
+
+def test_strength_falls_on_to_a_hundredth() -> None:
+    """1 up to ductility 2, half at 6, 0.01 at 10, where the deformation at yield is 2."""
+    for name in (
+        "ELASTO_PLASTIC",
+        "BILINEAR",
+        "DEGRADING_BILINEAR",
+        "CLOUGH",
+        "TAKEDA",
+        "Q_HYST",
+        "ORIGIN_CENTRED",
+    ):
+        law = rule(name, 20.0, -20.0, ILOS="EACH", DUCT3=10.0, **LOSS)
+        for x, share in ((1.5, 1.0), (4.0, 0.75), (6.0, 0.5), (8.0, 0.255), (10.0, 0.01), (14.0, 0.01)):
+            assert left_at(law, 2.0 * x) == pytest.approx(share, abs=1e-14), name
+            assert left_at(law, -2.0 * x) == pytest.approx(-share, abs=1e-14), name
+        # a former peak on the way down is met at the strength that it left
+        assert left_at(law, 14.0, 13.9, 17.0) == pytest.approx(0.5 - 0.49 * 2.5 / 4.0, abs=1e-13), name
+
+
+def test_a_sudden_loss() -> None:
+    for form in ("EACH_SUDDEN", "LARGEST_SUDDEN"):
+        law = rule("CLOUGH", 20.0, -20.0, ILOS=form, DUCT3=10.0, RCYC=0.0, **LOSS)
+        for x, share in ((4.0, 0.75), (6.0, 0.5), (9.99, 0.5), (10.01, 0.01), (14.0, 0.01)):
+            assert left_at(law, 2.0 * x) == pytest.approx(share, abs=1e-14)
+        walk = Walk(law).move(21.0)
+        # what the drop lets go is lost: all work but what 0.01 of the strength stores
+        assert law.stored(walk.state, 21.0) == pytest.approx(0.5 * 0.2**2 / 10.0, abs=1e-14)
+        other = 0.01 if form == "LARGEST_SUDDEN" else 1.0
+        assert left_at(law, 21.0, -2.5) == pytest.approx(-min(other, 1.0), abs=1e-12)
+
+
+def test_a_yield_force_that_is_left_lies_on_the_elastic_line() -> None:
+    """BILINEAR: r k d beside a slider of (1 - r) Fy, the share of which falls."""
+    r, law = 0.1, rule("BILINEAR", 20.0, -20.0, R=0.1, ILOS="EACH", DUCT3=10.0, **LOSS)
+    for x, share in ((4.0, 0.75), (8.0, 0.255), (12.0, 0.01)):
+        walk = Walk(law).move(2.0 * x)
+        assert walk.force == pytest.approx(20.0 * ((1.0 - r) * share + r * x), abs=1e-13)
+        walk.move(-30.0, 60.0)  # and with nothing left, a spring of r k
+    assert walk.force == pytest.approx(20.0 * (0.9 * 0.01 + 0.1 * 30.0), abs=1e-12)
+
+
+def test_strength_by_cycles() -> None:
+    """Each yield that one of the other side follows is a cycle; forces at the ends of each half cycle."""
+    by_number = rule("BILINEAR", 20.0, -20.0, ILOS="CYCLES", DUCT1=1.0, DUCT2=5.0, RDUCT=0.6)
+    beside = rule("BILINEAR", 20.0, -20.0, ILOS="EACH_RCYC", DUCT1=30.0, DUCT2=40.0, RDUCT=0.5, RCYC=10.0)
+    for name, law, shares in (
+        ("number", by_number, (1.0, 1.0, 1.0, 1.0, 0.9, 0.9, 0.8, 0.8, 0.7, 0.7, 0.6, 0.6, 0.6)),
+        ("beside", beside, (1.0, 1.0, 0.9, 0.9, 0.8, 0.8, 0.7, 0.7, 0.6, 0.6, 0.5, 0.5, 0.4)),
+    ):
+        walk = Walk(law)
+        for n, share in enumerate(shares):
+            side = -1.0 if n % 2 else 1.0
+            walk.move(side * 6.0)
+            assert side * walk.force == pytest.approx(20.0 * share, abs=1e-12), (name, n)
+            walk.move(side * 5.5, side * 6.0)  # no cycle: the other side does not yield
+            assert side * walk.force == pytest.approx(20.0 * share, abs=1e-12), (name, n)
+
+
+def test_cycles_and_ductility_multiply() -> None:
+    """CLOUGH at ductility 4: 0.75, after one cycle of 20 per cent 0.6; the first yield of the other side is
+    no cycle, but with LARGEST its strength has fallen with the ductility of this one.
+    """
+    for form, other in (("EACH_RCYC", 1.0), ("LARGEST_RCYC", 0.75)):
+        law = rule("CLOUGH", 20.0, -20.0, ILOS=form, RCYC=20.0, **LOSS)
+        walk = Walk(law).move(8.0)
+        assert walk.force == pytest.approx(15.0, abs=1e-12)
+        walk.move(-3.0)
+        assert walk.force == pytest.approx(-20.0 * other, abs=1e-12)
+        assert walk.move(8.0).force == pytest.approx(0.8 * 15.0, abs=1e-12)
+
+
+def test_no_strength_is_ever_regained() -> None:
+    """Largest force of a half cycle, over ever the same range, of every form."""
+    more = {"DUCT3": 12.0, "RCYC": 7.0}
+    for form in ("EACH", "CYCLES", "LARGEST", "EACH_RCYC", "EACH_SUDDEN", "LARGEST_RCYC", "LARGEST_SUDDEN"):
+        given = {n: v for n, v in more.items() if n == "DUCT3" or form.endswith(("RCYC", "SUDDEN"))}
+        for name in ("BILINEAR", "CLOUGH", "TAKEDA", "Q_HYST", "ORIGIN_CENTRED"):
+            law = rule(name, 20.0, -15.0, ILOS=form, **LOSS, **given)
+            walk, last = Walk(law), [math.inf, math.inf]
+            for n in range(24):
+                side = n % 2
+                walk.move((-1.0) ** side * 16.0)
+                force = abs(walk.force)
+                assert force <= last[side] + 1e-12, (name, form, n)
+                last[side] = force
+
+
 def test_no_loss_within_the_elastic_range() -> None:
     for spec in RULES.values():
         if spec.name in ("CLOUGH", "Q_HYST", "TAKEDA", "ORIGIN_CENTRED", "DEGRADING_BILINEAR"):
@@ -409,12 +509,13 @@ def test_no_loss_within_the_elastic_range() -> None:
         ("TAKEDA", -10.0, {"DUCT1": 2.0}, "no effect"),
         ("Q_HYST", -10.0, {"ILOS": "EACH", "DUCT1": 2.0, "DUCT2": 3.0}, "needs DUCT1, DUCT2 and RDUCT"),
         ("CLOUGH", -10.0, {"ILOS": "EACH", "DUCT1": 3.0, "DUCT2": 3.0, "RDUCT": 0.5}, "larger than DUCT1"),
-        (
-            "CLOUGH",
-            -10.0,
-            {"R": 0.2, "ILOS": "EACH", "DUCT1": 2.0, "DUCT2": 3.0, "RDUCT": 0.2},
-            "larger than R",
-        ),
+        ("CLOUGH", -10.0, {"ILOS": "EACH", **LOSS, "DUCT3": 6.0}, "larger than DUCT2"),
+        ("BILINEAR", -10.0, {"ILOS": "EACH", **LOSS, "RDUCT": 0.01, "DUCT3": 9.0}, "larger than 0.01"),
+        ("CLOUGH", -10.0, {"ILOS": "EACH_SUDDEN", "RCYC": 1.0, **LOSS}, "needs DUCT3"),
+        ("CLOUGH", -10.0, {"ILOS": "EACH_RCYC", **LOSS}, "RCYC goes with"),
+        ("CLOUGH", -10.0, {"ILOS": "EACH", "RCYC": 3.0, **LOSS}, "RCYC goes with"),
+        ("BILINEAR", -10.0, {"R": -0.1, "ILOS": "EACH", **LOSS}, "R of a degrading rule"),
+        ("ELASTO_PLASTIC", -10.0, {"RCYC": 3.0}, "no effect"),
         ("TRILINEAR", -10.0, {"R": 0.3, "R2": 0.3, "F2": (2.0,)}, "slopes must fall"),
         ("BILINEAR_SLACK", -10.0, {"SLACK": (-1.0,)}, "SLACK"),
     ],
@@ -422,3 +523,47 @@ def test_no_loss_within_the_elastic_range() -> None:
 def test_what_a_rule_refuses(name: str, minus: float, values: dict[str, Any], says: str) -> None:
     with pytest.raises(ValueError, match=says):
         rule(name, 20.0, minus, **values)
+
+
+LOSING = """
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 0 FIX=YR
+ELEMENTS
+ 7 S 1 2
+PROPS
+ S SPRING KX=1000 FX=20 RULE={rule} DUCT1=1.5 DUCT2=3 RDUCT=0.6
+WEIGHTS
+ 2 98.1
+DAMPING
+ RAYLEIGH ALPHA=0.5
+EQUAKE
+ SINE DIRECTION=X AMPLITUDE=1.9 PERIOD=0.9
+OUTPUT
+ EVERY=0.1
+ANALYSIS
+ HISTORY 6 METHOD={method}
+END
+"""
+
+
+@pytest.mark.parametrize(
+    "rule",
+    [
+        "BILINEAR R=0.05 ILOS=EACH DUCT3=9",
+        "TAKEDA R=0.02 ALFA=0.3 BETA=0.2 ILOS=LARGEST_RCYC RCYC=6 DUCT3=9",
+        "ELASTO_PLASTIC ILOS=CYCLES",
+        "TAKEDA R=0.02 ALFA=0.3 BETA=0.2 ILOS=EACH_SUDDEN RCYC=2 DUCT3=4.5",
+    ],
+)
+def test_methods_agree_on_an_oscillator_that_loses_strength(rule: str) -> None:
+    found = []
+    for method in ("EXACT", "TAYLOR", "NEWMARK DT=0.0005"):
+        run = run_text(LOSING.format(rule=rule, method=method))
+        assert run.status == "done" and run.check() < 1e-5
+        (row,) = run.tables["spring_envelope"]
+        found.append([row["deformation_min"], row["deformation_max"], float(row["yield_events"])])
+    exact, series, stepped = found
+    assert series == pytest.approx(exact, rel=1e-11)
+    assert stepped == pytest.approx(exact, rel=3e-5)
+    assert exact[2] > 2

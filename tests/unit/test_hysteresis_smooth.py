@@ -1,4 +1,5 @@
-"""The curved rules, Bouc-Wen and Ramberg-Osgood, against closed forms, an ODE solver and OpenSees.
+"""The curved rules, Bouc-Wen, Ramberg-Osgood and Menegotto-Pinto, against closed forms, quadrature, an ODE
+solver and OpenSees.
 
 Stiffness 10, yield forces of 20 both ways, so that yield is at 2, if not told otherwise.
 """
@@ -6,19 +7,22 @@ Stiffness 10, yield forces of 20 both ways, so that yield is at 2, if not told o
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
+from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
+import contract
 from paths import Walk
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import Law, drive
-from pound_solve.laws.hysteresis import bouc_wen, ramberg_osgood
+from pound_solve.laws.hysteresis import bouc_wen, menegotto_pinto, ramberg_osgood
+from verification.cases import run_text
 
 RULES = catalog().family("hysteresis")
 
@@ -265,3 +269,144 @@ def test_unequal_sides_are_refused() -> None:
     for name, values in (("BOUC_WEN", {"N": 2.0}), ("RAMBERG_OSGOOD", {"N": 5.0})):
         with pytest.raises(ValueError, match="both sides"):
             rule(name, 0.0, **values)
+
+
+# ---------------------------------------------------------------------- Menegotto-Pinto
+
+
+@given(st.floats(1.2, 60.0), st.floats(1e-3, 300.0))
+def test_area_below_the_knee(n: float, x: float) -> None:
+    """By quadrature; its slope by the difference of values."""
+    pieces = [min(x, at) for at in (0.0, 0.7, 0.9, 0.97, 1.0, 1.03, 1.1, 1.4, 2.0, 5.0, 20.0, x)]
+    parts = [
+        quad(lambda t: menegotto_pinto.knee(n, t)[0], a, b, epsabs=0.0, epsrel=1e-12, limit=200)[0]
+        for a, b in pairwise(pieces)
+        if b > a
+    ]
+    assert menegotto_pinto.area(n, x) == pytest.approx(math.fsum(parts), rel=1e-10)
+    h = 1e-5 * x
+    value, slope = menegotto_pinto.knee(n, x)
+    assert value == pytest.approx((x**-n + 1.0) ** (-1.0 / n), rel=1e-13)
+    difference = menegotto_pinto.knee(n, x + h)[0] - menegotto_pinto.knee(n, x - h)[0]
+    assert slope == pytest.approx(difference / (2.0 * h), rel=1e-6, abs=1e-9)
+
+
+def test_a_half_cycle_leaves_along_the_elastic_line_and_comes_to_the_yield_line() -> None:
+    law = rule("MENEGOTTO_PINTO", -12.0, R=0.05)
+    walk = Walk(law).move(8.0)
+    assert walk.force == pytest.approx(20.0 + 0.5 * 6.0, abs=1e-6)
+    turned = walk.force
+    assert walk.move(8.0 - 1e-4).force == pytest.approx(turned - 1e-3, abs=1e-6)
+    # the yield line of the other side, -12 at -1.2; the knee is rounder than the virgin one
+    far = Walk(law).move(8.0, -4000.0)
+    assert far.force == pytest.approx(-12.0 - 0.5 * (4000.0 - 1.2), abs=0.02)
+    assert 0.01 < 12.0 + 0.5 * 2.8 + Walk(law).move(8.0, -4.0).force < 2.0
+
+
+# uniaxialMaterial Steel02 of OpenSees 3.7.1 (openseespy), Fy 20, E 10; b, R0, cR1, cR2, a1 to a4
+STEEL_PATH = [1.0, 3.0, -1.0, -5.0, 2.0, 2.5, 1.5, 6.0, 0.0, -8.0, 12.0]
+STEEL02 = {
+    (0.05, 20.0, 0.925, 0.15, 0.0, 1.0, 0.0, 1.0): (
+        "9.999999547004926 20.499714352869717 -15.198162483908604 -21.38050931900743 17.512678626904574 "
+        "18.153804197420634 8.224404440172476 21.999999392436234 -13.744806488496895 -22.049612804307092 "
+        "24.361434357841052"
+    ),
+    (0.02, 5.0, 0.5, 0.3, 0.0, 1.0, 0.0, 1.0): (
+        "9.939872760283361 19.721008181121313 -12.869852905560187 -19.631246773403625 17.686769358536417 "
+        "18.15730232034295 8.23275969756515 20.788733204493035 -15.621932923209997 -20.71653029910442 "
+        "21.79958277236441"
+    ),
+    (0.05, 20.0, 0.925, 0.15, 0.04, 1.0, 0.02, 2.0): (
+        "9.999999547004926 20.499714352869717 -15.812145322873775 -22.302886812600526 17.67932958058914 "
+        "18.357070309120253 8.413965292001336 22.379999534876056 -14.713218508310682 -23.622804778992865 "
+        "24.856258832692554"
+    ),
+}
+
+
+@pytest.mark.parametrize("parameters", STEEL02)
+def test_as_steel02(parameters: tuple[float, ...]) -> None:
+    names = ("R", "R0", "CR1", "CR2", "A1", "A2", "A3", "A4")
+    law = rule("MENEGOTTO_PINTO", **dict(zip(names, parameters)))
+    got = forces(law, STEEL_PATH)
+    assert got == pytest.approx(list(map(float, STEEL02[parameters].split())), rel=1e-13)
+    # a start in the other direction
+    assert forces(law, [-1.9])[0] == pytest.approx(-forces(law, [1.9])[0], rel=1e-14)
+
+
+def test_menegotto_pinto_keeps_the_contract_with_isotropic_hardening() -> None:
+    """All but one clause: inside another half cycle the force drifts up, and with it what is stored."""
+    law = rule("MENEGOTTO_PINTO", R=0.02, A1=0.1, A2=1.5, A3=0.05, A4=2.0)
+    for clause in contract.CLAUSES:
+        if clause is not contract.closed_loops_dissipate:
+            clause(law, 12.0)
+
+
+@pytest.mark.parametrize(
+    ("values", "says"),
+    [({"R0": 10.0, "CR1": 0.925}, "the roundest knee"), ({"R": -0.1}, "from 0 to below 1")],
+)
+def test_what_menegotto_pinto_refuses(values: dict[str, float], says: str) -> None:
+    with pytest.raises(ValueError, match=says):
+        rule("MENEGOTTO_PINTO", **values)
+
+
+@pytest.mark.parametrize("method", ["NEWMARK DT=0.002", "AUTO"])
+def test_an_oscillator_of_menegotto_pinto_steel(method: str) -> None:
+    """Beside DOP853 from reversal to reversal, by forces that were written anew."""
+    deck = f"""
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 0 FIX=YR
+ELEMENTS
+ 7 S 1 2
+PROPS
+ S SPRING KX=1000 FX=20 RULE=MENEGOTTO_PINTO R=0.05
+WEIGHTS
+ 2 98.1
+INITIAL
+ 2 VX=1.5
+OUTPUT
+ EVERY=0.02
+ANALYSIS
+ HISTORY 1 METHOD={method}
+END
+"""
+    run = run_text(deck)
+    assert run.status == "done"
+    (row,) = run.tables["spring_envelope"]
+    low, high = free_steel(1000.0, 20.0, 0.05, mass=10.0, v=1.5, end=1.0)
+    assert (row["deformation_min"], row["deformation_max"]) == pytest.approx((low, high), rel=2e-4)
+
+
+def free_steel(k: float, fy: float, b: float, mass: float, v: float, end: float) -> tuple[float, float]:
+    """Extremes of a free vibration, each half cycle solved by itself."""
+    dy = fy / k
+    turn, force, high, low, s = 0.0, 0.0, dy, -dy, 1.0
+    t, state, seen = 0.0, [0.0, v], [0.0]
+    while t < end:
+        meets = turn + (s * (1.0 - b) * fy + b * k * turn - force) / (k * (1.0 - b))
+        eta = abs((high if s > 0 else low) - meets) / dy
+        n = 20.0 * (1.0 - 0.925 * eta / (0.15 + eta))
+
+        def pull(d, turn=turn, force=force, meets=meets, n=n):
+            x = abs(d - turn) / abs(meets - turn)
+            return force + k * (meets - turn) * (b * x + (1.0 - b) * x * (1.0 + x**n) ** (-1.0 / n))
+
+        def still(_, y):
+            return y[1]
+
+        still.terminal, still.direction = True, -s
+        way = solve_ivp(
+            lambda _, y, pull=pull: [y[1], -pull(y[0]) / mass],
+            *((t, end), state),
+            method="DOP853",
+            events=still,
+            rtol=1e-10,
+            atol=1e-12,
+        )
+        t, state = float(way.t[-1]), [float(way.y[0, -1]), 0.0]
+        turn, force = state[0], pull(state[0])
+        seen.append(turn)
+        high, low, s = max(high, turn), min(low, turn), -s
+    return min(seen), max(seen)

@@ -67,8 +67,9 @@ def unknown(structure: Structure, history: HistoryResult, outcome: Outcome) -> I
         card = structure.model.props[structure.model.elements[spring.element].prop]
         if spring.yields is None or card.values.get("DULT") is None:
             continue
-        peak, limits = outcome.peaks.deformation[i], card["DULT"]
-        reached = (peak.high / spring.yields[0], peak.low / spring.yields[1])
+        d, f, limits = outcome.peaks.deformation[i], outcome.peaks.force[i], card["DULT"]
+        largest = spring.whole(d.high, f.high), spring.whole(d.low, f.low)
+        reached = (largest[0] / spring.yields[0], largest[1] / spring.yields[1])
         for ductility, limit in zip(reached, (limits[0], limits[-1])):
             if ductility > limit:
                 text = f"look: beyond DULT={limit:g} the rule {spring.rule} is not known"

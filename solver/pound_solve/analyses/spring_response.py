@@ -106,26 +106,30 @@ def _response(
     structure: Structure, recorder: HistoryRecorder, outcome: Outcome, ended: bool, i: int
 ) -> SpringResponse:
     spring, peaks, loss = structure.laws[i], outcome.peaks, recorder.losses[i]
-    d = peaks.deformation[i]
+    d, f = peaks.deformation[i], peaks.force[i]
+    # with its largest force: the same instant, but where a force falls while it deforms further
+    largest = spring.whole(d.high, f.high), spring.whole(d.low, f.low)
     plastic = None
     if spring.role.viscous:
         loss += peaks.dashpot_losses[i]
     if loss and spring.role is Role.SPRING:  # friction has no residual deformation of its own
         last = recorder.deformations[i]
         left = damage.residual(spring.law, outcome.states[i], last) if ended else np.nan
-        plastic = PlasticDeformation(last, left, *damage.plastic_path(loss, spring.k0, spring.yields))
+        k = spring.whole_stiffness
+        plastic = PlasticDeformation(last, left, *damage.plastic_path(loss, k, spring.yields))
     card = structure.model.props[structure.model.elements[spring.element].prop]
     ultimate = card.values.get("DUCTU")
     index = None
     if ultimate is not None and spring.yields is not None:
         sides = (ultimate[0], ultimate[-1])
-        index = damage.park_ang((d.high, d.low), loss, spring.k0, spring.yields, sides, card["PA_BETA"])
-    ductility = damage.ductility((d.high, d.low), spring.yields)
+        k = spring.whole_stiffness
+        index = damage.park_ang(largest, loss, k, spring.yields, sides, card["PA_BETA"])
+    ductility = damage.ductility(largest, spring.yields)
     at = spring.law.rule.branches[outcome.states[i][0]]
     turns = spring.unit == "F*L" and spring.component.startswith("hinge")
     return SpringResponse(
         spring,
-        peaks.force[i],
+        f,
         d,
         peaks.yields[i],
         ductility,
@@ -133,6 +137,6 @@ def _response(
         plastic,
         index,
         at.name == STRENGTHLESS,
-        damage.plastic((d.high, d.low), spring.yields) if turns else np.nan,
+        damage.plastic(largest, spring.yields) if turns else np.nan,
         any(card.values.get(item) is not None for item in ENDS),
     )

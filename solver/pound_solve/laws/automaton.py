@@ -68,6 +68,11 @@ def on_spring(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return 0.5 * f * f / p[0]
 
 
+def first_stiffness(p: Numbers) -> float:
+    """Stiffness of a rule none of whose branches is steeper than the first."""
+    return p[0]
+
+
 def rate_independent(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
     """Power of a rule whose force does not depend on the rate: zero."""
     return 0.0
@@ -149,6 +154,8 @@ class Rule:
         `f`, that of a rule with a `curve` is ``k d + q w`` and a constant, where
         ``dw/dd = (1 + a x^n) / (1 + b x^n)``, ``x = w / y``.  Where `x` falls to zero the numbers change;
         what is left of it there, up to `PAST`, is rounding.  None: it is not of this kind.
+    steepest : callable
+        ``steepest(p) -> stiffness`` that none of its straight branches exceeds.
     parameters, variables : int
         How many numbers ``p`` and ``m`` have.
     """
@@ -162,6 +169,7 @@ class Rule:
     power: PowerFunction | None = None
     powers: PowersFunction | None = None
     smooth: SmoothFunction | None = None
+    steepest: Callable[[Numbers], float] = first_stiffness
     parameters: int = field(kw_only=True)
     variables: int = field(kw_only=True)
 

@@ -3,25 +3,33 @@ r"""The bilinear backbone that the degrading rules share, and its loss of streng
 One side at a time (`mirror`), with the yield force :math:`F_y > 0`, the yield deformation
 :math:`d_y = F_y / k` and the ductility :math:`x = |d| / d_y`:
 
-.. math:: F(x) = F_y \left[\varphi(\max(x, \mu_L)) + r (x - 1)\right]
+.. math:: F(x) = F_y \left[(1 - r)\,\gamma\,\varphi(\max(x, \mu_L)) + r x\right]
 
-The share :math:`\varphi` of the yield force that is left falls along a straight line from 1 at ductility
-:math:`D_1` to :math:`\varphi_R` at :math:`D_2` and stays there; :math:`\mu_L` is the largest ductility so
-far: of that side (ILOS=EACH) or of either side (LARGEST).  The hardening is not reduced.
+so the yield force left is the share :math:`\gamma\varphi` of the first one, on the elastic line; the
+hardening is not reduced.  :math:`\varphi` falls with the ductility along a straight line from 1 at
+:math:`D_1` to :math:`\varphi_R` at :math:`D_2`, and, if :math:`D_3` is given, on to 0.01 at :math:`D_3`; in
+the SUDDEN forms it stays at :math:`\varphi_R` up to :math:`D_3` and drops to 0.01 there.  :math:`\mu_L`
+is the largest ductility so far: of that side (EACH) or of either side (LARGEST).  With :math:`n` inelastic
+cycles :math:`\gamma = 1 - c n`, not below 0.01, in the forms with RCYC (:math:`c` in per cent there).  With
+CYCLES the number of cycles takes the place of the ductility: :math:`\gamma = \varphi(n)`, and
+:math:`\varphi = 1`.
 
 A spring that has reached ductility :math:`\mu` unloads with
 
-.. math:: k_u = k \max\left(\mu^{-\alpha},\; \frac{\varphi(\mu) + r (\mu - 1)}{\mu}\right)
+.. math:: k_u = k \max\left(\mu^{-\alpha},\; \frac{(1 - r)\,\varphi(\mu) + r \mu}{\mu}\right)
 
 The second bound, the secant from the origin to the backbone, is ours: a softer line would reach no force on
 the far side of the origin, and for large :math:`\alpha` run flatter than the backbone itself.
 
-Internal variables of each rule: the largest ductility of each side (1 before yield), and a point (d, f).
+Ours, too, because no source says it: the loss by ductility acts at once, the backbone itself falls; a yield
+of a side is a cycle of that side as soon as the other side yields; both losses are multiplied.
+
+Internal variables of each rule: the largest ductility of each side (1 before yield), a point (d, f), and
+how many times another side yielded than before, with the sign of the last one.
 
 References
 ----------
-Carr AJ (2008), Ruaumoko manual, volume 5, appendix A (strength loss, ILOS 1 and 3); how the loss acts
-within an excursion is not said there: here it acts at once, the backbone itself falls.
+Carr AJ (2008), Ruaumoko manual, volume 5, appendix A (strength loss: ILOS 0 to 7).
 Otani S (1981), Hysteresis models of reinforced concrete for earthquake response analysis, J. Faculty of
 Engng, Univ. of Tokyo 36(2): 407-441 (unloading stiffness as a power of the ductility).
 """
@@ -37,6 +45,24 @@ from pound_solve.laws.mirror import need_both_sides, outward, pair, side, turns_
 
 # branches of the positive side; those of the negative side are one more
 ELASTIC, YIELDING, WEAKENING = 0, 1, 3
+
+BEFORE = -1e300  #: less than any ductility: on the other side of zero
+LEAST = 0.01  #: share of the yield force that is left in the end
+# numbers of a law: form of the loss, D3 (0: none), loss by a cycle
+FORM, GONE, BY_CYCLE, PARAMETERS = 8, 9, 10, 11
+CHANGES, VARIABLES = 4, 5  #: internal variable: changes of the yielding side, with its sign
+FORMS = {
+    "NONE": 0,
+    "EACH": 1,
+    "CYCLES": 2,
+    "LARGEST": 3,
+    "EACH_RCYC": 4,
+    "EACH_SUDDEN": 5,
+    "LARGEST_RCYC": 6,
+    "LARGEST_SUDDEN": 7,
+}  #: forms of the loss by Ruaumoko's codes
+_CYCLES, _LARGEST, _EACH_SUDDEN, _LARGEST_RCYC, _LARGEST_SUDDEN = 2.0, 3.0, 5.0, 6.0, 7.0
+_COUNTING = 4.0  #: the first form that counts cycles beside the ductility
 
 R = Field(
     "R",
@@ -61,19 +87,45 @@ LOSS = (
         "ILOS",
         Kind.WORD,
         default="NONE",
-        words=("NONE", "EACH", "LARGEST"),
-        codes={"NONE": 0, "EACH": 1, "LARGEST": 3},
-        doc="strength falls with the ductility of each direction alone, or with the larger of both",
+        words=tuple(FORMS),
+        codes=FORMS,
+        doc="strength falls with the ductility of each direction, with the larger of both, or with the "
+        "number of inelastic cycles; RCYC: by cycles, too; SUDDEN: that, and beyond DUCT2 at DUCT3 only",
     ),
-    Field("DUCT1", Kind.REAL, "-", default=None, lo=1.0, doc="ductility where the loss of strength begins"),
+    Field(
+        "DUCT1",
+        Kind.REAL,
+        "-",
+        default=None,
+        lo=1.0,
+        doc="ductility (CYCLES: number of cycles) where the loss of strength begins",
+    ),
     Field("DUCT2", Kind.REAL, "-", default=None, above=1.0, doc="ductility where it ends"),
     Field("RDUCT", Kind.REAL, "-", default=None, above=0.0, hi=1.0, doc="share of the yield force left"),
+    Field(
+        "DUCT3",
+        Kind.REAL,
+        "-",
+        default=None,
+        above=1.0,
+        doc="ductility where 0.01 of the yield force is left; left out: the share RDUCT stays",
+    ),
+    Field(
+        "RCYC",
+        Kind.REAL,
+        "-",
+        default=None,
+        lo=0.0,
+        below=100.0,
+        doc="loss of the yield force by each inelastic cycle, per cent; of the forms RCYC and SUDDEN",
+    ),
 )
+_ITEMS = ("DUCT1", "DUCT2", "RDUCT", "DUCT3", "RCYC")
 
 
 def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Numbers:
     """First parameters of all rules on this backbone: k, both yield forces, r, alpha, then the loss as
-    D1, D2, what is left, and whether the largest ductility of either side drives it.
+    D1, D2, what is left, form, D3 and the loss by a cycle.
 
     Raises
     ------
@@ -81,22 +133,44 @@ def parameters(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: fl
         No yield force on a side, r outside its limits, or a loss that is not whole.
     """
     need_both_sides(fy_plus, fy_minus)
-    r, alpha = values["R"], values.get("ALFA", 0.0)
+    r, alpha = values.get("R", 0.0), values.get("ALFA", 0.0)
     if not 0.0 <= r < 1.0:
         raise ValueError("R of a degrading rule lies from 0 to below 1")
-    loss = [values[name] for name in ("DUCT1", "DUCT2", "RDUCT")]
-    if values["ILOS"] == "NONE":
-        if loss != [None] * 3:
-            raise ValueError("DUCT1, DUCT2 and RDUCT have no effect without ILOS=EACH or ILOS=LARGEST")
-        return k, fy_plus, fy_minus, r, alpha, 0.0, 0.0, 1.0, 0.0
-    if None in loss:
+    return (k, fy_plus, fy_minus, r, alpha, *_loss(values))
+
+
+def loses_strength(values: Mapping[str, Any]) -> bool:
+    """Whether a card asks for a loss of strength.
+
+    Raises
+    ------
+    ValueError
+        It has items of a loss, but none.
+    """
+    if values["ILOS"] == "NONE" and any(values[name] is not None for name in _ITEMS):
+        raise ValueError(f"{', '.join(_ITEMS)} have no effect without ILOS=EACH or the like")
+    return bool(values["ILOS"] != "NONE")
+
+
+def _loss(values: Mapping[str, Any]) -> Numbers:
+    """Numbers of the loss; see `parameters`."""
+    if not loses_strength(values):
+        return 0.0, 0.0, 1.0, 0.0, 0.0, 0.0
+    form = FORMS[values["ILOS"]]
+    begin, end, left, gone, by_cycle = (values[name] for name in _ITEMS)
+    if None in (begin, end, left):
         raise ValueError("ILOS needs DUCT1, DUCT2 and RDUCT")
-    begin, end, left = loss
     if begin >= end:
         raise ValueError("DUCT2 must be larger than DUCT1")
-    if left <= r:
-        raise ValueError("RDUCT must be larger than R: the yield line would fall through zero otherwise")
-    return k, fy_plus, fy_minus, r, alpha, begin, end, left, float(values["ILOS"] == "LARGEST")
+    if gone is not None and gone <= end:
+        raise ValueError("DUCT3 must be larger than DUCT2")
+    if gone is not None and left <= LEAST:
+        raise ValueError(f"RDUCT must be larger than {LEAST:g}, which is left at DUCT3")
+    if gone is None and form in (_EACH_SUDDEN, _LARGEST_SUDDEN):
+        raise ValueError("a SUDDEN loss needs DUCT3, where it happens")
+    if (by_cycle is None) is (form >= _COUNTING):
+        raise ValueError("RCYC goes with the forms of ILOS that end in RCYC or SUDDEN, and these need it")
+    return begin, end, left, float(form), gone or 0.0, (by_cycle or 0.0) / 100.0
 
 
 def yield_force(p: Numbers, s: float) -> float:
@@ -109,30 +183,82 @@ def reached(m: Numbers, s: float) -> float:
     return m[0] if s > 0.0 else m[1]
 
 
-def share(p: Numbers, x: float) -> float:
-    """Share of the yield force that is left at ductility `x`."""
-    begin, end, left = p[5:8]
+def curve(p: Numbers, x: float) -> float:
+    """Share of the yield force that is left at ductility, or after a number of cycles, `x`."""
+    begin, end, left, gone = p[5], p[6], p[7], p[GONE]
+    if gone > 0.0 and x >= gone:
+        return LEAST
     if x >= end:
-        return left
+        if gone == 0.0 or p[FORM] == _EACH_SUDDEN or p[FORM] == _LARGEST_SUDDEN:
+            return left
+        return left - (left - LEAST) * (x - end) / (gone - end)
     if x <= begin:
         return 1.0
     return 1.0 - (1.0 - left) * (x - begin) / (end - begin)
 
 
+def share(p: Numbers, x: float) -> float:
+    """Share of the yield force that ductility `x` has left."""
+    return 1.0 if p[FORM] == _CYCLES else curve(p, x)
+
+
+def is_largest(p: Numbers) -> bool:
+    """Whether the larger ductility of both sides counts."""
+    return bool(p[FORM] == _LARGEST or p[FORM] >= _LARGEST_RCYC)
+
+
 def worst(p: Numbers, m: Numbers, s: float) -> float:
     """Ductility that has driven the loss of a side so far."""
-    return max(m[0], m[1]) if p[8] != 0.0 else reached(m, s)
+    return max(m[0], m[1]) if is_largest(p) else reached(m, s)
+
+
+def cycles(m: Numbers, s: float) -> float:
+    """Inelastic cycles of a side: those of its yields that one of the other side followed."""
+    changes = abs(m[CHANGES]) - (s * m[CHANGES] > 0.0)
+    return float(changes // 2.0)
+
+
+def factor(p: Numbers, m: Numbers, s: float) -> float:
+    """Share of the yield force of a side that cycles have left."""
+    if p[FORM] == _CYCLES:
+        return curve(p, cycles(m, s))
+    if p[FORM] < _COUNTING:
+        return 1.0
+    return max(1.0 - p[BY_CYCLE] * cycles(m, s), LEAST)
+
+
+def piece(p: Numbers, mu: float, x: float) -> tuple[float, float, float]:
+    """Line of the share on from ductility `x`, if `mu` has driven the loss: slope, value at zero, and the
+    ductility where it ends (0: it does not).
+    """
+    begin, end, left, gone = p[5], p[6], p[7], p[GONE]
+    driven = max(mu, begin)
+    if p[FORM] == 0.0 or p[FORM] == _CYCLES:
+        return 0.0, 1.0, 0.0
+    if gone > 0.0 and max(x, driven) >= gone:
+        return 0.0, LEAST, 0.0
+    sudden = p[FORM] == _EACH_SUDDEN or p[FORM] == _LARGEST_SUDDEN
+    if max(x, driven) >= end and (gone == 0.0 or sudden):
+        return 0.0, left, gone
+    if x < driven:
+        return 0.0, curve(p, driven), driven
+    if x < end:
+        slope = -(1.0 - left) / (end - begin)
+        return slope, 1.0 - slope * begin, end
+    slope = -(left - LEAST) / (gone - end)
+    return slope, left - slope * end, gone
 
 
 def backbone(p: Numbers, m: Numbers, s: float, x: float) -> float:
     """Force of a side's backbone at a ductility `x` that it has reached, positive."""
-    return yield_force(p, s) * (share(p, worst(p, m, s)) + p[3] * (x - 1.0))
+    r, left = p[3], factor(p, m, s) * share(p, worst(p, m, s))
+    return yield_force(p, s) * ((1.0 - r) * left + r * x)
 
 
 def unloading(p: Numbers, x: float) -> float:
     """Stiffness of unloading after ductility `x`."""
     k, r, alpha = p[0], p[3], p[4]
-    stiffness: float = k * max(x**-alpha, (share(p, x) + r * (x - 1.0)) / x)
+    stiffness: float = k * max(x**-alpha, (1.0 - r) * share(p, x) / x + r)
     return stiffness
 
 
@@ -141,11 +267,16 @@ def grown(m: Numbers, s: float, x: float) -> tuple[float, float]:
     return (max(m[0], x), m[1]) if s > 0.0 else (m[0], max(m[1], x))
 
 
+def changed(m: Numbers, s: float) -> float:
+    """Changes of the yielding side when side `s` yields."""
+    return m[CHANGES] if s * m[CHANGES] > 0.0 else s * (abs(m[CHANGES]) + 1.0)
+
+
 def enter(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
     """State on the backbone of side `s`, met at ductility `x`."""
     plus, minus = grown(m, s, x)
-    m = (plus, minus, 0.0, 0.0)
-    falls = p[5] <= x < p[6] and worst(p, m, s) <= x
+    m = (plus, minus, 0.0, 0.0, changed(m, s))
+    falls = piece(p, worst(p, m, s), x)[0] < 0.0
     return pair(WEAKENING if falls else YIELDING, s), m
 
 
@@ -153,14 +284,11 @@ def yield_line(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float]:
     """Slope and force at zero of the present line of the backbone, mirrored to the positive side, and the
     ductility where it ends (0: it does not).
     """
-    k, r, begin, end, left = p[0], p[3], p[5], p[6], p[7]
-    s = side(at)
-    fy, mu = yield_force(p, s), worst(p, m, s)
-    if at == pair(WEAKENING, s):
-        fall = (1.0 - left) / (end - begin)
-        return (r - fall) * k, fy * (1.0 + fall * begin - r), end
-    until = max(mu, begin)
-    return r * k, fy * (share(p, mu) - r), until if until < end else 0.0
+    k, r, s = p[0], p[3], side(at)
+    mu = worst(p, m, s)
+    slope, value, end = piece(p, mu, mu if at == pair(WEAKENING, s) else BEFORE)
+    left = (1.0 - r) * factor(p, m, s)
+    return (r + left * slope) * k, yield_force(p, s) * left * value, end
 
 
 def yield_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -174,8 +302,7 @@ def yield_branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def next_branch(p: Numbers, at: int, m: Numbers) -> tuple[int, Numbers]:
     """State after the end of a line of the backbone."""
-    s = side(at)
-    return (pair(WEAKENING, s), m) if at == pair(YIELDING, s) else enter(p, m, s, p[6])
+    return enter(p, m, side(at), yield_line(p, at, m)[2])
 
 
 def turn(p: Numbers, at: int, m: Numbers, d: float) -> Numbers:
@@ -184,17 +311,17 @@ def turn(p: Numbers, at: int, m: Numbers, d: float) -> Numbers:
     slope, f0, _ = yield_line(p, at, m)
     x = s * d * p[0] / yield_force(p, s)
     plus, minus = grown(m, s, x)
-    return (plus, minus, d, slope * d + s * f0)
+    return (plus, minus, d, slope * d + s * f0, m[CHANGES])
 
 
 def meets(p: Numbers, m: Numbers, s: float, slope: float, d: float, f: float) -> float:
     """Ductility where the line of that slope through (d, f) meets the backbone of side `s`."""
-    r, begin, end, left = p[3], p[5], p[6], p[7]
-    fy, mu, steep = yield_force(p, s), worst(p, m, s), slope / p[0]
-    start = s * (slope * d - f) / fy
-    x = (share(p, mu) - r + start) / (steep - r)
-    if x <= max(mu, begin) or mu >= end:
-        return x
-    fall = (1.0 - left) / (end - begin)
-    x = (1.0 + fall * begin - r + start) / (steep - r + fall)
-    return x if x <= end else (left - r + start) / (steep - r)
+    r, fy, mu = p[3], yield_force(p, s), worst(p, m, s)
+    left, start = (1.0 - r) * factor(p, m, s), s * (slope * d - f) / fy
+    x = BEFORE
+    while True:
+        fall, value, end = piece(p, mu, x)
+        meeting = max(x, (left * value + start) / (slope / p[0] - r - left * fall))
+        if end == 0.0 or meeting <= end:
+            return meeting
+        x = end

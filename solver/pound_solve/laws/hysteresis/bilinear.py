@@ -6,6 +6,8 @@ a spring :math:`r k` beside an elastic, perfectly plastic spring :math:`(1-r) k`
 
 .. math:: f = r k d + (1-r) k (d - d_p), \qquad (1-r) F_y^- \le (1-r) k (d - d_p) \le (1-r) F_y^+
 
+With a loss of strength (ILOS) it is the rule of `degrading_bilinear` with ALFA=0.
+
 Internal variables: the plastic deformation :math:`d_p`.
 
 References
@@ -29,6 +31,8 @@ from pound_solve.laws.automaton import (
     Rule,
     linear,
 )
+from pound_solve.laws.hysteresis import degrading_bilinear
+from pound_solve.laws.hysteresis.backbone import LOSS, loses_strength
 
 ELASTIC, YIELDING_PLUS, YIELDING_MINUS = 0, 1, 2
 
@@ -73,6 +77,8 @@ RULE = Rule(
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
     """Rule from a card's values, a stiffness and the two yield forces."""
+    if loses_strength(values):
+        return degrading_bilinear.build(values, k, fy_plus, fy_minus)
     return Law(RULE, (k, fy_plus, fy_minus, values["R"]))
 
 
@@ -89,6 +95,7 @@ SPEC = Spec(
             below=1.0,
             doc="post-yield stiffness as a share of the initial",
         ),
+        *LOSS,
     ),
     code=2,
     reference="Iwan 1966; Ruaumoko rule 2",

@@ -2,12 +2,12 @@ r"""Degrading bilinear: kinematic hardening whose elastic stiffness falls with t
 
 The yield lines are those of `backbone`, extended to the other side:
 
-.. math:: f \le F_y^+ \varphi + r k (d - d_y^+), \qquad f \ge F_y^- \varphi + r k (d - d_y^-)
+.. math:: f \le (1 - r)\,\gamma\varphi F_y^+ + r k d, \qquad f \ge (1 - r)\,\gamma\varphi F_y^- + r k d
 
 Between them the spring moves with :math:`k_u` of `backbone`, for the largest ductility of either side,
 along the line through the last reversal.  With ALFA=0 and no loss of strength it is BILINEAR.
 
-Internal variables: the largest ductilities; the point of the last reversal.
+Internal variables: those of `backbone`; the point is that of the last reversal.
 
 References
 ----------
@@ -35,6 +35,8 @@ from pound_solve.laws.hysteresis.backbone import (
     ALFA,
     ELASTIC,
     LOSS,
+    PARAMETERS,
+    VARIABLES,
     R,
     enter,
     meets,
@@ -50,7 +52,7 @@ from pound_solve.laws.mirror import side
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, (1.0, 1.0, 0.0, 0.0)
+    return ELASTIC, (1.0, 1.0, 0.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -89,8 +91,8 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
-    parameters=9,
-    variables=4,
+    parameters=PARAMETERS,
+    variables=VARIABLES,
 )
 
 

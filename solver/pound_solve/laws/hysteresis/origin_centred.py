@@ -5,7 +5,7 @@ r"""Origin-centred: below its peak each side is elastic along the line through t
 with the largest deformation :math:`d_m` of that side and its force :math:`F_m` on the `backbone`.  Energy
 is lost only while a peak grows.
 
-Internal variables: the largest ductilities.
+Internal variables: those of `backbone`.
 
 References
 ----------
@@ -30,6 +30,8 @@ from pound_solve.laws.automaton import (
 from pound_solve.laws.hysteresis.backbone import (
     ELASTIC,
     LOSS,
+    PARAMETERS,
+    VARIABLES,
     R,
     backbone,
     enter,
@@ -47,7 +49,7 @@ SECANT = 5
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, (1.0, 1.0, 0.0, 0.0)
+    return ELASTIC, (1.0, 1.0, 0.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -87,8 +89,8 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
-    parameters=9,
-    variables=4,
+    parameters=PARAMETERS,
+    variables=VARIABLES,
 )
 
 

@@ -13,7 +13,7 @@ once more before the force is zero, it returns along the same line and goes on t
 A reloading line is never steeper than :math:`k_u` (ours; for large :math:`\beta` the target may lie steeply
 above, or behind): it then has the slope :math:`k_u` up to the backbone.
 
-Internal variables: the largest ductilities; the point of the last reversal, or of zero force.
+Internal variables: those of `backbone`; the point is that of the last reversal, or of zero force.
 """
 
 from __future__ import annotations
@@ -27,7 +27,10 @@ from pound_solve.laws.automaton import (
     linear,
 )
 from pound_solve.laws.hysteresis.backbone import (
+    CHANGES,
     ELASTIC,
+    PARAMETERS,
+    VARIABLES,
     backbone,
     enter,
     meets,
@@ -43,12 +46,12 @@ from pound_solve.laws.mirror import inward, outward, pair, side, turns_inward
 UNLOADING, RELOADING = 5, 7
 
 # numbers of a law, after those of the backbone: beta; whether peaks count on both sides
-BETA, MIRRORED = 9, 10
+BETA, MIRRORED = PARAMETERS, PARAMETERS + 1
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Virgin: elastic."""
-    return ELASTIC, (1.0, 1.0, 0.0, 0.0)
+    return ELASTIC, (1.0, 1.0, 0.0, 0.0, 0.0)
 
 
 def aim(p: Numbers, m: Numbers, s: float) -> tuple[float, float]:
@@ -87,17 +90,18 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         plus, minus, d, f = turn(p, at, m, d)[:4]
         if p[MIRRORED] != 0.0:
             plus = minus = max(plus, minus)
-        return pair(UNLOADING, s), (plus, minus, d, f)
+        return pair(UNLOADING, s), (plus, minus, d, f, m[CHANGES])
     plus, minus, d0, f0 = m[:4]
     if at < RELOADING:
         if event == 1:
-            return pair(RELOADING, -s), (plus, minus, d0 - f0 / unloading(p, reached(m, s)), 0.0)
+            d = d0 - f0 / unloading(p, reached(m, s))
+            return pair(RELOADING, -s), (plus, minus, d, 0.0, m[CHANGES])
         # a reversal on the backbone, too: the line from there ends where it begins
         return pair(RELOADING, s), m
     k, end = aim(p, m, s)
     if event == 1:
         return enter(p, m, s, end)
-    return pair(UNLOADING, s), (plus, minus, d, f0 + k * (d - d0))
+    return pair(UNLOADING, s), (plus, minus, d, f0 + k * (d - d0), m[CHANGES])
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
@@ -119,6 +123,6 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
-    parameters=11,
-    variables=4,
+    parameters=PARAMETERS + 2,
+    variables=VARIABLES,
 )

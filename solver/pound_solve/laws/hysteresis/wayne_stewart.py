@@ -87,6 +87,11 @@ def unloading(p: Numbers) -> float:
     return p[13] * p[0]
 
 
+def steepest(p: Numbers) -> float:
+    """Stiffness of the steepest line."""
+    return max(p[0], unloading(p))
+
+
 def reloading(p: Numbers, s: float, m: Numbers) -> tuple[float, float, float]:
     """Target deformation and the line towards it: slope and force at zero deformation."""
     k, beta, alpha = p[0], p[10], p[11]
@@ -228,6 +233,7 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
+    steepest=steepest,
     parameters=14,
     variables=7,
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 from pound_deck.model import Card, Element, Node
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import Branch, Law, State
+from pound_solve.laws.condensed import without
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import CorotationalMember
 from pound_solve.structure.dofs import Dof
@@ -81,6 +82,9 @@ class LawSpring:
         Dashpot as a multiple of the secant stiffness [T]; not zero with a `SecantLaw` only.
     yields : tuple of float or None
         Deformations at first yield, positive and negative, for ductilities.
+    beside : float
+        Flexibility of the elastic part that the beam beside it has [L/F] or [1/(F L)]: `yields` count it,
+        the deformation does not.
     role : Role
     normal_component : str
         Of friction: the component of the same element whose force presses the faces together.
@@ -96,12 +100,22 @@ class LawSpring:
     law: Law
     k0: float = 0.0
     yields: tuple[float, float] | None = None
+    beside: float = 0.0
     facts: Mapping[str, Any] = field(default_factory=dict)
     unit: str = "F"
     beta: float = 0.0
     secant: float = 0.0
     role: Role = Role.SPRING
     normal_component: str = ""
+
+    @property
+    def whole_stiffness(self) -> float:
+        """Initial stiffness by the deformation that `yields` count [F/L] or [F L]."""
+        return self.k0 / (1.0 + self.beside * self.k0)
+
+    def whole(self, deformation: float, force: float) -> float:
+        """Deformation as `yields` count it, of the one of the law."""
+        return deformation + self.beside * force
 
     def branch(self, state: State) -> Branch:
         """Linear branch of the law, the dashpots of `beta` and `secant` included."""
@@ -281,6 +295,7 @@ def hysteretic(
     rule: Spec,
     k: float,
     strength: tuple[float, float],
+    share: float = 1.0,
 ) -> LawSpring:
     """A component that follows a hysteresis rule.
 
@@ -296,11 +311,13 @@ def hysteretic(
         Initial stiffness [F/L] or [F L].
     strength : tuple of float
         Forces at which it yields, positive and negative.
+    share : float
+        Of its elastic deformation that is its own; the beam beside it has the rest.
 
     Raises
     ------
     ElementError
-        The rule does not take these values.
+        The rule does not take these values, or leaves no deformation to the beam; the item is ``RULE``.
     """
     plus, minus = strength
     try:
@@ -308,8 +325,17 @@ def hysteretic(
     except ValueError as err:
         raise ElementError(str(err), "RULE") from None
     dofs, factors = zip(*((f, float(x)) for f, x in row.items() if x != 0.0))
-    yields = (plus / k, minus / k)
-    return LawSpring(element, component, rule.name, dofs, factors, law, k, yields, unit=unit)
+    spring = LawSpring(
+        element, component, rule.name, dofs, factors, law, k, (plus / k, minus / k), unit=unit
+    )
+    if share == 1.0:
+        return spring
+    try:
+        law = without(law, 1.0 - share)
+    except ValueError as err:
+        most = ",".join(f"{share * length:.4g}" for length in card["LP"])
+        raise ElementError(f"{err}: with it hinges have at most LP={most} here", "RULE") from None
+    return replace(spring, law=law, k0=k / share, beside=(1.0 - share) / k)
 
 
 def axes(angle: float) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -8,7 +8,9 @@ Local axes: x from I to J, y to its left; matrices and interpolation are those o
 
 A member that yields has hinges at the ends of the flexible length.  The beam between them then has
 separate end DOFs, which the hinges connect to the nodes.  The flexibility of hinges with a length is taken
-off the beam, so that the elastic member is the same with and without them.
+off the beam, so that the elastic member is the same with and without them.  If it is more than nine tenths
+of what would leave no beam, only a share of it is taken off, and the hinges do without the rest
+(`laws.condensed`).
 
 References
 ----------
@@ -48,6 +50,7 @@ from pound_solve.structure.elements.beam_matrices import (
     stiffness,
 )
 
+MOST_TAKEN = 0.9  #: share of what would leave no beam that hinges take off it at most
 INSIDE = {2: 3, 5: 4, 0: 5, 3: 6}  #: number of the element's own DOF behind a hinge, by local DOF
 
 
@@ -63,11 +66,14 @@ class Member:
     opening : ndarray, shape (6, n_freedoms)
         Deformation of the hinges by local DOF: stretch (rows 0, 3) and bend (rows 2, 5), positive in
         tension and where the member sags (tension on the right of the line from I to J).
+    share : float
+        Of the flexibility of the hinges that they have themselves; the beam behind them has the rest.
     """
 
     parts: Parts
     dofs: tuple[Dof, ...]
     opening: Array
+    share: float
 
 
 def pair(values: tuple[float, ...]) -> tuple[float, float]:
@@ -90,12 +96,12 @@ def build(context: ElementContext, hinged: tuple[int, ...] = (), taken: Array | 
     hinged : tuple of int
         Local DOFs (0, 3 stretch, 2, 5 bend) that a hinge holds.
     taken : ndarray, shape (6, 6)
-        Flexibility of the hinges, which is taken off the beam [L/F, 1/F, 1/(F L)].
+        Flexibility of the hinges, which is taken off the beam as far as that allows [L/F, 1/F, 1/(F L)].
 
     Raises
     ------
     ElementError
-        No length or, by the hinges, no flexibility is left; the item is ``LP``.
+        No length is left, or a hinge is longer than the member; the item is ``LP``.
     """
     line = _line(context)
     beam = _flexible_part(context.prop, line.length, taken)
@@ -115,7 +121,7 @@ def build(context: ElementContext, hinged: tuple[int, ...] = (), taken: Array | 
     rows, constant = beam.forces @ inner, beam.end_forces(equivalent)
     parts.outputs += _outputs(context, dofs, rows, constant)
     _add_geometry(parts, context, line, beam, dofs, inner, rows, constant)
-    return Member(parts, dofs, opening)
+    return Member(parts, dofs, opening, beam.share)
 
 
 @dataclass(frozen=True)
@@ -168,6 +174,8 @@ class _FlexiblePart:
         With pins and joints, less what the hinges take.
     closed : ndarray, shape (6, 6)
         `shape` with closed hinges.
+    share : float
+        Of the flexibility of the hinges that is taken off the beam.
     """
 
     phi: float
@@ -177,6 +185,7 @@ class _FlexiblePart:
     shape: Array
     flexibility: Array
     closed: Array
+    share: float
 
     def end_forces(self, load: Array) -> Array:
         """Forces on the ends of the beam by loads that are equivalent to `load`, the nodes at rest, shape
@@ -196,18 +205,23 @@ def _flexible_part(p: Card, length: float, taken: Array | None) -> _FlexiblePart
         phi = 12 * ei / (p["G"] * p["AS"] * length**2)
     k, pins = stiffness(ea, ei, length, phi), pinned(p)
     joints = np.diag([0.0, 0.0, pair(p["FJ"])[0], 0.0, 0.0, pair(p["FJ"])[1]])
-    if taken is not None and (times := spare(k, length, ea, joints, taken, pins)) <= 1.0:
-        most = ",".join(f"{times * lp:.4g}" for lp in p["LP"])
-        raise ElementError(
-            f"the hinge lengths leave no beam between them: of the flexible length {length:g} "
-            f"they can have less than LP={most}",
-            "LP",
-        )
-    forces, shape, flexibility = soften(k, pins, joints if taken is None else joints - taken)
+    share, behind = 1.0, joints
+    if taken is not None:
+        _lengths_fit(p, length)
+        share = min(1.0, MOST_TAKEN * spare(k, length, ea, joints, taken, pins))
+        behind = joints - share * taken
+    forces, shape, flexibility = soften(k, pins, behind)
     if ei == 0.0:  # an axial bar stays straight: its loads and mass are shared as on two pins
         _, shape, _ = soften(stiffness(0.0, 1.0, length, 0.0), pins, joints)
     closed = shape if taken is None else soften(k, pins, joints)[1]
-    return _FlexiblePart(phi, k, pins, forces, shape, flexibility, closed)
+    return _FlexiblePart(phi, k, pins, forces, shape, flexibility, closed, share)
+
+
+def _lengths_fit(p: Card, length: float) -> None:
+    """Refuse a hinge that is longer than the member."""
+    longest = max(pair(p["LP"]))
+    if longest > length:
+        raise ElementError(f"a hinge of {longest:g} is longer than the flexible length, {length:g}", "LP")
 
 
 def _kinematics(

@@ -17,7 +17,7 @@ forces are then :math:`(s_i \pm 1) F_i` with :math:`s_i = \alpha + \beta y_i`.
 
 The springs are as stiff as they are strong, and altogether as the length LP of the beam in bending;
 their flexibility is taken off the beam between the hinges, so that the elastic member is exactly that
-of E, A, I.
+of E, A, I.  Of long hinges only a share is, as in `frame`; each spring then does without the rest.
 
 References
 ----------
@@ -178,7 +178,10 @@ def build(context: ElementContext) -> Parts:
             at = dict(zip(member.dofs, row))
             strength = (f * (s + 1.0), f * (s - 1.0))
             member.parts.laws.append(
-                hysteretic(context.element.id, f"hinge {name} {n}", "F", at, p, rule, scale * f, strength)
+                hysteretic(
+                    *(context.element.id, f"hinge {name} {n}", "F", at, p, rule, scale * f, strength),
+                    share=member.share,
+                )
             )
     return member.parts
 

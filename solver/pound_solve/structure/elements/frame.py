@@ -4,8 +4,10 @@ The one-component member: an elastic beam (`beam`) in series with a rotational s
 flexible length, which follows a hysteresis rule.  The hinge has its own stiffness KH (moment over
 rotation), or a length LP over which the section of the beam yields (moment over curvature): then its
 stiffness is :math:`EI/L_p`, and the flexibility :math:`L_p/EI` that it has is taken off the beam, so that
-the elastic member is exactly that of EI.  A slender beam allows :math:`L_p < L/4` at one end or
-:math:`L_p < L/6` at both.
+the elastic member is exactly that of EI.  A slender beam has no more than that of :math:`L_p = L/4` at one
+end or :math:`L_p = L/6` at both.  What longer hinges have beyond nine tenths of that stays with the beam:
+the hinge then opens by the rotation of its length less this elastic part.  A hinge is at most as long as
+the member.
 
 Moments and rotations of hinges are positive where the member sags: tension on the right of the line from
 I to J.  Only the hinges with a strength are built.
@@ -53,10 +55,11 @@ def build(context: ElementContext) -> Parts:
             taken[d, d] = lengths[d] / ei
     member = beam.build(context, tuple(d for d, _, _ in ends), taken)
     for d, end, item in ends:
-        row = dict(zip(member.dofs, member.opening[d]))
+        row, strength = dict(zip(member.dofs, member.opening[d])), signed(p[item], item)
         member.parts.laws.append(
             hysteretic(
-                context.element.id, f"hinge {end}", "F*L", row, p, rule, stiffness[d], signed(p[item], item)
+                *(context.element.id, f"hinge {end}", "F*L", row, p, rule, stiffness[d], strength),
+                share=member.share,
             )
         )
     return member.parts

@@ -1,0 +1,119 @@
+r"""A law whose deformation lacks an elastic part, which the structure beside it has.
+
+Of a law :math:`f = k x + f_0` of the deformation :math:`x` the elastic part :math:`g f` is left out:
+
+.. math:: d = x - g f, \qquad f = \frac{k d + f_0}{1 - g k}, \qquad x = \frac{d + g f_0}{1 - g k}
+
+Every branch stays a line, and every event occurs at the same force; :math:`g k < 1` must hold on all
+branches.  A hinge of the length :math:`L_p` is such a law: its section bends elastically, too, by
+:math:`L_p / EI` for a moment of one, but that the beam behind it does already, if it is as long as the
+member (`structure.elements.frame`).
+
+Parameters are those of the law, then :math:`g`; internal variables are those of the law.
+
+References
+----------
+Giberson MF (1967), The response of nonlinear multi-story structures subjected to earthquake excitation,
+Earthquake Engineering Research Laboratory, California Institute of Technology, Pasadena (springs at the
+ends of an elastic member that have the part of the rotation beyond the elastic one).
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from pound_solve.laws.automaton import Law, Numbers, Rule
+from pound_solve.laws.functions import bound, missing
+from pound_solve.numerics.jit import Function
+
+STEEP = 0.99  #: most of g k: a branch is at most a hundred times as steep by the deformation that is left
+
+# given to every copy of the functions below
+own_branch: Any = missing
+own_transition: Any = missing
+own_recoverable: Any = missing
+place = 0  #: of g among the parameters
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Branch by the deformation that is left."""
+    g = p[place]
+    k, c, f0, a1, b1, c1, a2, b2, c2, a3, b3, c3 = own_branch(p[:place], at, m)
+    s = 1.0 / (1.0 - g * k)
+    shift = s * g * f0
+    first = (s * a1, s * b1, c1 + a1 * shift)
+    second = (s * a2, s * b2, c2 + a2 * shift)
+    third = (s * a3, s * b3, c3 + a3 * shift)
+    return (s * k, c, s * f0, *first, *second, *third)
+
+
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Transition at the whole deformation."""
+    g = p[place]
+    now = own_branch(p[:place], at, m)
+    s = 1.0 / (1.0 - g * now[0])
+    to: tuple[int, Numbers] = own_transition(p[:place], at, m, event, s * (d + g * now[2]), s * v)
+    return to
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Recoverable energy less that of the elastic part."""
+    g = p[place]
+    energy: float = own_recoverable(p[:place], at, m, d + g * f, f) - 0.5 * g * f * f
+    return energy
+
+
+@cache
+def condensed(rule: Rule) -> Rule:
+    """The rule with `g` as its last parameter.
+
+    Raises
+    ------
+    ValueError
+        The branches of the rule are no lines.
+    """
+    if rule.curve is not None:
+        raise ValueError("the branches of this rule are curves")
+    n = rule.parameters
+
+    def start(p: Numbers) -> tuple[int, Numbers]:
+        return rule.start(p[:n])
+
+    def steepest(p: Numbers) -> float:
+        k = rule.steepest(p[:n])
+        return k / (1.0 - p[n] * k)
+
+    own = {
+        "own_branch": rule.branch,
+        "own_transition": rule.transition,
+        "own_recoverable": rule.recoverable,
+    }
+
+    def made(template: Function, function: Function) -> Function:
+        return bound(template, f"{function.__module__}.{function.__qualname__}-{n}", place=n, **own)
+
+    return Rule(
+        rule.branches,
+        start,
+        made(branch, rule.branch),
+        made(transition, rule.transition),
+        made(recoverable, rule.recoverable),
+        steepest=steepest,
+        parameters=n + 1,
+        variables=rule.variables,
+    )
+
+
+def without(law: Law, share: float) -> Law:
+    """The law without a share of its initial elastic deformation.
+
+    Raises
+    ------
+    ValueError
+        Its branches are no lines, or one of them may be so steep that no deformation is left on it.
+    """
+    g = share / law.p[0]
+    if law.rule.curve is None and g * law.rule.steepest(law.p) >= STEEP:
+        raise ValueError("this rule unloads too steeply")
+    return Law(condensed(law.rule), (*law.p, g))

@@ -1,0 +1,233 @@
+r"""Menegotto-Pinto: reinforcing and structural steel with a round knee, Bauschinger effect and hardening.
+
+Each half cycle leaves its reversal :math:`(d_r, f_r)` along the elastic line and comes to the yield line of
+its side; both meet at :math:`(d_0, f_0)`:
+
+.. math:: \frac{f - f_r}{f_0 - f_r} = b\,\xi + \frac{(1 - b)\,\xi}{(1 + \xi^n)^{1/n}}, \qquad
+          \xi = \frac{d - d_r}{d_0 - d_r}, \qquad
+          n = R_0 \left(1 - \frac{c_1 \eta}{c_2 + \eta}\right)
+
+where :math:`\eta` is the distance from :math:`d_0` to the largest deformation of that side so far (at
+first that of yield), over the yield deformation.  The yield line of a side is
+:math:`f = b k d + (1 - b) F_y s`: isotropic hardening moves it outwards by
+
+.. math:: s = 1 + a \left(\frac{d_{max} - d_{min}}{2 a' d_y}\right)^{0.8}
+
+with :math:`(a, a') = (a_1, a_2)` for negative and :math:`(a_3, a_4)` for positive motion, and the largest
+deformations of both sides so far.  The virgin curve has :math:`s = 1, n = R_0`.  A half cycle that begins
+inside another one does not return to its curve, so that after a small unloading the force may be larger
+than without it: a known trait of this model.
+
+Internal variables: the reversal, the point where both lines meet, :math:`n`, and the largest deformations
+of both sides.
+
+References
+----------
+Menegotto M, Pinto PE (1973), Method of analysis for cyclically loaded R.C. plane frames, IABSE Symposium,
+Lisbon (the curve and its exponent); Filippou FC, Popov EP, Bertero VV (1983), Effects of bond deterioration
+on hysteretic behavior of reinforced concrete joints, EERC 83-19, Berkeley (isotropic hardening), in the
+form of Steel02 of OpenSees.  Ours: unequal yield forces, each with its own yield deformation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import (
+    REVERSAL_DOWN,
+    REVERSAL_UP,
+    BranchKind,
+    Law,
+    Numbers,
+    Rule,
+    linear,
+    rate_independent,
+)
+from pound_solve.laws.hysteresis.backbone import R
+from pound_solve.laws.mirror import need_both_sides
+
+LOADING, UNLOADING = 0, 1
+LEAST_R = 1.2  #: least exponent: at 1 the integral of the curve has another form
+# internal variables: reversal, meeting point, exponent, largest and smallest deformation
+REVERSAL, MEETING, EXPONENT, HIGH, LOW = 0, 2, 4, 5, 6
+
+
+def knee(n: float, x: float) -> tuple[float, float]:
+    """Value and slope of x (1 + x^n)^(-1/n), for x up to zero of x."""
+    if x <= 0.0:
+        return x, 1.0
+    if x <= 1.0:
+        slope = (1.0 + x**n) ** (-1.0 / n)
+        return x * slope, slope / (1.0 + x**n)
+    small = x**-n
+    value = (1.0 + small) ** (-1.0 / n)
+    return value, value * small / (x * (1.0 + small))
+
+
+def ratios(a: float, c: float, t: float) -> float:
+    """Sum of (a)_j / (c)_j t^j, t up to 1/2."""
+    j, term, total = 0.0, 1.0, 1.0
+    while abs(term) > 1e-17:
+        term *= (a + j) / (c + j) * t
+        total += term
+        j += 1.0
+    return total
+
+
+def beyond(n: float, x: float) -> float:
+    """An integral of the knee from 1 on."""
+    small = x**-n
+    inverse: float = (1.0 + small) ** (-1.0 / n)
+    return x * inverse * ratios(1.0 / n, 1.0 - 1.0 / n, small / (1.0 + small))
+
+
+def area(n: float, x: float) -> float:
+    """Integral of the knee from 0 to `x`, by hypergeometric series after Pfaff's transformation."""
+    if x <= 0.0:
+        return 0.5 * x * x
+    near = min(x, 1.0)
+    q = near**n
+    inner: float = (
+        0.5 * near * near * (1.0 + q) ** (-1.0 / n) * ratios(1.0 / n, 1.0 + 2.0 / n, q / (1.0 + q))
+    )
+    return inner if x <= 1.0 else inner + beyond(n, x) - beyond(n, 1.0)
+
+
+def begin(p: Numbers, s: float, high: float, low: float, d: float, f: float) -> Numbers:
+    """Internal variables of a motion in direction `s` from a reversal at (d, f)."""
+    k, b = p[0], p[3]
+    fy, peak = (p[1], high) if s > 0.0 else (-p[2], -low)
+    a, per = (p[9], p[10]) if s > 0.0 else (p[7], p[8])
+    dy = fy / k
+    shift = 1.0
+    if d != 0.0 or f != 0.0:
+        shift += a * ((high - low) / (2.0 * per * dy)) ** 0.8
+    meets = s * ((1.0 - b) * fy * shift - s * (f - k * d)) / ((1.0 - b) * k)
+    eta = abs(s * peak - meets) / dy
+    return (d, f, meets, f + k * (meets - d), p[4] * (1.0 - p[5] * eta / (p[6] + eta)), high, low)
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin."""
+    return LOADING, begin(p, 1.0, p[1] / p[0], p[2] / p[0], 0.0, 0.0)
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Loading until the motion reverses, and unloading until it reverses again."""
+    return linear(p[0], 0.0, REVERSAL_DOWN if at == LOADING else REVERSAL_UP)
+
+
+def curve(
+    p: Numbers, at: int, m: Numbers, d0: float, d: float, v: float
+) -> tuple[float, float, float, float]:
+    """Force on the present half cycle."""
+    k, b, n = p[0], p[3], m[EXPONENT]
+    span = m[MEETING] - m[REVERSAL]
+    x, x0 = (d - m[REVERSAL]) / span, (d0 - m[REVERSAL]) / span
+    y, slope = knee(n, x)
+    force = m[REVERSAL + 1] + k * span * (b * x + (1.0 - b) * y)
+    done = 0.5 * b * (x - x0) * (x + x0) + (1.0 - b) * (area(n, x) - area(n, x0))
+    work = span * (m[REVERSAL + 1] * (x - x0) + k * span * done)
+    return force, k * (b + (1.0 - b) * slope), 0.0, work
+
+
+def reversed_at(p: Numbers, at: int, m: Numbers, d: float, f: float) -> Numbers:
+    """Internal variables after a reversal."""
+    s = -1.0 if at == LOADING else 1.0
+    return begin(p, s, max(m[HIGH], d), min(m[LOW], d), d, f)
+
+
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Reverse."""
+    f = curve(p, at, m, d, d, 0.0)[0]
+    return (UNLOADING if at == LOADING else LOADING), reversed_at(p, at, m, d, f)
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy recovered down to zero force, the place of which Newton's iteration finds."""
+    if f == 0.0:
+        return 0.0
+    if (f > 0.0) == (at == LOADING):
+        m = reversed_at(p, at, m, d, f)
+    to = d
+    for _ in range(100):
+        now, slope, _, _ = curve(p, at, m, d, to, 0.0)
+        to -= now / slope
+        if abs(now) < 1e-14 * abs(f):
+            break
+    return -curve(p, at, m, d, to, 0.0)[3]
+
+
+RULE = Rule(
+    BranchKind.ELASTIC.named("loading", "unloading"),
+    start,
+    branch,
+    transition,
+    recoverable,
+    curve,
+    rate_independent,
+    parameters=11,
+    variables=7,
+)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two yield forces.
+
+    Raises
+    ------
+    ValueError
+        No yield force on a side, R outside its limits, or a knee that comes to be too round.
+    """
+    need_both_sides(fy_plus, fy_minus)
+    sharp, c1 = values["R0"], values["CR1"]
+    if not 0.0 <= values["R"] < 1.0:
+        raise ValueError("R of this rule lies from 0 to below 1")
+    if sharp * (1.0 - c1) < LEAST_R:
+        raise ValueError(f"R0 (1 - CR1), the roundest knee, must not be below {LEAST_R:g}")
+    hardening = (values["A1"], values["A2"], values["A3"], values["A4"])
+    return Law(RULE, (k, fy_plus, fy_minus, values["R"], sharp, c1, values["CR2"], *hardening))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "MENEGOTTO_PINTO",
+    "steel: round knee, Bauschinger effect, isotropic hardening",
+    (
+        R,
+        Field("R0", Kind.REAL, "-", default=20.0, lo=2.0, hi=100.0, doc="exponent of the virgin curve"),
+        Field(
+            "CR1",
+            Kind.REAL,
+            "-",
+            default=0.925,
+            lo=0.0,
+            below=1.0,
+            doc="share of R0 that is lost by large plastic excursions",
+        ),
+        Field(
+            "CR2",
+            Kind.REAL,
+            "-",
+            default=0.15,
+            above=0.0,
+            doc="plastic excursion, in yield deformations, that loses half of that",
+        ),
+        Field("A1", Kind.REAL, "-", default=0.0, lo=0.0, doc="isotropic hardening of the negative side"),
+        Field(
+            "A2",
+            Kind.REAL,
+            "-",
+            default=1.0,
+            above=0.0,
+            doc="half range of deformation, in yield deformations, that makes A1 of it",
+        ),
+        Field("A3", Kind.REAL, "-", default=0.0, lo=0.0, doc="isotropic hardening of the positive side"),
+        Field("A4", Kind.REAL, "-", default=1.0, above=0.0, doc="half range that makes A3 of it"),
+    ),
+    reference="Menegotto & Pinto 1973; Filippou, Popov & Bertero 1983",
+    sample="R=0.02 R0=20 CR1=0.925 CR2=0.15",
+    impl=build,
+)
