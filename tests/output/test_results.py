@@ -80,7 +80,7 @@ def test_labels_and_units_of_histories(done: Results) -> None:
 
 
 def test_missing_names_say_what_there_is(done: Results) -> None:
-    with pytest.raises(KeyError, match=r"no table 'mode'.*modes, mode_shapes"):
+    with pytest.raises(KeyError, match=r"no table 'mode'.*modes, mode_buildings, mode_shapes"):
         done.table("mode")
     with pytest.raises(KeyError, match=r"no history 'node/x'.*node/u"):
         done.history("node/x")
