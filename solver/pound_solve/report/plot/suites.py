@@ -117,7 +117,7 @@ def fragilities(found: Sequence[Fragilities], level: str, path: Path) -> None:
         look = style.stroke(k)
         axes.plot(own.levels, own.probability, **look, label=own.title)
         axes.plot(*own.observed, "o", color=look["color"], markersize=3)
-        axes.plot(own.interval, (0.5, 0.5), color=look["color"], linewidth=1.0, marker="|")
+        axes.plot(own.interval, (0.5, 0.5), "|-", color=look["color"], linewidth=1.0)
     axes.set_ylim(0.0, 1.0)
     axes.set_xlim(left=0.0)
     style.legend(axes)
