@@ -11,7 +11,8 @@ from scipy.stats import binom
 from pound_solve.cli.main import main
 from pound_solve.report.plot import suites
 from pound_solve.results.sweep_file import Sweep, Variable
-from pound_solve.sweep.curves import CurveError
+from pound_solve.sweep import fragilities
+from pound_solve.sweep.curves import Asked, CurveError
 from pound_solve.sweep.separations import Group, Options, drawn, groups, needs, probabilities
 from pound_solve.theory.fragility import from_capacities
 from pound_solve.theory.separation import RULES, Peaks, correlation, share
@@ -119,6 +120,14 @@ def test_motion_is_linear_in_the_level(free):
     np.testing.assert_allclose(half.needed * 2.0, whole.needed, rtol=1e-9)
     np.testing.assert_allclose(np.array(half.rules) * 2.0, whole.rules, rtol=1e-9)
     assert half.contacts(0.4 * whole.needed.min()) == whole.contacts(0.8 * whole.needed.min())
+
+
+def test_the_gap_that_is_needed_is_a_demand_like_any_other(free):
+    """Fragility of contact at one gap: the motion is linear, so that each capacity is gap over need."""
+    gap = 0.9 * float(next(g for g in groups(free[0], Options()) if g.level == 1.0).needed.min())
+    (found,) = fragilities.fit(free[0], Asked("needed_gap"), [gap], "capacities")
+    whole = next(g for g in groups(free[0], Options()) if g.level == 1.0)
+    assert found.fragility.median == pytest.approx(np.exp(np.log(gap / whole.needed).mean()), rel=1e-6)
 
 
 def test_runs_that_meet_tell_up_to_their_gap(free, tmp_path):

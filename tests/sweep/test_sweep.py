@@ -258,6 +258,32 @@ def test_a_run_whose_process_dies_is_found_among_others_and_told(tmp_path):
     assert died == [[4, 5], [5], [5]]
 
 
+class DiesLate(Here):
+    """Its process dies when a run is noted and before it is told."""
+
+    def submit(self, function, /, *args):
+        future = super().submit(function, *args)
+        if self.runs < 3:
+            return future
+        broken = Future()
+        broken.set_exception(BrokenProcessPool())
+        return broken
+
+
+def test_a_run_that_was_noted_before_its_process_died_is_not_run_again(tmp_path):
+    out, had = session(folder(tmp_path)), []
+
+    def begin():
+        had.append(DiesLate() if not had else Here())
+        return had[-1]
+
+    out.engine = Engine(begin, 1, 1, 1, True)
+    done = out.carry_out(out.agenda.ahead, lambda state: None)
+    assert [e.status for e in done] == ["done"] * 16 and [own.runs for own in had] == [3, 13]
+    lines = [line for f in out.journal.folder.glob("*.jsonl") for line in f.read_text().splitlines()]
+    assert len(lines) == 16
+
+
 class Numbered(Here):
     """Tells which executor had which runs."""
 

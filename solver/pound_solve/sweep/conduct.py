@@ -95,6 +95,7 @@ class Conductor:
         self._suspects = deque[Run]()
         self._deaths = dict[str, int]()
         self._begun = False  # whether a run has ended, and kernels are compiled
+        self._since = time.time()
 
     def __enter__(self) -> Self:
         return self
@@ -203,6 +204,10 @@ class Conductor:
                 self._waiting.setdefault(run.case, deque()).appendleft(run)
             return state.ending
         except BrokenExecutor:
+            noted = self.journal.entries().get(run.identity) if self.engine.notes else None
+            if noted is not None and noted.at >= self._since:  # its process died when it had ended
+                self._count(noted, state)
+                return False
             deaths = self._deaths.get(run.identity, 0) + lone
             self._deaths[run.identity] = deaths
             if state.ending:
@@ -219,14 +224,16 @@ class Conductor:
             return True
         if not self.engine.notes:
             self.journal.add(entry)
-        self._begun = True
-        state.done += 1
-        state.failed += entry.status == FAILED
+        self._count(entry, state)
         return True
 
     def _note(self, entry: Entry, state: State) -> None:
         """Note a failure that no process could note."""
         self.journal.add(entry)
+        self._count(entry, state)
+
+    def _count(self, entry: Entry, state: State) -> None:
+        """Count a run that has ended."""
         self._begun = True
         state.done += 1
-        state.failed += 1
+        state.failed += entry.status == FAILED

@@ -39,6 +39,7 @@ class Session:
         self.entries = self.journal.entries()
         self.runs = plan.piece(study.runs, *piece)
         self.agenda = plan.Agenda.of(self.runs, self.entries, retry)
+        self._before = set(self.entries) - {r.identity for r in self.agenda.ahead}
 
     def plan(self) -> Iterator[str]:
         """What is to be run, in words."""
@@ -113,7 +114,7 @@ class Session:
         counts = [f"{ends.count(end)} {end}" for end in ENDS if end in ends]
         if "" in ends:
             counts.append(f"{ends.count('')} not run")
-        before = len(self.runs) - len(self.agenda.ahead)
+        before = sum(r.identity in self._before for r in self.runs)
         yield f"{len(ends)} runs: {', '.join(counts)}" + (f"; {before} of them before" if before else "")
         others = [r for r, end in zip(self.runs, ends) if end not in (DONE, "")]
         yield from plan.reasons(others, self.entries)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import os
 import textwrap
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -159,14 +160,14 @@ def _shown(sweep: Sweep) -> Iterator[tuple[str, Array]]:
 
 
 def _groups(sweep: Sweep) -> dict[str, Index]:
-    """Runs by case and level, or by case, or all: as finely as several runs are in each."""
+    """Runs by case and level, or by case, or all: as finely as each group has several runs."""
     named = cases(sweep)
     levels = [""] * len(named)
     for name in _levels(sweep):
         levels = [f"{name} {x:.6g}" for x in sweep[name].tolist()]
     for keys in ([", ".join(filter(None, key)) for key in zip(named, levels)], named):
-        count = len(set(keys))
-        if count <= GROUPS and 2 * count <= len(keys):
+        sizes = Counter(keys)
+        if len(sizes) <= GROUPS and min(sizes.values(), default=0) > 1:
             return {key or ALL: np.flatnonzero(np.array(keys) == key) for key in dict.fromkeys(keys)}
     return {ALL: np.arange(len(named))}
 

@@ -97,14 +97,13 @@ def incremental(cases: Sequence[Curves], demand: str, level: str, path: Path) ->
     for n, (axes, case) in enumerate(zip(all_axes, cases)):
         style.grid(axes, demand, "" if n else level)
         for k, (x, y) in enumerate(case.records):
-            axes.plot(
-                x, y, color="0.65", linewidth=0.8, marker=".", markersize=3, label="" if k else "records"
-            )
+            axes.plot(x, y, ".-", color="0.65", linewidth=0.8, markersize=3, label="" if k else "records")
         for k, (name, values) in enumerate(case.fractiles):
             axes.plot(values, case.levels, **style.stroke(k), label=name)
-        axes.set_xlim(left=0.0)
-        axes.set_ylim(bottom=0.0)
         axes.set_title(case.title)
+    for axes in all_axes:  # alike, so that cases compare
+        axes.set_xlim(0.0, max(own.get_xlim()[1] for own in all_axes))
+        axes.set_ylim(0.0, max(own.get_ylim()[1] for own in all_axes))
     style.legend(all_axes[len(cases) - 1])
     style.save(figure, path)
 
@@ -118,7 +117,7 @@ def fragilities(found: Sequence[Fragilities], level: str, path: Path) -> None:
         look = style.stroke(k)
         axes.plot(own.levels, own.probability, **look, label=own.title)
         axes.plot(*own.observed, "o", color=look["color"], markersize=3)
-        axes.plot(own.interval, (0.5, 0.5), color=look["color"], linewidth=1.0, marker="|")
+        axes.plot(own.interval, (0.5, 0.5), "|-", color=look["color"], linewidth=1.0)
     axes.set_ylim(0.0, 1.0)
     axes.set_xlim(left=0.0)
     style.legend(axes)
