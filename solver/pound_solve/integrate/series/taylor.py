@@ -219,6 +219,7 @@ class Taylor(KernelEngine):
             present = Present(self, self.series)
             release(present, int(self.state.fault))
             present.hand_back(np.zeros(0, np.int64))
+            self.state.fault = -1  # it has fallen: what is left of a jump is rounding
             return
         self._at_instant(self._strike)
         self.state.events += 1
