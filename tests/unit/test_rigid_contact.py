@@ -473,14 +473,15 @@ def test_other_methods_refuse_in_words() -> None:
 
 def test_no_method_is_advised_where_none_takes_it() -> None:
     """A rigid contact beside a law that has no power series."""
-    damper = "\n D DASHPOT CX=1 LAW=FLUID ALPHA=0.5"
-    curved = WALL.replace("\nPROPS", "\n 3 D 2\nPROPS" + damper)
+    light = "\n L SPRING KX=10\n D CONTACT GAP=9 ANGLE=0 LAW=HERTZ K=1"
+    curved = WALL.replace("\nPROPS", "\n 3 L 2 3\n 4 D 3\nPROPS" + light)
+    curved = curved.replace("\nELEMENTS", "\n 3 1 0 FIX=YR\nELEMENTS")
     for method in catalog().family("method"):
         dt = 0.001 if catalog().family("method")[method].field("DT") else None
         r = run_text(curved, {"gap": 0.5}, method, dt)
         assert r.status == "stopped" and r.message.startswith(
             "A505 at t = 0 s: no method takes a rigid contact, which STEREOMECHANICS of element 2 is, "
-            "where the law FLUID of element 3 is curved and stands beside rigid contacts: give"
+            "where the law HERTZ of element 4 is curved and meets a node without mass: give"
         ), r.message
 
 

@@ -6,10 +6,10 @@ the whole run is repeated with a shorter step until the peaks no longer change, 
 bring no improvement (a force that rings at a node without mass): see :mod:`.convergence`.
 
 The cost of TAYLOR is known in advance; that of EXACT depends on the events.  TAYLOR is used where it
-costs little, or no more than the NEWMARK runs to come.  Where that is not so from the start, and before
-each run of NEWMARK, EXACT is tried with a share of what the others cost (:mod:`.trial`).  Costs are
-counted from windows, decompositions, steps and unknowns (:mod:`.costs`), not measured, so that a deck is
-always solved in the same way.
+costs little, or no more than the NEWMARK runs that were made and the one to come.  Where that is not so
+from the start, and before each run of NEWMARK, EXACT is tried with a share of what the others cost
+(:mod:`.trial`).  Costs are counted from windows, decompositions, steps and unknowns (:mod:`.costs`), not
+measured, so that a deck is always solved in the same way.
 """
 
 from __future__ import annotations
@@ -151,7 +151,8 @@ def to_tolerance(
     """
     steps = StepRefinement(system, start, monitored, recorder, options)
     while True:
-        if series <= max(SERIES_FIRST, steps.cost_ahead()):
+        # so both cost no more than twice what series alone would
+        if series <= max(SERIES_FIRST, steps.spent + steps.cost_ahead()):
             if (outcome := by_few_series(system, start, monitored, recorder)) is not None:
                 return outcome
             series = np.inf

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Protocol, Self
 import numpy as np
 
 from pound_solve.integrate.tracker import Peaks
-from pound_solve.laws.automaton import BranchKind, State
+from pound_solve.laws.automaton import State
 from pound_solve.numerics.matrices import used_rows
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags, Index
@@ -224,12 +224,7 @@ def not_in_series(system: ReducedSystem) -> str:
             smooth, rubs = s.law.rule.smooth is not None, s.role is Role.FRICTION
             if s.law.rule.powers is None and not smooth and not rubs:
                 return law
-            if s.role is Role.DAMPER:
-                if rigid:
-                    return f"{law} and stands beside rigid contacts"
-                if massless_end and s.branch(s.law.start()).kind is BranchKind.OPEN:
-                    return f"{law}, has a play and meets a node without mass"
-            elif massless_end and not smooth:
+            if massless_end and not smooth and s.role is not Role.DAMPER:
                 return f"{law} and meets a node without mass"
             if rubs and s.element in pressing:
                 return f"{law} and rubs where a rigid contact presses"

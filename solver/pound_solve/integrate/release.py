@@ -28,6 +28,7 @@ from pound_solve.structure.reduction import ReducedSystem
 ALONG = 1e-9  #: share of the largest change of a deformation below which a law does not move
 LOST = 1e-9  #: share of a force's terms above which a change of branch has made it jump
 ARRIVED = 1e-13  #: share of the largest deformation that is no way any more
+BALANCED = 1e-14  #: share of the forces at a joint that their sum may be by rounding
 
 
 class JumpingRun(Protocol):
@@ -99,6 +100,11 @@ def quick(system: ReducedSystem, branches: Sequence[Branch]) -> Index:
     return np.flatnonzero(massless(system.mass) & ~resisted)
 
 
+def sizes(system: ReducedSystem, u: Array, force: Array) -> Array:
+    """Sizes of the forces whose sum is that at the unknowns, shape (n,): of structure and laws."""
+    return np.asarray(abs(system.stiffness) @ np.abs(u) + abs(system.law_rows).T @ np.abs(force))
+
+
 def release(run: JumpingRun, law: int) -> None:
     """Take joints without mass to where they are in balance without the force that `law` has lost.
 
@@ -117,6 +123,8 @@ def release(run: JumpingRun, law: int) -> None:
         d = rows @ run.u + system.law_inputs @ s
         force, tangent = np.array([run.force(i, x) for i, x in enumerate(d.tolist())]).T
         left = (system.inputs @ s + system.constant - system.stiffness @ run.u - rows.T @ force)[z]
+        if (np.abs(left) <= BALANCED * sizes(system, run.u, force)[z]).all():
+            return
         stiffness = dense(system.stiffness[np.ix_(z, z)] + weighted(rows[:, z], tangent))
         try:
             np.linalg.cholesky(stiffness)

@@ -32,7 +32,8 @@ TransitionFunction = Callable[[Numbers, int, Numbers, int, float, float], tuple[
 EnergyFunction = Callable[[Numbers, int, Numbers, float, float], float]
 CurveFunction = Callable[[Numbers, int, Numbers, float, float, float], tuple[float, float, float, float]]
 PowerFunction = Callable[[Numbers, int, Numbers, float, float], float]
-PowersFunction = Callable[[Numbers, int, Numbers], tuple[float, float, float, float, float]]
+PowersNumbers = tuple[float, float, float, float, float, float]
+PowersFunction = Callable[[Numbers, int, Numbers], PowersNumbers]
 SmoothNumbers = tuple[float, float, float, float, float, float, float]
 SmoothFunction = Callable[[Numbers, int, Numbers, float, float], SmoothNumbers]
 
@@ -145,10 +146,10 @@ class Rule:
         that of the rate-dependent part of the force, see `rate_power`.  A linear
         branch dissipates ``c v^2``.
     powers : callable or None
-        ``powers(p, at, m) -> (k, n, c, q, pulls)``: the force of a pressed contact with a `curve` is
-        ``k x^n + c x^q v`` at the overlap ``x = d - p[2]``, and, unless `pulls` is above zero, nothing
-        where that would pull.  That of a damper on a branch that is not linear is ``k |v|^n``; `k` has the
-        sign of the rate there.  None: it is not of this kind.
+        ``powers(p, at, m) -> (k, n, c, q, pulls, shift)``: the force of a pressed contact with a `curve`
+        is ``k x^n + c x^q v``, where x is the overlap ``d - p[2]`` less `shift`, and, unless `pulls` is
+        above zero, nothing where that would pull.  That of a damper on a branch that is not linear is
+        ``k |v|^n``; `k` has the sign of the rate there.  None: it is not of this kind.
     smooth : callable or None
         ``smooth(p, at, m, d, f) -> (w, y, n, a, b, k, q)``: on from the deformation `d`, where the force is
         `f`, that of a rule with a `curve` is ``k d + q w`` and a constant, where

@@ -20,6 +20,7 @@ from pound_solve.laws.automaton import (
     Numbers,
     PowerFunction,
     PowersFunction,
+    PowersNumbers,
     Rule,
     SmoothFunction,
     SmoothNumbers,
@@ -85,9 +86,7 @@ def power_of(rules: Tables, number: int, p: Numbers, at: int, m: Numbers, d: flo
     return rules.power[number](p, at, m, d, v)
 
 
-def powers_of(
-    rules: Tables, number: int, p: Numbers, at: int, m: Numbers
-) -> tuple[float, float, float, float, float]:
+def powers_of(rules: Tables, number: int, p: Numbers, at: int, m: Numbers) -> PowersNumbers:
     """Powers of the rule of that number."""
     return rules.powers[number](p, at, m)
 
@@ -118,7 +117,7 @@ SIGNATURES = (
     f"f8({_P}, i8, {_M}, f8, f8)",
     f"UniTuple(f8, 4)({_P}, i8, {_M}, f8, f8, f8)",
     f"f8({_P}, i8, {_M}, f8, f8)",
-    f"UniTuple(f8, 5)({_P}, i8, {_M})",
+    f"UniTuple(f8, 6)({_P}, i8, {_M})",
     f"UniTuple(f8, 7)({_P}, i8, {_M}, f8, f8)",
 )
 
@@ -130,9 +129,9 @@ def straight(
     return 0.0, 0.0, 0.0, 0.0
 
 
-def no_powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float, float]:
+def no_powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
     """Stand in for the powers of a rule that has none."""
-    return 0.0, 1.0, 0.0, 1.0, 0.0
+    return 0.0, 1.0, 0.0, 1.0, 0.0, 0.0
 
 
 def not_smooth(p: Numbers, at: int, m: Numbers, d: float, f: float) -> SmoothNumbers:
@@ -232,9 +231,9 @@ def power_by_rate(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
     return rate_power(own, p[:parameters], at, m[:variables], d, v)
 
 
-def powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float, float]:
+def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
     """Powers of a rule."""
-    found: tuple[float, float, float, float, float] = own(p[:parameters], at, m[:variables])
+    found: PowersNumbers = own(p[:parameters], at, m[:variables])
     return found
 
 

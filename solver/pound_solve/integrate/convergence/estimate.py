@@ -12,10 +12,13 @@ do,
 
 .. math:: \frac{\Delta_2}{\Delta_1} = \frac{1 - r_2^{-p}}{r_1^p - 1} .
 
-It is trusted from `SLOWEST` to `ORDER`.  Differences that fall faster than the method explains, with a
-power above `FASTEST`, agree by chance: they show no order, and the slowest is assumed, as it is where
-there are two runs only.  The last run is compared with both of the others, for one may be near it by
-chance.  `SAFETY` is from the distribution of true errors over the estimates (manual, theory of AUTO).
+It is trusted from `SLOWEST` to `ORDER`, and only once it is seen twice: the lower of the powers that the
+last three runs show, and the three before the last.  Three runs show a power that the fourth may not
+confirm: the first of them had too few steps for any order.  Differences that fall faster than the method
+explains, with a power above `FASTEST`, agree by chance: they show no order, and the slowest is assumed, as
+it is where there are fewer than four runs.  The last run is compared with each of the `COMPARED` before it,
+for some may be near it by chance; one run before it may always be.  `SAFETY` is from the distribution of
+true errors over the estimates (manual, theory of AUTO).
 """
 
 from __future__ import annotations
@@ -32,6 +35,7 @@ SLOWEST, ORDER = (
 )  #: powers of the step that an error is assumed to fall with, at least and at most
 FASTEST = 2.5  #: power of the step above which a fall of the differences is chance
 SAFETY = 1.5  #: estimate over the error that the differences tell
+COMPARED = 3  #: runs that the last one is compared with
 BISECTIONS = 30  #: to the observed power
 
 
@@ -59,32 +63,46 @@ def trusted_order(observed: Array) -> Array:
     return np.where(by_chance, SLOWEST, np.minimum(observed, ORDER))
 
 
+def differences(steps: Sequence[int], peaks: Sequence[Array], scales: Array) -> tuple[Array, Array]:
+    """Differences of the peaks of some runs from those of the last, relative to `scales`, shape (runs, n),
+    and how many times the steps of each the last one took, shape (runs, 1).
+    """
+    apart = [np.abs(peaks[-1] - p) / scales for p in peaks[:-1]]
+    ratios = steps[-1] / np.array(steps[:-1], float)
+    return np.array(apart).reshape(len(apart), -1), ratios[:, None]
+
+
+def last_order(steps: Sequence[int], peaks: Sequence[Array], scales: Array) -> Array:
+    """Powers that the errors of the last three runs are seen to fall with; the slowest where there are
+    fewer.
+    """
+    if len(steps) < 3:
+        return np.full(scales.shape, SLOWEST)
+    before, now = (np.abs(peaks[k] - peaks[k - 1]) / scales for k in (-2, -1))
+    return trusted_order(observed_order(before, now, steps[-2] / steps[-3], steps[-1] / steps[-2]))
+
+
 def error_left(steps: Sequence[int], peaks: Sequence[Array], scales: Array) -> float:
     """Estimate the error left in the last run, relative to the scales of the peaks.
 
     Parameters
     ----------
     steps : sequence of int
-        Of the runs, each more than the one before.
+        Of the runs, two at least, each more than the one before.
     peaks : sequence of ndarray, shape (n,)
-        Of the runs; the last three count.
+        Of the runs.
     scales : ndarray, shape (n,)
         That errors are measured against.
     """
-    runs = range(max(len(steps) - 3, 0), len(steps) - 1)
-    apart = [np.abs(peaks[-1] - peaks[k]) / scales for k in runs]
-    ratios = [steps[-1] / steps[k] for k in runs]
-    order = np.full(scales.shape, SLOWEST)
-    if len(runs) == 2:
-        before = np.abs(peaks[-2] - peaks[-3]) / scales
-        order = trusted_order(observed_order(before, apart[1], ratios[0] / ratios[1], ratios[1]))
-    left = [d / (r**order - 1.0) for d, r in zip(apart, ratios)]
-    return SAFETY * float(np.max(left, initial=0.0))
+    order = np.minimum(last_order(steps, peaks, scales), last_order(steps[:-1], peaks[:-1], scales))
+    apart, ratios = differences(steps[-COMPARED - 1 :], peaks[-COMPARED - 1 :], scales)
+    return SAFETY * float(np.max(apart / (ratios**order - 1.0), initial=0.0))
 
 
 def likely_error(steps: Sequence[int], peaks: Sequence[Array], scales: Array) -> float:
-    """Return what `error_left` were if errors fell with the power `ORDER`: what the next step is chosen by
-    where no order is observed yet.
+    """Return what `error_left` were if the last observed order were confirmed, or where none is observed
+    yet, errors fell with the power `ORDER`: what the next step is chosen by.
     """
-    apart = float(np.max(np.abs(peaks[-1] - peaks[-2]) / scales, initial=0.0))
-    return SAFETY * apart / float((steps[-1] / steps[-2]) ** ORDER - 1.0)
+    order = last_order(steps, peaks, scales) if len(steps) > 2 else np.full(scales.shape, ORDER)
+    apart, ratios = differences(steps[-3:], peaks[-3:], scales)
+    return SAFETY * float(np.max(apart / (ratios**order - 1.0), initial=0.0))

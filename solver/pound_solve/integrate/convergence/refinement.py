@@ -29,6 +29,7 @@ MAX_STEPS = 50_000_000  #: of one run
 MAX_RETRY_COST = 20.0  #: of a run that follows one that stopped
 MAX_STALE_RUNS = 6  #: runs in a row that do not halve the error, after which shorter steps are given up
 AIM = 0.6  #: share of the tolerance that the next step aims at
+FEWEST = 3  #: runs that a tolerance is met with: two may agree by chance
 RESOLVED = 10.0  #: steps that the collision of the largest force takes at least
 FIRST = 0.5  #: the second step over the first, where collisions are resolved
 SHORTEST, LONGEST = 1.0 / 8.0, 0.7  #: of a step, that the next one is: where that is not resolved, at most
@@ -94,13 +95,11 @@ class StepRefinement:
         return self.cost_of_run(self.aim)
 
     def least_cost(self) -> float:
-        """Return what all runs cost together at least: those that were made, and the next one; of one run
-        there is no estimate, so that a second with half the step follows the first.
+        """Return what all runs cost together at least: those that were made, the next one, and those that
+        are left to `FEWEST`.
         """
-        ahead = self.cost_of_run(self.h)
-        if not self.steps:
-            ahead += self.cost_of_run(FIRST * self.h)
-        return self.spent + ahead
+        after = range(max(FEWEST - len(self.steps), 1))
+        return self.spent + sum(self.cost_of_run(FIRST**k * self.h) for k in after)
 
     def run(self) -> Outcome | None:
         """Run once; return the outcome if no run follows, else None with the next step chosen.
@@ -156,12 +155,14 @@ class StepRefinement:
             self.errors[kind] = error_left(self.steps, [x[own] for x in self.peaks], scales[own])
         self.error = max(error / self.tolerances[kind] for kind, error in self.errors.items())
         allowed = scales * np.array([self.tolerances[kind] for kind in kinds.tolist()])
-        # two runs show no order: the next step relies on that of the method, the judgement does not
-        two = len(self.steps) == 2
-        self.likely = likely_error(self.steps, self.peaks, allowed) if two else self.error
-        self.met = self.error <= 1.0 and self.lasts >= RESOLVED * self.h
-        self.stale = 0 if self.error < 0.5 * self.best else self.stale + 1
-        self.best = min(self.best, self.error)
+        # the next step relies on the order of the method, or one that is seen once; the judgement does not
+        self.likely = likely_error(self.steps, self.peaks, allowed)
+        shown = len(self.steps) >= FEWEST and self.lasts >= RESOLVED * self.h
+        self.met = self.error <= 1.0 and shown
+        # an order that is seen once is progress, if it is no proof
+        reached = self.likely if len(self.steps) >= FEWEST else self.error
+        self.stale = 0 if reached < 0.5 * self.best else self.stale + 1
+        self.best = min(self.best, reached)
 
     def _choose(self) -> None:
         """Choose the next step."""
@@ -213,7 +214,7 @@ class StepRefinement:
         for kind, tol in self.tolerances.items():
             error = self.errors[kind]
             met = error <= tol and resolved
-            verdict = "met" if met else f"look: not met with {steps} steps, {ended}"
+            verdict = "met" if met else f"look: not shown with {steps} steps, {ended}"
             out.append((f"estimated error of {NAMES[kind]}, TOL {tol:g}", f"{error:.1e}", verdict))
         return [
             *out,

@@ -4,7 +4,8 @@ The force of a contact whose spring and dashpot grow with powers of the overlap 
 
 .. math:: f = k x^n + c x^q \dot x,
 
-has a power series wherever x is above zero.  That of a power :math:`w = x^n` follows from those of x,
+has a power series wherever x, the overlap less a constant that is mostly zero, is above zero.  That of a
+power :math:`w = x^n` follows from those of x,
 
 .. math:: w_k = \frac{1}{k x_0} \sum_{j=1}^{k} (n j - k + j)\, x_j\, w_{k-j},
 
@@ -37,7 +38,7 @@ RIGHT = 1e-10  #: share of the force that the last of its terms may be
 NEAR = 0.4  #: share of the time since touch that the first step after it is tried with
 TOUCHES, PARTS, RELEASES, PRESSES_AGAIN = -1, -2, -3, -4  #: events beside those of the branch
 SPRING, DASHPOT = range(2)  #: rows of `Curved.power`
-K, N, C, Q, PULLS = range(5)  #: columns of `Curved.numbers`
+K, N, C, Q, PULLS, SHIFT = range(6)  #: columns of `Curved.numbers`
 GAP = 2  #: of a contact, among its parameters
 
 
@@ -47,7 +48,7 @@ def allocate(curved: Flags, terms: int) -> Curved:
     return Curved(
         laws=laws,
         number=places(laws, len(curved)),
-        numbers=np.zeros((len(laws), 5)),
+        numbers=np.zeros((len(laws), 6)),
         phase=np.zeros(len(laws), np.int64),
         power=np.zeros((len(laws), 2, terms)),
         force=np.zeros((len(laws), terms)),
@@ -74,11 +75,12 @@ def enter(laws: Laws, rules: Tables, curved: Curved, i: int) -> None:
         rules, laws.rule[i], parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
     )
     own = curved.numbers[r]
-    own[K], own[N], own[C], own[Q], own[PULLS] = found
+    own[K], own[N], own[C], own[Q], own[PULLS], own[SHIFT] = found
     x, v = overlap(laws, i), laws.now.rate[i]
+    y = max(x - own[SHIFT], 0.0)
     if own[K] == 0.0 or x <= touch(laws, i):
         curved.phase[r] = APART
-    elif own[PULLS] > 0.0 or own[K] * x ** own[N] + own[C] * x ** own[Q] * v >= 0.0:
+    elif own[PULLS] > 0.0 or own[K] * y ** own[N] + own[C] * y ** own[Q] * v >= 0.0:
         curved.phase[r] = PRESSED
     else:
         curved.phase[r] = RELEASED
@@ -92,6 +94,9 @@ def power_term(n: float, x: float, d: Array, w: Array, k: int) -> float:
     if k == 0:
         first: float = x**n
         return first
+    if n == 1.0:
+        own: float = d[k]
+        return own
     total = 0.0
     for j in range(1, k + 1):
         total += (n * j - (k - j)) * d[j] * w[k - j]
@@ -124,7 +129,7 @@ def add_contacts(laws: Laws, series: Series, k: int, h: float, top: int, new: Ar
         d = series.deformation[i]
         for m in range(0 if k == 0 else k + 1, k + 2):
             d[m] = deformation(laws, series, m, top, i)
-        x = d[0] - laws.parameters[i, GAP]
+        x = d[0] - laws.parameters[i, GAP] - curved.numbers[r, SHIFT]
         force = force_term(curved.numbers[r], curved.power[r], x, d, k, h)
         curved.force[r, k] = force
         if curved.phase[r] == PRESSED:

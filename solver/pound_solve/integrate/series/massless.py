@@ -250,10 +250,9 @@ def jumps(laws: Laws, series: Series, top: int) -> bool:
     """Whether the laws at joints without mass deform in no time; the inputs have `top` coefficients."""
     held, most, far = series.massless, 0.0, 0.0
     for i in held.laws:
-        if not laws.viscous[i]:
-            d = laws.now.deformation[i]
-            most = max(most, abs(d), laws.largest_deformation[i])
-            far = max(far, abs(deformation(laws, series, 0, top, i) - d))
+        d = laws.now.deformation[i]
+        most = max(most, abs(d), laws.largest_deformation[i])
+        far = max(far, abs(deformation(laws, series, 0, top, i) - d))
     return far > JUMP * most
 
 

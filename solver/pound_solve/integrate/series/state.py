@@ -168,7 +168,7 @@ class Curved(NamedTuple):
     laws : ndarray, shape (n_curved,)
     number : ndarray, shape (n_laws,)
         Place of a law in `laws`, -1 for others.
-    numbers : ndarray, shape (n_curved, 5)
+    numbers : ndarray, shape (n_curved, 6)
         What `Rule.powers` gives on the present branch.
     phase : ndarray, shape (n_curved,)
         Whether a force acts.

@@ -219,6 +219,7 @@ class Taylor(KernelEngine):
             present = Present(self, self.series)
             release(present, int(self.state.fault))
             present.hand_back(np.zeros(0, np.int64))
+            self.state.fault = -1  # it has fallen: what is left of a jump is rounding
             return
         self._at_instant(self._strike)
         self.state.events += 1
@@ -272,7 +273,8 @@ class Taylor(KernelEngine):
             count = f"some {steps * self.dt / done:.1g}" if done else "far too many"
             why = f"the fastest mode asks for {count} steps (now {self.lengths.next:.3g} long)"
             others = ["EXACT"] * (not not_linear(self.system)) + ["NEWMARK"] * (not self.contacts.laws)
-            raise self.stop("A502", f"{why}, which {' and '.join(others)} need not follow")
+            cure = f", which {' and '.join(others)} need not follow" if others else ""
+            raise self.stop("A502", why + cure)
 
     def trouble(self, why: int) -> Stop:
         """What the kernel came back for, in words."""

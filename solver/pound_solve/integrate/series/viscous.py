@@ -62,7 +62,7 @@ def linearise(laws: Laws, rules: Tables, viscous: Viscous) -> None:
     """Put the present tangents in the place of the dampers' branches."""
     for r in range(len(viscous.laws)):
         i, own = viscous.laws[r], viscous.numbers[r]
-        own[K], own[N], _, _, _ = powers_of(
+        own[K], own[N], _, _, _, _ = powers_of(
             rules, laws.rule[i], parameters(laws.parameters, i), laws.branch[i], internal(laws.internal, i)
         )
         viscous.fast[r], own[RATE] = False, laws.now.rate[i]

@@ -31,6 +31,7 @@ from pound_solve.laws.automaton import (
     BranchKind,
     Law,
     Numbers,
+    PowersNumbers,
     Rule,
     above,
     below,
@@ -109,12 +110,13 @@ def curve(
     return force, n * spring / x + slope, c, work
 
 
-def powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float, float]:
+def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
     """Force as powers of the overlap, see `Rule`."""
     k, n, _, constant, slow = p[:5]
     if at == OPEN:
-        return 0.0, n, 0.0, n, 0.0
-    return (k, n, constant * k / m[0], n, 0.0) if at == PRESSED else (k, n, slow, 0.5 * (n - 1.0), 0.0)
+        return 0.0, n, 0.0, n, 0.0, 0.0
+    c, q = (constant * k / m[0], n) if at == PRESSED else (slow, 0.5 * (n - 1.0))
+    return k, n, c, q, 0.0, 0.0
 
 
 RULE = Rule(

@@ -19,7 +19,17 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Spec
-from pound_solve.laws.automaton import REVERSAL_DOWN, REVERSAL_UP, Law, Numbers, Rule, above, below, linear
+from pound_solve.laws.automaton import (
+    REVERSAL_DOWN,
+    REVERSAL_UP,
+    Law,
+    Numbers,
+    PowersNumbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 from pound_solve.laws.contact import constants, restitution
 from pound_solve.laws.contact.kelvin_voigt import Built, start
 from pound_solve.laws.contact.mahmoud_jankowski import APPROACH, BRANCHES, OPEN, transition
@@ -64,10 +74,10 @@ def curve(
     return spring + c * v, stiffness + drag_slope(k, n, mass, x, v, c), c, work
 
 
-def powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float, float]:
+def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
     """Force as powers of the overlap, see `Rule`."""
     k, n, _, c = p[:4]
-    return (0.0 if at == OPEN else k), n, (c if at == APPROACH else 0.0), 0.5 * (n - 1.0), 0.0
+    return (0.0 if at == OPEN else k), n, (c if at == APPROACH else 0.0), 0.5 * (n - 1.0), 0.0, 0.0
 
 
 RULE = Rule(

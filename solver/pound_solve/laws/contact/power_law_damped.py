@@ -24,6 +24,7 @@ from pound_solve.laws.automaton import (
     BranchKind,
     Law,
     Numbers,
+    PowersNumbers,
     Rule,
     above,
     below,
@@ -79,10 +80,10 @@ def curve(
     return force, max(n * spring / x + drag_slope(k, n, mass, x, v, c), 0.0), c, work
 
 
-def powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float, float]:
+def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
     """Force as powers of the overlap, see `Rule`."""
     k, n, _, c, _, tension = p[:6]
-    return (0.0, n, 0.0, n, 0.0) if at == OPEN else (k, n, c, 0.5 * (n - 1.0), tension)
+    return (0.0, n, 0.0, n, 0.0, 0.0) if at == OPEN else (k, n, c, 0.5 * (n - 1.0), tension, 0.0)
 
 
 RULE = Rule(

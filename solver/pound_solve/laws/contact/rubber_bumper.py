@@ -15,7 +15,7 @@ That the damping acts on the stiff branch too is our choice: the force is contin
 as required for any overlap.
 
 Against a damping beyond all bounds after a slow touch :math:`v_0` is never taken smaller than the speed
-that reaches the present overlap, as in HUNT_CROSSLEY; here that is :math:`\sqrt{2\int F\,d\delta/m}`.
+from which a free impact comes as far as the motion turned, :math:`\sqrt{2\int F\,d\delta/m}`.
 """
 
 from __future__ import annotations
@@ -25,26 +25,61 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Law, Numbers, Rule
+from pound_solve.laws.automaton import (
+    REVERSAL_DOWN,
+    REVERSAL_UP,
+    BranchKind,
+    Law,
+    Numbers,
+    PowersNumbers,
+    Rule,
+    above,
+    below,
+    linear,
+)
 from pound_solve.laws.contact import constants, restitution
-from pound_solve.laws.contact.jankowski import branch
 from pound_solve.laws.contact.kelvin_voigt import Built
-from pound_solve.laws.contact.mahmoud_jankowski import APPROACH, BRANCHES, OPEN, PARTING
 from pound_solve.laws.contact.power import power_fields, spring_energy, spring_force, stiffness_unit
+
+OPEN, APPROACH, PARTING, STIFF_APPROACH, STIFF_PARTING = range(5)  #: stiff: the rubber is used up
 
 
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Open, or pressed where the gap is negative; the internal variable is the approach speed."""
-    return (APPROACH if p[2] < 0.0 else OPEN), (0.0,)
+    """Open, or pressed where the gap is negative; the internal variable is the speed v0."""
+    if p[2] >= 0.0:
+        return OPEN, (0.0,)
+    return (APPROACH if -p[2] <= p[3] else STIFF_APPROACH), (0.0,)
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Deformation is the closure, overlap = closure - gap."""
+    gap, limit = p[2], p[3]
+    if at == OPEN:
+        return linear(0.0, 0.0, above(gap))
+    if at == STIFF_APPROACH:
+        return linear(0.0, 0.0, REVERSAL_DOWN)
+    if at == STIFF_PARTING:
+        return linear(0.0, 0.0, below(gap + limit), REVERSAL_UP)
+    if at == PARTING:
+        return linear(0.0, 0.0, below(gap), REVERSAL_UP)
+    if limit == math.inf:
+        return linear(0.0, 0.0, REVERSAL_DOWN, below(gap))
+    return linear(0.0, 0.0, REVERSAL_DOWN, below(gap), above(gap + limit))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Touch, with the approach speed; reverse, or part."""
+    """Touch, with the approach speed; reverse; use up the rubber or come back from there; or part."""
     if at == OPEN:
         return APPROACH, (max(v, 0.0),)
-    if at == PARTING and event == 1:
-        return APPROACH, m
-    return (PARTING, m) if at == APPROACH and event == 0 else (OPEN, (0.0,))
+    approaching = at in (APPROACH, STIFF_APPROACH)
+    if approaching and event == 0:
+        turned = max(m[0], math.sqrt(2.0 * spring(p, d - p[2])[2] / p[6]))
+        return (PARTING if at == APPROACH else STIFF_PARTING), (turned,)
+    if approaching:
+        return (STIFF_APPROACH, m) if event == 2 else (OPEN, (0.0,))
+    if event == 1:
+        return (APPROACH if at == PARTING else STIFF_APPROACH), m
+    return (PARTING, m) if at == STIFF_PARTING else (OPEN, (0.0,))
 
 
 def spring(p: Numbers, x: float) -> tuple[float, float, float]:
@@ -70,28 +105,38 @@ def curve(
     """Force; `p` holds k, n, gap, the limit, the stiffness beyond it, d, and the mass."""
     if at == OPEN:
         return 0.0, 0.0, 0.0, 0.0
-    gap, constant, mass = p[2], p[5], p[6]
-    force, stiffness, energy = spring(p, d - gap)
-    work = energy - spring(p, d0 - gap)[2]
-    if at == APPROACH or constant == 0.0 or energy == 0.0:
+    force, stiffness, energy = spring(p, d - p[2])
+    work = energy - spring(p, d0 - p[2])[2]
+    if at in (APPROACH, STIFF_APPROACH) or m[0] == 0.0:
         return force, stiffness, 0.0, work
-    reaching = math.sqrt(2.0 * energy / mass)
-    c = constant * force / max(m[0], reaching)
+    c, slope = p[5] * force / m[0], p[5] * stiffness / m[0]
     if force + c * v <= 0.0:
         return 0.0, 0.0, 0.0, work
-    slope = stiffness * c / force
-    if reaching > m[0]:
-        slope -= 0.5 * c * force / energy
     return force + c * v, stiffness + slope * v, c, work
 
 
+def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
+    """Force as powers of the overlap, see `Rule`."""
+    k, n, _, limit, stiff, constant = p[:6]
+    if at == OPEN:
+        return 0.0, n, 0.0, n, 0.0, 0.0
+    share = constant / m[0] if at in (PARTING, STIFF_PARTING) and m[0] > 0.0 else 0.0
+    if at in (APPROACH, PARTING):
+        return k, n, share * k, n, 0.0, 0.0
+    return stiff, 1.0, share * stiff, 1.0, 0.0, limit - spring_force(k, n, limit) / stiff
+
+
 RULE = Rule(
-    BRANCHES,
+    (
+        *BranchKind.OPEN.named("open"),
+        *BranchKind.PRESSED.named("pressed", "pressed, parting", "used up", "used up, parting"),
+    ),
     start,
     branch,
     transition,
     recoverable,
     curve,
+    powers=powers,
     parameters=7,
     variables=1,
 )

@@ -32,6 +32,7 @@ from pound_solve.laws.automaton import (
     BranchKind,
     Law,
     Numbers,
+    PowersNumbers,
     Rule,
     above,
     below,
@@ -109,10 +110,10 @@ def power(p: Numbers, at: int, m: Numbers, d: float, v: float) -> float:
     return curve(p, at, m, d, d, v)[0] * v
 
 
-def powers(p: Numbers, at: int, m: Numbers) -> tuple[float, float, float, float, float]:
+def powers(p: Numbers, at: int, m: Numbers) -> PowersNumbers:
     """Force as a power of the rate, see `Rule`."""
     moving = at != PLAY and at < LIMITED
-    return (side(at) * p[1] if moving else 0.0), p[2], 0.0, 0.0, 0.0
+    return (side(at) * p[1] if moving else 0.0), p[2], 0.0, 0.0, 0.0, 0.0
 
 
 RULE = Rule(

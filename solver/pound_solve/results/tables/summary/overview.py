@@ -67,10 +67,10 @@ def error_of(outcome: Outcome) -> str:
     """What is known about the error of a method in time."""
     if outcome.exact:
         return "rounding only: it makes no error from one instant to the next"
-    told = [(check, value) for check, value, _ in outcome.checks if check.startswith("estimated error")]
+    told = [found for found in outcome.checks if found[0].startswith("estimated error")]
     if told:
-        check, value = told[0]
-        return f"{value}, {check}"
+        check, value, verdict = next((found for found in told if found[2] != "met"), told[0])
+        return f"{value}, {check}" + ("" if verdict == "met" else ", not shown")
     return "not estimated: METHOD=AUTO does, and a second run with half the step shows it"
 
 
