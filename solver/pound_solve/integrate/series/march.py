@@ -318,7 +318,7 @@ def take(
     track_outputs(linear, laws, step, series, terms, h, end, t, len(coefs))
     track_laws(laws, step, series, terms, h, end, t, len(linear.monitored_constants))
     if end > 0.0:
-        keep_step(laws, rules, series, terms, h, end, t)
+        keep_step(laws, series, terms, h, end, t)
         add_works(
             linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, end, works, rules
         )
