@@ -80,6 +80,36 @@ class Motion(NamedTuple):
     law_forces: Array
 
 
+class Rows(NamedTuple):
+    """Rows of a matrix on a motion, of which the columns are u, v, a, and the forces of the laws: what they
+    hold, row by row, shape (n_entries,) each.
+
+    Attributes
+    ----------
+    number : ndarray of int
+        Of the row.
+    columns : ndarray of int
+    factors : ndarray
+    """
+
+    number: Index
+    columns: Index
+    factors: Array
+
+    def some(self, entries: Index | Flags) -> Rows:
+        """Some of the entries."""
+        return Rows(self.number[entries], self.columns[entries], self.factors[entries])
+
+    def summed(self, values: Array) -> tuple[Index, Array]:
+        """Numbers of the rows that hold anything, and the sums of what they have of the values of every
+        entry, shape (n_entries, n), shape (n_used, n).
+        """
+        if not len(self.number):
+            return self.number, values
+        starts = np.flatnonzero(np.diff(self.number, prepend=-1))
+        return self.number[starts], np.add.reduceat(self.factors[:, None] * values, starts, axis=0)
+
+
 class Course(NamedTuple):
     """The motion between two samples: at instants that rise, and from each of them on.
 
@@ -91,11 +121,15 @@ class Course(NamedTuple):
     within : callable or None
         The motion from instants of some numbers, shape (n_cells,), on, at shares of these times between 0
         and 1, shape (n_shares,): n_cells * n_shares instants, cell by cell.  None: nothing is known of it.
+    along : callable or None
+        Rows on the motion from an instant on for each, shape (n_rows,), at such shares, shape (n_rows,
+        n_shares).  None: by `within` only.
     """
 
     motion: Motion
     lengths: Array
     within: Callable[[Index, Array], Motion] | None
+    along: Callable[[Rows, Index, Array], Array] | None = None
 
 
 class Envelopes(Protocol):

@@ -10,16 +10,21 @@ fastest part; its extreme is found on a fine grid and by Newton's method.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import NamedTuple
+
 import numpy as np
 
-from pound_solve.numerics.types import Array, Flags
+from pound_solve.numerics.types import Array, Flags, Index
 
 DEGREE = 12  #: of the polynomial over a cell
 GROUP = 16  #: cells that are judged together
+AT_ONCE = 2**16  #: samples of several quantities that are looked at together, which a cache holds
 FINE = 48  #: cells of the grid on which the extreme of a polynomial is looked for
 NEWTON = 3  #: iterations to it
 BEFORE = 2  #: samples before and after them that tell how the quantity bends
 MARGIN = 1.5  #: over the change over a cell, by which a quantity may exceed its samples
+EXCESS = 0.5  #: share of a quantity's changes from node to node, by which it may exceed the largest there
 SPREAD = 1.5  #: over the range of its second differences, by which it may bend more
 
 _AROUND = np.arange(-BEFORE, GROUP + BEFORE + 1)
@@ -39,8 +44,47 @@ def on_nodes(places: Array) -> Array:
     return np.asarray(np.polynomial.chebyshev.chebvander(2.0 * places - 1.0, DEGREE) @ _FIT)
 
 
-def may_exceed(values: Array, low: Array, high: Array) -> Flags:
-    """Which cells may hold more than is known of some quantities, shape (n_times,).
+def some_rows(values: Array) -> Iterator[slice]:
+    """Rows of an array, some at a time."""
+    count = max(AT_ONCE // max(values.shape[1], 1), 1)
+    for first in range(0, len(values), count):
+        yield slice(first, first + count)
+
+
+class Doubts(NamedTuple):
+    """Cells in which quantities may exceed what is known of them, shape (n,) each.
+
+    Attributes
+    ----------
+    sign : ndarray
+        Of what a quantity is times by: 1 for its largest value, -1 for its smallest.
+    row, cell : ndarray of int
+        Numbers of the quantity and of the cell.
+    most : ndarray
+        What it may be there, times the sign.
+    """
+
+    sign: Array
+    row: Index
+    cell: Index
+    most: Array
+
+    def some(self, chosen: Index | Flags | slice) -> Doubts:
+        """Those of some numbers."""
+        return Doubts(self.sign[chosen], self.row[chosen], self.cell[chosen], self.most[chosen])
+
+    def first(self) -> Index:
+        """Numbers of those that are the largest of their quantity and sign."""
+        order = np.lexsort((-self.most, self.row, self.sign))
+        new = np.ones(len(order), bool)
+        for part in (self.sign[order], self.row[order]):
+            new[1:] &= part[1:] == part[:-1]
+        new[1:] = ~new[1:]
+        return order[new]
+
+
+def may_exceed(values: Array, low: Array, high: Array) -> Doubts:
+    """Which quantities may exceed what is known of them, and in which cells.
 
     Parameters
     ----------
@@ -49,20 +93,43 @@ def may_exceed(values: Array, low: Array, high: Array) -> Flags:
     low, high : ndarray, shape (n,)
         Smallest and largest values so far, these among them.
     """
-    n, count = values.shape
+    found = [Doubts(np.zeros(0), np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))]
+    for some in some_rows(values):
+        own, known = values[some], (high[some], -low[some])
+        change = np.zeros(own.shape)
+        np.subtract(own[:, 1:], own[:, :-1], out=change[:, :-1])
+        np.abs(change, out=change)
+        most = own.max(axis=1) - known[0], -own.min(axis=1) - known[1]
+        rows = np.flatnonzero(np.maximum(*most) + MARGIN * change.max(axis=1) > 0.0)
+        best = known[0][rows], known[1][rows]
+        found += _doubts(own[rows], change[rows], best, some.start + rows)
+    return Doubts(*map(np.concatenate, zip(*found)))
+
+
+def _doubts(values: Array, change: Array, best: tuple[Array, Array], numbers: Index) -> Iterator[Doubts]:
+    """What may exceed the `best` to either side, of quantities with some numbers."""
+    count = values.shape[1]
     starts = np.arange(0, count, GROUP)
-    change = np.zeros((n, count))
-    np.abs(values[:, 1:] - values[:, :-1], out=change[:, :-1])
     reach = MARGIN * _beside(np.maximum.reduceat(change, starts, axis=1))
-    out = np.zeros(count + GROUP, bool)
-    for sign, reduced, best in ((1.0, np.maximum, high), (-1.0, np.minimum, low)):
+    for sign, reduced, known in zip((1.0, -1.0), (np.maximum, np.minimum), best):
         most = sign * reduced.reduceat(values, starts, axis=1)
-        row, group = np.nonzero(most + reach > (sign * best)[:, None])
+        row, group = np.nonzero(most + reach > known[:, None])
         at = starts[group][:, None] + _AROUND
-        own = sign * values[row[:, None], np.clip(at, 0, count - 1)]
-        cell = np.nonzero(_bounds(own) > sign * best[row][:, None])
-        out[at[:, BEFORE : BEFORE + GROUP][cell]] = True
-    return out[:count]
+        bounds = _bounds(sign * values[row[:, None], np.clip(at, 0, count - 1)])
+        within = at[:, BEFORE : BEFORE + GROUP] < count
+        own, cell = np.nonzero((bounds > known[row][:, None]) & within)
+        doubtful = numbers[row[own]], starts[group[own]] + cell, bounds[own, cell]
+        yield Doubts(np.full(len(own), sign), *doubtful)
+
+
+def near(values: Array, best: Array) -> Flags:
+    """Which quantities may be above the `best` in a cell, by values at the `NODES`, shape (n, n_nodes)."""
+    change = np.abs(np.diff(values, axis=1))
+    number, at = np.arange(len(values)), np.argmax(values, axis=1)
+    most = values[number, at]
+    for side in (np.maximum(at - 1, 0), np.minimum(at, change.shape[1] - 1)):
+        most = most + EXCESS * change[number, side]
+    return np.asarray(most > best)
 
 
 def _bounds(values: Array) -> Array:

@@ -190,11 +190,17 @@ class Numba:
         self.name = "; ".join(filter(None, ["compiled by numba", kernel_cache.place().told]))
         if signature:
             return compiled(kernel, signature)
-        own = compiled(kernel)
+        own: Any = compiled(kernel)
+        given: tuple[Any, ...] = ()
+        entry: Function = own
 
         def call(*arguments: Any) -> Any:
-            with compiling():
-                return own(*arguments)
+            nonlocal given, entry
+            if len(given) != len(arguments) or any(x is not y for x, y in zip(given, arguments)):
+                with compiling():  # numba takes longer to see of what types they are than many a call takes
+                    entry = own.compile(tuple(own.typeof_pyval(x) for x in arguments))
+                given = arguments
+            return entry(*arguments)
 
         return call
 

@@ -20,10 +20,12 @@ Matrix = Any
 MOST_DENSE = 300  #: rows and columns of a plain array
 
 
-def gathered(shape: tuple[int, int], rows: Any, columns: Any, values: Any) -> Matrix:
+def gathered(
+    shape: tuple[int, int], rows: Any, columns: Any, values: Any, *, most_dense: int = MOST_DENSE
+) -> Matrix:
     """Matrix of that shape whose entries are sums of `values` at (`rows`, `columns`)."""
     i, j, x = np.asarray(rows, np.int64), np.asarray(columns, np.int64), np.asarray(values, float)
-    if max(shape) <= MOST_DENSE:
+    if max(shape) <= most_dense:
         out = np.zeros(shape)
         np.add.at(out, (i, j), x)
         return out

@@ -233,27 +233,14 @@ class LinearSums:
         members = used_columns(turning).reshape(-1, QUANTITIES).any(axis=1)
         self.members: Index = np.flatnonzero(members)
 
-    def values(self, motion: Sequence[Array], from_laws: Array, s: Sequence[Array]) -> Array:
-        """Values at some instants, shape (n_sums, n_times).
-
-        Parameters
-        ----------
-        motion : sequence of ndarray, shape (n, n_times)
-            u, v, a of the unknowns.
-        from_laws : ndarray, shape (n_sums, n_times)
-            What the laws make of them.
-        s : sequence of ndarray, shape (n_inputs, n_times)
-            Inputs and their first two derivatives.
+    def turned(self, u: Array, s: Array) -> Array:
+        """What corotational members add, at displacements of the unknowns and inputs, shape (n, n_times)
+        each; shape (n_sums, n_times).
         """
-        out = np.asarray(from_laws + self.constant[:, None])
-        for order in range(3):
-            out += self.motion[order] @ motion[order] + self.inputs[order] @ s[order]
-        if len(self.members):
-            seen = self.system.quantities(motion[0].T, s[0].T)[:, self.members]
-            turned = self.system.structure.corotational.turning(seen, self.members)
-            columns = (QUANTITIES * self.members[:, None] + np.arange(QUANTITIES)).ravel()
-            out += self.turning[:, columns] @ turned.reshape(len(turned), -1).T
-        return out
+        seen = self.system.quantities(u.T, s.T)[:, self.members]
+        turned = self.system.structure.corotational.turning(seen, self.members)
+        columns = (QUANTITIES * self.members[:, None] + np.arange(QUANTITIES)).ravel()
+        return np.asarray(self.turning[:, columns] @ turned.reshape(len(turned), -1).T)
 
 
 def reactions(equations: Equations, supports: Sequence[int]) -> LinearSums:

@@ -15,11 +15,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pound_solve.integrate.protocol import Course, Motion
+from pound_solve.integrate.protocol import Course, Motion, Rows
 from pound_solve.integrate.series.expansion import TERMS
 from pound_solve.integrate.series.shown import INTERVALS, STEPS
 from pound_solve.integrate.series.state import Modal, Shown
-from pound_solve.numerics.crests import on_nodes
 from pound_solve.numerics.types import Array, Complex, Index
 
 LOOKS = 2  #: cells of a step, of some 2.5 radians each
@@ -31,36 +30,75 @@ class ShownSteps:
     def __init__(self, shown: Shown, order: Index) -> None:
         self.shown, self.size = shown, len(order)
         self.unknowns = order[shown.which]
+        self.rows = np.zeros(3 * self.size + len(shown.acting), np.int64)  # in the coefficients
+        for derivative in range(3):
+            self.rows[derivative * self.size + self.unknowns] = np.arange(len(shown.which))
+        self.rows[3 * self.size :] = len(shown.which) + np.arange(len(shown.acting))
 
-    def at(self, steps: Index | slice, places: Array) -> Motion:
-        """The motion at places in [0, 1] of some steps, shape (n_steps, n_places)."""
-        x = self.shown
-        h, end = x.length[steps, None], x.end[steps, None]
-        k = np.arange(TERMS + 1)
-        s = (places * end)[..., None]
-        power = np.cumprod(np.concatenate([np.ones_like(s), np.repeat(s, TERMS, axis=2)], axis=2), axis=2)
-        basis = np.zeros((len(s), 3, *power.shape[1:]))
-        basis[:, 0] = power
-        basis[:, 1, :, 1:] = power[..., :-1] * k[1:] / h[..., None]
-        basis[:, 2, :, 2:] = power[..., :-2] * (k * (k - 1))[2:] / h[..., None] ** 2
-        motion = basis.reshape(len(s), -1, TERMS + 1) @ x.coefs[steps]
-        u, v, a = out = np.zeros((3, self.size, places.size))
-        shape = len(s), 3, places.shape[1], len(x.which)
-        out[:, self.unknowns] = motion.reshape(shape).transpose(1, 3, 0, 2).reshape(3, -1, places.size)
-        forces = on_nodes(places) @ x.law_forces[steps]
-        t = (x.begin[steps, None] + places * end * h).ravel()
-        return Motion(t, u, v, a, forces.reshape(places.size, -1).T)
+    def _motion(self, coefs: Array, steps: Index, places: Array) -> Motion:
+        """The motion at places in some steps, by the coefficients of these."""
+        x, n, h = self.shown, len(self.unknowns), np.repeat(self.shown.length[steps], len(places))
+        table = _powers(places)
+        values = table.reshape(-1, TERMS + 1) @ coefs[:, :n].transpose(0, 2, 1)
+        forces = table[0] @ coefs[:, n:].transpose(0, 2, 1)
+        out = np.zeros((3, self.size, len(steps), len(places)))
+        for j in range(len(places)):
+            out[..., j][:, self.unknowns] = values[:, j :: len(places)].transpose(1, 2, 0)
+        u, v, a = out.reshape(3, self.size, len(h))
+        v /= h
+        a /= h**2
+        t = (x.begin[steps, None] + places * x.length[steps, None]).ravel()
+        return Motion(t, u, v, a, forces.transpose(2, 0, 1).reshape(coefs.shape[1] - n, len(h)))
+
+    def _within(self, cells: Index, shares: Array) -> Motion:
+        """The motion at shares of some cells (see `protocol.Course`)."""
+        steps, half = np.divmod(cells, LOOKS)
+        parts = [np.flatnonzero(half == k) for k in range(LOOKS)]
+        found = [
+            self._motion(self.shown.coefs[steps[part]], steps[part], (k + shares) / LOOKS)
+            for k, part in enumerate(parts)
+        ]
+        back = np.argsort(np.concatenate(parts))
+        return Motion(*(_in_order(x, back) for x in zip(*found)))
+
+    def _along(self, rows: Rows, cells: Index, shares: Array) -> Array:
+        """Values of rows at shares of a cell for each (see `protocol.Course`): of their own series."""
+        x, (steps, half) = self.shown, np.divmod(cells, LOOKS)
+        derivative = np.minimum(rows.columns // self.size, 3) % 3
+        out = np.zeros((len(cells), len(shares)))
+        for k in range(3):
+            own = rows.some(derivative == k)
+            coefs = x.coefs[steps[own.number], self.rows[own.columns]]
+            which, series = own.summed(coefs)
+            series *= x.length[steps[which], None] ** -k
+            for part in range(LOOKS):
+                mine = half[which] == part
+                out[which[mine]] += series[mine] @ _powers((part + shares) / LOOKS)[k].T
+        return out
 
     def course(self) -> Course:
         """The motion of all that were kept."""
-        count, shares = int(self.shown.kept[STEPS]), np.arange(LOOKS) / LOOKS
-        motion = self.at(slice(count), np.tile(shares, (count, 1)))
-        whole = self.shown.length[:count] * self.shown.end[:count]
+        steps, shares = np.arange(self.shown.kept[STEPS]), np.arange(LOOKS) / LOOKS
+        motion = self._motion(self.shown.coefs[: len(steps)], steps, shares)
+        lengths = np.repeat(self.shown.length[steps] / LOOKS, LOOKS)
+        return Course(motion, lengths, self._within, self._along)
 
-        def within(cells: Index, shares: Array) -> Motion:
-            return self.at(cells // LOOKS, ((cells % LOOKS)[:, None] + shares) / LOOKS)
 
-        return Course(motion, np.repeat(whole / LOOKS, LOOKS), within)
+def _powers(places: Array) -> Array:
+    """What powers and their first two derivatives are at some places, shape (3, n_places, TERMS + 1)."""
+    k = np.arange(TERMS + 1)
+    out = np.zeros((3, len(places), TERMS + 1))
+    out[0] = places[:, None] ** k
+    out[1, :, 1:] = out[0, :, :-1] * k[1:]
+    out[2, :, 2:] = out[0, :, :-2] * (k * (k - 1))[2:]
+    return out
+
+
+def _in_order(parts: Sequence[Array], order: Index) -> Array:
+    """Parts of what is known of cells joined, the cells in an order."""
+    whole = np.concatenate(parts, axis=-1)
+    shape = *whole.shape[:-1], len(order), whole.shape[-1] // len(order)
+    return np.asarray(whole.reshape(shape)[..., order, :].reshape(whole.shape))
 
 
 class ShownIntervals:

@@ -7,6 +7,7 @@ from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.curved import PRESSED, enter, has_force
 from pound_solve.integrate.series.friction import rub, side_of, slides
 from pound_solve.integrate.series.rigid import is_held
+from pound_solve.integrate.series.smooth import dashpot_rest
 from pound_solve.integrate.series.state import Series
 from pound_solve.integrate.series.viscous import is_fast
 from pound_solve.laws.functions import Tables
@@ -44,6 +45,25 @@ def copy_force(series: Series, terms: int, i: int, sign: float, out: Array) -> N
             out[k] = sign * series.viscous.force[viscous, k]
         else:
             out[k] = sign * series.friction.force[friction, k]
+
+
+def whole_force(laws: Laws, series: Series, terms: int, h: float, i: int, out: Array) -> None:
+    """Put the series of the force of law `i` into `out`, all dashpots included."""
+    smooth, d = series.smooth, series.deformation[i]
+    r, damping = smooth.number[i], laws.damping[i]
+    if has_series(series, i):
+        copy_force(series, terms, i, 1.0, out)
+        if r >= 0:
+            for k in range(terms - 1):
+                out[k] += damping * (k + 1) / h * d[k + 1] + dashpot_rest(laws, smooth, r, k, h)
+        return
+    acts = 1.0 if series.curved.number[i] < 0 else 0.0  # which presses nothing now
+    for k in range(terms + 1):
+        out[k] = acts * laws.stiffness[i] * d[k]
+    out[0] += acts * laws.offset[i]
+    if damping != 0.0:
+        for k in range(terms):
+            out[k] += acts * damping * (k + 1) / h * d[k + 1]
 
 
 def force_at(force: Array, terms: int, s: float) -> float:

@@ -318,7 +318,7 @@ def take(
     track_outputs(linear, laws, step, series, terms, h, end, t, len(coefs))
     track_laws(laws, step, series, terms, h, end, t, len(linear.monitored_constants))
     if end > 0.0:
-        keep_step(laws, rules, series, terms, h, end, t)
+        keep_step(laws, series, terms, h, end, t)
         add_works(
             linear, laws, step, series, coefs, t - begin, terms, lengths.carried, h, end, works, rules
         )
@@ -444,6 +444,36 @@ def sample(
     store_sample(laws, step, buffers, rules, works, run, run.time)
 
 
+def load_times_place(linear: LinearSystem, step: Step, series: Series, coefs: Array, s: float) -> float:
+    """Loads on the unknowns without mass at the local time `s` of a piece, times their displacements."""
+    total, trial = 0.0, step.trial
+    evaluate_inputs(coefs, s, trial.inputs, trial.input_rates)
+    for i in series.massless.unknown:
+        total += load_on_nodes(linear, trial.inputs, i) * step.now.displacement[i]
+    return total
+
+
+def settle_after_jump(
+    linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
+    coefs: Array, breaks: Array, before: int, piece: int, works: Works, run: Run,
+) -> int:  # fmt: skip
+    """`settle` where another piece of the excitation begins: unknowns without mass move with loads that
+    jump, whose work is that of the mean load.
+    """
+    old, new = run.time - breaks[before], run.time - breaks[piece]
+    put = 0.0
+    for sign in (-1.0, 1.0):
+        if sign > 0.0:
+            why = settle(linear, laws, step, buffers, rules, series, coefs[piece], new, run)
+            if why != DONE:
+                return why
+        put += 0.5 * sign * load_times_place(linear, step, series, coefs[before], old)
+        put += 0.5 * sign * load_times_place(linear, step, series, coefs[piece], new)
+    works.input += put
+    works.gross_input += abs(put)
+    return DONE
+
+
 def march(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, series: Series,
     lengths: Lengths, coefs: Array, breaks: Array, goals: Array, outputs: Flags, pieces: Index,
@@ -458,8 +488,11 @@ def march(
         begin, piece = breaks[pieces[goal]], coefs[pieces[goal]]
         if run.started == 0:
             sample(linear, laws, step, buffers, rules, series, piece, begin, works, run)
-        # the excitation may have a kink here
-        why = settle(linear, laws, step, buffers, rules, series, piece, run.time - begin, run)
+        # the excitation may have a kink here, or jump
+        before = pieces[max(goal - 1, 0)]
+        why = settle_after_jump(
+            linear, laws, step, buffers, rules, series, coefs, breaks, before, pieces[goal], works, run
+        )
         if why != DONE:
             return why
         why = reach(

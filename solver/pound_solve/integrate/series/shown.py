@@ -1,20 +1,15 @@
-"""Kernels of TAYLOR: what they keep of the motion for the envelopes, see `course`.
-
-The forces of the laws over a step are kept at Chebyshev's nodes (`numerics.crests.NODES`): the force of a
-law need be no series.
+"""Kernels of TAYLOR: what they keep of the motion for the envelopes, see `course`: of a step the series of
+unknowns and of forces of laws, of an interval in modes its start.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.kernels.laws import law_force
 from pound_solve.integrate.kernels.state import Laws
-from pound_solve.integrate.series.expansion import TERMS, law_at
-from pound_solve.integrate.series.forces import press
+from pound_solve.integrate.series.expansion import TERMS
+from pound_solve.integrate.series.forces import whole_force
 from pound_solve.integrate.series.state import Modal, Series, Shown
-from pound_solve.laws.functions import Tables
-from pound_solve.numerics.crests import NODES
 from pound_solve.numerics.types import Index
 
 MOST_HELD = 2**21  #: numbers of the steps and of the intervals that are kept, at most
@@ -25,20 +20,17 @@ STEPS, INTERVALS = range(2)  #: places in `Shown.kept`
 def allocate(which: Index, acting: Index, modal: Modal) -> Shown:
     """Room for steps and intervals, of which the unknowns `which` and the laws `acting` are seen."""
     b, _, size = modal.x.shape
-    steps = MOST_HELD // max((TERMS + 1) * len(which) + len(NODES) * len(acting), 1)
+    steps = MOST_HELD // max((TERMS + 1) * (len(which) + len(acting)), 1)
     intervals = MOST_HELD // max(3 * modal.x.shape[1] * len(which), 2 * b * size, 1)
     s, i = (int(np.clip(x, FEWEST, MOST_STEPS)) for x in (steps, intervals))
     return Shown(
         is_needed=np.array([len(which) + len(acting) > 0]),
         which=which,
         acting=acting,
-        nodes=NODES,
         kept=np.zeros(2, np.int64),
-        coefs=np.zeros((s, TERMS + 1, len(which))),
-        law_forces=np.zeros((s, len(NODES), len(acting))),
+        coefs=np.zeros((s, len(which) + len(acting), TERMS + 1)),
         begin=np.zeros(s),
         length=np.zeros(s),
-        end=np.zeros(s),
         x=np.zeros((i, b, size)),
         rest=np.zeros((i, b, modal.rest.shape[1])),
         held=np.zeros((i, len(acting))),
@@ -51,27 +43,28 @@ def is_full(shown: Shown) -> bool:
     return bool(shown.kept[STEPS] == len(shown.begin))
 
 
-def keep_step(
-    laws: Laws, rules: Tables, series: Series, terms: int, h: float, end: float, t: float
-) -> None:
+def keep_step(laws: Laws, series: Series, terms: int, h: float, end: float, t: float) -> None:
     """Keep the series of a step from time `t` to its place `end`, while the laws are as at its start."""
     shown = series.shown
     if not shown.is_needed[0]:
         return
-    at = shown.kept[STEPS]
-    coefs, forces = shown.coefs[at], shown.law_forces[at]
-    for k in range(TERMS + 1):
-        for i in range(len(shown.which)):
-            coefs[k, i] = series.motion[k, shown.which[i]] if k <= terms else 0.0
-    if len(shown.acting):
-        for node in range(len(shown.nodes)):
-            s = shown.nodes[node] * end
-            press(laws, series, terms, s, h)
-            for i in range(len(shown.acting)):
-                law = shown.acting[i]
-                d, v = law_at(series, terms, s, h, law)
-                forces[node, i] = law_force(laws, rules, law, d, v)
-    shown.begin[at], shown.length[at], shown.end[at] = t, h, end
+    at, n = shown.kept[STEPS], len(shown.which)
+    for i in range(n):
+        own, which = shown.coefs[at, i], shown.which[i]
+        for k in range(terms + 1):
+            own[k] = series.motion[k, which]
+    for i in range(len(shown.acting)):
+        whole_force(laws, series, terms, h, shown.acting[i], shown.coefs[at, n + i])
+    for i in range(shown.coefs.shape[1]):
+        for k in range(terms + 1, TERMS + 1):
+            shown.coefs[at, i, k] = 0.0
+    if end < 1.0:
+        power = 1.0
+        for k in range(1, terms + 1):
+            power *= end
+            for i in range(shown.coefs.shape[1]):
+                shown.coefs[at, i, k] *= power
+    shown.begin[at], shown.length[at] = t, h * end
     shown.kept[STEPS] += 1
 
 

@@ -413,15 +413,12 @@ class Shown(NamedTuple):
         Whether there is anything to see.
     which, acting : ndarray
         Unknowns, by their places in the order of elimination, and laws.
-    nodes : ndarray, shape (n_nodes,)
-        Places in a step at which forces of the laws are kept.
     kept : ndarray, shape (2,)
         Steps and intervals that were kept.
-    coefs : ndarray, shape (n_steps, TERMS + 1, n_which)
-        Of the unknowns.
-    law_forces : ndarray, shape (n_steps, n_nodes, n_acting)
-    begin, length, end : ndarray, shape (n_steps,)
-        Time of the start, length of the step, and the place up to which it was taken.
+    coefs : ndarray, shape (n_steps, n_which + n_acting, TERMS + 1)
+        Of the unknowns, and of the forces of the laws, all dashpots included, as far as steps were taken.
+    begin, length : ndarray, shape (n_steps,)
+        Time of the start, and to where the step was taken.
     x, rest : ndarray, shape (n_intervals, n_parts, n_x) and (n_intervals, n_parts, 2 n_modes)
         `Modal.x` and `Modal.rest` at their starts.
     held : ndarray, shape (n_intervals, n_acting)
@@ -433,13 +430,10 @@ class Shown(NamedTuple):
     is_needed: Flags
     which: Index
     acting: Index
-    nodes: Array
     kept: Index
     coefs: Array
-    law_forces: Array
     begin: Array
     length: Array
-    end: Array
     x: Array
     rest: Array
     held: Array

@@ -1,0 +1,201 @@
+"""What envelopes look at: motion of nodes, forces of members and sums of forces, as rows on the motion and
+the inputs.
+
+Most rows hold few unknowns: one sparse matrix gives all of them, and where extremes are searched each has a
+product of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from pound_solve.integrate.protocol import Course, Motion, Rows
+from pound_solve.numerics.matrices import Matrix, entries, gathered, used_rows
+from pound_solve.numerics.types import Array, Flags, Index
+from pound_solve.structure.elements.base import Output
+from pound_solve.structure.equations import LinearSums
+from pound_solve.structure.reduction import ReducedSystem
+
+FEW = 64  #: rows and columns of a matrix that is not sparse, at most
+MOTION = "uva"  #: names of displacements, velocities and accelerations
+
+
+class Quantities:
+    """Quantities, all but those that never move as rows.
+
+    Parameters
+    ----------
+    system : ReducedSystem
+    nodes : sequence of int
+    outputs : sequence of Output
+    sums : mapping of str to LinearSums
+        By the name of what they are.
+    acting : ndarray of int, shape (n_acting,)
+        Laws whose forces are part of the motion.
+
+    Attributes
+    ----------
+    parts : dict of slice
+        Numbers of the displacements "u", velocities "v" (relative to the ground, where it moves as one) and
+        total accelerations "a" of the nodes, of the "output" of members, and of the sums by their names.
+    count : int
+    place : ndarray of int, shape (n_rows,)
+        Numbers of the rows' quantities.
+    """
+
+    def __init__(
+        self,
+        system: ReducedSystem,
+        nodes: Sequence[int],
+        outputs: Sequence[Output],
+        sums: Mapping[str, LinearSums],
+        acting: Index,
+    ) -> None:
+        self.system, self.sums, self._width = system, sums, len(acting)
+        self.parts: dict[str, slice] = {}
+        self.count, self.place = 0, np.zeros(0, np.int64)
+        self._inputs = np.zeros((0, 3 * system.inputs.shape[1] + 1))  # the last column is of ones
+        self._rows = Rows(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
+        self._add_nodes(nodes)
+        self._add_outputs(outputs)
+        for name, x in sums.items():
+            motion = {**dict(enumerate(x.motion)), 3: x.of_laws[:, acting]}
+            self._add(name, motion, dict(enumerate(x.inputs)), x.constant)
+        order = np.lexsort((self._rows.columns, self._rows.number))
+        self._rows = self._rows.some(order)
+        self._driven = np.flatnonzero(self._inputs.any(axis=1))
+        self._pointers = np.searchsorted(self._rows.number, np.arange(len(self.place) + 1))
+        used, column = np.unique(self._rows.columns, return_inverse=True)
+        self._used = [used[used // system.size == k] - k * system.size for k in range(3)]
+        self._used.append(used[used >= 3 * system.size] - 3 * system.size)
+        self._column = np.zeros(3 * system.size + self._width, np.int64)
+        self._column[used] = np.arange(len(used))
+        shape = len(self.place), len(used)
+        self._matrix = gathered(shape, self._rows.number, column, self._rows.factors, most_dense=FEW)
+
+    def _add(
+        self, name: str, motion: Mapping[int, Matrix], inputs: Mapping[int, Array], constant: Array,
+        moves: Index | None = None, size: int = 0,
+    ) -> None:  # fmt: skip
+        """Add a part: on u, v, a and forces of laws by their numbers, on the inputs and their rates;
+        with the numbers, of so many, of those that move, if others do not.
+        """
+        n, m, first = self.system.size, self.system.inputs.shape[1], len(self.place)
+        moves, size = (np.arange(len(constant)), len(constant)) if moves is None else (moves, size)
+        self.parts[name] = slice(self.count, self.count + size)
+        self.place = np.concatenate([self.place, self.count + moves])
+        self.count += size
+        own = np.zeros((len(constant), 3 * m + 1))
+        for order, x in inputs.items():
+            own[:, order * m : (order + 1) * m] += x
+        own[:, -1] = constant
+        self._inputs = np.concatenate([self._inputs, own])
+        for k, matrix in motion.items():
+            row, column, factor = entries(matrix)
+            number, columns, factors = self._rows
+            self._rows = Rows(
+                np.concatenate([number, first + row]),
+                np.concatenate([columns, k * n + column]),
+                np.concatenate([factors, factor]),
+            )
+
+    def _add_nodes(self, nodes: Sequence[int]) -> None:
+        """Add the motion of nodes."""
+        system = self.system
+        dofs, place = system.structure.dofs, system.structure.model.nodes
+        of_u, on_inputs, at_rest = system.over(dofs.matrix([(n, d) for n in nodes for d in range(3)]))
+        # motion of the nodes when they ride on the ground: x, y, and a turn about the origin
+        x, y = (np.array([getattr(place[n], c) for n in nodes]) for c in "xy")
+        ridden = np.zeros((len(nodes), 3, 3))
+        ridden[:, 0, 0] = ridden[:, 1, 1] = ridden[:, 2, 2] = 1.0
+        ridden[:, 0, 2], ridden[:, 1, 2] = -y, x
+        ground = ridden.reshape(-1, 3) @ system.acceleration_inputs
+        moving = used_rows(of_u) | np.any(np.column_stack([on_inputs, at_rest, ground]), axis=1)
+        at = np.flatnonzero(moving)
+        for order, q in enumerate(MOTION):
+            inputs = {order: on_inputs[at]}
+            if q == "a":
+                inputs[0] = ground[at]  # they are total
+            constant = at_rest[at] if q == "u" else np.zeros(len(at))
+            self._add(q, {order: of_u[at]}, inputs, constant, at, len(moving))
+
+    def _add_outputs(self, outputs: Sequence[Output]) -> None:
+        """Add the forces of members."""
+        system, dofs = self.system, self.system.structure.dofs
+        of_u, on_inputs, constant = system.over(dofs.rows([(o.dofs, o.u_row.tolist()) for o in outputs]))
+        rows = [(o.dofs, () if o.v_row is None else o.v_row.tolist()) for o in outputs]
+        of_v, on_rates, _ = system.over(dofs.rows(rows))
+        constant = np.array([o.constant for o in outputs]) + constant
+        self._add("output", {0: of_u, 1: of_v}, {0: on_inputs, 1: on_rates}, constant)
+        self._shares = system.corotational.shares([(o.element, o.quantity) for o in outputs])
+
+    @property
+    def entries(self) -> Index:
+        """How many unknowns every row holds, shape (n_rows,)."""
+        return np.diff(self._pointers)
+
+    def inputs(self, t: Array) -> list[Array]:
+        """Inputs and their first two derivatives after the times, shape (n_inputs, n_times) each."""
+        return [self.system.excitation.values_after(t, order).T for order in range(3)]
+
+    def values(self, motion: Motion, s: Sequence[Array]) -> Array:
+        """Values of all rows, shape (n_rows, n_times), from the motion and the inputs, their rates and
+        those of these, shape (n_inputs, n_times) each.
+        """
+        out = self._matrix @ self._stacked(motion)
+        out[self._driven] += self._inputs[self._driven] @ np.concatenate([*s, np.ones((1, len(motion.t)))])
+        if self.system.corotational:
+            at, share = self._shares
+            seen = self.system.corotational.actions(self.system.quantities(motion.u.T, s[0].T))
+            out[self._of("output")] += (share * seen[:, at, 1:]).sum(axis=2).T
+            for name, x in self.sums.items():
+                if len(x.members):
+                    out[self._of(name)] += x.turned(motion.u, s[0])
+        return np.asarray(out)
+
+    def along(self, course: Course, row: Index, cell: Index, shares: Array) -> Array:
+        """Values of a row in a cell each, at shares of it, shape (n, n_shares)."""
+        cells, at = np.unique(cell, return_inverse=True)
+        t = (course.motion.t[cells, None] + shares * course.lengths[cells, None]).ravel()
+        s = self.inputs(t)
+        rows, out = self._some(row), np.zeros((len(row), len(shares)))
+        if course.along is not None and not self.system.corotational:
+            out += course.along(rows, cell, shares)
+        elif course.within is not None:
+            motion = course.within(cells, shares)
+            if self.system.corotational:
+                return np.asarray(self.values(motion, s).reshape(-1, len(cells), len(shares))[row, at])
+            stacked = self._stacked(motion)
+            stacked = stacked.reshape(len(stacked), len(cells), len(shares))
+            which, found = rows.summed(stacked[self._column[rows.columns], at[rows.number]])
+            out[which] += found
+        given = np.concatenate([*s, np.ones((1, len(t)))]).reshape(-1, len(cells), len(shares))
+        for own, x in zip(self._inputs.T, given):
+            out += own[row, None] * x[at]
+        return out
+
+    def _of(self, name: str) -> slice:
+        """Rows of a part that moves as a whole."""
+        part = self.parts[name]
+        return slice(*np.searchsorted(self.place, [part.start, part.stop]).tolist())
+
+    def _stacked(self, motion: Motion) -> Array:
+        """What the rows hold of a motion, shape (n_used, n_times)."""
+        return np.concatenate([part[own] for part, own in zip(motion[1:], self._used)])
+
+    def _some(self, row: Index) -> Rows:
+        """Some of the rows."""
+        counts = self.entries[row]
+        number = np.repeat(np.arange(len(row)), counts)
+        at = np.arange(len(number)) + np.repeat(self._pointers[row] - np.cumsum(counts) + counts, counts)
+        return self._rows.some(at)._replace(number=number)
+
+    @property
+    def shown(self) -> Flags:
+        """Which unknowns the rows hold, shape (n,)."""
+        out = np.zeros(self.system.size, bool)
+        for own in self._used[:3]:
+            out[own] = True
+        return out
