@@ -114,13 +114,21 @@ LITERAL = Reading(
             "n times the softer k_D; the dashpot of 0(equiv) lets go at zero force",
             "Figure 4: k_C is that of the adjacent element; a contact does not pull",
         ),
-        ("El Centro", EL_CENTRO.says, "component and length as printed; with this sign floor 1 collides"),
+        (
+            "El Centro",
+            EL_CENTRO.says,
+            "component and length as printed; of the two signs the one under which floor 1 collides",
+        ),
         (
             "Mexico City",
             MEXICO.says,
-            "component and factor as printed; where the long-period motion begins",
+            "component and factor as printed; where the long-period motion begins, with a jump of 0.2 g",
         ),
-        ("Loma Prieta", LOMA_PRIETA.says, "component as printed; the most used station of the event"),
+        (
+            "Loma Prieta",
+            LOMA_PRIETA.says,
+            "component as printed; the station is one of several, the sign one of two",
+        ),
     ),
 )
 BEST = Reading(
@@ -150,11 +158,11 @@ BEST = Reading(
             "n times the softer k_D; 0(equiv) holds until the overlap is gone",
             "Figure 4; Eq. 15 is that of a contact that pulls",
         ),
-        ("El Centro", EL_CENTRO_OLD.says, "the processing that was in use before the PEER collection"),
+        ("El Centro", EL_CENTRO_OLD.says, "a processing older than the PEER collection"),
         (
             "Mexico City",
             MEXICO_STRONG.says,
-            "the strong part: the paper's motion makes building 2 yield moderately",
+            "the strong part: the paper's motion causes moderate inelastic deformation",
         ),
         (
             "Loma Prieta",

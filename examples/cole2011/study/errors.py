@@ -38,6 +38,11 @@ class Drift:
     error: float
     scaled: float
 
+    @property
+    def far(self) -> bool:
+        """Whether the place is at the end of a building away from the other one."""
+        return self.place.endswith("left") == self.place.startswith("B1")
+
 
 def drifts(runs: Iterable[Run], benchmark: Run, strength: float = 1.0) -> Iterator[Drift]:
     """Every test's drifts against the benchmark of the same record; `strength` is that of Table IV "
