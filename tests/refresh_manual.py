@@ -5,7 +5,7 @@ tests check that they are fresh.
 import argparse
 from pathlib import Path
 
-from pound_deck.diagnostics import messages_page
+from pound_deck.messages import messages_page
 from pound_solve.assess.law_test import AXES, has_loop, picture
 from pound_solve.catalog import specs
 from pound_solve.editor import kate, notepad, textmate

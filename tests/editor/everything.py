@@ -1,7 +1,7 @@
 """Every kind of help that an editor may ask for at one place of a deck, whatever the deck is."""
 
-from pound_deck.diagnostics import MESSAGES
 from pound_deck.layout import layout
+from pound_deck.messages import MESSAGES
 from pound_deck.model import Span
 from pound_solve.catalog import catalog
 from pound_solve.editor.complete import complete

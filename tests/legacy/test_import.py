@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from legacy.decks import IN_SPACE, OSCILLATOR, PORTAL, STICK
-from pound_deck.diagnostics import MESSAGES, has_errors
+from pound_deck.diagnostics import has_errors
+from pound_deck.messages import MESSAGES
 from pound_deck.reader import read_text
 from pound_legacy.equake import File
 from pound_legacy.importer import translate

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from pound_deck.diagnostics import MESSAGES, caret, messages_page, render
+from pound_deck.diagnostics import caret, render
+from pound_deck.messages import MESSAGES, messages_page
 from pound_deck.reader import read_deck, read_text
 from pound_deck.source import MAX_BYTES, MAX_DEPTH, MAX_LINE
 

@@ -7,7 +7,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from pound_deck.cards import parse_items
-from pound_deck.diagnostics import MESSAGES, render
+from pound_deck.diagnostics import render
+from pound_deck.messages import MESSAGES
 from pound_deck.reader import read_text
 from pound_deck.source import Line
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pound_deck.diagnostics import MESSAGES
+from pound_deck.messages import MESSAGES
 from pound_deck.schema import REQUIRED, Kind
 from pound_deck.sections import NAMES
 from pound_solve.cli.main import main

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from pound_deck.diagnostics import MESSAGES, caret, has_errors
+from pound_deck.diagnostics import caret, has_errors
+from pound_deck.messages import MESSAGES
 from pound_solve.driver.run import DeckError, Request, prepare
 
 BAD = Path(__file__).parents[1] / "parser" / "bad"

@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
-from pound_deck.diagnostics import MESSAGES, Diagnostic
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.messages import MESSAGES
 from pound_deck.schema import REQUIRED, Field, Spec
 from pound_deck.sections import CARDS, FAMILIES, NAMES
 from pound_solve.report.deck_reference import takes, usage, vocabulary

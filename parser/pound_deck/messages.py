@@ -1,0 +1,540 @@
+"""All messages: the number of each, its title, its meaning and cure; the manual's page is written from it.
+
+Numbers: P1xx source text, P2xx cards and values, P3xx the model, R4xx records, A5xx stops of an analysis,
+S6xx studies of many runs, L6xx decks of Ruaumoko.  A number stands for its message for good.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
+    "P101": (
+        "not UTF-8 (warning)",
+        "The file holds bytes that are not UTF-8 text and is read as Latin-1. Save it as UTF-8.",
+    ),
+    "P102": (
+        "not a text file",
+        "The file holds zero bytes, as programs, pictures and UTF-16 text do. Save the deck as UTF-8 text.",
+    ),
+    "P103": (
+        "a web page",
+        "The file starts as an HTML or XML page, so a download saved the page and not the deck. "
+        "Download the raw file.",
+    ),
+    "P104": (
+        "deck too large",
+        "Deck and included files together exceed 8 MB. Put records into files of their own and name"
+        " them under EQUAKE.",
+    ),
+    "P105": (
+        "INCLUDE file not readable",
+        "The included file is missing or may not be read. Its name is relative to the folder of "
+        "the file that includes it.",
+    ),
+    "P106": ("INCLUDE loop", "A file includes itself, directly or through others. Take one INCLUDE out."),
+    "P107": (
+        "too many INCLUDEs",
+        "INCLUDE goes more than 20 files deep, or stands more than 1000 times. Join some files.",
+    ),
+    "P108": ("INCLUDE without a file name", "INCLUDE takes one file name in quotes and nothing else."),
+    "P109": ("nothing after &", "A line ends in &, but no continuation line follows. Remove the &."),
+    "P110": (
+        "line too long",
+        "A line with its continuations exceeds 2 000 000 characters. Split it into several cards, or "
+        "use a range.",
+    ),
+    "P201": (
+        "character without meaning",
+        "The character has no meaning outside quotes. Minus signs and quotes pasted from a text "
+        "processor are the usual cause.",
+    ),
+    "P202": ("quote not closed", "A text starts with a quote that is not closed on the same line."),
+    "P203": ("brackets do not match", "A bracket is not closed, or not opened, in the same card."),
+    "P204": ("brackets too deep", "Brackets are nested more than 50 deep. Use PARAM for the parts."),
+    "P205": (
+        "blank inside an expression",
+        "Blanks separate items. Write 1-2 or (1 - 2) for a difference, and 1 -2 for two items.",
+    ),
+    "P206": ("blank inside a list", "A comma list holds no blanks: write 1,3,5 or 1,4 TO 8."),
+    "P207": (
+        "neither number nor word",
+        "A word starts with a letter; a number is followed by a blank, a comma or an operator.",
+    ),
+    "P208": (
+        "range not understood",
+        "A range is written first TO last, or first TO last BY step. TO and BY cannot be names.",
+    ),
+    "P209": (
+        "not understood",
+        "Unexpected item on this card. An item is a number, an expression, a word, a text, a "
+        "list or NAME=value.",
+    ),
+    "P210": (
+        "unknown word",
+        "The word is not among the choices for this item. The message lists them.",
+    ),
+    "P211": ("unknown item name", "The card has no item of that name. The message lists its items."),
+    "P212": ("item given twice", "An item is given twice on one card, by name or by position. Remove one."),
+    "P213": (
+        "item missing",
+        "The card needs an item that has no default. The message gives its meaning and unit.",
+    ),
+    "P214": (
+        "too many items",
+        "The card has more items by position than it allows. Write further items as NAME=value, "
+        "and lists with commas.",
+    ),
+    "P215": (
+        "item after a named one",
+        "Items by position come before the named ones. Values of one item are joined by commas "
+        "without blanks: NODES=100,100+n.",
+    ),
+    "P216": (
+        "wrong kind of value",
+        "The item takes another kind of value: a number, a whole number, a text or a word. A text "
+        "must be in quotes unless it is one word or one number.",
+    ),
+    "P217": (
+        "value out of limits",
+        "The number is outside the limits of this item, which the message gives. No magnitude is "
+        "above 1e30, and none that must be above 0 is below 1e-30, so that what is computed stays finite.",
+    ),
+    "P218": (
+        "wrong number of values",
+        "The item takes another number of values, joined by commas without blanks.",
+    ),
+    "P219": (
+        "range not allowed",
+        "The item takes no range, or the first item of the card is no range. Ranges generate nodes "
+        "and elements, and are allowed in lists of nodes and elements.",
+    ),
+    "P220": (
+        "range does not fit",
+        "The range descends, misses its end, or cannot be stepped evenly along with the card's "
+        "first range. a TO b with b = a - 1 is valid and empty: it adds nothing to a list "
+        "of nodes or elements, a card whose list is empty applies to nothing, and a line of NODES or "
+        "ELEMENTS that starts with it generates nothing. A lower b is an error.",
+    ),
+    "P221": (
+        "too much generated",
+        "Ranges of the deck generate more than 100 000 numbers. Check their ends.",
+    ),
+    "P222": (
+        "unknown name",
+        "The deck defines no PARAM of that name. Define it with PARAM, or put a text in quotes.",
+    ),
+    "P223": ("division by zero", "The expression divides by zero, or takes zero to a negative power."),
+    "P224": ("number too large", "The number or the value of the expression is beyond 1.8e308."),
+    "P225": (
+        "no real value",
+        "The function or the power has no real value there, such as the root of a negative number.",
+    ),
+    "P226": (
+        "function not known",
+        "The function does not exist or takes another number of values. The message lists the functions.",
+    ),
+    "P227": ("text in arithmetic", "A text cannot be added, multiplied or given to a function."),
+    "P228": (
+        "PARAM in a circle",
+        "The value of a PARAM depends on itself. Give one of the names a number.",
+    ),
+    "P229": (
+        "PARAM given twice",
+        "A PARAM has two values in the deck. Remove one, or override it with --set.",
+    ),
+    "P230": ("PARAM name reserved", "Names of functions, PI, TO, BY, NAN and INF cannot be PARAM names."),
+    "P231": (
+        "PARAM not understood",
+        "Write PARAM name = value, one value each; one line may define several.",
+    ),
+    "P232": (
+        "--set of an unknown PARAM",
+        "Only names that the deck defines with PARAM can be set from the command line.",
+    ),
+    "P233": (
+        "--set value not understood",
+        "A PARAM that holds a number is set to a number or an expression; one that holds a text to "
+        "any text, with or without quotes.",
+    ),
+    "P234": (
+        "line outside any section",
+        "The line comes before the first section. Write the section's name (NODES, ELEMENTS, ...) "
+        "on a line above it.",
+    ),
+    "P235": (
+        "unknown section",
+        "The word alone on its line is neither a section of a deck nor a line of the section above.",
+    ),
+    "P236": (
+        "words after a section's name",
+        "A section's name must be alone on its line. Put column heads after an exclamation mark.",
+    ),
+    "P237": ("card given twice", "TITLE, UNITS, GRAVITY, MASS and GEOMETRY are allowed once in a deck."),
+    "P238": ("UNITS not understood", "Write UNITS force length time, for example UNITS kN m s."),
+    "P239": (
+        "file name without quotes",
+        "The item is neither a word nor an expression. If it names a file, put it in quotes: FILE="
+        '"records/a-1.at2".',
+    ),
+    "P301": ("node given twice", "Two cards define the same node number. Ranges generate numbers too."),
+    "P302": (
+        "element given twice",
+        "Two cards define the same element number. Ranges generate numbers too.",
+    ),
+    "P303": (
+        "property set given twice",
+        "Two lines under PROPS have the same label; upper and lower case are the same.",
+    ),
+    "P304": ("drift given twice", "Two lines under DRIFT have the same name."),
+    "P305": (
+        "unknown node",
+        "The node is not defined under NODES. To connect an element to the ground leave J out.",
+    ),
+    "P306": ("unknown element", "The element is not defined under ELEMENTS."),
+    "P307": ("unknown property set", "The label is not defined under PROPS."),
+    "P308": (
+        "SLAVED and MASTER go together",
+        "A node with SLAVED needs a MASTER, and MASTER needs the directions in SLAVED.",
+    ),
+    "P309": ("node slaved to itself", "MASTER is the node itself. Name another node."),
+    "P310": (
+        "master is slaved",
+        "The master follows another node in the same direction. Name the last master of the chain.",
+    ),
+    "P311": (
+        "fixed and slaved",
+        "A direction is both fixed and slaved. Remove the letter from FIX or SLAVED.",
+    ),
+    "P312": (
+        "member without length",
+        "Both ends of a FRAME, BEAM_COLUMN or TENDON are at the same point.",
+    ),
+    "P313": ("property set not used (warning)", "No element has this property set."),
+    "P314": ("loose node (warning)", "No element ends at the node, and it is not slaved to another."),
+    "P315": ("nothing to analyse", "The deck has no nodes or no elements."),
+    "P316": ("no analysis", "The deck requests no analysis. Add a section ANALYSIS."),
+    "P317": (
+        "nothing moves the model (warning)",
+        "A HISTORY has no EQUAKE, no FORCES, no INITIAL motion and no loads, so all results are zero.",
+    ),
+    "P318": (
+        "drift without height (warning)",
+        "The nodes of a drift are at the same height and no HEIGHT is given, so no drift ratio is printed.",
+    ),
+    "P319": (
+        "gravity not known",
+        "There are weights, but no value of gravity is known for these units. Add GRAVITY with its value.",
+    ),
+    "P320": (
+        "weight looks like a node (warning)",
+        "WX is the number of a node and WY differs from it. Node lists have commas: 1,2 and not 1 2.",
+    ),
+    "P321": ("element ends at one node", "Both ends of the element are the same node."),
+    "P324": (
+        "analysis given twice",
+        "A deck may contain one analysis of each kind. Run it again with other PARAM values "
+        "(--set) for another one.",
+    ),
+    "P325": (
+        "initial motion of a degree of freedom that cannot have it",
+        "INITIAL gives a displacement or velocity to a direction that is fixed or follows a master. "
+        "Give it to a free direction, or to the master.",
+    ),
+    "P329": (
+        "node with two weights (warning)",
+        "All nodes of a line under WEIGHTS have a weight from another line, or a node is twice in a "
+        "list. Weights of a node add up. Lines that overlap only in part give no warning.",
+    ),
+    "P330": (
+        "element cannot be built",
+        "The values of the element or of its property set contradict each other or its nodes. The "
+        "message states why; correct the property set, or the line under ELEMENTS that the hint names.",
+    ),
+    "P331": (
+        "loads on an element that is not a member",
+        "MEMBER_LOADS act on FRAME and BEAM_COLUMN members only. Load the nodes of springs, dashpots and "
+        "contacts under LOADS, or correct the element's number.",
+    ),
+    "P332": (
+        "damping contradictory or not computable",
+        "The options of the DAMPING line exclude each other, two of the modes they name are the same, "
+        "or a ratio "
+        "comes out negative. The message states which; the manual's page on damping has the ranges.",
+    ),
+    "P334": (
+        "contact along an inclined line",
+        "A contact without ANGLE acts along the line from I to J. Nodes at different heights make "
+        "that line inclined; for floors that meet along x give ANGLE=0.",
+    ),
+    "P335": (
+        "pushover not possible",
+        "The items of PUSHOVER exclude each other, its control node cannot move, or its pattern has "
+        "no force. It needs a TARGET (with CONTROL=FORCE, a FACTOR is enough). FORCES belong to "
+        "PATTERN=FORCES with as many NODES, ADAPTIVE=YES to PATTERN=MODE; the other patterns need mass.",
+    ),
+    "P336": (
+        "contact pressed at rest (warning)",
+        "GAP is below zero: the bodies overlap at rest and are pressed together. A distance is positive.",
+    ),
+    "P337": (
+        "structure not connected to the ground (warning)",
+        "EQUAKE shakes the base along a direction in which no fixed node, spring, dashpot or contact holds "
+        "the structure, and neither INITIAL nor FORCES set it in motion. Fix its base in that direction.",
+    ),
+    "P338": (
+        "name of no single building, or of no floor",
+        "A line of BUILDINGS names nodes that elements do not connect, a building that has a name, or a "
+        "name given before; or its FLOORS are nodes elsewhere, or where nothing has mass. A building is "
+        "all that elements and slaving connect; contacts do not.",
+    ),
+    "P339": (
+        "building damped twice, or not at all (warning)",
+        "Lines of DAMPING name buildings (BUILDING=), and another building has no line, or one building "
+        "has several, which add up. Lines for some NODES or PROPS of a building may stand side by side.",
+    ),
+    "P340": (
+        "P-Delta without axial forces (warning)",
+        "GEOMETRY requests P-Delta, but no load compresses the columns, so it has no effect. Weights are "
+        "masses; STATIC GRAVITY=YES makes them loads too.",
+    ),
+    "P341": (
+        "damping ratio above one (warning)",
+        "XI under DAMPING is a share of critical damping, not percent: 5 % is 0.05.",
+    ),
+    "P342": (
+        "gravity of another unit of length (warning)",
+        "GRAVITY has the value of another unit of length than that of UNITS, such as 9.81 with mm. "
+        "All masses are weights divided by it. Correct one of the two.",
+    ),
+    "P343": (
+        "weight of a fixed node (warning)",
+        "The node is fixed, so its mass takes no part in any motion. A support with a motion of its own "
+        "(SUPPORTS) may have weight.",
+    ),
+    "P344": (
+        "drift of one node",
+        "Both nodes of the drift are the same. Name the lower and the upper one.",
+    ),
+    "P345": (
+        "too many steps or rows",
+        "DT divides the history into more than 100 000 000 steps, or OUTPUT EVERY into more than 5 000 000 "
+        "stored rows. The message gives the count, and the shortest interval that is allowed.",
+    ),
+    "P346": (
+        "mode beyond the last (warning)",
+        "MODES of a damping model names a mode that the structure does not have. The last mode is taken "
+        "in its "
+        "place.",
+    ),
+    "R401": (
+        "record not found",
+        "The record is neither in the deck's folder nor in the record folders. Check its name, "
+        "or add --records DIR.",
+    ),
+    "R402": (
+        "record not readable",
+        "The file does not have the FORMAT given. Check the FORMAT and the place named in the message.",
+    ),
+    "R403": (
+        "record count differs",
+        "The number of values in the record differs from that in its header. The file may be truncated.",
+    ),
+    "R404": (
+        "record value out of range",
+        "A value of the record is not a finite number, or far beyond any earthquake. Check the "
+        "units and the columns.",
+    ),
+    "R405": (
+        "motion or force incomplete or contradictory",
+        "The line of EQUAKE or FORCES lacks an item, or its items exclude each other. "
+        "The message states which.",
+    ),
+    "R406": (
+        "there is no saved state to restart from",
+        "Name the .h5 file of a run of the same structure that ended or had a SAVE time, written by the "
+        "same version of the program; its path is relative to the deck's folder.",
+    ),
+    "R407": (
+        "a file that is read and written",
+        "An output file has the name of the deck, of an included file, of a record, or of a partial result "
+        "that RESTART names. Rename one of them, or give another folder with -o.",
+    ),
+    "R408": (
+        "the saved state is of another deck",
+        "A history goes on only with the structure, loads, damping and motion it began with. Give them "
+        "the values of the first run. NEW=MOTION lets another motion follow: its time begins at zero.",
+    ),
+    "R409": (
+        "record contradicts its header (warning)",
+        "The samples are used as they stand. The file may have been edited, scaled or cut, or its header "
+        "may belong to the record before processing. Compare it with the agency's file.",
+    ),
+    "R410": (
+        "no one motion to be replaced",
+        "The motions of a sweep take the place of the one line under EQUAKE. Name the records of a deck "
+        "with several lines, or none, by PARAMs.",
+    ),
+    "A501": (
+        "unstable structure",
+        "The stiffness matrix is singular: some node can move without resistance. The message names"
+        " it; add a support or a member.",
+    ),
+    "A502": (
+        "step above the stability limit",
+        "The time step of an explicit method exceeds its limit. Use a smaller DT or another METHOD.",
+    ),
+    "A503": (
+        "no progress",
+        "Too many events happen at one instant or within one step, or the step falls below its least "
+        "size. Use a shorter DT or METHOD=EXACT; check stiffness and restitution of the contacts. NEWMARK "
+        "with EVENTS=STEPPED and a short DT does not search for events and may continue.",
+    ),
+    "A504": (
+        "runaway or not a number",
+        "Displacements grew without bound, or a result is no number. Check DT, damping, strengths, and the "
+        "magnitudes of the deck.",
+    ),
+    "A505": (
+        "method does not suit the model",
+        "The chosen METHOD cannot solve this model. The message states why, and which can.",
+    ),
+    "A506": (
+        "interrupted",
+        "The user or the system ended the run by a signal. Results up to that time are kept. They replace "
+        "no older ones: then they stay in the file whose name ends in .partial.h5.",
+    ),
+    "A507": (
+        "static analysis does not converge",
+        "No equilibrium was found. Loads may exceed the strength, or a contact may be all that "
+        "supports a part.",
+    ),
+    "A508": (
+        "disk full",
+        "The disk has no room for the results. What was written before is kept. It replaces no older "
+        "results: then it stays in the file whose name ends in .partial.h5. Make room, give another folder "
+        "with -o, or store less (OUTPUT EVERY, NODES, MEMBERS, HISTORIES).",
+    ),
+    "S601": (
+        "the study is no TOML",
+        "The message names the line. A text stands in quotes, a list in brackets; a table begins with "
+        "[name], each of several tables of one name with [[name]].",
+    ),
+    "S602": (
+        "unknown item of a study",
+        "The study, or one of its tables, has no item of that name. The message names the nearest, or all.",
+    ),
+    "S603": (
+        "value of the wrong kind",
+        "The item takes a text, a number, a list or a table, or a number above zero. The message states "
+        "which.",
+    ),
+    "S604": (
+        "a file of the study is missing",
+        "The study names no deck, or no file fits a pattern. Paths and patterns count from the folder of "
+        "the study; on the command line, from the working folder.",
+    ),
+    "S605": (
+        "items of a study contradict each other",
+        "A PARAM has values in two places, lists of zip differ in length, an intensity lacks an item, or "
+        "two runs are the same. The message states which.",
+    ),
+    "S606": (
+        "a record cannot be used as the study says",
+        "The file of the record gives another unit, or the record cannot be scaled to the intensity. "
+        "Records that are read differently stand in [[motions]] tables of their own.",
+    ),
+    "S607": (
+        "a PARAM without effect",
+        "The deck uses the PARAM for its motion alone, and the records of the study replace that motion.",
+    ),
+    "L601": (
+        "deck in space",
+        "The deck is one of Ruaumoko-3D. This program reads plane structures only.",
+    ),
+    "L602": (
+        "line incomplete",
+        "A line of the old deck ends before an item that must stand, or a section before a line that "
+        "must. The "
+        "message names what is missing. Items left out at the end of a line are zero where they may be.",
+    ),
+    "L603": (
+        "no such number",
+        "An item of the old deck is no number, not a whole one, or outside its limits. A line with an "
+        "item too "
+        "few or too many puts the numbers behind it into the wrong columns.",
+    ),
+    "L604": (
+        "code not known",
+        "A code of the old deck asks for something whose lines no source states, or that this program "
+        "does not "
+        "have. Write that part in the language of this program.",
+    ),
+    "L605": (
+        "read by convention (warning)",
+        "No source confirms what the item means; it is read as it is remembered. `pound-solve import` "
+        "marks it "
+        "in the new deck. Where an old deck is run without import this is an error: a result must not "
+        "hang on it.",
+    ),
+    "L606": (
+        "ground of the reading (warning)",
+        "Tells that the deck was read as one of Ruaumoko-2D, and what of it rests on decks of others.",
+    ),
+    "L607": (
+        "section or line out of place",
+        "A section of the old deck is missing or stands twice, or lines follow the last one that its "
+        "counts name.",
+    ),
+    "L608": (
+        "number out of order or unknown",
+        "A node, member, property set or counter is not defined, or does not ascend up to the count of the "
+        "control lines. Often a line is missing or stands too much.",
+    ),
+    "L609": (
+        "not carried over (warning)",
+        "An item of the old deck has no counterpart, or what it does is not known. Where an old deck is "
+        "run "
+        "without import this is an error.",
+    ),
+    "L610": (
+        "no old deck",
+        "`pound-solve import` reads decks of Ruaumoko-2D: a title, four lines of control numbers, then "
+        "NODES. "
+        "Decks of this program need no import.",
+    ),
+    "L611": (
+        "record in a file of its own",
+        "No record follows in the old deck. Name its file: `pound-solve import DECK --record FILE -o "
+        "model.inp`.",
+    ),
+    "L612": (
+        "old deck too large",
+        "The file exceeds 256 MB. Put its record into a file of its own.",
+    ),
+}
+
+
+def messages_page() -> str:
+    """Text of ``manual/messages.md``: every code with its meaning and cure."""
+    heads = {
+        "P1": "Source text",
+        "P2": "Cards and values",
+        "P3": "The model",
+        "R4": "Records",
+        "A5": "Stops of an analysis",
+        "S6": "Studies of many runs",
+        "L6": "Decks of Ruaumoko",
+    }
+    out = [
+        "# Messages",
+        "",
+        "Every message names its place as `file:line:column` and shows the line with the place underlined.",
+        "An error stops the run before it starts; a warning (marked below) does not.",
+        "This page is written from `MESSAGES` in `pound_deck/messages.py`.",
+    ]
+    for prefix, head in heads.items():
+        out += ["", f"## {head}", "", "| Code | Title | Meaning and cure |", "|---|---|---|"]
+        out += [f"| {c} | {t} | {m} |" for c, (t, m) in MESSAGES.items() if c.startswith(prefix)]
+    return "\n".join(out) + "\n"
