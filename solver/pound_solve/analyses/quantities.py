@@ -68,8 +68,8 @@ class Quantities:
         self._driven = np.flatnonzero(self._inputs.any(axis=1))
         self._pointers = np.searchsorted(self._rows.number, np.arange(len(self.place) + 1))
         used, column = np.unique(self._rows.columns, return_inverse=True)
-        self._used = [used[used // system.size == k] - k * system.size for k in range(3)]
-        self._used.append(used[used >= 3 * system.size] - 3 * system.size)
+        parts = np.split(used, np.searchsorted(used, system.size * np.arange(1, 4)))
+        self._used = [part - k * system.size for k, part in enumerate(parts)]
         self._column = np.zeros(3 * system.size + self._width, np.int64)
         self._column[used] = np.arange(len(used))
         shape = len(self.place), len(used)
