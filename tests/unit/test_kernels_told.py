@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -45,11 +47,25 @@ def test_what_a_run_waits_for(
     assert capsys.readouterr().err == ""
 
 
+class Uncompiled(NamedTuple):
+    """A function that numba would compile, left as it is."""
+
+    function: Callable[..., Any]
+
+    def typeof_pyval(self, argument: Any) -> type:
+        return type(argument)
+
+    def compile(self, types: tuple[type, ...]) -> Callable[..., Any]:
+        return self.function
+
+
 def test_error_stream_and_report_say_that_nothing_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(kernel_cache, "place", lambda: Place(None, NOT_KEPT))
-    monkeypatch.setattr(jit, "compiled", lambda kernel, *signature: kernel)
+    monkeypatch.setattr(
+        jit, "compiled", lambda kernel, *signature: kernel if signature else Uncompiled(kernel)
+    )
     numba = jit.Numba()
     for module in (engine, functions, providers):
         monkeypatch.setattr(module, "provider", lambda: numba)
