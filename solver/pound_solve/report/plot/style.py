@@ -140,6 +140,12 @@ def legend(axes: Any, handles: Sequence[Any] | None = None, title: str = "") -> 
     )
 
 
+def legend_below(picture: Any, all_axes: Sequence[Any]) -> None:
+    """Name the curves of all axes once, below them."""
+    named = {label: handle for axes in all_axes for handle, label in zip(*axes.get_legend_handles_labels())}
+    picture.legend(named.values(), named.keys(), loc="outside lower center", ncols=min(len(named), 4))
+
+
 def panels(count: int, title: str, each: tuple[float, float] = (3.4, 2.6)) -> tuple[Any, Sequence[Any]]:
     """A figure of `count` axes in up to four columns."""
     columns = min(4, max(1, round(count**0.5 + 0.2)))

@@ -104,7 +104,7 @@ def incremental(cases: Sequence[Curves], demand: str, level: str, path: Path) ->
     for axes in all_axes:  # alike, so that cases compare
         axes.set_xlim(0.0, max(own.get_xlim()[1] for own in all_axes))
         axes.set_ylim(0.0, max(own.get_ylim()[1] for own in all_axes))
-    style.legend(all_axes[len(cases) - 1])
+    style.legend_below(figure, all_axes)
     style.save(figure, path)
 
 
@@ -140,6 +140,5 @@ def separations(found: Sequence[Contacts], gap: str, path: Path) -> None:
         axes.set_ylim(0.0, 1.0)
         axes.set_xlim(left=0.0)
         axes.set_title(own.title)
-    most = max(range(len(found)), key=lambda n: len(found[n].rules))
-    style.legend(all_axes[len(found) - 1], all_axes[most].get_legend_handles_labels()[0])
+    style.legend_below(figure, all_axes)
     style.save(figure, path)
