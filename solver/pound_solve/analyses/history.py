@@ -160,14 +160,18 @@ class HistoryResult:
         found = [(RESIDUAL, f"{ratio:.2e}", good), *self._balance(), *self._closeups()]
         return found + self.returned.checks
 
+    @property
+    def figures(self) -> dict[str, object]:
+        """Figures of the method, and how many instants of collisions stand for one in their close-ups."""
+        every = self.recorder.envelopes.closeups.every
+        thinned = {"close-ups": f"peaks, and one instant of {every}"} if every > 1 else {}
+        return {**self.returned.figures, **thinned}
+
     def _closeups(self) -> Iterator[tuple[str, str, str]]:
-        """Tell where the close-ups of collisions found no room."""
+        """Tell where the close-ups of collisions found no room for their peaks."""
         closeups = self.recorder.envelopes.closeups
         if closeups.full < math.inf:
             yield CLOSEUPS, f"{closeups.full:.6g}", "look: a larger OUTPUT CLOSEUPS keeps all"
-        elif closeups.every > 1:
-            text = "good: all peaks are there; a larger OUTPUT CLOSEUPS keeps more"
-            yield "instants of collisions for one in their close-ups", str(closeups.every), text
 
     def _balance(self) -> Iterator[tuple[str, str, str]]:
         """Compare the base shear with inertia and loads, where there are buildings."""

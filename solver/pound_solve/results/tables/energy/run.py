@@ -8,8 +8,8 @@ from pound_solve.results.schema import Row, Stage, Table
 
 
 def rows(run: RunRecord) -> list[Row]:
-    """Number of unknowns, and the figures of the method."""
-    figures = run.history.returned.figures
+    """Number of unknowns, the figures of the method, and whether close-ups were thinned out."""
+    figures = run.history.figures
     return [("unknowns", str(run.history.system.size)), *((k, str(v)) for k, v in figures.items())]
 
 
