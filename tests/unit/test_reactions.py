@@ -1,11 +1,14 @@
 """Forces of supports, base shears and storeys of a history: closed forms, and both ways to each force."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import pound_solve
 from decks import structure_of
 from pound_solve.structure.buildings import buildings
+from pound_solve.structure.equations import Equations
 
 SDOF = """UNITS kN m s
 NODES
@@ -290,3 +293,56 @@ def test_the_shear_of_a_storey_has_the_inertia_of_joints_within_it(tmp_path):
     above = inertia(r, {21: 5.0, 22: 5.0, 13: 0.2})
     assert np.abs(shear[:, 1] + above).max() < 1e-9 * np.abs(shear).max()
     assert np.abs(shear[:, 0] + above + inertia(r, {11: 5.0, 12: 5.0})).max() < 1e-9 * np.abs(shear).max()
+
+
+#: an oscillator, and a body beside it that nothing but a contact joins to it
+BODY = """UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=YR
+ 3 -1 3 FIX=YR
+ELEMENTS
+ 1 COL 1 2
+ 2 HIT 3 2
+PROPS
+ COL SPRING KX=100
+ HIT CONTACT GAP={gap} ANGLE=0 LAW=KELVIN_VOIGT K=5000 E=0.6
+WEIGHTS
+ 2 20
+ 3 47.151
+{loads}
+EQUAKE
+ TABLE POINTS=0,0.3,1,2 SCALE={scale}
+OUTPUT
+ EVERY=0.01
+ANALYSIS
+ HISTORY 0.5 METHOD={method}
+"""
+
+
+@pytest.mark.parametrize("method", ["EXACT", "TAYLOR", "NEWMARK DT=0.01"])
+@pytest.mark.parametrize(
+    ("gap", "loads", "scale", "force"),
+    [(0.01, "", 1, 0.0), (0, "LOADS\n 3 FX=7.3", 1e-12, 7.3)],
+    ids=["untouched", "pressed"],
+)
+def test_a_body_without_inertia_is_in_balance(tmp_path, method, gap, loads, scale, force):
+    """Neither one that stays where it is while the ground moves away under it nor one that a load presses
+    against its neighbour is accelerated: what is left of their forces is rounding, and so is the inertia.
+    """
+    r = run(tmp_path, BODY.format(method=method, gap=gap, loads=loads, scale=scale))
+    assert r.history("contact/force").max() == pytest.approx(force, abs=1e-9)
+    assert balance(r) < 1e-9
+
+
+def test_a_force_that_the_equations_lack_is_out_of_balance(tmp_path, monkeypatch):
+    """The check fails where a contact pushes one building only."""
+    whole = Equations.sums
+
+    def without_contacts(self, weights):
+        return whole(self, replace(weights, contacts=0.0 * weights.contacts))
+
+    monkeypatch.setattr(Equations, "sums", without_contacts)
+    r = run(tmp_path, BODY.format(method="EXACT", gap=0, loads="", scale=-1))
+    assert r.history("contact/force").max() > 1.0
+    assert balance(r) > 0.1

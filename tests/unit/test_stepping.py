@@ -1000,3 +1000,49 @@ def test_the_cost_of_series_counts_intervals_in_modes_and_reversals(tmp_path, mo
     by_series = steps("RAMBERG_OSGOOD N=5", 0.02)
     assert smooth == pytest.approx(by_series + 0.25 * 100)
     assert by_series > 2.0 * steps(plain, 0.02)
+
+
+#: a frame whose beam lets its two nodes move together, but for rounding; a spring beside the beam, or none
+TOGETHER = """UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 2
+ 3 5 2
+ 4 5 0 FIX=XYR
+ELEMENTS
+ 1 COL 1 2
+ 2 BEAM 2 3
+ 3 COL 4 3
+ {beside}
+PROPS
+ COL FRAME E=3E7 A=0.16 I=0.002 {hinges}
+ BEAM FRAME E=3E7 A=0.2 I=0.005
+ SOFT SPRING KX=100 FX=5 RULE={rule}
+WEIGHTS
+ 2 200 200 1
+ 3 200 200 1
+DAMPING
+ RAYLEIGH XI=0.05 MODES=1,2
+EQUAKE
+ SINE AMPLITUDE=6 PERIOD=0.35
+OUTPUT
+ EVERY=0.01
+ANALYSIS
+ HISTORY 0.25 METHOD={method}
+"""
+
+
+@pytest.mark.parametrize("rule", ["MENEGOTTO_PINTO R=0.02", "BOUC_WEN N=2", "RAMBERG_OSGOOD N=5"])
+@pytest.mark.parametrize(
+    "method", ["NEWMARK DT=2E-3", "HHT DT=2E-3", "GENERALISED_ALPHA DT=2E-3", "CENTRAL DT=1E-4"]
+)
+def test_a_smooth_spring_between_nodes_that_move_together_does_not_reverse(tmp_path, rule, method):
+    """The rounding of its rate is no motion: that of the frame is the one without the spring."""
+    hinges = "" if method.startswith("CENTRAL") else "RULE=BILINEAR R=0.02 MI=60 MJ=60 LP=0.2"
+    deck, motions = tmp_path / "deck.inp", []
+    for beside in ("4 SOFT 2 3", ""):
+        deck.write_text(TOGETHER.format(beside=beside, hinges=hinges, rule=rule, method=method))
+        found = pound_solve.run(deck)
+        assert found.status == "done", found.message
+        motions.append(found.history("node/u"))
+    assert np.abs(motions[0] - motions[1]).max() < 1e-11 * np.abs(motions[1]).max()

@@ -72,7 +72,9 @@ class Weights:
     contacts : Matrix
         Forces of the contacts and of the friction in them.
     inertia : Matrix
-        Mass times total acceleration.
+        Mass times acceleration relative to the ground, where that moves as one.
+    ridden : Matrix
+        Mass times the acceleration of the ground, which makes the acceleration a total one.
     ground : Matrix
         Mass-proportional and modal damping.
     loads : Matrix
@@ -83,6 +85,7 @@ class Weights:
     geometric: Matrix
     contacts: Matrix
     inertia: Matrix
+    ridden: Matrix
     ground: Matrix
     loads: Matrix
 
@@ -180,8 +183,7 @@ class Equations:
             own, ruled = row[:, : self.n], row[:, self.n :]
             motion.append(own @ system.expand)
             inputs.append(own @ system.expand_inputs + ruled @ self._prescribed)
-        # total acceleration, where the motion is relative to the ground; and loads
-        inputs[0] = inputs[0] + weights.inertia @ (s.ground.T @ system.acceleration_inputs)
+        inputs[0] = inputs[0] + weights.ridden @ (s.ground.T @ system.acceleration_inputs)
         inputs[0] = inputs[0] - weights.loads @ self._forces()
         constant = terms[0][:, : self.n] @ system.expand_constant - weights.loads @ s.held
         of_laws = (weights.elements @ s.law_rows.T) * ~self._contact
@@ -251,7 +253,7 @@ def reactions(equations: Equations, supports: Sequence[int]) -> LinearSums:
     held = frozenset(dofs.moved)
     sums = [((f,), (float(f in held),)) for f in ((node, d) for node in supports for d in range(3))]
     rows = dofs.rows(sums)
-    return equations.sums(Weights(rows, rows, rows, rows, 0.0 * rows, rows))
+    return equations.sums(Weights(rows, rows, rows, rows, rows, 0.0 * rows, rows))
 
 
 def _product(rows: Matrix, matrix: Matrix) -> Matrix:

@@ -43,17 +43,23 @@ def base_sums(equations: Equations, buildings: Sequence[Building]) -> LinearSums
     rows, n = _rigid(equations, buildings), equations.n
     inner = _matrix([(k, x * (k < n)) for k, x in rows], equations)
     held = _matrix([(k, -x * (k >= n)) for k, x in rows], equations)
-    return equations.sums(Weights(inner, held, held, held, 0.0 * held, held))
+    return equations.sums(Weights(inner, held, held, held, held, 0.0 * held, held))
 
 
 def imbalance_sums(equations: Equations, buildings: Sequence[Building]) -> LinearSums:
     """What is left of the equations of motion, summed over the unknowns of every building as above; then
-    the inertia among it, which tells its size where a building does not stand on the ground.
+    the inertia among it; then what drives the building, the loads and its inertia in the ground's motion.
+
+    These tell the size of the terms where a building does not stand on the ground.  The inertia alone does
+    not: a body that nothing touches stays where it is while the ground moves.
     """
     inner = [(k, x * (k < equations.n)) for k, x in _rigid(equations, buildings)]
-    twice = _matrix([*inner, *inner], equations)
-    once = _matrix([*inner, *((k, 0.0 * x) for k, x in inner)], equations)
-    return equations.sums(Weights(once, once, once, twice, once, once))
+    none = [(k, 0.0 * x) for k, x in inner]
+    all_of = _matrix([*inner, *none, *none], equations)
+    inertia = _matrix([*inner, *inner, *none], equations)
+    ridden = _matrix([*inner, *inner, *inner], equations)
+    loads = _matrix([*inner, *none, *inner], equations)
+    return equations.sums(Weights(all_of, all_of, all_of, inertia, ridden, all_of, loads))
 
 
 def storey_sums(equations: Equations, buildings: Sequence[Building]) -> LinearSums:
@@ -68,7 +74,7 @@ def storey_sums(equations: Equations, buildings: Sequence[Building]) -> LinearSu
         geometric.append((above, np.array([x, 0.0 * turn])))
     own, turned = (_matrix(rows, equations) for rows in (elements, geometric))
     nothing = 0.0 * own
-    return equations.sums(Weights(own, turned, nothing, nothing, nothing, nothing))
+    return equations.sums(Weights(own, turned, nothing, nothing, nothing, nothing, nothing))
 
 
 def drift_sums(system: ReducedSystem, buildings: Sequence[Building]) -> LinearSums:

@@ -17,7 +17,8 @@ def event_value(laws: Laws, i: int, e: int, d: float, v: float) -> tuple[float, 
     """Event function `e` of law `i` at deformation `d` and rate `v`, and the size of its terms."""
     on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
     if on_d == 0.0 and constant == 0.0:  # what hardly moves would reverse again and again
-        constant = -BACK * abs(on_v) * laws.largest_rate[i]
+        back = max(BACK * laws.largest_rate[i], STILL * laws.largest_terms[i])
+        constant = -abs(on_v) * back
     size = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i] + abs(constant)
     return on_d * d + on_v * v + constant, size
 

@@ -255,6 +255,7 @@ def law_arrays(
         trial=state.LawMotion(zeros(), zeros()),
         largest_deformation=np.abs(d),
         largest_rate=np.abs(v),
+        largest_terms=np.abs(v),
         friction_force=zeros(),
         dashpot_loss=dashpot_losses,
         peak_force=zeros(),

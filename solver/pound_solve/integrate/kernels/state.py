@@ -265,6 +265,9 @@ class Laws(NamedTuple):
         Of a coupled law, c at the start of the step: its limits change with the normal force.
     now, trial : LawMotion
     largest_deformation, largest_rate : ndarray
+    largest_terms : ndarray
+        Largest sum of the absolute terms that a rate is made of: its rounding is a share of them, however
+        small it is itself.
     friction_force : ndarray
         Of a coupled law, at the start of the step.
     dashpot_loss : ndarray
@@ -308,6 +311,7 @@ class Laws(NamedTuple):
     trial: LawMotion
     largest_deformation: Array
     largest_rate: Array
+    largest_terms: Array
     friction_force: Array
     dashpot_loss: Array
     peak_force: Array

@@ -118,14 +118,17 @@ def predict(
     for i in range(n):
         right[i] = trial.load[i] - right[i] - now.damping_force[i] - g1 * now.damping_rate[i]
     for i in range(len(laws.rule)):
-        d, v = 0.0, 0.0
+        d, v, terms = 0.0, 0.0, 0.0
         for j in range(len(trial.inputs)):
             d += laws.inputs[i, j] * trial.inputs[j]
-            v += laws.inputs[i, j] * trial.input_rates[j]
+            term = laws.inputs[i, j] * trial.input_rates[j]
+            v, terms = v + term, terms + abs(term)
         for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
             d += laws.rows.values[q] * trial.displacement[laws.rows.columns[q]]
-            v += laws.rows.values[q] * trial.velocity[laws.rows.columns[q]]
+            term = laws.rows.values[q] * trial.velocity[laws.rows.columns[q]]
+            v, terms = v + term, terms + abs(term)
         laws.trial.deformation[i], laws.trial.rate[i] = d, v
+        laws.largest_terms[i] = max(laws.largest_terms[i], terms)
     predict_members(laws, step)
 
 
