@@ -1,8 +1,6 @@
 r"""Schoettler-Restrepo: a pinched rule for concrete with a cracking point (Ruaumoko's rule 52).
 
-One side at a time (`mirror`), with the yield force :math:`F_y > 0` and :math:`k` the initial stiffness.
-The backbone goes with :math:`k` to the crack point of force :math:`F_{cr} F_y`, on to the yield point at
-:math:`d_y = F_y / (\rho k)`, and beyond it with the slope :math:`r \rho k`.
+One side at a time (`mirror`), on the backbone of `cracking`.
 
 * A side whose largest deformation ever is :math:`d_m` (at first the crack point), force :math:`F_m`,
   unloads with :math:`k_u = \rho k (d_m/d_y)^{-\alpha}`.  It is not stiffer than :math:`k`, nor softer than
@@ -40,38 +38,31 @@ from collections.abc import Mapping
 from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, above, below, linear
+from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, linear
 from pound_solve.laws.hysteresis.backbone import ALFA, R
-from pound_solve.laws.mirror import both_sides, inward, need_both_sides, outward, pair, side, turns_inward
+from pound_solve.laws.hysteresis.cracking import (
+    ELASTIC,
+    FCR,
+    PARAMETERS,
+    RHO,
+    YIELDING,
+    Point,
+    backbone,
+    backbone_branch,
+    enter,
+    grown,
+    largest,
+    of,
+    parameters,
+    peak,
+)
+from pound_solve.laws.mirror import both_sides, inward, outward, pair, side, turns_inward
 
-# branches of the positive side; those of the negative side are one more
-ELASTIC, CRACKED, YIELDING, UNLOADING, TO_CORNER, TO_PINCH, TO_PEAK = 0, 1, 3, 5, 7, 9, 11
+# branches of the positive side, after those of the backbone; those of the negative side are one more
+UNLOADING, TO_CORNER, TO_PINCH, TO_PEAK = 5, 7, 9, 11
+PINCH = PARAMETERS  #: number of a law, after those of the backbone
 # internal variables
 INNER, CORNERS, ORIGIN, TURN, LEFT = 2, 3, 7, 9, 11
-
-Point = tuple[float, float]  #: deformation and force, mirrored
-
-
-def of(p: Numbers, s: float) -> tuple[float, float, float, float]:
-    """Yield force, crack deformation and force, and yield deformation of a side."""
-    fy, share, rho = (p[1], p[5], p[7]) if s > 0.0 else (-p[2], p[6], p[8])
-    return fy, share * fy / p[0], share * fy, fy / (rho * p[0])
-
-
-def backbone(p: Numbers, s: float, x: float) -> tuple[float, float]:
-    """Slope and force of the backbone at a deformation beyond the crack."""
-    fy, xc, fc, xy = of(p, s)
-    if x >= xy:
-        slope = p[3] * fy / xy
-        return slope, fy + slope * (x - xy)
-    slope = (fy - fc) / (xy - xc)
-    return slope, fc + slope * (x - xc)
-
-
-def peak(p: Numbers, s: float, m: Numbers) -> Point:
-    """Largest deformation of a side and its force."""
-    x = m[0] if s > 0.0 else m[1]
-    return x, backbone(p, s, x)[1]
 
 
 def unloading(p: Numbers, s: float, x: float) -> float:
@@ -86,13 +77,12 @@ def unloading(p: Numbers, s: float, x: float) -> float:
 
 def softness(p: Numbers, s: float, m: Numbers) -> float:
     """Stiffness of unloading of a side."""
-    return unloading(p, s, m[0] if s > 0.0 else m[1])
+    return unloading(p, s, largest(m, s))
 
 
 def pinch(p: Numbers, s: float, m: Numbers) -> Point:
     """Pinch point of a side."""
-    other = m[1] if s > 0.0 else m[0]
-    return max(0.5 * (other - of(p, -s)[3]), 0.0), p[9] * peak(p, s, m)[1]
+    return max(0.5 * (largest(m, -s) - of(p, -s)[3]), 0.0), p[PINCH] * peak(p, s, m)[1]
 
 
 def corner(s: float, m: Numbers) -> Point:
@@ -148,26 +138,14 @@ def line(p: Numbers, at: int, m: Numbers) -> tuple[float, float]:
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Elastic, along the backbone, unloading, or on a line of loading."""
-    if at == ELASTIC:
-        return linear(p[0], 0.0, above(of(p, 1.0)[1]), below(-of(p, -1.0)[1]))
-    s = side(at)
     if at < UNLOADING:
-        xc, xy = of(p, s)[1], of(p, s)[3]
-        if at < YIELDING:
-            slope, f = backbone(p, s, xc)
-            return linear(slope, s * (f - slope * xc), turns_inward(s), outward(s, xy))
-        slope, f = backbone(p, s, xy)
-        return linear(slope, s * (f - slope * xy), turns_inward(s))
+        return backbone_branch(p, at)
+    s = side(at)
     if at < TO_CORNER:
         x, f, k = m[TURN], m[TURN + 1], softness(p, s, m)
         return linear(k, s * (f - k * x), outward(s, x), inward(s, x - f / k))
     slope, f = line(p, at, m)
     return linear(slope, s * f, turns_inward(s), outward(s, end(p, m, at)[0]))
-
-
-def enter(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
-    """State on the backbone of a side."""
-    return pair(YIELDING if x >= of(p, s)[3] else CRACKED, s), m
 
 
 def load(p: Numbers, m: Numbers, s: float, x: float) -> tuple[int, Numbers]:
@@ -184,7 +162,7 @@ def reverse(p: Numbers, at: int, m: Numbers, x: float, f: float) -> Numbers:
     s = side(at)
     plus, minus, inner = m[0:3]
     if at < UNLOADING:
-        plus, minus = (max(plus, x), minus) if s > 0.0 else (plus, max(minus, x))
+        plus, minus = grown(m, s, x)
     own = corner(s, m)
     if at < TO_CORNER or at >= TO_PINCH:
         own, inner = (x, f), 1.0 if at >= UNLOADING and short(p, s, m, x, f) else 0.0
@@ -219,7 +197,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     if at == ELASTIC:
         return 0.5 * f * f / p[0]
     s = side(at)
-    x = m[0] if s > 0.0 else m[1]
+    x = largest(m, s)
     if at < UNLOADING:
         x = max(x, s * d)
     return 0.5 * f * f / unloading(p, s, x)
@@ -243,17 +221,14 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
-    parameters=10,
+    parameters=PARAMETERS + 1,
     variables=12,
 )
 
 
 def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
     """Rule from a card's values, a stiffness and the two yield forces."""
-    need_both_sides(fy_plus, fy_minus)
-    fcr, rho = values["FCR"], values["RHO"]
-    p = (*(k, fy_plus, fy_minus, values["R"], values["ALFA"]), fcr[0], fcr[-1], rho[0], rho[-1])
-    return Law(RULE, (*p, values["PINCH"]))
+    return Law(RULE, (*parameters(values, k, fy_plus, fy_minus), values["PINCH"]))
 
 
 SPEC = Spec(
@@ -263,28 +238,8 @@ SPEC = Spec(
     (
         R,
         ALFA,
-        Field(
-            "FCR",
-            Kind.REAL,
-            "-",
-            default=(0.5,),
-            above=0.0,
-            below=1.0,
-            count=(1, 2),
-            doc="force of the crack point as a share of the yield force, positive and negative side; "
-            "one value: "
-            "both",
-        ),
-        Field(
-            "RHO",
-            Kind.REAL,
-            "-",
-            default=(0.5,),
-            above=0.0,
-            below=1.0,
-            count=(1, 2),
-            doc="secant stiffness to the yield point as a share of the initial",
-        ),
+        FCR,
+        RHO,
         Field(
             "PINCH",
             Kind.REAL,
