@@ -36,7 +36,7 @@ from pound_solve.laws.automaton import (
     on_spring,
 )
 from pound_solve.laws.condensed import without
-from pound_solve.laws.hysteresis import bilinear
+from pound_solve.laws.hysteresis import bilinear, takeda_slip
 from samples import values
 
 pytestmark = pytest.mark.full
@@ -96,6 +96,12 @@ SAMPLES: dict[str, list[dict[str, Any]]] = {
     "Q_HYST": DEGRADING,
     "RAMBERG_OSGOOD": [{"N": 5.0}, {"N": 1.7, "ALPHA": 0.4}, {"N": 15.0, "ALPHA": 2.0}],
     "TAKEDA": [*DEGRADING, *({**sample, "BETA": beta} for sample in DEGRADING for beta in (0.6, 1.0))],
+    "TAKEDA_SLIP": [
+        {"R": 0.3, "ALFA": 1.0, "SLIP": 0.0, "INNER": 0.3},
+        {"R": 0.02, "FCR": (0.2, 0.7), "RHO": (0.3, 0.8), "ALFA": 0.5, "INNER": 0.1},
+        {"R": 0.9, "FCR": (0.9, 0.1), "RHO": (0.9, 0.1), "ALFA": 1.0, "SLIP": 10.0},
+        {"R": 0.0, "FCR": (0.05, 0.9), "RHO": (0.05, 0.9), "ALFA": 1.0, "INNER": 0.01},
+    ],
     "TRILINEAR": [
         {"R": 0.5, "F2": (1.3,)},
         {"R": 0.3, "R2": 0.05, "F2": (1.5, 2.5)},
@@ -224,8 +230,10 @@ def envelope(law: Law, d: float) -> float:
     return max(ends) if d > 0.0 else min(ends)
 
 
-def corner(sample: dict[str, Any], fy: float, which: int) -> float:
+def corner(law: Law, sample: dict[str, Any], fy: float, which: int) -> float:
     """Deformation of a side where the last yield line of the virgin rule begins."""
+    if law.rule is takeda_slip.RULE:  # its lines to the yield point lie above the cracked backbone
+        return fy / (law.p[7:9][which] * K)
     ratio = (sample["F2"][which] - 1.0) / sample["R"] if "F2" in sample else 0.0
     slack = sample.get("SLACK", (0.0,))
     gap = slack[which] if len(slack) == 2 else slack[0] * np.sign(fy)
@@ -241,7 +249,7 @@ def bounds(law: Law, sample: dict[str, Any], minus: float) -> Callable[[float, f
     if law.curved:
         begin_plus, begin_minus = 10.0 * REACH, -10.0 * REACH
     else:
-        begin_plus, begin_minus = corner(sample, PLUS, 0), corner(sample, minus, -1)
+        begin_plus, begin_minus = corner(law, sample, PLUS, 0), corner(law, sample, minus, -1)
     fall = -min(sample.get("R", 0.0), sample.get("R2", 0.0), 0.0) * K
 
     def at(low: float, high: float) -> tuple[float, float]:

@@ -59,6 +59,50 @@ def test_schoettler_inner_loop_goes_to_its_corners() -> None:
     assert walk.move(8.0).force == pytest.approx(22.0, rel=1e-12)
 
 
+# ---------------------------------------------------------------------- Takeda with slip
+
+SLIP: dict[str, Any] = {"R": 0.1, "ALFA": 0.4}
+
+
+def test_takeda_slip_as_published() -> None:
+    """The material TakedaSlip of K. Ichinohe for OpenSees (October 2023), compiled apart; both sides crack
+    before either yields.
+    """
+    path, expected = table(
+        "2 13.333333 0.5 1.6666667 -0.5 -6.1111111 -2.5 -15 1 7.7777778 3 16.666667 0 -2.5 -3 -16.666667 "
+        "0 2.3809524 6 21 4 10.796604 0 -6.4285767 -1 -9.8412733 -8 -22 -4 -3.8114012 0 2.0355604 1 3.5 "
+        "0.5 1.7144057 2 7 5 17.5 4 13.928811 5.5 19.25 8 22 3 -0.11742083 -2 -5.5 -6 -16.5 -3 -6.9509856 "
+        "-5 -13.316995 0 0.59232721 8 22 -3 -8.25 -9.5 -22.75 -2 1.1098972 6 16.5 1.5 2.1764784 "
+        "2.5 5.3594832 -11 -23.5"
+    )
+    assert forces(rule("TAKEDA_SLIP", **SLIP, INNER=0.7), path) == pytest.approx(expected, abs=1e-6)
+
+
+def test_takeda_slip_is_not_softer_than_the_line_it_leaves() -> None:
+    """Peaks at 8 and -8 (22); the line from the origin has the slope 2.75, a hundredth of k_u is 0.045."""
+    law = rule("TAKEDA_SLIP", **SLIP, INNER=0.01)
+    assert forces(law, [8.0, -8.0, 5.0, 4.0, 0.0])[2:] == pytest.approx([13.75, 11.0, 0.0], abs=1e-12)
+
+
+def test_takeda_slip_aims_at_the_yield_point_if_that_is_steeper() -> None:
+    """Cracked down to -1.5, and yielded up to 8: from there (-4, -20) is steeper to reach than the peak."""
+    walk = Walk(rule("TAKEDA_SLIP", **SLIP)).move(2.0, -1.5)
+    assert walk.force == pytest.approx(-10.0 - 5.0 / 3.0, rel=1e-14)
+    zero = 8.0 - 22.0 / (6.0 * 0.5**0.4)
+    slope = 20.0 / (4.0 + zero)
+    assert slope > (10.0 + 5.0 / 3.0) / (1.5 + zero)
+    assert walk.move(8.0, -1.0).force == pytest.approx(-slope * (1.0 + zero), rel=1e-13)
+    assert walk.move(-4.5).force == pytest.approx(-20.25, rel=1e-13)
+
+
+def test_takeda_slip_without_slip_is_a_straight_line_between_peaks() -> None:
+    """SLIP = 0 between two like peaks: k_s leads from zero force straight to the peak."""
+    zero = 8.0 - 22.0 / (6.0 * 0.5**0.4)
+    law = rule("TAKEDA_SLIP", **SLIP, SLIP=0.0)
+    expected = [22.0 * (x + zero) / (8.0 + zero) for x in (0.0, 4.0, 8.0)]
+    assert forces(law, [8.0, -8.0, 0.0, 4.0, 8.0])[2:] == pytest.approx(expected, rel=1e-12)
+
+
 # ---------------------------------------------------------------------- flag-shaped
 
 

@@ -1,0 +1,272 @@
+r"""Takeda with slip: concrete members whose bars slip, or whose cracks slide.
+
+One side at a time (`mirror`), on the backbone of `cracking`; :math:`d_m, F_m` are the largest deformation
+of the side and its force, a prime marks the other side.
+
+* It unloads from the backbone (Takeda's rules 1, 3 and 5) with
+
+  .. math:: k_u = \frac{F_m + F_c'}{d_m + d_c'} \quad (d_m \le d_y), \qquad
+            k_u = \frac{F_y + F_c'}{d_y + d_c'} \left(\frac{d_y}{d_m}\right)^{\alpha} \quad (d_m > d_y)
+
+  up to yield towards the crack point of the other side, and never softer than that (ours).
+* If the other side has not cracked, this line goes on to its crack force, and from there the backbone, if
+  this side has not yielded; else a straight line to the yield point of the other side (rule 6).
+* From zero force at :math:`d_0` a side that has cracked is loaded straight to :math:`(d_m, F_m)` (rule 4);
+  before its yield to its yield point, if that line is steeper.
+* Once it has gone beyond its yield point, and :math:`d_0` lies on the other side, it slips with
+
+  .. math:: k_s = \frac{F_m}{d_m + d_z'} \left(\frac{d_m}{d_m + d_z'}\right)^{n}, \qquad
+            d_z' = d_m' - \frac{F_m'}{k_u'}
+
+  until it meets the line from the origin to :math:`(d_m, F_m)`, and follows that one.
+* A reversal on one of these lines unloads with :math:`b k_u`, but not softer than the line that it leaves
+  (rule 7, where :math:`b = 0.7`), nor than the straight line from :math:`d_0` (ours): no loop gives energy.
+* A motion that turns while it unloads returns along the same line.
+
+Internal variables: largest deformation of each side (0: not cracked); of the side that is loaded or
+unloaded: :math:`d_0`, the point where its present line began, that of its last reversal, the stiffness of
+unloading from there, and the branch that it left.
+
+References
+----------
+Takeda T, Sozen MA, Nielsen NN (1970), Reinforced concrete response to simulated earthquakes, J. Struct.
+Div. ASCE 96(12): 2557-2573 (the rules, by their numbers).
+Kabeyasawa T, Shiohara H, Otani S, Aoyama H (1983), Analysis of the full-scale seven-story reinforced
+concrete test structure, J. Faculty of Engng, Univ. of Tokyo 37(2): 431-478 (slip).  Not read: the branches
+are those of the material TakedaSlip of K. Ichinohe (2023) for OpenSees, where :math:`n = 3`.  That has no
+bounds of :math:`b k_u`, and in place of rule 6 a jump of the force to the line to the crack point.
+Ruaumoko has a rule of this name; its number and its parameters are not certain, so none is accepted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, linear
+from pound_solve.laws.hysteresis.backbone import ALFA, R
+from pound_solve.laws.hysteresis.cracking import (
+    ELASTIC,
+    FCR,
+    PARAMETERS,
+    RHO,
+    YIELDING,
+    backbone,
+    backbone_branch,
+    enter,
+    grown,
+    largest,
+    of,
+    parameters,
+    peak,
+)
+from pound_solve.laws.mirror import both_sides, inward, outward, pair, side, turns_inward
+
+# branches of the positive side, after those of the backbone; those of the negative side are one more
+UNLOADING, SLIPPING, TO_PEAK = 5, 7, 9
+SLIP, INNER = PARAMETERS, PARAMETERS + 1  #: numbers of a law, after those of the backbone
+ZERO, LINE, TURN, SLOPE, LEFT = 2, 3, 5, 7, 8  #: internal variables
+
+
+def unloading(p: Numbers, s: float, x: float) -> float:
+    """Stiffness of unloading from the backbone at a deformation `x`."""
+    fy, xy = of(p, s)[0], of(p, s)[3]
+    _, xc, fc, _ = of(p, -s)
+    to_crack: float = (backbone(p, s, x)[1] + fc) / (x + xc)
+    if x <= xy:
+        return to_crack
+    stiffness: float = max((fy + fc) / (xy + xc) * (xy / x) ** p[4], to_crack)
+    return stiffness
+
+
+def slip(p: Numbers, s: float, m: Numbers) -> float:
+    """Stiffness of a side that slips."""
+    (x, f), (other, force) = peak(p, s, m), peak(p, -s, m)
+    reach = x + other - force / unloading(p, -s, other)
+    stiffness: float = f / reach * (x / reach) ** p[SLIP]
+    return stiffness
+
+
+def slips(p: Numbers, s: float, m: Numbers) -> bool:
+    """Whether a side slips before it is loaded to its peak."""
+    x, f = peak(p, s, m)
+    return m[ZERO] < 0.0 and x > of(p, s)[3] and slip(p, s, m) * (x - m[ZERO]) < f
+
+
+def end(p: Numbers, m: Numbers, at: int) -> float:
+    """Deformation at which a loading line ends, mirrored."""
+    s = side(at)
+    x, f = peak(p, s, m)
+    if at >= TO_PEAK:
+        return x
+    k = slip(p, s, m)
+    return -k * m[ZERO] / (f / x - k)
+
+
+def line(p: Numbers, m: Numbers, at: int) -> tuple[float, float]:
+    """Slope of a loading line, and its force at zero deformation, mirrored."""
+    s = side(at)
+    if at < TO_PEAK:
+        k = slip(p, s, m)
+        return k, -k * m[ZERO]
+    x, f = peak(p, s, m)
+    k = (f - m[LINE + 1]) / (x - m[LINE]) if x > m[LINE] else 0.0
+    return k, f - k * x
+
+
+def inner(p: Numbers, m: Numbers, at: int, x: float, f: float) -> float:
+    """Stiffness of unloading from a point of a loading line."""
+    s = side(at)
+    k = max(p[INNER] * unloading(p, s, largest(m, s)), line(p, m, at)[0])
+    if x > m[ZERO]:
+        k = max(k, f / (x - m[ZERO]))
+    return min(k, p[0])
+
+
+def start(p: Numbers) -> tuple[int, Numbers]:
+    """Virgin: elastic."""
+    return ELASTIC, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def unloaded(p: Numbers, m: Numbers, s: float) -> float:
+    """Deformation at which the unloading line of a side ends: at zero force or, before the other side has
+    cracked, at its crack force; mirrored.
+    """
+    beyond = of(p, -s)[2] if largest(m, -s) == 0.0 else 0.0
+    return m[TURN] - (m[TURN + 1] + beyond) / m[SLOPE]
+
+
+def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
+    """Elastic, along the backbone, unloading, or on a line of loading."""
+    if at < UNLOADING:
+        return backbone_branch(p, at)
+    s = side(at)
+    if at < SLIPPING:
+        x, f, k = m[TURN], m[TURN + 1], m[SLOPE]
+        return linear(k, s * (f - k * x), outward(s, x), inward(s, unloaded(p, m, s)))
+    k, f = line(p, m, at)
+    return linear(k, s * f, turns_inward(s), outward(s, end(p, m, at)))
+
+
+def crack(p: Numbers, m: Numbers, s: float) -> tuple[int, Numbers]:
+    """State on the backbone of a side at its crack point."""
+    x = of(p, s)[1]
+    plus, minus = grown(m, s, x)
+    return enter(p, (plus, minus, *m[2:9]), s, x)
+
+
+def load(p: Numbers, m: Numbers, s: float, x: float, f: float, k: float) -> tuple[int, Numbers]:
+    """State where a side begins to be loaded: at zero force, or at its crack force after a line of slope
+    `k`.
+    """
+    zero = x - f / k
+    fy, _, _, xy = of(p, s)
+    plus, minus = m[0], m[1]
+    most = largest(m, s)
+    if most < xy and (f > 0.0 or fy * (most - zero) > peak(p, s, m)[1] * (xy - zero)):
+        plus, minus = grown(m, s, xy)
+    m = (plus, minus, zero, x, f, *m[5:9])
+    return pair(SLIPPING if slips(p, s, m) else TO_PEAK, s), m
+
+
+def reverse(p: Numbers, m: Numbers, at: int, x: float, f: float) -> Numbers:
+    """Internal variables after a reversal."""
+    s = side(at)
+    if at >= UNLOADING:
+        return (*m[0:5], x, f, inner(p, m, at, x, f), float(at))
+    plus, minus = grown(m, s, x)
+    return (plus, minus, *m[2:5], x, f, unloading(p, s, x), float(at))
+
+
+def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
+    """Crack, yield, reverse, return, come to zero force, or to the end of a line."""
+    if at == ELASTIC:
+        return crack(p, m, 1.0 if event == 0 else -1.0)
+    s = side(at)
+    if UNLOADING <= at < SLIPPING:
+        if event == 0:
+            return int(m[LEFT]), m
+        if largest(m, -s) > 0.0:
+            return load(p, m, -s, -unloaded(p, m, s), 0.0, m[SLOPE])
+        if largest(m, s) <= of(p, s)[3]:
+            return crack(p, m, -s)
+        return load(p, m, -s, -unloaded(p, m, s), of(p, -s)[2], m[SLOPE])
+    now = branch(p, at, m)
+    if event == 0:
+        return pair(UNLOADING, s), reverse(p, m, at, s * d, s * (now[0] * d + now[2]))
+    if at < YIELDING:
+        return pair(YIELDING, s), m
+    x = end(p, m, at)
+    if at >= TO_PEAK:
+        return enter(p, m, s, x)
+    return pair(TO_PEAK, s), (*m[0:3], x, slip(p, s, m) * (x - m[ZERO]), *m[5:9])
+
+
+def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
+    """Energy recovered along the unloading line."""
+    s = side(at)
+    if at == ELASTIC:
+        k = p[0]
+    elif at < UNLOADING:
+        k = unloading(p, s, max(largest(m, s), s * d))
+    elif at < SLIPPING:
+        k = m[SLOPE]
+    else:
+        k = inner(p, m, at, s * d, s * f)
+    return 0.5 * f * f / k
+
+
+RULE = Rule(
+    (
+        *BranchKind.ELASTIC.named("elastic"),
+        *BranchKind.ELASTIC.named(*both_sides("cracked")),
+        *BranchKind.YIELDING.named(*both_sides("yielding")),
+        *BranchKind.ELASTIC.named(*both_sides("unloading", "slipping", "reloading to the peak")),
+    ),
+    start,
+    branch,
+    transition,
+    recoverable,
+    parameters=PARAMETERS + 2,
+    variables=9,
+)
+
+
+def build(values: Mapping[str, Any], k: float, fy_plus: float, fy_minus: float) -> Law:
+    """Rule from a card's values, a stiffness and the two yield forces."""
+    return Law(RULE, (*parameters(values, k, fy_plus, fy_minus), values["SLIP"], values["INNER"]))
+
+
+SPEC = Spec(
+    "hysteresis",
+    "TAKEDA_SLIP",
+    "Takeda with slip, with cracking: reinforced concrete",
+    (
+        R,
+        ALFA,
+        FCR,
+        RHO,
+        Field(
+            "SLIP",
+            Kind.REAL,
+            "-",
+            default=3.0,
+            lo=0.0,
+            hi=20.0,
+            doc="power n in the stiffness of slip; 0: the least slip",
+        ),
+        Field(
+            "INNER",
+            Kind.REAL,
+            "-",
+            default=1.0,
+            above=0.0,
+            hi=1.0,
+            doc="stiffness of unloading from a reloading line as a share of that from the backbone",
+        ),
+    ),
+    reference="Takeda, Sozen & Nielsen 1970; Kabeyasawa et al. 1983",
+    sample="R=0.06 FCR=0.4 RHO=0.4 ALFA=0.4 SLIP=1",
+    impl=build,
+)
