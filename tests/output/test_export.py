@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from output import sample
+from pound_solve.cli.main import main
 from pound_solve.report.export import export_csv
 from pound_solve.results import Results, Writer
 from pound_solve.results.contents import TABLES
@@ -64,3 +65,58 @@ def test_no_text_of_a_deck_is_a_formula_of_a_spreadsheet(tmp_path: Path) -> None
     with paths[0].open(encoding="utf-8") as file:
         cells = [row[0] for row in csv.reader(file)][1:]
     assert cells == ["'=1+2", "'@x", "-2", "'-cmd|' /C calc'!A0", "'+a", "plain"]
+
+
+# ---------------------------------------------------------------------- chosen columns
+
+
+def test_chosen_columns_stand_side_by_side_in_the_order_asked(done: Results, tmp_path: Path) -> None:
+    """The sample's components and contacts say in their heads where they stand."""
+    contact = done.coordinates("contact/force")["contact"][0]
+    asked = [
+        "--history",
+        "node/u",
+        "node=2",
+        "component=Y",
+        "--history",
+        "contact/force",
+        f"contact={contact}",
+    ]
+    whole = ["--history", "energy"]
+    assert main(["export", str(done.path), "-o", str(tmp_path / "new"), *asked, *whole]) == 0
+    (path,) = (tmp_path / "new").iterdir()
+    heads, *rows = csv.reader(path.read_text("utf-8").splitlines())
+    parts = [f"energy {label} [kN*m]" for label in done.labels("energy")]
+    assert heads == ["time [s]", "node/u 2 Y [m]", f"contact/force {contact} [kN]", *parts]
+    columns = [
+        done.time,
+        done.history("node/u", node=2, component="Y"),
+        done.history("contact/force", contact=contact),
+        *done.history("energy").T,
+    ]
+    np.testing.assert_array_equal(np.array(rows, dtype=float), np.transpose(columns))
+
+
+@pytest.mark.parametrize(
+    ("asked", "says"),
+    [
+        (["node/u", "node=99"], "history 'node/u' has no number of node='99'; it has: 1, "),
+        (["node/u", "knot=2"], "history 'node/u' has no 'knot'; it has: node, component"),
+        (["node/q"], "no history 'node/q' in this file; it has: "),
+        (["node/u", "2"], "--history: 2 is no KEY=VALUE, such as node=12"),
+        (
+            ["node/u", "node=1", "node=2"],
+            "--history: node stands twice; repeat --history for further columns",
+        ),
+    ],
+)
+def test_columns_that_there_are_not(
+    done: Results, tmp_path: Path, capsys: pytest.CaptureFixture[str], asked: list[str], says: str
+) -> None:
+    try:
+        status = main(["export", str(done.path), "-o", str(tmp_path / "new"), "--history", *asked])
+    except SystemExit as stop:
+        status = int(stop.code or 0)
+    assert status == 2
+    assert says in capsys.readouterr().err
+    assert not (tmp_path / "new").exists()

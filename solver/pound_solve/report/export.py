@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
+
+import numpy as np
 
 from pound_deck.model import Units
 from pound_solve.numerics.types import Array
@@ -48,6 +50,46 @@ def export_csv(results: Results, folder: str | Path) -> list[Path]:
     ]
 
 
+def export_columns(
+    results: Results, folder: str | Path, choices: Sequence[tuple[str, Mapping[str, str]]]
+) -> Path:
+    """Write chosen columns of histories side by side: ``histories.csv``, times first.
+
+    Parameters
+    ----------
+    results : Results
+        The file to export.
+    folder : str or Path
+        Where the file goes, as for `export_csv`.
+    choices : sequence of (str, mapping)
+        Names of histories, each with the coordinates of the columns that are taken, as texts
+        (``{"node": "12", "component": "X"}``); none: all columns of that history.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    NoSuchPartError
+        The file has no history of that name, or the history no such column.
+    """
+    heads, columns = [_head("time", results.history_units("time")[0])], [results.time]
+    for name, texts in choices:
+        own = results.coordinates(name)
+        at = {
+            key: next((v for v in own.get(key, ()) if str(v) == text), text) for key, text in texts.items()
+        }
+        labels, units = results.labels(name), results.history_units(name)
+        places = results.places(name, **at)
+        heads += [_head(f"{name} {labels[i]}", units[i]) for i in places]
+        columns += list(results.history(name).reshape(len(results.time), -1).T[places])
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    return _write(folder / "histories.csv", heads, _blocks(columns))
+
+
 def export_rows(path: Path, units: Units, table: Table[Any], rows: Iterable[Row]) -> None:
     """Write rows of a table that is not in a results file as CSV; see `export_csv`."""
     heads = [_head(column.name, units.text(column.unit)) for column in table.columns]
@@ -65,12 +107,13 @@ def _history(results: Results, name: str, folder: Path, kind: str, time: Array, 
     values = values.reshape(len(time), len(labels))
     heads = [_head("time", results.history_units("time")[0])]
     heads += map(_head, labels, results.history_units(name))
-    rows = (
-        [t, *row]
-        for start in range(0, len(time), _BLOCK)
-        for t, row in zip(time[start : start + _BLOCK].tolist(), values[start : start + _BLOCK].tolist())
-    )
-    return _write(folder / f"{kind}_{name.replace('/', '_')}.csv", heads, rows)
+    return _write(folder / f"{kind}_{name.replace('/', '_')}.csv", heads, _blocks([time, *values.T]))
+
+
+def _blocks(columns: Sequence[Array]) -> Iterator[list[float]]:
+    """Rows of columns, as Python numbers."""
+    for start in range(0, len(columns[0]), _BLOCK):
+        yield from np.stack([column[start : start + _BLOCK] for column in columns], axis=1).tolist()
 
 
 def _write(path: Path, heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:

@@ -288,7 +288,7 @@ class Results:
         self._as_written(name, self._dataset(name), out, self._complete)
         if not at:
             return out
-        columns = out.reshape(len(out), -1)[:, self._places(name, at)]
+        columns = out.reshape(len(out), -1)[:, self.places(name, **at)]
         return columns[:, 0] if columns.shape[1] == 1 else columns
 
     @_sound
@@ -298,8 +298,14 @@ class Results:
         """
         return coordinates(axes_of(name, self.attributes(name)))
 
-    def _places(self, name: str, at: Mapping[str, object]) -> list[int]:
-        """Numbers of a history's row that have these coordinates."""
+    def places(self, name: str, /, **at: object) -> list[int]:
+        """Where in a history's row, in the order of `labels`, the numbers with these coordinates stand.
+
+        Raises
+        ------
+        NoSuchPartError
+            The file has no history of that name, or the history no such number; a KeyError, too.
+        """
         own = self.coordinates(name)
         left = list(range(len(self.labels(name))))
         for key, value in at.items():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,7 +26,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="folder (default: model for model.h5; with --vtk that of the file)",
     )
-    parser.add_argument(
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument(
+        "--history",
+        nargs="+",
+        action="append",
+        metavar=("NAME", "KEY=VALUE"),
+        help="write histories.csv instead: times and these columns, such as node/u node=12 component=X; "
+        "may be repeated",
+    )
+    what.add_argument(
         "--vtk",
         action="store_true",
         help="write model.vtkhdf instead: the structure in motion, for ParaView",
@@ -34,20 +44,40 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Write the files and print their paths."""
-    from pound_solve.report.export import export_csv
+    from pound_solve.report.export import export_columns, export_csv
     from pound_solve.results import Results, ResultsError
+    from pound_solve.results.reader import NoSuchPartError
 
+    choices = [(name, _coordinates(items)) for name, *items in args.history or ()]
     try:
         with Results.open(args.results) as results:
+            folder = args.out or results.path.with_suffix("")
             if args.vtk:
                 paths = [_vtk(results, args.out or results.path.parent)]
+            elif choices:
+                paths = [export_columns(results, folder, choices)]
             else:
-                paths = export_csv(results, args.out or results.path.with_suffix(""))
+                paths = export_csv(results, folder)
             for path in paths:
                 print(path)
+    except NoSuchPartError as err:
+        return common.complain(str(err), common.MISTAKES)
     except ResultsError as err:
         return common.complain(str(err))
     return common.DONE
+
+
+def _coordinates(items: Sequence[str]) -> dict[str, str]:
+    """Coordinates of columns from KEY=VALUE."""
+    out = {}
+    for item in items:
+        key, equals, value = item.partition("=")
+        if not equals or key in out:
+            what = f"{key} stands twice" if equals else f"{item} is no KEY=VALUE, such as node=12"
+            text = f"--history: {what}; repeat --history for further columns"
+            raise SystemExit(common.complain(text, common.MISTAKES))
+        out[key] = value
+    return out
 
 
 def _vtk(results: Results, folder: Path) -> Path:
