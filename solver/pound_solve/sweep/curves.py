@@ -16,6 +16,7 @@ from pound_solve.sweep.entry import DONE, STOPPED
 from pound_solve.sweep.incremental import Point
 
 LEVELS: Final = ("sa", "pga", "scale")  #: variables that tell how strong a record is, the best first
+FRACTILES: Final = (0.16, 0.5, 0.84)  #: shares of the records, or runs, in tables and pictures
 PARAM: Final = "PARAM "  #: how the description of a PARAM's variable begins
 COLLAPSE: Final = "collapse"  #: demand that is infinite where a run stopped early, else zero
 
@@ -79,6 +80,11 @@ def measure(sweep: Sweep) -> str:
         if name in sweep.variables:
             return name
     raise CurveError("its runs have no levels: the study needs [[motions]] with scale, pga or sa")
+
+
+def fractiles_of(values: Array) -> Array:
+    """Values that the shares `FRACTILES` of a sample, its last axis, do not exceed: order statistics."""
+    return np.asarray(np.quantile(values, FRACTILES, axis=-1, method="inverted_cdf"))
 
 
 def units_of(sweep: Sweep) -> Units:

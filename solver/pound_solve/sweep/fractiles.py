@@ -14,10 +14,19 @@ from pound_solve.report.plot import suites
 from pound_solve.report.text import printed
 from pound_solve.results.schema import Column, Row, Table
 from pound_solve.results.sweep_file import Sweep
-from pound_solve.sweep.curves import Asked, Curve, by_case, curves, measure, unit_of, units_of
+from pound_solve.sweep.curves import (
+    FRACTILES,
+    Asked,
+    Curve,
+    by_case,
+    curves,
+    fractiles_of,
+    measure,
+    unit_of,
+    units_of,
+)
 from pound_solve.sweep.incremental import STANDS, Rules, collapse, demand_at, ends, standing
 
-FRACTILES: Final = (0.16, 0.5, 0.84)
 LEVEL_NAMES: Final = MappingProxyType(
     {
         "sa": "Sa / gravity [-]",
@@ -59,7 +68,7 @@ def fractiles(analysis: Analysis, at: Sequence[float] | Array) -> Array:
     """
     found = np.array([[demand_at(c.points, analysis.rules, x) for c in analysis.curves] for x in at])
     with np.errstate(invalid="ignore"):  # between two that have collapsed
-        out = np.quantile(found, FRACTILES, axis=1, method="inverted_cdf")
+        out = fractiles_of(found)
     return np.asarray(out.T)
 
 

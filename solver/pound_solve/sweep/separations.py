@@ -18,13 +18,12 @@ from pound_solve.report.text import printed
 from pound_solve.results.columns import CONTACT
 from pound_solve.results.schema import Column, Row, Table
 from pound_solve.results.sweep_file import Sweep, Variable
-from pound_solve.sweep.curves import CurveError, cases, measure, units_of
+from pound_solve.sweep.curves import FRACTILES, CurveError, cases, fractiles_of, measure, units_of
 from pound_solve.sweep.entry import DONE
 from pound_solve.theory.fragility import Fragility, FragilityError, from_capacities
 from pound_solve.theory.separation import RULES, Peaks, share
 
 ANY: Final = "any"  #: contact that stands for all, where a deck has several
-FRACTILES: Final = (0.16, 0.5, 0.84)
 STEPS: Final = 8  #: gaps of the table where none are given
 POINTS: Final = 400  #: of a drawn curve
 DIGITS: Final = 4  #: of probabilities by a distribution
@@ -163,7 +162,7 @@ def needs(found: Sequence[Group]) -> Iterator[Row]:
     for g in found:
         row: list[float] = [math.nan] * 3
         if len(g.needed) and not len(g.met):
-            row = np.quantile(g.needed, FRACTILES, method="inverted_cdf").tolist()
+            row = fractiles_of(g.needed).tolist()
         own = g.fitted
         fit = (own.median, *own.median_interval, own.dispersion) if own else [math.nan] * 4
         row.append(float(g.needed.max(initial=0.0)) if not len(g.met) else math.nan)

@@ -22,10 +22,9 @@ from pound_solve.results.form import ResultsError
 from pound_solve.results.place import partial
 from pound_solve.results.schema import Column, Row, Table
 from pound_solve.results.sweep_file import RUN, Sweep
-from pound_solve.sweep.curves import LEVELS, PARAM, Asked, cases, demands, units_of
+from pound_solve.sweep.curves import FRACTILES, LEVELS, PARAM, Asked, cases, demands, fractiles_of, units_of
 from pound_solve.sweep.entry import DONE
 
-FRACTILES: Final = (0.16, 0.5, 0.84)
 SHOWN: Final = (
     "drift_ratio", "peak_drift", "storey_drift", "residual_drift", "ductility", "closures", "contact_force",
     "needed_gap", "base_shear", "floor_acceleration",
@@ -79,12 +78,12 @@ def text(sweep: Sweep, title: str, more: Iterable[str] = ()) -> str:
 
 def _banner(sweep: Sweep, title: str) -> Iterator[str]:
     about = sweep.about
-    force, length, time = about["units"].split()
+    units = units_of(sweep)
     yield "=" * WIDTH
     yield f" POUND-SOLVE {about['program_version']}     {title.upper()}"
     yield ""
     yield f" Study {about['study']}"
-    yield f" Units: force {force}, length {length}, time {time}"
+    yield f" Units: force {units.force}, length {units.length}, time {units.time}"
     yield "=" * WIDTH
     yield from ("", "")
 
@@ -180,7 +179,7 @@ def fractiles(sweep: Sweep) -> Iterator[Row]:
             found = values[own]
             found = found[~np.isnan(found)]
             if len(found):
-                yield name, key, len(found), *np.quantile(found, FRACTILES, method="inverted_cdf").tolist()
+                yield name, key, len(found), *fractiles_of(found).tolist()
 
 
 class _Worst(NamedTuple):
