@@ -11,7 +11,7 @@ from decks import structure_of
 from pound_deck.schema import Spec
 from pound_solve.analyses import damage
 from pound_solve.catalog import catalog
-from pound_solve.laws.automaton import Law, State, drive
+from pound_solve.laws.automaton import BranchKind, Law, State, drive
 from pound_solve.laws.hysteresis import bilinear, bilinear_elastic, elasto_plastic, origin_centred
 from pound_solve.laws.hysteresis.backbone import LOSS
 from verification.cases import Ran, run_text
@@ -36,7 +36,7 @@ def test_monotonic_push() -> None:
     law, last, beta, ultimate = elasto_plastic.build(KEPT, K, FY, -FY), 6 * DY, 0.1, 8.0
     _, loss = driven(law, last)
     assert loss == pytest.approx(FY * 5 * DY, rel=1e-14)
-    found = damage.park_ang((last, 0.0), loss, K, (DY, -DY), (ultimate, ultimate), beta)
+    found = damage.park_ang((last, 0.0), loss, (FY, -FY), (DY, -DY), (ultimate, ultimate), beta)
     assert found.ductility == pytest.approx(6.0, rel=1e-14)
     assert found.total == pytest.approx(6 / 8 + beta * loss / (FY * ultimate * DY), rel=1e-14)
     assert found.total == pytest.approx(0.75 + 0.1 * 5 / 8, rel=1e-14)
@@ -54,23 +54,23 @@ def test_cycles() -> None:
     """To 4, -4 and 4 times yield: 3 + 6 + 6 yield deformations of plastic flow."""
     law = elasto_plastic.build(KEPT, K, FY, -FY)
     _, loss = driven(law, 4 * DY, -4 * DY, 4 * DY)
-    assert damage.plastic_path(loss, K, (DY, -DY)) == pytest.approx((15 * DY, 15.0), rel=1e-13)
-    found = damage.park_ang((4 * DY, -4 * DY), loss, K, (DY, -DY), (10.0, 10.0), 0.05)
+    assert damage.plastic_path(loss, (FY, -FY), (DY, -DY)) == pytest.approx((15 * DY, 15.0), rel=1e-13)
+    found = damage.park_ang((4 * DY, -4 * DY), loss, (FY, -FY), (DY, -DY), (10.0, 10.0), 0.05)
     assert found.total == pytest.approx(0.4 + 0.05 * 15 / 10, rel=1e-13)
 
 
 def test_sides_of_unequal_strength() -> None:
     """The weaker side (yield at 1 and 2, stiffness 1) has the larger energy term, and its own ultimate."""
-    found = damage.park_ang((3.0, -4.0), 8.0, 1.0, (1.0, -2.0), (6.0, 4.0), 0.1)
+    found = damage.park_ang((3.0, -4.0), 8.0, (1.0, -2.0), (1.0, -2.0), (6.0, 4.0), 0.1)
     assert found == pytest.approx((6.0, 3.0, 0.5, 0.1 * 8.0 / 6.0))
-    other = damage.park_ang((3.0, -7.0), 8.0, 1.0, (1.0, -2.0), (6.0, 4.0), 0.1)
+    other = damage.park_ang((3.0, -7.0), 8.0, (1.0, -2.0), (1.0, -2.0), (6.0, 4.0), 0.1)
     assert other == pytest.approx((4.0, 3.5, 0.875, 0.1 * 8.0 / (2.0 * 8.0)))
     # a closed cycle of plastic flow 5 and back loses 5 (1 + 2): the path is 10
-    assert damage.plastic_path(15.0, 1.0, (1.0, -2.0))[0] == pytest.approx(10.0)
+    assert damage.plastic_path(15.0, (1.0, -2.0), (1.0, -2.0))[0] == pytest.approx(10.0)
 
 
 def test_a_side_without_strength_is_left_out() -> None:
-    found = damage.park_ang((2.0, -50.0), 1.0, 1.0, (1.0, 0.0), (4.0, 4.0), 0.05)
+    found = damage.park_ang((2.0, -50.0), 1.0, (1.0, 0.0), (1.0, 0.0), (4.0, 4.0), 0.05)
     assert found.ductility == 2.0 and math.isfinite(found.total)
     assert damage.ductility((2.0, -50.0), (1.0, 0.0)) == 2.0
     assert math.isnan(damage.ductility((2.0, -1.0), None))
@@ -126,6 +126,46 @@ EQUAKE
 ANALYSIS
  HISTORY {t} {more}
 """
+
+
+@pytest.mark.parametrize("spec", RULES, ids=lambda s: s.name)
+def test_yield_is_where_the_rule_yields(spec: Spec) -> None:
+    """A push from zero comes to a branch that yields at the deformation that ductility counts from, with
+    the yield force; a curve passes near it.
+    """
+    symmetric = spec.name == "RAMBERG_OSGOOD"
+    for minus in (-1.0, -1.0 if symmetric else -1.4):
+        deck = DECK.format(item=f"RULE={spec.name} {spec.sample}", t=1, more="")
+        (spring,) = structure_of(deck.replace("KX=100 FX=5", f"KX=1 FX=1,{minus}")).laws
+        assert spring.yields is not None and spring.strengths == (1.0, minus)
+        for y, fy in zip(spring.yields, spring.strengths):
+            law = spring.law
+            if law.rule.curve is not None:
+                assert y == pytest.approx(fy)
+                continue
+            before, after = (drive(law, law.start(), 0.0, share * y) for share in (1 - 1e-9, 1 + 1e-9))
+            kinds = [law.rule.branches[s[0]].kind for s in (before, after)]
+            assert law.force(after, y)[0] == pytest.approx(fy, rel=1e-8)
+            if BranchKind.YIELDING in {b.kind for b in law.rule.branches}:
+                assert [k is BranchKind.YIELDING for k in kinds] == [False, True]
+
+
+def test_slack_and_cracks_count_in_the_deformation_at_yield() -> None:
+    """Beside the yield force over the initial stiffness: a slack of 0.02, a secant of 0.4 of it."""
+    for rule, y in (
+        ("BILINEAR_SLACK R=0.05 SLACK=0.02", 0.07),
+        ("WAYNE_STEWART FU=5 FI=1 SLACK=0.02", 0.07),
+        ("TAKEDA_SLIP R=0.05 FCR=0.3 RHO=0.4", 0.125),
+        ("SCHOETTLER_RESTREPO R=0.05 FCR=0.3 RHO=0.4 PINCH=0.3", 0.125),
+    ):
+        r = ran(f"RULE={rule} DUCTU=8 PA_BETA=0.1")
+        spring, (member, _) = r.tables["spring_envelope"][0], r.tables["damage"]
+        largest = max(spring["deformation_max"], -spring["deformation_min"])
+        assert spring["ductility"] == pytest.approx(largest / y, rel=1e-12) and spring["ductility"] > 1.0
+        energy = 0.1 * spring["plastic_work"] / (FY * 8.0 * y)
+        assert member["index"] == pytest.approx(spring["ductility"] / 8.0 + energy, rel=1e-12)
+        plastic = r.tables["spring_plastic"][0]
+        assert plastic["path_ratio"] == pytest.approx(spring["plastic_work"] / FY / y, rel=1e-12)
 
 
 def ran(item: str, t: float = 4.0, more: str = "METHOD=EXACT") -> Ran:

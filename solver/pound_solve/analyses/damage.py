@@ -1,6 +1,6 @@
 r"""What a motion has done to springs and hinges: ductility, plastic path, what is left, damage.
 
-With yield deformation :math:`d_y` and yield force :math:`F_y = k d_y` of a side, ultimate deformation
+With the deformation :math:`d_y` and the force :math:`F_y` at first yield of a side, ultimate deformation
 :math:`d_u = \mu_u d_y` under monotonic loading, largest deformation :math:`d_m` and dissipated energy
 :math:`E_h` the index of Park and Ang is
 
@@ -27,6 +27,8 @@ from pound_solve.laws.automaton import Law, State, transitions
 
 Sides = tuple[float, float]  #: positive and negative side
 
+NONE: Sides = (0.0, 0.0)  #: a spring that does not yield
+
 FAR = 10.0  #: how far a force that is taken off is followed, in deformations and elastic deformations
 
 
@@ -44,6 +46,11 @@ class Damage(NamedTuple):
         return self.by_deformation + self.by_energy
 
 
+def holds(strength: float) -> bool:
+    """Whether a side has a strength: 0 and NaN stand for none."""
+    return abs(strength) > 0.0
+
+
 def ductility(largest: Sides, yields: Sides | None) -> float:
     """Largest deformation over that at first yield, of the side where it is larger; NaN without yield.
 
@@ -52,7 +59,7 @@ def ductility(largest: Sides, yields: Sides | None) -> float:
     largest, yields : tuple of float
         Signed deformations, [L] or [rad].
     """
-    return max((d / y for d, y in zip(largest, yields or (0.0, 0.0)) if y), default=math.nan)
+    return max((d / y for d, y in zip(largest, yields or NONE) if holds(y)), default=math.nan)
 
 
 def plastic(largest: Sides, yields: Sides | None) -> float:
@@ -64,22 +71,32 @@ def plastic(largest: Sides, yields: Sides | None) -> float:
     largest, yields : tuple of float
         Signed deformations, [L] or [rad].
     """
-    beyond = [abs(d) - abs(y) if d * y > 0.0 else 0.0 for d, y in zip(largest, yields or (0.0, 0.0)) if y]
+    sides = [(d, y) for d, y in zip(largest, yields or NONE) if holds(y)]
+    beyond = [abs(d) - abs(y) if d * y > 0.0 else 0.0 for d, y in sides]
     return max(0.0, *beyond) if beyond else math.nan
 
 
-def plastic_path(loss: float, k: float, yields: Sides | None) -> tuple[float, float]:
-    """Plastic path [L] or [rad] on which yielding at the mean of both strengths loses `loss`,
+def plastic_path(loss: float, strengths: Sides | None, yields: Sides | None) -> tuple[float, float]:
+    """Plastic path [L] or [rad] on which yielding at the mean of the strengths loses `loss`,
     and its ratio to the mean deformation at yield.
 
+    Parameters
+    ----------
+    loss : float
+        Dissipated energy [F L].
+    strengths, yields : tuple of float, or None
+        Signed forces and deformations at first yield, [F] or [F L], [L] or [rad].
+
+    Notes
+    -----
     Of an elastic, perfectly plastic spring it is the sum of all plastic deformations, if these return to
     where they began or both strengths are equal.
     """
-    at_yield = 0.5 * (yields[0] - yields[1]) if yields else 0.0
-    if not at_yield:
+    sides = [(abs(f), abs(y)) for f, y in zip(strengths or NONE, yields or NONE) if holds(y)]
+    if not sides:
         return math.nan, math.nan
-    path = loss / (k * at_yield)
-    return path, path / at_yield
+    strength, at_yield = (sum(x) / len(sides) for x in zip(*sides))
+    return loss / strength, loss / strength / at_yield
 
 
 def residual(law: Law, state: State, d: float) -> float:
@@ -100,7 +117,9 @@ def residual(law: Law, state: State, d: float) -> float:
     return math.nan
 
 
-def park_ang(largest: Sides, loss: float, k: float, yields: Sides, ultimate: Sides, beta: float) -> Damage:
+def park_ang(
+    largest: Sides, loss: float, strengths: Sides, yields: Sides, ultimate: Sides, beta: float
+) -> Damage:
     """Damage index of one component.
 
     Parameters
@@ -109,18 +128,18 @@ def park_ang(largest: Sides, loss: float, k: float, yields: Sides, ultimate: Sid
         Signed deformations, [L] or [rad].
     loss : float
         Dissipated energy [F L].
-    k : float
-        Initial stiffness, [F/L] or [F L].
+    strengths : tuple of float
+        Signed forces at first yield, [F] or [F L].
     ultimate : tuple of float
         Ultimate ductilities of both sides.
     beta : float
         Weight of the energy.
     """
     sides = []
-    for d, y, most in zip(largest, yields, ultimate):
-        if y:
+    for d, f, y, most in zip(largest, strengths, yields, ultimate):
+        if holds(y):
             reached = max(d / y, 0.0)
-            sides.append(Damage(most, reached, reached / most, beta * loss / (k * y * y * most)))
+            sides.append(Damage(most, reached, reached / most, beta * loss / (f * y * most)))
     return max(sides, key=lambda side: side.total, default=Damage(*[math.nan] * 4))
 
 

@@ -115,15 +115,14 @@ def _response(
     if loss and spring.role is Role.SPRING:  # friction has no residual deformation of its own
         last = recorder.deformations[i]
         left = damage.residual(spring.law, outcome.states[i], last) if ended else np.nan
-        k = spring.whole_stiffness
-        plastic = PlasticDeformation(last, left, *damage.plastic_path(loss, k, spring.yields))
+        path = damage.plastic_path(loss, spring.strengths, spring.yields)
+        plastic = PlasticDeformation(last, left, *path)
     card = structure.model.props[structure.model.elements[spring.element].prop]
     ultimate = card.values.get("DUCTU")
     index = None
-    if ultimate is not None and spring.yields is not None:
+    if ultimate is not None and spring.yields is not None and spring.strengths is not None:
         sides = (ultimate[0], ultimate[-1])
-        k = spring.whole_stiffness
-        index = damage.park_ang(largest, loss, k, spring.yields, sides, card["PA_BETA"])
+        index = damage.park_ang(largest, loss, spring.strengths, spring.yields, sides, card["PA_BETA"])
     ductility = damage.ductility(largest, spring.yields)
     at = spring.law.rule.branches[outcome.states[i][0]]
     turns = spring.unit == "F*L" and spring.component.startswith("hinge")

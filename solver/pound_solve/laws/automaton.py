@@ -157,6 +157,9 @@ class Rule:
         what is left of it there, up to `PAST`, is rounding.  None: it is not of this kind.
     steepest : callable
         ``steepest(p) -> stiffness`` that none of its straight branches exceeds.
+    first_yield : callable or None
+        ``first_yield(p) -> (positive, negative)`` deformations at which a virgin spring yields.  None: its
+        yield forces over its initial stiffness.
     parameters, variables : int
         How many numbers ``p`` and ``m`` have.
     """
@@ -171,6 +174,7 @@ class Rule:
     powers: PowersFunction | None = None
     smooth: SmoothFunction | None = None
     steepest: Callable[[Numbers], float] = first_stiffness
+    first_yield: Callable[[Numbers], tuple[float, float]] | None = None
     parameters: int = field(kw_only=True)
     variables: int = field(kw_only=True)
 

@@ -44,6 +44,11 @@ def start(p: Numbers) -> tuple[int, Numbers]:
     return (ELASTIC_MINUS if p[4] >= 0.0 else SLACK), (0.0, 0.0)
 
 
+def first_yield(p: Numbers) -> tuple[float, float]:
+    """Deformations at yield: beyond the slack."""
+    return p[3] + p[1] / p[0], p[4] + p[2] / p[0]
+
+
 def line(p: Numbers, at: int) -> tuple[float, float, float]:
     """Gap, yield force and side (+1, -1) of a yield line; yielding back stays on the engaged side."""
     plus, minus, gap_plus, gap_minus = p[1:5]
@@ -123,6 +128,7 @@ RULE = Rule(
     start,
     branch,
     transition,
+    first_yield=first_yield,
     parameters=7,
     variables=2,
 )

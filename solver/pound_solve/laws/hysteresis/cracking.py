@@ -68,6 +68,11 @@ def of(p: Numbers, s: float) -> tuple[float, float, float, float]:
     return fy, share * fy / p[0], share * fy, fy / (rho * p[0])
 
 
+def first_yield(p: Numbers) -> tuple[float, float]:
+    """Deformations at the yield points."""
+    return of(p, 1.0)[3], -of(p, -1.0)[3]
+
+
 def backbone(p: Numbers, s: float, x: float) -> tuple[float, float]:
     """Slope and force of the backbone at a deformation beyond the crack."""
     fy, xc, fc, xy = of(p, s)

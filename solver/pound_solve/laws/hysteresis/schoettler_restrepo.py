@@ -50,6 +50,7 @@ from pound_solve.laws.hysteresis.cracking import (
     backbone,
     backbone_branch,
     enter,
+    first_yield,
     grown,
     largest,
     of,
@@ -221,6 +222,7 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
+    first_yield=first_yield,
     parameters=PARAMETERS + 1,
     variables=12,
 )

@@ -55,6 +55,7 @@ from pound_solve.laws.hysteresis.cracking import (
     backbone,
     backbone_branch,
     enter,
+    first_yield,
     grown,
     largest,
     of,
@@ -228,6 +229,7 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
+    first_yield=first_yield,
     parameters=PARAMETERS + 2,
     variables=9,
 )

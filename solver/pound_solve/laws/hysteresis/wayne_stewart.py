@@ -77,6 +77,11 @@ def backbone(p: Numbers, s: float) -> tuple[float, float, float, Line, Line]:
     return gap, dy, du, (r * k, fy - r * k * dy), (tri * k, fu - tri * k * du)
 
 
+def first_yield(p: Numbers) -> tuple[float, float]:
+    """Deformations at yield."""
+    return backbone(p, 1.0)[1], -backbone(p, -1.0)[1]
+
+
 def pinched(p: Numbers) -> Line:
     """Line that a side is reloaded along first."""
     return p[12] * p[0], p[6]
@@ -234,6 +239,7 @@ RULE = Rule(
     transition,
     recoverable,
     steepest=steepest,
+    first_yield=first_yield,
     parameters=14,
     variables=7,
 )

@@ -81,7 +81,9 @@ class LawSpring:
     secant : float
         Dashpot as a multiple of the secant stiffness [T]; not zero with a `SecantLaw` only.
     yields : tuple of float or None
-        Deformations at first yield, positive and negative, for ductilities.
+        Deformations at first yield, positive and negative, for ductilities; NaN for a side that does not.
+    strengths : tuple of float or None
+        Forces there [F] or [F L].
     beside : float
         Flexibility of the elastic part that the beam beside it has [L/F] or [1/(F L)]: `yields` count it,
         the deformation does not.
@@ -100,6 +102,7 @@ class LawSpring:
     law: Law
     k0: float = 0.0
     yields: tuple[float, float] | None = None
+    strengths: tuple[float, float] | None = None
     beside: float = 0.0
     facts: Mapping[str, Any] = field(default_factory=dict)
     unit: str = "F"
@@ -107,11 +110,6 @@ class LawSpring:
     secant: float = 0.0
     role: Role = Role.SPRING
     normal_component: str = ""
-
-    @property
-    def whole_stiffness(self) -> float:
-        """Initial stiffness by the deformation that `yields` count [F/L] or [F L]."""
-        return self.k0 / (1.0 + self.beside * self.k0)
 
     def whole(self, deformation: float, force: float) -> float:
         """Deformation as `yields` count it, of the one of the law."""
@@ -325,9 +323,8 @@ def hysteretic(
     except ValueError as err:
         raise ElementError(str(err), "RULE") from None
     dofs, factors = zip(*((f, float(x)) for f, x in row.items() if x != 0.0))
-    spring = LawSpring(
-        element, component, rule.name, dofs, factors, law, k, (plus / k, minus / k), unit=unit
-    )
+    yields = law.rule.first_yield(law.p) if law.rule.first_yield else (plus / k, minus / k)
+    spring = LawSpring(element, component, rule.name, dofs, factors, law, k, yields, strength, unit=unit)
     if share == 1.0:
         return spring
     try:

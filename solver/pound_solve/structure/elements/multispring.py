@@ -66,8 +66,8 @@ def no_tension(
     limit = k * far if strength is None else strength
     law = Law(RULE, (k, limit, -limit, far, 0.0, 0.0, 1.0))
     dofs, factors = zip(*((f, float(x)) for f, x in row.items() if x != 0.0))
-    yields = None if strength is None else (math.nan, -strength / k)
-    return LawSpring(element, component, "BILINEAR_SLACK", dofs, factors, law, k, yields)
+    crushed = (None, None) if strength is None else ((math.nan, -strength / k), (math.nan, -strength))
+    return LawSpring(element, component, "BILINEAR_SLACK", dofs, factors, law, k, *crushed)
 
 
 def _row(context: ElementContext, y: float) -> dict[Dof, float]:

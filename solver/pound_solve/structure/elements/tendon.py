@@ -49,7 +49,7 @@ def build(context: ElementContext) -> Parts:
         tuple(x for _, x in row),
         Law(RULE, (k, strength, -strength, slack, -far, p["R"], 1.0)),
         k if p["N0"] else 0.0,
-        None if p["PY"] is None else (slack + strength / k, math.nan),
+        *((None, None) if p["PY"] is None else ((slack + strength / k, math.nan), (strength, math.nan))),
     )
     return Parts(laws=[spring])
 
