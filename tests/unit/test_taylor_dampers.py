@@ -100,24 +100,28 @@ def deck(items: str, load: str, link: float, end: float) -> str:
 def told(alpha: float, limit: float, play: float, shaken: bool, end: float) -> Array:
     """Displacements of the mass on a damper, by DOP853 between the corners of the law."""
     side, inside, fast = 1.0, play > 0.0, (limit / C) ** (1.0 / alpha)
+    limited = fast < 1.0
 
     def rates(t: float, y: Array) -> list[float]:
-        force = 0.0 if inside else side * min(C * max(side * y[1], 0.0) ** alpha, limit)
+        """One smooth law until the next corner, so that the step across a corner is exact below it."""
+        force = 0.0 if inside else side * (limit if limited else C * max(side * y[1], 0.0) ** alpha)
         return [y[1], pushed(t, shaken) - K * y[0] - force]
 
     def corners(y: Array) -> list[Event]:
         return [
             rising(lambda t, y: -side * y[1]),
             rising(lambda t, y: (abs(y[0]) - play) * (1 if inside else -1) if play else -1.0),
-            rising(lambda t, y: (side * y[1] - fast) * (1 if side * y[1] < fast else -1)),
+            rising(lambda t, y: (side * y[1] - fast) * (-1 if limited else 1)),
         ]
 
     def after(which: int, y: Array) -> None:
-        nonlocal side, inside
+        nonlocal side, inside, limited
         if which == 0:
             side = -side
         elif which == 1:
             inside, side = not inside, math.copysign(1.0, y[1])
+        else:
+            limited = not limited
 
     return histories(rates, corners, after, np.array([0.0, 1.0]), end)
 
