@@ -376,6 +376,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "The motions of a sweep take the place of the one line under EQUAKE. Name the records of a deck "
         "with several lines, or none, by PARAMs.",
     ),
+    "R411": (
+        "the name of an output file is taken",
+        "A file of another program has the name of the results or of the report of this run. "
+        "Rename it, or give another folder with -o.",
+    ),
     "A501": (
         "unstable structure",
         "The stiffness matrix is singular: some node can move without resistance. The message names"

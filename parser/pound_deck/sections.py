@@ -198,6 +198,15 @@ SECTIONS: Final = (
                 "pressed, and at the peaks of its force; 0: none",
             ),
             Field(
+                "EXTREMES",
+                Kind.REAL,
+                default=4.0,
+                lo=0.0,
+                hi=1e5,
+                doc="megabytes at most of the smallest and largest values between samples, or between "
+                "every second, fourth, ... of them; 0: none",
+            ),
+            Field(
                 "HISTORIES",
                 Kind.WORD,
                 default="YES",

@@ -142,14 +142,19 @@ READMES = sorted(EXAMPLES.rglob("README.md"))
 EXPECTED = [e for readme in READMES for e in read(readme)]
 
 
+LEANING = ("06_unequal_frames/unequal_frames.inp", "frames/steel_10x3.inp")
+
+
 @pytest.mark.parametrize("deck", DECKS, ids=lambda d: f"{d.parent.name}/{d.name}")
 def test_deck_runs_to_its_end_without_a_warning(deck: Path, run):
     status, results, prepared = run(deck)
     assert (status, results.status, results.message) == (0, "done", "")
     assert prepared.warnings == ()
-    # what a reader of the report would look at first
+    # what a reader of the report would look at first; strong records leave some buildings leaning
     if "checks" in results.tables:
-        assert {str(v) for v in results.table("checks")["verdict"]} <= {"good", "met"}
+        looks = {str(v) for v in results.table("checks")["verdict"]} - {"good", "met"}
+        assert all("the building leans" in look for look in looks)
+        assert bool(looks) == (f"{deck.parent.name}/{deck.name}" in LEANING)
 
 
 @pytest.mark.parametrize("deck", ALL_DECKS, ids=lambda d: f"{d.parent.name}/{d.name}")

@@ -23,7 +23,8 @@ from random import Random
 
 from fuzz.cases import MOTIONS, plain
 from pound_solve.results import Results, ResultsError
-from pound_solve.results.place import digest_in, partial
+from pound_solve.results.place import digest_in
+from pound_solve.results.whole_file import partial
 
 METHODS = ("METHOD=EXACT", "METHOD=TAYLOR", "METHOD=NEWMARK DT=0.005", "METHOD=AUTO TOL=1E-2")
 OLD, NEW = "the older results are intact", "the new results are whole"

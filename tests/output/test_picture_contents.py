@@ -164,7 +164,7 @@ def test_axes_bear_units(pair: Results, name: str) -> None:
 
 
 def test_node_numbers_keep_apart_and_those_without_room_are_left_out() -> None:
-    figure = style.figure(5.0, 5.0)
+    figure = style.figure(5.4, 5.4)
     axes = figure.add_subplot()
     axes.set_xlim(-1, 20)
     axes.set_ylim(-1, 20)

@@ -277,3 +277,38 @@ def test_names_of_a_deck_are_no_formulas(tmp_path: Path) -> None:
         for name in ("envelopes", "frame"):
             plot.draw_into(results, name, tmp_path / f"{name}.svg")
     assert "cost $x_1$ and $\\frac" in (tmp_path / "envelopes.svg").read_text()
+
+
+BARE = """NODES
+ 1 0 0 {fix}
+ 2 1 0 FIX=YR
+ELEMENTS
+ {elements}
+PROPS
+ S SPRING KX=200
+ W CONTACT GAP=0.01 LAW=LINEAR K=1E5
+WEIGHTS
+ 1,2 2
+GRAVITY 9.81
+INITIAL
+ {node} VX=2
+ANALYSIS
+ HISTORY {end} METHOD=EXACT
+"""
+
+
+@pytest.mark.parametrize(
+    ("fix", "elements", "node", "end"),
+    [("FIX=XYR", "1 S 1 2", 2, 0.1), ("FIX=YR", "1 W 1 2", 1, 1.0), ("FIX=YR", "1 W 2", 2, 0.1)],
+    ids=["no contact", "two bodies", "a body at a wall"],
+)
+def test_every_picture_of_a_bare_structure_is_drawn_or_says_that_there_is_nothing(
+    tmp_path: Path, fix: str, elements: str, node: int, end: float
+) -> None:
+    deck = tmp_path / "bare.inp"
+    deck.write_text(BARE.format(fix=fix, elements=elements, node=node, end=end))
+    with pound_solve.run(deck) as results:
+        for ending in ("svg", "html"):
+            drawn, _ = plot.draw(results, plot.possible(results, ending), tmp_path, ending)
+            assert all(path.stat().st_size for path in drawn)
+            assert {"bare_frame.svg", "bare_deformed.svg"} <= {p.name for p in drawn} or ending == "html"

@@ -3,16 +3,21 @@
 import errno
 import os
 import shutil
+import signal
+import threading
+import time
 from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 import pound_solve
+from pound_solve.analyses.recorder import HistoryRecorder
 from pound_solve.cli.main import main
 from pound_solve.driver.run import DeckError
-from pound_solve.results import Results, ResultsError, Writer, safe_file
-from pound_solve.results.place import digest_in, partial
+from pound_solve.results import Results, ResultsError, Writer, place, safe_file
+from pound_solve.results.place import digest_in
+from pound_solve.results.whole_file import partial
 
 DECK = """UNITS N m s
 GRAVITY 1
@@ -155,6 +160,50 @@ def test_a_kill_amid_the_renaming_leaves_no_report_of_other_results(tmp_path, mo
         assert digest_in(deck.with_suffix(".rpt")) in ("", results.digest)
 
 
+@pytest.fixture
+def another_thread():
+    """A thread beside the main one, as of a library: the system may hand a signal to it."""
+    over = threading.Event()
+    own = threading.Thread(target=over.wait)
+    own.start()
+    yield
+    over.set()
+    own.join()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+@pytest.mark.parametrize(
+    ("owner", "name", "at", "status"),
+    [
+        (safe_file.SafeFile, "write", 400, "stopped"),
+        (safe_file.SafeFile, "commit", 60, "stopped"),
+        (HistoryRecorder, "closeups", 0, "done"),
+        (Writer, "finish", 0, "done"),
+        (place.os, "replace", 0, "done"),
+    ],
+)
+@pytest.mark.usefixtures("another_thread")
+def test_an_interrupted_run_loses_nothing(tmp_path, monkeypatch, owner, name, at, status):
+    """A signal in a write of HDF5, in the last tables, at the end, between two renames."""
+    deck, calls, own = write(tmp_path, end=20.0), [], getattr(owner, name)
+
+    def disturbed(*given, **options):
+        calls.append(name)
+        if len(calls) == at + 1:
+            os.kill(os.getpid(), signal.SIGTERM)
+            time.sleep(0.05)  # until it arrives
+        return own(*given, **options)
+
+    monkeypatch.setattr(owner, name, disturbed)
+    code = main([str(deck), "--quiet"])
+    assert len(calls) > at
+    with Results.open(deck.with_suffix(".h5")) as results:
+        assert results.status == status and results.message[:4] == ("A506" if status == "stopped" else "")
+        assert code == (status == "stopped")
+        assert digest_in(deck.with_suffix(".rpt")) == results.digest
+        assert "node_envelope" in results.tables and len(results.time) > 1
+
+
 def test_an_open_older_result_stays_readable(tmp_path):
     deck = write(tmp_path)
     with pound_solve.run(deck) as first:
@@ -250,6 +299,18 @@ def test_a_record_is_never_an_output(tmp_path):
     assert record.read_text() == text
 
 
+@pytest.mark.parametrize("suffix", [".h5", ".rpt"])
+def test_a_file_of_another_program_is_never_replaced(tmp_path, suffix):
+    deck, own = write(tmp_path), tmp_path / f"model{suffix}"
+    own.write_bytes(b"measured by hand\n" * 9000)
+    with pytest.raises(DeckError, match=rf"(?s)R411.*model\{suffix} is no file of this program"):
+        pound_solve.run(deck)
+    assert own.read_bytes() == b"measured by hand\n" * 9000
+    own.write_bytes(b"")
+    pound_solve.run(deck).close()
+    pound_solve.run(deck).close()  # its own are replaced
+
+
 def test_a_restart_in_place_takes_the_older_results_and_replaces_them(tmp_path):
     whole = pound_solve.run(write(tmp_path, "whole", end=2, more="SAVE=1"))
     deck = write(tmp_path, end=1)
@@ -306,3 +367,56 @@ def test_another_earthquake_follows_from_time_zero(tmp_path):
 def test_a_new_motion_without_a_restart_is_a_mistake(tmp_path):
     with pytest.raises(DeckError, match="NEW stands beside RESTART only"):
         pound_solve.run(write(tmp_path, more="NEW=MOTION"))
+
+
+MOTION = """GRAVITY 9.81
+NODES
+ 1 0 0 FIX=YR
+ELEMENTS
+ 1 S 1
+PROPS
+ S SPRING KX=40
+WEIGHTS
+ 1 9.81
+EQUAKE
+ SINE AMPLITUDE=1 PERIOD=0.5 DURATION=5
+ANALYSIS
+ HISTORY 5
+"""
+#: verbs that write files, and the ends of the names of those that they write first
+WRITERS = {
+    "export model.h5 -o out": ".csv",
+    "export model.h5 --vtk -o out": ".vtkhdf",
+    "plot model.h5 frame -o out": "frame.svg",
+    "plot model.h5 frame --as png -o out": "frame.png",
+    "plot model.h5 animation --as html -o out": "animation.html",
+    "report model.h5 --html": "model.html",
+    "motions sine.inp --dt 0.01 -o out": ".at2",
+    "example 01_two_oscillators -o out": "",
+    "loop BILINEAR R=0.1 --svg loop.svg": "loop.svg",
+}
+
+
+@pytest.mark.parametrize("words", WRITERS)
+def test_a_file_that_finds_no_room_is_named_and_not_there(tmp_path, monkeypatch, capsys, words):
+    """No file becomes longer than 200 bytes: what a full disk does, with another number."""
+    resource = pytest.importorskip("resource", reason="limits of the system")
+    if " animation" in words or " frame" in words:
+        pytest.importorskip("matplotlib")
+    if "--html" in words:
+        pytest.importorskip("plotly")
+    monkeypatch.chdir(tmp_path)
+    pound_solve.run(write(tmp_path, end=0.2)).close()
+    (tmp_path / "sine.inp").write_text(MOTION)
+    before = {path.name for path in tmp_path.rglob("*") if path.is_file()}
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (200, hard))
+    try:
+        status = main(words.split())
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    told = capsys.readouterr().err
+    assert status != 0 and "fault" not in told, told
+    assert f"{WRITERS[words]}: " in told, told
+    left = {path for path in tmp_path.rglob("*") if path.is_file() and path.name not in before}
+    assert all(0 < path.stat().st_size <= 200 and ".partial" not in path.name for path in left), left

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from heeding import HEEDING
 from pound_solve.results.sweep_file import Sweep
-from sweep.small import STUDY, folder, swept
+from sweep.small import STUDY, folder
 from sweep.test_sweep import same
 
 pytestmark = pytest.mark.full
@@ -24,9 +25,10 @@ MANY = STUDY.replace("[0.01, 0.02]", "[0.01, 0.012, 0.014, 0.016, 0.018, 0.02, 0
 pytest.importorskip("fcntl", reason="kills by signals")
 
 
-def begun(path):
+def begun(path, **how):
     words = [sys.executable, "-m", "pound_solve", "sweep", str(path), "--workers", "2", "--quiet"]
-    return subprocess.Popen(words, env={**os.environ, "POUND_COMPILE": "0"}, stderr=subprocess.PIPE)
+    env = {**os.environ, "POUND_COMPILE": "0"}
+    return subprocess.Popen(words, env=env, stderr=subprocess.PIPE, **HEEDING, **how)
 
 
 def workers(process):
@@ -47,7 +49,8 @@ def noted(path):
     """Identities of the runs that the journal holds, one for each line."""
     out = []
     for journal in (path.parent / "walls.sweep/runs").glob("*.jsonl"):
-        out += [json.loads(line)["identity"] for line in journal.read_bytes().splitlines()]
+        whole = journal.read_bytes().rpartition(b"\n")[0]  # its process may be writing a line
+        out += [json.loads(line)["identity"] for line in whole.splitlines()]
     return out
 
 
@@ -63,7 +66,8 @@ def at_a_moment(process, path, dice):
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="finds processes by /proc")
 def test_a_sweep_that_is_killed_goes_on_where_it_was(tmp_path):
     (tmp_path / "undisturbed").mkdir()
-    undisturbed = Sweep.open(swept(folder(tmp_path / "undisturbed", MANY)).write())
+    begun(own := folder(tmp_path / "undisturbed", MANY)).communicate(timeout=300)
+    undisturbed = Sweep.open(own.parent / "walls.sweep/sweep.h5")
     path, dice, kills = folder(tmp_path, MANY), random.Random(17), {"sweep": 0, "worker": 0}
     while sum(kills.values()) < KILLS:
         process = begun(path)
@@ -122,3 +126,24 @@ def test_an_interruption_ends_the_runs_that_have_begun_and_writes_the_table(tmp_
     found = Sweep.open(tmp_path / "walls.sweep/sweep.h5")
     assert sorted(found["identity"][found["status"] == "done"]) == sorted(done)
     assert set(found["status"]) == {"done", "missing"}
+
+
+def test_an_interruption_while_workers_start_leaves_no_traceback(tmp_path):
+    """Ctrl-C of a terminal goes to all processes of the group, those that read their modules among them."""
+    path, dice = folder(tmp_path, MANY), random.Random(5)
+    amid = 0
+    for _ in range(12):
+        process = begun(path, start_new_session=True)
+        limit = time.monotonic() + 60.0
+        while not (own := workers(process)) and time.monotonic() < limit:
+            time.sleep(0.002)
+        time.sleep(dice.uniform(0.0, 0.4))
+        before = len(noted(path))
+        amid += bool(own) and before == 0
+        os.killpg(process.pid, signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+        assert b"Traceback" not in errors, errors.decode()
+        assert process.returncode == 1, errors.decode()
+        for old in (path.parent / "walls.sweep/runs").glob("*.jsonl"):
+            old.unlink()
+    assert amid >= 3

@@ -57,6 +57,34 @@ def test_every_run_has_the_numbers_of_a_single_run(tmp_path):
     assert len(set(found["contact_force"][:, 0])) > 8  # the cases differ
 
 
+@pytest.mark.parametrize(
+    ("more", "nodes", "members"),
+    [
+        ("", [2], []),
+        ('histories = ["node/u", "member/force"]\n', None, None),
+        ('histories = ["drift"]\n', [2], []),
+    ],
+)
+def test_a_run_records_what_a_quantity_or_a_kept_history_needs(tmp_path, more, nodes, members):
+    done = swept(folder(tmp_path, more + STUDY))
+    case = done.study.runs[0]
+    output = prepared(case.case, case.first, done.study.histories)[0].structure.model.output
+    assert (output["NODES"], output["MEMBERS"]) == (nodes, members)
+    assert set(Sweep.open(done.write()).variables) >= {"needed_gap", "peak_i", "peak_drift"}
+
+
+@pytest.mark.parametrize(
+    ("method", "nodes", "members"),
+    [("TOL_MEMBER=0.01", [2], None), ("PEAKS=ALL", None, None), ("TOL_ACCELERATION=0.01", None, [])],
+)
+def test_a_run_records_what_auto_compares(tmp_path, method, nodes, members):
+    deck = DECK.replace("HISTORY 1", f"HISTORY 1 METHOD=AUTO {method}")
+    done = swept(folder(tmp_path, deck=deck))
+    case = done.study.runs[0]
+    output = prepared(case.case, case.first, ())[0].structure.model.output
+    assert (output["NODES"], output["MEMBERS"]) == (nodes, members)
+
+
 def test_runs_that_share_a_structure_do_not_depend_on_their_order(tmp_path):
     one, other = swept(folder(tmp_path)), session(tmp_path / "walls.toml")
     before = one.write()

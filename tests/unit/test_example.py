@@ -89,6 +89,7 @@ def test_the_main_job_without_the_package_of_records(
 ) -> None:
     """What is missing, where it is had, and what runs without it; with the file of that name it runs."""
     monkeypatch.setattr(module.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.delenv("POUND_RECORDS", raising=False)
     deck = str(EXAMPLES / "cole2011" / "distributed.inp")
     words = [deck, "--set", "n=2", "--set", "t=0.5", "--quiet", "-o", str(tmp_path / "out")]
     assert main(words) == 2

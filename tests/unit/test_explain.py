@@ -157,6 +157,7 @@ def test_the_version_and_the_help_need_no_numbers():
         assert {m for m in loaded if not m.startswith("pound_solve.cli")} == {
             "pound_solve",
             "pound_solve.deck",
+            "pound_solve.interruption",
             "pound_solve.modules",
             "pound_solve.numerics",
             "pound_solve.numerics.threads",
@@ -170,7 +171,9 @@ def test_a_report_needs_no_numerics(tmp_path):
     modules, _ = main(["report", str(path.with_suffix(".h5"))])
     assert not libraries(modules) & (NUMERICS | {"lark", "matplotlib"})
     rooms = {name.split(".")[1] for name in modules if name.startswith("pound_solve.")}
-    assert rooms <= {"cli", "deck", "numerics", "report", "results", "modules", "version"}
+    assert rooms <= {
+        *("cli", "deck", "interruption", "modules", "numerics", "report", "results", "version")
+    }
     assert {name for name in modules if name.startswith("pound_solve.numerics.")} == {
         "pound_solve.numerics.threads",
         "pound_solve.numerics.types",

@@ -214,3 +214,38 @@ def test_the_overview_names_the_largest_of_all(tmp_path):
         told["largest drift ratio"]
         == f"{100 * results.table('drift_envelope')['ratio_max'][0]:.3g} %, storey"
     )
+
+
+def test_a_building_that_leans_after_the_motion_is_told(tmp_path):
+    """A spring that yields to one side keeps a drift; one that yields less, or not, has nothing to tell."""
+    for a, h, told in ((6.0, 3.0, True), (0.3, 3.0, False)):
+        results = run(tmp_path, a=a, h=h)
+        residual = abs(results.history("storey/drift")[-1, 0])
+        assert (residual > 0.005) == told
+        assert ("storey drift of building 1 at the end" in looks(results)) == told
+        assert ("the building leans" in " ".join(first_page(results).split())) == told
+
+
+def test_the_overview_tells_what_the_response_rests_on(tmp_path):
+    """Periods of each building, damping and the law of the contacts, before the response itself."""
+    deck = tmp_path / "model.inp"
+    text = DECK.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=0.3)
+    text = text.replace("LAW=LINEAR", "LAW=KELVIN_VOIGT E=0.6")
+    deck.write_text(text.replace("ANALYSIS", "DAMPING\n MODAL XI=0.05\nANALYSIS\n MODAL"))
+    told = dict(pound_solve.run(deck).table("overview").tolist())
+    period = 2 * np.pi * np.sqrt(200 / 9.81 / 4000)
+    assert told["longest period of building 1"] == f"{period:.4g} s"
+    assert told["damping"].startswith("MODAL: XI 0.05")
+    assert told["contact law"] == "KELVIN_VOIGT, 1e+05 kN/m, restitution 0.6"
+
+
+def test_the_overview_has_the_largest_storey_drift_where_no_drift_is_asked_for(tmp_path):
+    deck = tmp_path / "model.inp"
+    text = DECK.replace('DRIFT\n "storey" 1 2\n', "")
+    deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=1.0))
+    results = pound_solve.run(deck)
+    extremes = results.table("storey_extremes")[0]
+    assert extremes["unit"] == "-"
+    ratio = max(extremes["max"], -extremes["min"])
+    told = dict(results.table("overview").tolist())
+    assert told["largest storey drift ratio"].startswith(f"{100 * ratio:.3g} %, building 1 storey 1")

@@ -651,6 +651,7 @@ def looks(folder, method, rule, k=100.0, fy=1.0, speed=1.0, end=1.0):
     deck.write_text(SPRUNG.format(method=method, rule=rule, k=k, fy=fy, speed=speed, end=end))
     results = pound_solve.run(deck)
     told = [x for x in results.table("checks") if x["verdict"].startswith("look")]
+    told = [x for x in told if "leans" not in x["verdict"]]  # what has yielded does
     return {x["check"][:20]: float(x["value"]) for x in told}, results
 
 
@@ -915,7 +916,7 @@ def test_trials_of_exact_cost_a_third_of_the_whole_at_most(tmp_path, monkeypatch
     monkeypatch.setattr(refinement.StepRefinement, "least_cost", least_cost)
     found = run(tmp_path, "AUTO TOL=1e-5")
     assert found.status == "done" and len(others) > 3 and spent
-    assert sum(spent) <= 0.5 * (others[-1] + trial.REST + trial.provider().loading) * (1 + 1e-12)
+    assert sum(spent) <= 0.5 * (others[-1] + trial.REST + trial.loading()) * (1 + 1e-12)
 
 
 def test_auto_goes_over_to_series_once_steps_have_cost_as_much(monkeypatch):

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from pound_solve.analyses.closeups import Closeups
+from pound_solve.analyses.extremes import Extremes, intervals
 from pound_solve.analyses.quantities import MOTION, Quantities
 from pound_solve.integrate.protocol import Course, Motion
 from pound_solve.numerics.crests import NODES, Doubts, crests, may_exceed, near, some_rows
@@ -88,10 +89,16 @@ class Envelopes:
         Unknowns that close-ups need beside those of nodes, members and sums.
     room : int
         Instants that the close-ups keep, at most.
+    times : ndarray, shape (n_times,)
+        Of the samples [T].
+    bytes_of_extremes : float
+        At most; 0 keeps none.
 
     Attributes
     ----------
     closeups : Closeups
+    extremes : Extremes
+        Within the intervals of the samples.
     node : dict of Envelope
         Of displacements "u", velocities "v" (relative to the ground, where it moves as one) and
         accelerations "a" (total).
@@ -115,7 +122,9 @@ class Envelopes:
         outputs: Sequence[Output],
         sums: Mapping[str, LinearSums],
         followed: Flags,
-        room: int = 0,
+        room: int,
+        times: Array,
+        bytes_of_extremes: float,
     ) -> None:
         self.units, laws = [o.unit for o in outputs], system.structure.laws
         acting = np.any([np.zeros(len(laws), bool), *(x.acting for x in sums.values())], axis=0)
@@ -123,6 +132,8 @@ class Envelopes:
         self.acting = np.flatnonzero(acting | contacts)
         self.closeups = Closeups(np.flatnonzero(contacts[self.acting]), room)
         self.quantities = Quantities(system, nodes, outputs, sums, self.acting)
+        count = self.quantities.count
+        self.extremes = Extremes(intervals(times, count, bytes_of_extremes), count)
         self.shown = self.quantities.shown | used_columns(system.law_rows[self.acting])
         if contacts.any():
             self.shown |= followed
@@ -141,7 +152,7 @@ class Envelopes:
     def blank(self) -> Envelopes:
         """Return one of the same quantities that has seen nothing."""
         other = copy.copy(self)
-        other.closeups = self.closeups.blank()
+        other.closeups, other.extremes = self.closeups.blank(), self.extremes.blank()
         other._clear()
         return other
 
@@ -175,12 +186,14 @@ class Envelopes:
         self.seen, self.apart = self.seen + other.seen, max(self.apart, other.apart)
         self.searched |= other.searched
         self.closeups.widen(other.closeups)
+        self.extremes.widen(other.extremes)
 
     def between(self, course: Course) -> None:
         """Count in the motion between samples (see `integrate.protocol.Recorder`), with its extremes."""
         own, t = self.quantities, course.motion.t
         values = own.values(course.motion, own.inputs(t))
         self._all.take(values, t, own.place)
+        self.extremes.take(values, t, own.place)
         self.seen += len(t)
         self.apart = max(self.apart, float(course.lengths.max(initial=0.0)))
         self.closeups.take(course)
@@ -211,6 +224,7 @@ class Envelopes:
         top, at = crests(values[close])
         t = course.motion.t[cell[close]] + at * course.lengths[cell[close]]
         self._all.take_tops(own[close], sign[close], top, t)
+        self.extremes.take_tops(own[close], sign[close], top, t)
 
     def take(self, motion: Motion, s: Sequence[Array]) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Count in some samples; return the motion of the nodes, shape (3 n_nodes, nt) each,
@@ -219,11 +233,12 @@ class Envelopes:
         """
         whole = self._whole(motion, s)
         self._all.take(whole, motion.t)
-        return self._told(whole)
+        self.extremes.take(whole, motion.t)
+        return self.told(whole)
 
     def values(self, motion: Motion) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Motion of the nodes, forces of the members and sums, as `take`, of instants between samples."""
-        return self._told(self._whole(motion, self.quantities.inputs(motion.t)))
+        return self.told(self._whole(motion, self.quantities.inputs(motion.t)))
 
     def _whole(self, motion: Motion, s: Sequence[Array]) -> Array:
         """Values of all quantities, with what never moves, shape (n, nt)."""
@@ -231,7 +246,7 @@ class Envelopes:
         out[self.quantities.place] = self.quantities.values(motion, s)
         return out
 
-    def _told(self, whole: Array) -> tuple[dict[str, Array], Array, dict[str, Array]]:
-        """Values of nodes, members and sums."""
+    def told(self, whole: Array) -> tuple[dict[str, Array], Array, dict[str, Array]]:
+        """Values of nodes, members and sums, of those of all quantities."""
         own = {name: whole[part] for name, part in self.quantities.parts.items()}
         return {q: own.pop(q) for q in MOTION}, own.pop("output"), own

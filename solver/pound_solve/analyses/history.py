@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import NamedTuple, Protocol
 
@@ -22,6 +23,7 @@ from pound_solve.analyses.history_start import begin, initial
 from pound_solve.analyses.recorder import HistoryRecorder, RecordedItems, SampleBlock
 from pound_solve.analyses.spring_response import SpringResponse, spring_responses
 from pound_solve.integrate.protocol import INTERRUPTED, MonitoredOutputs, Outcome, Start, Stop
+from pound_solve.interruption import undisturbed
 from pound_solve.loading.forces.base import Force
 from pound_solve.loading.motions.base import Motion
 from pound_solve.numerics.types import Array
@@ -95,6 +97,10 @@ class HistoryOutput(Protocol):
 
     def closeups(self, blocks: Iterable[SampleBlock]) -> None:
         """Take the close-ups of collisions, when the history is over."""
+        ...
+
+    def extremes(self, bounds: Array, blocks: Sequence[SampleBlock]) -> None:
+        """Take the extremes between bounds, smallest and largest values, when the history is over."""
         ...
 
     def save(self, state: Mapping[str, Array]) -> None:
@@ -271,12 +277,13 @@ def run(
     if card["FROM"] == "REST":
         state = static.at_rest(structure)
     every = output_interval(structure.model, loading, end)
-    start, items, first_energy = _prepared(structure, state, loading, output_times(every, end), like)
+    times = output_times(every, end)
+    start, items, first_energy = _prepared(structure, state, loading, times, like)
 
     def tell(t: float, doing: str) -> None:
         output.progress(t, end, doing)
 
-    recorder = HistoryRecorder(items, output.append, tell, first_energy)
+    recorder = HistoryRecorder(items, output.append, tell, start.times, first_energy)
     output.start(items)
     began, used = time.perf_counter(), time.process_time()
     stop: Stop | None = None
@@ -289,11 +296,14 @@ def run(
     except KeyboardInterrupt:  # before a method took its first step, or between two
         stop = Stop("A506", max(recorder.reached, 0.0), INTERRUPTED)
     seconds, cpu_seconds = time.perf_counter() - began, time.process_time() - used
-    recorder.flush()
-    output.closeups(recorder.closeups())
-    outcome = restart.join(parts) if parts and recorder.started else None
-    springs = [] if outcome is None else spring_responses(structure, recorder, outcome, stop is None)
-    return HistoryResult(recorder, outcome, springs, stop, every, seconds, cpu_seconds)
+    with suppress(KeyboardInterrupt), undisturbed():  # the motion is over: nothing is left to break off
+        recorder.flush()
+        output.closeups(recorder.closeups())
+        output.extremes(*recorder.extremes())
+        outcome = restart.join(parts) if parts and recorder.started else None
+        springs = [] if outcome is None else spring_responses(structure, recorder, outcome, stop is None)
+        found = HistoryResult(recorder, outcome, springs, stop, every, seconds, cpu_seconds)
+    return found
 
 
 def _prepared(

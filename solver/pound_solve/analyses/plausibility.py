@@ -13,11 +13,13 @@ from pound_deck.model import Model
 from pound_solve.analyses.history import HistoryResult
 from pound_solve.analyses.spring_response import ORDINARY_ROTATION
 from pound_solve.integrate.protocol import Outcome
+from pound_solve.structure.storeys import storeys
 from pound_solve.structure.structure import Structure
 
 Check = tuple[str, str, str]
 
 LARGEST_DRIFT: Final = 0.1  #: drift over height; frames have lost their vertical loads before
+LARGEST_RESIDUAL: Final = 0.005  #: drift over height at the end, which the eye sees in a storey
 LARGEST_OVERLAP: Final = 0.02  #: of the shortest member that meets a contact
 
 
@@ -99,6 +101,26 @@ def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
         if length and overlap > LARGEST_OVERLAP * length:
             share = f"{100 * overlap / length:.3g} % of the shortest member there"
             yield f"overlap of contact {name}", share, "look: above 2 %; check the stiffness of the contact"
+
+
+def leaning(structure: Structure, history: HistoryResult, residual: Sequence[float]) -> Iterator[Check]:
+    """Buildings whose springs or hinges have yielded and that lean at the end of the history.
+
+    Parameters
+    ----------
+    residual : sequence of float
+        Drift ratio of every storey at the last sample.
+    """
+    model, found = structure.model, list(zip(storeys(history.items.buildings), residual))
+    yielded = {model.elements[r.spring.element].i for r in history.springs if r.ductility > 1.0}
+    for building in history.items.buildings:
+        own = [(abs(x), storey) for (b, storey), x in found if b is building]
+        most, storey = max(own, default=(0.0, 0))
+        if most > LARGEST_RESIDUAL and yielded & set(building.nodes):
+            told = f"{100 * most:.3g} %, storey {storey}"
+            limit = f"{100 * LARGEST_RESIDUAL:g} %"
+            verdict = f"look: above {limit}, a threshold of this program; the building leans"
+            yield f"storey drift of {building.name} at the end", told, verdict
 
 
 def shortest_members(model: Model) -> dict[int, float]:

@@ -18,7 +18,7 @@ from pound_solve.structure.elements.base import Output
 from pound_solve.structure.equations import LinearSums
 from pound_solve.structure.reduction import ReducedSystem
 
-FEW = 64  #: rows and columns of a matrix that is not sparse, at most
+FEW = 64  #: rows and columns of a matrix that is not sparse, or as many numbers in another shape
 MOTION = "uva"  #: names of displacements, velocities and accelerations
 
 
@@ -73,7 +73,8 @@ class Quantities:
         self._column = np.zeros(3 * system.size + self._width, np.int64)
         self._column[used] = np.arange(len(used))
         shape = len(self.place), len(used)
-        self._matrix = gathered(shape, self._rows.number, column, self._rows.factors, most_dense=FEW)
+        most = max(shape) if shape[0] * shape[1] <= FEW**2 else 0
+        self._matrix = gathered(shape, self._rows.number, column, self._rows.factors, most_dense=most)
 
     def _add(
         self, name: str, motion: Mapping[int, Matrix], inputs: Mapping[int, Array], constant: Array,

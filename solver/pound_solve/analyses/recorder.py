@@ -124,11 +124,17 @@ class RecordedItems:
         """Instants of close-ups that the deck has room for."""
         widths = 9 * len(self.nodes), len(self.outputs), *(len(x.constant) for x in self.sums.values())
         others = 1 + len(self.springs) + 2 * len(self.contacts) + len(self.drifts.names)
+        return int(self._budget("CLOSEUPS") / (8 * (sum(widths) + others)))
+
+    @property
+    def bytes_of_extremes(self) -> float:
+        """Bytes of extremes that the deck has room for."""
+        return self._budget("EXTREMES")
+
+    def _budget(self, item: str) -> float:
+        """Bytes that an item of OUTPUT allows."""
         output = self.system.structure.model.output
-        if output["HISTORIES"] == "NO":
-            return 0
-        budget = output["CLOSEUPS"] * MEGABYTE
-        return int(budget / (8 * (sum(widths) + others)))
+        return 0.0 if output["HISTORIES"] == "NO" else float(output[item] * MEGABYTE)
 
     @property
     def followed(self) -> Flags:
@@ -244,6 +250,8 @@ class HistoryRecorder:
         Takes a `SampleBlock`.
     progress : callable
         Told the time of every sample, or what keeps the run waiting there.
+    times : ndarray, shape (n_times,)
+        Of the samples [T].
     first_energy : ndarray, shape (6,), or None
         Energies at the start of the history, if this run takes it up later; None: of the first sample.
 
@@ -265,11 +273,19 @@ class HistoryRecorder:
         items: RecordedItems,
         append: Callable[[SampleBlock], None],
         progress: Callable[[float, str], None],
+        times: Array,
         first_energy: Array | None = None,
     ) -> None:
         self.items, self._append, self._progress = items, append, progress
         self.envelopes = Envelopes(
-            items.system, items.nodes, items.outputs, items.sums, items.followed, items.room
+            items.system,
+            items.nodes,
+            items.outputs,
+            items.sums,
+            items.followed,
+            items.room,
+            times,
+            items.bytes_of_extremes,
         )
         self.energy = EnergyBalance(first_energy)
         self.losses = [0.0] * len(items.system.structure.laws)
@@ -368,3 +384,16 @@ class HistoryRecorder:
             force[self.acting] = motion.law_forces
             values = self.envelopes.values(motion)
             yield SampleBlock(self.items, motion.t, motion.u, s, force, d, *values, np.zeros((0, 7)))
+
+    def extremes(self) -> tuple[Array, list[SampleBlock]]:
+        """Bounds of the intervals that were seen whole or in part, shape (n + 1,), and the smallest and the
+        largest values within them: of nodes, members and sums only.
+        """
+        own, none = self.envelopes.extremes, np.zeros((0, 0))
+        count = int(np.isfinite(own.low).all(axis=0).sum())
+        blocks = []
+        for values in (own.low, own.high):
+            told = self.envelopes.told(values[:, :count])
+            t = own.bounds[:count]
+            blocks.append(SampleBlock(self.items, t, none, none, none, none, *told, np.zeros((0, 7))))
+        return np.minimum(own.bounds[: count + 1], self.reached) if count else np.zeros(0), blocks

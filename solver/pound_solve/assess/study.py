@@ -38,8 +38,9 @@ from pound_solve.catalog import catalog
 from pound_solve.driver import run as driver
 from pound_solve.driver.overrides import with_method
 from pound_solve.results import Results
-from pound_solve.results.place import partial, put_in_place
+from pound_solve.results.place import put_in_place
 from pound_solve.results.schema import Stage
+from pound_solve.results.whole_file import partial
 
 Report = Callable[[str], None]
 

@@ -14,7 +14,7 @@ from typing import TextIO
 
 from pound_solve.cli import verbs
 from pound_solve.cli.common import MISTAKES, STOPPED, complain
-from pound_solve.cli.interruption import Interruption
+from pound_solve.interruption import Interruption
 from pound_solve.modules import modules_below
 from pound_solve.numerics import threads
 from pound_solve.version import __version__

@@ -1,10 +1,11 @@
-"""Whether a run would write over what it reads."""
+"""Whether a run would write over what it reads, or over files of others."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
+from typing import Final
 
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Model, Span
@@ -12,7 +13,12 @@ from pound_solve.driver.request import Request
 from pound_solve.loading.motions.base import LoadingContext
 from pound_solve.loading.records.base import RecordError
 from pound_solve.loading.records.known import find
-from pound_solve.results.place import partial
+from pound_solve.results.form import FILETYPE
+from pound_solve.results.whole_file import partial
+
+START: Final = 2**16  #: bytes of a file in which our mark stands
+#: of our files, by their endings
+MARKS: Final = {".h5": FILETYPE.encode(), ".rpt": b"POUND-SOLVE"}
 
 
 def overwritten(model: Model, request: Request, context: LoadingContext) -> list[Diagnostic]:
@@ -29,6 +35,31 @@ def overwritten(model: Model, request: Request, context: LoadingContext) -> list
         for path, span in _read(model, request, context)
         if path.resolve() in own
     ]
+
+
+def taken(request: Request) -> list[Diagnostic]:
+    """Files of other programs that have the names of results and report."""
+    found = {request.path(suffix): mark for suffix, mark in MARKS.items()}
+    return [
+        Diagnostic(
+            "R411",
+            f"{path} is no file of this program, and has the name of one that this run writes",
+            None,
+            "rename it, or use -o",
+        )
+        for path, mark in found.items()
+        if _of_others(path, mark)
+    ]
+
+
+def _of_others(path: Path, mark: bytes) -> bool:
+    """Whether there is a file, not empty, that does not bear our mark."""
+    if not path.is_file():
+        return False
+    with suppress(OSError), path.open("rb") as file:
+        start = file.read(START)
+        return bool(start) and mark not in start
+    return False
 
 
 def _read(model: Model, request: Request, context: LoadingContext) -> Iterator[tuple[Path, Span | None]]:

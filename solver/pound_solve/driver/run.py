@@ -6,16 +6,20 @@ import shutil
 import tempfile
 import time
 import weakref
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
+from pound_solve.driver.outputs import taken
 from pound_solve.driver.prepare import DeckError, Prepared, prepare
 from pound_solve.driver.request import Request
 from pound_solve.driver.sequence import NO_ROOM, AnalysisSequence, Progress
+from pound_solve.interruption import undisturbed
 from pound_solve.results import Results, Writer
-from pound_solve.results.place import partial, put_in_place
+from pound_solve.results.place import put_in_place
 from pound_solve.results.safe_file import NoRoomError
+from pound_solve.results.whole_file import partial
 from pound_solve.version import __version__
 
 __all__ = (
@@ -63,11 +67,14 @@ def execute(request: Request, progress: Progress | None = None) -> tuple[int, Re
     """
     began = time.perf_counter()
     ready = prepare(request)
+    if others := taken(request):
+        raise DeckError(others, ready.files)
     path = request.path(".h5")
     path.parent.mkdir(parents=True, exist_ok=True)
     with writer_of(ready, partial(path)) as writer:
         message = analyse(ready, writer, progress, began, request)
-        path = put_in_place(path, report_of(partial(path)), whole=not message.startswith(BROKEN_OFF))
+        with suppress(KeyboardInterrupt), undisturbed():  # nothing is left to break off
+            path = put_in_place(path, report_of(partial(path)), whole=not message.startswith(BROKEN_OFF))
     status = FILES if message.startswith("A508") else STOPPED if message else DONE
     return status, Results.open(path), ready
 
@@ -111,12 +118,13 @@ def analyse(
         Number and text of the message that says why the analyses stopped; empty if they did not.
     """
     message = AnalysisSequence(ready, request, writer, progress, began).run()
-    try:
-        writer.finish("stopped" if message else "done", message)
-    except NoRoomError:  # what is reserved is free from now on
-        message = message or NO_ROOM
-        writer.finish("stopped", message)
-    writer.close()
+    with suppress(KeyboardInterrupt), undisturbed():  # nothing is left to break off
+        try:
+            writer.finish("stopped" if message else "done", message)
+        except NoRoomError:  # what is reserved is free from now on
+            message = message or NO_ROOM
+            writer.finish("stopped", message)
+        writer.close()
     return message
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol, TypeAlias
@@ -18,8 +19,9 @@ from pound_solve.driver.identity import identity
 from pound_solve.driver.prepare import Prepared
 from pound_solve.driver.request import Request
 from pound_solve.integrate.protocol import INTERRUPTED, Stop
+from pound_solve.interruption import undisturbed
 from pound_solve.numerics.types import Array
-from pound_solve.results.contents import HISTORIES, closeups_of, layout_of, values_of
+from pound_solve.results.contents import HISTORIES, closeups_of, extremes_of, layout_of, values_of
 from pound_solve.results.record import RunRecord
 from pound_solve.results.safe_file import NoRoomError
 from pound_solve.results.schema import Layout, Stage
@@ -59,6 +61,12 @@ class RunOutput(Protocol):
 
     def closeups(self, layout: Layout, blocks: Sequence[Mapping[str, Array]]) -> None:
         """Take the close-ups of collisions."""
+        ...
+
+    def extremes(
+        self, layout: Layout, bounds: Array, low: Mapping[str, Array], high: Mapping[str, Array]
+    ) -> None:
+        """Take the extremes within intervals."""
         ...
 
     def restart(self, state: Mapping[str, Array], identity: Mapping[str, str]) -> None:
@@ -137,9 +145,10 @@ class AnalysisSequence:
             try:
                 return self._analyses()
             finally:
-                self._write(Stage.END)
-                if self.explain:
-                    self._write(Stage.EXPLAIN)
+                with suppress(KeyboardInterrupt), undisturbed():  # nothing is left to break off
+                    self._write(Stage.END)
+                    if self.explain:
+                        self._write(Stage.EXPLAIN)
         except NoRoomError:
             return NO_ROOM
 
@@ -225,15 +234,19 @@ class AnalysisSequence:
     def _history(self, card: Card, state: static.StaticState) -> None:
         record = self.record
         found = history.run(record.structure, state, card, self.loading, self.output, self.settled.items)
-        record.history, self.settled.items = found, found.items
-        record.solve_seconds += found.seconds
-        record.cpu_seconds += found.cpu_seconds
-        self._write(Stage.HISTORY)
-        if found.recorder.started:
-            self._write(Stage.SAMPLES)
-        if found.outcome is not None:
-            record.checks += [*found.checks, *plausibility.of_history(record.structure, found)]
-            self._write(Stage.PEAKS)
+        with suppress(KeyboardInterrupt), undisturbed():  # the motion is over
+            record.history, self.settled.items = found, found.items
+            record.solve_seconds += found.seconds
+            record.cpu_seconds += found.cpu_seconds
+            self._write(Stage.HISTORY)
+            if found.recorder.started:
+                self._write(Stage.SAMPLES)
+            if found.outcome is not None:
+                record.checks += [*found.checks, *plausibility.of_history(record.structure, found)]
+                if found.stop is None and any(b.floors for b in found.items.buildings):
+                    residual = record.stored("storey/drift")[-1].tolist()
+                    record.checks += plausibility.leaning(record.structure, found, residual)
+                self._write(Stage.PEAKS)
         if found.stop is not None:
             raise found.stop
 
@@ -276,6 +289,11 @@ class HistoryWriter:
         """Store the close-ups of collisions."""
         if self._kept is None:
             self.writer.closeups(self.record.layout, [closeups_of(block) for block in blocks])
+
+    def extremes(self, bounds: Array, blocks: Sequence[SampleBlock]) -> None:
+        """Store the extremes within intervals, where there are any."""
+        if self._kept is None and len(bounds):
+            self.writer.extremes(self.record.layout, bounds, *map(extremes_of, blocks))
 
     def save(self, state: Mapping[str, Array]) -> None:
         """Store the state that a later run can be taken up from."""

@@ -41,7 +41,7 @@ from pound_solve.integrate.protocol import (
 )
 from pound_solve.integrate.trial import ExactTrial
 from pound_solve.numerics.modes import massless
-from pound_solve.numerics.providers import provider
+from pound_solve.numerics.providers import loading, provider
 from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import Role
 from pound_solve.structure.reduction import Decision, ReducedSystem
@@ -185,7 +185,7 @@ def integrate(
             system.decisions.append(Decision("method", "EXACT", RIGID))
             return exact.integrate(system, start, monitored, {}, recorder)
     series = cost_of_series(system, start)
-    if series + provider().loading <= SERIES_FIRST:
+    if series + loading() <= SERIES_FIRST:
         if (outcome := by_few_series(system, start, monitored, recorder)) is not None:
             return outcome
         series = np.inf

@@ -14,7 +14,7 @@ from pound_solve.integrate import condensed, costs
 from pound_solve.integrate.closed_form import exact
 from pound_solve.integrate.convergence.replay import Replay
 from pound_solve.integrate.protocol import EnvelopeRecorder, MonitoredOutputs, Outcome, Start, Stop
-from pound_solve.numerics.providers import provider
+from pound_solve.numerics.providers import loading
 from pound_solve.structure.reduction import ReducedSystem
 
 SHARE = 0.5  #: of what the other methods cost, that all trials may cost
@@ -67,7 +67,7 @@ class ExactTrial:
         """Return its run, or None where all trials would cost more than a share of what the `others` do,
         which still have to load their kernels.
         """
-        budget = SHARE * (others + provider().loading + REST) - self.spent
+        budget = SHARE * (others + loading() + REST) - self.spent
         if self.cost >= budget:
             return None
         replay, decisions = Replay(self.recorder), self.system.decisions

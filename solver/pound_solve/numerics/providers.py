@@ -7,14 +7,18 @@ the last.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cache
 from importlib.util import find_spec
-from typing import Protocol
+from typing import Final, Protocol
 
 from pound_solve.numerics import library
 from pound_solve.numerics.jit import Function, Numba
 
 INTERPRETED = "steps are not compiled, some 100 times slower: pip install numba"
+_RESIDENT: Final = ContextVar("resident", default=False)
 
 
 class Provider(Protocol):
@@ -78,3 +82,18 @@ def provider() -> Provider:
         return found
     told = library.REFUSED if library.present(library.FOLDER) else ""
     return Numba(told) if find_spec("numba") else Interpreter("; ".join(filter(None, [told, INTERPRETED])))
+
+
+@contextmanager
+def resident() -> Iterator[None]:
+    """Within this context a process carries out many runs: what it loads counts for none of them."""
+    token = _RESIDENT.set(True)
+    try:
+        yield
+    finally:
+        _RESIDENT.reset(token)
+
+
+def loading() -> float:
+    """Seconds that the kernels of a run take to load, about: none where they are `resident`."""
+    return 0.0 if _RESIDENT.get() else provider().loading

@@ -14,12 +14,13 @@ from pound_deck.model import Units
 from pound_solve.numerics.types import Array
 from pound_solve.results import Results
 from pound_solve.results.schema import Row, Table
+from pound_solve.results.whole_file import whole
 
 _BLOCK: Final = 4096  #: rows that are turned into Python numbers at a time
 
 
 def export_csv(results: Results, folder: str | Path) -> list[Path]:
-    """Write ``<table>.csv``, ``history_<name>.csv`` and ``closeup_<name>.csv`` files.
+    """Write ``<table>.csv``, ``history_<name>.csv``, ``closeup_<name>.csv``, ``extremes_<name>.csv`` files.
 
     Heads hold the units in brackets.  Numbers have all their digits; a number that is missing is an empty
     cell.  Texts are UTF-8; one that a spreadsheet would take for a formula
@@ -47,6 +48,7 @@ def export_csv(results: Results, folder: str | Path) -> list[Path]:
             if name != "time"
         ),
         *(_history(results, name, folder, "closeup", *results.closeup(name)) for name in results.closeups),
+        *(_extremes(results, name, folder) for name in results.extremes),
     ]
 
 
@@ -84,7 +86,7 @@ def export_columns(
         labels, units = results.labels(name), results.history_units(name)
         places = results.places(name, **at)
         heads += [_head(f"{name} {labels[i]}", units[i]) for i in places]
-        columns += list(results.history(name).reshape(len(results.time), -1).T[places])
+        columns += list(results.history(name).reshape(len(results.time), len(labels)).T[places])
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     return _write(folder / "histories.csv", heads, _blocks(columns))
@@ -110,6 +112,18 @@ def _history(results: Results, name: str, folder: Path, kind: str, time: Array, 
     return _write(folder / f"{kind}_{name.replace('/', '_')}.csv", heads, _blocks([time, *values.T]))
 
 
+def _extremes(results: Results, name: str, folder: Path) -> Path:
+    """Smallest and largest values side by side, and the intervals that they are of."""
+    bounds, low, high = results.extreme(name)
+    unit = results.history_units("time")[0]
+    heads, columns = [_head("from", unit), _head("to", unit)], [bounds[:-1], bounds[1:]]
+    own = (x.reshape(len(x), len(results.labels(name))).T for x in (low, high))
+    for label, of, *both in zip(results.labels(name), results.history_units(name), *own):
+        heads += [_head(f"{label} min", of), _head(f"{label} max", of)]
+        columns += both
+    return _write(folder / f"extremes_{name.replace('/', '_')}.csv", heads, _blocks(columns))
+
+
 def _blocks(columns: Sequence[Array]) -> Iterator[list[float]]:
     """Rows of columns, as Python numbers."""
     for start in range(0, len(columns[0]), _BLOCK):
@@ -117,7 +131,7 @@ def _blocks(columns: Sequence[Array]) -> Iterator[list[float]]:
 
 
 def _write(path: Path, heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
-    with path.open("w", newline="", encoding="utf-8") as file:
+    with whole(path) as own, own.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(heads)
         writer.writerows(rows)

@@ -69,3 +69,8 @@ def values_of(block: SampleBlock) -> dict[str, Array]:
 def closeups_of(block: SampleBlock) -> dict[str, Array]:
     """Rows of the histories that close-ups have."""
     return {name: h.values(block) for name, h in HISTORIES.items() if h.closeup}
+
+
+def extremes_of(block: SampleBlock) -> dict[str, Array]:
+    """Rows of the histories whose extremes are kept."""
+    return {name: h.values(block) for name, h in HISTORIES.items() if h.extremes}

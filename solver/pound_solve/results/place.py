@@ -13,13 +13,9 @@ import re
 from pathlib import Path
 
 from pound_solve.results.form import ResultsError
+from pound_solve.results.whole_file import partial
 
 _DIGEST = re.compile(r"^ Results [0-9a-f]+$", re.MULTILINE)
-
-
-def partial(path: Path) -> Path:
-    """Name of an output file while its run goes on."""
-    return path.with_name(f"{path.stem}.partial{path.suffix}")
 
 
 def put_in_place(results: Path, report: str, whole: bool) -> Path:
@@ -52,7 +48,9 @@ def put_in_place(results: Path, report: str, whole: bool) -> Path:
         for path in (results, text):
             os.replace(partial(path), path)
     except OSError as err:
-        raise ResultsError(f"{err.filename}: {err.strerror}; the results of this run are in {own}") from err
+        raise ResultsError(
+            f"{err.filename or text}: {err.strerror}; the results of this run are in {own}"
+        ) from err
     return results
 
 

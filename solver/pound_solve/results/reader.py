@@ -339,6 +339,26 @@ class Results:
         t, rows = (self._find(group, key, "close-up", name, self.closeups) for key in ("time", name))
         return self._as_written("time", t, t[()]), self._as_written(name, rows, rows[()])
 
+    @property
+    @_sound
+    def extremes(self) -> tuple[str, ...]:
+        """Names of the histories whose extremes within intervals are in the file."""
+        group = self._file.get("extremes", {})
+        return tuple(name for name in self.histories if name != "time" and name in group)
+
+    @_sound
+    def extreme(self, name: str) -> tuple[Array, Array, Array]:
+        r"""Bounds of intervals, shape (n + 1,), and the smallest and the largest values of a history within
+        them, shape (n, \*row) each; KeyError where the file has none of that name.
+
+        They are those of the samples and of the method's instants between them; those of the whole history
+        are the peaks in the tables.
+        """
+        group = self._file.get("extremes", {})
+        t, rows = (self._find(group, key, "extremes", name, self.extremes) for key in ("time", name))
+        low, high = np.moveaxis(self._as_written(name, rows, rows[()]), 1, 0)
+        return self._as_written("time", t, t[()]), low, high
+
     @_sound
     def course(self, name: str) -> tuple[Array, Array]:
         r"""A history with its close-ups: rising times, shape (n,), and rows, shape (n, \*row)."""

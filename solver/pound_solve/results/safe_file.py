@@ -16,9 +16,6 @@ from __future__ import annotations
 
 import errno
 import os
-import signal
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Final
 
@@ -31,19 +28,6 @@ except ImportError:  # Windows, whose open files no other program can rename or 
     fcntl = None  # type: ignore[assignment]
 
 RESERVE: Final = 4 * PAGE  #: room held behind the data
-
-
-@contextmanager
-def undisturbed() -> Iterator[None]:
-    """Hold signals back: an exception raised amid a write of HDF5 would count as a write that failed."""
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM, signal.SIGHUP})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 class NoRoomError(ResultsError):

@@ -195,6 +195,8 @@ class History:
         A made-up layout for the tests.
     closeup : bool
         Whether close-ups of collisions have it, too.
+    extremes : bool
+        Whether its smallest and largest values within intervals are kept.
     axes : mapping of str to str
         What a number of the row is found by (``node``, ``member``, ``component``, ...), and the attribute
         that holds these labels.  Without them a label alone finds it.
@@ -208,4 +210,5 @@ class History:
     values: Callable[[SampleBlock], Array]
     sample: HistoryLayout
     closeup: bool = False
+    extremes: bool = False
     axes: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import csv
 import math
-import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,8 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_solve.results.form import ResultsError, storable
-from pound_solve.results.place import partial
-from pound_solve.results.safe_file import SafeFile, undisturbed
+from pound_solve.results.whole_file import whole, whole_hdf
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -224,25 +222,13 @@ def write_table(path: Path, columns: Mapping[str, Variable], about: Mapping[str,
 
 def _put(path: Path, fill: Callable[[h5py.File], None], columns: Mapping[str, Sequence[Any]]) -> None:
     """Write a file, and its columns as CSV beside it: whole, or not at all."""
-    own = partial(path)
-    disk = SafeFile(own)
-    try:
-        with undisturbed(), h5py.File(disk, "w", libver=("v108", "v108")) as file:
-            fill(file)
-        with undisturbed():
-            disk.commit()
-            disk.end()
-    except BaseException:
-        disk.remove()
-        raise
-    disk.close()
     table = path.with_suffix(".csv")
-    with partial(table).open("w", newline="", encoding="utf-8") as text:
-        writer = csv.writer(text)
-        writer.writerow(columns)
-        writer.writerows([_cell(v) for v in row] for row in zip(*columns.values()))
-    os.replace(partial(table), table)
-    os.replace(own, path)
+    with whole(table) as text, whole_hdf(path) as file:
+        fill(file)
+        with text.open("w", newline="", encoding="utf-8") as lines:
+            writer = csv.writer(lines)
+            writer.writerow(columns)
+            writer.writerows([_cell(v) for v in row] for row in zip(*columns.values()))
 
 
 def _cell(value: object) -> object:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from pound_solve.numerics.types import Array
 from pound_solve.results.form import ResultsError
 from pound_solve.results.reader import Results
+from pound_solve.results.whole_file import whole_hdf
 
 VERSION: Final = (2, 0)
 VERTEX, LINE = 1, 3  #: kinds of cells
@@ -78,7 +79,7 @@ def write_vtkhdf(results: Results, path: str | Path) -> list[int]:
     }
     moving = {"PointData": _of_points(results), "CellData": _of_cells(results, grid)}
     try:
-        with h5py.File(path, "w") as file:
+        with whole_hdf(Path(path)) as file:
             root = file.create_group("VTKHDF")
             root.attrs["Version"] = np.array(VERSION)
             root.attrs["Type"] = np.bytes_("UnstructuredGrid")

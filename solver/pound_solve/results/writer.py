@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from pound_solve.interruption import undisturbed
 from pound_solve.results.axes import axes_of
 from pound_solve.results.contents import HISTORIES, OF_THE_DAY, TABLES, tables_at
 from pound_solve.results.form import (
@@ -30,7 +31,7 @@ from pound_solve.results.form import (
     escape,
     storable,
 )
-from pound_solve.results.safe_file import NoRoomError, SafeFile, undisturbed
+from pound_solve.results.safe_file import NoRoomError, SafeFile
 from pound_solve.results.schema import Column, HistoryLayout, Layout, Stage
 
 if TYPE_CHECKING:
@@ -201,7 +202,7 @@ class Writer:
             dataset.attrs.update(attributes)
             dataset.attrs[DIGEST_OF_THE_DAY if name in OF_THE_DAY else DIGEST] = own.hexdigest()
             self._commit()
-        self._digests[f"{group}/{name}"] = THERE if name in OF_THE_DAY else own
+            self._digests[f"{group}/{name}"] = THERE if name in OF_THE_DAY else own
 
     def tables(self, stage: Stage, record: RunRecord | StudyRecord) -> None:
         """Store all tables of a stage that have something to tell.
@@ -305,13 +306,39 @@ class Writer:
         """
         for name in blocks[0] if blocks else ():
             own = HistoryLayout((), {"unit": "T"}) if name == "time" else layout[name]
-            if 0 in own.shape:
-                continue
-            attributes = _complete(name, own)
-            attributes["unit"] = [self._units.text(u) for u in attributes["unit"]]
-            rows = np.concatenate([np.asarray(block[name], float) for block in blocks])
-            texts = {key: [storable(v) for v in attributes[key]] for key in ("labels", "unit")}
-            self._put("closeup", name, rows, {**attributes, **texts})
+            self._aside("closeup", name, own, np.concatenate([block[name] for block in blocks]))
+
+    def extremes(
+        self,
+        layout: Layout,
+        bounds: NDArray[Any],
+        low: Mapping[str, NDArray[Any]],
+        high: Mapping[str, NDArray[Any]],
+    ) -> None:
+        """Store the extremes of histories within intervals, below ``/extremes``.
+
+        Parameters
+        ----------
+        layout : mapping
+            As of `start_history`.
+        bounds : ndarray, shape (n_intervals + 1,)
+            Of the intervals [T].
+        low, high : mapping of str to ndarray, shape (n_intervals, \\*row)
+            Smallest and largest values of histories.
+        """
+        self._aside("extremes", "time", HistoryLayout((), {"unit": "T"}), bounds)
+        for name in low:
+            rows = np.stack([low[name], high[name]], axis=1)
+            self._aside("extremes", name, layout[name], rows)
+
+    def _aside(self, group: str, name: str, own: HistoryLayout, rows: NDArray[Any]) -> None:
+        """Store rows of a history that are no samples in a group of their own."""
+        if 0 in own.shape:
+            return
+        attributes = _complete(name, own)
+        attributes["unit"] = [self._units.text(u) for u in attributes["unit"]]
+        texts = {key: [storable(v) for v in attributes[key]] for key in ("labels", "unit")}
+        self._put(group, name, np.asarray(rows, float), {**attributes, **texts})
 
     def stored(self, name: str) -> NDArray[np.float64]:
         """Rows of a history so far, shape (n_times, \\*row).
@@ -350,8 +377,8 @@ class Writer:
                 dataset.resize(len(dataset) + n, axis=0)
                 dataset[len(dataset) - n :] = arrays[name]
             self._commit()
-        for name in self._history:
-            self._digests[f"history/{name}"].update(np.ascontiguousarray(arrays[name]).data)
+            for name in self._history:
+                self._digests[f"history/{name}"].update(np.ascontiguousarray(arrays[name]).data)
 
     def restart(self, state: Mapping[str, NDArray[Any]], identity: Mapping[str, str]) -> None:
         """Store the state that a later run can be taken up from, and the identity of what it belongs to; it

@@ -10,14 +10,17 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from typing import Any, Final, NamedTuple, TypeVar
 
 from pound_solve.numerics import threads
 
 DASK: Final = "dask"
 AHEAD, MANY = 2, 1000  #: runs that are handed out: to each process, and to a scheduler
+HELD_BACK: Final = (signal.SIGINT,)
 PATIENCE: Final = 60.0  #: with a scheduler that does not answer [s]
 
 
@@ -93,13 +96,33 @@ def processors() -> int:
 def process() -> ProcessPoolExecutor:
     """A process that knows nothing of this one (spawn), with one thread."""
     threads.one()
-    context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(1, context, initializer=_begin)
+    pool = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), initializer=_begin)
+    with _interrupts_held_back():
+        pool.submit(os.getpid)  # the process starts with the first call
+    return pool
+
+
+@contextmanager
+def _interrupts_held_back() -> Iterator[None]:
+    """A process that starts within this context gets no Ctrl-C before `_begin` is called in it: Python
+    would end with a traceback while it reads its modules.  That of this process waits.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    resource_tracker.ensure_running()  # it lets the signals in again where it starts
+    signal.pthread_sigmask(signal.SIG_BLOCK, HELD_BACK)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, HELD_BACK)
 
 
 def _begin() -> None:
     """A worker ends what it does when the user interrupts, and ends with the process that began it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, HELD_BACK)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

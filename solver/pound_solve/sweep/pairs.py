@@ -12,7 +12,15 @@ from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 from pound_solve.results.words import contact_name
 from pound_solve.structure.elements.base import axes
+from pound_solve.structure.structure import Structure
 from pound_solve.theory.separation import correlation, own_mode
+
+
+def nodes(structure: Structure) -> set[int]:
+    """Nodes whose displacements the rows hold."""
+    elements = structure.model.elements
+    contacts = (elements[s.element] for s in structure.laws if s.role.collides)
+    return {node for element in contacts for node in (element.i, element.j) if node}
 
 
 def rows(run: RunRecord) -> Iterator[Row]:

@@ -6,7 +6,6 @@ Nothing in it depends on the day, the machine or the order in which runs ended.
 from __future__ import annotations
 
 import math
-import os
 import textwrap
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -19,9 +18,9 @@ from pound_deck.model import Units
 from pound_solve.numerics.types import Array, Index
 from pound_solve.report.text import WIDTH, printed
 from pound_solve.results.form import ResultsError
-from pound_solve.results.place import partial
 from pound_solve.results.schema import Column, Row, Table
 from pound_solve.results.sweep_file import RUN, Sweep
+from pound_solve.results.whole_file import whole
 from pound_solve.sweep.curves import FRACTILES, LEVELS, PARAM, Asked, cases, demands, fractiles_of, units_of
 from pound_solve.sweep.entry import DONE
 
@@ -45,8 +44,8 @@ def write(path: Path, sweep: Sweep, title: str, more: Iterable[str] = ()) -> Pat
     """
     out = path.with_suffix(".rpt")
     try:
-        partial(out).write_text(text(sweep, title, more), encoding="ascii", errors="replace", newline="\n")
-        os.replace(partial(out), out)
+        with whole(out) as own:
+            own.write_text(text(sweep, title, more), encoding="ascii", errors="replace", newline="\n")
     except OSError as err:
         raise ResultsError(f"{err.filename}: {err.strerror}") from err
     return out

@@ -10,7 +10,7 @@ import gc
 import threading
 import time
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from itertools import count
@@ -19,12 +19,17 @@ from typing import Final
 
 import numpy as np
 
+from pound_deck.model import Card, Model
 from pound_solve.driver.prepare import DeckError, Prepared, prepare, shaken
 from pound_solve.driver.sequence import AnalysisSequence, Settled
+from pound_solve.integrate.convergence.compared import ACCELERATIONS, FORCES, tolerances
+from pound_solve.numerics.providers import resident
 from pound_solve.numerics.types import Array
 from pound_solve.results.contents import HISTORIES
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Layout, Stage
+from pound_solve.structure.structure import Structure
+from pound_solve.sweep import pairs
 from pound_solve.sweep.entry import DONE, FAILED, STOPPED, Entry, Journal
 from pound_solve.sweep.limits import Clock, TooLongError, within
 from pound_solve.sweep.quantities import Fields, doubts, rows_at, taken
@@ -87,6 +92,11 @@ class Kept:
     def closeups(self, layout: Layout, blocks: Sequence[Mapping[str, Array]]) -> None:
         """A sweep keeps none."""
 
+    def extremes(
+        self, layout: Layout, bounds: Array, low: Mapping[str, Array], high: Mapping[str, Array]
+    ) -> None:
+        """A sweep keeps none."""
+
     def restart(self, state: Mapping[str, Array], identity: Mapping[str, str]) -> None:
         """No run goes on from one of a sweep."""
 
@@ -99,7 +109,7 @@ def carry_out(run: Run, settings: Settings) -> Entry:
     OSError
         The journal cannot be written.
     """
-    with one_at_a_time():
+    with one_at_a_time(), resident():
         entry = _carried_out(run, settings)
         if next(numbers()) % COLLECT == 0:
             gc.collect()
@@ -152,7 +162,7 @@ def _analysed(run: Run, settings: Settings, clock: Clock) -> Entry:
     """Run the analyses."""
     motion = scaled(run.shaking) if run.shaking else None
     request = request_of(run.case, motion)
-    ready, settled = prepared(run.case, run.first)
+    ready, settled = prepared(run.case, run.first, settings.histories)
     if run.shaking is not None:
         ready = shaken(ready, request)
         if any(m.info["sha256"] != run.shaking.record.sha256 for m in ready.motions):
@@ -176,14 +186,39 @@ def _analysed(run: Run, settings: Settings, clock: Clock) -> Entry:
 
 
 @lru_cache(maxsize=2)
-def prepared(case: Case, first: RecordFile | None) -> tuple[Prepared, Settled]:
-    """A case under the study's first record, and what its runs share."""
+def prepared(case: Case, first: RecordFile | None, histories: tuple[str, ...]) -> tuple[Prepared, Settled]:
+    """A case under the study's first record, and what its runs share; some histories are kept of them."""
     motion = scaled(Shaking(first, 1.0, 1.0)) if first else None
     ready = prepare(request_of(case, motion))
     if case.texts != digest_of(ready.model.files):
         raise ChangedError(f"{case.deck} was changed while the sweep ran")
-    output = replace(ready.model.output, values={**ready.model.output.values, "HISTORIES": "NO"})
-    return replace(ready, model=replace(ready.model, output=output)), Settled()
+    output = output_of(ready.model, ready.structure, histories)
+    whole, structure = ready.model, ready.structure
+    structure = replace(structure, model=replace(structure.model, output=output))
+    return replace(ready, model=replace(whole, output=output), structure=structure), Settled()
+
+
+def output_of(model: Model, structure: Structure, histories: Sequence[str]) -> Card:
+    """OUTPUT of the runs of a sweep: of the nodes and members that the deck names those that a quantity, a
+    history that is kept or a tolerance of AUTO looks at.
+    """
+    own = {**model.output.values, "HISTORIES": "NO"}
+    groups, compared = {name.partition("/")[0] for name in histories}, compared_peaks(model)
+    if not groups & {"node", "reaction"} and ACCELERATIONS not in compared:
+        touching = pairs.nodes(structure)
+        own["NODES"] = [n for n in own["NODES"] or model.nodes if n in touching]
+    if "member" not in groups and FORCES not in compared:
+        own["MEMBERS"] = []
+    return replace(model.output, values=own)
+
+
+def compared_peaks(model: Model) -> Collection[int]:
+    """What AUTO compares between runs, see `compared.tolerances`; nothing with another method."""
+    for card in model.analyses:
+        spec = card.laws["METHOD"][0] if card.spec.name == "HISTORY" else None
+        if spec is not None and spec.name == "AUTO":
+            return tolerances({field.name: card[field.name] for field in spec.fields})
+    return ()
 
 
 def histories_of(record: RunRecord, names: tuple[str, ...]) -> dict[str, Array]:

@@ -45,7 +45,9 @@ def execute(args: argparse.Namespace) -> int:
         return common.DONE
     if args.out.exists() and args.out.samefile(args.deck):
         return common.complain(f"{args.out} is the deck that is read", common.MISTAKES)
-    args.out.write_text(old.text, encoding="utf-8", newline="\n")
+    from pound_solve.results.whole_file import write_text
+
+    write_text(args.out, old.text)
     return common.DONE
 
 

@@ -45,7 +45,9 @@ def execute(args: argparse.Namespace) -> int:
     texts = (f"{spec.name} {items}", *law_test.AXES[spec.family])
     print(f"{texts[0]}\n\n{law_test.table(found.corners)}\n\n{text_plot.letters(found.curve)}")
     if args.svg:
-        args.svg.write_text(text_plot.svg(found.curve, *texts), encoding="utf-8", newline="\n")
+        from pound_solve.results.whole_file import write_text
+
+        write_text(args.svg, text_plot.svg(found.curve, *texts))
     if args.png:
         from pound_solve.report import plot
 

@@ -24,6 +24,7 @@ def execute(args: argparse.Namespace) -> int:
     """Write the files; none that is there is replaced."""
     from pound_solve.assess import motion_files
     from pound_solve.driver.prepare import DeckError
+    from pound_solve.results.whole_file import whole
 
     if args.dt is not None and not args.dt > 0.0:
         return common.complain("--dt must be above zero", common.MISTAKES)
@@ -43,6 +44,7 @@ def execute(args: argparse.Namespace) -> int:
     for file in files:
         if file.warning:
             common.complain(f"warning: {file.name}: {file.warning}")
-        (args.out / file.name).write_text(file.text, encoding="ascii", errors="replace")
+        with whole(args.out / file.name) as own:
+            own.write_text(file.text, encoding="ascii", errors="replace")
         print(args.out / file.name)
     return common.DONE

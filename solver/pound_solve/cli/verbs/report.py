@@ -58,6 +58,7 @@ def execute(args: argparse.Namespace) -> int:
 def _page(results: Results, path: Path, chosen: dict[str, Any]) -> int:
     """Write the page into a file, by default beside the results."""
     from pound_solve.report.html import page
+    from pound_solve.results.whole_file import write_text
 
     path = results.path.with_suffix(".html") if path == Path() else path
     try:
@@ -65,6 +66,6 @@ def _page(results: Results, path: Path, chosen: dict[str, Any]) -> int:
     except ImportError:
         need = '--html needs plotly: pip install "pound-solve[html]"'
         return common.complain(need, common.MISTAKES)
-    path.write_text(text, encoding="utf-8", newline="\n")
+    write_text(path, text)
     print(path)
     return common.DONE

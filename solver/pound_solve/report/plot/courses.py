@@ -50,6 +50,23 @@ def panel(axes: Any, results: Results, name: str, choice: Choice = ALL, last: bo
     style.legend(axes)
 
 
+def shade(
+    axes: Any, results: Results, name: str, column: int, look: Mapping[str, Any], choice: Choice
+) -> None:
+    """Shade what a quantity goes through between its samples, where its extremes tell that."""
+    if name not in results.extremes:
+        return
+    bounds, low, high = results.extreme(name)
+    samples = np.diff(results.time).max(initial=0.0)
+    if np.diff(bounds).max(initial=0.0) > (1.0 + 1e-9) * samples:  # they are wider: samples tell more
+        return
+    inside = choice.span(results, bounds[:-1])
+    n = len(bounds) - 1
+    sides = (np.append(x.reshape(n, -1)[inside, column], np.nan) for x in (low, high))
+    t = np.append(bounds[:-1][inside], bounds[1:][inside][-1:])
+    axes.fill_between(t, *sides, step="post", color=look["color"], alpha=0.25, linewidth=0)
+
+
 def motions(results: Results) -> tuple[str, ...]:
     """Names of the ground motions with their directions, in the order of the history."""
     labels = results.labels("ground")

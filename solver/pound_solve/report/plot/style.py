@@ -12,10 +12,12 @@ from pathlib import Path
 from typing import Any, Final
 
 from pound_solve.report.plot.schema import ChoiceError
+from pound_solve.results.whole_file import whole
 
 SHEET: Final = Path(__file__).with_name("pound.mplstyle")
 BLUE, RED, GREEN = "C0", "C1", "C2"  #: of the style: members; contacts and limits; supports
 LINES = 10  #: curves that a style tells apart
+EDGE = 0.09  #: free around axes [inches]: letters have other widths in files than in the layout
 LONGEST = 26  #: characters of a name in a legend
 
 
@@ -86,8 +88,9 @@ def figure(width: float = 7.0, height: float = 4.5, title: str = "") -> Any:
         matplotlib is not installed.
     """
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    out = Figure(figsize=(width, height), layout="constrained")
+    out = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(w_pad=EDGE, h_pad=EDGE))
     if title:
         out.suptitle(wrapped(title, int(12 * width)))
     return out
@@ -195,7 +198,8 @@ def save(picture: Any, path: Path) -> None:
         dated = {"Date": None} if path.suffix == ".svg" else None
         if path.suffix == ".pdf":
             dated = {"CreationDate": None}
-        picture.savefig(path, dpi=150, metadata=dated)
+        with whole(path) as own:
+            picture.savefig(own, dpi=150, metadata=dated)
 
 
 def film(picture: Any, show: Callable[[int], None], count: int, path: Path, rate: int) -> None:

@@ -71,6 +71,7 @@ def _storey(place: int, name: str, unit: str, doc: str, values: Callable[[Sample
         sample=storey_layout(unit, [("A", 1), ("A", 2)]),
         axes=MappingProxyType({"building": "building", "storey": "storey"}),
         closeup=True,
+        extremes=True,
     )
 
 
@@ -84,6 +85,7 @@ FORCE = History(
     sample=base_layout(["A"]),
     axes=MappingProxyType({"building": "building", "component": "quantity"}),
     closeup=True,
+    extremes=True,
 )
 DRIFT = _storey(43, "drift", "-", "drift ratios of the storeys", partial(total, "drift", slice(None)))
 SHEAR = _storey(44, "shear", "F", "shears of the storeys", partial(total, "storey", slice(0, None, 2)))

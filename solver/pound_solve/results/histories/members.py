@@ -41,4 +41,5 @@ FORCE = History(
     ),
     axes=MappingProxyType({"member": "element", "component": "quantity"}),
     closeup=True,
+    extremes=True,
 )

@@ -44,6 +44,7 @@ DISPLACEMENT = History(
     sample=layout(NODES, ""),
     axes=AXES,
     closeup=True,
+    extremes=True,
 )
 VELOCITY = History(
     name="node/v",
@@ -55,6 +56,7 @@ VELOCITY = History(
     sample=layout(NODES, "/T"),
     axes=AXES,
     closeup=True,
+    extremes=True,
 )
 ACCELERATION = History(
     name="node/a",
@@ -66,4 +68,5 @@ ACCELERATION = History(
     sample=layout(NODES, "/T^2"),
     axes=AXES,
     closeup=True,
+    extremes=True,
 )

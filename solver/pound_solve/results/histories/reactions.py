@@ -42,4 +42,5 @@ HISTORY = History(
     sample=layout((1, 4)),
     axes=MappingProxyType({"support": "nodes", "action": "labels"}),
     closeup=True,
+    extremes=True,
 )

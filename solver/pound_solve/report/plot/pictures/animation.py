@@ -23,6 +23,7 @@ from pound_solve.report.plot.geometry import (
 )
 from pound_solve.report.plot.schema import MOVING, Choice, Picture
 from pound_solve.results import Results
+from pound_solve.results.whole_file import whole, write_text
 
 FRAMES = 240  #: pictures of a film
 RATE = 20  #: of them a second
@@ -71,7 +72,9 @@ def film(results: Results, choice: Choice) -> Film:
     flat = u.reshape(len(t), -1)
     moved = np.column_stack([np.interp(time, t, column) for column in flat.T])
     contacts = [contact_name(e) for e in s.elements if e["kind"] == "CONTACT"]
-    closed = np.array([_closed(results, name, time) for name in contacts], bool).reshape(len(contacts), -1)
+    closed = np.array([_closed(results, name, time) for name in contacts], bool).reshape(
+        len(contacts), len(time)
+    )
     shape = len(time), len(numbers), 2
     return Film(s, results.title, factor, numbers, time, factor * moved.reshape(shape), contacts, closed.T)
 
@@ -148,12 +151,13 @@ def write(results: Results, choice: Choice, path: Path) -> None:
     """Write the film in the format of the file's ending."""
     own = film(results, choice)
     if path.suffix == ".html":
-        path.write_text(page(own), encoding="utf-8", newline="\n")
+        write_text(path, page(own))
         return
     stage = Stage(own)
     stage.show(0)
     style.arrange(stage.figure)
-    style.film(stage.figure, stage.show, len(own.time), path, RATE)
+    with whole(path) as file:
+        style.film(stage.figure, stage.show, len(own.time), file, RATE)
 
 
 def page(own: Film) -> str:

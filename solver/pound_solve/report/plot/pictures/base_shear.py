@@ -6,18 +6,20 @@ from typing import Any
 
 import numpy as np
 
-from pound_solve.report.plot import style
-from pound_solve.report.plot.schema import ALL, Choice, Picture
+from pound_solve.report.plot import courses, style
+from pound_solve.report.plot.schema import ALL, Choice, Nothing, Picture
 from pound_solve.results import Results
 
 SHOWN = ("shear X", "moment")
+ROUNDING = 1e-12  #: of the largest forces
 TITLES = {"shear X": "base shear", "moment": "overturning moment", "force Y": "vertical force"}
 
 
 def base_shear(results: Results, choice: Choice) -> Any:
     """Draw the shears of all buildings, and below the moments if there are any."""
-    found = set(results.table("base_envelope")["quantity"])
-    shown = [quantity for quantity in SHOWN if quantity in found] or list(SHOWN[:1])
+    shown = [quantity for quantity in SHOWN if moves(results, quantity)]
+    if not shown:
+        raise Nothing("forces on the ground")
     figure = style.figure(9.5, 2.4 * len(shown) + 0.4, results.title)
     first = None
     for n, quantity in enumerate(shown):
@@ -27,10 +29,31 @@ def base_shear(results: Results, choice: Choice) -> Any:
     return figure
 
 
+def moves(results: Results, quantity: str = "shear X") -> bool:
+    """Whether the quantity of a building is more than rounding beside the largest forces of contacts and
+    supports.
+    """
+    table = results.table("base_envelope")
+    largest = {
+        q: float(np.abs(np.append(own["max"], own["min"])).max(initial=0.0))
+        for q in set(table["quantity"])
+        for own in [table[table["quantity"] == q]]
+    }
+    forces = [largest.get(q, 0.0) for q in ("shear X", "force Y")]
+    for name in ("contact_summary", "reaction_envelope"):
+        if name in results.tables:
+            columns = ("peak_force",) if name == "contact_summary" else ("max", "min")
+            forces += [float(np.nanmax(np.abs(results.table(name)[c]), initial=0.0)) for c in columns]
+    return largest.get(quantity, 0.0) > ROUNDING * max(forces)
+
+
 def panel(
     axes: Any, results: Results, quantity: str = "shear X", choice: Choice = ALL, last: bool = True
 ) -> None:
-    """Draw one quantity of every building over time; dots are the largest values to both sides."""
+    """Draw one quantity of every building over time; rings mark the largest values to both sides.
+
+    Shades tell what happens between samples that are far apart.
+    """
     rows = choice.span(results)
     t, values = results.time[rows], results.history("building/base")[rows]
     all_labels, units = results.labels("building/base"), results.history_units("building/base")
@@ -39,6 +62,7 @@ def panel(
     style.grid(axes, f"time [{results.units.time}]" if last else "", f"{TITLES[quantity]}\n[{unit}]")
     for n, k in enumerate(own):
         name, look = all_labels[k].removesuffix(f" {quantity}"), style.stroke(n)
+        courses.shade(axes, results, "building/base", k, look, choice)
         axes.plot(t, values[:, k], **look, label=style.short(name))
         peaks = _peaks(results, name, quantity, choice)
         axes.plot(*peaks, "o", color=look["color"], fillstyle="none", markersize=4)

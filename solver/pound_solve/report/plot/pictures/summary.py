@@ -14,8 +14,9 @@ from pound_solve.results import Results
 from pound_solve.version import __version__
 
 PAGE = (8.27, 11.69)  #: inches
-MOST_FIGURES = 16  #: lines of figures
+MOST_LINES = 26  #: of the main figures
 WIDTH = 58  #: characters of a line
+SIZE, SPACING = 7.0, 1.35  #: of the letters [pt]; lines over letters
 
 
 def summary(results: Results, choice: Choice) -> Any:
@@ -23,17 +24,26 @@ def summary(results: Results, choice: Choice) -> Any:
     figure = style.figure(*PAGE, title=results.title)
     rows = _rows(results)
     profiles = all(results.holds(name) for name in storeys.SPEC.needs)
-    heights = [2.6, (1.5 if len(rows) > 1 else 4.0) * len(rows) + 0.01, 2.3 * profiles + 0.01, 0.35]
+    told = _figures(results)
+    heights = [
+        max(2.6, 0.5 + len(told) * SIZE * SPACING / 72.0),
+        (1.5 if len(rows) > 1 else 4.0) * len(rows) + 0.01,
+        2.3 * profiles + 0.01,
+        0.35,
+    ]
     head, middle, low, foot = figure.subfigures(4, 1, height_ratios=heights)
     axes, text = head.subplots(1, 2, width_ratios=(1.15, 1.0))
     _structure(axes, results)
-    _figures(text, results)
+    text.set_axis_off()
+    text.text(
+        0.0, 1.0, "\n".join(told), va="top", fontsize=SIZE, transform=text.transAxes, linespacing=SPACING
+    )
     if rows:
         for draw, own in zip(rows, middle.subplots(len(rows), 1, squeeze=False, sharex=True).ravel()):
             draw(own)
     if profiles:
         _profiles(low, results)
-    foot.text(0.01, 0.5, _foot(results), fontsize=6.5, color="0.4", va="center")
+    foot.text(0.01, 0.5, _foot(results, profiles), fontsize=6.5, color="0.4", va="center")
     return figure
 
 
@@ -46,9 +56,9 @@ def _rows(results: Results) -> list[Any]:
     out: list[Any] = []
     for name in ("ground", "drift", "base", "contact/force"):
         if name == "base":
-            if all(map(results.holds, base_shear.SPEC.needs)):
+            if all(map(results.holds, base_shear.SPEC.needs)) and base_shear.moves(results):
                 out.append(partial(base_shear.panel, results=results, last=False))
-        elif name in results.histories:
+        elif results.holds(name):
             out.append(partial(courses.panel, results=results, name=name, last=False))
     return [*out[:-1], partial(out[-1], last=True)] if out else []
 
@@ -66,21 +76,23 @@ def _structure(axes: Any, results: Results) -> None:
     axes.set_title("structure", loc="left")
 
 
-def _figures(axes: Any, results: Results) -> None:
-    """Write the main figures as lines, item and value."""
-    axes.set_axis_off()
-    lines: list[tuple[str, str]] = []
+def _figures(results: Results) -> list[str]:
+    """Lines of the main figures, item and value; what is to be looked at stands before what is left out."""
+    lines, looks = list[tuple[str, str]](), list[tuple[str, str]]()
     if "overview" in results.tables:
         lines += [(str(item), str(value)) for item, value in results.table("overview").tolist()]
     if results.status != "done":
         lines.insert(0, ("this run", f"{results.status}: {results.message}".rstrip(": ")))
     if "checks" in results.tables:
         bad = [row for row in results.table("checks") if not str(row["verdict"]).startswith("good")]
-        lines += [("look at", f"{row['check']}: {row['value']}") for row in bad]
-    if results.holds("warnings"):
-        lines.append(("warnings", f"{len(results.table('warnings'))}, see the report"))
-    text = [style.wrapped(f"{item}: {value}", WIDTH) for item, value in lines[:MOST_FIGURES]]
-    axes.text(0.0, 1.0, "\n".join(text), va="top", fontsize=7, transform=axes.transAxes, linespacing=1.35)
+        looks = [("look at", f"{row['check']}: {row['value']}") for row in bad]
+    told, last = _wrapped(lines), _wrapped(looks)[: MOST_LINES // 2]
+    room = MOST_LINES - len(last)
+    return [*told[: room - 1], "…", *last] if len(told) > room else told + last
+
+
+def _wrapped(lines: list[tuple[str, str]]) -> list[str]:
+    return [line for item, value in lines for line in style.wrapped(f"{item}: {value}", WIDTH).splitlines()]
 
 
 def _profiles(part: Any, results: Results) -> None:
@@ -93,10 +105,12 @@ def _profiles(part: Any, results: Results) -> None:
     style.legend(all_axes[-1])
 
 
-def _foot(results: Results) -> str:
+def _foot(results: Results, profiles: bool) -> str:
     own = f"pound-solve {__version__}, {results.path.name}"
-    told = "rings: true peaks; profiles: lines to the right, dashes to the left"
-    return f"{told}\n{own}, digest {results.digest[:16]}" if results.digest else f"{told}\n{own}"
+    rings = ["rings: true peaks"] if len(results.time) else []
+    sides = ["profiles: lines to the right, dashes to the left"] if profiles else []
+    own += f", digest {results.digest[:16]}" if results.digest else ""
+    return "\n".join(filter(None, ["; ".join(rings + sides), own]))
 
 
 SPEC = Picture(

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from pound_solve.integrate.protocol import Outcome
     from pound_solve.loading.motions.base import Motion
 
+FEW = 2  #: kinds of damping or of contacts that are told one by one
+
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """What was run, and the largest values of the response."""
@@ -24,8 +26,47 @@ def rows(run: RunRecord) -> Iterator[Row]:
     yield "analyses", ", ".join(card.spec.name for card in model.analyses)
     for motion in run.motions:
         yield "ground motion", ground_motion(run, motion)
+    if run.warnings:
+        yield "warnings about the input", f"{len(run.warnings)}, see there"
+    yield from periods(run)
+    yield "damping", damping(run)
+    if any(s.role.collides for s in run.structure.laws):
+        yield "contact law", contact_law(run)
     if run.responded:
         yield from response(run)
+
+
+def periods(run: RunRecord) -> Iterator[Row]:
+    """The longest period of each building, where there was a modal analysis."""
+    modal = getattr(run, "modal", None)
+    if modal is None:
+        return
+    own = {s.building: s.mode for s in reversed(modal.shares) if s.kinetic > 50.0}
+    period = {mode.number: mode.period for mode in modal.modes}
+    for building, mode in sorted(own.items()):
+        if math.isfinite(period[mode]):
+            yield f"longest period of {building}", f"{period[mode]:.4g} {run.model.units.time}"
+
+
+def damping(run: RunRecord) -> str:
+    """The damping beside that of elements."""
+    found = [f"{card.spec.name}: {text}" for card, text in run.structure.damping_texts]
+    return _few(found, "cards") if found else "none but that of contacts and dampers"
+
+
+def contact_law(run: RunRecord) -> str:
+    """Laws of the contacts, their stiffness and restitution."""
+    found, units = dict[str, None](), run.model.units
+    for s in run.structure.laws:
+        if s.role.collides:
+            k, e = s.facts["k"], s.facts["e_given"]
+            stiffness = f", {k:.5g} {units.text(s.facts['k_unit'])}" if k else ""
+            found[f"{s.rule}{stiffness}" + ("" if math.isnan(e) else f", restitution {e:.3g}")] = None
+    return _few(list(found), "kinds")
+
+
+def _few(found: list[str], what: str) -> str:
+    return "; ".join(found) if len(found) <= FEW else f"{len(found)} {what}, see the input"
 
 
 def ground_motion(run: RunRecord, motion: Motion) -> str:
@@ -40,6 +81,8 @@ def ground_motion(run: RunRecord, motion: Motion) -> str:
 
 def response(run: RunRecord) -> Iterator[Row]:
     """The largest values of a history."""
+    from pound_solve.structure.storeys import storeys  # not needed to read a report
+
     history, units = run.history, run.model.units
     figures = history.returned.figures
     yield "method", str(figures.get("method", ""))
@@ -49,6 +92,12 @@ def response(run: RunRecord) -> Iterator[Row]:
     if drifts:
         ratio, name = max(drifts)
         yield "largest drift ratio", f"{100.0 * ratio:.3g} %, {name}"
+    elif history.items.buildings:
+        seen = [ratio for ratio, _ in history.recorder.envelopes.total["drift"].largest()]
+        at = max(range(len(seen)), key=seen.__getitem__, default=None)
+        if at is not None:
+            building, storey = list(storeys(history.items.buildings))[at]
+            yield "largest storey drift ratio", f"{100.0 * seen[at]:.3g} %, {building.name} storey {storey}"
     if history.items.contacts:
         yield "collisions", _collisions(run)
     ductile = [(r.ductility, r.spring) for r in history.springs if not math.isnan(r.ductility)]
@@ -90,12 +139,14 @@ TABLE = Table(
     name="overview",
     title="Overview",
     place=10,
-    stages=(Stage.INPUT, Stage.PEAKS),
+    stages=(Stage.INPUT, Stage.MODAL, Stage.PEAKS),
     columns=(ITEM, VALUE),
     rows=rows,
     sample=(
         ("structure", "18 nodes, 22 elements, 36 unknowns"),
         ("analyses", "STATIC, HISTORY"),
+        ("longest period of building 1", "0.9242 s"),
+        ("contact law", "KELVIN_VOIGT, 5e+05 kN/m, restitution 0.65"),
         ("largest drift ratio", "1.13 %, B2 storey 1"),
     ),
 )

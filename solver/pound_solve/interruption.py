@@ -2,6 +2,8 @@
 
 Ctrl-C, the request of a scheduler to end (SIGTERM) and the loss of the terminal (SIGHUP; on Windows the
 closing of the console) are answered alike.
+
+What must not be broken off, as a write of HDF5, stands within `undisturbed`.
 """
 
 from __future__ import annotations
@@ -10,9 +12,10 @@ import os
 import signal
 import sys
 import threading
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from types import FrameType, TracebackType
-from typing import Final, Self
+from typing import Any, Final, Self
 
 SIGNALS: Final = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK") if hasattr(signal, name)
@@ -59,3 +62,38 @@ class Interruption:
         if self.pending:
             self.pending = False
             raise KeyboardInterrupt
+
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """Within this context a signal raises nothing: `KeyboardInterrupt` waits for its end.
+
+    An exception raised amid a write of HDF5 would count as a write that failed.  To block the signals of
+    this thread would not do: the system hands them to another thread, and Python answers them in this one.
+    The handlers themselves run at once, so that a second signal still ends the process.  Where the block
+    raises an exception of its own, that one holds; `Interruption.check` tells of the signal later.
+    """
+    if threading.current_thread() is not threading.main_thread():  # where no handler ever runs
+        yield
+        return
+    waiting: list[KeyboardInterrupt] = []
+
+    def put_off(handler: Callable[[int, FrameType | None], Any]) -> Callable[[int, FrameType | None], None]:
+        def answer(number: int, frame: FrameType | None) -> None:
+            try:
+                handler(number, frame)
+            except KeyboardInterrupt as interrupt:
+                waiting.append(interrupt)
+
+        return answer
+
+    before = {number: own for number in SIGNALS if callable(own := signal.getsignal(number))}
+    for number, own in before.items():
+        signal.signal(number, put_off(own))
+    try:
+        yield
+    finally:
+        for number, own in before.items():
+            signal.signal(number, own)
+    if waiting:
+        raise waiting[0]

@@ -1,0 +1,93 @@
+"""Extremes: the smallest and the largest value of every quantity within intervals of time, so that a stored
+history tells what happened between its samples, however far apart they are.
+
+They are those at the method's own instants; those of the whole history are the peaks of its envelopes.
+Where the intervals of the samples are too many for the room, 2, 4, 8, ... of them are joined.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pound_solve.numerics.types import Array, Index
+
+BYTES = 16  #: of a quantity in an interval
+
+
+def intervals(times: Array, count: int, room: float) -> Array:
+    """Bounds of the intervals, shape (n + 1,), or of none, shape (0,).
+
+    Parameters
+    ----------
+    times : ndarray, shape (n_times,)
+        Of the samples [T].
+    count : int
+        Quantities.
+    room : float
+        Bytes at most.
+    """
+    joined, samples = 1, len(times) - 1
+    if samples < 1 or room < BYTES * count or not count:
+        return np.zeros(0)
+    while -(-samples // joined) * BYTES * count > room:
+        joined *= 2
+    return np.append(times[:-1:joined], times[-1])
+
+
+class Extremes:
+    """Smallest and largest values of some quantities within intervals that meet.
+
+    Parameters
+    ----------
+    bounds : ndarray, shape (n_intervals + 1,) or (0,)
+        Instants at which they meet, rising [T].
+    count : int
+        Quantities.
+
+    Attributes
+    ----------
+    low, high : ndarray, shape (count, n_intervals)
+        Infinite where nothing was seen.
+    """
+
+    def __init__(self, bounds: Array, count: int) -> None:
+        self.bounds = bounds
+        shape = count, max(len(bounds) - 1, 0)
+        self.low, self.high = np.full(shape, np.inf), np.full(shape, -np.inf)
+
+    def blank(self) -> Extremes:
+        """Return one that has seen nothing."""
+        return Extremes(self.bounds, len(self.low))
+
+    def widen(self, other: Extremes) -> None:
+        """Count in what another one has seen."""
+        np.minimum(self.low, other.low, out=self.low)
+        np.maximum(self.high, other.high, out=self.high)
+
+    def take(self, values: Array, t: Array, which: Index | None = None) -> None:
+        """Count in values of all quantities, or of those with some numbers, shape (n, n_times), at times
+        that do not fall.  An instant at which two intervals meet belongs to both.
+        """
+        if not self.low.size or not values.size:
+            return
+        place = np.searchsorted(self.bounds, t, side="right") - 1
+        meets = (place > 0) & (t == self.bounds[np.maximum(place, 0)])
+        self._take(values, place, which)
+        if meets.any():
+            self._take(values[:, meets], place[meets] - 1, which)
+
+    def _take(self, values: Array, place: Index, which: Index | None) -> None:
+        place = np.clip(place, 0, self.low.shape[1] - 1)
+        first = np.flatnonzero(np.append(True, np.diff(place) > 0))
+        own = slice(None) if which is None else which[:, None]
+        for best, more in ((self.low, np.minimum), (self.high, np.maximum)):
+            best[own, place[first]] = more(best[own, place[first]], more.reduceat(values, first, axis=1))
+
+    def take_tops(self, which: Index, sign: Array, top: Array, t: Array) -> None:
+        """Count in extremes between instants of some quantities, times the sign of each."""
+        if not self.low.size:
+            return
+        place = np.clip(np.searchsorted(self.bounds, t, side="right") - 1, 0, self.low.shape[1] - 1)
+        upper, lower = sign > 0.0, sign < 0.0
+        np.maximum.at(self.high, (which[upper], place[upper]), top[upper])
+        np.minimum.at(self.low, (which[lower], place[lower]), -top[lower])

@@ -1,0 +1,15 @@
+"""Signals as a terminal gives them to a process: what begins the tests in the background ignores some."""
+
+import os
+import signal
+
+
+def heed():
+    """Let the present process heed all signals that end one; between fork and exec of another."""
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_DFL)
+
+
+#: of `subprocess.Popen`: begins a process that heeds signals
+HEEDING = {"preexec_fn": heed} if os.name == "posix" else {}
