@@ -65,18 +65,25 @@ class Interruption:
 
 
 @contextmanager
-def undisturbed() -> Iterator[None]:
-    """Within this context a signal raises nothing: `KeyboardInterrupt` waits for its end.
+def undisturbed() -> Iterator[Callable[[], None]]:
+    """Within this context a signal raises nothing: `KeyboardInterrupt` waits for its end, or for a call of
+    what the context yields, where the block is ready to end.
 
-    An exception raised amid a write of HDF5 would count as a write that failed.  To block the signals of
-    this thread would not do: the system hands them to another thread, and Python answers them in this one.
-    The handlers themselves run at once, so that a second signal still ends the process.  Where the block
-    raises an exception of its own, that one holds; `Interruption.check` tells of the signal later.
+    An exception raised amid a write of HDF5 would count as a write that failed, and one amid the record of
+    a motion would count an event twice.  To block the signals of this thread would not do: the system hands
+    them to another thread, and Python answers them in this one.  The handlers themselves run at once, so
+    that a second signal still ends the process.  Where the block raises an exception of its own, that one
+    holds; `Interruption.check` tells of the signal later.
     """
-    if threading.current_thread() is not threading.main_thread():  # where no handler ever runs
-        yield
-        return
     waiting: list[KeyboardInterrupt] = []
+
+    def answer_now() -> None:
+        if waiting:
+            raise waiting.pop()
+
+    if threading.current_thread() is not threading.main_thread():  # where no handler ever runs
+        yield answer_now
+        return
 
     def put_off(handler: Callable[[int, FrameType | None], Any]) -> Callable[[int, FrameType | None], None]:
         def answer(number: int, frame: FrameType | None) -> None:
@@ -91,9 +98,8 @@ def undisturbed() -> Iterator[None]:
     for number, own in before.items():
         signal.signal(number, put_off(own))
     try:
-        yield
+        yield answer_now
     finally:
         for number, own in before.items():
             signal.signal(number, own)
-    if waiting:
-        raise waiting[0]
+    answer_now()

@@ -9,12 +9,15 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import pound_solve
-from pound_solve.analyses.recorder import HistoryRecorder
+from pound_solve.analyses.envelopes import Envelopes
+from pound_solve.analyses.recorder import EnergyBalance, HistoryRecorder
 from pound_solve.cli.main import main
 from pound_solve.driver.run import DeckError
+from pound_solve.interruption import Interruption
 from pound_solve.results import Results, ResultsError, Writer, place, safe_file
 from pound_solve.results.place import digest_in
 from pound_solve.results.whole_file import partial
@@ -161,14 +164,25 @@ def test_a_kill_amid_the_renaming_leaves_no_report_of_other_results(tmp_path, mo
 
 
 @pytest.fixture
-def another_thread():
-    """A thread beside the main one, as of a library: the system may hand a signal to it."""
-    over = threading.Event()
-    own = threading.Thread(target=over.wait)
-    own.start()
-    yield
+def interrupt(monkeypatch):
+    """Send a signal to another thread, as the system may, and wait until the program has heard of it."""
+    over, heard, hear = threading.Event(), [], Interruption._take
+    other = threading.Thread(target=over.wait)
+    other.start()
+
+    def noted(self, number, frame):
+        heard.append(number)
+        hear(self, number, frame)
+
+    def send():
+        signal.pthread_kill(other.ident, signal.SIGTERM)
+        while not heard:
+            time.sleep(0.001)
+
+    monkeypatch.setattr(Interruption, "_take", noted)
+    yield send
     over.set()
-    own.join()
+    other.join()
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
@@ -177,21 +191,23 @@ def another_thread():
     [
         (safe_file.SafeFile, "write", 400, "stopped"),
         (safe_file.SafeFile, "commit", 60, "stopped"),
+        (Envelopes, "take", 9, "stopped"),
+        (EnergyBalance, "take", 9, "stopped"),
         (HistoryRecorder, "closeups", 0, "done"),
         (Writer, "finish", 0, "done"),
         (place.os, "replace", 0, "done"),
     ],
 )
-@pytest.mark.usefixtures("another_thread")
-def test_an_interrupted_run_loses_nothing(tmp_path, monkeypatch, owner, name, at, status):
-    """A signal in a write of HDF5, in the last tables, at the end, between two renames."""
+def test_an_interrupted_run_loses_nothing(tmp_path, monkeypatch, interrupt, owner, name, at, status):
+    """A signal in a write of HDF5, amid the record of samples, in the last tables, at the end, between two
+    renames.
+    """
     deck, calls, own = write(tmp_path, end=20.0), [], getattr(owner, name)
 
     def disturbed(*given, **options):
         calls.append(name)
         if len(calls) == at + 1:
-            os.kill(os.getpid(), signal.SIGTERM)
-            time.sleep(0.05)  # until it arrives
+            interrupt()
         return own(*given, **options)
 
     monkeypatch.setattr(owner, name, disturbed)
@@ -202,6 +218,7 @@ def test_an_interrupted_run_loses_nothing(tmp_path, monkeypatch, owner, name, at
         assert code == (status == "stopped")
         assert digest_in(deck.with_suffix(".rpt")) == results.digest
         assert "node_envelope" in results.tables and len(results.time) > 1
+        assert (np.diff(results.time) > 0.0).all()  # no block twice
 
 
 def test_an_open_older_result_stays_readable(tmp_path):

@@ -1,23 +1,20 @@
-"""A sweep, or one of its processes, is killed at random moments: nothing is lost, nothing is run twice."""
+"""A sweep, or one of its processes, is killed amid its runs: nothing is lost, nothing is run twice."""
 
 import json
 import os
-import random
+import select
 import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
 
-from heeding import HEEDING
 from pound_solve.results.sweep_file import Sweep
+from standing import Standing
 from sweep.small import STUDY, folder
 from sweep.test_sweep import same
 
 pytestmark = pytest.mark.full
-KILLS = 20
+LINUX = pytest.mark.skipif(not hasattr(os, "pidfd_open"), reason="finds processes by /proc")
 #: 64 runs of some hundredths of a second
 MANY = STUDY.replace("[0.01, 0.02]", "[0.01, 0.012, 0.014, 0.016, 0.018, 0.02, 0.025, 0.03]").replace(
     "[1, 2.5]", "[1, 2.5]\n"
@@ -25,10 +22,13 @@ MANY = STUDY.replace("[0.01, 0.02]", "[0.01, 0.012, 0.014, 0.016, 0.018, 0.02, 0
 pytest.importorskip("fcntl", reason="kills by signals")
 
 
-def begun(path, **how):
-    words = [sys.executable, "-m", "pound_solve", "sweep", str(path), "--workers", "2", "--quiet"]
-    env = {**os.environ, "POUND_COMPILE": "0"}
-    return subprocess.Popen(words, env=env, stderr=subprocess.PIPE, **HEEDING, **how)
+ENDED = "pound_solve.sweep.conduct Conductor _count"  #: called for every run that has ended
+STARTED = "pound_solve.sweep.executors process"  #: for every process that starts
+
+
+def begun(path, calls, place=ENDED, **how):
+    """A sweep that stands when some runs have ended, and at each later one; or at another place."""
+    return Standing(place, calls, ["sweep", str(path), "--workers", "2", "--quiet"], **how)
 
 
 def workers(process):
@@ -54,73 +54,48 @@ def noted(path):
     return out
 
 
-def at_a_moment(process, path, dice):
-    """Wait for a random moment of a sweep that has runs ahead; whether it still goes on then."""
-    before, wanted = len(noted(path)), dice.randint(0, 5)
-    while process.poll() is None and len(noted(path)) < before + wanted:
-        time.sleep(0.002)
-    time.sleep(dice.uniform(0.0, 0.03))
-    return process.poll() is None
-
-
-@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="finds processes by /proc")
+@LINUX
 def test_a_sweep_that_is_killed_goes_on_where_it_was(tmp_path):
+    """Four times, three of them after a worker of it was killed, which it survives."""
     (tmp_path / "undisturbed").mkdir()
-    begun(own := folder(tmp_path / "undisturbed", MANY)).communicate(timeout=300)
+    own = folder(tmp_path / "undisturbed", MANY)
+    assert begun(own, 1).end()[0] == 0
     undisturbed = Sweep.open(own.parent / "walls.sweep/sweep.h5")
-    path, dice, kills = folder(tmp_path, MANY), random.Random(17), {"sweep": 0, "worker": 0}
-    while sum(kills.values()) < KILLS:
-        process = begun(path)
-        while at_a_moment(process, path, dice) and sum(kills.values()) < KILLS:
-            own = workers(process)
-            if own and dice.random() < 0.5:
-                os.kill(dice.choice(own), signal.SIGKILL)
-                kills["worker"] += 1
-                continue
-            process.send_signal(signal.SIGKILL)
-            kills["sweep"] += 1
-            break
-        process.communicate()
-        if len(set(noted(path))) == len(undisturbed):  # all done: begin anew
-            finish(path, undisturbed)
-            for old in (path.parent / "walls.sweep/runs").iterdir():
-                old.unlink()
-    finish(path, undisturbed)
-    assert min(kills.values()) >= 3, kills
-
-
-def finish(path, undisturbed):
-    """Run what is left; nothing stands twice in the journal, the table is that of an undisturbed sweep."""
-    process = begun(path)
-    _, errors = process.communicate(timeout=300)
-    assert process.returncode == 0, errors
+    path = folder(tmp_path, MANY)
+    for calls, which in ((2, None), (1, 0), (3, 0), (2, -1)):
+        sweep = begun(path, calls)
+        assert sweep.stands()
+        if which is not None:
+            os.kill(workers(sweep.process)[which], signal.SIGKILL)
+            sweep.go_on()
+            assert sweep.stands()
+        sweep.kill()
+        assert calls <= len(noted(path)) < len(undisturbed)
+    status, errors = begun(path, 1).end()
+    assert status == 0, errors
     assert len(noted(path)) == len(set(noted(path))) == len(undisturbed)
     assert same(undisturbed, Sweep.open(path.parent / "walls.sweep/sweep.h5"))
 
 
+@LINUX
 def test_workers_end_with_the_sweep_that_began_them(tmp_path):
-    path = folder(tmp_path, MANY)
-    process = begun(path)
-    while len(noted(path)) < 3:
-        time.sleep(0.01)
-    own = workers(process)
+    sweep = begun(folder(tmp_path, MANY), 3)
+    assert sweep.stands()
+    own = [os.pidfd_open(n) for n in workers(sweep.process)]
     assert len(own) == 2
-    process.kill()
-    process.communicate()
-    limit = time.monotonic() + 20.0
-    while any(Path(f"/proc/{n}/stat").exists() for n in own):
-        assert time.monotonic() < limit
-        time.sleep(0.01)
+    sweep.kill()
+    for process in own:
+        assert select.select([process], [], [], 60.0)[0], "a worker goes on"  # readable when it has ended
+        os.close(process)
 
 
 def test_an_interruption_ends_the_runs_that_have_begun_and_writes_the_table(tmp_path):
     path = folder(tmp_path, MANY)
-    process = begun(path)
-    while len(noted(path)) < 3:
-        time.sleep(0.01)
-    process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=60)
-    assert process.returncode == 1, errors
+    sweep = begun(path, 3)
+    assert sweep.stands()
+    sweep.signal(signal.SIGINT)
+    status, errors = sweep.end()
+    assert status == 1, errors
     done = noted(path)
     assert 3 <= len(done) < 64 and len(set(done)) == len(done)
     found = Sweep.open(tmp_path / "walls.sweep/sweep.h5")
@@ -128,22 +103,13 @@ def test_an_interruption_ends_the_runs_that_have_begun_and_writes_the_table(tmp_
     assert set(found["status"]) == {"done", "missing"}
 
 
-def test_an_interruption_while_workers_start_leaves_no_traceback(tmp_path):
+@pytest.mark.parametrize("calls", [1, 2])
+def test_an_interruption_while_workers_start_leaves_no_traceback(tmp_path, calls):
     """Ctrl-C of a terminal goes to all processes of the group, those that read their modules among them."""
-    path, dice = folder(tmp_path, MANY), random.Random(5)
-    amid = 0
-    for _ in range(12):
-        process = begun(path, start_new_session=True)
-        limit = time.monotonic() + 60.0
-        while not (own := workers(process)) and time.monotonic() < limit:
-            time.sleep(0.002)
-        time.sleep(dice.uniform(0.0, 0.4))
-        before = len(noted(path))
-        amid += bool(own) and before == 0
-        os.killpg(process.pid, signal.SIGINT)
-        _, errors = process.communicate(timeout=60)
-        assert b"Traceback" not in errors, errors.decode()
-        assert process.returncode == 1, errors.decode()
-        for old in (path.parent / "walls.sweep/runs").glob("*.jsonl"):
-            old.unlink()
-    assert amid >= 3
+    path = folder(tmp_path, MANY)
+    sweep = begun(path, calls, STARTED, start_new_session=True)
+    assert sweep.stands()
+    told = sweep.signal(signal.SIGINT, group=True)
+    status, rest = sweep.end()
+    assert b"Traceback" not in told + rest, rest.decode()
+    assert status == 1

@@ -6,22 +6,21 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
-from heeding import HEEDING
 from pound_solve import run
 from pound_solve.cli.main import main
 from pound_solve.cli.progress import Progress
 from pound_solve.driver.run import DeckError
+from pound_solve.integrate.kernels.allocation import SAMPLES
 from pound_solve.interruption import Interruption
 from pound_solve.report.deck_reference import vocabulary
 from pound_solve.results import Results, ResultsError
 from pound_solve.results.contents import SECTIONS
-from pound_solve.results.safe_file import RESERVE
 from pound_solve.results.whole_file import partial
+from standing import Standing
 
 DECK = """TITLE  A mass between two walls
 UNITS  kN m s
@@ -167,59 +166,45 @@ def test_a_mechanism_under_load_is_named(deck, capsys):
     assert "node 2 uy" in capsys.readouterr().err
 
 
-LONG = DECK.replace("HISTORY 3", "HISTORY 1000 METHOD=NEWMARK DT=0.00001").replace(
-    "ANALYSIS", "OUTPUT\n EVERY=0.01\nANALYSIS"
+#: stands still when two blocks of histories are on the disk, and at each later one
+AMID = ("pound_solve.analyses.recorder HistoryRecorder flush", 2)
+LONG = DECK.replace("HISTORY 3", "HISTORY 12 METHOD=NEWMARK DT=0.005").replace(
+    "ANALYSIS", "OUTPUT\n EVERY=0.005\nANALYSIS"
 )
 
 
-def start(deck):
+def standing(deck):
     deck.write_text(LONG)
-    return subprocess.Popen(
-        [sys.executable, "-m", "pound_solve", str(deck)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        env=os.environ,
-        **HEEDING,
-    )
+    run = Standing(*AMID, [str(deck), "--quiet"])
+    assert run.stands()
+    return run
 
 
-def wait_for_rows(process: subprocess.Popen, path: Path):
-    """Wait until some blocks of histories are on disk, however long the kernels take to compile."""
-    while not path.exists() or path.stat().st_size <= 150_000 + RESERVE:
-        assert process.poll() is None
-        time.sleep(0.05)
-
-
-@pytest.mark.full
 def test_a_killed_run_leaves_what_it_had_written_beside_the_older_results(deck):
     main([str(deck), "--quiet"])
     whole = [deck.with_suffix(suffix).read_bytes() for suffix in (".h5", ".rpt")]
-    process, own = start(deck), partial(deck.with_suffix(".h5"))
-    wait_for_rows(process, own)
+    run, own = standing(deck), partial(deck.with_suffix(".h5"))
     with pytest.raises(ResultsError, match="in use by another program"):
         Results.open(own)
-    process.kill()
-    process.communicate()
+    run.kill()
     with Results.open(own) as results:
         assert results.status == "killed"
-        assert len(results.time) >= 256 and len(results.history("node/u")) == len(results.time)
+        assert len(results.time) == len(results.history("node/u")) == 2 * SAMPLES
     assert main(["report", str(own)]) == 0
     assert [deck.with_suffix(suffix).read_bytes() for suffix in (".h5", ".rpt")] == whole
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-@pytest.mark.full
-def test_an_interrupted_run_ends_with_its_results_and_status_1(deck, number):
-    process = start(deck)
-    wait_for_rows(process, partial(deck.with_suffix(".h5")))
-    process.send_signal(number)
-    _, err = process.communicate()
-    assert process.returncode == 1
-    assert f"{number.name}: the run ends with what it has".encode() in err
-    assert b"A506 at t = " in err and b"Traceback" not in err
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_an_interrupted_run_ends_with_its_results_and_status_1(deck, name):
+    run = standing(deck)
+    told = run.signal(getattr(signal, name))
+    status, rest = run.end()
+    assert status == 1 and f"{name}: the run ends with what it has".encode() in told
+    assert b"A506 at t = " in rest and b"Traceback" not in rest
     with Results.open(deck.with_suffix(".h5")) as results:
         assert results.status == "stopped" and {"node_envelope", "contact_summary"} <= set(results.tables)
+        assert len(results.time) == 2 * SAMPLES
     assert deck.with_suffix(".rpt").exists()
 
 
@@ -234,14 +219,12 @@ def heeded():
 def test_a_second_signal_ends_the_process_at_once(monkeypatch, heeded):
     monkeypatch.setattr(os, "_exit", sys.exit)
     with pytest.raises(KeyboardInterrupt), Interruption() as interruption:
-        os.kill(os.getpid(), signal.SIGINT)
-        time.sleep(5)  # until it arrives
+        signal.raise_signal(signal.SIGINT)
     with pytest.raises(KeyboardInterrupt):  # a library may have kept the first one back
         interruption.check()
     interruption.check()
     with pytest.raises(SystemExit, match="130"), interruption:
-        os.kill(os.getpid(), signal.SIGINT)
-        time.sleep(5)
+        signal.raise_signal(signal.SIGINT)
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="signals")
@@ -249,7 +232,7 @@ def test_a_signal_that_the_caller_ignores_stays_ignored():
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:
         with Interruption():
-            os.kill(os.getpid(), signal.SIGHUP)
+            signal.raise_signal(signal.SIGHUP)
     finally:
         signal.signal(signal.SIGHUP, before)
 

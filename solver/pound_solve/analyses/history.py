@@ -280,23 +280,25 @@ def run(
     times = output_times(every, end)
     start, items, first_energy = _prepared(structure, state, loading, times, like)
 
-    def tell(t: float, doing: str) -> None:
-        output.progress(t, end, doing)
+    with suppress(KeyboardInterrupt), undisturbed() as answer_now:
 
-    recorder = HistoryRecorder(items, output.append, tell, start.times, first_energy)
-    output.start(items)
-    began, used = time.perf_counter(), time.process_time()
-    stop: Stop | None = None
-    parts: list[Outcome] = []
-    try:
-        _integrate(card, start, recorder, output.save, parts)
-    except Stop as err:
-        stop = err
-        parts += [err.outcome] if err.outcome is not None else []
-    except KeyboardInterrupt:  # before a method took its first step, or between two
-        stop = Stop("A506", max(recorder.reached, 0.0), INTERRUPTED)
-    seconds, cpu_seconds = time.perf_counter() - began, time.process_time() - used
-    with suppress(KeyboardInterrupt), undisturbed():  # the motion is over: nothing is left to break off
+        def tell(t: float, doing: str) -> None:
+            answer_now()  # a signal ends the motion here, where what is recorded is whole
+            output.progress(t, end, doing)
+
+        recorder = HistoryRecorder(items, output.append, tell, start.times, first_energy)
+        output.start(items)
+        began, used = time.perf_counter(), time.process_time()
+        stop: Stop | None = None
+        parts: list[Outcome] = []
+        try:
+            _integrate(card, start, recorder, output.save, parts)
+        except Stop as err:
+            stop = err
+            parts += [err.outcome] if err.outcome is not None else []
+        except KeyboardInterrupt:  # before a method took its first step, or between two
+            stop = Stop("A506", max(recorder.reached, 0.0), INTERRUPTED)
+        seconds, cpu_seconds = time.perf_counter() - began, time.process_time() - used
         recorder.flush()
         output.closeups(recorder.closeups())
         output.extremes(*recorder.extremes())

@@ -155,6 +155,8 @@ class KernelEngine(ABC):
         self._fetch_ties()
         self.fetch_shown()
         self._fetch_samples()
+        if not self.state.kept:  # a signal that has come is answered at each return of a kernel
+            self.recorder.trial(float(self.state.time))
         self.state.kept = self.state.shown = 0
 
     def fetch_transitions(self) -> None:
