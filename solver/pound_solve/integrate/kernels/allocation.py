@@ -308,7 +308,7 @@ def member_arrays(system: ReducedSystem, own: Layout, scheme: Scheme) -> state.C
         pair_pointers=np.concatenate([[0], np.cumsum([len(x) for x in pairs])]).astype(np.int64),
         pair=np.array([x for p in pairs for x in p], np.int64).reshape(-1, 3),
         inputs=np.ascontiguousarray(system.corotational_inputs),
-        supports=dense(supports).reshape(count, 6, supports.shape[1]),
+        supports=np.ascontiguousarray(dense(supports)).reshape(count, 6, supports.shape[1]),
         now=state.MemberState(six(), six()),
         trial=state.MemberState(six(), six()),
         predicted=six(),
