@@ -1,6 +1,8 @@
 # make example   run the paper's buildings under El Centro 1940 and show where the report is
-# make test      run the quick tests, without compiled code: two minutes on two cores
-# make test-all  run the other tests, with compiled code
+# make test      run the quick tests
+# make test-all  run the other tests of every check
+# make test-night  run what every check leaves out: long studies, all combinations, kernels as Python, the site
+# make kernels   compile the kernels for this checkout, as the wheel has them; the tests do it first
 # make fuzz N=1000   give the program N damaged decks, and records, results files and runs; SEED=0, build/fuzz
 # make wheel     build the wheel of this platform, kernels compiled: dist/
 # make docs      build the site: build/site/index.html
@@ -13,10 +15,16 @@ OUT ?= build/example
 N ?= 1000
 SEED ?= 0
 JOBS ?= 2
+PYTEST := $(BIN)/python -m pytest -n 2 --dist worksteal
 NO_RECORDS := The package of the extra "records" is not to be had: decks that name ELCENTRO_270 need the record \
 as a file (--records DIR), see manual/records.md. All else works.
 
-.PHONY: example test test-all fuzz lint manual wheel docs clean
+NO_COMPILER := There is no C compiler here, so that each process compiles what it needs, or runs it as Python.
+
+# bytecode that is kept halves the time in which a process starts
+unexport PYTHONDONTWRITEBYTECODE
+
+.PHONY: example test test-all test-night kernels fuzz lint manual wheel docs clean
 
 $(VENV)/ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -28,11 +36,20 @@ $(VENV)/ready: pyproject.toml
 example: $(VENV)/ready
 	$(BIN)/pound-solve examples/cole2011/distributed.inp --set n=20 -o $(OUT)
 
-test: $(VENV)/ready
-	POUND_COMPILE=0 $(BIN)/python -m pytest -n 2 -m "not full and not slow"
+# nothing to do where the library of this version of the kernels is there
+kernels: $(VENV)/ready
+	@if command -v $(CC) >/dev/null; then $(BIN)/python -m ahead_of_time solver/pound_solve/numerics; \
+	else echo "$(NO_COMPILER)"; fi
 
-test-all: $(VENV)/ready
-	$(BIN)/python -m pytest -n 2 -m "full and not slow"
+test: kernels
+	$(PYTEST) -m "not full and not slow"
+
+test-all: kernels
+	$(PYTEST) -m "full and not slow"
+
+test-night: kernels docs
+	$(PYTEST) -m slow
+	POUND_COMPILE=0 $(PYTEST) -m "not full and not slow"
 
 fuzz: $(VENV)/ready
 	POUND_COMPILE=0 PYTHONPATH=tests $(BIN)/python -m fuzz -n $(N) --seed $(SEED) --jobs $(JOBS) --out build/fuzz

@@ -1,4 +1,7 @@
-"""Compile the kernels: ``python -m ahead_of_time FOLDER`` puts their library into a folder."""
+"""Compile the kernels: ``python -m ahead_of_time FOLDER`` puts their library into a folder.
+
+Where the library of this version of the source is there, it does nothing.
+"""
 
 from __future__ import annotations
 
@@ -6,37 +9,25 @@ import argparse
 import os
 from pathlib import Path
 
-from ahead_of_time import calls, dispatch
-from ahead_of_time.link import SUFFIX, link
-from ahead_of_time.machine_code import contents, door, machine_code, unoptimised
+from ahead_of_time.library import build
+from ahead_of_time.link import SUFFIX
 from pound_solve.numerics.digest import digest
-from pound_solve.numerics.library import CONTENTS, STEM, Block
-
-
-def build(folder: Path) -> Path:
-    """Compile all kernels; return the path of their library."""
-    numbers = dispatch.numbers()
-    found = calls.observed(numbers)
-    dispatch.put_in_place(dispatch.dispatchers(numbers))
-    objects = {CONTENTS: machine_code(CONTENTS, contents(found, numbers))}
-    for call in found:
-        name = call.kernel.__name__
-        module, kernel = unoptimised(call)
-        n_cells = len(Block(call.arguments, numbers).cells)
-        objects[name] = machine_code(name, door(module, kernel, name, n_cells), module)
-    path = folder / f"{STEM}{digest()}{SUFFIX}"
-    link(objects, path)
-    return path
+from pound_solve.numerics.library import STEM
 
 
 def main() -> None:
-    """Read the command line and build."""
+    """Read the command line, build, and remove the libraries of other versions."""
     parser = argparse.ArgumentParser(prog="python -m ahead_of_time", description=__doc__)
     parser.add_argument("folder", type=Path)
     folder = parser.parse_args().folder
-    folder.mkdir(parents=True, exist_ok=True)
-    os.environ["POUND_COMPILE"] = "0"  # the runs that are observed are of Python
-    print(build(folder))
+    path = folder / f"{STEM}{digest()}{SUFFIX}"
+    if not path.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        os.environ["POUND_COMPILE"] = "0"  # the runs that are observed are of Python
+        build(path)
+    for other in set(folder.glob(f"{STEM}*")) - {path}:
+        other.unlink()
+    print(path)
 
 
 if __name__ == "__main__":

@@ -1,18 +1,21 @@
-"""Marks of tests that need compiled kernels, and the switches to kernels as Python and to steps alone."""
+"""Marks of tests that need compiled kernels or numba, and the choice of what makes kernels ready."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 
-from pound_solve.integrate import auto
+from pound_solve.integrate import auto, trial
+from pound_solve.numerics import library
 from pound_solve.numerics.jit import Numba
 from pound_solve.numerics.providers import provider
 
 FAST = pytest.mark.skipif(not provider().fast, reason="kernels are not compiled")
-NUMBA = pytest.mark.skipif(not isinstance(provider(), Numba), reason="numba does not compile the kernels")
+NUMBA = pytest.mark.skipif(find_spec("numba") is None, reason="numba is not installed")
 
 
 @contextmanager
@@ -24,6 +27,24 @@ def interpreted() -> Iterator[None]:
         assert not provider().fast
         yield
     provider.cache_clear()
+
+
+@contextmanager
+def by_numba(no_library: Path) -> Iterator[None]:
+    """Numba compiles the kernels; a folder without libraries stands in for the program's."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("POUND_COMPILE", raising=False)
+        patch.setattr(library, "FOLDER", no_library)
+        provider.cache_clear()
+        assert isinstance(provider(), Numba)
+        yield
+    provider.cache_clear()
+
+
+def as_with_numba(monkeypatch: pytest.MonkeyPatch) -> None:
+    """AUTO counts a second for the loading of kernels, as it does with numba; none with a library."""
+    for module in (auto, trial):
+        monkeypatch.setattr(module, "loading", lambda: 1.0)
 
 
 def steps_alone(monkeypatch: pytest.MonkeyPatch) -> None:

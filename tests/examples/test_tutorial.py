@@ -19,6 +19,7 @@ from typing import Any
 
 import pytest
 
+from kernels import as_with_numba
 from pound_solve.cli.main import main
 from pound_solve.numerics.jit import COMPILING
 from pound_solve.results.contents import SECTIONS, TABLES
@@ -100,6 +101,7 @@ def matplotlib(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("matplotlib")
 def test_the_tutorial_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.chdir(tmp_path)
+    as_with_numba(monkeypatch)
     done = follow(blocks((MANUAL / "tutorial.md").read_text("utf-8")))
     assert {"file", "run", "python", "prints", "in"} == set(done)
     assert Path("drifts.png").exists()

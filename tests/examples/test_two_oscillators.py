@@ -99,7 +99,7 @@ def test_newmark_comes_near_and_nearer(exact, run):
         d, c = results.table("drift_envelope"), results.table("contact_summary")
         return np.r_[d["max"], d["min"], c["peak_force"], c["impulse"]]
 
-    assert exact.table("run")["value"][1].startswith("EXACT")
+    assert exact.table("run")["value"][1].startswith(("EXACT", "TAYLOR"))
     errors = []
     for dt in (2e-3, 1e-3, 5e-4):
         _, results, _ = run(DECK, None, "NEWMARK", dt)

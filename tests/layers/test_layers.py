@@ -4,6 +4,7 @@ them).
 
 import ast
 import sys
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -177,10 +178,16 @@ def place(path):
     return path.relative_to(next(p for p in (DECK, LEGACY, SOLVER) if path.is_relative_to(p))).as_posix()
 
 
+def nodes(path):
+    """All nodes of the tree of a module's source, the module first."""
+    return list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+
+
+@cache
 def imported(path):
     """Dotted names of everything a module imports, within functions too."""
     out = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             out |= {a.name for a in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
@@ -190,8 +197,7 @@ def imported(path):
 
 def calls(path):
     """Names of the functions that a module calls by a plain name."""
-    nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-    return {n.func.id for n in nodes if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)}
+    return {n.func.id for n in nodes(path) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)}
 
 
 def room(dotted):
@@ -286,9 +292,9 @@ def test_numerics_open_no_file_and_print_nothing():
 
 def test_no_module_keeps_mutable_state():
     for path in modules():
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        assert not [n for n in ast.walk(tree) if isinstance(n, ast.Global)], path
-        for node in tree.body:
+        module, *others = nodes(path)
+        assert not [n for n in others if isinstance(n, ast.Global)], path
+        for node in module.body:
             # a display may stand at module level only as a constant, in capitals,
             # and is never changed in place
             if isinstance(node, ast.Assign) and isinstance(
@@ -298,7 +304,7 @@ def test_no_module_keeps_mutable_state():
                 assert all(n == n.upper() for n in names), f"{path}: {names}"
                 changed = {
                     n.func.value.id
-                    for n in ast.walk(tree)
+                    for n in others
                     if isinstance(n, ast.Call)
                     and isinstance(n.func, ast.Attribute)
                     and isinstance(n.func.value, ast.Name)

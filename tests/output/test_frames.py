@@ -86,7 +86,7 @@ def test_the_repr_of_a_real_run_names_the_method(tmp_path: Path) -> None:
     import pound_solve
 
     deck = pound_solve.Deck.from_text(WALL)
-    assert "method: EXACT" in repr(pound_solve.run(deck, out=tmp_path))
+    assert "method: EXACT" in repr(pound_solve.run(deck, out=tmp_path, method="EXACT"))
 
 
 @pytest.mark.parametrize("name", TABLES)

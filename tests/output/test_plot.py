@@ -18,6 +18,7 @@ from output import sample
 from pound_solve.report import plot
 from pound_solve.report.plot import PICTURES, style
 from pound_solve.results import Results, Writer
+from tiers import at_night
 
 ROOT = Path(__file__).parents[2]
 
@@ -47,17 +48,22 @@ def test_the_pictures_are_listed(capsys: Any) -> None:
     assert [line.split()[0] for line in lines] == list(PICTURES)
 
 
-def test_every_picture_is_drawn_and_repeats(results: Results, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("ending", "count"), [("svg", None), ("png", 3), ("pdf", 3), *at_night(("png", None), ("pdf", None))]
+)
+def test_every_picture_is_drawn_and_repeats(
+    results: Results, tmp_path: Path, ending: str, count: int | None
+) -> None:
+    """All as SVG; what a library makes of them in other formats does not depend on the picture."""
     names = plot.possible(results)
     assert {"frame", "histories", "energy", "contacts", "collisions"} <= set(names)
-    names = [name for name in names if name not in ("loops", "hinges", "diagrams")]  # springs alone
-    for ending in ("svg", "png", "pdf"):
-        first, left_out = plot.draw(results, names, tmp_path / "a", ending)
-        again, _ = plot.draw(results, names, tmp_path / "b", ending)
-        assert len(first) == len(names) and not left_out
-        for a, b in zip(first, again):
-            assert a.read_bytes() == b.read_bytes(), a.name
-            assert a.stat().st_size > 5000
+    names = [name for name in names if name not in ("loops", "hinges", "diagrams")][:count]  # springs alone
+    first, left_out = plot.draw(results, names, tmp_path / "a", ending)
+    again, _ = plot.draw(results, names, tmp_path / "b", ending)
+    assert len(first) == len(names) and not left_out
+    for a, b in zip(first, again):
+        assert a.read_bytes() == b.read_bytes(), a.name
+        assert a.stat().st_size > 5000
 
 
 def test_the_frame_has_all_nodes_and_contacts(results: Results) -> None:

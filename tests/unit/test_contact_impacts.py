@@ -15,6 +15,7 @@ from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import Law, State, consistent
 from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.kelvin_voigt import Built
+from tiers import each_once
 from verification.cases import run_text
 
 pytestmark = pytest.mark.full
@@ -322,9 +323,9 @@ def impact(law: str, method: str, e: float, gap: float = 0.01, length: float = 0
     return run_text(DECK.format(law=card, method=method, gap=gap, length=length))
 
 
-@pytest.mark.parametrize("e", [0.2, 0.65])
-@pytest.mark.parametrize(
-    "law", [*LAWS, "POWER_LAW_DAMPED TENSION=YES", "RUBBER_BUMPER THICKNESS=0.03 KU=1E6"]
+@each_once(
+    ("law", [*LAWS, "POWER_LAW_DAMPED TENSION=YES", "RUBBER_BUMPER THICKNESS=0.03 KU=1E6"]),
+    ("e", [0.2, 0.65]),
 )
 def test_steps_give_back_what_was_asked(law: str, e: float) -> None:
     steep = law.split()[0] in ("JANKOWSKI", "POWER_LAW_DAMPED")  # forces like the fourth root of time

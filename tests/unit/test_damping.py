@@ -31,6 +31,7 @@ from pound_solve.structure.assembly import AssemblyError
 from pound_solve.structure.damping import caughey
 from pound_solve.structure.damping.secant import SecantLaw
 from pound_solve.structure.elements.base import LawSpring
+from tiers import each_once
 from verification.cases import run_text
 
 pytestmark = pytest.mark.full
@@ -539,8 +540,7 @@ def test_what_stays_elastic_is_damped_by_its_initial_stiffness(stiffness):
             assert energy(b)[name] == pytest.approx(value, rel=1e-10)
 
 
-@pytest.mark.parametrize("r", [0.1, 0.0, -0.02])
-@pytest.mark.parametrize("stiffness", FOLLOW)
+@each_once(("r", [0.1, 0.0, -0.02]), ("stiffness", FOLLOW))
 def test_energy_balances_where_springs_yield_and_storeys_pound(stiffness, r):
     ran = run_text(storeys(stiffness, r=r))
     assert ran.status == "done" and ran.check() < 1e-12
@@ -801,6 +801,7 @@ def manual_table(name):
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in body]
 
 
+@pytest.mark.slow
 def test_portal_with_hinges_of_the_manual():
     """Hinges have no mass; the dashpot beside a yielding spring is what the manual warns of."""
     decks = [
@@ -815,6 +816,7 @@ def test_portal_with_hinges_of_the_manual():
         assert row == [f"{x:.1f}" for x in (sway, energy(ran)["damping"], energy(ran)["hysteretic"])]
 
 
+@pytest.mark.slow
 def test_diaphragms_of_the_manual():
     text = (ROOT / "examples" / "cole2011" / "distributed.inp").read_text("utf-8")
     head, tail = text[: text.index("   RAYLEIGH")], text[text.index("DRIFT\n") :]

@@ -12,6 +12,7 @@ from decks import structure_of
 from pound_solve.driver.prepare import prepare
 from pound_solve.driver.request import Request
 from pound_solve.structure.assembly import AssemblyError
+from tiers import each_once
 from verification.cases import Ran, run_text
 
 A = {
@@ -63,15 +64,15 @@ def modes(*runs: Ran) -> np.ndarray:
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("contact", [False, True])
-@pytest.mark.parametrize(("a", "b"), CARDS)
-def test_each_building_as_if_it_stood_alone(a: str, b: str, contact: bool) -> None:
+@each_once(("cards", CARDS), ("contact", [False, True]))
+def test_each_building_as_if_it_stood_alone(cards: tuple[str, str], contact: bool) -> None:
+    a, b = cards
     alone = [
         run_text(deck(A, damping=f" {a.format(a='')}\n")),
         run_text(deck(B, damping=f" {b.format(b='')}\n")),
     ]
-    cards = f" {a.format(a=' BUILDING=A')}\n {b.format(b=' BUILDING=B')}\n"
-    both = run_text(deck(A, B, damping=cards, names=NAMES, contact=contact))
+    written = f" {a.format(a=' BUILDING=A')}\n {b.format(b=' BUILDING=B')}\n"
+    both = run_text(deck(A, B, damping=written, names=NAMES, contact=contact))
     assert both.status == alone[0].status == alone[1].status == "done"
     each, whole = modes(*alone), modes(both)
     count = min(len(each), len(whole))

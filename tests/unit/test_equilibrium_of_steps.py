@@ -9,6 +9,7 @@ import pytest
 
 from pound_solve.assess.scenes.case import items
 from pound_solve.catalog import catalog
+from tiers import each_once
 from verification.cases import run_text
 
 pytestmark = pytest.mark.full
@@ -53,7 +54,6 @@ def imbalance(law: str, method: str) -> float:
     return float(np.abs(left).max() / size)
 
 
-@pytest.mark.parametrize("method", ["NEWMARK", "CENTRAL"])
-@pytest.mark.parametrize("law", LAWS)
+@each_once(("method", ["NEWMARK", "CENTRAL"]), ("law", LAWS))
 def test_forces_are_in_balance(law: str, method: str) -> None:
     assert imbalance(law, method) < 1e-11

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import count
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from hypothesis import strategies as st
 
 import contract
 from contract import CLAUSES
-from kernels import NUMBA
+from kernels import NUMBA, by_numba
 from paths import Walk, turning_points
 from pound_deck.schema import REQUIRED, Field, Spec
 from pound_solve.catalog import catalog
@@ -173,14 +174,14 @@ UNEQUAL, EQUAL = list(cases(MINUS)), list(cases(-PLUS))
 every = pytest.mark.parametrize(("law", "sample"), UNEQUAL)
 
 
-@pytest.mark.parametrize("clause", CLAUSES)
 @every
-def test_contract(law: Law, sample: dict[str, Any], clause: Callable[[Law, float], None]) -> None:
-    clause(law, REACH)
+def test_contract(law: Law, sample: dict[str, Any]) -> None:
+    for clause in CLAUSES:
+        clause(law, REACH)
 
 
 STRAIGHT = [
-    pytest.param(law, share, id=f"{case.id} less {share}")
+    pytest.param(law, share, id=f"{case.id} less {share}", marks=() if share == 0.5 else pytest.mark.slow)
     for case in UNEQUAL
     for law in case.values[:1]
     for share in (0.25, 0.5)
@@ -300,14 +301,25 @@ def test_a_long_history(law: Law, sample: dict[str, Any]) -> None:
 # ---------------------------------------------------------------------- compiled
 
 
+@pytest.fixture
+def numba(tmp_path: Path) -> Iterator[None]:
+    """Numba compiles the functions; test_ahead_of_time compares those of a library."""
+    with by_numba(tmp_path):
+        yield
+
+
 @NUMBA
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(RULES))
+@pytest.mark.usefixtures("numba")
 def test_compiled_functions_give_the_same_numbers(name: str) -> None:
     compare([p.values[0] for p in UNEQUAL if p.id.startswith(f"{name} ")])
 
 
 @NUMBA
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted({p.id.split()[0] for p in STRAIGHT}))
+@pytest.mark.usefixtures("numba")
 def test_compiled_functions_of_a_law_without_a_share_of_its_deformation(name: str) -> None:
     compare([without(*p.values) for p in STRAIGHT if p.id.startswith(f"{name} ")][:4])
 

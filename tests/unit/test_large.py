@@ -19,6 +19,7 @@ from pound_solve import run
 from pound_solve.analyses import static
 from pound_solve.analyses.equilibrium import SupportReactions
 from pound_solve.results import Results
+from tiers import each_once
 
 pytestmark = pytest.mark.full
 
@@ -359,8 +360,7 @@ def test_a_heavy_column_as_opensees_has_it(kind, peaks, moment, tmp_path):
     assert most == pytest.approx(moment, rel=1e-8)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("method", ["NEWMARK", "HHT", "GENERALISED_ALPHA"])
+@each_once(("kind", KINDS), ("method", ["NEWMARK", "HHT", "GENERALISED_ALPHA"]))
 def test_what_energy_is_lost_falls_with_the_square_of_the_step(kind, method, tmp_path):
     off = []
     for dt in (0.01, 0.005):

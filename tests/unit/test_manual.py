@@ -16,6 +16,7 @@ import pytest
 
 import contract
 from decks import model_of, solved
+from kernels import interpreted
 from pound_solve import run
 from pound_solve.catalog import catalog, members, specs
 from pound_solve.driver.run import Request, prepare
@@ -260,7 +261,10 @@ EXAMPLES = dict(re.findall(r"<!-- file: (\S+) -->\n\n```python\n(.*?)```", GUIDE
 
 @pytest.fixture
 def extended(tmp_path, monkeypatch):
-    """The program with the example files in its family folders, and nothing else changed."""
+    """The program with the example files in its family folders, and nothing else changed.
+
+    Kernels run as Python: a library compiled ahead of time does not know the examples.
+    """
     names = []
     for file, code in EXAMPLES.items():
         *folders, module = file.removesuffix(".py").split("/")
@@ -272,7 +276,8 @@ def extended(tmp_path, monkeypatch):
         names.append((package, module))
     importlib.invalidate_caches()
     members.cache_clear()
-    yield tmp_path
+    with interpreted():
+        yield tmp_path
     members.cache_clear()
     for package, module in names:
         sys.modules.pop(f"{package.__name__}.{module}", None)

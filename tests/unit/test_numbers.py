@@ -14,6 +14,7 @@ import pytest
 from pound_solve.analyses.recorder import HistoryRecorder
 from pound_solve.cli.main import main
 from pound_solve.driver.run import DeckError, Request, prepare
+from tiers import each_once
 from verification.cases import run_text
 
 MASS = """UNITS N m s
@@ -43,11 +44,18 @@ def mass(method: str = STEPS, k: str = "200", f: str = "10", m: str = "2", v: st
     return MASS.format(method=method, k=k, f=f, m=m, v=v)
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 1e200])
-@pytest.mark.parametrize(
-    ("which", "where"),
-    [(1, "node 2 ux"), (2, "node 2 ux"), (3, "node 2 ux"), (4, "element 1"), (5, "work")],
-    ids=["displacement", "velocity", "acceleration", "force", "work"],
+@each_once(
+    ("bad", [np.nan, np.inf, -np.inf, 1e200]),
+    (
+        "which, where",
+        {
+            "displacement": (1, "node 2 ux"),
+            "velocity": (2, "node 2 ux"),
+            "acceleration": (3, "node 2 ux"),
+            "force": (4, "element 1"),
+            "work": (5, "work"),
+        },
+    ),
 )
 def test_a_sample_that_is_no_number_stops_the_run(
     monkeypatch: pytest.MonkeyPatch, bad: float, which: int, where: str
@@ -81,8 +89,10 @@ def test_the_check_of_a_run_that_ends_at_its_start_is_not_good() -> None:
     ]
 
 
-@pytest.mark.parametrize("method", ["EXACT", "HHT DT=0.01", STEPS, "CENTRAL DT=0.01", "LAPLACE DT=0.01"])
-@pytest.mark.parametrize("deck", [STIFF, ("1e-30", "1e-30", "1e30", "1e30")])
+@each_once(
+    ("method", ["EXACT", "HHT DT=0.01", STEPS, "CENTRAL DT=0.01", "LAPLACE DT=0.01"]),
+    ("deck", [STIFF, ("1e-30", "1e-30", "1e30", "1e30")]),
+)
 def test_the_ends_of_the_range_are_computed_with_or_refused(method: str, deck: tuple[str, ...]) -> None:
     r = run_text(mass(method, *deck))
     assert r.status == "done" or re.match(r"A50[234] ", r.message), r.message

@@ -30,6 +30,7 @@ def test_numba_knows_the_flags_of_the_kernels(flag):
 
 @NUMBA
 def test_numba_keeps_its_settings_and_its_statistics_where_they_are_read():
+    jit.numba.cache_clear()  # a test without a folder for kernels may have asked first
     found = jit.numba()
     assert found.config.CACHE_DIR and type(found.config.OPT)(1), ADVICE["numba"]
     assert issubclass(found.core.errors.NumbaExperimentalFeatureWarning, Warning), ADVICE["numba"]

@@ -9,6 +9,7 @@ import pytest
 
 from pound_solve.driver.prepare import DeckError, prepare
 from pound_solve.driver.request import Request
+from tiers import each_once
 from unit.test_damping_by_building import A, B
 from verification.cases import Ran, run_text
 
@@ -40,18 +41,20 @@ def events(ran: Ran) -> list[tuple[object, ...]]:
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("geometry", ["SMALL", "PDELTA", "LARGE"])
-@pytest.mark.parametrize(
-    "pattern",
-    [
-        "TRIANGULAR",
-        "UNIFORM",
-        "MODE",
-        "MODE ADAPTIVE=YES",
-        "LOADS",
-        "FORCES NODES=3,5 FORCES=1,2",
-        "UNIFORM NODES=5",
-    ],
+@each_once(
+    (
+        "pattern",
+        [
+            "TRIANGULAR",
+            "UNIFORM",
+            "MODE",
+            "MODE ADAPTIVE=YES",
+            "LOADS",
+            "FORCES NODES=3,5 FORCES=1,2",
+            "UNIFORM NODES=5",
+        ],
+    ),
+    ("geometry", ["SMALL", "PDELTA", "LARGE"]),
 )
 def test_a_building_without_its_neighbour_is_the_deck_with_it_alone(pattern: str, geometry: str) -> None:
     """Pressed at rest by its neighbour (a gap below zero), which must leave no trace."""

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 import pound_solve
-from kernels import FAST, NUMBA, interpreted, steps_alone
+from kernels import FAST, NUMBA, as_with_numba, by_numba, interpreted, steps_alone
 from pound_solve.integrate import auto, condensed, costs, trial
 from pound_solve.integrate.convergence import compared, estimate, refinement
 from pound_solve.integrate.convergence.compared import DRIFTS, Peak
@@ -21,6 +21,7 @@ from pound_solve.integrate.tracker import Collision, Peaks
 from pound_solve.laws import functions
 from pound_solve.laws.hysteresis import bilinear, imk_bilinear
 from pound_solve.numerics import cubic, jit, kernel_cache, ldl
+from tiers import each_once
 
 pytestmark = pytest.mark.full
 
@@ -80,15 +81,17 @@ def figures(results):
     return np.array([*drift["max"], *drift["min"], *results.table("contact_summary")["peak_force"]])
 
 
-@pytest.mark.parametrize(
-    ("method", "steps"),
-    [
-        ("NEWMARK DT={}", (5e-4, 2.5e-4, 1.25e-4)),
-        ("HHT DT={} ALPHA=-0.05", (2.5e-4, 1.25e-4, 6.25e-5)),
-        ("GENERALISED_ALPHA DT={} RHO=0.8", (5e-4, 2.5e-4, 1.25e-4)),
-    ],
+@each_once(
+    (
+        "method, steps",
+        [
+            ("NEWMARK DT={}", (5e-4, 2.5e-4, 1.25e-4)),
+            ("HHT DT={} ALPHA=-0.05", (2.5e-4, 1.25e-4, 6.25e-5)),
+            ("GENERALISED_ALPHA DT={} RHO=0.8", (5e-4, 2.5e-4, 1.25e-4)),
+        ],
+    ),
+    ("turn", ["0.5", "0"]),
 )
-@pytest.mark.parametrize("turn", ["0.5", "0"])
 def test_implicit_methods_are_of_order_two_on_frames_that_yield_and_pound(tmp_path, method, steps, turn):
     exact = run(tmp_path, "EXACT", turn=turn)
     assert exact.table("contact_summary")["closures"][0] >= 1
@@ -145,6 +148,12 @@ def test_interpreted_kernels_give_the_same_numbers(tmp_path, method):
     for name, values in kept.items():
         size = np.abs(values).max(initial=1e-300)
         assert np.abs(slow.history(name) - values).max(initial=0.0) < 1e-10 * size, name
+
+
+@pytest.fixture(autouse=True)
+def loading(monkeypatch):
+    """What AUTO chooses does not hang on what makes kernels ready here."""
+    as_with_numba(monkeypatch)
 
 
 @pytest.mark.parametrize("tol", [1e-2, 1e-3, 1e-4])
@@ -324,15 +333,17 @@ def test_full_matrices_have_an_end(tmp_path, monkeypatch):
 
 
 @NUMBA
+@pytest.mark.slow  # numba compiles the kernel of the steps
 def test_decks_with_any_number_of_rules_share_one_compiled_version(tmp_path):
-    for hinge in ("", HINGED, HINGED.replace("BILINEAR", "ELASTO_PLASTIC").replace("R=0.05 ", "")):
-        run(tmp_path, "NEWMARK DT=0.01", hinge)
-    assert len(jit.compiled(kernel.advance).signatures) == 1
-    rules = [imk_bilinear.RULE, bilinear.RULE]
-    assert {len(f) for f in functions.tables(rules)} == {functions.ROOM}
-    assert functions.tables(rules).transition[:2] == tuple(
-        functions.tables([r]).transition[0] for r in rules
-    )
+    with by_numba(tmp_path):
+        for hinge in ("", HINGED, HINGED.replace("BILINEAR", "ELASTO_PLASTIC").replace("R=0.05 ", "")):
+            run(tmp_path, "NEWMARK DT=0.01", hinge)
+        assert len(jit.compiled(kernel.advance).signatures) == 1
+        rules = [imk_bilinear.RULE, bilinear.RULE]
+        assert {len(f) for f in functions.tables(rules)} == {functions.ROOM}
+        assert functions.tables(rules).transition[:2] == tuple(
+            functions.tables([r]).transition[0] for r in rules
+        )
 
 
 @NUMBA
@@ -1033,9 +1044,9 @@ ANALYSIS
 """
 
 
-@pytest.mark.parametrize("rule", ["MENEGOTTO_PINTO R=0.02", "BOUC_WEN N=2", "RAMBERG_OSGOOD N=5"])
-@pytest.mark.parametrize(
-    "method", ["NEWMARK DT=2E-3", "HHT DT=2E-3", "GENERALISED_ALPHA DT=2E-3", "CENTRAL DT=1E-4"]
+@each_once(
+    ("rule", ["MENEGOTTO_PINTO R=0.02", "BOUC_WEN N=2", "RAMBERG_OSGOOD N=5"]),
+    ("method", ["NEWMARK DT=2E-3", "HHT DT=2E-3", "GENERALISED_ALPHA DT=2E-3", "CENTRAL DT=1E-4"]),
 )
 def test_a_smooth_spring_between_nodes_that_move_together_does_not_reverse(tmp_path, rule, method):
     """The rounding of its rate is no motion: that of the frame is the one without the spring."""

@@ -15,6 +15,7 @@ from pound_solve.assess.law_test import has_loop, specimen
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import Law
 from pound_solve.numerics.types import Array
+from tiers import each_once
 from verification.cases import Ran, run_text
 
 BALL = """UNITS N m s
@@ -307,8 +308,9 @@ ANALYSIS
 """
 
 
-@pytest.mark.parametrize("law", ["LINEAR K={k!r}", "KELVIN_VOIGT K={k!r} C={c!r}", "HERTZ K={k!r}"])
-@pytest.mark.parametrize("mud", ["", "MUD=0.25"])
+@each_once(
+    ("law", ["LINEAR K={k!r}", "KELVIN_VOIGT K={k!r} C={c!r}", "HERTZ K={k!r}"]), ("mud", ["", "MUD=0.25"])
+)
 def test_twins_touch_stick_slip_and_part_at_one_instant(law: str, mud: str) -> None:
     """Two or three contacts with friction side by side are one that is twice, or three times, as stiff."""
     k, c, kt = 6000.0, 6.0, 3000.0

@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import consistent
 from pound_solve.numerics.types import Array
+from tiers import each_once
 from unit.test_damper_contract import law_of
 from verification.cases import Ran, run_text
 
@@ -156,10 +157,12 @@ def run_taylor(text: str) -> Ran:
     return r
 
 
-@pytest.mark.parametrize("alpha", [0.3, 0.5, 1.5, 2.0])
-@pytest.mark.parametrize("load", ["thrown", "shaken"])
-@pytest.mark.parametrize("link", [np.inf, LINK])
-@pytest.mark.parametrize("limit", [np.inf, 1.2])
+@each_once(
+    ("alpha", [0.3, 0.5, 1.5, 2.0]),
+    ("load", ["thrown", "shaken"]),
+    ("link", [np.inf, LINK]),
+    ("limit", [np.inf, 1.2]),
+)
 def test_one_mass(alpha: float, load: str, link: float, limit: float) -> None:
     """On a damper with and without a relief valve, or on one behind a spring: a node without mass."""
     items = f"ALPHA={alpha}" + (f" FX={limit}" if limit < np.inf else "")
@@ -212,8 +215,7 @@ def told_with_play_behind(alpha: float, play: float, shaken: bool, end: float) -
     return histories(rates, corners, after, np.array([0.0, 1.0, 0.0]), end)
 
 
-@pytest.mark.parametrize("alpha", [0.5, 1.0, 2.0])
-@pytest.mark.parametrize("load", ["thrown", "shaken"])
+@each_once(("alpha", [0.5, 1.0, 2.0]), ("load", ["thrown", "shaken"]))
 def test_a_play_at_a_node_without_mass(alpha: float, load: str) -> None:
     """The force of the spring is lost in no time where the damper comes back into its play."""
     r = run_taylor(deck(f"ALPHA={alpha} GAPX=0.06", load, LINK, 2.0))
@@ -258,9 +260,7 @@ def bounced(alpha: float, e: float, behind: bool, end: float) -> Array:
     )
 
 
-@pytest.mark.parametrize("alpha", [0.5, 1.5])
-@pytest.mark.parametrize("law", ["STEREOMECHANICS E=0.6", "LAGRANGE"])
-@pytest.mark.parametrize("link", [np.inf, LINK])
+@each_once(("alpha", [0.5, 1.5]), ("law", ["STEREOMECHANICS E=0.6", "LAGRANGE"]), ("link", [np.inf, LINK]))
 def test_beside_a_rigid_wall(alpha: float, law: str, link: float) -> None:
     text = deck(f"ALPHA={alpha}", "thrown", link, 1.0).replace("PROPS\n", " 9 WALL 1\nPROPS\n")
     text = text.replace("PROPS\n", f"PROPS\n WALL CONTACT GAP=0.05 ANGLE=0 LAW={law}\n")

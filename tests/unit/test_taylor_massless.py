@@ -12,6 +12,7 @@ import pytest
 from pound_solve.integrate.events.functions import EventFunctions
 from pound_solve.integrate.events.protocol import LocatedEvent
 from pound_solve.laws.automaton import Branch, BranchKind, EventFunction
+from tiers import at_night, each_once
 from unit.test_taylor import HINGE, LOADS, SHAKEN, agree, frames
 from verification.cases import Ran, run_text
 
@@ -100,14 +101,21 @@ def yields(r: Ran) -> int:
     return int(r.column("spring_envelope", "yield_events").sum())
 
 
-@pytest.mark.parametrize("damping", HELD)
-@pytest.mark.parametrize("turn", ["0", "0.5"])
+@each_once(("damping", HELD), ("turn", ["0", "0.5"]))
 def test_hinges_of_a_frame(damping: str, turn: str) -> None:
-    r, _ = agree(hinged(HELD[damping], turn))
+    r, _ = agree(hinged(damping, turn))
     assert yields(r) > 10
 
 
-@pytest.mark.parametrize("load", LOADS)
+@pytest.mark.parametrize(
+    "load",
+    [
+        "supports apart",
+        "thrown",
+        "let go",
+        *at_night("one motion of the ground", "forces", "forces and supports"),
+    ],
+)
 def test_what_moves_hinges(load: str) -> None:
     agree(hinged("RAYLEIGH ALPHA=0.4 BETA=0.001", load=LOADS[load]))
 
@@ -182,7 +190,7 @@ def balanced(supports: np.ndarray, n: int = 10) -> np.ndarray:
     return np.array(out)
 
 
-@pytest.mark.parametrize("method", ["TAYLOR", "EXACT"])
+@pytest.mark.parametrize("method", ["TAYLOR", *at_night("EXACT")])
 def test_a_law_that_another_makes_turn_back(method: str) -> None:
     """Where spring B yields, its node runs away with it, and a spring that was yielding has to unload at
     once: its rate changes its sign without passing through zero.

@@ -19,6 +19,7 @@ from pound_solve.integrate.protocol import Motion
 from pound_solve.numerics.crests import NODES, crests, may_exceed
 from pound_solve.report.export import export_csv
 from pound_solve.results import Results
+from tiers import each_once
 
 DECK = """TITLE two frames
 UNITS kN m s
@@ -353,8 +354,10 @@ PEAKS = {
 }  #: of histories: the table of the envelope, and the quantity there
 
 
-@pytest.mark.parametrize("method", ["TAYLOR", "EXACT", "LAPLACE DT=0.0005", "NEWMARK DT=0.0005", "AUTO"])
-@pytest.mark.parametrize("every", [0.5, 0.01])
+@each_once(
+    ("method", ["TAYLOR", "EXACT", "LAPLACE DT=0.0005", "NEWMARK DT=0.0005", "AUTO"]),
+    ("every", [0.5, 0.01]),
+)
 def test_extremes_hold_the_peaks_of_the_envelopes(tmp_path: Path, method: str, every: float) -> None:
     """The largest of all intervals is the peak in the table, and stands in the interval of its time."""
     found = history(tmp_path, method, every)

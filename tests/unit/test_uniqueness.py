@@ -6,6 +6,7 @@ from math import asin
 
 import pytest
 
+from tiers import each_once
 from verification.cases import Ran, run_text
 
 STOREYS = """UNITS kN m s
@@ -48,8 +49,7 @@ def told(r: Ran) -> str:
     return " ".join(f"{value}: {verdict}" for check, value, verdict in r.tables["checks"] if check == NAME)
 
 
-@pytest.mark.parametrize(("method", "dt"), METHODS)
-@pytest.mark.parametrize("vx", [2.0, -2.0])
+@each_once(("method, dt", METHODS), ("vx", [2.0, -2.0]))
 def test_two_equal_storeys_in_series(method: str, dt: float | None, vx: float) -> None:
     """Both come to their strength together: k v sin(w t) / w = 150 with w of three springs in series."""
     found = told(run_text(storeys(vx=vx), None, method, dt))
@@ -60,17 +60,18 @@ def test_two_equal_storeys_in_series(method: str, dt: float | None, vx: float) -
     assert float(found.split()[5]) == pytest.approx(when, rel=1e-4 if dt else 1e-5)
 
 
-@pytest.mark.parametrize(("method", "dt"), METHODS)
-@pytest.mark.parametrize(
-    "own",
-    [
-        {"b": "ELASTO_PLASTIC FX=150.001"},  # the other stays behind by far more than rounding
-        {"b": "BILINEAR FX=150 R=0.01"},  # hardens: the rates are unique
-        {"a": "BILINEAR FX=150 R=0.01", "b": "BILINEAR FX=150 R=0.01"},
-        {"weights": " 2 30"},  # inertia holds the joint
-        {"b": f"{PLASTIC}\n D DASHPOT CX=1000\nELEMENTS\n 4 D 1 2\nPROPS"},
-    ],
-    ids=["other strength", "one hardens", "both harden", "mass", "dashpots"],
+@each_once(
+    ("method, dt", METHODS),
+    (
+        "own",
+        {
+            "other strength": {"b": "ELASTO_PLASTIC FX=150.001"},  # by far more than rounding
+            "one hardens": {"b": "BILINEAR FX=150 R=0.01"},  # the rates are unique
+            "both harden": {"a": "BILINEAR FX=150 R=0.01", "b": "BILINEAR FX=150 R=0.01"},
+            "mass": {"weights": " 2 30"},  # inertia holds the joint
+            "dashpots": {"b": f"{PLASTIC}\n D DASHPOT CX=1000\nELEMENTS\n 4 D 1 2\nPROPS"},
+        },
+    ),
 )
 def test_what_is_unique_is_not_told(method: str, dt: float | None, own: dict[str, str]) -> None:
     r = run_text(storeys(**own), None, method, dt)

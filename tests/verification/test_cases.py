@@ -7,12 +7,19 @@ import re
 
 import pytest
 
+from tiers import at_night
 from verification import cases
 
 pytestmark = pytest.mark.full
 
 
-@pytest.mark.parametrize("name", cases.CASES)
+LONG = (
+    "two_bars",
+    "unit_impact",
+)  # a tenth of a minute and more each; `bar_on_wall` is one half of two bars
+
+
+@pytest.mark.parametrize("name", [*(name for name in cases.CASES if name not in LONG), *at_night(*LONG)])
 def test_rows(name: str) -> None:
     rows = cases.CASES[name].rows()
     assert rows
@@ -24,6 +31,7 @@ def test_rows(name: str) -> None:
     assert not wrong, "\n".join(wrong)
 
 
+@pytest.mark.slow  # it computes all rows again
 def test_page_is_fresh() -> None:
     committed = cases.PAGE.read_text(encoding="utf-8")
     assert committed == cases.page(committed), "run: python tests/verification/cases.py"

@@ -16,6 +16,7 @@ import pytest
 
 from kernels import FAST
 from pound_solve import run
+from tiers import at_night
 from verification.cases import ROOT
 
 pytestmark = pytest.mark.full
@@ -116,6 +117,6 @@ def test_constant_axial_forces(case: str) -> None:
 
 
 @FAST
-@pytest.mark.parametrize("case", ["10x3", "20x6"])
+@pytest.mark.parametrize("case", ["10x3", *at_night("20x6")])
 def test_present_axial_forces(case: str) -> None:
     compare(case, f"steel_{case}", "PDELTA_VARYING", 1e-6, 3e-6)
