@@ -81,7 +81,7 @@ def test_finer_search_grid_finds_the_same_events() -> None:
     coarse = re.sub(r"^(\s*HISTORY\s+t)\s*$", r"\1  METHOD=EXACT", text, flags=re.M)
     fine = coarse.replace("METHOD=EXACT", "METHOD=EXACT REFINE=1")
     assert fine != coarse != text
-    a, b = run_text(coarse, {"n": 8}), run_text(fine, {"n": 8})
+    a, b = run_text(coarse, {"n": 20}), run_text(fine, {"n": 20})
     events = [dict(zip(r.tables["run"]["item"], r.tables["run"]["value"])) for r in (a, b)]
     assert events[0]["events"] == events[1]["events"]
     assert int(events[1]["windows"]) > int(events[0]["windows"])  # the finer grid was used
