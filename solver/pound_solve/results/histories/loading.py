@@ -29,8 +29,10 @@ def ground_layout(items: RecordedItems) -> HistoryLayout:
 def ground(block: SampleBlock) -> Array:
     """Accelerations, shape (n_times, n_motions)."""
     motions = block.items.system.motions
-    rows = [[float(m.acceleration.value(t)) for m in motions] for t in block.t]
-    return np.array(rows).reshape(len(block.t), -1)
+    out = np.empty((len(block.t), len(motions)))
+    for column, motion in zip(out.T, motions):
+        column[:] = motion.acceleration.value(block.t)
+    return out
 
 
 def force_layout(items: RecordedItems) -> HistoryLayout:
