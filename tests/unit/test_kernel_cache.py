@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from kernels import NUMBA
 from pound_solve.cli.progress import StatusLine
 from pound_solve.numerics import jit, kernel_cache
 from pound_solve.numerics.digest import digest
@@ -176,6 +177,7 @@ def tiny(env: dict[str, str], folder: Path) -> list[str]:
     return done.stdout.strip().split("|")
 
 
+@pytest.mark.full
 def test_without_a_home_the_second_process_compiles_nothing(places: Path) -> None:
     pytest.importorskip("numba")
     no_home(places)
@@ -184,6 +186,29 @@ def test_without_a_home_the_second_process_compiles_nothing(places: Path) -> Non
     assert second == ["False", *first[1:]]
 
 
+@NUMBA
+def test_one_library_is_built_for_all_checkouts_of_a_source(
+    places: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from ahead_of_time import __main__ as ahead
+
+    built: list[Path] = []
+
+    def build(path: Path) -> None:
+        built.append(path)
+        path.write_bytes(b"library %d" % len(built))
+
+    monkeypatch.setattr(ahead, "build", build)
+    monkeypatch.setattr(kernel_cache, "place", kernel_cache.place.__wrapped__)
+    for checkout in ("one", "other"):
+        ahead.take(places / checkout)
+        assert (places / checkout).read_bytes() == b"library 1"
+    monkeypatch.setattr(ahead, "builder", lambda: "of another compiler")
+    ahead.take(places / "third")
+    assert (places / "third").read_bytes() == b"library 2"
+
+
+@pytest.mark.full
 def test_where_nothing_can_be_kept_kernels_are_compiled_and_it_is_told(places: Path) -> None:
     pytest.importorskip("numba")
     no_home(places)
