@@ -1,6 +1,7 @@
 # make example   run the paper's buildings under El Centro 1940 and show where the report is
 # make test      run the quick tests
 # make test-all  run the other tests of every check
+# make check     run both in one go
 # make test-night  run what every check leaves out: long studies, all combinations, kernels as Python, the site
 # make kernels   compile the kernels for this checkout, as the wheel has them; the tests do it first
 # make fuzz N=1000   give the program N damaged decks, and records, results files and runs; SEED=0, build/fuzz
@@ -24,7 +25,7 @@ NO_COMPILER := There is no C compiler here, so that each process compiles what i
 # bytecode that is kept halves the time in which a process starts
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: example test test-all test-night kernels fuzz lint manual wheel docs clean
+.PHONY: example test test-all check test-night kernels fuzz lint manual wheel docs clean
 
 $(VENV)/ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -46,6 +47,9 @@ test: kernels
 
 test-all: kernels
 	$(PYTEST) -m "full and not slow"
+
+check: kernels
+	$(PYTEST) -m "not slow"
 
 test-night: kernels docs
 	$(PYTEST) -m slow

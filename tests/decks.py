@@ -1,9 +1,13 @@
-"""Decks in tests: from a text to a model, a structure, a static result or a reduced system."""
+"""Decks in tests: from a text to a model, a structure, a static result or a reduced system; from a file to
+results.
+"""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -12,14 +16,33 @@ from pound_deck.model import Model
 from pound_deck.reader import read_text
 from pound_solve.analyses import history_start, static
 from pound_solve.catalog import catalog
+from pound_solve.driver import run as driver
 from pound_solve.loading.motions.base import LoadingContext
 from pound_solve.loading.motions.wave import fronts
 from pound_solve.numerics.types import Array
+from pound_solve.results import Results
 from pound_solve.structure import reduction
 from pound_solve.structure.assembly import assemble
 from pound_solve.structure.condensation import condense
 from pound_solve.structure.dofs import Dof
 from pound_solve.structure.structure import Structure
+
+
+def results_of(
+    deck: str | Path,
+    params: Mapping[str, object] | None = None,
+    *,
+    out: Path | None = None,
+    method: str | None = None,
+    dt: float | None = None,
+    tol: float | None = None,
+) -> Results:
+    """Results of a deck without a report, which takes as long as a small run; see `pound_solve.run`."""
+    given = {name: str(value) for name, value in (params or {}).items()}
+    request = driver.Request(str(deck), given, None if out is None else Path(out), (), method, dt, tol)
+    began, path = time.perf_counter(), request.path(".h5")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    return driver.solve(driver.prepare(request), path, None, began, request)
 
 
 def model_of(text: str, params: Mapping[str, object] | None = None) -> Model:

@@ -53,6 +53,7 @@ def test_a_deck_cut_off_anywhere(path, data):
     ask_everything(path, text, place_in(path, text, len(text)))
 
 
+@pytest.mark.full
 @quiet
 @given(st.sampled_from(DECKS), st.data())
 def test_a_deck_damaged_anywhere(path, data):
@@ -118,6 +119,7 @@ def model_of(path, texts):
 WHOLE = [p for p in DECKS if p.suffix == ".inp"]
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     "path", [*WHOLE[::4], *at_night(*(p for p in WHOLE if p not in WHOLE[::4]))], ids=lambda p: p.stem
 )

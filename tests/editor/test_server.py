@@ -105,6 +105,7 @@ def folder(tmp_path):
     return tmp_path.resolve()
 
 
+@pytest.mark.full
 def test_mistakes_are_told_as_one_types(folder):
     async def session():
         async with editor() as e:
@@ -240,6 +241,7 @@ def test_a_node_is_renamed_in_the_included_file_too(folder):
     asyncio.run(session())
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("units", [None, [lsp.PositionEncodingKind.Utf32], [lsp.PositionEncodingKind.Utf8]])
 def test_columns_are_in_the_units_of_the_editor(folder, units):
     """A clef is one character, two units of UTF-16, four of UTF-8."""

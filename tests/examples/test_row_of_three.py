@@ -42,6 +42,7 @@ def test_what_the_pad_lost_is_the_area_that_was_crushed(run):
     assert wall["energy_lost"] == pytest.approx(area - 0.5 * force**2 / ku, rel=1e-9)
 
 
+@pytest.mark.full
 def test_energies_balance_with_and_without_pounding(run):
     for pounding in ("0", "1"):
         _, results, _ = run(DECK, {"pounding": pounding})

@@ -63,6 +63,7 @@ def fault(case: object, folder: Path) -> Outcome:
         pass
 
 
+@pytest.mark.full
 @pytest.mark.skipif(sys.platform != "linux", reason="bounds of this system")
 @pytest.mark.parametrize("sort", ["traceback", "memory", "crash", "hang"])
 def test_faults_are_found_and_the_next_case_is_judged(

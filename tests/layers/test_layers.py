@@ -290,6 +290,7 @@ def test_numerics_open_no_file_and_print_nothing():
             assert not calls(path) & {"open", "print", "input"}, path
 
 
+@pytest.mark.full
 def test_no_module_keeps_mutable_state():
     for path in modules():
         module, *others = nodes(path)

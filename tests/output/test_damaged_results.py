@@ -47,6 +47,7 @@ def test_a_flipped_bit_is_told_before_hdf5_reads_the_file(tmp_path, seed, monkey
             Results.open(path)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("seed", [0, *at_night(1, 2, 3)])
 def test_without_a_seal_a_flipped_bit_is_told_or_changes_nothing(tmp_path, seed):
     path = sample.write(tmp_path / "whole.h5")
@@ -132,6 +133,7 @@ def end_otherwise(file):
 ATTACKS = (retitle, end_otherwise, undigested, other_columns, narrower, drop, drop_of_the_day, swap, link)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("attack", [*ATTACKS, change, relabel, cut])
 def test_parts_that_are_missing_changed_or_elsewhere_end_in_damaged(tmp_path, capsys, attack):
     path = sample.write(tmp_path / "a.h5")

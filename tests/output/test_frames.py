@@ -130,6 +130,7 @@ def test_all_histories_as_a_tree(done: Results) -> None:
     assert tree.attrs["title"] == sample.TITLE
 
 
+@pytest.mark.full
 def test_xarray_opens_the_file_by_itself(tmp_path: Path) -> None:
     xarray = pytest.importorskip("xarray")
     pytest.importorskip("h5netcdf")

@@ -5,7 +5,8 @@ from __future__ import annotations
 import io
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import cache
 from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any
@@ -96,6 +97,12 @@ def pair(tmp_path_factory: Any) -> Iterator[Results]:
         yield out
 
 
+@pytest.fixture(scope="module")
+def still(pair: Results) -> Callable[[str], Any]:
+    """The pictures of the pair, each made once for all tests that only look."""
+    return cache(lambda name: plot.picture(pair, name))
+
+
 def drawn(figure: Any) -> list[tuple[str, np.ndarray]]:
     """Visible texts of a figure with their boxes in pixels."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -145,14 +152,16 @@ def overprinted(figure: Any) -> list[tuple[str, str]]:
 STILL = [name for name, spec in PICTURES.items() if spec.write is None and name != "study"]
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", STILL)
-def test_no_text_of_a_picture_covers_another(pair: Results, name: str) -> None:
-    assert overprinted(plot.picture(pair, name)) == []
+def test_no_text_of_a_picture_covers_another(still: Callable[[str], Any], name: str) -> None:
+    assert overprinted(still(name)) == []
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", STILL)
-def test_axes_bear_units(pair: Results, name: str) -> None:
-    for axes in plot.picture(pair, name).axes:
+def test_axes_bear_units(still: Callable[[str], Any], name: str) -> None:
+    for axes in still(name).axes:
         if not axes.axison:
             continue
         for axis, said in ((axes.xaxis, axes.get_xlabel()), (axes.yaxis, axes.get_ylabel())):
@@ -163,6 +172,7 @@ def test_axes_bear_units(pair: Results, name: str) -> None:
             assert shared or re.search(r"\[[^]]+\]", said), (name, said)
 
 
+@pytest.mark.full
 def test_node_numbers_keep_apart_and_those_without_room_are_left_out() -> None:
     figure = style.figure(5.4, 5.4)
     axes = figure.add_subplot()
@@ -177,6 +187,7 @@ def test_node_numbers_keep_apart_and_those_without_room_are_left_out() -> None:
     assert overprinted(figure) == []
 
 
+@pytest.mark.full
 def test_node_numbers_of_a_wide_structure_keep_apart(tmp_path: Path) -> None:
     deck = tmp_path / "row.inp"
     deck.write_text(ROW, encoding="utf-8")

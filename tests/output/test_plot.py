@@ -48,6 +48,7 @@ def test_the_pictures_are_listed(capsys: Any) -> None:
     assert [line.split()[0] for line in lines] == list(PICTURES)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("ending", "count"), [("svg", None), ("png", 3), ("pdf", 3), *at_night(("png", None), ("pdf", None))]
 )
@@ -202,6 +203,7 @@ def test_of_a_run_that_stopped_at_its_start_all_is_drawn_and_exported_that_is_th
     assert text == "time [s],2 [m]\n"
 
 
+@pytest.mark.full
 def test_envelopes_show_what_there_is(tmp_path: Path, capsys: Any) -> None:
     with Results.open(alone(tmp_path)) as results, pytest.raises(plot.Nothing, match="no columns"):
         plot.picture(results, "envelopes")
@@ -226,6 +228,7 @@ def test_envelopes_show_what_there_is(tmp_path: Path, capsys: Any) -> None:
     assert np.array_equal(high, np.column_stack([own["max"], [3.0, 6.0]]))
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("angle", "way"), [(0, (1, 0)), (180, (-1, 0)), (60, (0.5, 0.75**0.5)), (-30, (0.75**0.5, -0.5))]
 )
@@ -247,6 +250,7 @@ def test_a_wall_stands_on_its_side(tmp_path: Path, angle: int, way: tuple[float,
     assert all(x0 < x < x1 and y0 < y < y1 for x, y in ends)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     "seconds", [(0.03, 0.05, 0.2), (0.025, 0.1, 0.25), (0.9, 1.1, 1.3), (0.02, 0.3, 40.0)]
 )
@@ -303,6 +307,7 @@ ANALYSIS
 """
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("fix", "elements", "node", "end"),
     [("FIX=XYR", "1 S 1 2", 2, 0.1), ("FIX=YR", "1 W 1 2", 1, 1.0), ("FIX=YR", "1 W 2", 2, 0.1)],

@@ -70,6 +70,7 @@ def small_disk(monkeypatch):
     return limit
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("size", [0, *range(safe_file.RESERVE, safe_file.RESERVE + 400_000, 16_001)])
 def test_a_full_disk_ends_in_words_with_a_readable_file(tmp_path, small_disk, capsys, size):
     deck = write(tmp_path)
@@ -144,6 +145,7 @@ def test_report_and_results_tell_that_they_belong_together(tmp_path, capsys):
     assert "is the report of another run" in capsys.readouterr().err
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("at", range(3))
 def test_a_kill_amid_the_renaming_leaves_no_report_of_other_results(tmp_path, monkeypatch, at):
     deck, calls, replace = write(tmp_path), [], os.replace
@@ -185,6 +187,7 @@ def interrupt(monkeypatch):
     other.join()
 
 
+@pytest.mark.full
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 @pytest.mark.parametrize(
     ("owner", "name", "at", "status"),
@@ -274,6 +277,7 @@ def test_runs_of_one_deck_keep_apart_by_name(tmp_path, capsys):
         pound_solve.run(deck, name="../a")
 
 
+@pytest.mark.full
 def test_histories_may_be_packed_or_left_out(tmp_path):
     """The tables are the same; packed histories are so to the last bit."""
     deck = write(tmp_path, motion=QUAKE.format(a=3))
@@ -366,6 +370,7 @@ def test_a_state_of_another_deck_is_refused_and_the_difference_named(tmp_path, c
         pound_solve.run(write(tmp_path, end=2, more='RESTART="first.h5"', **change))
 
 
+@pytest.mark.full
 def test_another_earthquake_follows_from_time_zero(tmp_path):
     first = pound_solve.run(write(tmp_path, "first", motion=QUAKE.format(a=1)))
     more = 'RESTART="first.h5" NEW=MOTION'
@@ -414,6 +419,7 @@ WRITERS = {
 }
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("words", WRITERS)
 def test_a_file_that_finds_no_room_is_named_and_not_there(tmp_path, monkeypatch, capsys, words):
     """No file becomes longer than 200 bytes: what a full disk does, with another number."""

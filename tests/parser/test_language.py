@@ -313,6 +313,7 @@ def test_wrong_but_plausible_lines_are_refused(codes):
     assert codes(HEAD + "SHAPE\n 1 2 3\n") == ["P235"]
 
 
+@pytest.mark.full
 def test_twenty_thousand_lines(read):
     nodes = "".join(f" {k} {k}*0.5 3.5 FIX=YR\n" for k in range(10, 10_010))
     elements = "".join(f" {k} COL {k} {k}+1\n" for k in range(10, 10_009))

@@ -80,6 +80,7 @@ def test_a_deck_means_the_same_and_keeps_its_comments(path):
     assert good or path.name.startswith(("P10", "P20", "P239"))
 
 
+@pytest.mark.full
 @quiet
 @given(st.sampled_from([p for p in DECKS if "examples" in p.parts]), st.data())
 def test_blanks_and_lines_that_go_on_change_nothing_but_the_layout(path, data):

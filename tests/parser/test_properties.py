@@ -3,6 +3,7 @@
 import math
 import re
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -191,6 +192,7 @@ def content(model):
     )
 
 
+@pytest.mark.full
 @quiet
 @given(st.data())
 def test_blanks_and_case_have_no_meaning(catalog, data):

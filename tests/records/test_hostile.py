@@ -75,6 +75,7 @@ def in_order(raw: RawRecord) -> bool:
     return bool(np.isfinite(raw.values).all() and np.isfinite(t).all() and (np.diff(t) > 0).all())
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("format", FILES)
 def test_damaged_files_are_read_in_order_or_refused(format: str) -> None:
     rng = np.random.default_rng(20)

@@ -260,6 +260,7 @@ class TestSynthetic:
         defaults = {f.name: f.default for f in synthetic.SPEC.fields}
         return {**defaults, "PGA": 3.0, **given}
 
+    @pytest.mark.full
     def test_same_seed_same_motion(self) -> None:
         one, two, other = (synthetic.build(self.card(SEED=s), context()) for s in (7, 7, 8))
         assert np.array_equal(one.acceleration.coefs, two.acceleration.coefs)
@@ -490,6 +491,7 @@ class TestMatched:
         velocity = a.integral()
         assert abs(velocity.value(a.end)) < 1e-9 and abs(velocity.integral().value(a.end)) < 1e-8
 
+    @pytest.mark.full
     def test_same_seed_same_motion(self) -> None:
         one, two, other = (matched.build(self.card(SEED=s), context()) for s in (3, 3, 4))
         assert np.array_equal(one.acceleration.coefs, two.acceleration.coefs)

@@ -75,6 +75,7 @@ def test_a_linear_oscillator_has_straight_lines(tmp_path):
     np.testing.assert_allclose(found[:, 1], levels * found[0, 1] / 0.1, rtol=1e-9)
 
 
+@pytest.mark.full
 def test_an_interrupted_analysis_goes_on_and_ends_the_same(tmp_path):
     whole, aim = hunted(
         study(tmp_path / "a" if (tmp_path / "a").mkdir() is None else tmp_path, "limit = 0.2")

@@ -91,6 +91,7 @@ def motion(number, period):
     return lsim(system, np.interp(dense, t, noise(number)), dense)[1]
 
 
+@pytest.mark.full
 def test_runs_tell_peaks_and_the_gap_that_they_need(free):
     sweep, _ = free
     for number in range(COUNT):
@@ -130,6 +131,7 @@ def test_the_gap_that_is_needed_is_a_demand_like_any_other(free):
     assert found.fragility.median == pytest.approx(np.exp(np.log(gap / whole.needed).mean()), rel=1e-6)
 
 
+@pytest.mark.full
 def test_runs_that_meet_tell_up_to_their_gap(free, tmp_path):
     free_whole = next(g for g in groups(free[0], Options()) if g.level == 1.0)
     gap = float(np.sort(free_whole.needed)[2:4].mean())

@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 import pytest
 
-from pound_solve import run
+from decks import results_of
 from pound_solve.cli.main import main
 from pound_solve.loading.motions.piecewise import Piecewise
 from pound_solve.loading.spectrum import response_spectrum
@@ -39,6 +39,7 @@ def same(a, b):
     return True
 
 
+@pytest.mark.full
 def test_every_run_has_the_numbers_of_a_single_run(tmp_path):
     path = folder(tmp_path)
     found = Sweep.open(swept(path).write())
@@ -46,7 +47,7 @@ def test_every_run_has_the_numbers_of_a_single_run(tmp_path):
     for i in range(16):
         params = {"gap": found["gap"][i], "k": found["k"][i], "scale": found["scale"][i]}
         (tmp_path / "one.inp").write_text(DECK.replace("RECORD record", "RECORD record UNIT=M/S2"))
-        with run(tmp_path / "one.inp", {**params, "record": found["record"][i]}) as one:
+        with results_of(tmp_path / "one.inp", {**params, "record": found["record"][i]}) as one:
             contact, drift = one.table("contact_summary")[0], one.table("drift_envelope")[0]
             assert found["contact_force"][i, 0] == contact["peak_force"]
             assert found["closures"][i, 0] == contact["closures"]
@@ -57,6 +58,7 @@ def test_every_run_has_the_numbers_of_a_single_run(tmp_path):
     assert len(set(found["contact_force"][:, 0])) > 8  # the cases differ
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("more", "nodes", "members"),
     [
@@ -73,6 +75,7 @@ def test_a_run_records_what_a_quantity_or_a_kept_history_needs(tmp_path, more, n
     assert set(Sweep.open(done.write()).variables) >= {"needed_gap", "peak_i", "peak_drift"}
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("method", "nodes", "members"),
     [("TOL_MEMBER=0.01", [2], None), ("PEAKS=ALL", None, None), ("TOL_ACCELERATION=0.01", None, [])],
@@ -122,6 +125,7 @@ def test_a_run_that_fails_is_told_with_its_reason_and_tried_again_when_asked(tmp
     assert all("wall.inp:12" in m for m in found["message"][bad])
 
 
+@pytest.mark.full
 def test_pieces_make_the_same_table_as_the_whole(tmp_path):
     whole = Sweep.open(swept(folder(tmp_path)).write())
     (tmp_path / "b").mkdir()
@@ -202,7 +206,9 @@ def test_histories_are_kept_on_demand(tmp_path):
     written = swept(path).write()
     found = Sweep.open(written)
     (tmp_path / "one.inp").write_text(DECK.replace("RECORD record", "RECORD record UNIT=M/S2"))
-    with run(tmp_path / "one.inp", {"gap": 0.01, "k": 4000, "scale": 2.5, "record": "second.txt"}) as one:
+    with results_of(
+        tmp_path / "one.inp", {"gap": 0.01, "k": 4000, "scale": 2.5, "record": "second.txt"}
+    ) as one:
         t, rows, labels = found.history(4, "contact/force")
         np.testing.assert_array_equal(t, one.time)
         np.testing.assert_array_equal(rows, one.history("contact/force"))
@@ -224,6 +230,7 @@ def test_a_foreign_or_damaged_file_is_told(tmp_path):
         Sweep.open(tmp_path / "bad.h5")
 
 
+@pytest.mark.full
 def test_processes_give_the_same_bits_as_this_one(tmp_path, capsys):
     path = folder(tmp_path)
     here = Sweep.open(swept(path).write())
@@ -365,6 +372,7 @@ def test_two_sweeps_do_not_write_one_folder(tmp_path, capsys):
         pass
 
 
+@pytest.mark.full
 def test_the_plan_tells_what_is_ahead(tmp_path, capsys):
     path = folder(tmp_path)
     assert main(["sweep", str(path), "--plan"]) == 0

@@ -194,6 +194,7 @@ def test_a_killed_run_leaves_what_it_had_written_beside_the_older_results(deck):
     assert [deck.with_suffix(suffix).read_bytes() for suffix in (".h5", ".rpt")] == whole
 
 
+@pytest.mark.full
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_an_interrupted_run_ends_with_its_results_and_status_1(deck, name):
@@ -322,6 +323,7 @@ def test_closed_streams_are_no_fault(deck):
         assert subprocess.run(["sh", "-c", line], env=os.environ).returncode == status
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     "deck", ["cole2011/lumped.inp --set t=0.2", "01_two_oscillators/two_oscillators.inp"]
 )

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-import pound_solve
-from decks import structure_of
+from decks import results_of, structure_of
 from pound_solve.laws.contact import friction
 from pound_solve.structure.assembly import AssemblyError
 
@@ -42,7 +41,7 @@ def ball(folder, friction, vn=1.0, vt=1.0, angle=0.0, law="LAW=LINEAR K=5000", m
             angle=angle, law=law, friction=friction, method=method, vx=c * vn - s * vt, vy=s * vn + c * vt
         )
     )
-    results = pound_solve.run(deck)
+    results = results_of(deck)
     assert results.status == "done", results.message
     vx, vy = results.history("node/v")[-1][0, :2]
     return -(c * vx + s * vy), -s * vx + c * vy, results
@@ -132,7 +131,7 @@ def block(
 ):
     deck = folder / "block.inp"
     deck.write_text(BLOCK.format(**{**locals(), "drive": drive}))
-    results = pound_solve.run(deck)
+    results = results_of(deck)
     assert results.status == "done", results.message
     return results
 
@@ -244,7 +243,7 @@ def test_a_body_on_rods_against_an_inclined_wall_converges(tmp_path, law):
     for h in (4e-4, 2e-4, 1e-4, 2.5e-5):
         deck = tmp_path / "plane.inp"
         deck.write_text(PLANE.format(law=law, method=f"NEWMARK DT={h}"))
-        results = pound_solve.run(deck)
+        results = results_of(deck)
         assert results.status == "done", results.message
         row = next(r for r in results.table("spring_envelope") if r["component"] == "friction")
         peaks = [
@@ -283,7 +282,7 @@ def test_methods_that_do_not(tmp_path, method, words):
     deck.write_text(
         BALL.format(angle=0, law="LAW=LINEAR K=5000", friction="MU=0.3 KT=1E6", method=method, vx=1, vy=1)
     )
-    results = pound_solve.run(deck)
+    results = results_of(deck)
     assert results.status != "done" and words in results.message
 
 

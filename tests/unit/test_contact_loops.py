@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import pound_solve
+from decks import results_of
 from paths import Walk
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import drive
@@ -52,7 +52,7 @@ def crush(mass=MASS, **values):
 def impact(folder, law, v, gap=0.02, method="EXACT", t=2.0):
     deck = folder / "impact.inp"
     deck.write_text(IMPACT.format(law=law, v=v, gap=gap, method=method, t=t))
-    return pound_solve.run(deck)
+    return results_of(deck)
 
 
 # ---------------------------------------------------------------------- BILINEAR_IMPACT
@@ -237,7 +237,7 @@ OUTPUT
 ANALYSIS
  HISTORY 4 FROM=REST METHOD=EXACT
 """)
-    results = pound_solve.run(deck)
+    results = results_of(deck)
     first, second = results.table("collisions")[:2]
     # f = 100 d: with the spring 1/2 (1 + 100) d^2 = 1/2; back along 1000 (d - r), r = 0.9 d
     most = 1.0 / math.sqrt(101.0)

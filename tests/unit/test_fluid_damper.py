@@ -7,8 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import gamma
 
-import pound_solve
-from decks import structure_of
+from decks import results_of, structure_of
 from kernels import FAST
 from pound_solve.laws.damper import fluid
 from pound_solve.structure.assembly import AssemblyError
@@ -53,7 +52,7 @@ def run(folder, items, c=2.0, k=0.0, weight=10.0, end=1.0, every=0.05, method="N
             spring=spring,
         )
     )
-    return pound_solve.run(deck)
+    return results_of(deck)
 
 
 def moved(results):

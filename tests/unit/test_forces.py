@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from decks import scene_of
-from pound_solve import run
+from decks import results_of, scene_of
 from pound_solve.numerics.types import Array
 from verification.cases import Ran, run_text
 
@@ -130,7 +129,7 @@ def test_forces_add_up_with_ground_motion_and_each_other() -> None:
 def test_the_report_tells_of_forces(tmp_path: Path) -> None:
     deck = tmp_path / "deck.inp"
     deck.write_text(OSCILLATOR.format("FORCES\n SINE 2 30 PERIOD=0.4\n TABLE 2 FX=-9 POINTS=0,0,1,-2,3,0"))
-    with run(deck) as r:
+    with results_of(deck) as r:
         rows = r.table("forces").tolist()
         assert [row[:5] for row in rows] == [("1 SINE", "2", 30, 0, 0), ("2 TABLE", "2", -9, 0, 0)]
         assert rows[1][5:] == (-2.0, 1.0, 3.0)
@@ -406,7 +405,7 @@ def test_loads_let_go_act_in_static_only() -> None:
 def test_the_report_names_the_loads_that_are_let_go(tmp_path: Path) -> None:
     deck = tmp_path / "deck.inp"
     deck.write_text(OSCILLATOR.format("LOADS\n 2 50 HELD=NO\n 2 0 -3"))
-    with run(deck) as r:
+    with results_of(deck) as r:
         assert len(r.table("loads")) == 2
         assert r.note("loads") == "Removed where the history starts (HELD=NO): 50 0 0 on 2."
 

@@ -356,6 +356,7 @@ def test_pushover_ladder_of_a_portal():
         solved(portal(1.001 * last))
 
 
+@pytest.mark.full
 def test_a_hinge_yields_back():
     """A cantilever that follows a spring of its own law: in every branch of a history the tip is a bilinear
     oscillator of k = 3EI/L^3, Fy = My/L and the slope of hinge and beam in series.
@@ -522,6 +523,7 @@ def test_the_ductility_of_a_long_hinge_is_that_of_its_curvature():
             assert hinge.strengths[0] / hinge.yields[0] == pytest.approx(EI / lp, rel=1e-14)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("method", ["EXACT", "TAYLOR", "NEWMARK"])
 def test_a_cantilever_with_a_long_hinge_is_a_bilinear_oscillator(method):
     """Its tip is k = 3EI/n^3 up to My/n, and beyond it the flexibility is more by (1/r - 1) Lp n^2/EI."""

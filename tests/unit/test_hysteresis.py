@@ -547,6 +547,7 @@ END
 """
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     "rule",
     [

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pound_solve import run
+from decks import results_of
 from pound_solve.loading.intensity import (
     HOUSNER,
     arias,
@@ -152,7 +152,7 @@ ANALYSIS
 def test_the_report_has_them_for_every_motion(tmp_path: Path, modal: str) -> None:
     deck = tmp_path / "model.inp"
     deck.write_text(DECK.format(modal=modal))
-    with run(deck) as results:
+    with results_of(deck) as results:
         along, up = results.table("intensity")
         assert results.table_units("intensity")["arias"] == "m/s"
     ground = lines(0, 0, 0.5, 2, 1.5, -2, 2, 0)

@@ -33,6 +33,7 @@ ANALYSIS
 """
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("told", ["", INTERPRETED])
 def test_what_a_run_waits_for(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], told: str

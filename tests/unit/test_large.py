@@ -13,9 +13,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk, ellipkinc
 
-from decks import structure_of
+from decks import results_of, structure_of
 from kernels import FAST
-from pound_solve import run
 from pound_solve.analyses import static
 from pound_solve.analyses.equilibrium import SupportReactions
 from pound_solve.results import Results
@@ -29,7 +28,7 @@ KINDS = ("LARGE", "PDELTA_VARYING")
 def results(deck: str, folder: Path, name: str = "deck") -> Results:
     path = folder / f"{name}.inp"
     path.write_text(deck)
-    return run(path, out=folder)
+    return results_of(path, out=folder)
 
 
 # ---------------------------------------------------------------------- the member

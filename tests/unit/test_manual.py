@@ -179,6 +179,7 @@ OUTPUT
 """
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("row", RESTITUTION, ids=lambda r: r[0])
 def test_table_of_restitution_is_met_by_collisions_of_free_masses(row, tmp_path):
     deck = tmp_path / "impact.inp"
@@ -341,6 +342,7 @@ def test_the_example_contact_works_in_a_deck(extended):
         assert hit["peak_force"] == pytest.approx(math.sqrt(1e6 / 4 * reduced), rel=1e-12)
 
 
+@pytest.mark.full
 def test_the_example_damper_keeps_the_contract(extended):
     """By every method the same force, which is linear in the rate beyond the valve."""
     spec = catalog().family("damper")["TWO_STAGE"]
@@ -406,6 +408,7 @@ with run(sys.argv[1]) as results:
 """
 
 
+@pytest.mark.full
 def test_the_example_table_and_its_history_are_in_the_report(extended):
     """In a copy of the program, in a process of its own: what the results hold is found once."""
     deck, own = extended / "impact.inp", "results/tables/contacts/contact_total.py"

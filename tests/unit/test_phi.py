@@ -99,6 +99,7 @@ RADII = np.concatenate(
 )
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("degree", [0, 1, 2, 3, 4, 6, 8, MOST])
 def test_left_half_plane(degree: int) -> None:
     # measured: K 2e-15 up to degree 8 and 3e-14 at 11, J 4e-15 up to 3, 3e-14 up to 8, 8e-13 at 11 (seam)

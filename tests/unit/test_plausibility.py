@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-import pound_solve
-from decks import structure_of
+from decks import results_of, structure_of
 from pound_solve.report.text import render
 from pound_solve.results.contents import SECTIONS
 
@@ -36,7 +35,7 @@ ANALYSIS
 def run(folder, units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=1.0):
     deck = folder / "model.inp"
     deck.write_text(DECK.format(units=units, g=g, h=h, x=x, k=k, a=a))
-    return pound_solve.run(deck)
+    return results_of(deck)
 
 
 def looks(results):
@@ -83,7 +82,7 @@ def test_a_hinge_that_its_rule_fails_is_told(tmp_path):
     for a, failed in ((8.0, True), (1.0, False)):
         deck = tmp_path / f"{a:g}.inp"
         deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=a))
-        results = pound_solve.run(deck)
+        results = results_of(deck)
         told = "springs and hinges without strength, first 1 X"
         assert (told in looks(results)) == failed
         worst = results.table("worst_hinges")["state"].tolist() if "worst_hinges" in results.tables else []
@@ -117,7 +116,7 @@ def test_a_hinge_turned_beyond_ordinary_members_is_told(tmp_path, items, a, told
     """Where the deck does not say how far hinges go; a row holds both ends of a member."""
     deck = tmp_path / "model.inp"
     deck.write_text(FRAME.format(items=items, a=a))
-    results = pound_solve.run(deck)
+    results = results_of(deck)
     springs = {(r["element"], r["component"]): r for r in results.table("spring_envelope")}
     worst = results.table("worst_hinges")
     assert sorted(worst["element"]) == [1, 2]
@@ -142,7 +141,7 @@ def test_an_overlap_beyond_what_the_law_means_is_told(tmp_path):
         deck = tmp_path / f"{a:g}.inp"
         text = DECK.replace("LAW=LINEAR K={k}", "LAW=TABLE DEPTHS=0.001,0.002 FORCES=100,300")
         deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, a=a))
-        results = pound_solve.run(deck)
+        results = results_of(deck)
         assert ("overlap of contact 9 beyond its law" in looks(results)) == told
         assert ("its law is meant up to 0.002 m" in first_page(results)) == told
 
@@ -197,7 +196,7 @@ def test_a_record_in_another_unit_is_told_on_the_first_page(tmp_path, case):
     text = DECK.replace("SINE AMPLITUDE={a} PERIOD=0.7 DURATION=3", f'RECORD "a.txt" {items}')
     deck = tmp_path / "model.inp"
     deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5))
-    results = pound_solve.run(deck)
+    results = results_of(deck)
     page = " ".join(first_page(results).split())
     assert "R404" in page and told in page
     assert ("R404" in results.table("warnings")["number"].tolist()) and "R404" in deck.with_suffix(
@@ -232,7 +231,7 @@ def test_the_overview_tells_what_the_response_rests_on(tmp_path):
     text = DECK.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=0.3)
     text = text.replace("LAW=LINEAR", "LAW=KELVIN_VOIGT E=0.6")
     deck.write_text(text.replace("ANALYSIS", "DAMPING\n MODAL XI=0.05\nANALYSIS\n MODAL"))
-    told = dict(pound_solve.run(deck).table("overview").tolist())
+    told = dict(results_of(deck).table("overview").tolist())
     period = 2 * np.pi * np.sqrt(200 / 9.81 / 4000)
     assert told["longest period of building 1"] == f"{period:.4g} s"
     assert told["damping"].startswith("MODAL: XI 0.05")
@@ -243,7 +242,7 @@ def test_the_overview_has_the_largest_storey_drift_where_no_drift_is_asked_for(t
     deck = tmp_path / "model.inp"
     text = DECK.replace('DRIFT\n "storey" 1 2\n', "")
     deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=1.0))
-    results = pound_solve.run(deck)
+    results = results_of(deck)
     extremes = results.table("storey_extremes")[0]
     assert extremes["unit"] == "-"
     ratio = max(extremes["max"], -extremes["min"])

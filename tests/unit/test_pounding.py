@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pound_solve import run
+from decks import results_of
 from pound_solve.catalog import catalog
 from pound_solve.laws.contact import restitution
 from pound_solve.theory.two_bars import Diaphragm, Pair, after, mean_speed, strain
@@ -322,6 +322,7 @@ ANALYSIS
 """
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("r", [1.0, 0.3])
 @pytest.mark.parametrize("tension", ["NO", "YES"])
 @pytest.mark.parametrize("model", ["PAPER", "EXACT"])
@@ -329,7 +330,7 @@ def test_a_free_collision_in_a_deck(model: str, tension: str, r: float, tmp_path
     """Restitution, duration and centroid of the collision are those that the contact was made for."""
     deck = tmp_path / "free.inp"
     deck.write_text(FREE.format(model=model, tension=tension, r=r), encoding="utf-8")
-    with run(deck, out=tmp_path) as results:
+    with results_of(deck, out=tmp_path) as results:
         (hit,), (law,) = results.table("collisions"), results.table("contact_laws")
         (theory,) = results.table("collision_theory")
         x1, x2 = results.history("node/u")[-1, :, 0]

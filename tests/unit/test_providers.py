@@ -146,6 +146,7 @@ def test_arrays_with_gaps_are_refused() -> None:
         Block([np.zeros((3, 4))[:, 1]], {})
 
 
+@pytest.mark.full
 def test_the_report_says_how_kernels_run(tmp_path: Path) -> None:
     with interpreted():
         results = pound_solve.run(DECK, out=tmp_path)

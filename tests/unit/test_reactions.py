@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import pound_solve
-from decks import structure_of
+from decks import results_of, structure_of
 from pound_solve.structure.buildings import buildings
 from pound_solve.structure.equations import Equations
 from tiers import each_once
@@ -104,7 +103,7 @@ BALANCE = "base shear and overturning moment less inertia and loads, over the la
 def run(folder, text):
     deck = folder / "deck.inp"
     deck.write_text(text)
-    found = pound_solve.run(deck)
+    found = results_of(deck)
     assert found.status == "done", found.message
     return found
 
@@ -124,6 +123,7 @@ def inertia(found, masses):
     return sum(m * found.history("node/a")[:, nodes.index(n), 0] for n, m in masses.items())
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("method", METHODS)
 def test_an_oscillator_pulls_at_its_support_as_its_spring_and_dashpot_do(tmp_path, method):
     """R = -(k u + beta k v) with every method; the mass-proportional dashpot passes by the support."""

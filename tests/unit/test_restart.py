@@ -4,7 +4,7 @@ import h5py
 import numpy as np
 import pytest
 
-import pound_solve
+from decks import results_of
 from pound_solve.driver.run import DeckError
 from samples import stepping_methods
 from tiers import each_once
@@ -48,7 +48,7 @@ METHODS = ["EXACT", "TAYLOR", *STEPS]
 def run(folder, name, method, end=6, more=""):
     deck = folder / f"{name}.inp"
     deck.write_text(DECK.format(method=method, end=end, more=more))
-    return pound_solve.run(deck)
+    return results_of(deck)
 
 
 def histories(results, since):
@@ -93,7 +93,7 @@ def test_a_state_of_another_structure_is_refused(tmp_path):
         .replace(" SOFT SPRING", " UP SPRING KY=100\n SOFT SPRING")
     )
     with pytest.raises(DeckError, match=r"(?s)node 4 is not that of .*element 4 is not that of"):
-        pound_solve.run(deck)
+        results_of(deck)
 
 
 def test_a_state_later_than_the_end_is_refused(tmp_path):

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import solve_continuous_lyapunov
 
-from pound_solve import run
+from decks import results_of
 from pound_solve.cli.main import main
 from pound_solve.report.separation import SeparationError, SeparationRecord, rows, text
 from pound_solve.results import Results
@@ -94,7 +94,7 @@ def test_far_periods_are_srss_and_undamped_equals_move_alike() -> None:
 def ran(folder: Path, ends: str = "2 4", angle: str = "0", **params: float):
     deck = folder / "walls.inp"
     deck.write_text(WALLS.format(ends=ends, angle=angle), encoding="utf-8")
-    return run(deck, params, out=folder)
+    return results_of(deck, params, out=folder)
 
 
 def test_a_run_in_which_nothing_meets(tmp_path: Path) -> None:
@@ -120,7 +120,7 @@ def test_along_an_inclined_direction(tmp_path: Path) -> None:
 def test_a_node_that_is_not_stored(tmp_path: Path) -> None:
     deck, words = tmp_path / "walls.inp", WALLS.replace(" EVERY=0.001", " EVERY=0.001 NODES=2")
     deck.write_text(words.format(ends="2 4", angle="0"), encoding="utf-8")
-    with run(deck, out=tmp_path) as results:
+    with results_of(deck, out=tmp_path) as results:
         (row,) = rows(SeparationRecord(results))
     assert row[1] == pytest.approx(0.03) and math.isnan(row[2]) and math.isnan(row[7])
 
@@ -137,7 +137,7 @@ def test_given_periods_and_a_wall(tmp_path: Path) -> None:
 def test_without_mode_shapes_there_is_no_ddc(tmp_path: Path) -> None:
     deck, words = tmp_path / "walls.inp", WALLS.replace(" MODAL 2", " MODAL 2 SHAPES=NO")
     deck.write_text(words.format(ends="2 4", angle="0"), encoding="utf-8")
-    with run(deck, out=tmp_path) as results:
+    with results_of(deck, out=tmp_path) as results:
         (row,) = rows(SeparationRecord(results))
         assert row[8] == pytest.approx(math.hypot(0.03, 0.02))  # SRSS needs no periods
         assert math.isnan(row[9]) and "--periods" in row[12]
@@ -171,7 +171,7 @@ def test_a_file_without_contacts(tmp_path: Path, capsys: pytest.CaptureFixture[s
     deck = tmp_path / "walls.inp"
     lines = [line for line in WALLS.splitlines() if "HIT" not in line and "gap" not in line]
     deck.write_text("\n".join(lines), encoding="utf-8")
-    with run(deck, out=tmp_path) as results, pytest.raises(SeparationError, match="contacts"):
+    with results_of(deck, out=tmp_path) as results, pytest.raises(SeparationError, match="contacts"):
         rows(SeparationRecord(results))
     assert main(["separation", str(tmp_path / "walls.h5")]) == 3
     assert "contacts" in capsys.readouterr().err
@@ -181,7 +181,7 @@ def test_a_file_without_contacts(tmp_path: Path, capsys: pytest.CaptureFixture[s
 def test_a_run_that_ended_early_says_so(tmp_path: Path) -> None:
     deck = tmp_path / "walls.inp"
     deck.write_text(WALLS.format(ends="2 4", angle="0"), encoding="utf-8")
-    run(deck, out=tmp_path).close()
+    results_of(deck, out=tmp_path).close()
     with Results.open(tmp_path / "walls.h5") as results:
         assert "early" not in rows(SeparationRecord(results))[0][-1]
     with h5py.File(tmp_path / "walls.h5", "a") as file:
@@ -203,6 +203,6 @@ def test_a_file_without_history(
     deck = tmp_path / "walls.inp"
     words = WALLS.replace("HISTORY 0.6 METHOD=EXACT FROM=REST", history)
     deck.write_text(words.format(ends="2 4", angle="0"), encoding="utf-8")
-    run(deck, out=tmp_path).close()
+    results_of(deck, out=tmp_path).close()
     assert main(["separation", str(tmp_path / "walls.h5")]) == 3
     assert told in capsys.readouterr().err

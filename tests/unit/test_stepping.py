@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-import pound_solve
+from decks import results_of
 from kernels import FAST, NUMBA, as_with_numba, by_numba, interpreted, steps_alone
 from pound_solve.integrate import auto, condensed, costs, trial
 from pound_solve.integrate.convergence import compared, estimate, refinement
@@ -73,7 +73,7 @@ def run(folder, method, hinge=HINGED, turn="0.5", every=0.1):
     deck = folder / "frames.inp"
     gap = 0.02 if hinge else 0.008
     deck.write_text(POUNDING.format(method=method, hinge=hinge, turn=turn, gap=gap, every=every))
-    return pound_solve.run(deck)
+    return results_of(deck)
 
 
 def figures(results):
@@ -269,7 +269,7 @@ def test_auto_without_drifts_and_laws_compares_displacements(tmp_path):
     ends = []
     for method in ("AUTO TOL=1e-4", "NEWMARK DT=5e-5"):
         deck.write_text(text.replace("{method}", method))
-        found = pound_solve.run(deck)
+        found = results_of(deck)
         if method.startswith("AUTO"):
             told = estimated(found)
         ends.append(np.array(found.history("node/u")))
@@ -293,7 +293,7 @@ def test_envelopes_see_steps_between_the_outputs(tmp_path, method):
         # no motion of the ground, whose corners would cut the steps between two outputs unevenly
         text = text.replace("EQUAKE\n SINE AMPLITUDE=6 PERIOD=0.4 DURATION=1.2", "INITIAL\n 3,4 VX=0.5")
         deck.write_text(text)
-        both.append(pound_solve.run(deck))
+        both.append(results_of(deck))
     rare, often = both
     assert rare.table("contact_summary")["closures"][0] > 1
     for name in ("node_envelope", "member_envelope"):
@@ -385,7 +385,7 @@ OUTPUT
 def bar(folder, dt):
     deck = folder / "bar.inp"
     deck.write_text(BAR.format(dt=dt))
-    return pound_solve.run(deck)
+    return results_of(deck)
 
 
 def test_a_contact_that_opens_and_closes_again_late_in_a_coarse_step(tmp_path):
@@ -452,7 +452,7 @@ def test_a_curved_law_against_an_ode_solver(tmp_path):
     for dt in (4e-3, 2e-3, 1e-3):
         deck = tmp_path / "curved.inp"
         deck.write_text(CURVED.format(dt=dt, items=f"R={r} N=2"))
-        u = pound_solve.run(deck).history("node/u")[:, 1, 0]
+        u = results_of(deck).history("node/u")[:, 1, 0]
         errors.append(np.abs(u - ode.y[0]).max() / np.abs(ode.y[0]).max())
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert np.all(orders > 1.8) and errors[-1] < 1e-3, (errors, orders)
@@ -517,7 +517,7 @@ def test_massless_rotations_start_in_balance(tmp_path):
     for method in ("EXACT", "NEWMARK DT=0.001"):
         deck = tmp_path / "pushed.inp"
         deck.write_text(PUSHED.format(method=method))
-        found.append(pound_solve.run(deck).history("node/u")[:, 1])
+        found.append(results_of(deck).history("node/u")[:, 1])
         assert found[-1][0] == pytest.approx([0.1, 0.0, -0.05], abs=1e-12)
     assert np.abs(found[0] - found[1]).max() < 2e-4
 
@@ -546,7 +546,7 @@ def test_a_load_that_jumps_within_the_run_keeps_the_order(tmp_path):
     def end(method):
         deck = tmp_path / "jump.inp"
         deck.write_text(JUMP.format(method=method))
-        return pound_solve.run(deck).history("node/u")[-1, 1, 0]
+        return results_of(deck).history("node/u")[-1, 1, 0]
 
     w = 10.0
     static = 5.0 / 1000.0
@@ -614,7 +614,7 @@ def test_springs_in_series_have_the_same_peaks(tmp_path, method):
     points = ",".join(f"{0.01 * i:.2f},{a:.6f}" for i, a in enumerate(rough))
     deck = tmp_path / "series.inp"
     deck.write_text(SERIES.format(points=points, method=f"{method} DT=0.01"))
-    found = pound_solve.run(deck).table("spring_envelope")
+    found = results_of(deck).table("spring_envelope")
     assert found["yield_events"][0] > 5 and found["yield_events"][1] == 0
     for peak in (found["force_max"], found["force_min"]):
         assert peak[0] == pytest.approx(peak[1], rel=1e-9)
@@ -630,7 +630,7 @@ def test_events_of_massless_hinges_are_as_many_however_short_the_step(tmp_path, 
         hinge = HINGED.replace("BILINEAR", rule)
         text = POUNDING.format(method=f"NEWMARK DT={h}", hinge=hinge, turn="0", gap=0.02, every=0.1)
         deck.write_text(text.replace("HISTORY 1.2", "HISTORY 0.42"))
-        found = pound_solve.run(deck)
+        found = results_of(deck)
         assert found.status == "done", found.message
         counts.append({x["item"]: x["value"] for x in found.table("run")}["events"])
     assert int(counts[0]) > 4 and len(set(counts)) == 1, counts
@@ -660,7 +660,7 @@ def looks(folder, method, rule, k=100.0, fy=1.0, speed=1.0, end=1.0):
     """Checks of one mass on one spring that say "look", by the heads of their names, and the results."""
     deck = folder / "sprung.inp"
     deck.write_text(SPRUNG.format(method=method, rule=rule, k=k, fy=fy, speed=speed, end=end))
-    results = pound_solve.run(deck)
+    results = results_of(deck)
     told = [x for x in results.table("checks") if x["verdict"].startswith("look")]
     told = [x for x in told if "leans" not in x["verdict"]]  # what has yielded does
     return {x["check"][:20]: float(x["value"]) for x in told}, results
@@ -729,7 +729,7 @@ def test_the_dashpot_of_a_contact_does_not_hit_a_node_without_mass(tmp_path, met
     """The node is carried along at once: the contact has no more force than the storey behind it."""
     deck = tmp_path / "touched.inp"
     deck.write_text(TOUCHED.format(method=method))
-    results = pound_solve.run(deck)
+    results = results_of(deck)
     peak = results.table("contact_summary")["peak_force"][0]
     u = results.history("node/u")[:, 3, 0]
     assert peak == pytest.approx(40.0 * u.max(), rel=1e-4)
@@ -971,7 +971,7 @@ def cost_of_series(tmp_path, monkeypatch, text):
         patch.setattr(auto, "has_series", lambda system: True)
         patch.setattr(auto, "cost_of_series", tell)
         with pytest.raises(Told) as told:
-            pound_solve.run(deck)
+            results_of(deck)
     return float(told.value.args[0])
 
 
@@ -1054,7 +1054,7 @@ def test_a_smooth_spring_between_nodes_that_move_together_does_not_reverse(tmp_p
     deck, motions = tmp_path / "deck.inp", []
     for beside in ("4 SOFT 2 3", ""):
         deck.write_text(TOGETHER.format(beside=beside, hinges=hinges, rule=rule, method=method))
-        found = pound_solve.run(deck)
+        found = results_of(deck)
         assert found.status == "done", found.message
         motions.append(found.history("node/u"))
     assert np.abs(motions[0] - motions[1]).max() < 1e-11 * np.abs(motions[1]).max()

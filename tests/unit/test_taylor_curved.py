@@ -310,6 +310,7 @@ ANALYSIS
 """
 
 
+@pytest.mark.full
 @each_once(
     ("law", ["LINEAR K={k!r}", "KELVIN_VOIGT K={k!r} C={c!r}", "HERTZ K={k!r}"]), ("mud", ["", "MUD=0.25"])
 )

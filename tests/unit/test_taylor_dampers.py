@@ -176,6 +176,7 @@ def test_one_mass(alpha: float, load: str, link: float, limit: float) -> None:
     assert r.check() < 1e-11
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("alpha", [0.5, 1.0, 2.0])
 @pytest.mark.parametrize("limit", [np.inf, 1.2])
 def test_a_play(alpha: float, limit: float) -> None:

@@ -175,6 +175,7 @@ def ran(rule: str, v: float, shaken: bool, behind: float) -> tuple[Ran, int]:
     return r, int(next(x["value"] for x in r.tables["run"] if x["item"] == "series"))
 
 
+@pytest.mark.full
 @each_once(
     ("v, shaken", [(-3.0, False), (1.0, True), (0.0, True)]),
     ("behind", [np.inf, 40.0]),  # a spring in series with the law: the node between has no mass

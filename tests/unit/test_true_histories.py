@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from decks import results_of
 from kernels import steps_alone
 from pound_deck.reader import read_text
-from pound_solve import run
 from pound_solve.analyses.closeups import Peaks
 from pound_solve.catalog import catalog
 from pound_solve.driver.request import Request
@@ -60,7 +60,7 @@ def history(tmp_path: Path, method: str, every: float, more: str = "", contact: 
     tmp_path.mkdir(exist_ok=True)
     deck = tmp_path / f"{method.split()[0]}_{every}.inp"
     deck.write_text(DECK.format(method=method, every=every, more=more, contact=contact))
-    return run(deck, out=tmp_path / deck.stem)
+    return results_of(deck, out=tmp_path / deck.stem)
 
 
 def extremes(results: Results) -> dict[str, Any]:
@@ -79,6 +79,7 @@ def apart(one: dict[str, Any], other: dict[str, Any]) -> float:
     return worst
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("method", ["TAYLOR", "EXACT", "LAPLACE DT=0.0005"])
 def test_envelopes_do_not_hang_on_the_output_interval(tmp_path: Path, method: str) -> None:
     """Accelerations were up to 12 % low, members' forces 4 %."""
@@ -86,6 +87,7 @@ def test_envelopes_do_not_hang_on_the_output_interval(tmp_path: Path, method: st
     assert apart(seldom, often) < 1e-9
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("method", ["NEWMARK DT=0.0005", "HHT DT=0.0005", "GENERALISED_ALPHA DT=0.0005"])
 def test_envelopes_of_steps_see_every_step(tmp_path: Path, method: str) -> None:
     """Steps that end at other times make differences of their own, about the square of their length."""
@@ -93,6 +95,7 @@ def test_envelopes_of_steps_see_every_step(tmp_path: Path, method: str) -> None:
     assert apart(*map(extremes, runs)) < 2e-4
 
 
+@pytest.mark.full
 def test_envelopes_are_the_extremes_of_dense_histories(tmp_path: Path) -> None:
     """No stored sample is beyond them, and samples come as near as their distance lets them."""
     found, dense = history(tmp_path, "TAYLOR", 1.0), history(tmp_path, "EXACT", 0.0004)
@@ -137,6 +140,7 @@ ANALYSIS
 """
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("element", "law"),
     [("B 1 2", "HERTZDAMP"), ("D 1 2", "HERTZDAMP"), ("W 1 2", "HERTZDAMP"), ("W 1 2", "KELVIN_VOIGT")],
@@ -149,7 +153,7 @@ def test_forces_of_laws_between_samples(tmp_path: Path, element: str, law: str) 
     for every in (2.0, 0.0005):
         deck = tmp_path / f"{every}.inp"
         deck.write_text(LAWS.format(element=element, law=law, every=every))
-        results = run(deck, out=tmp_path)
+        results = results_of(deck, out=tmp_path)
         assert float(results.table("checks")[0]["value"]) < 1e-9
         found.append(np.column_stack([results.table("reaction_envelope")[x] for x in ("max", "min")]))
     few, many = found
@@ -210,6 +214,7 @@ def test_close_ups_hold_every_peak_of_a_contact(tmp_path: Path, method: str) -> 
     assert values.max() == pytest.approx(found.table("contact_summary")["peak_force"][0], rel=1e-10)
 
 
+@pytest.mark.full
 def test_close_ups_are_the_motion(tmp_path: Path) -> None:
     """Every history of theirs is that of a run that stores these very instants."""
     found, dense = history(tmp_path, "TAYLOR", 0.5), history(tmp_path, "EXACT", 0.0002)
@@ -354,6 +359,7 @@ PEAKS = {
 }  #: of histories: the table of the envelope, and the quantity there
 
 
+@pytest.mark.full
 @each_once(
     ("method", ["TAYLOR", "EXACT", "LAPLACE DT=0.0005", "NEWMARK DT=0.0005", "AUTO"]),
     ("every", [0.5, 0.01]),

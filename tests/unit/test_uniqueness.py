@@ -49,6 +49,7 @@ def told(r: Ran) -> str:
     return " ".join(f"{value}: {verdict}" for check, value, verdict in r.tables["checks"] if check == NAME)
 
 
+@pytest.mark.full
 @each_once(("method, dt", METHODS), ("vx", [2.0, -2.0]))
 def test_two_equal_storeys_in_series(method: str, dt: float | None, vx: float) -> None:
     """Both come to their strength together: k v sin(w t) / w = 150 with w of three springs in series."""
@@ -103,6 +104,7 @@ ANALYSIS
 """
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(("method", "dt"), METHODS)
 def test_parallel_springs_that_yield_together(method: str, dt: float | None) -> None:
     """Both go on by the same deformation.  Against an equal storey it is open which storey does."""
@@ -113,6 +115,7 @@ def test_parallel_springs_that_yield_together(method: str, dt: float | None) -> 
 SOFTENING = "IMK_BILINEAR FX=150 R=0.05 DP=0.001 DPC=0.5"
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(("method", "dt"), METHODS)
 def test_two_equal_springs_that_soften_together(method: str, dt: float | None) -> None:
     """Both harden together to their caps; there one goes on, the other unloads, or the other way round."""

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve import run
+from decks import results_of
 from pound_solve.numerics.types import Array
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -67,7 +67,10 @@ def run_deck(
     dt: float | None = None,
 ) -> Ran:
     """Run a deck into a folder of its own and read the results."""
-    with tempfile.TemporaryDirectory() as folder, run(path, params, out=folder, method=method, dt=dt) as r:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        results_of(path, params, out=folder, method=method, dt=dt) as r,
+    ):
         tables = {name: r.table(name) for name in r.tables}
         nodes = tuple(int(n) for n in r.attributes("node/u")["nodes"]) if "node/u" in r.histories else ()
         names = ("node/u", "node/v", "node/a", "contact/force")

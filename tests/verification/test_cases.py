@@ -47,21 +47,20 @@ def test_page_and_examples_name_each_other() -> None:
         assert (cases.DECKS / folder / "README.md").is_file(), folder
 
 
+@pytest.mark.parametrize(("n", "finer"), [cases.MESHES[:2], *at_night(cases.MESHES[1:])])
 @pytest.mark.parametrize(("name", "bars"), cases.BAR_SETS, ids=[n for n, _ in cases.BAR_SETS])
-def test_bars_come_nearer_with_the_mesh(name: str, bars: cases.Bars) -> None:
-    errors = [abs(cases.e_eff(bars, n) - bars.restitution()) for n in cases.MESHES]
-    assert errors == sorted(errors, reverse=True), errors
+def test_bars_come_nearer_with_the_mesh(name: str, bars: cases.Bars, n: int, finer: int) -> None:
+    error, smaller = (abs(cases.e_eff(bars, mesh) - bars.restitution()) for mesh in (n, finer))
+    assert smaller < error
 
 
-def test_raw_peak_overshoots_on_every_mesh() -> None:
+@pytest.mark.parametrize("n", [*cases.MESHES[:2], *at_night(*cases.MESHES[2:])])
+def test_raw_peak_overshoots_on_every_mesh(n: int) -> None:
     """A lumped chain's first peak stands 44.5 % (equal bars) and 13.7 % (Table IV) above the plateau,
     whatever n."""
     for bars, over in ((cases.EQUAL, 1.44529), (cases.TABLE_IV, 1.13718)):
-        peaks = [
-            float(cases.collide(bars, n).column("collisions", "peak_force").max()) / bars.force
-            for n in cases.MESHES
-        ]
-        assert peaks == pytest.approx([over] * len(peaks), abs=1e-5)
+        peak = float(cases.collide(bars, n).column("collisions", "peak_force").max()) / bars.force
+        assert peak == pytest.approx(over, abs=1e-5)
 
 
 def test_stairs_by_momentum() -> None:

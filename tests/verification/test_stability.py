@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-import pound_solve
+from decks import results_of
 from kernels import steps_alone
 from pound_solve.assess import scenes, stability
 from pound_solve.assess.scenes import case as scene_case
@@ -192,7 +192,7 @@ def test_exact_refuses_a_curved_law(tmp_path):
     rule = catalog().family("hysteresis")["BOUC_WEN"]
     deck = tmp_path / "curved.inp"
     deck.write_text(hysteresis.storeys(scene_case.items(rule)).replace(scene_case.METHOD, "EXACT"))
-    results = pound_solve.run(deck)
+    results = results_of(deck)
     assert results.status == "stopped"
     assert results.message.startswith("A505 at t = 0 s: ")
     assert "the law BOUC_WEN of element 1 is curved" in results.message
@@ -216,7 +216,7 @@ def test_steps_that_do_not_resolve_the_motion_are_told(tmp_path):
         deck = tmp_path / "one.inp"
         text = linear.one(linear.KICK, every=0.2).replace(scene_case.METHOD, f"NEWMARK DT={dt}")
         deck.write_text(text)
-        checks = {c["check"]: c for c in pound_solve.run(deck).table("checks")}
+        checks = {c["check"]: c for c in results_of(deck).table("checks")}
         found = checks["steps in a period of the motion, about"]
         # the method's own period is longer: omega' = 2/h atan(omega h/2)
         own = 2 * math.pi / (2 / dt * math.atan(scene_case.OMEGA * dt / 2)) / dt
@@ -231,7 +231,7 @@ def test_auto_says_how_good_it_is_rather_than_its_steps(tmp_path, monkeypatch):
     k = 1e3 * scene_case.STOREY
     law = scene_case.items(spec, K=k)
     deck.write_text(contact.pair(law, end=0.2).replace(scene_case.METHOD, "AUTO TOL=0.01"))
-    checks = pound_solve.run(deck).table("checks")["check"].tolist()
+    checks = results_of(deck).table("checks")["check"].tolist()
     assert any("estimated error" in c for c in checks) and not any("steps in" in c for c in checks)
 
 
@@ -243,7 +243,7 @@ def drifted(folder, method, periods, dt=0.0):
     deck = folder / "long.inp"
     text = linear.one(linear.KICK, end=float(periods), every=float(periods))
     deck.write_text(text.replace(scene_case.METHOD, f"{method} DT={dt!r}" if dt else method))
-    results = pound_solve.run(deck)
+    results = results_of(deck)
     u, v = results.history("node/u")[-1, 0, 0], results.history("node/v")[-1, 0, 0]
     energy = results.history("energy")
     return math.atan2(u * OMEGA, v), (energy[-1, 1] + energy[-1, 2]) / (energy[0, 1] + energy[0, 2]) - 1.0
@@ -292,7 +292,7 @@ def test_a_thousand_seconds_of_record(tmp_path):
     found = []
     for method in ("EXACT", "NEWMARK DT=0.002"):
         deck.write_text(text.replace(scene_case.METHOD, method))
-        found.append(pound_solve.run(deck, out=tmp_path / method[:5]))
+        found.append(results_of(deck, out=tmp_path / method[:5]))
     checks = found[0].table("checks")
     assert float(checks["value"][0]) < 1e-9 and found[0].table("contact_summary")["closures"][0] > 20
     u = [np.abs(r.history("node/u")[:, :, 0]).max() for r in found]

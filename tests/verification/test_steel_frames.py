@@ -14,8 +14,8 @@ from pathlib import Path
 
 import pytest
 
+from decks import results_of
 from kernels import FAST
-from pound_solve import run
 from tiers import at_night
 from verification.cases import ROOT
 
@@ -78,7 +78,7 @@ def peaks(deck: str, geometry: str, **params: object) -> tuple[tuple[float, floa
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "deck.inp"
         path.write_text(text, encoding="utf-8")
-        with run(path, {"every": 0.005, "events": '"STEPPED"', **params}, out=folder) as r:
+        with results_of(path, {"every": 0.005, "events": '"STEPPED"', **params}, out=folder) as r:
             assert r.status == "done"
             roof = r.history("drift")[:, 0]
             hinges = abs(r.history("spring/deformation")[1:]).max(axis=0).tolist()  # not the state at rest
