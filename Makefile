@@ -2,11 +2,12 @@
 # make test      run the quick tests
 # make test-all  run the other tests of every check
 # make check     run both in one go
-# make test-night  run what every check leaves out: long studies, all combinations, kernels as Python, the site
+# make test-night  run what every check leaves out: long studies, all combinations, kernels as Python, the site, docstrings
 # make kernels   compile the kernels for this checkout, as the wheel has them; the tests do it first
 # make fuzz N=1000   give the program N damaged decks, and records, results files and runs; SEED=0, build/fuzz
 # make wheel     build the wheel of this platform, kernels compiled: dist/
 # make docs      build the site: build/site/index.html
+# make docstrings   parse the docstrings of all modules, as the site does with those that it shows
 # All set up a virtual environment in $(VENV) first.
 
 PYTHON ?= python3
@@ -25,7 +26,7 @@ NO_COMPILER := There is no C compiler here, so that each process compiles what i
 # bytecode that is kept halves the time in which a process starts
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: example test test-all check test-night kernels fuzz lint manual wheel docs clean
+.PHONY: example test test-all check test-night kernels fuzz lint manual wheel docs docstrings clean
 
 $(VENV)/ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -51,7 +52,7 @@ test-all: kernels
 check: kernels
 	$(PYTEST) -m "not slow"
 
-test-night: kernels docs
+test-night: kernels docs docstrings
 	$(PYTEST) -m slow
 	POUND_COMPILE=0 $(PYTEST) -m "not full and not slow"
 
@@ -73,8 +74,16 @@ $(VENV)/ready-docs: $(VENV)/ready
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[docs]"
 	touch $@
 
-docs: $(VENV)/ready-docs   # warnings are errors, references that lead nowhere are warnings
-	$(BIN)/sphinx-build --nitpicky --fail-on-warning --keep-going -c manual/site -d build/doctrees . build/site
+docs: $(VENV)/ready-docs   # warnings are errors
+	$(BIN)/sphinx-build --fail-on-warning --keep-going -c manual/site -d build/doctrees . build/site
+
+# the site shows public modules only
+docstrings: $(VENV)/ready-docs
+	rm -rf build/docstrings
+	for folder in parser solver; do SPHINX_APIDOC_OPTIONS=members \
+	$(BIN)/sphinx-apidoc -q --separate --no-toc -o build/docstrings $$folder || exit 1; done
+	$(BIN)/sphinx-build --fail-on-warning --keep-going -b dummy -c manual/site -D root_doc=pound_solve \
+	-D include_patterns="**" -D suppress_warnings=ref.python,toc.not_included build/docstrings build/docstrings/out
 
 clean:
-	rm -rf $(VENV) build manual/api
+	rm -rf $(VENV) build
