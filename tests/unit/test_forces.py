@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from decks import results_of, scene_of
+from pound_solve import run
 from pound_solve.numerics.types import Array
 from verification.cases import Ran, run_text
 
@@ -129,7 +130,7 @@ def test_forces_add_up_with_ground_motion_and_each_other() -> None:
 def test_the_report_tells_of_forces(tmp_path: Path) -> None:
     deck = tmp_path / "deck.inp"
     deck.write_text(OSCILLATOR.format("FORCES\n SINE 2 30 PERIOD=0.4\n TABLE 2 FX=-9 POINTS=0,0,1,-2,3,0"))
-    with results_of(deck) as r:
+    with run(deck) as r:
         rows = r.table("forces").tolist()
         assert [row[:5] for row in rows] == [("1 SINE", "2", 30, 0, 0), ("2 TABLE", "2", -9, 0, 0)]
         assert rows[1][5:] == (-2.0, 1.0, 3.0)
