@@ -7,10 +7,10 @@ the agencies lie in the test data of both projects.  The difference is the large
 the mean is taken off both where this program takes it off.
 """
 
+import argparse
 import contextlib
 import io
 import logging
-import sys
 import warnings
 from pathlib import Path
 
@@ -75,11 +75,14 @@ def differences(raw, others):
             yield program, *min(found)
 
 
-def main(names):
+def main():
     """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help="record")
+    paths = parser.parse_args().files
     warnings.simplefilter("ignore")
     logging.disable(logging.CRITICAL)
-    for path in map(Path, names):
+    for path in paths:
         try:
             records = list(ours(path))
         except RecordError as error:
@@ -105,4 +108,4 @@ def main(names):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

@@ -6,6 +6,7 @@ The budget: within twice the imports plus 0.4 s.  Medians of interleaved runs, s
 meets both alike.
 """
 
+import argparse
 import statistics
 import subprocess
 import sys
@@ -24,8 +25,11 @@ def seconds(*words):
     return time.perf_counter() - began
 
 
-def main(rounds=9):
+def main():
     """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--rounds", type=int, default=9)
+    rounds = parser.parse_args().rounds
     with tempfile.TemporaryDirectory() as out:
         runs = {
             "bare Python": ("-c", "pass"),

@@ -8,6 +8,8 @@ together.  Units kN, m.  Runs in the environment that ``peer_env.py`` makes.
 Prints displacements of the nodes (x, y, rotation) and end moments of the members.
 """
 
+import argparse
+
 import openseespy.opensees as ops
 
 E, HEIGHT, SPAN, HARDENING = 2.0e8, 3.5, 6.0, 0.03
@@ -50,6 +52,7 @@ def build() -> None:
 
 def main() -> None:
     """Push and print."""
+    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
     build()
     ops.system("FullGeneral")
     ops.constraints("Transformation")

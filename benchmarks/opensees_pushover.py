@@ -7,6 +7,8 @@ takes those of the static state, have the same ones.  Run it in an environment w
 
 from __future__ import annotations
 
+import argparse
+
 import openseespy.opensees as ops
 
 STOREYS, BAYS, H, SPAN = 3, 2, 3.5, 6.0
@@ -69,6 +71,7 @@ def build() -> None:
 
 def main() -> None:
     """Print load factor by displacement."""
+    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
     build()
     ops.constraints("Transformation")
     ops.numberer("RCM")

@@ -17,7 +17,6 @@ from pathlib import Path
 import pound_solve
 
 HERE = Path(__file__).parent
-SOURCE = HERE.parents[0] / "examples/cole2011/distributed.inp"
 DECK = """UNITS kN m s
 PARAM  n = {n}
 PARAM  g = 9.81   w1 = 1600   k1 = 420000   kd1 = 1881300

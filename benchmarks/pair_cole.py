@@ -46,7 +46,7 @@ class Answer(NamedTuple):
 def lean(folder):
     """The deck with the output that the peer keeps: extremes of drifts and contacts, no histories."""
     path = Path(folder, "lean.inp")
-    output = "EVERY=t  NODES=1000+n,3000  MEMBERS=1 TO 8  STOREYS=NO"
+    output = "EVERY=t  NODES=1000+n,3000  MEMBERS=11001 TO 18001 BY 1000  STOREYS=NO"
     path.write_text(f'INCLUDE "{DECK}"\nOUTPUT\n   {output}\n')
     return path
 

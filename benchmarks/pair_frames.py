@@ -164,10 +164,16 @@ def frozen(said):
     print("  hinges", *(f"{k}: {said['hinges'][k]!r}" for k in some), sep="\n    ")
 
 
+def lean(folder):
+    """Deck of the chain with as little output as the frames."""
+    deck = Path(folder, "chain.inp")
+    deck.write_text(CHAIN.read_text(encoding="utf-8") + "\nOUTPUT\n   EVERY=t\n", encoding="utf-8")
+    return deck
+
+
 def chain(args, folder):
     """The paper's buildings, 20 elements a diaphragm: 84 DOFs."""
-    deck = Path(folder, "chain.inp")  # with as little output as the frames
-    deck.write_text(CHAIN.read_text(encoding="utf-8") + "\nOUTPUT\n   EVERY=t\n", encoding="utf-8")
+    deck = lean(folder)
     record = Path(folder, "record.txt")
     write_two_columns(record, *read_at2(args.record or record_file()))
     print(f"\nchain of 84 degrees of freedom, dt {CHAIN_DT:g} s")

@@ -23,7 +23,7 @@ import sys
 import tempfile
 import time
 import tracemalloc
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import NamedTuple
 from unittest import mock
@@ -169,15 +169,24 @@ def costs(results):
     return float(figures["solve seconds, CPU"]), facts
 
 
+@contextmanager
+def steps_alone(auto):
+    """Keep AUTO from EXACT and TAYLOR."""
+    with (
+        mock.patch.object(auto, "not_linear", lambda system: "barred"),
+        mock.patch.object(auto, "has_series", lambda system: False),
+    ):
+        yield
+
+
 def one(path, params, method, tol, barred):
     """Solve in this process, which ends; print what it cost."""
     from pound_solve import run as solve
     from pound_solve.integrate import auto
 
     options = {"method": method} | ({"tol": tol} if method == "AUTO" else {})
-    bar = mock.patch.object(auto, "not_linear", lambda system: "barred") if barred else nullcontext()
     with (
-        bar,
+        steps_alone(auto) if barred else nullcontext(),
         tempfile.TemporaryDirectory() as out,
         solve(path, params=params, out=out, **options) as results,
     ):

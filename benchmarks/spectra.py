@@ -12,8 +12,8 @@ get the samples once as they are, and once with seven more on every line between
 peaks at samples and integrate by the trapezium rule.
 """
 
+import argparse
 import json
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -83,9 +83,21 @@ def measures(a, dt):
         yield f"d5_{end}", eqsig.im.calc_sig_dur(signal, start=0.05, end=end / 100)
 
 
-if __name__ == "__main__":
-    verb, *words = sys.argv[1:]
-    if verb == "export":
-        export(words[:-1], Path(words[-1]))
+def main():
+    """Write figures, or compare them."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    verbs = parser.add_subparsers(dest="verb", required=True)
+    verb = verbs.add_parser("export", help="write samples and figures of this program")
+    verb.add_argument("files", nargs="+", metavar="FILE", help="record")
+    verb.add_argument("folder", type=Path)
+    verb = verbs.add_parser("compare", help="print the differences of the other programs")
+    verb.add_argument("folder", type=Path)
+    args = parser.parse_args()
+    if args.verb == "export":
+        export(args.files, args.folder)
     else:
-        compare(Path(words[0]))
+        compare(args.folder)
+
+
+if __name__ == "__main__":
+    main()
