@@ -81,12 +81,9 @@ class Values:
         `bounded`.
         """
         value = self._number(part, f)
-        nothing = 0.0 if f is None or f.above != 0 else SMALL  # least magnitude of what is divided by
-        if not nothing <= abs(value) <= GREAT:
+        if wrong := _beyond(value, f):
             name, meaning = (f.name, self.meaning(f)) if f else ("BY", "the step of a range")
-            least = f"from {SMALL:g} to" if nothing else "up to"
-            message = f"{name} is {value:.10g}, but must be of a magnitude {least} {GREAT:g}"
-            raise mistake("P217", message, part.span, meaning)
+            raise mistake("P217", f"{name} {wrong}", part.span, meaning)
         return self.within(value, part, f) if bounded else value
 
     def whole(self, part: Expression, f: Field | None, bounded: bool = True) -> int:
@@ -122,10 +119,8 @@ class Values:
 
     def within(self, value: float, part: Expression, f: Field | None) -> float:
         """The value, which must be within the field's limits."""
-        if f and not _inside(value, f):
-            raise mistake(
-                "P217", f"{f.name} is {value:.10g}, but must be {_allowed(f)}", part.span, self.meaning(f)
-            )
+        if f and (wrong := _outside(value, f)):
+            raise mistake("P217", f"{f.name} {wrong}", part.span, self.meaning(f))
         return value
 
     def _text(self, part: Expression, f: Field) -> str:
@@ -228,13 +223,29 @@ def _code(text: str) -> int | None:
     return int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else None
 
 
-def _inside(value: float, f: Field) -> bool:
-    return (
+def out_of_limits(value: float, f: Field) -> str:
+    """What is wrong with a number that no deck could give this item; empty where one could."""
+    return _beyond(value, f) or _outside(value, f)
+
+
+def _beyond(value: float, f: Field | None) -> str:
+    """What is wrong with the magnitude of a number, which may be no number at all."""
+    nothing = 0.0 if f is None or f.above != 0 else SMALL  # least magnitude of what is divided by
+    if nothing <= abs(value) <= GREAT:
+        return ""
+    least = f"from {SMALL:g} to" if nothing else "up to"
+    return f"is {value:.10g}, but must be of a magnitude {least} {GREAT:g}"
+
+
+def _outside(value: float, f: Field) -> str:
+    """What is wrong with a number that is not within the limits of its field."""
+    inside = (
         (f.lo is None or value >= f.lo)
         and (f.hi is None or value <= f.hi)
         and (f.above is None or value > f.above)
         and (f.below is None or value < f.below)
     )
+    return "" if inside else f"is {value:.10g}, but must be {_allowed(f)}"
 
 
 def _allowed(f: Field) -> str:

@@ -23,15 +23,19 @@ from fuzz.cases import KINDS, bases, case
 from fuzz.judge import ENDS, Outcome
 from fuzz.workers import outcomes
 
-#: share of each kind in N cases
+#: share of each kind in N decks: half of all cases are whole runs
 SHARES = {
     "deck": 1.0,
     "verbs": 0.02,
     "editor": 0.005,
-    "run": 0.005,
+    "run": 1.25,
     "record": 0.2,
     "results": 0.05,
     "words": 0.01,
+    "options": 0.1,
+    "study": 0.03,
+    "import": 0.1,
+    "texts": 0.02,
 }
 
 

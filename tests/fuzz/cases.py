@@ -6,15 +6,23 @@ A case depends on these three and the sources alone, so that a fault is found ag
 from __future__ import annotations
 
 import io
+import math
+import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
 from random import Random
+from unittest import mock
 
 from agency_files import FILES
 from fuzz.attacks import attacked
-from fuzz.mutation import damaged, encoded, items, mutated, revalued, words
+from fuzz.mutation import damaged, encoded, items, mutated, number, rescaled, revalued, text, words
+from legacy.decks import IN_SPACE, OSCILLATOR, PORTAL, STICK
+from pound_solve.numerics.providers import provider
+from pound_solve.report.plot.catalog import PICTURES
+from sweep.small import DECK as WALL
+from sweep.small import STUDY
 from verification.generated import laws
 from verification.generated.decks import deck
 
@@ -76,6 +84,56 @@ METHODS = (
     *("METHOD=AUTO", "METHOD=AUTO TOL=1E-2", "METHOD=EXACT", "METHOD=TAYLOR", "METHOD=NEWMARK DT=0.005"),
     *("METHOD=HHT DT=0.005", "METHOD=CENTRAL DT=0.001", "METHOD=LAPLACE DT=0.005", ""),
 )
+#: items of a study: what is put in front of its tables
+ASKED = (
+    *('method = "NEWMARK"\ndt = 0.02', 'method = "TAYLOR"', "tol = 1e-2", "seconds = 5", "memory = 500"),
+    *('histories = ["node/u"]', 'out = "there"', "workers = 1", 'records = ["."]', 'method = "CENTRAL"'),
+)
+INCREMENTAL = """deck = "wall.inp"
+[[motions]]
+files = ["first.txt"]
+unit = "M/S2"
+sa = 0.05
+period = 1.0
+[ida]
+demand = "peak_drift"
+step = 0.1
+growth = 0.05
+runs = 3
+"""
+#: verbs on a study, the frequent ones several times
+OF_STUDIES = ("sweep", "sweep", "sweep", "plan", "ida", "fragility", "separation")
+OPTIONS = ("--dt", "--dt", "--tol", "--tol", "--set", "--set", "--method", "--name")
+#: two oscillators and a contact whose names are texts of all kinds
+NAMED = """TITLE {0}
+UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 3 0 FIX=YR
+ 3 6 0 FIX=YR
+ELEMENTS
+ 1 COLUMN 1 2 NAME="{1}"
+ 2 WALL 2 NAME="{2}"
+ 3 COLUMN 1 3
+ 4 WALL 2 3
+PROPS
+ COLUMN SPRING KX=4000 RULE=BILINEAR FX=40 R=0.1
+ WALL CONTACT GAP=0.01 LAW=KELVIN_VOIGT K=1E6 E=0.65
+WEIGHTS
+ 2 981
+ 3 400
+DRIFT
+ "{3}" 1 2 HEIGHT=3
+BUILDINGS
+ "{4}" NODES=1,2,3
+EQUAKE
+ SINE AMPLITUDE=2 PERIOD=1 DURATION=1
+ANALYSIS
+ MODAL 1
+ HISTORY 1
+"""
+#: verbs that show the texts of results
+SHOWN = ("report", "plot", "export", "plot", "vtk", "plot")
 SHAKEN = "\n".join(f"{((7 * k) % 11 - 5) / 10}" for k in range(40))
 
 
@@ -107,10 +165,14 @@ class Case:
             "deck": "pound-solve check deck.inp",
             "verbs": "pound-solve check deck.inp; pound-solve format --check deck.inp",
             "editor": "pound-solve lsp  # deck.inp opened, and asked for everything",
-            "run": "POUND_COMPILE=0 pound-solve run deck.inp",
+            "run": "pound-solve run deck.inp",
             "record": f"pound-solve check deck.inp  # FORMAT={self.words[0] if self.words else ''}",
             "results": "pound-solve report model.h5; pound-solve export model.h5; pound-solve run deck.inp",
             "words": "pound-solve list " + " ".join(map(repr, self.words)),
+            "options": "pound-solve run wall.inp " + " ".join(map(repr, self.words)),
+            "study": f"pound-solve {self.words[0] if self.words else ''} study.toml  # `cases.OF_STUDIES`",
+            "import": "pound-solve import legacy.dat -o model.inp",
+            "texts": "pound-solve run deck.inp; pound-solve " + " ".join(map(repr, self.words)),
         }[self.kind]
 
 
@@ -160,6 +222,51 @@ def _words(rng: Random, number: int, bases: Mapping[str, bytes]) -> Case:
     return Case("words", number, {}, tuple(rng.choice(pool) for _ in range(rng.randint(0, 2))))
 
 
+def _options(rng: Random, number_: int, bases: Mapping[str, bytes]) -> Case:
+    given: list[str] = []
+    for _ in range(rng.choice((1, 1, 2))):
+        option = rng.choice(OPTIONS)
+        value = number(rng)
+        if option == "--set":
+            value = f"{rng.choice(('k', 'gap', 'scale', 'record', 'K', 'q', ''))}={value}"
+        elif option == "--name":
+            value = rng.choice((value, text(rng)))
+        elif option == "--method" and rng.random() < 0.5:
+            value = rng.choice(("NEWMARK", "exact", "TAYLOR", "CENTRAL", "AUTO", "LAPLACE", "HHT"))
+        if "\0" not in value:  # no command line holds it
+            given += (option, value)
+    return Case("options", number_, wall(), tuple(given))
+
+
+def _study(rng: Random, number_: int, bases: Mapping[str, bytes]) -> Case:
+    verb = rng.choice(OF_STUDIES)
+    whole = INCREMENTAL if verb == "ida" else STUDY
+    asked = "\n".join(rng.sample(ASKED, rng.choice((0, 1, 2))))
+    changed = rng.choice((rescaled, rescaled, damaged))(f"{asked}\n{whole}", rng)
+    return Case("study", number_, wall() | {"study.toml": encoded(changed, rng, 0.03)}, (verb,))
+
+
+def _import(rng: Random, number_: int, bases: Mapping[str, bytes]) -> Case:
+    old = rng.choice((STICK, OSCILLATOR, PORTAL, IN_SPACE))
+    return Case("import", number_, {"legacy.dat": encoded(damaged(old, rng), rng)})
+
+
+def _texts(rng: Random, number_: int, bases: Mapping[str, bytes]) -> Case:
+    texts = [text(rng) if rng.random() < 0.6 else f"plain {k}" for k in range(5)]
+    texts[1:] = [own.replace('"', "'") for own in texts[1:]]  # what stands in quotes holds none
+    verb = rng.choice(SHOWN)
+    shown = (verb, rng.choice(sorted(PICTURES))) if verb == "plot" else (verb,)
+    return Case("texts", number_, {"deck.inp": encoded(NAMED.format(*texts), rng, 0.0)}, shown)
+
+
+def wall() -> dict[str, bytes]:
+    """The small deck of sweeps and its records."""
+    rows = [[f"{0.02 * i:.4f} {a * math.sin(0.04 * i * math.pi / t):.6f}" for i in range(50)] for a, t in
+            ((3.0, 0.5), (2.0, 0.9))]  # fmt: skip
+    first, second = ("\n".join(own).encode() for own in rows)
+    return {"wall.inp": WALL.encode(), "first.txt": first, "second.txt": second}
+
+
 KINDS: dict[str, Callable[[Random, int, Mapping[str, bytes]], Case]] = {
     "deck": _deck,
     "verbs": partial(_deck, kind="verbs"),
@@ -168,6 +275,10 @@ KINDS: dict[str, Callable[[Random, int, Mapping[str, bytes]], Case]] = {
     "record": _record,
     "results": _results,
     "words": _words,
+    "options": _options,
+    "study": _study,
+    "import": _import,
+    "texts": _texts,
 }
 
 
@@ -204,7 +315,7 @@ def small(rng: Random) -> str:
 
 
 def bases(folder: Path) -> dict[str, bytes]:
-    """Whole results files: of a run, of a study, and one with all tables."""
+    """Whole results files: of a run, of a study, and one with all tables; the same with any kernels."""
     from contextlib import redirect_stderr, redirect_stdout
 
     from output import sample
@@ -212,12 +323,18 @@ def bases(folder: Path) -> dict[str, bytes]:
 
     deck = folder / "base.inp"
     deck.write_text(plain())
-    with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()) as told:
+    with (
+        mock.patch.dict(os.environ, POUND_COMPILE="0"),
+        redirect_stdout(io.StringIO()),
+        redirect_stderr(io.StringIO()) as told,
+    ):
+        provider.cache_clear()
         for words in (
             ["run", str(deck), "--quiet"],
             ["study", str(deck), "--methods", "EXACT", "--repeat", "1", "--longest", "600"],
         ):
             assert main(words) == 0, told.getvalue()
+    provider.cache_clear()
     sample.write(folder / "sample.h5")
     names = ("base.h5", "base.study.h5", "sample.h5")
     return {name: (folder / name).read_bytes() for name in names}

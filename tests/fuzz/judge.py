@@ -9,9 +9,10 @@ import traceback
 import warnings
 from collections.abc import Sequence
 from contextlib import redirect_stderr, redirect_stdout
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import NamedTuple
+from unittest import mock
 
 import numpy as np
 
@@ -24,6 +25,8 @@ from pound_solve.loading.records import formats
 from pound_solve.loading.records.base import RecordError
 from pound_solve.loading.records.known import load
 from pound_solve.results import Results, ResultsError
+from pound_solve.sweep import executors
+from sweep.small import Here
 
 FINE, TOLD, STOPPED = "fine", "told", "stopped"
 ENDS = (FINE, TOLD, STOPPED)  #: all others are faults
@@ -136,12 +139,18 @@ def _editor(case: Case, folder: Path) -> Outcome:
 
 def _run(case: Case, folder: Path) -> Outcome:
     """A run whose results and report are whole."""
-    status, text = said("run", str(folder / "deck.inp"), "--quiet", allowed=(0, 1, 2, 3))
+    return _ran(folder, "deck.inp")
+
+
+def _ran(folder: Path, deck: str, *words: str) -> Outcome:
+    """A run with options, whose results and report are whole, and in the folder."""
+    status, text = said("run", str(folder / deck), "--quiet", *words, allowed=(0, 1, 2, 3))
     if status == 1 and not re.search(r"\bA5\d\d\b", text):
         raise Fault("stopped without a number", text[-600:])
     if status > 1:
         return Outcome(TOLD)
-    with Results.open(folder / "deck.h5") as results:
+    (path,) = folder.glob("*.h5")
+    with Results.open(path) as results:
         bad = [name for name in results.histories if not np.isfinite(results.history(name)).all()]
         if "checks" in results.tables and "nan" in repr(results.table("checks").tolist()):
             bad.append("checks")
@@ -149,7 +158,7 @@ def _run(case: Case, folder: Path) -> Outcome:
             bad.append("energy")  # a share of no input is a missing number, which is NaN
     if bad:
         raise Fault("NaN", f"status {status}, not finite: {', '.join(bad)}; {text[-300:]}")
-    if not (folder / "deck.rpt").is_file():
+    if not path.with_suffix(".rpt").is_file():
         raise Fault("no report", text[-300:])
     return Outcome(BY_STATUS[status], text[:200])
 
@@ -228,6 +237,61 @@ def _words(case: Case, folder: Path) -> Outcome:
     return Outcome(BY_STATUS[said("list", "--", *case.words)[0]])
 
 
+def _options(case: Case, folder: Path) -> Outcome:
+    """A run with what a command line asks for."""
+    return _ran(folder, "wall.inp", *case.words)
+
+
+def _study(case: Case, folder: Path) -> Outcome:
+    """A sweep or an incremental analysis in this process, and what reads its table."""
+    own = Here()
+    engine = mock.patch.object(executors, "engine", lambda *_: executors.Engine(lambda: own, 1, 1, 1, True))
+    verb = case.words[0] if case.words[0] == "ida" else "sweep"
+    more = ("--plan",) if case.words[0] == "plan" else ()
+    with engine:
+        status, text = said(verb, str(folder / "study.toml"), *more, allowed=(0, 1, 2, 3))
+    for table in folder.rglob("*.csv"):
+        if "fault of the program" in (rows := table.read_text("utf-8", "replace")):
+            raise Fault("fault of the program", rows[-600:])
+    if case.words[0] in ("fragility", "separation"):
+        for table in folder.rglob("sweep.h5"):
+            said(case.words[0], str(table))
+    return Outcome(BY_STATUS[status], text[:200])
+
+
+def _import(case: Case, folder: Path) -> Outcome:
+    """A deck of another program; what is made of it has mistakes of the model and the record only."""
+    old, new = folder / "legacy.dat", folder / "model.inp"
+    status, text = said("import", str(old), "-o", str(new), allowed=(0, 2, 3))
+    if case.number % 4 == 0:
+        said("check", str(old))
+    if new.is_file():
+        try:
+            prepare(Request(str(new)))
+        except DeckError as error:
+            if any(d.code.startswith(("P1", "P2")) for d in error.diagnostics):
+                raise Fault("import", f"the deck that is made has other mistakes\n{error}") from None
+    return Outcome(BY_STATUS[status], text[:200])
+
+
+def _texts(case: Case, folder: Path) -> Outcome:
+    """A run, and a verb that shows its texts; a page holds them as texts."""
+    outcome = _ran(folder, "deck.inp")
+    if outcome.end != FINE:
+        return outcome
+    verb, *names = case.words
+    path, page = str(folder / "deck.h5"), folder / "page.html"
+    status, text = {
+        "report": partial(said, "report", path, "--html", str(page)),
+        "export": partial(said, "export", path, "-o", str(folder / "tables")),
+        "vtk": partial(said, "export", path, "--vtk"),
+        "plot": partial(said, "plot", path, *names, "-o", str(folder / "pictures")),
+    }[verb]()
+    if page.is_file() and re.search(r"<script>alert|<img src=x", page.read_text("utf-8")):
+        raise Fault("page", "a text of the deck is a part of the page")
+    return Outcome(BY_STATUS[status], text[:200])
+
+
 JUDGES = {
     "deck": _deck,
     "verbs": _verbs,
@@ -236,4 +300,8 @@ JUDGES = {
     "record": _record,
     "results": _results,
     "words": _words,
+    "options": _options,
+    "study": _study,
+    "import": _import,
+    "texts": _texts,
 }

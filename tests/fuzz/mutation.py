@@ -34,6 +34,12 @@ FORMULAS = (
     "sin(1e300)", "(1)(2)", "()", "2*(3", "3)", "-(-(-1))", "--1", "1/3", "9**9**9", "0**0", "0**-1",
     "(0-1)**0.5", "5%3", "a.b", "\u221a2", "1 2",
 )
+#: numbers and words where a command line takes a number
+WRONG = (
+    "nan", "NaN", "inf", "-inf", "Infinity", "-1", "0", "-0.0", "1e400", "", " ", "word", "0.01", "0.02",
+    "1e-3", "1e-7", "0.5", "5e-324", "1e-31", "1e31", "1e300", "1__0", "\udcff", "--", "-", "x=y", "1,2",
+    "None",
+)
 RANGES = (
     "1 TO 1000000000", "1 TO 5 BY 0", "5 TO 1", "1 TO 5 BY -1", "1 TO", "TO 5", "1 TO 2 TO 3", "1,1,1",
     "1,,2", ",", "1,", "1 TO 1E300", "1.5 TO 3.5", "-3 TO 3", "1 TO 100000 BY 3", "1 TO 5 BY 1E-9",
@@ -46,6 +52,47 @@ ODD = (
     "\u0001", "$", ";", "\u001b[31m", "==", "&\n", "& & &", "{}", "%s",
 )
 # fmt: on
+#: texts that mean something to what shows them: formulas, pages, tables, shells, paths
+TEXTS = (
+    "cost $5_a^",
+    "$\\frac{1}{0$",
+    "$$",
+    "\\badcommand{",
+    "</title><script>alert(1)</script>",
+    "-->",
+    "]]>",
+    "<img src=x onerror=alert(2)>",
+    "&amp;&lt;&#0;",
+    "%s%n%d{0}{}{x!r}",
+    "=1+1",
+    "@SUM(1)",
+    "+1",
+    "-2",
+    "../../elsewhere",
+    "/",
+    "nul",
+    "a/b",
+    "C:\\x",
+    "\\0",
+    "\\",
+    "'",
+    "`x`",
+    "$(x)",
+    "\u00e9\u0301\u4e2d\U0001f4a5",
+    "\u202eabc",
+    "\u200b",
+    "_legend",
+    "__",
+    "^",
+    "x" * 300,
+    "long name " * 40,
+    "nan",
+    "1",
+    ",",
+    ";",
+    "#",
+    "|",
+)
 NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 GIVEN = re.compile(rf"(?<==){NUMBER.pattern}")  #: value of a named item
 WORD = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
@@ -66,6 +113,14 @@ def revalued(text: str, rng: Random, most: int = 2) -> str:
     lines = text.split("\n")
     for _ in range(rng.randint(1, most)):
         rng.choice((_scale, _scale, _scale, _scale, _scale, _scale, _value, _word, _drop))(lines, rng, ())
+    return "\n".join(lines)
+
+
+def rescaled(text: str, rng: Random) -> str:
+    """A text with one other number, most of them of a near magnitude: it is likely to be taken."""
+    lines = text.split("\n")
+    factor = rng.choice((-1.0, 0.0, 1e-9, 1e-3, 0.5, 0.9, 1.000001, 2.0, 10.0, 1e6))
+    _replace(lines, rng, NUMBER, lambda old: f"{float(old) * factor:.9g}")
     return "\n".join(lines)
 
 
@@ -131,6 +186,21 @@ def items() -> tuple[str, ...]:
 
 def _items(spec: Spec) -> list[str]:
     return [word for field in spec.fields for word in (field.name, *field.words)]
+
+
+def number(rng: Random) -> str:
+    """What is given where a number is asked for, on a command line, which holds no zero character."""
+    pool = rng.choice((EXTREMES, FORMULAS, WRONG, WRONG, words()))
+    return rng.choice(pool)
+
+
+def text(rng: Random) -> str:
+    """A text with a meaning for somebody, or a mixture of characters."""
+    if rng.random() < 0.7:
+        return rng.choice(TEXTS)
+    return "".join(
+        rng.choice((*ODD, "a", " ", "_", "^", "{", "}", "<", ">")) for _ in range(rng.randint(1, 9))
+    )
 
 
 def _any_value(rng: Random) -> str:

@@ -15,20 +15,22 @@ import pytest
 
 from fuzz import judge as judges
 from fuzz import workers
-from fuzz.__main__ import keep
+from fuzz.__main__ import SHARES, keep, tasks
 from fuzz.cases import KINDS, bases, case
 from fuzz.judge import Outcome, judge
 from fuzz.kills import rounds
 from fuzz.workers import outcomes
 
-COUNTS = {"deck": 300, "verbs": 24, "editor": 6, "run": 20, "record": 160, "results": 24, "words": 20}
+#: cases of each kind, in two processes: one without runs and one with
+COUNTS = (
+    {"deck": 160, "verbs": 8, "editor": 3, "record": 100, "results": 12, "words": 12, "import": 30},
+    {"run": 24, "options": 20, "study": 10, "texts": 6},
+)
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, bytes]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("POUND_COMPILE", "0")
-        return bases(tmp_path_factory.mktemp("bases"))
+    return bases(tmp_path_factory.mktemp("bases"))
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -38,16 +40,21 @@ def test_a_case_depends_on_its_seed_and_number_alone(whole: Mapping[str, bytes],
     assert cases != [case(kind, 2, number, whole) for number in range(8)]
 
 
+def test_every_kind_is_tried() -> None:
+    assert {*COUNTS[0], *COUNTS[1]} == set(KINDS) == set(SHARES)
+
+
 @pytest.mark.full
-@pytest.mark.parametrize("kind", KINDS)
-def test_no_case_finds_a_fault(tmp_path: Path, whole: Mapping[str, bytes], kind: str) -> None:
-    tasks = ((kind, number) for number in range(COUNTS[kind]))
-    ends: Counter[str] = Counter()
-    for _, number, outcome in outcomes(tasks, 1, 0, whole):
-        ends[outcome.end] += 1
+@pytest.mark.parametrize("counts", COUNTS, ids=["texts", "runs"])
+def test_no_case_finds_a_fault(tmp_path: Path, whole: Mapping[str, bytes], counts: dict[str, int]) -> None:
+    ends: Counter[tuple[str, str]] = Counter()
+    for kind, number, outcome in outcomes(tasks(counts, 0), 1, 0, whole):
+        ends[kind, outcome.end] += 1
         where = keep(tmp_path, kind, 0, number, outcome, whole) if outcome.fault else ""
         assert not outcome.fault, f"{where}: {outcome}"
-    assert ends.total() == COUNTS[kind] and (len(ends) > 1 or kind == "editor"), ends
+    assert ends.total() == sum(counts.values())
+    for kind in counts:
+        assert kind == "editor" or sum(own == kind for own, _ in ends) > 1, ends
 
 
 def fault(case: object, folder: Path) -> Outcome:

@@ -15,9 +15,10 @@ from typing import Any
 
 from fuzz.cases import case
 from fuzz.judge import Outcome, judge
+from pound_solve.numerics import library
 
 MEMORY = 2**30  #: bytes that a process may ask for
-#: CPU seconds that a case may take; a run is then asked to end, as by Ctrl-C, and has `GRACE`
+#: CPU seconds that a case may take; one of `RUNS` is then asked to end, as by Ctrl-C, and has `GRACE`
 LIMITS = {
     "deck": 20.0,
     "verbs": 60.0,
@@ -26,7 +27,12 @@ LIMITS = {
     "results": 30.0,
     "words": 10.0,
     "run": 15.0,
+    "options": 15.0,
+    "study": 30.0,
+    "import": 10.0,
+    "texts": 60.0,
 }
+RUNS = ("run", "options", "study", "texts")
 GRACE = 10.0
 PATIENCE = 100.0  #: times the limit after which a process that uses no CPU counts as hanging
 MOST_CASES = 2000  #: of one process: a new one has a clean memory
@@ -42,7 +48,7 @@ def limit(seconds: float, kind: str) -> None:
         signal.setitimer(signal.ITIMER_PROF, GRACE)
         signal.raise_signal(signal.SIGINT)
 
-    signal.signal(signal.SIGPROF, ask if kind == "run" else signal.SIG_DFL)
+    signal.signal(signal.SIGPROF, ask if kind in RUNS else signal.SIG_DFL)
     signal.setitimer(signal.ITIMER_PROF, seconds)
 
 
@@ -57,7 +63,8 @@ def bound_memory() -> None:
 
 def serve(connection: Connection, seed: int, bases: Mapping[str, bytes]) -> None:
     """Judge the cases that come, until none does."""
-    os.environ.setdefault("POUND_COMPILE", "0")  # 1: by a library
+    if library.load(library.FOLDER) is None:  # numba would compile within the limits of a case
+        os.environ["POUND_COMPILE"] = "0"
     os.environ.setdefault("MPLBACKEND", "Agg")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell may have had ignored

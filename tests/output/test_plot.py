@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import pound_solve
+from fuzz.cases import NAMED
 from pound_solve.cli.main import main
 
 pytest.importorskip("matplotlib")
@@ -287,6 +288,16 @@ def test_names_of_a_deck_are_no_formulas(tmp_path: Path) -> None:
         for name in ("envelopes", "frame"):
             plot.draw_into(results, name, tmp_path / f"{name}.svg")
     assert "cost $x_1$ and $\\frac" in (tmp_path / "envelopes.svg").read_text()
+
+
+def test_names_that_the_layout_measures_are_no_formulas(tmp_path: Path) -> None:
+    """A character without a glyph is a box, without a warning."""
+    deck = tmp_path / "named.inp"
+    deck.write_text(NAMED.format("$\\frac{1}{0$ \u4e2d\u000c", *["$\\alpha_{$"] * 4), encoding="utf-8")
+    with pound_solve.run(deck) as results:
+        for ending in ("svg", "png"):
+            plot.draw_into(results, "summary", tmp_path / f"summary.{ending}")
+    assert "$\\alpha_{$" in (tmp_path / "summary.svg").read_text("utf-8")
 
 
 BARE = """NODES

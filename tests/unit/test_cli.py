@@ -92,6 +92,14 @@ def test_method_and_dt_replace_the_deck_s(deck, tmp_path):
     assert float(figures["time step"]) == 1e-3
 
 
+def exit_status(words):
+    """Exit status, whether the verb or the parser of its words ends."""
+    try:
+        return main(words)
+    except SystemExit as end:
+        return end.code
+
+
 @pytest.mark.parametrize(
     ("words", "status", "told"),
     [
@@ -100,10 +108,20 @@ def test_method_and_dt_replace_the_deck_s(deck, tmp_path):
         (["{deck}", "--set", "q=1"], 2, "q"),
         (["{deck}", "--method", "GUESS"], 2, "known methods"),
         (["{deck}", "--method", "NEWMARK"], 2, "DT"),
+        *(
+            (["{deck}", "--method", "NEWMARK", "--dt", number], 2, "error P217: --dt: DT is")
+            for number in ("nan", "inf", "0", "-1", "1e400", "1e-31")
+        ),
+        (["{deck}", "--method", "AUTO", "--tol", "nan"], 2, "error P217: --tol: TOL is nan"),
+        (["{deck}", "--method", "AUTO", "--tol", "-1"], 2, "at least 1e-09 and at most 0.1"),
+        (["{deck}", "--method", "EXACT", "--dt", "nan"], 2, "error P217: --dt: DT is nan"),
+        (["motions", "{deck}", "--dt", "inf"], 2, "no finite number"),
+        (["study", "{deck}", "--longest", "nan"], 2, "no finite number"),
+        (["loop", "BILINEAR", "--rate", "nan"], 2, "no finite number"),
     ],
 )
 def test_what_cannot_be_done_is_said_in_a_line_or_two_with_its_status(deck, capsys, words, status, told):
-    assert main([w.format(deck=deck) for w in words]) == status
+    assert exit_status([w.format(deck=deck) for w in words]) == status
     err = capsys.readouterr().err
     assert told in err and "Traceback" not in err
 

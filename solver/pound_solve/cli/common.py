@@ -88,6 +88,11 @@ def picture(word: str) -> Path:
     return path
 
 
+def finite(word: str) -> float:
+    """A finite number."""
+    return numbers([word], "the option takes a number", argparse.ArgumentTypeError)[0]
+
+
 def share(word: str) -> float:
     """A level of confidence, between 0 and 1."""
     (value,) = numbers([word], "--confidence takes a number", argparse.ArgumentTypeError)

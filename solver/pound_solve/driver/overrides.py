@@ -11,7 +11,8 @@ from typing import Any, Final
 
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model, Span
-from pound_deck.schema import REQUIRED, Spec
+from pound_deck.schema import REQUIRED, Field, Kind, Spec
+from pound_deck.values import out_of_limits
 from pound_solve.catalog import catalog
 from pound_solve.driver.request import Request
 
@@ -68,8 +69,12 @@ def _changed(
         message = f"--method {name}: known methods are {', '.join(methods)}"
         found.append(Diagnostic("P210", message, None))
         return None
-    for item in asked:
-        if item not in {f.name for f in method.fields}:
+    for item, value in asked.items():
+        field = method.field(item) or Field(item, Kind.REAL)
+        if wrong := out_of_limits(value, field):
+            found.append(Diagnostic("P217", f"--{item.lower()}: {item} {wrong}", None))
+            return None
+        if field not in method.fields:
             message = f"--{item.lower()}: {method.name} has no item {item}"
             found.append(Diagnostic("P211", message, None, severity="warning"))
     card = with_method(card, method, asked)

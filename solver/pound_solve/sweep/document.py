@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
@@ -22,6 +23,14 @@ _TABLE: Final = re.compile(rf"\s*(\[\[?)\s*({_KEYS})\s*\]")
 _WHERE: Final = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)")
 #: what TOML calls the values, in words
 _WORDS: Final = {str: "a text", int: "a whole number", float: "a number", list: "a list", dict: "a table"}
+
+
+def _number(value: float) -> float:
+    """A number of TOML, whose whole ones have no largest one."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
 
 
 def places(text: str, file: str) -> dict[Path_, Span]:
@@ -140,11 +149,14 @@ class Document:
         if value is None:
             return default
         if kind is float and isinstance(value, int) and not isinstance(value, bool):
-            value = float(value)
+            value = _number(value)
         if not isinstance(value, kind) or isinstance(value, bool) != (kind is bool):
             self.mistake(
                 "S603", f"{path[-1]} is {_WORDS.get(kind, 'true or false')}, not {_told(value)}", path
             )
+            return default
+        if isinstance(value, float) and not math.isfinite(value):
+            self.mistake("S603", f"{path[-1]} is a finite number, not {value}", path)
             return default
         return value
 
@@ -156,6 +168,9 @@ class Document:
             if not isinstance(own, kinds) or isinstance(own, bool):
                 kind = " or ".join(_WORDS[k] for k in kinds if k is not int or float not in kinds)
                 self.mistake("S603", f"{path[-1]} takes {kind}, not {_told(own)}", path)
+                return []
+            if isinstance(own, (int, float)) and not math.isfinite(_number(own)):
+                self.mistake("S603", f"{path[-1]} takes finite numbers, not {_told(own)}", path)
                 return []
         if value is not None and not values:
             self.mistake("S603", f"{path[-1]} is an empty list", path, "give it a value or leave it out")

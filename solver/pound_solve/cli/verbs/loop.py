@@ -18,7 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--file", type=Path, help="file of turning points, any number a line")
     parser.add_argument(
         "--rate",
-        type=float,
+        type=common.finite,
         metavar="V",
         help="speed of the deformation (default: infinitely slow; of a contact 1)",
     )

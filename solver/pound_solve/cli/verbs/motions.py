@@ -15,7 +15,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     common.add_deck(parser)
     parser.add_argument(
-        "--dt", type=float, metavar="DT", help="step of the samples (default: the motion's)"
+        "--dt", type=common.finite, metavar="DT", help="step of the samples (default: the motion's)"
     )
     parser.add_argument("-o", "--out", type=Path, metavar="DIR", default=Path(), help="folder of the files")
 

@@ -31,7 +31,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--tols", metavar="TOL,TOL,...", help="tolerances of AUTO")
     parser.add_argument("--repeat", type=int, metavar="N", help="timed runs of each (default 3)")
-    parser.add_argument("--longest", type=float, metavar="S", help="CPU seconds a run may take (default 5)")
+    parser.add_argument(
+        "--longest", type=common.finite, metavar="S", help="CPU seconds a run may take (default 5)"
+    )
     text = f"draw error against time into a file, ending in {', '.join(common.FORMATS)}"
     parser.add_argument("--picture", type=common.picture, metavar="FILE", help=text)
     parser.add_argument(

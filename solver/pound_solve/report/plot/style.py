@@ -5,6 +5,7 @@ The look stands in a style sheet, `pound.mplstyle`, which a user's own is laid o
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
@@ -34,7 +35,12 @@ def sheet(own: Path | None = None) -> Iterator[None]:
     """
     from matplotlib import rc_context, rc_params_from_file
 
-    with rc_context(rc_params_from_file(SHEET, use_default_template=False)):
+    with (
+        warnings.catch_warnings(),
+        rc_context(rc_params_from_file(SHEET, use_default_template=False)),
+    ):
+        # a character that the font lacks is drawn as a box; SVG files hold the text
+        warnings.filterwarnings("ignore", r"Glyph \d+ |Matplotlib currently does not support", UserWarning)
         if own is None:
             yield
             return
@@ -173,6 +179,7 @@ def arrange(picture: Any) -> None:
 
     The layout's last digits differ from run to run, and bytes would with them: they are rounded off.
     """
+    literal(picture)  # a layout measures its texts
     picture.draw_without_rendering()
     places = [(axes, axes.get_position(original=True)) for axes in picture.axes]
     picture.set_layout_engine("none")
