@@ -248,7 +248,7 @@ def _study(rng: Random, number_: int, bases: Mapping[str, bytes]) -> Case:
 
 def _import(rng: Random, number_: int, bases: Mapping[str, bytes]) -> Case:
     old = rng.choice((STICK, OSCILLATOR, PORTAL, IN_SPACE))
-    return Case("import", number_, {"legacy.dat": encoded(damaged(old, rng), rng)})
+    return Case("import", number_, {"legacy.dat": encoded(rng.choice((rescaled, damaged))(old, rng), rng)})
 
 
 def _texts(rng: Random, number_: int, bases: Mapping[str, bytes]) -> Case:

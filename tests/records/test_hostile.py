@@ -18,6 +18,7 @@ from pound_solve.loading.records import formats
 from pound_solve.loading.records.base import RawRecord, RecordError
 from pound_solve.loading.records.known import load
 from pound_solve.loading.records.text import parse
+from sweep.small import folder
 
 #: what damage puts in the place of something else
 _WORDS = (
@@ -323,3 +324,10 @@ def test_a_deck_tells_its_place(
     for told in found:
         assert (told.span.line, told.span.column) == (12, column)
         assert words in told.message
+
+
+@pytest.mark.parametrize("scale", ["5e-324", "1e-300"])
+def test_a_factor_of_next_to_nothing_is_told(tmp_path: Path, scale: str) -> None:
+    folder(tmp_path)
+    ready = prepare(Request(str(tmp_path / "wall.inp"), {"scale": scale}))
+    assert any("check UNIT and SCALE" in warning.message for warning in ready.warnings)

@@ -246,12 +246,14 @@ def finish(
 
 def _likely_unit(strength: float, unit: str, context: LoadingContext) -> str:
     """The unit that would make a peak [g] out of bounds usual, as words for the warning, or nothing."""
-    if not unit or strength == 0:
+    if not unit:
         return ""
     peaks = {
         other: strength * context.per_unit(other) / context.per_unit(unit)
         for other in ("G", "M/S2", "CM/S2", "MM/S2")
     }
+    if not min(peaks.values()) > 0.0:  # a factor below the least number
+        return ""
     other, peak = min(peaks.items(), key=lambda item: abs(math.log(item[1] / _USUAL)))
     return f"it would be {peak:.3g} g if the samples were in {other}: " if _WEAK <= peak <= _STRONG else ""
 
