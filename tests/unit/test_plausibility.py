@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import pound_solve
 from decks import results_of, structure_of
 from pound_solve.report.text import render
 from pound_solve.results.contents import SECTIONS
@@ -196,7 +197,7 @@ def test_a_record_in_another_unit_is_told_on_the_first_page(tmp_path, case):
     text = DECK.replace("SINE AMPLITUDE={a} PERIOD=0.7 DURATION=3", f'RECORD "a.txt" {items}')
     deck = tmp_path / "model.inp"
     deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5))
-    results = results_of(deck)
+    results = pound_solve.run(deck)
     page = " ".join(first_page(results).split())
     assert "R404" in page and told in page
     assert ("R404" in results.table("warnings")["number"].tolist()) and "R404" in deck.with_suffix(
