@@ -1,10 +1,14 @@
-"""One thread for linear algebra, as the program has it; and the examples of property tests.
+"""One thread for linear algebra, as the program has it; the examples of property tests; garbage.
 
 Property tests try the same examples in every run, so that a red run is the change's own fault.
 ``--hypothesis-profile=search`` tries new ones; what it finds becomes an ``@example`` of the test.
 No example is timed: a loaded machine is no fault.
 """
 
+import gc
+from collections.abc import Generator
+
+import pytest
 from hypothesis import settings
 
 from pound_solve.numerics import threads
@@ -14,3 +18,16 @@ threads.one()  # before a test imports numpy
 settings.register_profile("repeated", derandomize=True, deadline=None)
 settings.register_profile("search", deadline=None, print_blob=True)
 settings.load_profile("repeated")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Thousands of collected tests are no garbage: to look through them again and again took a quarter of
+    the time of a check.
+    """
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
