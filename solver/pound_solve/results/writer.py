@@ -81,6 +81,7 @@ class Writer:
         self._history: dict[str, h5py.Dataset] = {}
         self._layout: dict[str, tuple[int, ...]] = {}
         self._digests = dict[str, Any]()  # of the parts, by their paths
+        self._stored = dict[str, Any]()  # those since the last commit
         try:
             with undisturbed():
                 self._start(title, units, program_version)
@@ -143,11 +144,16 @@ class Writer:
                 name: self._file["history"][name] for name in self._history if name in self._file["history"]
             }
             self._digests = {name: own for name, own in self._digests.items() if name in self._file}
+            self._stored.clear()
             raise
+        self._digests |= self._stored
+        self._stored.clear()
 
     def text(self, name: str, text: str) -> None:
         """Store a text below ``/input``, as the deck by its file name; it replaces one of that name."""
-        self._put("input", escape(name), storable(text), {})
+        with undisturbed():
+            self._put("input", escape(name), storable(text), {})
+            self._commit()
 
     def table(self, name: str, rows: Iterable[Sequence[Any]], note: str | None = None) -> None:
         """Store a table; it replaces one of that name.
@@ -168,6 +174,12 @@ class Writer:
         TypeError
             A value is not of its column's type.
         """
+        self._table(name, rows, note)
+        with undisturbed():
+            self._commit()
+
+    def _table(self, name: str, rows: Iterable[Sequence[Any]], note: str | None) -> None:
+        """Store a table without a commit."""
         if name not in TABLES:
             raise ValueError(f"no table {name!r} in TABLES")
         columns = TABLES[name].columns
@@ -187,22 +199,21 @@ class Writer:
             "columns": [c.name for c in columns],
             "units": [self._units.text(c.unit) for c in columns],
         }
-        self._put("tables", name, data, attributes)
+        with undisturbed():
+            self._put("tables", name, data, attributes)
 
     def _put(self, group: str, name: str, data: NDArray[Any] | str, attributes: Mapping[str, Any]) -> None:
-        """Store an array or a text in a group; it replaces one of that name."""
-        with undisturbed():
-            place = self._file.require_group(group)
-            if name in place:
-                del place[name]
-            dtype = _TEXT if isinstance(data, str) else None
-            sums = np.ndim(data) > 0 and np.size(data) > 0  # HDF5 keeps them for chunks of an array only
-            dataset = place.create_dataset(name, data=data, dtype=dtype, fletcher32=sums)
-            own = digest_of(attributes, data)
-            dataset.attrs.update(attributes)
-            dataset.attrs[DIGEST_OF_THE_DAY if name in OF_THE_DAY else DIGEST] = own.hexdigest()
-            self._commit()
-            self._digests[f"{group}/{name}"] = THERE if name in OF_THE_DAY else own
+        """Put an array or a text in a group, without a commit; it replaces one of that name."""
+        place = self._file.require_group(group)
+        if name in place:
+            del place[name]
+        dtype = _TEXT if isinstance(data, str) else None
+        sums = np.ndim(data) > 0 and np.size(data) > 0  # HDF5 keeps them for chunks of an array only
+        dataset = place.create_dataset(name, data=data, dtype=dtype, fletcher32=sums)
+        own = digest_of(attributes, data)
+        dataset.attrs.update(attributes)
+        dataset.attrs[DIGEST_OF_THE_DAY if name in OF_THE_DAY else DIGEST] = own.hexdigest()
+        self._stored[f"{group}/{name}"] = THERE if name in OF_THE_DAY else own
 
     def tables(self, stage: Stage, record: RunRecord | StudyRecord) -> None:
         """Store all tables of a stage that have something to tell.
@@ -216,7 +227,9 @@ class Writer:
         for table in tables_at(stage):
             rows = table.rows(record)
             if rows is not None:
-                self.table(table.name, rows, table.remark(record))
+                self._table(table.name, rows, table.remark(record))
+        with undisturbed():
+            self._commit()
 
     def start_history(self, layout: Layout, packed: bool = False) -> None:
         """Create the histories' datasets.
@@ -304,9 +317,11 @@ class Writer:
         blocks : sequence of mappings
             Rows of ``time`` and of other histories, in the order of time.
         """
-        for name in blocks[0] if blocks else ():
-            own = HistoryLayout((), {"unit": "T"}) if name == "time" else layout[name]
-            self._aside("closeup", name, own, np.concatenate([block[name] for block in blocks]))
+        with undisturbed():
+            for name in blocks[0] if blocks else ():
+                own = HistoryLayout((), {"unit": "T"}) if name == "time" else layout[name]
+                self._aside("closeup", name, own, np.concatenate([block[name] for block in blocks]))
+            self._commit()
 
     def extremes(
         self,
@@ -326,10 +341,12 @@ class Writer:
         low, high : mapping of str to ndarray, shape (n_intervals, \\*row)
             Smallest and largest values of histories.
         """
-        self._aside("extremes", "time", HistoryLayout((), {"unit": "T"}), bounds)
-        for name in low:
-            rows = np.stack([low[name], high[name]], axis=1)
-            self._aside("extremes", name, layout[name], rows)
+        with undisturbed():
+            self._aside("extremes", "time", HistoryLayout((), {"unit": "T"}), bounds)
+            for name in low:
+                rows = np.stack([low[name], high[name]], axis=1)
+                self._aside("extremes", name, layout[name], rows)
+            self._commit()
 
     def _aside(self, group: str, name: str, own: HistoryLayout, rows: NDArray[Any]) -> None:
         """Store rows of a history that are no samples in a group of their own."""
@@ -384,9 +401,11 @@ class Writer:
         """Store the state that a later run can be taken up from, and the identity of what it belongs to; it
         replaces an earlier one.
         """
-        self._put("restart", IDENTITY, storable(json.dumps(identity)), {})
-        for name, values in state.items():
-            self._put("restart", name, np.asarray(values, float), {})
+        with undisturbed():
+            self._put("restart", IDENTITY, storable(json.dumps(identity)), {})
+            for name, values in state.items():
+                self._put("restart", name, np.asarray(values, float), {})
+            self._commit()
 
     def finish(self, status: str, message: str = "") -> None:
         """Say how the analysis ended: ``done``, or ``stopped`` with a message that says where and why."""
