@@ -31,7 +31,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from pound_solve.loading.motions.piecewise import Piecewise
-from pound_solve.loading.spectrum import response_spectrum
+from pound_solve.loading.spectrum import pseudo_acceleration
 from pound_solve.numerics.cubic import cubic_rise
 from pound_solve.numerics.types import Array
 
@@ -129,7 +129,9 @@ def cumulative_absolute_velocity(acceleration: Piecewise) -> float:
 
 def housner(acceleration: Piecewise, damping: float = 0.05) -> float:
     """Spectrum intensity [L]: the pseudo-velocity over periods from 0.1 to 2.5 s, trapezium rule."""
-    return float(np.trapezoid(response_spectrum(acceleration, HOUSNER, damping).psv[0], HOUSNER))
+    periods = np.array(HOUSNER)
+    pseudo_velocity = periods / (2.0 * np.pi) * pseudo_acceleration(acceleration, periods, damping)[0]
+    return float(np.trapezoid(pseudo_velocity, periods))
 
 
 def _squares(lines: Piecewise) -> Array:

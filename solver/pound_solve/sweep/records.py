@@ -17,7 +17,7 @@ from pound_solve.loading.motions import record
 from pound_solve.loading.motions.base import LoadingContext, Motion
 from pound_solve.loading.records.base import RecordError
 from pound_solve.loading.records.known import find, known, load
-from pound_solve.loading.spectrum import response_spectrum
+from pound_solve.loading.spectrum import pseudo_acceleration
 from pound_solve.sweep.document import Document, Path_
 from pound_solve.sweep.run import RecordFile, Shaking
 
@@ -179,7 +179,7 @@ class Suite:
             if self.measure == "pga":
                 out = abs(acceleration.peak()[1])
             else:
-                out = float(response_spectrum(acceleration, self.period, self.damping).psa[0, 0])
+                out = float(pseudo_acceleration(acceleration, self.period, self.damping)[0, 0])
         except (RecordError, ValueError) as err:
             self.document.mistake("S606", f"{own.name}: {err}", (*self.path, self.measure))
             return 0.0

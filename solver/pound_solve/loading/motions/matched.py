@@ -23,7 +23,7 @@ import numpy as np
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, RecordError
 from pound_solve.loading.motions.synthetic import ENVELOPE, envelope, of_samples, samples
-from pound_solve.loading.spectrum import response_spectrum
+from pound_solve.loading.spectrum import pseudo_acceleration
 from pound_solve.numerics.types import Array
 
 CLOSE: Final = 0.6  #: distance of the periods that are matched, in half band widths
@@ -121,7 +121,7 @@ def matched(target: Target, t: Array, e: Array, seed: int, tol: float) -> tuple[
     a, best, least = _noise(target, t, e, seed), np.zeros_like(t), math.inf
     responses = _impulse_responses(target, t)
     for _ in range(MOST_STEPS):
-        found = response_spectrum(Piecewise.from_samples(t, a), target.periods, target.xi).psa[0]
+        found = pseudo_acceleration(Piecewise.from_samples(t, a), target.periods, target.xi)[0]
         misfit = float(np.abs(found / target.psa - 1.0).max())
         if misfit < least:
             best, least = a, misfit
@@ -140,7 +140,7 @@ def _noise(target: Target, t: Array, e: Array, seed: int) -> Array:
     size[w < 0.7 * ends[0]] = 0.0  # slower than the slowest oscillator, noise would drift
     noise = np.fft.rfft(np.random.default_rng(seed).standard_normal(len(t)))
     a = np.fft.irfft(noise * size, len(t)) * e
-    found = response_spectrum(Piecewise.from_samples(t, a), target.periods, target.xi).psa[0]
+    found = pseudo_acceleration(Piecewise.from_samples(t, a), target.periods, target.xi)[0]
     return np.asarray(a / math.exp(np.log(found / target.psa).mean()))
 
 

@@ -41,13 +41,13 @@ def _rows(run: RunRecord, motions: list[tuple[int, Motion]]) -> Iterator[Row]:
 
 def _first_mode(run: RunRecord, motion: Motion) -> tuple[float, float]:
     """Longest period of a mode with mass in the direction [T], pseudo-acceleration of 5 % damping there."""
-    from pound_solve.loading.spectrum import response_spectrum
+    from pound_solve.loading.spectrum import pseudo_acceleration
 
     share = f"share_{motion.direction.lower()}"
     modal = getattr(run, "modal", None)  # only where the deck asks for it
     for mode in modal.modes if modal else ():
         if getattr(mode, share) >= TAKES_PART and 0.0 < mode.period < math.inf:
-            return mode.period, float(response_spectrum(motion.acceleration, mode.period).psa[0, 0])
+            return mode.period, float(pseudo_acceleration(motion.acceleration, mode.period)[0, 0])
     return math.nan, math.nan
 
 
