@@ -13,6 +13,7 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+CACHE ?= $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/pound-solve
 OUT ?= build/example
 N ?= 1000
 SEED ?= 0
@@ -30,12 +31,12 @@ unexport PYTHONDONTWRITEBYTECODE
 
 $(VENV)/ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[dev]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -e ".[dev]"
 	# the package with El Centro 1940 is not ours: without it all else works
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[records]" || echo "$(NO_RECORDS)"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -e ".[records]" || echo "$(NO_RECORDS)"
 	touch $@
 
-example: $(VENV)/ready
+example: kernels
 	$(BIN)/pound-solve examples/cole2011/distributed.inp --set n=20 -o $(OUT)
 
 # nothing to do where the library of this version of the kernels is there
@@ -63,7 +64,7 @@ fuzz: kernels
 lint: $(VENV)/ready
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy
+	$(BIN)/mypy --cache-dir $(CACHE)/mypy # a new checkout checks what changed only
 
 manual: $(VENV)/ready   # rewrite the pages that the program makes
 	$(BIN)/python tests/refresh_manual.py
@@ -72,7 +73,7 @@ wheel: $(VENV)/ready
 	HATCH_BUILD_HOOK_ENABLE_CUSTOM=1 $(BIN)/python -m build --wheel
 
 $(VENV)/ready-docs: $(VENV)/ready
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[docs]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -e ".[docs]"
 	touch $@
 
 docs: $(VENV)/ready-docs   # warnings are errors

@@ -1,4 +1,4 @@
-"""One thread for linear algebra, as the program has it; the examples of property tests; garbage.
+"""One thread for linear algebra, as the program has it; the examples of property tests; garbage collection.
 
 Property tests try the same examples in every run, so that a red run is the change's own fault.
 ``--hypothesis-profile=search`` tries new ones; what it finds becomes an ``@example`` of the test.
@@ -22,9 +22,7 @@ settings.load_profile("repeated")
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """Thousands of collected tests are no garbage: to look through them again and again took a quarter of
-    the time of a check.
-    """
+    """Keep the collected tests, which stay to the end, out of later garbage collections."""
     gc.disable()
     try:
         return (yield)
