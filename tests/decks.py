@@ -27,6 +27,35 @@ from pound_solve.structure.condensation import condense
 from pound_solve.structure.dofs import Dof
 from pound_solve.structure.structure import Structure
 
+#: a deck with texts of the user wherever the program shows one: title, two elements, drift, building
+NAMED = """TITLE {0}
+UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 3 0 FIX=YR
+ 3 6 0 FIX=YR
+ELEMENTS
+ 1 COLUMN 1 2 NAME="{1}"
+ 2 WALL 2 NAME="{2}"
+ 3 COLUMN 1 3
+ 4 WALL 2 3
+PROPS
+ COLUMN SPRING KX=4000 RULE=BILINEAR FX=40 R=0.1
+ WALL CONTACT GAP=0.01 LAW=KELVIN_VOIGT K=1E6 E=0.65
+WEIGHTS
+ 2 981
+ 3 400
+DRIFT
+ "{3}" 1 2 HEIGHT=3
+BUILDINGS
+ "{4}" NODES=1,2,3
+EQUAKE
+ SINE AMPLITUDE=2 PERIOD=1 DURATION=1
+ANALYSIS
+ MODAL 1
+ HISTORY 1
+"""
+
 
 def results_of(
     deck: str | Path,

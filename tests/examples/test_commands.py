@@ -298,7 +298,7 @@ def test_a_slip_is_told(text: str, capsys: pytest.CaptureFixture[str]) -> None:
 # ---------------------------------------------------------------- runs at the smallest size
 
 
-@pytest.mark.full
+@pytest.mark.slow
 @pytest.mark.filterwarnings("default")  # matplotlib's own
 def test_the_suite_of_records_can_be_followed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -331,13 +331,10 @@ READERS = {
 }
 
 
-@pytest.mark.full
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
-    [
-        pytest.param(text, id=c.places[0], marks=[pytest.mark.slow] if text.endswith("gif") else [])
-        for text, c in READERS.items()
-    ],
+    [pytest.param(text, id=c.places[0]) for text, c in READERS.items()],
 )
 @pytest.mark.filterwarnings("default")  # matplotlib's own
 def test_a_command_reads_the_results_of_a_run(
@@ -360,7 +357,7 @@ def ended(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.full
+@pytest.mark.slow
 @pytest.mark.filterwarnings("default")  # of other packages
 @pytest.mark.parametrize("page", ["README.md", "manual/results.md", "manual/tools.md"])
 def test_the_python_of_a_page_runs(page: str, ended: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,7 +6,6 @@ A case depends on these three and the sources alone, so that a fault is found ag
 from __future__ import annotations
 
 import io
-import math
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -16,13 +15,14 @@ from random import Random
 from unittest import mock
 
 from agency_files import FILES
+from decks import NAMED
 from fuzz.attacks import attacked
 from fuzz.mutation import damaged, encoded, items, mutated, number, rescaled, revalued, text, words
 from legacy.decks import IN_SPACE, OSCILLATOR, PORTAL, STICK
 from pound_solve.numerics.providers import provider
 from pound_solve.report.plot.catalog import PICTURES
 from sweep.small import DECK as WALL
-from sweep.small import STUDY
+from sweep.small import STUDY, sine
 from verification.generated import laws
 from verification.generated.decks import deck
 
@@ -104,34 +104,6 @@ runs = 3
 #: verbs on a study, the frequent ones several times
 OF_STUDIES = ("sweep", "sweep", "sweep", "plan", "ida", "fragility", "separation")
 OPTIONS = ("--dt", "--dt", "--tol", "--tol", "--set", "--set", "--method", "--name")
-#: two oscillators and a contact whose names are texts of all kinds
-NAMED = """TITLE {0}
-UNITS kN m s
-NODES
- 1 0 0 FIX=XYR
- 2 3 0 FIX=YR
- 3 6 0 FIX=YR
-ELEMENTS
- 1 COLUMN 1 2 NAME="{1}"
- 2 WALL 2 NAME="{2}"
- 3 COLUMN 1 3
- 4 WALL 2 3
-PROPS
- COLUMN SPRING KX=4000 RULE=BILINEAR FX=40 R=0.1
- WALL CONTACT GAP=0.01 LAW=KELVIN_VOIGT K=1E6 E=0.65
-WEIGHTS
- 2 981
- 3 400
-DRIFT
- "{3}" 1 2 HEIGHT=3
-BUILDINGS
- "{4}" NODES=1,2,3
-EQUAKE
- SINE AMPLITUDE=2 PERIOD=1 DURATION=1
-ANALYSIS
- MODAL 1
- HISTORY 1
-"""
 #: verbs that show the texts of results
 SHOWN = ("report", "plot", "export", "plot", "vtk", "plot")
 SHAKEN = "\n".join(f"{((7 * k) % 11 - 5) / 10}" for k in range(40))
@@ -260,11 +232,9 @@ def _texts(rng: Random, number_: int, bases: Mapping[str, bytes]) -> Case:
 
 
 def wall() -> dict[str, bytes]:
-    """The small deck of sweeps and its records."""
-    rows = [[f"{0.02 * i:.4f} {a * math.sin(0.04 * i * math.pi / t):.6f}" for i in range(50)] for a, t in
-            ((3.0, 0.5), (2.0, 0.9))]  # fmt: skip
-    first, second = ("\n".join(own).encode() for own in rows)
-    return {"wall.inp": WALL.encode(), "first.txt": first, "second.txt": second}
+    """The small deck of sweeps and its records, which are shorter."""
+    texts = {"wall.inp": WALL, "first.txt": sine(3.0, 0.5, 50), "second.txt": sine(2.0, 0.9, 50)}
+    return {name: own.encode() for name, own in texts.items()}
 
 
 KINDS: dict[str, Callable[[Random, int, Mapping[str, bytes]], Case]] = {

@@ -45,9 +45,14 @@ scale = [1, 2.5]
 """
 
 
-def record(path, amplitude, period, n=100, dt=0.02):
+def sine(amplitude, period, n=100, dt=0.02):
+    """Text of a record."""
     rows = (f"{dt * i:.4f} {amplitude * math.sin(2 * math.pi * dt * i / period):.6f}" for i in range(n))
-    path.write_text("\n".join(rows) + "\n")
+    return "\n".join(rows) + "\n"
+
+
+def record(path, amplitude, period, n=100, dt=0.02):
+    path.write_text(sine(amplitude, period, n, dt))
 
 
 def folder(tmp_path, study=STUDY, deck=DECK):
