@@ -13,23 +13,25 @@ def at_night(*cases: Any) -> list[Any]:
     return [pytest.param(*(c if isinstance(c, tuple) else (c,)), marks=pytest.mark.slow) for c in cases]
 
 
-def each_once(*parameters: tuple[str, Iterable[Any]]) -> pytest.MarkDecorator:
+def each_once(*parameters: tuple[str, Iterable[Any]], at_most: int | None = None) -> pytest.MarkDecorator:
     """Parametrise a test by all combinations of values: the night runs all, every check a few of them.
 
     These few are as many as the longest parameter has values.  Each value occurs in them, together with
-    several values of the others.
+    several values of the others, unless they are limited.
 
     Parameters
     ----------
     parameters
         Name of each and its values, or a mapping of them by what they are called; or several names, with
         tuples of values.
+    at_most : int, optional
+        Combinations in a check, where one takes seconds and the values differ in little.
     """
     named = [dict(v) if isinstance(v, Mapping) else {_name(x): x for x in v} for _, v in parameters]
     names = [name.split(", ") for name, _ in parameters]
     axes, called = [list(own.values()) for own in named], [list(own) for own in named]
     places = list(product(*(range(len(axis)) for axis in axes)))
-    checked = _few(places)
+    checked = _few(places, at_most or 1 + max(map(max, places)))
     cases = []
     for place in places:
         values = [axis[i] if len(own) > 1 else [axis[i]] for own, axis, i in zip(names, axes, place)]
@@ -43,7 +45,7 @@ def each_once(*parameters: tuple[str, Iterable[Any]]) -> pytest.MarkDecorator:
     return pytest.mark.parametrize([name for own in names for name in own], cases)
 
 
-def _few(places: list[tuple[int, ...]]) -> set[tuple[int, ...]]:
+def _few(places: list[tuple[int, ...]], count: int) -> set[tuple[int, ...]]:
     """The places that add, one after the other, most values, then most pairs, then the rarest values."""
     chosen: set[tuple[int, ...]] = set()
     values: Counter[tuple[int, int]] = Counter()
@@ -54,7 +56,7 @@ def _few(places: list[tuple[int, ...]]) -> set[tuple[int, ...]]:
         new = sum(value not in values for value in own)
         return new, len({*combinations(own, 2)} - pairs), -sum(values[value] for value in own)
 
-    for _ in range(1 + max(map(max, places))):
+    for _ in range(count):
         best = max(places, key=gain)
         chosen.add(best)
         values.update(enumerate(best))

@@ -58,7 +58,7 @@ def test_a_run_a_table_a_history_and_a_plot_take_ten_lines() -> None:
 @pytest.mark.parametrize(
     "path",
     [
-        pytest.param(p, id=p.stem, marks=() if p.stem == "first_run" else pytest.mark.full)
+        pytest.param(p, id=p.stem, marks=() if p.stem == "first_run" else pytest.mark.slow)
         for p in NOTEBOOKS
     ],
 )

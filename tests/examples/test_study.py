@@ -38,6 +38,7 @@ def rows(text: str) -> list[list[str]]:
     return [r for r in cells if not set("".join(r)) <= set(":-")]
 
 
+@pytest.mark.slow
 def test_el_centro_has_the_known_answers(quick):
     """Peak forces and closures of the independent exact solution (see test_cole2011)."""
     found = {r[0]: r[1:5] for r in rows(section(quick[0], "El Centro, literal reading"))}
@@ -46,6 +47,7 @@ def test_el_centro_has_the_known_answers(quick):
     assert found["5"] == ["2", "13", "838.5", "1731.0"]
 
 
+@pytest.mark.slow
 def test_verdicts_follow_from_the_errors(quick):
     table = [r for r in rows(section(quick[0], "El Centro, literal reading")) if r[1] in ("left", "right")]
     assert len(table) == 16
@@ -243,6 +245,7 @@ def test_statements_that_never_hold_together_are_told(study):
     assert [(p[0], p[2]) for p in pairs] == [words]
 
 
+@pytest.mark.slow
 def test_pictures_are_there(quick):
     text, folder = quick
     named = re.findall(r"!\[[^]]+\]\(([^)]+)\)", text)

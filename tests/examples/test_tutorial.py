@@ -97,6 +97,7 @@ def matplotlib(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib.pyplot", pyplot)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("default")  # matplotlib's own
 @pytest.mark.usefixtures("matplotlib")
 def test_the_tutorial_can_be_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

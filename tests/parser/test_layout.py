@@ -81,7 +81,7 @@ def test_a_deck_means_the_same_and_keeps_its_comments(path):
 
 
 @pytest.mark.full
-@quiet
+@settings(quiet, max_examples=40)
 @given(st.sampled_from([p for p in DECKS if "examples" in p.parts]), st.data())
 def test_blanks_and_lines_that_go_on_change_nothing_but_the_layout(path, data):
     out = []

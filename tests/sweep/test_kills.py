@@ -12,6 +12,7 @@ from pound_solve.results.sweep_file import Sweep
 from standing import Standing
 from sweep.small import STUDY, folder
 from sweep.test_sweep import same
+from tiers import at_night
 
 pytestmark = pytest.mark.full
 LINUX = pytest.mark.skipif(not hasattr(os, "pidfd_open"), reason="finds processes by /proc")
@@ -53,14 +54,15 @@ def noted(path):
 
 
 @LINUX
-def test_a_sweep_that_is_killed_goes_on_where_it_was(tmp_path):
-    """Four times, three of them after a worker of it was killed, which it survives."""
+@pytest.mark.parametrize("kills", [((2, None), (3, 0)), *at_night((((1, 0), (3, 0), (2, -1)),))])
+def test_a_sweep_that_is_killed_goes_on_where_it_was(tmp_path, kills):
+    """Some times; where a number is given, after a worker of it was killed, which it survives."""
     (tmp_path / "undisturbed").mkdir()
     own = folder(tmp_path / "undisturbed", MANY)
     assert begun(own, 1).end()[0] == 0
     undisturbed = Sweep.open(own.parent / "walls.sweep/sweep.h5")
     path = folder(tmp_path, MANY)
-    for calls, which in ((2, None), (1, 0), (3, 0), (2, -1)):
+    for calls, which in kills:
         sweep = begun(path, calls)
         assert sweep.stands()
         if which is not None:

@@ -215,7 +215,7 @@ def test_moment_alone_yields_at_once_and_axial_force_comes_first():
         assert solved(deck).state.events == events
 
 
-@pytest.mark.full
+@pytest.mark.slow
 def test_in_an_earthquake_the_section_stays_within_its_diagram():
     """A column under its weight, shaken: EXACT's energy balances and the end forces are on or inside."""
     r = run_text(f"""

@@ -21,6 +21,7 @@ from pound_solve.results import Results, ResultsError
 from pound_solve.results.contents import SECTIONS
 from pound_solve.results.whole_file import partial
 from standing import Standing
+from tiers import at_night
 
 DECK = """TITLE  A mass between two walls
 UNITS  kN m s
@@ -343,7 +344,7 @@ def test_closed_streams_are_no_fault(deck):
 
 @pytest.mark.full
 @pytest.mark.parametrize(
-    "deck", ["cole2011/lumped.inp --set t=0.2", "01_two_oscillators/two_oscillators.inp"]
+    "deck", ["cole2011/lumped.inp --set t=0.2", *at_night("01_two_oscillators/two_oscillators.inp")]
 )
 def test_small_decks_are_run_without_scipy(tmp_path, deck):
     """Its import takes longer than their motion."""

@@ -18,6 +18,7 @@ from paths import Walk, turning_points
 from pound_deck.schema import Kind
 from pound_solve.catalog import catalog
 from pound_solve.laws.automaton import Law
+from tiers import at_night
 from verification.cases import run_text
 
 RULES = catalog().family("hysteresis")
@@ -551,10 +552,12 @@ END
 @pytest.mark.parametrize(
     "rule",
     [
-        "BILINEAR R=0.05 ILOS=EACH DUCT3=9",
-        "TAKEDA R=0.02 ALFA=0.3 BETA=0.2 ILOS=LARGEST_RCYC RCYC=6 DUCT3=9",
         "ELASTO_PLASTIC ILOS=CYCLES",
         "TAKEDA R=0.02 ALFA=0.3 BETA=0.2 ILOS=EACH_SUDDEN RCYC=2 DUCT3=4.5",
+        *at_night(
+            "BILINEAR R=0.05 ILOS=EACH DUCT3=9",
+            "TAKEDA R=0.02 ALFA=0.3 BETA=0.2 ILOS=LARGEST_RCYC RCYC=6 DUCT3=9",
+        ),
     ],
 )
 def test_methods_agree_on_an_oscillator_that_loses_strength(rule: str) -> None:

@@ -233,7 +233,7 @@ def test_table_of_convergence_is_what_the_methods_do(tmp_path):
         assert order == pytest.approx(2.0, abs=0.2 if method == "HHT" else 0.05)
 
 
-@pytest.mark.full
+@pytest.mark.slow
 def test_table_of_taylor_is_what_it_does(tmp_path):
     """The same series and events; differences to EXACT, which are rounding, up to ten times the table's."""
     rows = table("theory-integration.md", "taylor")
@@ -342,7 +342,7 @@ def test_the_example_contact_works_in_a_deck(extended):
         assert hit["peak_force"] == pytest.approx(math.sqrt(1e6 / 4 * reduced), rel=1e-12)
 
 
-@pytest.mark.full
+@pytest.mark.slow
 def test_the_example_damper_keeps_the_contract(extended):
     """By every method the same force, which is linear in the rate beyond the valve."""
     spec = catalog().family("damper")["TWO_STAGE"]

@@ -179,6 +179,7 @@ def test_a_mechanism_has_the_same_name(monkeypatch):
     assert said() == plain
 
 
+@pytest.mark.slow
 def test_memory_grows_with_the_storeys(tmp_path):
     """Peak of what Python and numpy hold in a run of the steel frame: it doubles with the storeys."""
     deck = tmp_path / "frame.inp"  # P-Delta would make the tall ones buckle

@@ -565,6 +565,7 @@ def test_an_elastic_bar_meets_a_rigid_wall(method: str, law: str, n: int) -> Non
 @each_once(
     ("load", ["one motion of the ground", "supports apart", "forces"]),
     ("law", ["LAGRANGE", "STEREOMECHANICS E=0.5"]),
+    at_most=1,
 )
 def test_frames_with_hinges_come_to_rest_on_each_other(law: str, load: str) -> None:
     """The last hops of a body that comes to rest are below rounding; EXACT and TAYLOR lose the same ones.

@@ -64,6 +64,7 @@ def test_modes_find_what_series_find(monkeypatch: pytest.MonkeyPatch) -> None:
     assert item(r, "events") == item(s, "events")
 
 
+@pytest.mark.slow
 def test_more_unknowns_than_plain_arrays_hold(monkeypatch: pytest.MonkeyPatch) -> None:
     """Sparse matrices, with modes and without."""
     deck, params = ROOT / "examples" / "cole2011" / "distributed.inp", {"n": 80, "t": 0.8, "gap": 0.0005}

@@ -74,6 +74,7 @@ def test_record_with_its_own_sign() -> None:
     assert r.check() < 1e-9
 
 
+@pytest.mark.slow
 def test_finer_search_grid_finds_the_same_events() -> None:
     """REFINE halves the grid on which events are looked for: nothing may come or go, nor move beyond
     rounding."""

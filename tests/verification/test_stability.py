@@ -44,6 +44,7 @@ def test_the_matrix_has_no_fault(family):
     assert [(r.case.scene, r.case.law, r.method, r.says) for r in rows if r.end == stability.FAULT] == []
 
 
+@pytest.mark.slow
 def test_study_prints_the_matrix(monkeypatch, capsys):
     few = [c for c in linear.linear_scenes() if c.scene == "rigid-body modes"]
     monkeypatch.setattr(scenes, "linear_scenes", lambda: iter(few))
