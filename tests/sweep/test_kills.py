@@ -103,7 +103,7 @@ def test_an_interruption_ends_the_runs_that_have_begun_and_writes_the_table(tmp_
     assert set(found["status"]) == {"done", "missing"}
 
 
-@pytest.mark.parametrize("calls", [1, 2])
+@pytest.mark.parametrize("calls", [2, *at_night(1)])
 def test_an_interruption_while_workers_start_leaves_no_traceback(tmp_path, calls):
     """Ctrl-C of a terminal goes to all processes of the group, those that read their modules among them."""
     path = folder(tmp_path, MANY)
