@@ -5,7 +5,10 @@ stiffness or a dashpot did: an implicit step of a tiny length e finds them,
 
 .. math:: (C + e K)\,\Delta v = p - C v - K u - f + e\,\tfrac{d}{dt}(p - K u - f)
 
-over the massless unknowns.
+over the massless unknowns.  Of an imbalance :math:`r = p - C v - K u - f`, only what dashpots hold makes
+them jump.  What springs alone hold (rounding, an event that is not met to the last digit, a curved law on
+its tangent) would ask for a jump of the displacement, and for a velocity of r / (e K).  It is left out:
+:math:`(C + e K)\,\Delta v_1 = r` divides r into :math:`C\,\Delta v_1`, which dashpots hold, and the rest.
 """
 
 from __future__ import annotations
@@ -119,6 +122,16 @@ def force_rates(
             out[i] = 0.0
 
 
+def dashpot_forces(linear: LinearSystem, laws: Laws, velocity: Array, out: Array) -> None:
+    """Forces of the dashpots, those of the laws included, at some velocities."""
+    multiply(linear.damping, velocity, out)
+    for i in range(len(laws.rule)):
+        if laws.damping[i] != 0.0:
+            force = laws.damping[i] * along(laws.rows, i, velocity)
+            for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
+                out[laws.rows.columns[q]] += laws.rows.values[q] * force
+
+
 def correct_massless_rates(linear: LinearSystem, laws: Laws, step: Step, stale: bool, h: float) -> None:
     """Correct velocities of massless unknowns that no dashpot holds, at the end of a step of length `h`.
 
@@ -147,7 +160,6 @@ def jump_massless_rates(linear: LinearSystem, laws: Laws, step: Step) -> None:
     """Give massless unknowns the velocities that the present branches ask for (see the module's head)."""
     now, change, force, size = step.now, step.trial.acceleration, step.right_side, step.product
     rate = factorise_massless(linear, laws, step, laws.members.now.quantities)
-    force_rates(linear, laws, now.velocity, laws.now.rate, now.input_rates, change)
     multiply(linear.stiffness, now.displacement, force)
     for i in range(len(force)):
         force[i] = now.load[i] - force[i] - now.damping_force[i]
@@ -164,11 +176,17 @@ def jump_massless_rates(linear: LinearSystem, laws: Laws, step: Step) -> None:
             size[laws.rows.columns[q]] += abs(laws.rows.values[q] * f)
     for c in range(len(laws.members.parameters)):
         subtract_force(laws.members, c, laws.members.now.forces, force)
-    for i in range(
-        len(force)
-    ):  # rounding, or an event not met to the last digit, is no jump of a dashpot's force
-        if not linear.has_mass[i] and abs(force[i]) > NEAR * size[i]:
-            change[i] += rate * force[i]
+    for i in range(len(force)):
+        if linear.has_mass[i] or abs(force[i]) <= NEAR * size[i]:
+            force[i] = 0.0
+        force[i] *= rate
+    solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], force)
+    held = size
+    dashpot_forces(linear, laws, force, held)
+    force_rates(linear, laws, now.velocity, laws.now.rate, now.input_rates, change)
+    for i in range(len(change)):
+        if not linear.has_mass[i]:
+            change[i] += rate * held[i]
     solve(linear.pattern, step.factors[MASSLESS], step.pivots[MASSLESS], change)
     for i in range(len(change)):
         now.velocity[i] += change[i]
