@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 from decks import results_of
+from kernels import interpreted
+from pound_solve.analyses.history import HINGES
+from pound_solve.integrate.kernels import recording
 from tiers import each_once
 
 pytestmark = pytest.mark.full
@@ -69,3 +72,23 @@ def test_no_peak_stands_between_the_steps(tmp_path, rule, head, method):
             assert (stored <= peak * (1 + 1e-12)).all()
             assert (peak <= 1.02 * stored).all(), peak / stored
         assert np.nanmax(peaks["ductility"]) > 4
+
+
+def test_a_peak_that_no_force_of_a_member_goes_with_is_told(tmp_path, monkeypatch):
+    """Crests between two steps as high as ten times what they are."""
+    deck = tmp_path / "frame.inp"
+    text = FRAME.format(rule="BILINEAR R=0.02", head="", method="NEWMARK DT=0.005")
+    deck.write_text(text.replace("HISTORY 3", "HISTORY 0.8"))
+    cubic_peak = recording.cubic_peak
+
+    def too_high(*ends):
+        at, top = cubic_peak(*ends)
+        return at, 10.0 * top
+
+    verdicts = []
+    for crest in (cubic_peak, too_high):
+        monkeypatch.setattr(recording, "cubic_peak", crest)
+        with interpreted(), results_of(deck) as r:
+            (row,) = (x for x in r.table("checks") if x["check"] == HINGES)
+            verdicts.append(row["verdict"])
+    assert verdicts[0] == "good" and verdicts[1].startswith("look")

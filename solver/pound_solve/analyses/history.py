@@ -34,6 +34,8 @@ from pound_solve.structure.structure import Structure
 RESIDUAL = "largest energy residual over the largest energy"  #: name of the check
 BALANCE = "base shear and overturning moment less inertia and loads, over the largest"
 CLOSEUPS = "time from which on peaks of collisions found no room in close-ups"
+HINGES = "peak moment of a hinge beyond that of its member, over the latter"
+BEYOND = 0.05  #: that much a crest between two steps may be, at ten steps a period
 ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
 
 SPEC = Spec(
@@ -163,7 +165,7 @@ class HistoryResult:
             good = "nothing moves: there is no energy to compare"
         elif energy.samples < 2:
             good = "look: the run ended before there was anything to compare"
-        found = [(RESIDUAL, f"{ratio:.2e}", good), *self._balance(), *self._closeups()]
+        found = [(RESIDUAL, f"{ratio:.2e}", good), *self._balance(), *self._hinges(), *self._closeups()]
         return found + self.returned.checks
 
     @property
@@ -185,6 +187,26 @@ class HistoryResult:
             balance = self.recorder.envelopes.imbalance(self.items.buildings)
             enough = balance < (1e-9 if self.returned.exact else 1e-2)
             yield BALANCE, f"{balance:.2e}", "good" if enough else "look: forces are out of balance"
+
+    def _hinges(self) -> Iterator[tuple[str, str, str]]:
+        """Compare the peaks of hinges, which the method tracks between the steps too, with the envelopes of
+        their members, which are made of the motion of the nodes.
+        """
+        rows = self.recorder.envelopes.output.rows()
+        members = {
+            (o.element, o.quantity): max(high, -low)
+            for o, (high, _, low, _) in zip(self.items.outputs, rows)
+        }
+        both = [
+            (max(peak.high, -peak.low), members[end])
+            for law, peak in zip(self.system.structure.laws, self.returned.peaks.force)
+            if (end := (law.element, law.component.replace("hinge", "moment"))) in members
+        ]
+        least = 1e-3 * max((moment for _, moment in both), default=0.0)  # rounding below
+        if least > 0.0:
+            beyond = max(max(0.0, own - moment) / max(moment, least) for own, moment in both)
+            words = "good" if beyond < BEYOND else "look: no force of the member goes with that peak"
+            yield HINGES, f"{beyond:.2e}", words
 
     def drift_ratios(self) -> list[tuple[str, float]]:
         """Name of every drift, and the largest absolute one over its height; NaN where it has none."""
