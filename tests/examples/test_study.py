@@ -252,6 +252,7 @@ def test_pictures_are_there(quick):
     assert len(named) == 9 and all((folder / name).stat().st_size > 5000 for name in named)
 
 
+@pytest.mark.slow
 def test_the_page_of_the_manual_is_that_of_a_run(quick):
     page = (ROOT / "manual" / "cole2011-study.md").read_text(encoding="utf-8")
     for heading in (

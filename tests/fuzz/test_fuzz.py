@@ -23,8 +23,8 @@ from fuzz.workers import outcomes
 
 #: cases of each kind, in two processes: one without runs and one with
 COUNTS = (
-    {"deck": 160, "verbs": 8, "editor": 3, "record": 100, "results": 12, "words": 12, "import": 30},
-    {"run": 24, "options": 20, "study": 10, "texts": 6},
+    {"deck": 100, "verbs": 8, "editor": 3, "record": 60, "results": 12, "words": 12, "import": 20},
+    {"run": 20, "options": 12, "study": 8, "texts": 6},
 )
 
 

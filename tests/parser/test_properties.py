@@ -193,7 +193,7 @@ def content(model):
 
 
 @pytest.mark.full
-@quiet
+@settings(quiet, max_examples=60)
 @given(st.data())
 def test_blanks_and_case_have_no_meaning(catalog, data):
     out = []

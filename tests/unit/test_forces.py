@@ -527,11 +527,11 @@ def test_a_fast_wave_moves_all_supports_at_once(record: str) -> None:
     """The difference from uniform motion falls as 1/c, over eleven decades, to rounding."""
     together = run_text(BRIDGE.format(f'EQUAKE\n RECORD "{record}" SUPPORTS=1,2,3')).u
     off = {}
-    for speed in (1e4, 1e6, 1e12, 1e15):
+    for speed in (1e4, 1e6, 1e15):
         wave = run_text(BRIDGE.format(f'EQUAKE\n RECORD "{record}" SUPPORTS=1,2,3 WAVE={speed}')).u
         off[speed] = np.abs(wave - together).max() * speed
     assert off[1e4] == pytest.approx(off[1e6], rel=0.01)
-    assert [off[c] for c in (1e12, 1e15)] == pytest.approx([off[1e6]] * 2, rel=1e-3)
+    assert off[1e15] == pytest.approx(off[1e6], rel=1e-3)
     assert off[1e15] / 1e15 < 1e-12 * np.abs(together).max()
 
 

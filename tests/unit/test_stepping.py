@@ -91,6 +91,7 @@ def figures(results):
         ],
     ),
     ("turn", ["0.5", "0"]),
+    at_most=2,
 )
 def test_implicit_methods_are_of_order_two_on_frames_that_yield_and_pound(tmp_path, method, steps, turn):
     exact = run(tmp_path, "EXACT", turn=turn)
