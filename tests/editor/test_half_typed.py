@@ -42,9 +42,10 @@ PIECES = [
     "\t",
 ]
 SORTS = ("node", "element", "property set", "PARAM")
-quiet = settings(max_examples=100, suppress_health_check=[HealthCheck.too_slow])
+quiet = settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow])
 
 
+@pytest.mark.full
 @quiet
 @given(st.sampled_from(DECKS), st.data())
 def test_a_deck_cut_off_anywhere(path, data):

@@ -99,6 +99,16 @@ async def editor(units=None):
     await client.stop()
 
 
+@pytest.fixture(scope="module")
+def speak():
+    """Carries out sessions with one editor and one server for all: a start takes a second."""
+    with asyncio.Runner() as runner:
+        started = editor()
+        shared = runner.run(started.__aenter__())
+        yield lambda session: runner.run(session(shared))
+        runner.run(started.__aexit__(None, None, None))
+
+
 @pytest.fixture
 def folder(tmp_path):
     (tmp_path / "deck.inp").write_text(DECK, encoding="utf-8")
@@ -107,83 +117,77 @@ def folder(tmp_path):
 
 
 @pytest.mark.full
-def test_mistakes_are_told_as_one_types(folder):
-    async def session():
-        async with editor() as e:
-            uri = e.opened(folder / "deck.inp", DECK)
-            assert await e.diagnostics(uri) == []
-            e.typed(uri, 2, 9, 21, "k")  # KX=kk
-            assert await e.diagnostics(uri) == [(9, 21, 23, "P222")]
-            e.typed(uri, 3, 2, 9, "k")  # PARAM kk: what the deck says now, not what is on the disk
-            assert await e.diagnostics(uri) == []
-            e.typed(uri, 4, 9, 29, " (")
-            assert [d[3] for d in await e.diagnostics(uri)] == ["P203"]
-            assert (folder / "deck.inp").read_text("utf-8") == DECK
+def test_mistakes_are_told_as_one_types(speak, folder):
+    async def session(e):
+        uri = e.opened(folder / "deck.inp", DECK)
+        assert await e.diagnostics(uri) == []
+        e.typed(uri, 2, 9, 21, "k")  # KX=kk
+        assert await e.diagnostics(uri) == [(9, 21, 23, "P222")]
+        e.typed(uri, 3, 2, 9, "k")  # PARAM kk: what the deck says now, not what is on the disk
+        assert await e.diagnostics(uri) == []
+        e.typed(uri, 4, 9, 29, " (")
+        assert [d[3] for d in await e.diagnostics(uri)] == ["P203"]
+        assert (folder / "deck.inp").read_text("utf-8") == DECK
 
-    asyncio.run(session())
-
-
-def test_the_last_of_many_edits_is_checked(folder):
-    async def session():
-        async with editor() as e:
-            uri = e.opened(folder / "deck.inp", DECK)
-            await e.diagnostics(uri)
-            for k in range(10):
-                e.typed(uri, 2 + k, 9, 22 + k, "x")
-            assert await e.diagnostics(uri) == [(9, 21, 32, "P222")]
-            assert all(e.told.get_nowait().uri != uri for _ in range(e.told.qsize()))
-
-    asyncio.run(session())
+    speak(session)
 
 
-def test_an_included_file_is_checked_as_part_of_its_deck(folder):
-    async def session():
-        async with editor() as e:
-            uri = e.opened(folder / "deck.inp", DECK)
-            assert await e.diagnostics(uri) == []
-            more = e.opened(folder / "more.inc", MORE)
-            assert await e.diagnostics(more) == []
-            e.typed(more, 2, 1, 4, "3", until=5)  # node 3 in place of node 2
-            assert [d[3] for d in await e.diagnostics(uri)] == ["P305"] * 3
-            assert [d[3] for d in await e.diagnostics(more)] == ["P314"]
-            e.typed(more, 3, 1, 4, "2", until=5)
-            assert await e.diagnostics(uri) == [] and await e.diagnostics(more) == []
-            for name, column in ((uri, 16), (more, 4)):  # J of the element, and the node itself
-                at = e.at(name, 7 if name == uri else 1, column)
-                places = await e.text_document_definition_async(lsp.DefinitionParams(**at))
-                assert [(p.uri, p.range.start.character) for p in places] == [(more, 3)]
+def test_the_last_of_many_edits_is_checked(speak, folder):
+    async def session(e):
+        uri = e.opened(folder / "deck.inp", DECK)
+        await e.diagnostics(uri)
+        for k in range(10):
+            e.typed(uri, 2 + k, 9, 22 + k, "x")
+        assert await e.diagnostics(uri) == [(9, 21, 32, "P222")]
+        assert all(e.told.get_nowait().uri != uri for _ in range(e.told.qsize()))
 
-    asyncio.run(session())
+    speak(session)
 
 
-def test_an_included_file_that_is_opened_alone_finds_its_deck(folder):
-    async def session():
-        async with editor() as e:
-            more = e.opened(folder / "more.inc", MORE + "   9  9 0\n")
-            assert await e.diagnostics(more) == [(2, 4, 10, "P314")]
+def test_an_included_file_is_checked_as_part_of_its_deck(speak, folder):
+    async def session(e):
+        uri = e.opened(folder / "deck.inp", DECK)
+        assert await e.diagnostics(uri) == []
+        more = e.opened(folder / "more.inc", MORE)
+        assert await e.diagnostics(more) == []
+        e.typed(more, 2, 1, 4, "3", until=5)  # node 3 in place of node 2
+        assert [d[3] for d in await e.diagnostics(uri)] == ["P305"] * 3
+        assert [d[3] for d in await e.diagnostics(more)] == ["P314"]
+        e.typed(more, 3, 1, 4, "2", until=5)
+        assert await e.diagnostics(uri) == [] and await e.diagnostics(more) == []
+        for name, column in ((uri, 16), (more, 4)):  # J of the element, and the node itself
+            at = e.at(name, 7 if name == uri else 1, column)
+            places = await e.text_document_definition_async(lsp.DefinitionParams(**at))
+            assert [(p.uri, p.range.start.character) for p in places] == [(more, 3)]
 
-    asyncio.run(session())
+    speak(session)
 
 
-def test_a_closed_file_has_no_mistakes_any_more(folder):
-    async def session():
-        async with editor() as e:
-            uri = e.opened(folder / "deck.inp", DECK + "oops (\n")
-            assert len(await e.diagnostics(uri)) == 1
-            e.text_document_did_close(lsp.DidCloseTextDocumentParams(lsp.TextDocumentIdentifier(uri)))
-            assert await e.diagnostics(uri) == []
+def test_an_included_file_that_is_opened_alone_finds_its_deck(speak, folder):
+    async def session(e):
+        more = e.opened(folder / "more.inc", MORE + "   9  9 0\n")
+        assert await e.diagnostics(more) == [(2, 4, 10, "P314")]
 
-    asyncio.run(session())
+    speak(session)
 
 
-def test_mistakes_of_records_and_of_the_structure_are_those_of_check(folder, capsys):
+def test_a_closed_file_has_no_mistakes_any_more(speak, folder):
+    async def session(e):
+        uri = e.opened(folder / "deck.inp", DECK + "oops (\n")
+        assert len(await e.diagnostics(uri)) == 1
+        e.text_document_did_close(lsp.DidCloseTextDocumentParams(lsp.TextDocumentIdentifier(uri)))
+        assert await e.diagnostics(uri) == []
+
+    speak(session)
+
+
+def test_mistakes_of_records_and_of_the_structure_are_those_of_check(speak, folder, capsys):
     bad = DECK.replace("ANALYSIS", 'EQUAKE\n   RECORD "none.at2"\nANALYSIS').replace("KY=10", "FX=10 KY=0")
 
-    async def session():
-        async with editor() as e:
-            return await e.diagnostics(e.opened(folder / "deck.inp", bad))
+    async def session(e):
+        return await e.diagnostics(e.opened(folder / "deck.inp", bad))
 
-    told = asyncio.run(session())
+    told = speak(session)
     (folder / "deck.inp").write_text(bad, encoding="utf-8")
     assert main(["check", str(folder / "deck.inp"), "--json"]) == 2
     found = json.loads(capsys.readouterr().out)["diagnostics"]
@@ -191,55 +195,53 @@ def test_mistakes_of_records_and_of_the_structure_are_those_of_check(folder, cap
     assert {d["number"][0] for d in found} >= {"R"}
 
 
-def test_every_kind_of_help_once(folder):
-    async def session():
-        async with editor() as e:
-            uri = e.opened(folder / "deck.inp", DECK)
-            await e.diagnostics(uri)
-            found = await e.text_document_completion_async(lsp.CompletionParams(**e.at(uri, 9, 21)))
-            assert {"k", "sqrt"} <= {item.label for item in found.items}
-            edit = next(item.text_edit for item in found.items if item.label == "k")
-            assert (edit.range.start.character, edit.range.end.character) == (20, 20)
-            help_ = await e.text_document_hover_async(lsp.HoverParams(**e.at(uri, 9, 18)))
-            assert "**KX** [kN/m]" in help_.contents.value and help_.range.start.character == 17
-            document = lsp.TextDocumentIdentifier(uri)
-            symbols = await e.text_document_document_symbol_async(lsp.DocumentSymbolParams(document))
-            assert [s.name for s in symbols][:3] == ["TITLE", "K", "NODES"]
-            assert [c.name for c in symbols[4].children] == ["COLUMN"]
-            assert all(s.range.end.line >= s.selection_range.end.line for s in symbols)
-            places = await e.text_document_definition_async(lsp.DefinitionParams(**e.at(uri, 9, 21)))
-            assert [(p.uri, p.range.start.line, p.range.start.character) for p in places] == [(uri, 1, 7)]
-            context = lsp.ReferenceContext(include_declaration=True)
-            where = e.at(uri, 7, 8)
-            places = await e.text_document_references_async(lsp.ReferenceParams(context=context, **where))
-            assert [p.range.start.line + 1 for p in places] == [7, 9]
-            name = await e.text_document_prepare_rename_async(lsp.PrepareRenameParams(**where))
-            assert (name.start.character, name.end.character) == (6, 12)
-            renamed = await e.text_document_rename_async(lsp.RenameParams(new_name="POST", **where))
-            edits = [(x.range.start.line + 1, x.new_text) for x in renamed.changes[uri]]
-            assert edits == [(7, "POST"), (9, "POST")]
-            with pytest.raises(JsonRpcException, match="is no name"):
-                await e.text_document_rename_async(lsp.RenameParams(new_name="a'b", **where))
-            options = lsp.FormattingOptions(tab_size=3, insert_spaces=True)
-            (new,) = await e.text_document_formatting_async(lsp.DocumentFormattingParams(document, options))
-            assert new.new_text == layout(DECK)[0]
+def test_every_kind_of_help_once(speak, folder):
+    async def session(e):
+        uri = e.opened(folder / "deck.inp", DECK)
+        await e.diagnostics(uri)
+        found = await e.text_document_completion_async(lsp.CompletionParams(**e.at(uri, 9, 21)))
+        assert {"k", "sqrt"} <= {item.label for item in found.items}
+        edit = next(item.text_edit for item in found.items if item.label == "k")
+        assert (edit.range.start.character, edit.range.end.character) == (20, 20)
+        help_ = await e.text_document_hover_async(lsp.HoverParams(**e.at(uri, 9, 18)))
+        assert "**KX** [kN/m]" in help_.contents.value and help_.range.start.character == 17
+        document = lsp.TextDocumentIdentifier(uri)
+        symbols = await e.text_document_document_symbol_async(lsp.DocumentSymbolParams(document))
+        assert [s.name for s in symbols][:3] == ["TITLE", "K", "NODES"]
+        assert [c.name for c in symbols[4].children] == ["COLUMN"]
+        assert all(s.range.end.line >= s.selection_range.end.line for s in symbols)
+        places = await e.text_document_definition_async(lsp.DefinitionParams(**e.at(uri, 9, 21)))
+        assert [(p.uri, p.range.start.line, p.range.start.character) for p in places] == [(uri, 1, 7)]
+        context = lsp.ReferenceContext(include_declaration=True)
+        where = e.at(uri, 7, 8)
+        places = await e.text_document_references_async(lsp.ReferenceParams(context=context, **where))
+        assert [p.range.start.line + 1 for p in places] == [7, 9]
+        name = await e.text_document_prepare_rename_async(lsp.PrepareRenameParams(**where))
+        assert (name.start.character, name.end.character) == (6, 12)
+        renamed = await e.text_document_rename_async(lsp.RenameParams(new_name="POST", **where))
+        edits = [(x.range.start.line + 1, x.new_text) for x in renamed.changes[uri]]
+        assert edits == [(7, "POST"), (9, "POST")]
+        with pytest.raises(JsonRpcException, match="is no name"):
+            await e.text_document_rename_async(lsp.RenameParams(new_name="a'b", **where))
+        options = lsp.FormattingOptions(tab_size=3, insert_spaces=True)
+        (new,) = await e.text_document_formatting_async(lsp.DocumentFormattingParams(document, options))
+        assert new.new_text == layout(DECK)[0]
 
-    asyncio.run(session())
+    speak(session)
 
 
-def test_a_node_is_renamed_in_the_included_file_too(folder):
-    async def session():
-        async with editor() as e:
-            uri = e.opened(folder / "deck.inp", DECK)
-            await e.diagnostics(uri)
-            where = e.at(uri, 7, 16)
-            found = await e.text_document_rename_async(lsp.RenameParams(new_name="20", **where))
-            lines = {
-                Path(u).name: [x.range.start.line + 1 for x in edits] for u, edits in found.changes.items()
-            }
-            assert lines == {"more.inc": [1], "deck.inp": [7, 11, 13]}
+def test_a_node_is_renamed_in_the_included_file_too(speak, folder):
+    async def session(e):
+        uri = e.opened(folder / "deck.inp", DECK)
+        await e.diagnostics(uri)
+        where = e.at(uri, 7, 16)
+        found = await e.text_document_rename_async(lsp.RenameParams(new_name="20", **where))
+        lines = {
+            Path(u).name: [x.range.start.line + 1 for x in edits] for u, edits in found.changes.items()
+        }
+        assert lines == {"more.inc": [1], "deck.inp": [7, 11, 13]}
 
-    asyncio.run(session())
+    speak(session)
 
 
 @pytest.mark.full
@@ -266,29 +268,26 @@ def test_columns_are_in_the_units_of_the_editor(folder, units):
     asyncio.run(session())
 
 
-def test_half_a_deck_stops_no_help(folder):
-    async def session():
-        async with editor() as e:
-            uri = e.opened(folder / "deck.inp", "")
-            typed = DECK.split("WEIGHTS")[0] + 'WEIGHTS\n  2 (1+\n "'
-            line = column = 1
-            for version, letter in enumerate(typed, 2):
-                e.typed(uri, version, line, column, letter)
-                line, column = (
-                    (line + 1, 1)
-                    if letter == "\n"
-                    else (line, column + len(letter.encode("utf-16-le")) // 2)
-                )
-            where = e.at(uri, line, column)
-            await e.text_document_completion_async(lsp.CompletionParams(**where))
-            await e.text_document_hover_async(lsp.HoverParams(**where))
-            await e.text_document_definition_async(lsp.DefinitionParams(**where))
-            with pytest.raises(JsonRpcException, match="mistake of syntax"):
-                await e.text_document_rename_async(lsp.RenameParams(new_name="x", **where))
-            while not {"P203", "P202"} <= {d[3] for d in await e.diagnostics(uri)}:
-                pass  # the queue's own limit of time ends this
+def test_half_a_deck_stops_no_help(speak, folder):
+    async def session(e):
+        uri = e.opened(folder / "deck.inp", "")
+        typed = DECK.split("WEIGHTS")[0] + 'WEIGHTS\n  2 (1+\n "'
+        line = column = 1
+        for version, letter in enumerate(typed, 2):
+            e.typed(uri, version, line, column, letter)
+            line, column = (
+                (line + 1, 1) if letter == "\n" else (line, column + len(letter.encode("utf-16-le")) // 2)
+            )
+        where = e.at(uri, line, column)
+        await e.text_document_completion_async(lsp.CompletionParams(**where))
+        await e.text_document_hover_async(lsp.HoverParams(**where))
+        await e.text_document_definition_async(lsp.DefinitionParams(**where))
+        with pytest.raises(JsonRpcException, match="mistake of syntax"):
+            await e.text_document_rename_async(lsp.RenameParams(new_name="x", **where))
+        while not {"P203", "P202"} <= {d[3] for d in await e.diagnostics(uri)}:
+            pass  # the queue's own limit of time ends this
 
-    asyncio.run(session())
+    speak(session)
 
 
 def test_without_the_extra_a_line_says_how_to_install_it(monkeypatch, capsys):

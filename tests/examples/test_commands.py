@@ -256,6 +256,7 @@ def status(words: list[str]) -> Any:
         return end.code
 
 
+@pytest.mark.full
 @of("pound-solve")
 @pytest.mark.usefixtures("at_the_desk")
 def test_a_command_of_the_program_starts(command: Command, capsys: pytest.CaptureFixture[str]) -> None:

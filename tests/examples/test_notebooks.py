@@ -55,6 +55,7 @@ def test_a_run_a_table_a_history_and_a_plot_take_ten_lines() -> None:
     assert all(word in text for word in ("run(", "to_pandas(", "to_xarray(", ".plot"))
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     "path",
     [

@@ -51,6 +51,7 @@ def test_energies_balance_with_and_without_pounding(run):
         assert float(checks["largest energy residual over the largest energy"]) < 1e-11
 
 
+@pytest.mark.full
 @FAST
 def test_steps_come_near(run):
     _, exact, _ = run(DECK)

@@ -94,6 +94,7 @@ def test_an_independent_integration_agrees(exact):
     np.testing.assert_allclose(speeds, collisions[:, 2:], rtol=1e-7)
 
 
+@pytest.mark.full
 def test_newmark_comes_near_and_nearer(exact, run):
     def quantities(results) -> np.ndarray:
         d, c = results.table("drift_envelope"), results.table("contact_summary")

@@ -23,8 +23,8 @@ from fuzz.workers import outcomes
 
 #: cases of each kind, in two processes: one without runs and one with
 COUNTS = (
-    {"deck": 100, "verbs": 8, "editor": 3, "record": 60, "results": 12, "words": 12, "import": 20},
-    {"run": 20, "options": 12, "study": 8, "texts": 6},
+    {"deck": 60, "verbs": 6, "editor": 2, "record": 30, "results": 8, "words": 8, "import": 12},
+    {"run": 12, "options": 8, "study": 5, "texts": 4},
 )
 
 
@@ -33,6 +33,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, bytes]:
     return bases(tmp_path_factory.mktemp("bases"))
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_case_depends_on_its_seed_and_number_alone(whole: Mapping[str, bytes], kind: str) -> None:
     cases = [case(kind, 1, number, whole) for number in range(8)]

@@ -7,6 +7,7 @@ import sys
 from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -170,6 +171,10 @@ NUMERICS = (
 )
 
 
+#: methods that change a value in place
+CHANGING = {"append", "add", "update", "pop", "setdefault", "extend", "clear"}
+
+
 def modules():
     return [p for package in (DECK, LEGACY, SOLVER) for p in package.rglob("*.py")]
 
@@ -178,26 +183,40 @@ def place(path):
     return path.relative_to(next(p for p in (DECK, LEGACY, SOLVER) if path.is_relative_to(p))).as_posix()
 
 
-def nodes(path):
-    """All nodes of the tree of a module's source, the module first."""
-    return list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+class Facts(NamedTuple):
+    """What the rules ask of a module's source."""
+
+    imported: set[str]  # dotted names, within functions too
+    called: set[str]  # functions that are called by a plain name
+    changed: set[str]  # names whose values are changed in place
+    displays: list[str]  # names at module level of lists, dictionaries and sets
+    has_global: bool  # a function sets a name of its module
 
 
 @cache
-def imported(path):
-    """Dotted names of everything a module imports, within functions too."""
-    out = set()
-    for node in nodes(path):
-        if isinstance(node, ast.Import):
-            out |= {a.name for a in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            out |= {f"{node.module}.{a.name}" for a in node.names}
+def facts(path):
+    """The facts of a module, whose source is parsed once for all rules."""
+    module = ast.parse(path.read_text(encoding="utf-8"))
+    out = Facts(set(), set(), set(), [], any(isinstance(n, ast.Global) for n in ast.walk(module)))
+    for node in ast.walk(module):
+        match node:
+            case ast.Import(names):
+                out.imported.update(a.name for a in names)
+            case ast.ImportFrom(str(source), names):
+                out.imported.update(f"{source}.{a.name}" for a in names)
+            case ast.Call(ast.Name(name)):
+                out.called.add(name)
+            case ast.Call(ast.Attribute(ast.Name(name), method)) if method in CHANGING:
+                out.changed.add(name)
+    for node in module.body:
+        match node:
+            case ast.Assign(targets, ast.List() | ast.Dict() | ast.Set() | ast.ListComp()):
+                out.displays.extend(t.id for t in targets if isinstance(t, ast.Name))
     return out
 
 
-def calls(path):
-    """Names of the functions that a module calls by a plain name."""
-    return {n.func.id for n in nodes(path) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)}
+def imported(path):
+    return facts(path).imported
 
 
 def room(dotted):
@@ -289,33 +308,18 @@ def test_imports_go_down_within_a_room(name):
 def test_numerics_open_no_file_and_print_nothing():
     for path in SOLVER.rglob("*.py"):
         if place(path).startswith(NUMERICS) and path.name != "jit.py":
-            assert not calls(path) & {"open", "print", "input"}, path
+            assert not facts(path).called & {"open", "print", "input"}, path
 
 
-@pytest.mark.full
 def test_no_module_keeps_mutable_state():
+    """A display at module level is a constant, in capitals, that is never changed in place."""
     for path in modules():
-        module, *others = nodes(path)
-        assert not [n for n in others if isinstance(n, ast.Global)], path
-        for node in module.body:
-            # a display may stand at module level only as a constant, in capitals,
-            # and is never changed in place
-            if isinstance(node, ast.Assign) and isinstance(
-                node.value, ast.List | ast.Dict | ast.Set | ast.ListComp
-            ):
-                names = [t.id for t in node.targets if isinstance(t, ast.Name)]
-                assert all(n == n.upper() for n in names), f"{path}: {names}"
-                changed = {
-                    n.func.value.id
-                    for n in others
-                    if isinstance(n, ast.Call)
-                    and isinstance(n.func, ast.Attribute)
-                    and isinstance(n.func.value, ast.Name)
-                    and n.func.attr in ("append", "add", "update", "pop", "setdefault", "extend", "clear")
-                }
-                assert not changed & set(names), path
+        own = facts(path)
+        assert not own.has_global, path
+        assert all(name.isupper() for name in own.displays), f"{path}: {own.displays}"
+        assert not own.changed & set(own.displays), path
 
 
 def test_no_function_evaluates_text():
     for path in modules():
-        assert not calls(path) & {"eval", "exec"}, path
+        assert not facts(path).called & {"eval", "exec"}, path

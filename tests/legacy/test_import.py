@@ -292,6 +292,7 @@ def test_the_verb_refuses_what_it_cannot_read(tmp_path, capsys):
     assert main(["import", str(tmp_path / "none.dat")]) == 3
 
 
+@pytest.mark.full
 def test_motions_and_sweeps_read_old_decks_as_runs_do(tmp_path, capsys, monkeypatch):
     """One way to a deck: the motion of an old one becomes a file, and records take its place in a sweep."""
     monkeypatch.setenv("POUND_COMPILE", "0")

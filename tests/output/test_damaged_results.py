@@ -34,6 +34,7 @@ def everything(path):
         ]
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("seed", range(4))
 def test_a_flipped_bit_is_told_before_hdf5_reads_the_file(tmp_path, seed, monkeypatch):
     path = sample.write(tmp_path / "whole.h5")
@@ -52,7 +53,7 @@ def test_a_flipped_bit_is_told_before_hdf5_reads_the_file(tmp_path, seed, monkey
 def test_without_a_seal_a_flipped_bit_is_told_or_changes_nothing(tmp_path, seed):
     path = sample.write(tmp_path / "whole.h5")
     whole, good, draw = path.read_bytes()[: -seal.LENGTH], everything(path), random.Random(seed)
-    for _ in range(20):
+    for _ in range(10):
         data = bytearray(whole)
         data[draw.randrange(len(data))] ^= 1 << draw.randrange(8)
         path.write_bytes(data)

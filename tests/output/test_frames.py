@@ -189,6 +189,7 @@ def test_a_file_of_format_1_is_read(tmp_path: Path) -> None:
         assert results.history("storey/drift", drift_label="A storey 2").shape == (300,)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(("package", "call"), [("pandas", "to_pandas('size')"), ("xarray", "to_xarray()")])
 def test_without_the_extra_all_but_its_calls_works(tmp_path: Path, package: str, call: str) -> None:
     path = sample.write(tmp_path / "s.h5")

@@ -138,6 +138,7 @@ def same_as_the_text(results: Results) -> None:
     assert exactly > len(read.tables) / 3, "tables of one panel, without blocks and wrapped texts"
 
 
+@pytest.mark.full
 def test_tables_are_those_of_the_text_report(done: Results) -> None:
     with run(Deck(DECK.replace(EVIL, "the gap"))) as results:
         same_as_the_text(results)

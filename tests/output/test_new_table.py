@@ -8,6 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import pound_solve
 
 MODULE = '''"""Table ``storeys``."""
@@ -78,6 +80,7 @@ ANALYSIS
 """
 
 
+@pytest.mark.full
 def test_a_new_table_is_one_new_file(tmp_path: Path) -> None:
     package = tmp_path / "pound_solve"
     shutil.copytree(

@@ -174,11 +174,11 @@ def test_axes_bear_units(still: Callable[[str], Any], name: str) -> None:
 
 @pytest.mark.full
 def test_node_numbers_keep_apart_and_those_without_room_are_left_out() -> None:
-    figure = style.figure(5.4, 5.4)
+    figure = style.figure(3.8, 3.8)
     axes = figure.add_subplot()
-    axes.set_xlim(-1, 20)
-    axes.set_ylim(-1, 20)
-    places = [(x, y) for x in range(20) for y in range(20)]
+    axes.set_xlim(-1, 14)
+    axes.set_ylim(-1, 14)
+    places = [(x, y) for x in range(14) for y in range(14)]
     for n, place in enumerate(places):
         labels.label(axes, place, str(1000 + n))
     labels.settle(figure)
@@ -249,6 +249,7 @@ def peaks(axes: Any) -> list[np.ndarray]:
     return [np.column_stack(x.get_data()) for x in rings]
 
 
+@pytest.mark.full
 def test_the_largest_contact_force_is_that_of_the_table(pair: Results) -> None:
     summary, collisions = pair.table("contact_summary"), pair.table("collisions")
     top = summary["peak_force"][0]
@@ -440,6 +441,7 @@ def test_the_page_of_the_animation_holds_all_and_fetches_nothing(pair: Results, 
     assert again[0].read_bytes() == path.read_bytes()
 
 
+@pytest.mark.full
 def test_a_gif_moves(pair: Results, tmp_path: Path) -> None:
     from PIL import Image
 
@@ -456,6 +458,7 @@ def test_a_gif_moves(pair: Results, tmp_path: Path) -> None:
     assert all(np.abs(a - b).max() > 50 for a, b in pairwise(frames))
 
 
+@pytest.mark.full
 def test_names_are_no_formulas_in_the_summary(pair: Results, tmp_path: Path) -> None:
     (path,), _ = plot.draw(pair, ["summary"], tmp_path)
     text = path.read_text("utf-8")

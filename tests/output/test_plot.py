@@ -52,7 +52,7 @@ def test_the_pictures_are_listed(capsys: Any) -> None:
 @pytest.mark.full
 @pytest.mark.parametrize(
     ("ending", "count"),
-    [("svg", 4), ("png", 1), ("pdf", 1), *at_night(("svg", None), ("png", None), ("pdf", None))],
+    [("svg", 3), ("png", 1), *at_night(("svg", None), ("png", None), ("pdf", None))],
 )
 def test_every_picture_is_drawn_and_repeats(
     results: Results, tmp_path: Path, ending: str, count: int | None
@@ -281,6 +281,7 @@ def test_numbers_at_the_axes_of_a_study_do_not_touch(tmp_path: Path, seconds: tu
             assert all(a[1] < b[0] for a, b in pairwise(shown))
 
 
+@pytest.mark.full
 def test_names_of_a_deck_are_no_formulas(tmp_path: Path) -> None:
     deck = alone(tmp_path, drift='DRIFT\n "cost $x_1$ and $\\frac" 1 2\n').with_suffix(".inp")
     deck.write_text("TITLE $\\badcommand in $ and $\n" + deck.read_text())
@@ -290,6 +291,7 @@ def test_names_of_a_deck_are_no_formulas(tmp_path: Path) -> None:
     assert "cost $x_1$ and $\\frac" in (tmp_path / "envelopes.svg").read_text()
 
 
+@pytest.mark.full
 def test_names_that_the_layout_measures_are_no_formulas(tmp_path: Path) -> None:
     """A character without a glyph is a box, without a warning."""
     deck = tmp_path / "named.inp"

@@ -131,6 +131,7 @@ def test_an_open_file_that_is_being_written_and_one_whose_run_was_killed(tmp_pat
     assert Results.open(path).status == "killed"
 
 
+@pytest.mark.full
 def test_report_and_results_tell_that_they_belong_together(tmp_path, capsys):
     deck, other = write(tmp_path), write(tmp_path, "other", strength=11)
     with pound_solve.run(deck) as results, pound_solve.run(other) as others:
@@ -233,6 +234,7 @@ def test_an_open_older_result_stays_readable(tmp_path):
         assert (first.history("node/u") == own).all()
 
 
+@pytest.mark.full
 def test_runs_in_a_loop_leave_open_results_alone_where_open_files_cannot_be_removed(tmp_path, monkeypatch):
     """As on Windows: no locks, and an open file cannot be removed or replaced."""
     held = set()
@@ -265,6 +267,7 @@ def test_runs_in_a_loop_leave_open_results_alone_where_open_files_cannot_be_remo
         assert (first.history("node/u") == own).all() and (own != other).any()
 
 
+@pytest.mark.full
 def test_runs_of_one_deck_keep_apart_by_name(tmp_path, capsys):
     deck = write(tmp_path)
     for name in ("a", "b.2"):
@@ -321,6 +324,7 @@ def test_a_record_is_never_an_output(tmp_path):
     assert record.read_text() == text
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("suffix", [".h5", ".rpt"])
 def test_a_file_of_another_program_is_never_replaced(tmp_path, suffix):
     deck, own = write(tmp_path), tmp_path / f"model{suffix}"
@@ -333,6 +337,7 @@ def test_a_file_of_another_program_is_never_replaced(tmp_path, suffix):
     pound_solve.run(deck).close()  # its own are replaced
 
 
+@pytest.mark.full
 def test_a_restart_in_place_takes_the_older_results_and_replaces_them(tmp_path):
     whole = pound_solve.run(write(tmp_path, "whole", end=2, more="SAVE=1"))
     deck = write(tmp_path, end=1)

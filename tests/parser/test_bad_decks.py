@@ -145,6 +145,7 @@ def test_line_too_long(tmp_path, catalog):
     assert codes(read_bytes(tmp_path, catalog, (GOOD + line).encode())) == ["P110"]
 
 
+@pytest.mark.full
 def test_ten_thousand_brackets_signs_and_terms(catalog):
     for text, code in (
         ("(" * 10_000 + "1" + ")" * 10_000, ["P204"]),
@@ -156,6 +157,7 @@ def test_ten_thousand_brackets_signs_and_terms(catalog):
         assert codes(read_text(f"PARAM a = {text}\n" + GOOD, catalog)) == code
 
 
+@pytest.mark.full
 def test_ten_thousand_params_in_a_chain(catalog):
     chain = "".join(f"PARAM a{k} = a{k + 1}+1\n" for k in range(10_000)) + "PARAM a10000 = 0\n"
     assert read_text(chain + GOOD, catalog)[0].params["A0"] == 10_000

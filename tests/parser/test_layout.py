@@ -74,6 +74,7 @@ def check(text, name="deck.inp"):
     return True
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("path", DECKS, ids=lambda p: "-".join(p.parts[-2:]))
 def test_a_deck_means_the_same_and_keeps_its_comments(path):
     good = check(text_of(path), path)
@@ -96,6 +97,7 @@ def test_blanks_and_lines_that_go_on_change_nothing_but_the_layout(path, data):
     assert check("\n".join(out), path)
 
 
+@pytest.mark.full
 @quiet
 @given(st.sampled_from(DECKS), st.data())
 def test_a_damaged_deck_is_left_alone_or_laid_out(path, data):
@@ -108,6 +110,7 @@ def test_a_damaged_deck_is_left_alone_or_laid_out(path, data):
     check(text[:at] + more + text[at + cut :], path)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("seed", range(0, 40, 5))
 def test_generated_decks_mean_the_same(seed):
     assert check(deck(seed, None))

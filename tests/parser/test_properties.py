@@ -84,6 +84,7 @@ def test_the_deck_of_these_tests_is_good(catalog):
     assert model is not None and not found, render(found, files)
 
 
+@pytest.mark.full
 @quiet
 @given(st.lists(st.sampled_from([line for line in DECK.split("\n") if line]), min_size=1), st.data())
 def test_known_shapes_change_nothing(lines, data):
@@ -109,6 +110,7 @@ bare = st.text(st.characters(exclude_categories=["Cs"]), max_size=40).map(str.st
 plain = bare.filter(lambda t: not (len(t) > 1 and t[0] == t[-1] and t[0] in "\"'"))
 
 
+@pytest.mark.full
 @quiet
 @given(plain, st.sampled_from(["", '"', "'"]))
 def test_a_text_is_set_to_any_text(catalog, text, quote):
@@ -160,6 +162,7 @@ def python_value(formula):
         return None
 
 
+@pytest.mark.full
 @quiet
 @given(formulas)
 def test_formulas_agree_with_python(catalog, formula):

@@ -267,6 +267,7 @@ class TestSize:
         assert self.build(tmp_path, "0 0\n1 0.3\n2 0\n") == ()
 
 
+@pytest.mark.full
 def test_a_million_samples() -> None:
     readings = np.random.default_rng(1).integers(-30000, 30000, 1_000_000)
     peak = f"{np.abs(readings - readings.mean()).max() * 3920 / 6182761:.3f}"

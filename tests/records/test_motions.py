@@ -497,6 +497,7 @@ class TestMatched:
         assert np.array_equal(one.acceleration.coefs, two.acceleration.coefs)
         assert not np.array_equal(one.acceleration.coefs, other.acceleration.coefs)
 
+    @pytest.mark.full
     @pytest.mark.parametrize(
         ("given", "why"),
         [

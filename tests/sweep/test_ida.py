@@ -163,6 +163,7 @@ def test_what_a_sweep_does_not_hold_is_told(tmp_path):
         fragilities.fit(sweep, Asked("peak_drift"), [])
 
 
+@pytest.mark.full
 def test_the_verbs_print_tables(tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("POUND_COMPILE", "0")
     path = study(tmp_path, "limit = 0.2")

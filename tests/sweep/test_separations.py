@@ -104,6 +104,7 @@ def test_runs_tell_peaks_and_the_gap_that_they_need(free):
         assert sweep["given_gap"][row, 0] == 1.0
 
 
+@pytest.mark.full
 def test_the_double_difference_is_near_under_noise_and_sums_are_not(free):
     """The gap is needed to one side, the peaks are of both: half as many crests make it a little less."""
     found = [g for g in groups(free[0], Options()) if g.level == 1.0]

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 
 from pound_solve.results.sweep_file import Sweep, Variable
 from pound_solve.sweep import summary
@@ -88,6 +89,7 @@ def test_many_failures_are_cut(tmp_path):
     assert "and 7 more" in summary.text(sweep, "sweep") and "FRACTILES" not in summary.text(sweep, "sweep")
 
 
+@pytest.mark.full
 def test_a_sweep_leaves_its_report_and_pieces_leave_the_same(tmp_path):
     (tmp_path / "a").mkdir()
     (tmp_path / "b").mkdir()

@@ -127,6 +127,7 @@ def test_what_cannot_be_done_is_said_in_a_line_or_two_with_its_status(deck, caps
     assert told in err and "Traceback" not in err
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("verb", [[], ["check"], ["study"]])
 def test_a_results_file_in_place_of_a_deck_is_told_with_the_verbs_that_read_it(deck, capsys, verb):
     main([str(deck), "--quiet"])
@@ -199,6 +200,7 @@ def standing(deck):
     return run
 
 
+@pytest.mark.full
 def test_a_killed_run_leaves_what_it_had_written_beside_the_older_results(deck):
     main([str(deck), "--quiet"])
     whole = [deck.with_suffix(suffix).read_bytes() for suffix in (".h5", ".rpt")]
@@ -281,6 +283,7 @@ def test_the_version_needs_no_numerics():
     assert subprocess.run([sys.executable, "-c", code], capture_output=True).returncode == 0
 
 
+@pytest.mark.full
 def test_a_linear_run_imports_only_what_it_needs(deck):
     code = (
         "import sys; from pound_solve.cli.main import main\n"
@@ -333,6 +336,7 @@ def test_progress_tells_the_time_to_go_of_the_present_run(monkeypatch, terminal)
         ]
 
 
+@pytest.mark.full
 @pytest.mark.skipif(os.name != "posix", reason="shell")
 def test_closed_streams_are_no_fault(deck):
     bad = deck.with_name("bad.inp")

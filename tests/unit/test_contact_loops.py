@@ -86,6 +86,7 @@ def test_asked_restitution_comes_back_at_the_overlap_expected(e, n, kh, dm):
     assert built.law.force(drive(built.law, built.law.start(), 0.0, dm), dm)[0] == pytest.approx(kh * dm**n)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("e", [0.05, 0.1, 0.3, 0.65, 0.9, 1.0])
 def test_a_free_impact_gives_back_what_was_asked(tmp_path, e):
     a = 0.004 if e < 0.3 else 0.1
@@ -104,6 +105,7 @@ def test_a_free_impact_gives_back_what_was_asked(tmp_path, e):
     assert law["e_asked"] == e and law["e_given"] == pytest.approx(e, rel=1e-12)
 
 
+@pytest.mark.full
 def test_restitution_of_other_speeds(tmp_path):
     """1 below the first corner, least at the overlap DY (1 + sqrt(K1/K2)), rising again beyond."""
     k1, k2, dy = 900.0, 100.0, 0.01
@@ -155,6 +157,7 @@ LAWS = {
 }
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 @given(path=st.lists(st.floats(-0.2, 0.7), min_size=2, max_size=12))
 def test_any_path_is_continuous_never_pulls_and_loses_what_it_keeps(law, path):
@@ -254,6 +257,7 @@ ANALYSIS
     assert np.isnan(law["e_given"]) and law["note"].startswith(start)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     "law", ["BILINEAR_IMPACT KH=3000 E=0.5 DM=0.2", "TABLE DEPTHS=0.02,0.2 FORCES=40,80 KU=4000"]
 )

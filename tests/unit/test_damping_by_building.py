@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +12,7 @@ from decks import structure_of
 from pound_solve.driver.prepare import prepare
 from pound_solve.driver.request import Request
 from pound_solve.structure.assembly import AssemblyError
-from tiers import at_night
+from tiers import each_once
 from verification.cases import Ran, run_text
 
 A = {
@@ -64,12 +63,8 @@ def modes(*runs: Ran) -> np.ndarray:
     return np.array(rows[np.argsort(rows[:, 0])])
 
 
-CHECKED = [(CARDS[1], True), (CARDS[2], False)]
-OTHERS = [case for case in product(CARDS, (False, True)) if case not in CHECKED]
-
-
 @pytest.mark.full
-@pytest.mark.parametrize(("cards", "contact"), [*CHECKED, *at_night(*OTHERS)])
+@each_once(("cards", CARDS), ("contact", (True, False)), at_most=1)
 def test_each_building_as_if_it_stood_alone(cards: tuple[str, str], contact: bool) -> None:
     a, b = cards
     alone = [

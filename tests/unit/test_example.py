@@ -28,6 +28,7 @@ def test_every_folder_with_a_readme_is_listed_with_one_line(capsys: pytest.Captu
     assert all(len(line.split()) > 4 for line in lines)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", [*(n for n in NAMES if n != LONG), *at_night(LONG)])
 def test_an_example_is_written_whole_and_checks(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str

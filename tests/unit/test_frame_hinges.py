@@ -59,6 +59,7 @@ def test_elastic_members_have_nothing_of_hinges():
     assert not s.laws and len(s.dofs.free) == 3 and not s.parts[7].internal()
 
 
+@pytest.mark.full
 @settings(max_examples=40)
 @given(
     angle=st.floats(-180, 180),

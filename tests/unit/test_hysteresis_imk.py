@@ -192,6 +192,7 @@ def test_no_force_beyond_the_virgin_backbone_nor_stiffer_than_at_first(
                 assert f <= max(2.0, cap * (1.0 - (abs(d) - 10.0) / 20.0)) + 1e-9
 
 
+@pytest.mark.full
 @settings(max_examples=60)
 @given(path=goals, r=st.sampled_from([0.0, 0.05, 0.2]), residual=st.sampled_from([0.0, 0.3]))
 @every

@@ -80,6 +80,7 @@ def test_branches_after_turns_in_closed_form(beta: float) -> None:
         assert got == pytest.approx(20.0 * math.expm1(-u), rel=1e-13)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("n", [1.0, 1.5, 2.0, 3.7, 8.0, 25.0, 100.0])
 @pytest.mark.parametrize("beta", [0.5, 0.6, 1.0])
 def test_as_the_differential_equation(n: float, beta: float) -> None:

@@ -301,6 +301,7 @@ def test_a_rise_at_the_start() -> None:
 # ---------------------------------------------------------------- extremes
 
 
+@pytest.mark.full
 @settings(max_examples=400)
 @given(c=polynomials, end=st.sampled_from([1.0, 0.4, 1e-3]))
 @example(c=np.array([2.0]), end=1.0)

@@ -226,6 +226,7 @@ def test_the_catalog_is_not_empty() -> None:
     assert len(CONTACTS) >= 20
 
 
+@pytest.mark.full
 @contact
 def test_contract_of_a_contact(law: Law, gap: float, k: float) -> None:
     """Values, event functions and slopes along a path, the branches entered on the way included."""

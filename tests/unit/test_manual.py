@@ -312,6 +312,7 @@ ANALYSIS
 """
 
 
+@pytest.mark.full
 def test_the_example_rule_works_in_a_deck(extended):
     deck = extended / "rocking.inp"
     deck.write_text(ROCKING)

@@ -252,6 +252,7 @@ def test_in_modes_a_tendon_counts_where_it_is_taut():
         assert s.initial_stiffness[0, 0] == pytest.approx(k)
 
 
+@pytest.mark.full
 def test_a_braced_mass_in_time():
     """Two prestressed tendons against each other that yield: EXACT balances the energy, no force is
     negative, and what yield took off the prestress is gone.
@@ -477,6 +478,7 @@ def test_uplift_ends_at_the_overturning_moment(strength, share):
         solved(deck.format(-p, 1.015 * most))
 
 
+@pytest.mark.full
 def test_a_rocking_pier_in_time():
     """A pier on a footing that lifts off, with radiation: EXACT balances the energy."""
     r = run_text(f"""

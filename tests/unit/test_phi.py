@@ -108,6 +108,7 @@ def test_left_half_plane(degree: int) -> None:
     assert of_j < (8e-15 if degree < 4 else 6e-14 if degree < 9 else 2e-12)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("degree", [1, 3, MOST])
 def test_right_half_plane(degree: int) -> None:
     """Negative stiffness grows: the same functions at positive real parts."""

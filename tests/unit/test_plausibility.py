@@ -110,6 +110,7 @@ ANALYSIS
 """
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("items", "a", "told"), [("", 6.0, True), ("DUCTU=30", 6.0, False), ("", 2.0, False)]
 )
@@ -187,6 +188,7 @@ RECORD_OF = {
 }
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("case", RECORD_OF)
 def test_a_record_in_another_unit_is_told_on_the_first_page(tmp_path, case):
     peak, items, told = RECORD_OF[case]

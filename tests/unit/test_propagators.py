@@ -158,6 +158,7 @@ def test_state_space_is_the_same_system(kind: str) -> None:
         assert np.abs(to @ space.b - np.vstack([none, force])).max() < 1e-13
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("degree", [0, 1, 4])
 @pytest.mark.parametrize("kind", KINDS)
 def test_samples_steps_and_rates_agree_with_single_times(kind: str, degree: int) -> None:
@@ -191,6 +192,7 @@ def test_samples_steps_and_rates_agree_with_single_times(kind: str, degree: int)
         assert np.abs((4 * d[0] - d[1]) / 3 - slope).max() < 1e-10 * speed
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("degree", [0, 1, 4])
 @pytest.mark.parametrize("kind", KINDS)
 def test_bounds_of_the_derivatives(kind: str, degree: int) -> None:
@@ -216,6 +218,7 @@ def test_bounds_of_the_derivatives(kind: str, degree: int) -> None:
                         assert np.allclose(np.abs(found), most, rtol=1e-9)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("degree", [0, 1, 4])
 @pytest.mark.parametrize("kind", KINDS)
 def test_integral_of_the_motion(kind: str, degree: int) -> None:

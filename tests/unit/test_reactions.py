@@ -146,6 +146,7 @@ def test_an_oscillator_pulls_at_its_support_as_its_spring_and_dashpot_do(tmp_pat
     assert row["acceleration"] >= np.abs(a).max() * (1 - 1e-12)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("method", ["EXACT", "TAYLOR"])
 def test_envelopes_do_not_depend_on_the_output(tmp_path, method):
     """Between samples more than a period apart the peaks are found, as closely as those of nodes are."""
@@ -202,6 +203,7 @@ def test_base_shears_are_inertia_loads_and_contact(tmp_path, other, method):
     assert np.abs(r.history("storey/shear")[:, top] - above).max() < 1e-9 * np.abs(above).max()
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("geometry", ["SMALL", "PDELTA", "LARGE"])
 def test_a_history_at_rest_has_the_reactions_of_the_static_state(tmp_path, geometry):
     rest = "EQUAKE\n SINE AMPLITUDE=1e-9 PERIOD=0.5 DURATION=0.01"
@@ -322,6 +324,7 @@ ANALYSIS
 """
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("method", ["EXACT", "TAYLOR", "NEWMARK DT=0.01"])
 @pytest.mark.parametrize(
     ("gap", "loads", "scale", "force"),

@@ -59,6 +59,7 @@ ANALYSIS
 """
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("deck", [UNLOADS, YIELDS], ids=["unloads", "yields"])
 @pytest.mark.parametrize("method", ["TAYLOR", "EXACT"])
 def test_no_energy_is_made_or_lost_where_a_force_falls(deck, method):

@@ -65,6 +65,7 @@ def against_a_wall(e: float, push: float, times: Array) -> tuple[Array, Array]:
     return out, wall
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("method", ["TAYLOR", "AUTO"])
 @pytest.mark.parametrize(
     ("law", "e", "push"),

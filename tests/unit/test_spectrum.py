@@ -48,6 +48,7 @@ def test_a_step_is_overshot(period: float, xi: float) -> None:
         assert found.sa[0, 0] == pytest.approx(3.0, rel=1e-11)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("rise", [0.03, 0.1, 0.23, 0.77])
 def test_a_ramp_of_finite_rise(rise: float) -> None:
     """Chopra (2012), Eq. 4.5.3: u = a/w^2 (1 + |sin(pi tr/T)| / (pi tr/T)), undamped."""
@@ -139,6 +140,7 @@ def integrated(ground: Piecewise, period: float, xi: float) -> Array:
     return best
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("period", [0.011, 0.09, 0.6, 4.0])
 @pytest.mark.parametrize("xi", [0.0, 0.05, 0.7])
 def test_an_independent_integration_finds_the_same_peaks(period: float, xi: float) -> None:
@@ -295,6 +297,7 @@ def test_the_floor_that_rides_on_the_ground_has_its_spectrum(
     assert capsys.readouterr().err == ""
 
 
+@pytest.mark.full
 def test_two_runs_in_one_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("matplotlib")
     for name in "ab":

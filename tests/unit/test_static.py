@@ -165,6 +165,7 @@ LOADS
 """
 
 
+@pytest.mark.full
 @settings(max_examples=100)
 @given(gap=st.floats(-0.5, 0.5), load=st.floats(-50, 50))
 @example(gap=-0.1, load=-50.0)  # an overlap that the load pulls open
@@ -308,6 +309,7 @@ LOADS
         solved(deck)
 
 
+@pytest.mark.full
 def test_a_long_chain_is_told_from_a_mechanism():
     """Pivots tell: the cantilever of 300 members stands, the same on a pin falls, upright or inclined."""
     for x, y in ((0.1, 0.0), (0.06, 0.08)):

@@ -251,6 +251,7 @@ def least_energy(k: Array, p: Array, rows: Array, gaps: Array) -> Array:
     raise AssertionError("none is in equilibrium")
 
 
+@pytest.mark.full
 @settings(max_examples=60)
 @given(st.integers(0, 10**6), st.integers(2, 5))
 def test_any_row_of_masses_finds_its_equilibrium(seed: int, n: int) -> None:
@@ -310,6 +311,7 @@ OUTPUT
 """
 
 
+@pytest.mark.full
 @BOTH
 @LAWS
 def test_a_history_takes_over_the_force_of_statics(method: str, law: str) -> None:
@@ -321,6 +323,7 @@ def test_a_history_takes_over_the_force_of_statics(method: str, law: str) -> Non
     assert len(r.tables["collisions"]) == 1
 
 
+@pytest.mark.full
 @BOTH
 @LAWS
 def test_it_parts_where_the_force_is_used_up(method: str, law: str) -> None:

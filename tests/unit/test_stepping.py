@@ -191,6 +191,7 @@ def test_auto_learns_nothing_from_two_runs_with_the_same_steps(tmp_path, monkeyp
 def test_auto_gives_up_where_shorter_steps_bring_nothing(tmp_path, monkeypatch):
     """A peak that differs by a tenth from run to run, as a force that rings does."""
     steps_alone(monkeypatch)
+    monkeypatch.setattr(refinement, "MAX_STALE_RUNS", 3)  # each takes twice the steps of the one before
     rings = itertools.cycle((1.0, 1.1))
     monkeypatch.setattr(
         refinement, "figures", lambda *given: Peak(np.array([next(rings)]), np.ones(1), ONE)

@@ -157,6 +157,7 @@ def run_taylor(text: str) -> Ran:
     return r
 
 
+@pytest.mark.full
 @each_once(
     ("alpha", [0.3, 0.5, 1.5, 2.0]),
     ("load", ["thrown", "shaken"]),
@@ -304,6 +305,7 @@ ANALYSIS
 """
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("alpha", "items"),
     [

@@ -191,6 +191,7 @@ def test_one_mass_on_bouc_wen(
     assert series < most
 
 
+@pytest.mark.full
 @each_once(
     ("v, shaken", [(-3.0, False), (1.0, True), (0.0, True)]),
     ("behind", [np.inf, 40.0]),

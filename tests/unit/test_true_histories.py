@@ -197,6 +197,7 @@ def test_crests_of_polynomials() -> None:
     np.testing.assert_allclose(place, [0.3, 1.0, 0.0, 0.6], atol=1e-7)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("method", ["TAYLOR", "EXACT"])
 def test_close_ups_hold_every_peak_of_a_contact(tmp_path: Path, method: str) -> None:
     """Samples 0.1 s apart, collisions of some hundredths: the histories show each at its true peak."""
@@ -240,6 +241,7 @@ def told_of_closeups(found: Results) -> list[tuple[str, str, str]]:
     return [c.tolist() for c in found.table("checks") if "close-ups" in c["check"]]
 
 
+@pytest.mark.full
 def test_close_ups_thin_out_within_their_budget(tmp_path: Path) -> None:
     """Every collision stays in them at its true peak, with fewer of its instants; 0 stores none."""
     none = history(tmp_path, "EXACT", 0.1, "CLOSEUPS=0")
@@ -270,6 +272,7 @@ def test_of_each_collision_the_largest_peak_stays() -> None:
     assert found.height.tolist() == [7.0, 3.0, 6.0, 2.0]
 
 
+@pytest.mark.full
 def test_close_ups_without_room_for_peaks_say_so(tmp_path: Path) -> None:
     """Room for two peaks, of more collisions: the first stay, and the report names the time after."""
     whole = history(tmp_path, "EXACT", 0.1)
@@ -315,6 +318,7 @@ def test_close_ups_go_into_csv(tmp_path: Path) -> None:
     np.testing.assert_array_equal(rows, np.column_stack(found.closeup("contact/force")))
 
 
+@pytest.mark.full
 def test_tolerances_of_their_own_for_accelerations_and_members(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -403,6 +407,7 @@ def test_extremes_bracket_what_lies_between_the_samples(tmp_path: Path) -> None:
         assert beyond < 0.015 * size, (name, beyond / size)
 
 
+@pytest.mark.full
 def test_extremes_keep_their_budget(tmp_path: Path) -> None:
     """Intervals are joined by twos; what is joined is what was apart."""
     whole = history(tmp_path, "TAYLOR", 0.01)

@@ -61,6 +61,7 @@ def test_two_equal_storeys_in_series(method: str, dt: float | None, vx: float) -
     assert float(found.split()[5]) == pytest.approx(when, rel=1e-4 if dt else 1e-5)
 
 
+@pytest.mark.full
 @each_once(
     ("method, dt", METHODS),
     (

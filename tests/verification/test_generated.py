@@ -21,6 +21,7 @@ def texts() -> list[str]:
     return [decks.deck(seed) for seed in SEEDS]
 
 
+@pytest.mark.full
 def test_a_seed_gives_one_deck(texts: list[str]) -> None:
     assert decks.deck(SEEDS[3]) == texts[3] != texts[4]
 

@@ -250,7 +250,7 @@ def total_work(
     """
     structure, n = system.structure, system.structure.n_free
     w, x = gauss(tau, spectral_radius)
-    inputs = [np.array([polynomial.value(input_coefs, float(y), order) for y in x]).T for order in range(3)]
+    inputs = [polynomial.on(input_coefs[None], x[None], order)[:, 0] for order in range(3)]
     u, v, a = motion(x)
     k, c, f0 = (
         np.array([getattr(b, name) for b in branches])[:, None]
