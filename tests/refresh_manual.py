@@ -92,6 +92,9 @@ PARTS = {
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("part", nargs="*", choices=PARTS, help="all if left out", default=list(PARTS))
-    for name in parser.parse_args().part:
+    parser.add_argument("parts", nargs="*", help=f"of {', '.join(PARTS)}; all if left out")
+    parts = parser.parse_args().parts or [*PARTS]
+    if unknown := sorted({*parts} - PARTS.keys()):
+        parser.error(f"no part: {', '.join(unknown)}")
+    for name in parts:
         PARTS[name]()

@@ -12,7 +12,7 @@ from decks import results_of
 from kernels import FAST, NUMBA, as_with_numba, by_numba, interpreted, steps_alone
 from pound_solve.integrate import auto, condensed, costs, trial
 from pound_solve.integrate.convergence import compared, estimate, refinement
-from pound_solve.integrate.convergence.compared import DRIFTS, Peak
+from pound_solve.integrate.convergence.compared import RESPONSES, Peak
 from pound_solve.integrate.events import within_step
 from pound_solve.integrate.kernels import allocation, products
 from pound_solve.integrate.protocol import Stop
@@ -66,7 +66,7 @@ OUTPUT
 """
 HINGED = "RULE=BILINEAR R=0.05 MI=60 MJ=60 KH=2E5"
 
-ONE = np.array([DRIFTS])  #: kind of a made-up peak
+ONE = np.array([RESPONSES])  #: kind of a made-up peak
 
 
 def run(folder, method, hinge=HINGED, turn="0.5", every=0.1):
@@ -166,6 +166,43 @@ def test_auto_keeps_its_tolerance_and_its_estimate_holds(tmp_path, monkeypatch, 
     found = run(tmp_path, f"AUTO TOL={tol}")
     assert found.table("contact_summary")["closures"][0] == closed
     assert error_against(found, truth) <= estimated(found) <= tol
+
+
+APPENDAGE = """UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 3 0 FIX=YR
+ 3 4 0 FIX=YR
+ELEMENTS
+ 1 STOREY 1 2
+ 2 TANK 2 3
+PROPS
+ STOREY SPRING KX=4000
+ TANK SPRING KX=2E5 FX=1.5 RULE=BILINEAR R=0.02
+WEIGHTS
+ 2 981
+ 3 9.81
+DRIFT
+ "storey" 1 2
+EQUAKE
+ SINE AMPLITUDE=2 PERIOD=0.5 DURATION=2
+ANALYSIS
+ HISTORY 2 METHOD={}
+"""
+
+
+def test_the_estimate_covers_what_yields_beside_the_drifts(tmp_path, monkeypatch):
+    """A light tank on a stiff spring: its ductility needs far shorter steps than the storey's drift."""
+    deck, rows = tmp_path / "tank.inp", []
+    for method in ("EXACT", "AUTO TOL=1e-3"):
+        deck.write_text(APPENDAGE.format(method))
+        with results_of(deck) as r:
+            rows.append(r.table("spring_envelope")[0])
+            claimed = estimated(r) if method != "EXACT" else 0.0
+        steps_alone(monkeypatch)
+    assert rows[0]["ductility"] > 10
+    for name in ("ductility", "plastic_work"):
+        assert abs(rows[1][name] / rows[0][name] - 1.0) <= claimed <= 1e-3
 
 
 def estimated(results):

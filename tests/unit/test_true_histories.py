@@ -327,7 +327,7 @@ def test_tolerances_of_their_own_for_accelerations_and_members(
     steps_alone(monkeypatch)
     plain = history(tmp_path, "AUTO TOL=2e-2", 0.05)
     told = [str(c["check"]) for c in plain.table("checks") if "estimated error" in c["check"]]
-    assert len(told) == 1 and "drifts and contact forces" in told[0]
+    assert len(told) == 1 and "drifts, contact forces and hinges" in told[0]
     found = history(tmp_path, "AUTO TOL=2e-2 TOL_ACCELERATION=3e-2 TOL_MEMBER=4e-2", 0.05)
     checks = [c for c in found.table("checks") if "estimated error" in c["check"]]
     assert [str(c["check"]).split(", ")[-1] for c in checks] == ["TOL 0.02", "TOL 0.03", "TOL 0.04"]

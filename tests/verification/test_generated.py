@@ -64,11 +64,10 @@ def test_steps_of_auto_keep_their_tolerance_on_generated_decks(tmp_path: Path, s
 
 def made_up(seed: int, **more: object) -> dict[str, object]:
     """A row of a campaign."""
-    kinds = ("auto", "contact of own", "contact of largest", "acceleration", "member")
     return {
         "seed": seed, "mode": "AUTO", "tol": 1e-3, "status": "done", "message": "", "method": "NEWMARK",
         "claimed": 5e-4, "met": True, "seconds": 2.0, "reference": "TAYLOR", "uncertain": 0.0,
-        "best": "TAYLOR", "best seconds": 1.0, "errors": dict.fromkeys(kinds, 4e-4),
+        "best": "TAYLOR", "best seconds": 1.0, "errors": dict.fromkeys(campaign.KINDS, 4e-4),
     } | more  # fmt: skip
 
 

@@ -117,6 +117,7 @@ def _both(a: Peaks, b: Peaks) -> Peaks:
         [x + y for x, y in zip(a.yields, b.yields)],
         [x + y for x, y in zip(a.dashpot_losses, b.dashpot_losses)],
         [*a.collisions, *later],
+        max(a.between, b.between),
     )
 
 

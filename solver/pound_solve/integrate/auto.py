@@ -221,7 +221,8 @@ SPEC = Spec(
             Kind.WORD,
             default=RESPONSE,
             words=(RESPONSE, ALL),
-            doc="peaks that TOL is for: RESPONSE drifts and contact forces; ALL also accelerations "
+            doc="peaks that TOL is for: RESPONSE drifts, contact forces, deformations and plastic work of "
+            "springs and hinges that can yield; ALL also accelerations "
             "and forces of the nodes and members that OUTPUT names",
         ),
         Field(

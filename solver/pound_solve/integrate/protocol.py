@@ -18,6 +18,8 @@ from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
+BETWEEN = "largest share of a peak that lies above both ends of a step"  #: name of a check
+MOST_BETWEEN = 0.1  #: of such a share; a sine has that with seven steps in its period
 SHARP = 1e-2  #: share of a spring's largest force that rounding may make
 RUNAWAY = "the motion grows without bound: its energy {:.3g} is far above what was put in"
 CHANGES, CHANGES_PER_LAW = 50, 4  #: of branch at one instant, at most, and more for each law
@@ -313,6 +315,15 @@ def rounding_check(
         return []
     name = f"share of the force of element {place} that rounding of its deformation makes"
     return [(name, f"{worst:.1e}", "look: too stiff for the distance that it gives way")]
+
+
+def between_check(peaks: Peaks) -> list[tuple[str, str, str]]:
+    """Check how far peaks rely on the motion between the steps, which rates at their ends tell; wrong rates
+    make peaks that never were.
+    """
+    enough = peaks.between < MOST_BETWEEN
+    verdict = "good" if enough else "look: peaks lie far above both ends of a step; a shorter DT shows them"
+    return [(BETWEEN, f"{peaks.between:.1e}", verdict)]
 
 
 def refuse_rigid(system: ReducedSystem, start: Start, method: str) -> None:

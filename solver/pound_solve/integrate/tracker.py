@@ -15,6 +15,8 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.reduction import ReducedSystem
 
+SMALL = 1e-3  #: share of the largest peak of its unit below which it is not asked where a peak lies
+
 
 @dataclass
 class Extreme:
@@ -69,6 +71,8 @@ class Peaks:
         Yield events per law.
     dashpot_losses : list of float
         Energy lost in the dashpot of every law (contacts) [F L].
+    between : float
+        Largest share of a peak by which it exceeds all values at instants.
     """
 
     monitored: list[Extreme]
@@ -77,6 +81,7 @@ class Peaks:
     yields: list[int]
     dashpot_losses: list[float]
     collisions: list[Collision] = field(default_factory=list)
+    between: float = 0.0
 
 
 class Peak(Protocol):
@@ -109,6 +114,8 @@ class Extremes(NamedTuple):
         At the last instant that a method with steps tracked.
     steepest : ndarray
         Largest magnitude of the slope so far.
+    reached : ndarray
+        Largest magnitude at an instant; `high` and `low` may lie between two.
     """
 
     high: Array
@@ -118,6 +125,7 @@ class Extremes(NamedTuple):
     value: Array
     slope: Array
     steepest: Array
+    reached: Array
 
 
 class TrackedPeak:
@@ -143,6 +151,7 @@ class TrackedPeak:
             x.high[i], x.t_high[i] = value, t
         if value < x.low[i]:
             x.low[i], x.t_low[i] = value, t
+        x.reached[i] = max(x.reached[i], abs(value))
 
 
 class CollisionPeak:
@@ -181,7 +190,7 @@ class ResponseTracker:
 
     def __init__(self, laws: Sequence[LawSpring], n_monitored: int) -> None:
         self.laws, self.n_monitored = laws, n_monitored
-        self.extremes = Extremes(*np.zeros((7, n_monitored + 2 * len(laws))))
+        self.extremes = Extremes(*np.zeros((8, n_monitored + 2 * len(laws))))
         self.extremes.high[:], self.extremes.low[:] = -np.inf, np.inf
         self.open: dict[int, Collision] = {}
         self._ended: list[Collision] = []
@@ -267,4 +276,19 @@ class ResponseTracker:
             list(self._yields),
             dashpot_losses.tolist(),
             collisions,
+            self._between(),
         )
+
+    def _between(self) -> float:
+        """Largest share of a peak by which it exceeds all values at instants; peaks that are far below the
+        largest of their unit do not count.
+        """
+        x = self.extremes
+        units = [law.unit for law in self.laws]
+        kinds = np.array(["drift"] * self.n_monitored + [f"along {u}" for u in units] + units)
+        size = np.maximum(np.maximum(x.high, -x.low), 0.0)
+        share = np.divide(size - x.reached, size, out=np.zeros(len(size)), where=size > 0.0)
+        for kind in np.unique(kinds):
+            own = kinds == kind
+            share[own & (size < SMALL * size[own].max())] = 0.0
+        return float(share.max(initial=0.0))

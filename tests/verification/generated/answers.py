@@ -38,7 +38,7 @@ class Answer(NamedTuple):
     met : bool
         Whether it says that the tolerance is met.
     peaks : dict
-        By kind: drift, contact, spring, displacement, acceleration, member; an array of rows of one or two.
+        By kind: drift, contact, spring, hinge, displacement, acceleration, member; an array of rows.
     units : list of str
         Kinds of members' forces, in the order of their peaks.
     """
@@ -95,7 +95,7 @@ def _read(results: Results) -> Answer:
 
 def _peaks(results: Results) -> dict[str, Array]:
     """Peaks of a run.  Those of nodes and members are at the output times, which all methods share."""
-    found = {name: np.zeros((0, 2)) for name in ("drift", "spring")}
+    found = {"drift": np.zeros((0, 2)), "spring": np.zeros((0, 2)), "hinge": np.zeros((0, 3))}
     for name, table, high, low in (
         ("drift", "drift_envelope", "max", "min"),
         ("spring", "spring_envelope", "deformation_max", "deformation_min"),
@@ -103,6 +103,8 @@ def _peaks(results: Results) -> dict[str, Array]:
         if table in results.tables:
             rows = results.table(table)
             found[name] = np.column_stack([rows[high], rows[low]])
+    if "spring_envelope" in results.tables:
+        found["hinge"] = _hinges(results.table("spring_envelope"))
     found["contact"] = np.array(results.table("contact_summary")["peak_force"])[:, None]
     for name, history in (
         ("displacement", "node/u"),
@@ -116,15 +118,31 @@ def _peaks(results: Results) -> dict[str, Array]:
     return found
 
 
+def _hinges(rows: Array) -> Array:
+    """Ductility, plastic work, and force times deformation at yield of each spring that can yield."""
+    rows = rows[np.isfinite(rows["ductility"])]
+    force, size = (
+        np.maximum(np.abs(rows[f"{name}_max"]), np.abs(rows[f"{name}_min"]))
+        for name in ("force", "deformation")
+    )
+    at_yield = size / np.maximum(rows["ductility"], 1e-300)
+    return np.column_stack([rows["ductility"], rows["plastic_work"], force * at_yield])
+
+
 def errors(own: Answer, truth: Answer) -> dict[str, float]:
     """Largest differences of the peaks of two answers by kind, relative to their scales.
 
-    ``auto`` is what AUTO estimates: drifts relative to themselves, contact forces with a floor; without
-    drifts springs and displacements.  ``contact of own`` and ``contact of largest`` relate a contact's
-    force to its own peak and to the largest of all contacts; accelerations are those along x.
+    ``auto`` is what AUTO estimates: drifts relative to themselves, contact forces with a floor, ductilities
+    and plastic work of hinges; without drifts springs and displacements, too.  ``contact of own`` and
+    ``contact of largest`` relate a contact's force to its own peak and to the largest of all contacts;
+    accelerations are those along x.
     """
     out = {}
     a, b = own.peaks, truth.peaks
+    ductility, work, unit = b["hinge"].T
+    off = np.abs(a["hinge"] - b["hinge"]).T
+    shares = off[0] / np.maximum(ductility, 1.0), off[1] / np.maximum(work, unit)
+    out["hinge"] = float(np.max(shares, initial=0.0))
     gap = {kind: np.abs(a[kind] - b[kind]) for kind in b}
     force = np.abs(b["contact"])
     largest = force.max(initial=0.0)
@@ -140,8 +158,8 @@ def errors(own: Answer, truth: Answer) -> dict[str, float]:
     units = np.array(truth.units)
     size = np.array([np.abs(b["member"][units == u]).max(initial=0.0) for u in truth.units])
     out["member"] = _worst(gap["member"], size[:, None])
-    kinds = ("drift", "contact") if len(b["drift"]) else ("spring", "displacement", "contact")
-    out["auto"] = max(out[kind] for kind in kinds)
+    kinds = ("drift",) if len(b["drift"]) else ("spring", "displacement")
+    out["auto"] = max(out[kind] for kind in (*kinds, "contact", "hinge"))
     return out
 
 

@@ -38,6 +38,8 @@ MOST_RUNS = 6
 SETTLED = 0.2  #: share of TOL that a run of shorter steps may leave
 SURE = 0.3  #: share of TOL that an independent answer may be uncertain by
 LADDER_SECONDS = 5.0  #: CPU time after which no shorter steps are tried
+#: of errors that are printed
+KINDS = ("auto", "hinge", "contact of own", "contact of largest", "acceleration", "member")
 RIGID = "knows no rigid contact"  #: message of methods that take none
 MOST_TASKS = 300  #: of one worker: a new one has a clean memory
 
@@ -231,8 +233,7 @@ def line(row: Mapping[str, Any]) -> str:
     e = row.get("errors", {})
     claimed = f"{row['claimed']:.1e}" if row["claimed"] is not None else "-"
     best = row.get("best seconds") or np.nan
-    told = [f"{e.get(k, np.nan):.1e}" for k in ("auto", "contact of own", "contact of largest",
-                                                "acceleration", "member")]  # fmt: skip
+    told = [f"{e.get(k, np.nan):.1e}" for k in KINDS]
     return (
         f"{row['seed']:5d} {row['mode']:5} {row['method'] or '-':8} TOL {row['tol']:.0e} "
         f"{row['outcome']:14} "
@@ -256,7 +257,7 @@ def summary(rows: list[dict[str, Any]]) -> str:
         out += ["|---|---|---|---|---|---|---|---|"]
         for method in sorted({r["method"] for r in own if "errors" in r}):
             mine = [r for r in own if "errors" in r and r["method"] == method and r["outcome"] != "unsure"]
-            for kind in ("auto", "contact of own", "contact of largest", "acceleration", "member"):
+            for kind in KINDS:
                 pairs = [(r["errors"][kind] / r["tol"], r["seed"]) for r in mine]
                 out.append(_distribution(f"error over TOL: {kind}", method, pairs))
             pairs = [(r["seconds"] / r["best seconds"], r["seed"]) for r in mine if r.get("best seconds")]

@@ -1,11 +1,14 @@
-"""What the runs of AUTO are compared by: the largest and smallest value of every drift and the peak force
-of every contact.
+"""What the runs of AUTO are compared by: the largest and smallest value of every drift, the peak force of
+every contact, and the largest and smallest deformation and the plastic work of every spring and hinge that
+can yield.
 
-Each is relative to the larger magnitude of its own, but at least to `FLOOR` times the largest of its
-kind: a contact that is hardly touched does not set the step.  Without drifts, by the deformations of all
-springs in the same way, and by all displacements relative to the largest in their direction.  Where they
-have a tolerance, by the accelerations of the nodes and the forces of the members that OUTPUT names, too,
-relative to the largest of their kind.
+Drifts and forces are relative to the larger magnitude of their own, but at least to `FLOOR` times the
+largest of their kind: a contact that is hardly touched does not set the step.  A deformation is relative to
+itself, but at least to that at first yield, and plastic work to itself, but at least to the work of a force
+of the strength over that deformation: so ductilities and damage indices have the same relative errors.
+Without drifts the deformations of all springs are compared as drifts are, and all displacements relative to
+the largest in their direction.  Where they have a tolerance, the accelerations of the nodes and the forces
+of the members that OUTPUT names are compared, too, relative to the largest of their kind.
 """
 
 from __future__ import annotations
@@ -18,13 +21,14 @@ import numpy as np
 from pound_solve.integrate.convergence.replay import Replay
 from pound_solve.integrate.tracker import Extreme, Peaks
 from pound_solve.numerics.types import Array, Index
+from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.reduction import ReducedSystem
 
 FLOOR = 0.05  #: share of the largest peak of its kind that a peak is measured against at least
 BRIEF = 0.05  #: share of a collision below which it is not asked how fast its force rises
 RESPONSE, ALL = "RESPONSE", "ALL"  #: what TOL is for
-DRIFTS, ACCELERATIONS, FORCES = range(3)  #: what tolerances are for
-NAMES = ("drifts and contact forces", "accelerations", "member forces")
+RESPONSES, ACCELERATIONS, FORCES = range(3)  #: what tolerances are for
+NAMES = ("drifts, contact forces and hinges", "accelerations", "member forces")
 
 
 def tolerances(options: Mapping[str, Any]) -> dict[int, float]:
@@ -32,7 +36,7 @@ def tolerances(options: Mapping[str, Any]) -> dict[int, float]:
     tol, every = float(options["TOL"]), options.get("PEAKS", RESPONSE) == ALL
     own = {ACCELERATIONS: options.get("TOL_ACCELERATION"), FORCES: options.get("TOL_MEMBER")}
     asked = {kind: float(tol if x is None else x) for kind, x in own.items() if x is not None or every}
-    return {DRIFTS: tol, **asked}
+    return {RESPONSES: tol, **asked}
 
 
 class Peak(NamedTuple):
@@ -49,7 +53,8 @@ def measured(extremes: Sequence[Extreme], kinds: Sequence[str]) -> Peak:
     """Extremes, each relative to its own size, but at least to `FLOOR` times the largest of its kind."""
     values = np.array([(e.high, e.low) for e in extremes]).reshape(-1, 2)
     size = np.abs(values).max(axis=1, initial=0.0)
-    return Peak(values.ravel(), np.repeat(_floored(size, np.array(kinds)), 2), _all(DRIFTS, 2 * len(size)))
+    scales = np.repeat(_floored(size, np.array(kinds)), 2)
+    return Peak(values.ravel(), scales, _all(RESPONSES, len(scales)))
 
 
 def _all(kind: int, count: int) -> Index:
@@ -65,12 +70,39 @@ def _floored(size: Array, kinds: Array, share: float = FLOOR) -> Array:
     return out
 
 
+def hinges(laws: Sequence[LawSpring], peaks: Peaks, losses: Sequence[float]) -> Peak:
+    """Deformations and plastic work of the springs and hinges that can yield.
+
+    Parameters
+    ----------
+    laws : sequence of LawSpring
+    peaks : Peaks
+        Of a run.
+    losses : sequence of float
+        Energy that each law has lost in hysteresis at the end [F L].
+    """
+    values, scales = list[float](), list[float]()
+    for s, d, f, loss in zip(laws, peaks.deformation, peaks.force, losses):
+        first = [(abs(y), abs(p)) for y, p in zip(s.yields or (), s.strengths or ()) if abs(y) > 0.0]
+        if not first or s.role.collides:
+            continue
+        at_yield, strength = min(first)
+        largest = s.whole(d.high, f.high), s.whole(d.low, f.low)
+        size = max(at_yield, *map(abs, largest))
+        values += [*largest, loss]
+        scales += [size, size, max(loss, strength * at_yield)]
+    return Peak(np.array(values), np.array(scales), _all(RESPONSES, len(values)))
+
+
 def figures(system: ReducedSystem, peaks: Peaks, replay: Replay, asked: Collection[int] = ()) -> Peak:
-    """Return the peaks that are compared between runs: those of the kind DRIFTS, and others `asked` for."""
+    """Return the peaks that are compared between runs: the responses, and others `asked` for."""
     laws = system.structure.laws
     contacts = [i for i, s in enumerate(laws) if s.role.collides]
     force = np.array([max((c.peak for c in peaks.collisions if c.law == i), default=0.0) for i in contacts])
-    parts = [measured(peaks.monitored, ["drift"] * len(peaks.monitored))]
+    parts = [
+        measured(peaks.monitored, ["drift"] * len(peaks.monitored)),
+        hinges(laws, peaks, replay.lost),
+    ]
     if not peaks.monitored:
         springs = [(e, s.unit) for e, s in zip(peaks.deformation, laws) if not s.role.collides]
         parts.append(measured([e for e, _ in springs], [unit for _, unit in springs]))
@@ -78,14 +110,14 @@ def figures(system: ReducedSystem, peaks: Peaks, replay: Replay, asked: Collecti
         displacement = np.column_stack([np.ravel(replay.high), np.ravel(replay.low)])
         # hinges and uplift have directions of their own
         largest = _floored(np.abs(displacement).max(axis=1), direction, 1.0)
-        parts.append(Peak(displacement.ravel(), np.repeat(largest, 2), _all(DRIFTS, displacement.size)))
+        parts.append(Peak(displacement.ravel(), np.repeat(largest, 2), _all(RESPONSES, displacement.size)))
     if ACCELERATIONS in asked or FORCES in asked:
         values, units = replay.seen(system)
         kinds = np.array([ACCELERATIONS if unit == "acceleration" else FORCES for unit in units], int)
         wanted = np.isin(kinds, list(asked))
         scales = _floored(np.abs(values), np.array(units), 1.0)
         parts.append(Peak(values[wanted], scales[wanted], kinds[wanted]))
-    parts.append(Peak(force, _floored(force, np.zeros(len(force))), _all(DRIFTS, len(force))))
+    parts.append(Peak(force, _floored(force, np.zeros(len(force))), _all(RESPONSES, len(force))))
     return Peak(*(np.concatenate(x) for x in zip(*parts)))
 
 

@@ -18,6 +18,7 @@ from pound_solve.integrate.protocol import (
     Outcome,
     Start,
     Stop,
+    between_check,
     goals,
     rounding_check,
 )
@@ -218,5 +219,6 @@ class StepRefinement:
             out.append((f"estimated error of {NAMES[kind]}, TOL {tol:g}", f"{error:.1e}", verdict))
         return [
             *out,
+            *between_check(outcome.peaks),
             *rounding_check(self.system.structure.laws, outcome.peaks),
         ]

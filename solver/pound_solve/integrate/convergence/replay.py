@@ -48,6 +48,12 @@ class Replay:
         """Pass the progress of a trial on."""
         self.recorder.trial(t, doing)
 
+    @property
+    def lost(self) -> list[float]:
+        """Energy that each law has lost in hysteresis at the last sample [F L]."""
+        laws: LawValues = self.samples[-1][4]
+        return [float(x) for x in laws.lost[:, -1]]
+
     def seen(self, system: ReducedSystem) -> tuple[Array, list[str]]:
         """Peaks of the accelerations of nodes and of the forces of members, and the kind of each."""
         own = self.recorder.envelopes.blank()

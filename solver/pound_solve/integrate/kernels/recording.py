@@ -71,6 +71,7 @@ def track(linear: LinearSystem, laws: Laws, step: Step, t: float, since: float) 
             count_extreme(laws, step, i - forces, i, sign * top, t - since + place)
         extremes.value[i], extremes.slope[i] = value, slope
         extremes.steepest[i] = max(extremes.steepest[i], abs(slope))
+        extremes.reached[i] = max(extremes.reached[i], abs(value))
 
 
 def log_transition(

@@ -28,6 +28,7 @@ from pound_solve.integrate.protocol import (
     MonitoredOutputs,
     Recorder,
     Start,
+    between_check,
     goals,
     refuse_rigid,
     rounding_check,
@@ -127,7 +128,7 @@ class Stepper(KernelEngine):
         if falls := int(self.state.falling):
             told = "look: a DT that follows how it gives way, or EXACT"
             out.append(("steps too long for a branch that falls", str(falls), told))
-        out += [*self._springs(peaks), *rounding_check(self.springs, peaks)]
+        out += [*between_check(peaks), *self._springs(peaks), *rounding_check(self.springs, peaks)]
         ended = [c for c in peaks.collisions if c.t_end > c.t_start]
         hardest = [
             max((c for c in ended if c.law == law), key=lambda c: c.peak) for law in {c.law for c in ended}
