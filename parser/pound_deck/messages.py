@@ -281,7 +281,9 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P337": (
         "structure not connected to the ground (warning)",
         "EQUAKE shakes the base along a direction in which no fixed node, spring, dashpot or contact holds "
-        "the structure, and neither INITIAL nor FORCES set it in motion. Fix its base in that direction.",
+        "the structure, and neither INITIAL nor FORCES set it in motion. Fix its base in that direction. "
+        "The same of one building with a height: the supports leave it free to move or turn as one body; "
+        "there, contacts count only if they are closed at rest.",
     ),
     "P338": (
         "name of no single building, or of no floor",

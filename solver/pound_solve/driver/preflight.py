@@ -6,14 +6,12 @@ from collections.abc import Callable
 from math import ceil, floor, log10
 from typing import Final
 
-import numpy as np
-
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
-from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import misnamed
 from pound_solve.structure.damping.by_building import uneven
 from pound_solve.structure.structure import Structure
+from pound_solve.structure.supports import adrift
 
 MOST_STEPS: Final = 10**8  #: of a history: hours of a small structure
 MOST_ROWS: Final = 5 * 10**6  #: of stored histories
@@ -52,45 +50,6 @@ def pressed(structure: Structure) -> list[Diagnostic]:
         for label in used
         if props[label]["GAP"] < 0.0
     ]
-
-
-def adrift(structure: Structure) -> list[Diagnostic]:
-    """Directions in which nothing joins the structure to the shaken ground: it stays behind, as one body.
-
-    A deck with an initial motion or with forces may mean that.
-    """
-    model = structure.model
-    if model.initial or model.forces or all(c.spec.name != "HISTORY" for c in model.analyses):
-        return []
-    shaken = {c["DIRECTION"]: c for c in reversed(model.equake) if c["SUPPORTS"] is None}
-    out = []
-    for direction in sorted(shaken.keys() - {"R"}):
-        d = "XY".index(direction)
-        shift = _shift(structure, d)
-        if shift @ structure.ground[d] > 0.0 and not _connected(structure, shift):
-            message = (
-                f"nothing ties the structure to the ground along {direction}: it stays behind as one body"
-            )
-            hint = f"fix {direction} of its base under NODES, or join it to the ground by an element"
-            out.append(Diagnostic("P337", message, shaken[direction].span, hint, "warning"))
-    return out
-
-
-def _shift(structure: Structure, d: int) -> Array:
-    """Unit rigid-body displacement of the free DOFs along direction `d`; the supports stay."""
-    dofs = structure.dofs
-    return np.array([float(own == d) for _, own in dofs.free] + [0.0] * len(dofs.moved))
-
-
-def _connected(structure: Structure, shift: Array) -> bool:
-    """Whether a stiffness, a law (also of an open contact) or a dashpot opposes a displacement."""
-    k = structure.displaced(np.zeros(structure.n_free)).initial_stiffness
-    if (abs(k @ shift) > 1e-9 * (abs(k) @ shift)).any() or (structure.law_rows @ shift).any():
-        return True
-    dashpots = (b for p in structure.parts.values() for b in p.damping)
-    return any(
-        (b.matrix @ [structure.dofs.value((f,), (1.0,), shift) for f in b.dofs]).any() for b in dashpots
-    )
 
 
 def too_many(structure: Structure) -> list[Diagnostic]:

@@ -88,17 +88,31 @@ def parts(model: Model) -> list[tuple[int, ...]]:
     """Nodes of the connected parts, by their lowest numbers."""
     numbers = sorted(model.nodes)
     place = {n: i for i, n in enumerate(numbers)}
-    pairs = [
-        (e.i, e.j)
-        for e in model.elements.values()
-        if e.j is not None and model.props[e.prop].spec.name != "CONTACT"
-    ]
+    pairs = joints(model)
     pairs += [(n.id, master) for n in model.nodes.values() for master in n.slaved.values()]
     joined = components(len(numbers), groups=[np.array([place[i], place[j]]) for i, j in pairs])
     found: dict[int, list[int]] = {}
     for n, own in zip(numbers, joined.tolist()):
         found.setdefault(own, []).append(n)
     return [tuple(nodes) for nodes in found.values()]
+
+
+def stands(model: Model, nodes: Collection[int]) -> bool:
+    """Whether a connected part has a height and members in it, as a frame has; a ball, a floor or a
+    bar that lies has none.
+    """
+    own = frozenset(nodes)
+    joined = any(i in own and j in own for i, j in joints(model))
+    return joined and len({model.nodes[n].y for n in own}) > 1
+
+
+def joints(model: Model) -> list[tuple[int, int]]:
+    """The pairs of nodes that elements join, contacts apart."""
+    return [
+        (e.i, e.j)
+        for e in model.elements.values()
+        if e.j is not None and model.props[e.prop].spec.name != "CONTACT"
+    ]
 
 
 def buildings(structure: Structure) -> list[Building]:

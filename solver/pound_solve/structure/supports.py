@@ -1,0 +1,139 @@
+"""Rigid-body motions that nothing opposes while the ground shakes: supports are missing.
+
+A deck with an initial motion or with forces may mean that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Card, Model, Node
+from pound_solve.numerics.types import Array
+from pound_solve.structure.buildings import Building, buildings, stands
+from pound_solve.structure.dofs import DIRECTIONS
+from pound_solve.structure.structure import Structure
+
+ROUNDING = 1e-9  #: share of its terms below which a sum that should be zero is zero
+
+
+def adrift(structure: Structure) -> list[Diagnostic]:
+    """Directions in which nothing joins the structure, or one of its buildings, to the shaken ground."""
+    out = []
+    for direction, card in shaken(structure.model).items():
+        d = DIRECTIONS.index(direction)
+        shift = _shift(structure, d)
+        if shift @ structure.ground[d] > 0.0 and not _resisted(structure, shift[:, None]).any():
+            message = (
+                f"nothing ties the structure to the ground along {direction}: it stays behind as one body"
+            )
+            hint = f"fix {direction} of its base under NODES, or join it to the ground by an element"
+            out.append(Diagnostic("P337", message, card.span, hint, "warning"))
+    return out or _unsupported(structure)
+
+
+def shaken(model: Model) -> dict[str, Card]:
+    """Directions along which the ground moves all supports, and the card that says so; none where something
+    else moves the structure, too.
+    """
+    if model.initial or model.forces or all(c.spec.name != "HISTORY" for c in model.analyses):
+        return {}
+    found = {c["DIRECTION"]: c for c in reversed(model.equake) if c["SUPPORTS"] is None}
+    return {direction: found[direction] for direction in sorted(found.keys() - {"R"})}
+
+
+def _unsupported(structure: Structure) -> list[Diagnostic]:
+    """Buildings that the shaken ground moves and that could move as one body, contacts open.
+
+    A body without height, such as a ball or a bar between walls, may be meant to fly.
+    """
+    directions = [DIRECTIONS.index(d) for d in shaken(structure.model)]
+    out = []
+    for b in buildings(structure) if directions else ():
+        if stands(structure.model, b.nodes) and (free := _free_motion(structure, b, directions)):
+            own = [structure.model.nodes[n] for n in b.nodes]
+            base = min(n.y for n in own)
+            lowest = [n for n in own if n.y == base]
+            message = f"nothing keeps {b.name!r} from {free} as one body"
+            hint = f"fix its base ({_some(lowest)}) under NODES, or join it to the ground by an element"
+            out.append(Diagnostic("P337", message, lowest[0].span, hint, "warning"))
+    return out
+
+
+def _free_motion(structure: Structure, b: Building, directions: Sequence[int]) -> str:
+    """In words, a motion of a building as one body that nothing opposes and the ground excites; or nothing.
+
+    Columns of the matrices here are shifts along x and y and a turn about the middle of the building, in
+    units that move its edge by one.
+    """
+    nodes = [structure.model.nodes[n] for n in b.nodes]
+    places = np.array([(n.x, n.y) for n in nodes])
+    middle = (places.min(axis=0) + places.max(axis=0)) / 2.0
+    size = float(np.ptp(places, axis=0).max()) / 2.0
+    rigid = {}
+    for n, (x, y) in zip(b.nodes, ((places - middle) / size).tolist()):
+        rigid[n] = ((1.0, 0.0, -y), (0.0, 1.0, x), (0.0, 0.0, 1.0 / size))
+    none = (0.0, 0.0, 0.0)
+    columns = [*structure.dofs.free, *structure.dofs.moved]
+    found = [rigid[n][d] if n in rigid and d < 3 else none for n, d in columns]
+    motions = np.array(found).reshape(-1, 3)
+    motions[structure.n_free :] = 0.0
+    held = [rigid[n.id][DIRECTIONS.index(letter)] for n in nodes for letter in n.fixed]
+    rows = np.concatenate([np.array(held).reshape(-1, 3), _resisted(structure, motions, touching=True)])
+    rows = rows[rows.any(axis=1)]
+    rows /= np.linalg.norm(rows, axis=1)[:, None]
+    value, vector = np.linalg.eigh(rows.T @ rows)
+    loose = vector[:, value < ROUNDING]
+    inertia = structure.ground[directions] @ motions
+    if not (abs(inertia @ loose) > ROUNDING * abs(inertia).max()).any():
+        return ""
+    for d in range(2):
+        if (inertia[:, d]).any() and np.linalg.norm(loose[d]) > 1.0 - ROUNDING:
+            return f"moving along {DIRECTIONS[d]}"
+    x, y, turn = loose[:, np.argmax(abs(loose[2]))]
+    if not abs(turn) > ROUNDING:
+        return "moving"
+    about = size * (np.round(middle / size + np.array([-y, x]) / turn, 6) + 0.0)
+    return f"turning about x = {about[0]:.4g}, y = {about[1]:.4g}"
+
+
+def _some(nodes: Sequence[Node], most: int = 6) -> str:
+    """The first few of some nodes."""
+    return ", ".join(str(n.id) for n in nodes[:most]) + ", ..." * (len(nodes) > most)
+
+
+def _shift(structure: Structure, d: int) -> Array:
+    """Unit rigid-body displacement of the free DOFs along direction `d`; the supports stay."""
+    dofs = structure.dofs
+    return np.array([float(own == d) for _, own in dofs.free] + [0.0] * len(dofs.moved))
+
+
+def _resisted(structure: Structure, motions: Array, touching: bool = False) -> Array:
+    """What opposes motions: forces of the initial stiffness and of dashpots, deformations of laws.
+
+    Parameters
+    ----------
+    motions : ndarray, shape (n, n_motions)
+    touching : bool
+        Whether contacts count only if they are closed at rest.
+
+    Returns
+    -------
+    ndarray, shape (n_found, n_motions)
+        Exact zeros where terms cancel.
+    """
+    dofs, laws = structure.dofs, structure.laws
+    apart = {s.element for s in laws if touching and s.role.collides and s.facts["gap"] > 0.0}
+    ties = np.array([i for i, s in enumerate(laws) if s.element not in apart], np.int64)
+    out = []
+    for a in (
+        structure.displaced(np.zeros(structure.n_free)).initial_stiffness,
+        structure.law_rows[ties],
+        *(b.matrix @ dofs.matrix(b.dofs) for p in structure.parts.values() for b in p.damping),
+    ):
+        found = np.asarray(a @ motions)
+        found[abs(found) <= ROUNDING * (abs(a) @ abs(motions))] = 0.0
+        out.append(found)
+    return np.concatenate(out)

@@ -1,0 +1,100 @@
+"""Structures that cannot be meant are told by name, with the cure; those that can are not."""
+
+import pytest
+
+from decks import structure_of
+from pound_solve.driver.preflight import preflight
+
+#: two buildings that stand beside each other, a portal frame and a column
+DECK = """NODES
+ 1 0 0 FIX=XYR
+ 2 0 3.5
+ 3 6 0 FIX=XYR
+ 4 6 3.5
+ 5 6.5 0 FIX=XYR
+ 6 6.5 3.5 FIX=YR
+ELEMENTS
+ 1 COL 1 2
+ 2 COL 3 4
+ 3 BEAM 2 4
+ 4 SPR 5 6
+ 5 POUND 4 6
+PROPS
+ COL FRAME E=25E6 A=0.25 I=0.0026
+ BEAM FRAME E=25E6 A=0.18 I=0.0025
+ SPR SPRING KX=20000
+ POUND CONTACT GAP=0.02 K=1E6
+WEIGHTS
+ 2,4 500
+ 6 800
+EQUAKE
+ SINE AMPLITUDE=1 PERIOD=1 DURATION=1
+ANALYSIS
+ HISTORY 1
+"""
+
+
+def changed(*changes):
+    """The deck with some of its lines replaced."""
+    text = DECK
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return text
+
+
+def remarks(text):
+    """What the checks of the assembled structure say, cures included."""
+    return [f"{d.code} {d.message}: {d.hint}" for d in preflight(structure_of(text))]
+
+
+def test_a_deck_that_can_be_meant_has_no_remark():
+    assert not remarks(DECK)
+
+
+ONE_FREE, OTHER_FREE = (" 1 0 0 FIX=XYR", " 1 0 0"), (" 3 6 0 FIX=XYR", " 3 6 0")
+A_PIN, A_ROLLER = (" 3 6 0 FIX=XYR", " 3 6 0 FIX=XY"), (" 3 6 0 FIX=XYR", " 3 6 0 FIX=Y")
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ([ONE_FREE, OTHER_FREE], "nothing keeps 'building 1' from moving along X as one body"),
+        ([(" 1 0 0 FIX=XYR", " 1 0 0 FIX=YR"), A_ROLLER], "'building 1' from moving along X"),
+        ([ONE_FREE, A_PIN], "from turning about x = 6, y = 0 as one body: fix its base (1, 3)"),
+        ([(" 5 6.5 0 FIX=XYR", " 5 6.5 0 FIX=YR")], "'building 2' from moving along X"),
+        ([(" 1 0 0 FIX=XYR", " 1 0 0 FIX=Y"), A_PIN], ""),
+    ],
+)
+def test_a_building_that_could_move_as_one_body(changes, told):
+    """Contacts do not count while they are open."""
+    found = [r for r in remarks(changed(*changes)) if r.startswith("P337")]
+    assert len(found) == bool(told) and all(told in r for r in found)
+
+
+BED = """ 6 BED 1
+ 7 BED 3
+ 8 SLIDE 1
+PROPS
+ BED CONTACT GAP=0 K=1E6 ANGLE=-90
+ SLIDE DASHPOT CX=1
+"""
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        ("EQUAKE", "INITIAL\n 2 VX=1\nEQUAKE"),
+        ("HISTORY 1", "MODAL 1"),
+        ("PROPS\n", " 6 SOIL 1\n 7 SOIL 3\nPROPS\n SOIL SPRING KX=1 KY=1\n"),
+        ("PROPS\n", BED),
+    ],
+    ids=["thrown", "not shaken", "on springs", "on a bed"],
+)
+def test_a_body_that_may_move_is_not_told(change):
+    assert not [r for r in remarks(changed(ONE_FREE, OTHER_FREE, change)) if r.startswith("P337")]
+
+
+def test_a_ball_between_contacts_may_fly():
+    ball = "NODES\n 7 8 3.5 FIX=YR\nELEMENTS\n 7 POUND 6 7\nWEIGHTS\n 7 100\nEQUAKE"
+    assert not remarks(changed(("EQUAKE", ball)))
