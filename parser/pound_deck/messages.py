@@ -313,7 +313,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P343": (
         "weight of a fixed node (warning)",
         "The node is fixed, so its mass takes no part in any motion. A support with a motion of its own "
-        "(SUPPORTS) may have weight.",
+        "(SUPPORTS) may have weight. The same of a node above the base of a building that is fixed along X "
+        "alone, where EQUAKE shakes along X and others of its nodes swing.",
     ),
     "P344": (
         "drift of one node",
@@ -329,6 +330,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "MODES of a damping model names a mode that the structure does not have. The last mode is taken "
         "in its "
         "place.",
+    ),
+    "P347": (
+        "no mass (warning)",
+        "MODAL or EQUAKE needs mass, and nothing has any, or a building with a height has none. It has no "
+        "modes, and the ground does not shake it. Give its floors WEIGHTS.",
     ),
     "R401": (
         "record not found",

@@ -98,3 +98,40 @@ def test_a_body_that_may_move_is_not_told(change):
 def test_a_ball_between_contacts_may_fly():
     ball = "NODES\n 7 8 3.5 FIX=YR\nELEMENTS\n 7 POUND 6 7\nWEIGHTS\n 7 100\nEQUAKE"
     assert not remarks(changed(("EQUAKE", ball)))
+
+
+WEIGHTS = "WEIGHTS\n 2,4 500\n 6 800\n"
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ([(WEIGHTS, "")], "nothing has mass, so that nothing swings: give the nodes of its floors WEIGHTS"),
+        ([(WEIGHTS, ""), ("HISTORY 1", "MODAL 1")], "nothing has mass"),
+        ([(" 6 800\n", "")], "the building of nodes 5, 6 has no mass"),
+        ([(" 6 800\n", 'BUILDINGS\n "B" NODES=6\n')], "'B' has no mass"),
+        ([(" 2,4 500\n", "")], "the building of nodes 1, 2, 3, 4 has no mass"),
+        ([(" 2,4 500\n", ""), ("BEAM FRAME", "BEAM FRAME WGT=25")], ""),
+        ([(WEIGHTS, ""), ("HISTORY 1", "STATIC")], ""),
+        ([(" 6 800\n", ""), (" 6 6.5 3.5", " 6 7.5 0")], ""),  # a bumper
+    ],
+)
+def test_a_building_without_mass(changes, told):
+    found = [r for r in remarks(changed(*changes)) if r.startswith("P347")]
+    assert len(found) == bool(told) and all(told in r for r in found)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ([(" 2 0 3.5", " 2 0 3.5 FIX=X")], "node 2 of 'building 1' is fixed along X above the base"),
+        ([(" 2 0 3.5", " 2 0 3.5 FIX=XR"), (" 2,4 500", " 4 500")], ""),
+        ([(" 1 0 0 FIX=XYR", " 1 0 0 FIX=XR"), ("2,4 500", "1,2,4 500")], ""),  # a footing
+        ([(" 2 0 3.5", " 2 0 3.5 FIX=X"), (" 4 6 3.5", " 4 6 3.5 FIX=X")], ""),  # it moves upwards only
+        ([(" 2 0 3.5", " 2 0 3.5 FIX=X"), ("DURATION=1", "DURATION=1 SUPPORTS=1,2,3,5")], ""),
+        ([(" 2 0 3.5", " 2 0 3.5 FIX=X"), ("DURATION=1", "DURATION=1 DIRECTION=Y")], ""),
+    ],
+)
+def test_a_floor_that_is_fixed(changes, told):
+    found = [r for r in remarks(changed(*changes)) if r.startswith("P343")]
+    assert len(found) == bool(told) and all(told in r and "take X out of FIX" in r for r in found)

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from pound_deck.diagnostics import Diagnostic
-from pound_deck.model import Card, Model, Node
+from pound_deck.model import Card, Model
 from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import Building, buildings, stands
 from pound_solve.structure.dofs import DIRECTIONS
@@ -53,12 +53,12 @@ def _unsupported(structure: Structure) -> list[Diagnostic]:
     out = []
     for b in buildings(structure) if directions else ():
         if stands(structure.model, b.nodes) and (free := _free_motion(structure, b, directions)):
-            own = [structure.model.nodes[n] for n in b.nodes]
-            base = min(n.y for n in own)
-            lowest = [n for n in own if n.y == base]
+            own = structure.model.nodes
+            base = min(own[n].y for n in b.nodes)
+            lowest = [n for n in b.nodes if own[n].y == base]
             message = f"nothing keeps {b.name!r} from {free} as one body"
-            hint = f"fix its base ({_some(lowest)}) under NODES, or join it to the ground by an element"
-            out.append(Diagnostic("P337", message, lowest[0].span, hint, "warning"))
+            hint = f"fix its base ({some(lowest)}) under NODES, or join it to the ground by an element"
+            out.append(Diagnostic("P337", message, own[lowest[0]].span, hint, "warning"))
     return out
 
 
@@ -99,9 +99,9 @@ def _free_motion(structure: Structure, b: Building, directions: Sequence[int]) -
     return f"turning about x = {about[0]:.4g}, y = {about[1]:.4g}"
 
 
-def _some(nodes: Sequence[Node], most: int = 6) -> str:
-    """The first few of some nodes."""
-    return ", ".join(str(n.id) for n in nodes[:most]) + ", ..." * (len(nodes) > most)
+def some(nodes: Sequence[int], most: int = 6) -> str:
+    """The numbers of the first few of some nodes."""
+    return ", ".join(map(str, nodes[:most])) + ", ..." * (len(nodes) > most)
 
 
 def _shift(structure: Structure, d: int) -> Array:
