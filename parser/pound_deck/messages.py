@@ -336,6 +336,17 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "MODAL or EQUAKE needs mass, and nothing has any, or a building with a height has none. It has no "
         "modes, and the ground does not shake it. Give its floors WEIGHTS.",
     ),
+    "P348": (
+        "column foot that hangs free (warning)",
+        "A member ends at the height of the supports of its building, or below, at a node that has no FIX "
+        "along X or Y, no mass, no load and no other element. Give the node FIX, or join it to the ground.",
+    ),
+    "P349": (
+        "nodes at one place that nothing joins (warning)",
+        "A member ends at a node where another node is, too, and no element, contact or SLAVED joins them: "
+        "a beam passes the column that should carry it. Let the member end at that node, or join the two. "
+        "Frames that touch are not told, since columns stand on both sides.",
+    ),
     "R401": (
         "record not found",
         "The record is neither in the deck's folder nor in the record folders. Check its name, "

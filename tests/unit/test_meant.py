@@ -135,3 +135,53 @@ def test_a_building_without_mass(changes, told):
 def test_a_floor_that_is_fixed(changes, told):
     found = [r for r in remarks(changed(*changes)) if r.startswith("P343")]
     assert len(found) == bool(told) and all(told in r and "take X out of FIX" in r for r in found)
+
+
+UPPER = ("ELEMENTS\n", "NODES\n 8 0 7\n 9 6 7\nELEMENTS\n 11 COL 2 8\n 12 COL 4 9\n 13 BEAM 8 9\n")
+JOINT = ("ELEMENTS\n", "NODES\n 7 6 3.5\nELEMENTS\n")
+BEAM = (" 3 BEAM 2 4", " 3 BEAM 2 7")
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ([ONE_FREE], "P348 the foot of member 1, node 1, hangs free: give it FIX"),
+        ([(" 1 0 0 FIX=XYR", " 1 0 0 FIX=R")], "P348 the foot of member 1, node 1"),
+        ([(" 1 0 0 FIX=XYR", " 1 0 -1 FIX=R")], "P348"),
+        ([ONE_FREE, ("PROPS\n", " 6 SOIL 1\nPROPS\n SOIL SPRING KX=9 KY=9 KR=9\n")], ""),
+        ([ONE_FREE, ("2,4 500", "1,2,4 500")], ""),  # a pendulum, perhaps
+        ([ONE_FREE, OTHER_FREE], ""),  # P337 says more
+        ([("ELEMENTS\n", "NODES\n 7 -2 3.5\nELEMENTS\n 9 BEAM 7 2\n")], ""),  # a balcony
+        (
+            [JOINT, BEAM],
+            "7 and 4 are both at x = 6, y = 3.5, but nothing joins them: let element 3 end at node 4",
+        ),
+        ([JOINT, BEAM, ("2,4 500", "2,7 500")], "P349 nodes 7 and 4"),
+        ([JOINT, BEAM, ("4 6\nPROPS", "7 6\nPROPS")], "P349 nodes 7 and 4"),
+        ([UPPER, JOINT, (" 12 COL 4 9", " 12 COL 7 9")], "P349 nodes 7 and 4"),
+        ([JOINT, BEAM, ("4 6\nPROPS", "4 6\n 6 SPR 4 7\nPROPS")], ""),
+        ([JOINT, BEAM, ("4 6\nPROPS", "4 6\n 6 HIT 4 7\nPROPS\n HIT CONTACT GAP=1 K=1 ANGLE=0")], ""),
+        ([("ELEMENTS\n", "NODES\n 7 6 3.5 SLAVED=XY MASTER=4\nELEMENTS\n"), BEAM], ""),
+        ([JOINT, (" 1 COL", " 6 COL 5 7\n 1 COL")], "P349 nodes 7 and 4"),
+    ],
+)
+def test_ends_of_members_that_nothing_holds(changes, told):
+    found = [r for r in remarks(changed(*changes)) if r[:4] in ("P348", "P349")]
+    assert len(found) == bool(told) and all(told in r for r in found)
+
+
+def test_frames_that_touch_may_share_their_places():
+    """Drawn without a gap; contacts join their roofs, not their feet and first floors."""
+    frame = "".join(
+        f" {k}1 {x} 0 FIX=XYR\n {k}2 {x} 3\n {k}3 {x} 6\n {k}4 {y} 0 FIX=XYR\n {k}5 {y} 3\n {k}6 {y} 6\n"
+        for k, x, y in ((1, 0, 6), (2, 6, 12))
+    )
+    elements = "".join(
+        f" {k}1 C {k}1 {k}2\n {k}2 C {k}2 {k}3\n {k}3 C {k}4 {k}5\n {k}4 C {k}5 {k}6\n"
+        f" {k}5 C {k}2 {k}5\n {k}6 C {k}3 {k}6\n"
+        for k in (1, 2)
+    )
+    assert not remarks(
+        f"NODES\n{frame}ELEMENTS\n{elements} 99 P 16 23\nPROPS\n C FRAME E=2E7 A=0.2 I=1E-3\n"
+        " P CONTACT GAP=0.05 K=1E6 ANGLE=0\nWEIGHTS\n 12,13,15,16,22,23,25,26 100\n"
+    )

@@ -10,6 +10,7 @@ from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
 from pound_solve.structure.buildings import misnamed
 from pound_solve.structure.damping.by_building import uneven
+from pound_solve.structure.loose_ends import loose_ends
 from pound_solve.structure.mass_checks import immovable, massless
 from pound_solve.structure.structure import Structure
 from pound_solve.structure.supports import adrift
@@ -82,6 +83,7 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     adrift,
     massless,
     immovable,
+    loose_ends,
     pushover.mistakes,
     too_many,
     misnamed,

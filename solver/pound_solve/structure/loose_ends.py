@@ -1,0 +1,129 @@
+"""Ends of members that nothing holds: column feet that hang free, nodes at one place that nothing joins."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+
+import numpy as np
+
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Element, Model, Span
+from pound_solve.numerics.graph import components
+from pound_solve.structure.buildings import SAME_LEVEL, parts
+from pound_solve.structure.structure import Structure
+
+SAME_PLACE = 1e-6  #: share of the size of a structure by which nodes at one place may lie apart
+
+
+def loose_ends(structure: Structure) -> list[Diagnostic]:
+    """Ends of members that hang free, or lie beside the node that they should end at: one for each line."""
+    ends = Ends(structure.model)
+    found: dict[Span, Diagnostic] = {}
+    for n, d in (*_apart(ends), *_feet(ends)):
+        found.setdefault(structure.model.nodes[n].span, d)
+    return list(found.values())
+
+
+class Ends:
+    """What ends at each node.
+
+    Attributes
+    ----------
+    model : Model
+    members : mapping of int to list of Element
+        Elements at every node that lead to another place, contacts apart.
+    used : set of int
+        Nodes at which there is anything else but a support: mass, load, contact, short element, slaving.
+    groups : list of list of int
+        Nodes at one place, where there are several.
+    joined : mapping of int to int
+        A name for all nodes that slaving and elements without length join, contacts among them.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        places, at = _places(model)
+        self.groups = [group for group in places if len(group) > 1]
+        self.members: dict[int, list[Element]] = defaultdict(list)
+        pairs = [(n.id, master) for n in model.nodes.values() for master in n.slaved.values()]
+        self.used = {n for pair in pairs for n in pair}
+        for cards in (model.weights, model.loads, model.forces, model.initial):
+            self.used.update(n for card in cards for n in card["NODES"])
+        for e in model.elements.values():
+            i, j = e.i, e.i if e.j is None else e.j
+            if at[i] == at[j]:
+                pairs.append((i, j))
+            if at[i] == at[j] or model.props[e.prop].spec.name == "CONTACT":
+                self.used.update((i, j))
+            else:
+                self.members[i].append(e)
+                self.members[j].append(e)
+        number = {n: k for k, n in enumerate(model.nodes)}
+        tied = components(len(number), groups=[np.array([number[i], number[j]]) for i, j in pairs])
+        self.joined = dict(zip(model.nodes, tied.tolist()))
+
+    def free(self, n: int) -> bool:
+        """Whether a node is the end of one member and nothing else."""
+        return len(self.members[n]) == 1 and n not in self.used and not self.held(n)
+
+    def held(self, n: int) -> bool:
+        """Whether the ground holds a node along x or y."""
+        return bool({"X", "Y"} & set(self.model.nodes[n].fixed))
+
+    def leads(self, n: int, way: int) -> bool:
+        """Whether a member leads up (1) or down (-1) from a node."""
+        y = {m: self.model.nodes[m].y for e in self.members[n] for m in (e.i, e.j) if m is not None}
+        return any(way * (other - y[n]) > 0.0 for other in y.values())
+
+
+def _places(model: Model) -> tuple[list[list[int]], dict[int, int]]:
+    """Nodes at every place, and the number of the place of each node."""
+    x, y = np.array([(n.x, n.y) for n in model.nodes.values()]).T
+    unit = SAME_PLACE * max(np.ptp(x), np.ptp(y)) or 1.0
+    found: dict[tuple[float, float], list[int]] = defaultdict(list)
+    for n, a, b in zip(model.nodes, np.round(x / unit).tolist(), np.round(y / unit).tolist()):
+        found[a, b].append(n)
+    places = list(found.values())
+    return places, {n: i for i, group in enumerate(places) for n in group}
+
+
+def _feet(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
+    """Lower ends of members that hang at the height of the supports of their building, or below."""
+    model = ends.model
+    for part in parts(model):
+        y = [model.nodes[n].y for n in part]
+        supports = [model.nodes[n].y for n in part if ends.held(n)]
+        if not supports:
+            continue
+        base = min(supports) + SAME_LEVEL * (max(y) - min(y))
+        for n in part:
+            if model.nodes[n].y <= base and ends.free(n) and ends.leads(n, 1):
+                message = f"the foot of member {ends.members[n][0].id}, node {n}, hangs free"
+                hint = "give it FIX, or join it to the ground by an element"
+                yield n, Diagnostic("P348", message, model.nodes[n].span, hint, "warning")
+
+
+def _apart(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
+    """Nodes at one place that nothing joins, where one needs the other.
+
+    That is a node without a member down to the ground, as of a beam without its column, beside one that
+    has it; and an end that has nothing else, beside any.  Frames that touch have columns on both sides.
+    """
+    for group in ends.groups:
+        for n in group:
+            alone = ends.free(n)
+            if not ends.members[n] or ends.held(n) or (ends.leads(n, -1) and not alone):
+                continue
+            for other in group:
+                stands = ends.held(other) or ends.leads(other, -1)
+                if ends.joined[other] != ends.joined[n] and (stands or (alone and ends.members[other])):
+                    yield n, _beside(ends, n, other)
+                    break
+
+
+def _beside(ends: Ends, n: int, other: int) -> Diagnostic:
+    node, member = ends.model.nodes[n], ends.members[n][0].id
+    message = f"nodes {n} and {other} are both at x = {node.x:g}, y = {node.y:g}, but nothing joins them"
+    hint = f"let element {member} end at node {other}, or join the nodes by SLAVED, a spring or a contact"
+    return Diagnostic("P349", message, node.span, hint, "warning")
