@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, Final
 
 from pound_deck.diagnostics import Diagnostic, suggest
-from pound_deck.model import Card, Model, Span
+from pound_deck.model import Card, Element, Model, Span
 from pound_deck.schema import Kind
 
 Found = Iterator[Diagnostic]
@@ -15,7 +15,7 @@ Found = Iterator[Diagnostic]
 _TABLE: Final = {Kind.NODE: 0, Kind.NODES: 0, Kind.ELEMENTS: 1, Kind.PROP: 2, Kind.PROPS: 2}
 #: elements along the line between their nodes
 _LONG: Final = ("FRAME", "BEAM_COLUMN", "TENDON")
-_MOST_NAMED: Final = 10  #: nodes in one message
+_MOST_NAMED: Final = 10  #: numbers in one message
 _MOST_HINTS: Final = 100  #: more messages are not printed, and each hint takes its time
 
 
@@ -97,6 +97,19 @@ def _zero_length(model: Model) -> Found:
             message = f"member {element.id} has no length: nodes {i.id} and {j.id} are at the same place"
             hint = f"a {prop.spec.name} needs a length; use a SPRING"
             yield Diagnostic("P312", message, element.span, hint)
+
+
+def _element_names(model: Model) -> Found:
+    """Names that several elements bear, as where NAME stands on a line that generates several."""
+    named: dict[str, list[Element]] = {}
+    for element in model.elements.values():
+        if element.name:
+            named.setdefault(element.name, []).append(element)
+    for name, elements in named.items():
+        if len(elements) > 1:
+            message = f'elements {_numbers([e.id for e in elements])} have one name, "{name}"'
+            hint = "name each on a line of its own, or leave NAME out: then their numbers tell them apart"
+            yield Diagnostic("P350", message, elements[1].span, hint, "warning")
 
 
 def _unused_props(model: Model) -> Found:
@@ -288,12 +301,16 @@ def _weights_of_supports(model: Model) -> Found:
             if {"X", "Y", *("R" * bool(card["WR"]))} <= set(model.nodes[number].fixed)
         ]
         if held and not _node_like(model, card):
-            more = f" and {len(held) - _MOST_NAMED} more" if len(held) > _MOST_NAMED else ""
-            which = ", ".join(map(str, held[:_MOST_NAMED])) + more
-            who = f"nodes {which} are" if len(held) > 1 else f"node {which} is"
+            who = f"nodes {_numbers(held)} are" if len(held) > 1 else f"node {held[0]} is"
             message = f"{who} fixed: a weight there moves nothing"
             hint = "take it out of the list, or correct FIX under NODES"
             yield Diagnostic("P343", message, card.place("NODES"), hint, "warning")
+
+
+def _numbers(found: Sequence[int]) -> str:
+    """The first of several numbers, and how many more there are."""
+    more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
+    return ", ".join(map(str, found[:_MOST_NAMED])) + more
 
 
 _NODES: Final = frozenset({"NODES"})
@@ -307,6 +324,7 @@ CHECKS: Final[tuple[tuple[Callable[[Model], Found], frozenset[str]], ...]] = (
     (_initial, frozenset({"NODES", "INITIAL"})),
     (_slaving, frozenset()),
     (_zero_length, frozenset()),
+    (_element_names, frozenset()),
     (_unused_props, _MEMBERS | _PROPS),
     (_loose_nodes, _NODES | _MEMBERS),
     (_excitation, frozenset({"EQUAKE", "FORCES", "INITIAL", "LOADS", "MEMBER_LOADS"})),

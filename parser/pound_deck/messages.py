@@ -347,6 +347,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "a beam passes the column that should carry it. Let the member end at that node, or join the two. "
         "Frames that touch are not told, since columns stand on both sides.",
     ),
+    "P350": (
+        "one name of several elements (warning)",
+        "Elements have the same NAME, as where it stands on a line that generates several. The report does "
+        "not tell them apart. Give each a line and a name, or leave NAME out: numbers take its place.",
+    ),
     "R401": (
         "record not found",
         "The record is neither in the deck's folder nor in the record folders. Check its name, "

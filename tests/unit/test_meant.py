@@ -3,6 +3,8 @@
 import pytest
 
 from decks import structure_of
+from pound_deck.reader import read_text
+from pound_solve.catalog import catalog
 from pound_solve.driver.preflight import preflight
 
 #: two buildings that stand beside each other, a portal frame and a column
@@ -185,3 +187,18 @@ def test_frames_that_touch_may_share_their_places():
         f"NODES\n{frame}ELEMENTS\n{elements} 99 P 16 23\nPROPS\n C FRAME E=2E7 A=0.2 I=1E-3\n"
         " P CONTACT GAP=0.05 K=1E6 ANGLE=0\nWEIGHTS\n 12,13,15,16,22,23,25,26 100\n"
     )
+
+
+@pytest.mark.parametrize(
+    ("names", "told"),
+    [
+        (("gap", "gap"), 'P350 elements 5, 6 have one name, "gap": name each on a line of its own'),
+        (("gap", "upper gap"), ""),
+        (("", ""), ""),
+    ],
+)
+def test_elements_of_one_name(names, told):
+    first, second = names
+    text = changed((" 5 POUND 4 6", f' 5 POUND 4 6 NAME="{first}"\n 6 POUND 2 6 NAME="{second}"'))
+    found = [f"{d.code} {d.message}: {d.hint}" for d in read_text(text, catalog())[1]]
+    assert len(found) == bool(told) and all(told in r for r in found)
