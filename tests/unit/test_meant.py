@@ -2,7 +2,7 @@
 
 import pytest
 
-from decks import structure_of
+from decks import results_of, structure_of
 from pound_deck.reader import read_text
 from pound_solve.catalog import catalog
 from pound_solve.driver.preflight import preflight
@@ -202,3 +202,31 @@ def test_elements_of_one_name(names, told):
     text = changed((" 5 POUND 4 6", f' 5 POUND 4 6 NAME="{first}"\n 6 POUND 2 6 NAME="{second}"'))
     found = [f"{d.code} {d.message}: {d.hint}" for d in read_text(text, catalog())[1]]
     assert len(found) == bool(told) and all(told in r for r in found)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "told"),
+    [
+        ("LP=0.3 MI=0.1 MJ=0.1", "LP=0.3 MI=200 MJ=200", True),
+        ("LP=0.3 MI=0.1 MJ=0.1 DUCTU=1E6", "KH=1E11 MI=1 MJ=1", False),  # rigid until it yields
+    ],
+)
+def test_hinges_beyond_the_ductility_of_members(tmp_path, one, other, told):
+    rule = "I=0.0026 RULE=BILINEAR R=0.03"
+    text = changed(
+        ("I=0.0026", f"{rule} {one}\n OTHER FRAME E=25E6 A=0.25 {rule} {other}"),
+        (" 2 COL", " 2 OTHER"),
+        ("DURATION=1", "DURATION=0.1"),
+        ("HISTORY 1", "HISTORY 0.2"),
+    )
+    deck = tmp_path / "model.inp"
+    deck.write_text(text)
+    results = results_of(deck)
+    springs = results.table("spring_envelope")
+    assert [bool(x > 50.0) for x in springs["ductility"]] == [True, True, not told, not told]
+    found = [row for row in results.table("checks").tolist() if row[0].startswith("ductility of")]
+    assert len(found) == told
+    for check, value, verdict in found:
+        assert check.startswith("ductility of 2 hinges, largest hinge ") and "element 1" in check
+        assert value == f"{max(springs['ductility']):.3g}"
+        assert verdict.startswith("look: above 50; check yield moments")

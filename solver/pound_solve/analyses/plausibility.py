@@ -20,6 +20,7 @@ Check = tuple[str, str, str]
 
 LARGEST_DRIFT: Final = 0.1  #: drift over height; frames have lost their vertical loads before
 LARGEST_RESIDUAL: Final = 0.005  #: drift over height at the end, which the eye sees in a storey
+LARGEST_DUCTILITY: Final = 50.0  #: of hinges; members of concrete or steel break before
 LARGEST_OVERLAP: Final = 0.02  #: of the shortest member that meets a contact
 
 
@@ -60,6 +61,30 @@ def rotations(structure: Structure, history: HistoryResult, outcome: Outcome) ->
             f"{worst.rotation:.3g} rad, ductility {worst.ductility:.3g}",
             f"look: concrete members lose strength from {ORDINARY_ROTATION:g} rad on (FEMA 356, Tables 6-7 "
             "and 6-8); DUCTU states a limit of your own",
+        )
+
+
+def ductilities(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
+    """Hinges beyond any ductility of members, where the deck does not say how far they go.
+
+    A stiffness KH of their own may be that of a hinge that is rigid until it yields, and a spring may slide
+    or rock: their ductility has no such limit.
+    """
+    model = structure.model
+    far = [
+        r
+        for r in history.springs
+        if r.ductility > LARGEST_DUCTILITY
+        and not (r.ends or math.isnan(r.rotation))
+        and model.props[model.elements[r.spring.element].prop].values.get("KH") is None
+    ]
+    if far:
+        worst = max(far, key=lambda r: r.ductility)
+        ends = f"{len(far)} hinges" if len(far) > 1 else "one hinge"
+        yield (
+            f"ductility of {ends}, largest {worst.spring.component} of element {worst.spring.element}",
+            f"{worst.ductility:.3g}",
+            f"look: above {LARGEST_DUCTILITY:g}; check yield moments, stiffnesses and their units",
         )
 
 
@@ -141,6 +166,7 @@ RULES: Final[Sequence[Callable[[Structure, HistoryResult, Outcome], Iterator[Che
     drifts,
     failures,
     rotations,
+    ductilities,
     unknown,
     overlaps,
 )
