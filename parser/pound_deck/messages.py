@@ -352,6 +352,11 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "Elements have the same NAME, as where it stands on a line that generates several. The report does "
         "not tell them apart. Give each a line and a name, or leave NAME out: numbers take its place.",
     ),
+    "P351": (
+        "gap above the height of the buildings (warning)",
+        "GAP is larger than the height of both buildings at a contact, so that no earthquake closes it. "
+        "GAP has the unit of length of UNITS: 20 mm are 0.02 m.",
+    ),
     "R401": (
         "record not found",
         "The record is neither in the deck's folder nor in the record folders. Check its name, "

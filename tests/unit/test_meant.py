@@ -205,6 +205,27 @@ def test_elements_of_one_name(names, told):
 
 
 @pytest.mark.parametrize(
+    ("gap", "more", "told"),
+    [
+        ("20", ("", ""), "GAP is 20 m, more than the 3.5 m that the buildings at contact 5 are high"),
+        ("20", ("5 POUND 4 6", '5 POUND 4 6 NAME="roof"\n 6 POUND 2 6'), "at contact roof are high"),
+        ("20", ("5 POUND 4 6", "5 POUND 4"), "it does not close: GAP is a distance in m"),
+        ("3.4", ("", ""), ""),
+        ("20", ("EQUAKE", "INITIAL\n 6 VX=-30\nEQUAKE"), ""),  # it is thrown
+        ("5", (" 2 0 3.5", " 2 0 6"), ""),
+    ],
+)
+def test_a_gap_above_the_height_of_the_buildings(gap, more, told):
+    found = [r for r in remarks(changed(("GAP=0.02", f"GAP={gap}"), more)) if r.startswith("P351")]
+    assert len(found) == bool(told) and all(told in r for r in found)
+
+
+def test_a_ball_has_no_height():
+    ball = "NODES\n 1 0 3 FIX=YR\nELEMENTS\n 1 P 1\nPROPS\n P CONTACT GAP=9 K=1E6\nWEIGHTS\n 1 9\nEQUAKE\n"
+    assert not remarks(f"{ball} SINE AMPLITUDE=1 PERIOD=1 DURATION=1\nANALYSIS\n HISTORY 1\n")
+
+
+@pytest.mark.parametrize(
     ("one", "other", "told"),
     [
         ("LP=0.3 MI=0.1 MJ=0.1", "LP=0.3 MI=200 MJ=200", True),
