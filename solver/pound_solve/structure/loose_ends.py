@@ -71,10 +71,15 @@ class Ends:
         """Whether the ground holds a node along x or y."""
         return bool({"X", "Y"} & set(self.model.nodes[n].fixed))
 
-    def leads(self, n: int, way: int) -> bool:
-        """Whether a member leads up (1) or down (-1) from a node."""
-        y = {m: self.model.nodes[m].y for e in self.members[n] for m in (e.i, e.j) if m is not None}
-        return any(way * (other - y[n]) > 0.0 for other in y.values())
+    def reach(self, n: int) -> tuple[float, float]:
+        """Heights that the members at a node reach, from the lowest to the highest end [L]."""
+        nodes = self.model.nodes
+        y = [nodes[n].y, *(nodes[m].y for e in self.members[n] for m in (e.i, e.j) if m is not None)]
+        return min(y), max(y)
+
+    def down(self, n: int) -> bool:
+        """Whether a member leads down from a node."""
+        return self.reach(n)[0] < self.model.nodes[n].y
 
 
 def _places(model: Model) -> tuple[list[list[int]], dict[int, int]]:
@@ -89,16 +94,19 @@ def _places(model: Model) -> tuple[list[list[int]], dict[int, int]]:
 
 
 def _feet(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
-    """Lower ends of members that hang at the height of the supports of their building, or below."""
+    """Lower ends of members at the height of the supports of their building, or below.
+
+    What hangs from its supports is meant to.
+    """
     model = ends.model
     for part in parts(model):
         y = [model.nodes[n].y for n in part]
         supports = [model.nodes[n].y for n in part if ends.held(n)]
         if not supports:
             continue
-        base = min(supports) + SAME_LEVEL * (max(y) - min(y))
+        base, close = min(supports), SAME_LEVEL * (max(y) - min(y))
         for n in part:
-            if model.nodes[n].y <= base and ends.free(n) and ends.leads(n, 1):
+            if ends.free(n) and model.nodes[n].y <= base + close and base + close < ends.reach(n)[1]:
                 message = f"the foot of member {ends.members[n][0].id}, node {n}, hangs free"
                 hint = "give it FIX, or join it to the ground by an element"
                 yield n, Diagnostic("P348", message, model.nodes[n].span, hint, "warning")
@@ -113,10 +121,10 @@ def _apart(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
     for group in ends.groups:
         for n in group:
             alone = ends.free(n)
-            if not ends.members[n] or ends.held(n) or (ends.leads(n, -1) and not alone):
+            if not ends.members[n] or ends.held(n) or (ends.down(n) and not alone):
                 continue
             for other in group:
-                stands = ends.held(other) or ends.leads(other, -1)
+                stands = ends.held(other) or ends.down(other)
                 if ends.joined[other] != ends.joined[n] and (stands or (alone and ends.members[other])):
                     yield n, _beside(ends, n, other)
                     break
