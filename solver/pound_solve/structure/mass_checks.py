@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from pound_deck.diagnostics import Diagnostic
-from pound_deck.model import Card, Model
-from pound_solve.structure.buildings import Building, buildings, parts, stands
+from pound_solve.structure.buildings import buildings, parts, stands
 from pound_solve.structure.structure import Structure
 from pound_solve.structure.supports import shaken, some
 
@@ -39,23 +38,23 @@ def immovable(structure: Structure) -> list[Diagnostic]:
     model, out = structure.model, list[Diagnostic]()
     moved = {owner for owner, _ in structure.dofs.moved}
     swings = {n for n, d in structure.dofs.free if d == 0 and structure.nodal_mass.get((n, d))}
+    held: dict[int, str] = {}
     for b in buildings(structure) if "X" in shaken(model) else ():
-        if swings.isdisjoint(b.nodes):
-            continue
-        above = {n for n in b.nodes if n not in moved and _fixed_along_x(model, b, n)}
-        for card in model.weights:
-            held = [n for n in dict.fromkeys(card["NODES"]) if n in above]
-            if held and card["WX"]:
-                out.append(_held(b, card, held))
+        if not swings.isdisjoint(b.nodes):
+            above = (model.nodes[n] for n in b.nodes if n not in moved)
+            stuck = (n.id for n in above if "X" in n.fixed and "Y" not in n.fixed and n.y > b.base)
+            held.update(dict.fromkeys(stuck, b.name))
+    for card in model.weights:
+        found = [n for n in dict.fromkeys(card["NODES"]) if n in held]
+        if found and card["WX"]:
+            who = (
+                f"nodes {some(found)} are"
+                if len(found) > 1
+                else f"node {found[0]} of {held[found[0]]!r} is"
+            )
+            message = (
+                f"{who} fixed along X above the base: the weight does not swing, and the floor is held"
+            )
+            place, hint = card.place("NODES"), "take X out of FIX under NODES"
+            out.append(Diagnostic("P343", message, place, hint, "warning"))
     return out
-
-
-def _fixed_along_x(model: Model, b: Building, n: int) -> bool:
-    node = model.nodes[n]
-    return "X" in node.fixed and "Y" not in node.fixed and node.y > b.base
-
-
-def _held(b: Building, card: Card, held: list[int]) -> Diagnostic:
-    who = f"nodes {some(held)} of {b.name!r} are" if len(held) > 1 else f"node {held[0]} of {b.name!r} is"
-    message = f"{who} fixed along X above the base: the weight there does not swing, and the floor is held"
-    return Diagnostic("P343", message, card.place("NODES"), "take X out of FIX under NODES", "warning")

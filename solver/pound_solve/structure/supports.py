@@ -69,13 +69,15 @@ def _free_motion(structure: Structure, b: Building, directions: Sequence[int]) -
     units that move its edge by one.
     """
     nodes = [structure.model.nodes[n] for n in b.nodes]
+    if any(set(DIRECTIONS) <= set(n.fixed) for n in nodes):
+        return ""  # nearly all: no need to look at matrices
     places = np.array([(n.x, n.y) for n in nodes])
     middle = (places.min(axis=0) + places.max(axis=0)) / 2.0
     size = float(np.ptp(places, axis=0).max()) / 2.0
     rigid = {}
     for n, (x, y) in zip(b.nodes, ((places - middle) / size).tolist()):
         rigid[n] = ((1.0, 0.0, -y), (0.0, 1.0, x), (0.0, 0.0, 1.0 / size))
-    none = (0.0, 0.0, 0.0)
+    none = (0.0, 0.0, 0.0)  # of other buildings, and of what is inside elements
     columns = [*structure.dofs.free, *structure.dofs.moved]
     found = [rigid[n][d] if n in rigid and d < 3 else none for n, d in columns]
     motions = np.array(found).reshape(-1, 3)
@@ -90,7 +92,7 @@ def _free_motion(structure: Structure, b: Building, directions: Sequence[int]) -
     if not (abs(inertia @ loose) > ROUNDING * abs(inertia).max()).any():
         return ""
     for d in range(2):
-        if (inertia[:, d]).any() and np.linalg.norm(loose[d]) > 1.0 - ROUNDING:
+        if inertia[:, d].any() and np.linalg.norm(loose[d]) > 1.0 - ROUNDING:
             return f"moving along {DIRECTIONS[d]}"
     x, y, turn = loose[:, np.argmax(abs(loose[2]))]
     if not abs(turn) > ROUNDING:
