@@ -16,6 +16,11 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, Final
 
+#: magnitudes of a real number, the smaller one where the program may divide by it: quantities in any units
+#: lie far within, and products of ten of them do not reach 1e308, where floating point ends
+SMALL, GREAT = 1e-30, 1e30
+OF_MAGNITUDE: Final = f"of a magnitude up to {GREAT:g}"
+
 
 class Kind(Enum):
     """What a field holds."""
@@ -92,6 +97,37 @@ class Field:
     family: str = ""
     positional: bool = False
     varies: bool = False
+
+
+def out_of_limits(value: float, f: Field) -> str:
+    """What is wrong with a number that no deck could give this item; empty where one could."""
+    return beyond(value, f) or outside(value, f)
+
+
+def beyond(value: float, f: Field | None) -> str:
+    """What is wrong with the magnitude of a number, which may be no number at all."""
+    nothing = 0.0 if f is None or f.above != 0 else SMALL  # least magnitude of what is divided by
+    if nothing <= abs(value) <= GREAT:
+        return ""
+    allowed = f"of a magnitude from {SMALL:g} to {GREAT:g}" if nothing else OF_MAGNITUDE
+    return f"is {value:.10g}, but must be {allowed}"
+
+
+def outside(value: float, f: Field) -> str:
+    """What is wrong with a number that is not within the limits of its field."""
+    inside = (
+        (f.lo is None or value >= f.lo)
+        and (f.hi is None or value <= f.hi)
+        and (f.above is None or value > f.above)
+        and (f.below is None or value < f.below)
+    )
+    return "" if inside else f"is {value:.10g}, but must be {_allowed(f)}"
+
+
+def _allowed(f: Field) -> str:
+    low = f"at least {f.lo:g}" if f.lo is not None else f"above {f.above:g}" if f.above is not None else ""
+    high = f"at most {f.hi:g}" if f.hi is not None else f"below {f.below:g}" if f.below is not None else ""
+    return " and ".join(part for part in (low, high) if part)
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,12 +12,9 @@ from pound_deck.cards import Part
 from pound_deck.diagnostics import Mistake, hints, mistake, suggest
 from pound_deck.expressions import FUNCTIONS, Expression, Range, Step, Value, evaluate
 from pound_deck.model import Units
-from pound_deck.schema import Catalog, Field, Kind
+from pound_deck.schema import Catalog, Field, Kind, beyond, outside
 
 _LARGEST: Final = 10**15  #: whole numbers beyond are no longer exact
-#: magnitudes of a real number, the smaller one where the program may divide by it: quantities in any units
-#: lie far within, and products of ten of them do not reach 1e308, where floating point ends
-SMALL, GREAT = 1e-30, 1e30
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +78,7 @@ class Values:
         `bounded`.
         """
         value = self._number(part, f)
-        if wrong := _beyond(value, f):
+        if wrong := beyond(value, f):
             name, meaning = (f.name, self.meaning(f)) if f else ("BY", "the step of a range")
             raise mistake("P217", f"{name} {wrong}", part.span, meaning)
         return self.within(value, part, f) if bounded else value
@@ -119,7 +116,7 @@ class Values:
 
     def within(self, value: float, part: Expression, f: Field | None) -> float:
         """The value, which must be within the field's limits."""
-        if f and (wrong := _outside(value, f)):
+        if f and (wrong := outside(value, f)):
             raise mistake("P217", f"{f.name} {wrong}", part.span, self.meaning(f))
         return value
 
@@ -221,34 +218,3 @@ def _are_flags(text: str, letters: str) -> bool:
 def _code(text: str) -> int | None:
     """The whole number that a text is, or None."""
     return int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else None
-
-
-def out_of_limits(value: float, f: Field) -> str:
-    """What is wrong with a number that no deck could give this item; empty where one could."""
-    return _beyond(value, f) or _outside(value, f)
-
-
-def _beyond(value: float, f: Field | None) -> str:
-    """What is wrong with the magnitude of a number, which may be no number at all."""
-    nothing = 0.0 if f is None or f.above != 0 else SMALL  # least magnitude of what is divided by
-    if nothing <= abs(value) <= GREAT:
-        return ""
-    least = f"from {SMALL:g} to" if nothing else "up to"
-    return f"is {value:.10g}, but must be of a magnitude {least} {GREAT:g}"
-
-
-def _outside(value: float, f: Field) -> str:
-    """What is wrong with a number that is not within the limits of its field."""
-    inside = (
-        (f.lo is None or value >= f.lo)
-        and (f.hi is None or value <= f.hi)
-        and (f.above is None or value > f.above)
-        and (f.below is None or value < f.below)
-    )
-    return "" if inside else f"is {value:.10g}, but must be {_allowed(f)}"
-
-
-def _allowed(f: Field) -> str:
-    low = f"at least {f.lo:g}" if f.lo is not None else f"above {f.above:g}" if f.above is not None else ""
-    high = f"at most {f.hi:g}" if f.hi is not None else f"below {f.below:g}" if f.below is not None else ""
-    return " and ".join(part for part in (low, high) if part)

@@ -261,8 +261,6 @@ def test_the_solver_takes_the_model_from_the_parser_and_only_the_top_reads_decks
             allowed |= {"reader"}
         if place(path).startswith("cli/"):
             allowed |= {"layout"}
-        if place(path) == "driver/overrides.py":  # numbers of a command line have the limits of a deck
-            allowed |= {"values"}
         if place(path).startswith("editor/"):  # half a deck is read stage by stage
             allowed = {p.stem for p in DECK.glob("*.py")}
         if place(path) in ("report/deck_reference.py", "report/machine_readable.py"):

@@ -129,8 +129,16 @@ units = "G"
         ('deck = "wall.inp"\nworkers = 0\n', "S603", 2, "above zero"),
         ('deck = "wall.inp"\nseconds = nan\n', "S603", 2, "finite"),
         ('deck = "wall.inp"\ndt = nan\n', "S603", 2, "finite"),
-        ('deck = "wall.inp"\nmethod = "NEWMARK"\ndt = 1e-40\n', "P217", 0, "magnitude"),
-        ('deck = "wall.inp"\ntol = 5\n', "P217", 0, "at most 0.1"),
+        ('deck = "wall.inp"\nmethod = "NEWMARK"\ndt = 1e-40\n', "P217", 3, "magnitude"),
+        ('deck = "wall.inp"\nmethod = "NEWMARK"\ndt = -1\n', "P217", 3, "DT is -1, but must be above 0"),
+        ('deck = "wall.inp"\nmethod = "NEWMARK"\ndt = 1e-12\n', "P345", 3, "steps"),
+        ('deck = "wall.inp"\nmethod = "NEWMARK"\n', "P213", 2, "NEWMARK needs DT"),
+        ('deck = "wall.inp"\nmethod = "GUESS"\n', "P210", 2, "GUESS is no method"),
+        ('deck = "wall.inp"\ndt = 0\n', "P217", 2, "DT is 0"),
+        ('deck = "wall.inp"\ntol = 5\n', "P217", 2, "at most 0.1"),
+        ('deck = "wall.inp"\nseconds = 1e29\n', "S603", 2, "at most 1e+08, not 1e+29"),
+        ('deck = "wall.inp"\nmemory = -1\n', "S603", 2, "above zero"),
+        (f'deck = "wall.inp"\nworkers = {10**26}\n', "S603", 2, "at most 10000"),
         (f'deck = "wall.inp"\nmemory = {"9" * 400}\n', "S603", 2, "finite"),
         ('deck = "wall.inp"\n[[motions]]\nfiles = "first.txt"\nscale = [1, inf]\n', "S603", 4, "finite"),
         ('deck = "wall.inp"\nhistories = ["storey/drfit"]\n', "S602", 2, "storey/drift"),
@@ -204,3 +212,8 @@ def test_the_command_line_says_what_a_study_says(tmp_path, capsys, monkeypatch):
     assert re.search(r"--set gapp:1:1: error P232.*\n0\.01\n", capsys.readouterr().err)
     assert main(["sweep", "wall.inp", "--scale", "1"]) == 2
     assert "--scale belongs to --motions" in capsys.readouterr().err
+
+
+def test_what_is_told_of_an_option_of_the_decks_stands_at_the_item_of_the_study(tmp_path):
+    path = folder(tmp_path, 'deck = "wall.inp"\nmethod = "EXACT"\ndt = 0.1\n')
+    assert f"{path}:3:1: warning P211: EXACT has no item DT" in read(Document.read(str(path))).warnings

@@ -1,6 +1,7 @@
 """The command line: verbs, exit statuses, output streams, and runs that end early."""
 
 import io
+import math
 import os
 import re
 import signal
@@ -110,21 +111,48 @@ def exit_status(words):
         (["{deck}", "--method", "GUESS"], 2, "known methods"),
         (["{deck}", "--method", "NEWMARK"], 2, "DT"),
         *(
-            (["{deck}", "--method", "NEWMARK", "--dt", number], 2, "error P217: --dt: DT is")
+            (["{deck}", "--method", "NEWMARK", "--dt", number], 2, "--dt:1:1: error P217: DT is")
             for number in ("nan", "inf", "0", "-1", "1e400", "1e-31")
         ),
-        (["{deck}", "--method", "AUTO", "--tol", "nan"], 2, "error P217: --tol: TOL is nan"),
+        (["{deck}", "--method", "AUTO", "--tol", "nan"], 2, "--tol:1:1: error P217: TOL is nan"),
         (["{deck}", "--method", "AUTO", "--tol", "-1"], 2, "at least 1e-09 and at most 0.1"),
-        (["{deck}", "--method", "EXACT", "--dt", "nan"], 2, "error P217: --dt: DT is nan"),
+        *(
+            (["{deck}", "--method", "EXACT", "--dt", number], 2, f"--dt:1:1: error P217: DT is {number},")
+            for number in ("nan", "0", "-1", "1e-31")
+        ),
         (["motions", "{deck}", "--dt", "inf"], 2, "no finite number"),
         (["study", "{deck}", "--longest", "nan"], 2, "no finite number"),
         (["loop", "BILINEAR", "--rate", "nan"], 2, "no finite number"),
+        (["motions", "{deck}", "--dt", "1e31"], 2, "a number of a magnitude up to 1e+30"),
+        (["motions", "{deck}", "--dt", "100"], 2, "--dt 100 divides SINE into"),
+        (["motions", "{deck}", "--dt", "1e-20"], 2, "a file holds from one to 1e+07"),
+        (["study", "{deck}", "--steps", "nan"], 2, "nan is no finite number: --steps takes numbers"),
+        (["study", "{deck}", "--steps", "1e-31"], 2, "--steps: DT is 1e-31, but must be"),
+        (["study", "{deck}", "--steps", "0.1,1e-20"], 2, "DT=1e-20 asks for more than 1e+08 steps"),
+        (["study", "{deck}", "--tols", "0.5"], 2, "--tols: TOL is 0.5, but must be at least 1e-09 and"),
+        (["spectrum", "{deck}", "--periods", "1e-29"], 2, "the period 1e-29 is too short"),
+        *((["sweep", "{deck}", "--task", task], 2, "write K/N") for task in ("²/3", "1/" + 5000 * "9")),
     ],
 )
 def test_what_cannot_be_done_is_said_in_a_line_or_two_with_its_status(deck, capsys, words, status, told):
     assert exit_status([w.format(deck=deck) for w in words]) == status
     err = capsys.readouterr().err
     assert told in err and "Traceback" not in err
+
+
+def test_numbers_for_a_deck_without_history_have_its_limits_and_are_told(deck, capsys):
+    deck.write_text(re.sub(r" HISTORY .*", " STATIC", DECK))
+    assert main(["check", str(deck), "--dt", "nan", "--tol", "2"]) == 2
+    told = capsys.readouterr().err
+    assert "--dt:1:1: error P217: DT is nan" in told and "--tol:1:1: error P217: TOL is 2" in told
+    assert main(["check", str(deck), "--dt", "0.1"]) == 0
+    assert "warning P211: a deck without HISTORY has no item DT" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("number", [{"dt": math.nan}, {"dt": 0}, {"dt": -1.0}, {"tol": math.inf}])
+def test_numbers_of_python_have_the_deck_s_limits(deck, number):
+    with pytest.raises(DeckError, match=f"P217: {next(iter(number)).upper()} is"):
+        run(deck, method="NEWMARK", **number)
 
 
 @pytest.mark.full

@@ -15,6 +15,7 @@ from pound_solve.loading.motions.base import Motion
 from pound_solve.loading.records import peer
 
 EQUAL: Final = 1e-9  #: share by which steps of equal length may differ: times are sums
+LONGEST: Final = 10**7  #: file, in steps
 
 
 class MotionError(Exception):
@@ -75,7 +76,11 @@ def _file(number: int, motion: Motion, gravity: float, dt: float | None) -> Moti
     step = float(steps.mean()) if dt is None else dt
     if dt is None:
         step = float(f"{step:.12g}")  # of times that are sums
-    count = int(np.ceil((a.end - a.start) / step - EQUAL)) + 1
+    steps_of_file = (a.end - a.start) / step
+    if not 1.0 - EQUAL <= steps_of_file <= LONGEST:
+        told = f"--dt {step:g} divides {name} into {steps_of_file:.3g} steps"
+        raise MotionError(f"{told}, and a file holds from one to {LONGEST:g}")
+    count = int(np.ceil(steps_of_file - EQUAL)) + 1
     times = np.minimum(a.start + step * np.arange(count), a.end)
     values = np.asarray(a.value(times)) / gravity
     lost = "" if equal and dt is None else "between its samples the file holds straight lines"

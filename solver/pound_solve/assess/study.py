@@ -9,6 +9,7 @@ the time allowed; else the finest steps, extrapolated after Richardson (1911), P
 
 from __future__ import annotations
 
+import itertools
 import math
 import tempfile
 import time
@@ -19,6 +20,7 @@ from typing import Final
 
 import numpy as np
 
+from pound_deck.schema import out_of_limits
 from pound_solve.analyses.history import RESIDUAL, ROWS
 from pound_solve.assess.advice import (
     MARGIN,
@@ -37,6 +39,7 @@ from pound_solve.assess.advice import (
 from pound_solve.catalog import catalog
 from pound_solve.driver import run as driver
 from pound_solve.driver.overrides import with_method
+from pound_solve.driver.preflight import MOST_STEPS
 from pound_solve.results import Results
 from pound_solve.results.place import put_in_place
 from pound_solve.results.schema import Stage
@@ -153,11 +156,25 @@ def run(
     for name in plan.methods:
         if name not in known:
             raise StudyError(f"--methods {name}: known methods are {', '.join(known)}")
+    _check_settings(plan, max(card["T"] for card in cards))
     model = replace(ready.model, analyses=tuple(cards))
     with tempfile.TemporaryDirectory(prefix="pound-study-") as folder:
         bench = _Bench(request, replace(ready, model=model), plan, Path(folder) / "run.h5", report)
         trials, reference = bench.all()
     return Study(tuple(trials), reference, advise(trials, reference)), ready
+
+
+def _check_settings(plan: Plan, end: float) -> None:
+    """Raise StudyError where a step or a tolerance is out of the limits of a method, or a step is too short
+    for a history up to `end`.
+    """
+    methods = [catalog().family("method")[name] for name in plan.methods]
+    for option, item, values in (("--steps", "DT", plan.steps), ("--tols", "TOL", plan.tols)):
+        for value, field in itertools.product(values, filter(None, (m.field(item) for m in methods))):
+            if wrong := out_of_limits(value, field):
+                raise StudyError(f"{option}: {item} {wrong}")
+    if plan.steps and end / min(plan.steps) > MOST_STEPS:
+        raise StudyError(f"--steps: DT={min(plan.steps):g} asks for more than {MOST_STEPS:g} steps")
 
 
 class _Bench:

@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pound_deck.schema import GREAT, OF_MAGNITUDE
+
 if TYPE_CHECKING:
     from pound_solve.driver.run import Request
 
@@ -116,7 +118,9 @@ def drawable(path: Path | None) -> bool:
 
 
 def numbers(words: Sequence[str], takes: str, error: type[Exception]) -> list[float]:
-    """Finite numbers; raise `error`, which says what the option `takes`, at the first word that is none."""
+    """Numbers of the magnitudes that a deck may have; raise `error`, which says what the option `takes`, at
+    the first word that is none.
+    """
     out = []
     for word in words:
         try:
@@ -124,5 +128,7 @@ def numbers(words: Sequence[str], takes: str, error: type[Exception]) -> list[fl
         except ValueError:
             raise error(f"{word[:60]} is no number: {takes}") from None
         if not math.isfinite(out[-1]):
-            raise error(f"{word[:60]} is no finite number")
+            raise error(f"{word[:60]} is no finite number: {takes}")
+        if abs(out[-1]) > GREAT:
+            raise error(f"{word[:60]} is too large: {takes} {OF_MAGNITUDE}")
     return out

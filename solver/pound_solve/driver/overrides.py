@@ -5,14 +5,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, Final
 
-from pound_deck.diagnostics import Diagnostic
+from pound_deck.diagnostics import Diagnostic, has_errors
 from pound_deck.model import Card, Model, Span
-from pound_deck.schema import REQUIRED, Field, Kind, Spec
-from pound_deck.values import out_of_limits
+from pound_deck.schema import REQUIRED, Spec, out_of_limits
 from pound_solve.catalog import catalog
 from pound_solve.driver.request import Request
 
@@ -26,10 +25,10 @@ def overridden(model: Model, request: Request, found: list[Diagnostic]) -> Model
     """
     if request.motion is not None:
         model = with_motion(model, request.motion, found)
-    given = {"DT": request.dt, "TOL": request.tol}
-    if request.method is None and set(given.values()) == {None}:
+    numbers = {"DT": request.dt, "TOL": request.tol}
+    asked = {item: value for item, value in numbers.items() if value is not None}
+    if request.method is None and not asked:
         return model
-    asked = {item: value for item, value in given.items() if value is not None}
     cards = []
     for card in model.analyses:
         if card.spec.name == "HISTORY":
@@ -38,6 +37,8 @@ def overridden(model: Model, request: Request, found: list[Diagnostic]) -> Model
                 return model
             card = changed
         cards.append(card)
+    if all(card.spec.name != "HISTORY" for card in cards):
+        found += _told(asked, None)
     return replace(model, analyses=tuple(cards))
 
 
@@ -66,24 +67,41 @@ def _changed(
     methods = catalog().family("method")
     method = methods.get((name or card["METHOD"]).upper())
     if method is None:
-        message = f"--method {name}: known methods are {', '.join(methods)}"
-        found.append(Diagnostic("P210", message, None))
+        message = f"{name} is no method: known methods are {', '.join(methods)}"
+        found.append(Diagnostic("P210", message, option("METHOD")))
         return None
-    for item, value in asked.items():
-        field = method.field(item) or Field(item, Kind.REAL)
-        if wrong := out_of_limits(value, field):
-            found.append(Diagnostic("P217", f"--{item.lower()}: {item} {wrong}", None))
-            return None
-        if field not in method.fields:
-            message = f"--{item.lower()}: {method.name} has no item {item}"
-            found.append(Diagnostic("P211", message, None, severity="warning"))
+    told = list(_told(asked, method))
+    found += told
+    if has_errors(told):
+        return None
     card = with_method(card, method, asked)
     missing = [f.name for f in method.fields if card.values[f.name] is REQUIRED]
     if missing:
-        message = f"--method {method.name} needs {', '.join(missing)}: give --dt"
-        found.append(Diagnostic("P213", message, None))
+        message = f"{method.name} needs {', '.join(missing)}"
+        found.append(Diagnostic("P213", message, option("METHOD"), "give --dt; in a study dt"))
         return None
     return card
+
+
+def option(item: str) -> Span:
+    """Place of an item of HISTORY that is not the deck's but the request's."""
+    return Span(f"--{item.lower()}", 1, 1, 2)
+
+
+def _told(asked: Mapping[str, float], method: Spec | None) -> Iterator[Diagnostic]:
+    """Numbers out of limits, and those for which there is no item.
+
+    Limits are those of the method's items; of an item that it lacks, those of another method.  The method
+    is None for a deck without HISTORY.
+    """
+    for item, value in asked.items():
+        own = method.field(item) if method else None
+        others = (m.field(item) for m in catalog().family("method").values())
+        if wrong := out_of_limits(value, own or next(filter(None, others))):
+            yield Diagnostic("P217", f"{item} {wrong}", option(item))
+        elif own is None:
+            message = f"{method.name if method else 'a deck without HISTORY'} has no item {item}"
+            yield Diagnostic("P211", message, option(item), severity="warning")
 
 
 def with_method(card: Card, method: Spec, given: Mapping[str, Any]) -> Card:
@@ -94,6 +112,6 @@ def with_method(card: Card, method: Spec, given: Mapping[str, Any]) -> Card:
     # an item of the deck's own method that was left out there may be one that this method must have
     own |= {f.name: f.default for f in method.fields if own[f.name] is None}
     own |= {item: value for item, value in given.items() if item in own}
-    spans = dict(card.spans) | {k: Span("--method/--dt", 1, 1, 2) for k in ("METHOD", *given)}
+    spans = dict(card.spans) | {item: option(item) for item in ("METHOD", *given)}
     values = {**card.values, **own, "METHOD": method.name}
     return replace(card, values=values, laws={"METHOD": (method,)}, spans=spans)

@@ -130,7 +130,7 @@ def _largest(
     lines = acceleration.chords()
     period, ratio = (x.ravel() for x in np.broadcast_arrays(t, xi[:, None]))
     # an interval shorter than half a period has one inflexion at most
-    parts = 2 ** np.ceil(np.log2(np.maximum(2.0 * np.diff(lines.breaks).max() / period, 1.0))).astype(int)
+    parts = 2.0 ** np.ceil(np.log2(np.maximum(2.0 * np.diff(lines.breaks).max() / period, 1.0)))
     if parts.max() * len(lines.breaks) > MOST:
         raise ValueError(f"the period {t.min():g} is too short for an acceleration of this length")
     peaks = np.empty((len(quantities), len(period)))

@@ -12,6 +12,7 @@ from typing import Any, Final, TypeVar
 
 from pound_deck.diagnostics import Diagnostic, suggest
 from pound_deck.model import Span
+from pound_deck.schema import GREAT, OF_MAGNITUDE
 
 Path_ = tuple[str | int, ...]  #: of an item: names of tables, numbers in lists of tables, its own name
 _T = TypeVar("_T")
@@ -155,8 +156,8 @@ class Document:
                 "S603", f"{path[-1]} is {_WORDS.get(kind, 'true or false')}, not {_told(value)}", path
             )
             return default
-        if isinstance(value, float) and not math.isfinite(value):
-            self.mistake("S603", f"{path[-1]} is a finite number, not {value}", path)
+        if isinstance(value, int | float) and not abs(_number(value)) <= GREAT:
+            self.mistake("S603", f"{path[-1]} is a finite number {OF_MAGNITUDE}, not {_told(value)}", path)
             return default
         return value
 
@@ -169,8 +170,9 @@ class Document:
                 kind = " or ".join(_WORDS[k] for k in kinds if k is not int or float not in kinds)
                 self.mistake("S603", f"{path[-1]} takes {kind}, not {_told(own)}", path)
                 return []
-            if isinstance(own, (int, float)) and not math.isfinite(_number(own)):
-                self.mistake("S603", f"{path[-1]} takes finite numbers, not {_told(own)}", path)
+            if isinstance(own, int | float) and not abs(_number(own)) <= GREAT:
+                message = f"{path[-1]} takes finite numbers {OF_MAGNITUDE}, not {_told(own)}"
+                self.mistake("S603", message, path)
                 return []
         if value is not None and not values:
             self.mistake("S603", f"{path[-1]} is an empty list", path, "give it a value or leave it out")

@@ -141,8 +141,11 @@ def run_study(path: str | Path, *, workers: int = 0, executor: str = "", retry: 
     BusyError, ExecutorError, ResultsError, OSError
         Another sweep writes the folder; the executor cannot be had; a file cannot be read or written.
     """
-    study = read(Document.read(str(path)))
+    document = Document.read(str(path))
+    if workers:
+        document.given(("workers",), workers, "workers", str(workers))
+    study = read(document)
     with locked(study.out):
-        session = Session(study, engine(executor, workers or study.workers), retry=retry)
+        session = Session(study, engine(executor, study.workers), retry=retry)
         session.carry_out(session.agenda.ahead, lambda state: None)
         return Sweep.open(session.write())

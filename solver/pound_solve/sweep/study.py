@@ -17,6 +17,7 @@ from typing import Any, Final
 from pound_deck.diagnostics import Diagnostic, has_errors, render, suggest
 from pound_deck.model import Model
 from pound_solve.driver import loading
+from pound_solve.driver.overrides import option
 from pound_solve.driver.prepare import DeckError, prepare
 from pound_solve.driver.reading import read as read_deck
 from pound_solve.driver.request import Request
@@ -33,6 +34,8 @@ ITEMS: Final = (
     "grid", "zip", "cases", "motions",
 )  # fmt: skip
 
+#: what a run may take, which is three years [s] and a petabyte [MB], and the processes of a study
+LARGEST: Final[Mapping[str, float]] = MappingProxyType({"seconds": 1e8, "memory": 1e9, "workers": 1e4})
 #: tables that other verbs read
 OF_OTHERS: Final[Mapping[str, str]] = MappingProxyType({"ida": "pound-solve ida"})
 
@@ -124,20 +127,15 @@ class _Reader:
         document = self.document
         decks, combinations = list(self._decks()), self._combinations()
         own = {name: document.take((name,), str, "") for name in ("out", "method")}
-        numbers = {name: document.take((name,), float, 0.0) for name in ("dt", "tol", "seconds", "memory")}
-        workers = document.take(("workers",), int, 0)
-        for name, value in {**numbers, "workers": workers}.items():
-            if value < 0 or document.at((name,)) == 0:
-                document.mistake("S603", f"{name} is above zero", (name,))
+        dt, tol = (self._number(name) for name in ("dt", "tol"))
+        seconds, memory, workers = (self._number(*limits) for limits in LARGEST.items())
         measures = {s.measure for s in self.suites}
         if len(measures) > 1:
             message = (
                 f"the tables [[motions]] give {' and '.join(sorted(measures))}: give all the same measure"
             )
             document.mistake("S605", message, ("motions",))
-        base = Case(
-            "", (), self.folders, own["method"] or None, numbers["dt"] or None, numbers["tol"] or None
-        )
+        base = Case("", (), self.folders, own["method"] or None, dt, tol)
         self._names(decks, combinations)
         for deck in decks:
             self._tried(replace(base, deck=deck), combinations)
@@ -151,12 +149,22 @@ class _Reader:
             runs,
             (units.force, units.length, units.time),
             "".join(measures),
-            workers,
-            numbers["seconds"] or None,
-            numbers["memory"] or None,
+            int(workers or 0),
+            seconds,
+            memory,
             self.histories,
             self._warnings(),
         )
+
+    def _number(self, name: str, largest: float | None = None) -> float | None:
+        """A number of the study, None where it is left out or wrong; DT and TOL have the deck's limits."""
+        kind = int if name == "workers" else float
+        value: float | None = self.document.take((name,), kind, None)
+        if value is not None and largest is not None and not 0 < value <= largest:
+            message = f"{name} is above zero and at most {largest:g}, not {value:g}"
+            self.document.mistake("S603", message, (name,))
+            return None
+        return value
 
     def _stop_at_mistakes(self) -> None:
         """Raise where there are some, in the order of the study."""
@@ -286,15 +294,21 @@ class _Reader:
 
     def _told(self, found: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
         """Note mistakes of a deck; those of a value at the study's item."""
-        places = {f"--set {name}": path for name, path in self._sources()}
-        for d in found:
-            if d.severity != "error":
-                continue
-            if d.span is not None and d.span.file in places:
-                d = replace(d, span=self.document.place(places[d.span.file]))
-            if d not in self.document.found:
+        for d in map(self._here, found):
+            if d.severity == "error" and d not in self.document.found:
                 self.document.found.append(d)
-        self.document.files.update({n: t for n, t in files.items() if n not in places})
+        own = self._options()
+        self.document.files.update({n: t for n, t in files.items() if n not in own})
+
+    def _options(self) -> dict[str, Path_]:
+        """Items of the study by the options of a run that they stand for."""
+        values = {f"--set {name}": path for name, path in self._sources()}
+        return {option(name).file: (name,) for name in ("method", "dt", "tol")} | values
+
+    def _here(self, found: Diagnostic) -> Diagnostic:
+        """What is found in a deck, at the item of the study whose value it is about."""
+        path = self._options().get(found.span.file) if found.span else None
+        return replace(found, span=self.document.place(path)) if path else found
 
     def _tried(self, case: Case, combinations: Sequence[Params]) -> None:
         """Prepare the first run of a deck, and look whether every PARAM has an effect."""
@@ -310,7 +324,7 @@ class _Reader:
             self._told(err.diagnostics, err.files)
             return
         self.models[case.deck] = ready.model
-        self.warned += ready.warnings
+        self.warned += map(self._here, ready.warnings)
         self.document.files.update(ready.files)
         here, there = ready.model.units, next(iter(self.models.values())).units
         if (here.force, here.length, here.time) != (there.force, there.length, there.time):

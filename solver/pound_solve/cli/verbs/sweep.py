@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -54,10 +55,11 @@ def _piece(word: str | None) -> tuple[int, int]:
     """Number of a piece, and how many there are."""
     if word is None:
         return 1, 1
-    k, _, count = word.partition("/")
-    if not (k.isdigit() and count.isdigit() and 1 <= int(k) <= int(count)):
+    found = re.fullmatch(r"([0-9]{1,9})/([0-9]{1,9})", word)
+    k, count = map(int, found.groups()) if found else (0, 0)
+    if not 1 <= k <= count:
         raise argparse.ArgumentTypeError(f"--task {word}: write K/N with K from 1 to N")
-    return int(k), int(count)
+    return k, count
 
 
 def _document(args: argparse.Namespace) -> Document:
@@ -91,7 +93,8 @@ def _give_motions(args: argparse.Namespace, out: Document) -> None:
     """Put in the records of the command line, in place of all of the study's."""
     from pound_solve.loading.records.known import known
 
-    options = {name: getattr(args, name) for name in (*LISTS, "period", "damping") if getattr(args, name)}
+    given = {name: getattr(args, name) for name in (*LISTS, "period", "damping")}
+    options = {name: value for name, value in given.items() if value is not None}
     if not args.motions:
         if options or args.item:
             option = next(iter(options), "item")
