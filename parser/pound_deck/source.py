@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
+import stat
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Final
+from typing import IO, Final
 
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Span
@@ -134,7 +136,7 @@ class Source:
         text = self.unsaved.get(os.path.realpath(name)) if self.unsaved else None
         if text is not None:
             return self.decode(name, text.encode("utf-8", "surrogatepass"), here)
-        with open(name, "rb") as stream:
+        with opened(name) as stream:
             # one byte more than allowed: distinguishes a deck that is too large from one that just fits
             return self.decode(name, stream.read(MAX_BYTES - self._bytes + 1), here)
 
@@ -167,6 +169,21 @@ class Source:
 
     def _error(self, code: str, message: str, span: Span, hint: str = "") -> None:
         self.report.append(Diagnostic(code, message, span, hint))
+
+
+def opened(name: str | os.PathLike[str]) -> IO[bytes]:
+    """A file that is open to be read.
+
+    Raises
+    ------
+    OSError
+        It cannot be read.  Pipes and devices are no files: their end may never come, and what was read once
+        is gone.
+    """
+    kind = os.stat(name).st_mode
+    if not (stat.S_ISREG(kind) or stat.S_ISDIR(kind)):
+        raise OSError(errno.EINVAL, "a pipe or a device, not a file", os.fspath(name))
+    return open(name, "rb")
 
 
 def is_end(text: str) -> bool:

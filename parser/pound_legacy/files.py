@@ -6,6 +6,7 @@ from typing import Final
 
 from pound_deck.diagnostics import Diagnostic, Mistake
 from pound_deck.model import Span
+from pound_deck.source import opened
 from pound_legacy.recognise import HEAD, is_legacy
 
 MAX_BYTES: Final = 256_000_000  #: of a deck with its record
@@ -21,7 +22,7 @@ def text_of(name: str) -> str:
     Mistake
         It is too large.
     """
-    with open(name, "rb") as stream:
+    with opened(name) as stream:
         data = stream.read(MAX_BYTES + 1)
     if len(data) > MAX_BYTES:
         raise Mistake(
@@ -38,7 +39,7 @@ def recognised(name: str) -> bool:
     OSError
         It cannot be read.
     """
-    with open(name, "rb") as stream:
+    with opened(name) as stream:
         return is_legacy(_decoded(stream.read(HEAD)))
 
 

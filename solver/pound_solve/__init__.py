@@ -22,7 +22,7 @@ def run(
     params: Mapping[str, object] | None = None,
     *,
     out: str | Path | None = None,
-    name: str = "",
+    name: str | None = None,
     records: Sequence[str | Path] = (),
     method: str | None = None,
     dt: float | None = None,
@@ -60,7 +60,7 @@ def run(
     Raises
     ------
     ValueError
-        The name is a path.
+        The name is none for a file.
     pound_solve.driver.prepare.DeckError
         The deck has mistakes; the text names file, line and column of each.
     OSError
@@ -79,7 +79,6 @@ def run(
     if not isinstance(deck, Deck):
         return execute(Request(str(deck), texts, folder, folders, method, dt, tol, name=name))[1]
     unsaved = {os.path.realpath(PLACE): deck.text}
-    request = Request(
-        PLACE, texts, folder, folders, method, dt, tol, unsaved=unsaved, name=name or deck.name
-    )
+    own = deck.name if name is None else name
+    request = Request(PLACE, texts, folder, folders, method, dt, tol, unsaved=unsaved, name=own)
     return in_temporary_folder(request) if folder is None else execute(request)[1]

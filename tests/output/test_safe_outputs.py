@@ -2,6 +2,7 @@
 
 import errno
 import os
+import re
 import shutil
 import signal
 import sys
@@ -14,6 +15,7 @@ import numpy as np
 import pytest
 
 import pound_solve
+from pound_deck.model import Units
 from pound_solve.analyses.envelopes import Envelopes
 from pound_solve.analyses.recorder import EnergyBalance, HistoryRecorder
 from pound_solve.cli.main import main
@@ -21,7 +23,7 @@ from pound_solve.driver.run import DeckError
 from pound_solve.interruption import Interruption
 from pound_solve.results import Results, ResultsError, Writer, place, safe_file
 from pound_solve.results.place import digest_in
-from pound_solve.results.whole_file import partial
+from pound_solve.results.whole_file import partial, write_text
 
 DECK = """UNITS N m s
 GRAVITY 1
@@ -279,6 +281,90 @@ def test_runs_of_one_deck_keep_apart_by_name(tmp_path, capsys):
     assert "--name: sub/a is a path" in capsys.readouterr().err
     with pytest.raises(ValueError, match="is a path"):
         pound_solve.run(deck, name="../a")
+
+
+@pytest.mark.parametrize("name", ["..", ".", "", " ", "---", "_", "a\0b", "a\n"])
+def test_a_name_that_names_no_file_is_refused_before_the_run(tmp_path, capsys, name):
+    deck = write(tmp_path)
+    with pytest.raises(SystemExit) as end:
+        main([str(deck), f"--name={name}"])
+    cure = "names no file: give characters that can be printed, a letter or a digit among them"
+    assert end.value.code == 2 and f"--name: {name!r} {cure}" in capsys.readouterr().err
+    with pytest.raises(ValueError, match="names no file"):
+        pound_solve.run(deck, name=name)
+    assert list(tmp_path.iterdir()) == [deck]
+
+
+@pytest.fixture
+def pipe(tmp_path):
+    """Makes pipes that nobody writes; what waits for one ends."""
+    if not hasattr(os, "mkfifo"):
+        pytest.skip("pipes")
+
+    def made(name):
+        os.mkfifo(tmp_path / name)
+        return str(tmp_path / name)
+
+    def waits(*_):
+        raise AssertionError("it waits for a pipe")
+
+    before = signal.signal(signal.SIGALRM, waits)
+    signal.alarm(10)
+    yield made
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
+
+
+@pytest.mark.parametrize(
+    ("words", "status"),
+    [
+        ("run {pipe}.inp", 3),
+        ("check {pipe}.inp", 3),
+        ("check including.inp", 2),
+        ("format {pipe}.inp", 3),
+        ("import {pipe}.inp", 3),
+        ("import {deck} --record {pipe}.txt", 3),
+        ("sweep {pipe}.toml", 3),
+        ("sweep cases.toml", 2),
+        ("ida {pipe}.toml", 3),
+        ("separation {pipe}.h5", 3),
+        ("report {pipe}.h5", 3),
+        ("loop BILINEAR --file {pipe}.txt", 3),
+        ("spectrum {pipe}.at2", 2),
+        ("plot {deck} --style {pipe}.mplstyle", 3),
+        ("format {deck} -o {pipe}.inp", 3),
+        ("loop BILINEAR --svg {pipe}.svg", 3),
+        ("run {deck} --name {pipe}", 2),
+    ],
+)
+def test_a_pipe_is_no_file(tmp_path, monkeypatch, capsys, pipe, words, status):
+    monkeypatch.chdir(tmp_path)
+    deck = write(tmp_path)
+    for ending in (".inp", ".txt", ".toml", ".h5", ".at2", ".mplstyle", ".svg"):
+        pipe(f"pipe{ending}")
+    Path("including.inp").write_text('INCLUDE "pipe.inp"\n')
+    Path("cases.toml").write_text(f'deck = "{deck.name}"\ncases = "pipe.txt"\n')
+    try:
+        found = main([word.format(pipe="pipe", deck=deck.name) for word in words.split()])
+    except SystemExit as end:
+        found = end.code
+    assert found == status
+    told = capsys.readouterr().err
+    assert re.search("a pipe or a device, not a file|no such file|not found|no file of this program", told)
+
+
+def test_a_partial_file_follows_no_link_and_waits_for_no_pipe(tmp_path, pipe):
+    others, text, results = (tmp_path / name for name in ("others.txt", "a.rpt", "a.h5"))
+    others.write_text("of others")
+    for made in (lambda path: path.symlink_to(others), lambda path: pipe(path.name)):
+        for path in (text, results):
+            made(partial(path))
+        write_text(text, "own")
+        with Writer(partial(results), title="", units=Units("kN", "m", "s"), program_version="") as writer:
+            writer.finish("done")
+        assert text.read_text() == "own" and others.read_text() == "of others"
+        assert not partial(results).is_symlink()
+        partial(results).unlink()
 
 
 @pytest.mark.full

@@ -48,7 +48,7 @@ def request(args: argparse.Namespace) -> Request:
     Raises
     ------
     SystemExit
-        The deck is a results file, a --set is not NAME=VALUE, or the name is a path.
+        The deck is a results file, a --set is not NAME=VALUE, or the name is none for a file.
     """
     from pound_solve.driver.run import Request
     from pound_solve.results import is_hdf5

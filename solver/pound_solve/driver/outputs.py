@@ -38,7 +38,7 @@ def overwritten(model: Model, request: Request, context: LoadingContext) -> list
 
 
 def taken(request: Request) -> list[Diagnostic]:
-    """Files of other programs that have the names of results and report."""
+    """What has the names of results and report and is no file of ours."""
     found = {request.path(suffix): mark for suffix, mark in MARKS.items()}
     return [
         Diagnostic(
@@ -53,9 +53,9 @@ def taken(request: Request) -> list[Diagnostic]:
 
 
 def _of_others(path: Path, mark: bytes) -> bool:
-    """Whether there is a file, not empty, that does not bear our mark."""
+    """Whether there is a file, not empty, that does not bear our mark, or a folder, a pipe or a device."""
     if not path.is_file():
-        return False
+        return path.exists()
     with suppress(OSError), path.open("rb") as file:
         start = file.read(START)
         return bool(start) and mark not in start

@@ -29,15 +29,15 @@ class Request:
         Put what the run imports, compiles and holds into the results.
     unsaved : mapping of str to str
         Texts of an editor by real path, read in place of these files.
-    name : str
-        Name of report and results without their endings; empty for the deck's.
+    name : str or None
+        Name of report and results without their endings; None for the deck's.
     motion : Card or None
         RECORD that takes the place of the deck's one line under EQUAKE, see `overrides.with_motion`.
 
     Raises
     ------
     ValueError
-        The name is a path.
+        The name is none for a file.
     """
 
     deck: str
@@ -49,12 +49,17 @@ class Request:
     tol: float | None = None
     explain: bool = False
     unsaved: Mapping[str, str] = field(default_factory=dict)
-    name: str = ""
+    name: str | None = None
     motion: Card | None = None
 
     def __post_init__(self) -> None:
-        if self.name and Path(self.name).name != self.name:
-            raise ValueError(f"{self.name} is a path: a name stands without a folder")
+        if self.name is None:
+            return
+        if not self.name.isprintable() or not any(map(str.isalnum, self.name)):
+            cure = "give characters that can be printed, a letter or a digit among them"
+            raise ValueError(f"{self.name[:60]!r} names no file: {cure}")
+        if Path(self.name).name != self.name:
+            raise ValueError(f"{self.name[:60]} is a path: a name stands without a folder, see -o")
 
     def path(self, suffix: str) -> Path:
         """Path of an output file."""

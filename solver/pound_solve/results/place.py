@@ -13,7 +13,7 @@ import re
 from pathlib import Path
 
 from pound_solve.results.form import ResultsError
-from pound_solve.results.whole_file import partial
+from pound_solve.results.whole_file import make_way, partial
 
 _DIGEST = re.compile(r"^ Results [0-9a-f]+$", re.MULTILINE)
 
@@ -41,6 +41,8 @@ def put_in_place(results: Path, report: str, whole: bool) -> Path:
     """
     own, text = partial(results), results.with_suffix(".rpt")
     try:
+        for path in (results, text):
+            make_way(path)
         partial(text).write_text(report, encoding="ascii", newline="\n")
         if not whole and (results.exists() or text.exists()):
             return own

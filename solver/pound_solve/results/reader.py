@@ -540,7 +540,7 @@ class Results:
 
 def is_hdf5(path: str | Path) -> bool:
     """Whether there is a file of the format of results, ours or not."""
-    return bool(h5py.is_hdf5(path))
+    return Path(path).is_file() and bool(h5py.is_hdf5(path))
 
 
 def _plain(value: Any) -> Any:

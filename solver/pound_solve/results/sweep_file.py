@@ -86,6 +86,8 @@ class Sweep:
     @staticmethod
     def is_of(path: str | Path) -> bool:
         """Whether a file holds a sweep, as far as its head tells."""
+        if not Path(path).is_file():  # a pipe would wait
+            return False
         try:
             with h5py.File(path, "r") as file:
                 return bool(file.attrs.get("filetype") == FILETYPE)

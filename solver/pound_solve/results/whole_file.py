@@ -5,6 +5,7 @@ An error of the disk bears the name of the file, which that of a write that find
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -22,6 +23,32 @@ def partial(path: Path) -> Path:
     return path.with_name(f"{path.stem}.partial{path.suffix}")
 
 
+def make_way(path: Path) -> None:
+    """See that an output file may take its name, and that its name `partial` is free, see `free`.
+
+    Raises
+    ------
+    OSError
+        A folder, a pipe or a device has one of the names.
+    """
+    if path.exists() and not path.is_file():
+        raise OSError(errno.EEXIST, "a folder, a pipe or a device, not a file", str(path))
+    free(partial(path))
+
+
+def free(own: Path) -> None:
+    """Free the name of a file that is to be written of a link, which would lead elsewhere, and of a pipe,
+    which would wait for a reader.
+
+    Raises
+    ------
+    OSError
+        A folder has the name.
+    """
+    if own.is_symlink() or (own.exists() and not own.is_file()):
+        own.unlink()
+
+
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
     """The name under which to write a file within the block; it takes its own where the block ends.
@@ -31,6 +58,7 @@ def whole(path: Path) -> Iterator[Path]:
     OSError
         It cannot be written; what stood at its name stands as before.
     """
+    make_way(path)
     own = partial(path)
     try:
         yield own
@@ -62,6 +90,7 @@ def whole_hdf(path: Path) -> Iterator[h5py.File]:
 
     from pound_solve.results.safe_file import SafeFile
 
+    make_way(path)
     own = partial(path)
     disk = SafeFile(own)
     try:

@@ -33,6 +33,7 @@ from pound_solve.results.form import (
 )
 from pound_solve.results.safe_file import NoRoomError, SafeFile
 from pound_solve.results.schema import Column, HistoryLayout, Layout, Stage
+from pound_solve.results.whole_file import free
 
 if TYPE_CHECKING:
     from pound_deck.model import Units
@@ -74,6 +75,7 @@ class Writer:
 
     def __init__(self, path: str | Path, *, title: str, units: Units, program_version: str) -> None:
         try:
+            free(Path(path))
             self._disk = SafeFile(Path(path))
         except OSError as err:
             raise ResultsError(f"{path}: cannot be written: {err.strerror}") from err

@@ -12,6 +12,7 @@ from typing import Any, Final, TypeVar
 
 from pound_deck.diagnostics import Diagnostic, suggest
 from pound_deck.model import Span
+from pound_deck.reader import opened
 from pound_deck.schema import GREAT, OF_MAGNITUDE
 
 Path_ = tuple[str | int, ...]  #: of an item: names of tables, numbers in lists of tables, its own name
@@ -87,7 +88,8 @@ class Document:
     @classmethod
     def read(cls, path: str) -> Document:
         """Read a file; raises OSError where it cannot be read."""
-        text = Path(path).read_bytes().decode("utf-8-sig", "replace")
+        with opened(path) as file:
+            text = file.read().decode("utf-8-sig", "replace")
         out = cls(path, Path(path).parent, files={path: text}, places=places(text, path))
         try:
             out.values = tomllib.loads(text)

@@ -16,6 +16,7 @@ from typing import Any, Final
 
 from pound_deck.diagnostics import Diagnostic, has_errors, render, suggest
 from pound_deck.model import Model
+from pound_deck.reader import opened
 from pound_solve.driver import loading
 from pound_solve.driver.overrides import option
 from pound_solve.driver.prepare import DeckError, prepare
@@ -252,7 +253,8 @@ class _Reader:
             return None
         file = self._beside(name)
         try:
-            text = file.read_text("utf-8-sig")
+            with opened(file) as stream:
+                text = stream.read().decode("utf-8-sig")
         except (OSError, UnicodeDecodeError) as err:
             document.mistake("S604", f"{name} cannot be read: {err}", path)
             return []

@@ -27,8 +27,10 @@ def execute(args: argparse.Namespace) -> int:
     """Lay out the deck and write it, unless it has mistakes of syntax."""
     from pound_deck.diagnostics import render
     from pound_deck.layout import arranged
+    from pound_deck.reader import opened
 
-    data = args.deck.read_bytes()
+    with opened(args.deck) as file:
+        data = file.read()
     new, found, files = arranged(str(args.deck), data)
     if found:
         print(render(found, files), file=sys.stderr)
@@ -44,7 +46,10 @@ def execute(args: argparse.Namespace) -> int:
 
 def _write(path: Path, data: bytes) -> None:
     """Write a file beside it and rename that, so that no interruption leaves half a deck."""
+    from pound_solve.results.whole_file import make_way
+
     real = Path(os.path.realpath(path))  # of a link, what it leads to
+    make_way(real)
     beside = real.with_name(f".{real.name}.{os.getpid()}")
     try:
         with beside.open("xb") as stream:

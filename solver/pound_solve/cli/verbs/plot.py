@@ -47,6 +47,7 @@ def _time(word: str) -> float:
 
 def execute(args: argparse.Namespace) -> int:
     """Draw the pictures, print their paths and name those left out."""
+    from pound_deck.reader import opened
     from pound_solve.report import plot
     from pound_solve.results import Results, ResultsError
 
@@ -58,6 +59,8 @@ def execute(args: argparse.Namespace) -> int:
     choice = plot.Choice(tuple(args.member), args.time, between, args.style)
     if wrong := _wrong(args, choice):
         return common.complain(wrong, common.MISTAKES)
+    if args.style:
+        opened(args.style).close()  # a pipe is told before the work
     try:
         with Results.open(args.results) as results:
             return _draw(results, args, choice)

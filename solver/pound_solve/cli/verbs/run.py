@@ -23,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--out", type=Path, metavar="DIR", help="folder of report and results (default: the deck's)"
     )
-    parser.add_argument("--name", default="", help="name of report and results (default: the deck's)")
+    parser.add_argument("--name", help="name of report and results (default: the deck's)")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.add_argument(
         "--explain", action="store_true", help="list what the run imported, compiled, stored and left out"
