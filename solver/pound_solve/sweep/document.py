@@ -23,6 +23,7 @@ _KEYS: Final = rf"{_KEY}(?:\s*\.\s*{_KEY})*"
 _ITEM: Final = re.compile(rf"\s*({_KEYS})\s*=")
 _TABLE: Final = re.compile(rf"\s*(\[\[?)\s*({_KEYS})\s*\]")
 _WHERE: Final = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)")
+DEEPEST: Final = 20  #: names of an item; more take a time that grows with their square
 #: what TOML calls the values, in words
 _WORDS: Final = {str: "a text", int: "a whole number", float: "a number", list: "a list", dict: "a table"}
 
@@ -91,17 +92,28 @@ class Document:
         with opened(path) as file:
             text = file.read().decode("utf-8-sig", "replace")
         out = cls(path, Path(path).parent, files={path: text}, places=places(text, path))
+        if deep := next((place for names, place in out.places.items() if len(names) > DEEPEST), None):
+            message = f"a name of more than {DEEPEST} parts"
+            out.found.append(Diagnostic("S601", message, deep, "a study has tables of items, no deeper"))
+            return out
         try:
             out.values = tomllib.loads(text)
         except tomllib.TOMLDecodeError as err:
             out._no_toml(str(err), text)
+        except ValueError:
+            out._no_toml("a number of too many digits", text)
+        except RecursionError:
+            out._no_toml("brackets within too many brackets", text)
         return out
 
     def _no_toml(self, message: str, text: str) -> None:
         """Tell where the file is no TOML."""
         lines = text.splitlines() or [""]
         where = _WHERE.search(message)
-        line, column = (int(where[1]), int(where[2])) if where and where[1] else (len(lines), 1)
+        if where is None:  # it is about the depth or the length of something
+            line, column = max(range(len(lines)), key=lambda n: len(lines[n])) + 1, 1
+        else:
+            line, column = (int(where[1]), int(where[2])) if where[1] else (len(lines), 1)
         said = _WHERE.sub("", message)
         hint = "a text stands in quotes, a list in brackets: gap = [0.01, 0.02]"
         self.found.append(Diagnostic("S601", said, Span(self.name, line, column, column + 1), hint))
@@ -123,8 +135,10 @@ class Document:
         return Span(self.name, 1, 1, 2) if self.name in self.files else None
 
     def mistake(self, code: str, message: str, path: Path_ = (), hint: str = "") -> None:
-        """Note a mistake at an item."""
-        self.found.append(Diagnostic(code, message, self.place(path), hint))
+        """Note a mistake at an item, once."""
+        found = Diagnostic(code, message, self.place(path), hint)
+        if found not in self.found:
+            self.found.append(found)
 
     def at(self, path: Path_) -> Any:
         """Value of an item; None where there is none."""
@@ -161,7 +175,23 @@ class Document:
         if isinstance(value, int | float) and not abs(_number(value)) <= GREAT:
             self.mistake("S603", f"{path[-1]} is a finite number {OF_MAGNITUDE}, not {_told(value)}", path)
             return default
-        return value
+        return default if self._has_zero(value, path) else value
+
+    def _has_zero(self, value: object, path: Path_) -> bool:
+        """Whether a value is a text with a zero character, which no name of a file has; note it."""
+        if not isinstance(value, str) or "\0" not in value:
+            return False
+        self.mistake("S603", f"{path[-1]} holds a zero character", path)
+        return True
+
+    def matching(self, pattern: str) -> list[Path]:
+        """Files and folders that a pattern fits, in order; it counts from the study's folder."""
+        own = Path(pattern)
+        root = Path(own.anchor) if own.anchor else self.folder
+        try:
+            return sorted(p.absolute() for p in root.glob(str(own.relative_to(own.anchor))))
+        except ValueError:  # it is no pattern
+            return []
 
     def listed(self, path: Path_, kinds: tuple[type, ...]) -> list[Any]:
         """Values of an item that is a list or stands for a list of one; empty where it is left out."""
@@ -175,6 +205,8 @@ class Document:
             if isinstance(own, int | float) and not abs(_number(own)) <= GREAT:
                 message = f"{path[-1]} takes finite numbers {OF_MAGNITUDE}, not {_told(own)}"
                 self.mistake("S603", message, path)
+                return []
+            if self._has_zero(own, path):
                 return []
         if value is not None and not values:
             self.mistake("S603", f"{path[-1]} is an empty list", path, "give it a value or leave it out")

@@ -116,13 +116,9 @@ class Suite:
         if known(name) is not None:
             return [name]
         if any(c in name for c in "*?["):
-            base = self.document.folder
-            pattern = Path(name)
-            root = Path(pattern.anchor) if pattern.anchor else base
-            relative = str(pattern.relative_to(pattern.anchor)) if pattern.anchor else name
-            found = sorted(str(p.absolute()) for p in root.glob(relative) if p.is_file())
+            found = [str(p) for p in self.document.matching(name) if p.is_file()]
             if not found:
-                where = root.absolute()
+                where = Path(Path(name).anchor or self.document.folder).absolute()
                 message = f"no file fits {name}"
                 self.document.mistake("S604", message, path, f"patterns count from {where}")
             return found

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import itertools
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -181,7 +182,7 @@ class _Reader:
 
     def _beside(self, name: str) -> Path:
         """A path of the study, which counts from its folder."""
-        return (self.document.folder / Path(name).expanduser()).absolute()
+        return (self.document.folder / os.path.expanduser(name)).absolute()
 
     def _out(self, given: str) -> Path:
         """Folder of the results."""
@@ -198,7 +199,7 @@ class _Reader:
             for name in document.listed((item,), (str,)):
                 found = [self._beside(name)]
                 if any(c in name for c in "*?["):
-                    found = sorted(p.absolute() for p in document.folder.glob(name))
+                    found = document.matching(name)
                     if not found:
                         document.mistake("S604", f"no deck fits {name}", (item,))
                 for path in found:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import sys
 from pathlib import Path
@@ -100,7 +101,7 @@ def _give_motions(args: argparse.Namespace, out: Document) -> None:
             option = next(iter(options), "item")
             raise argparse.ArgumentTypeError(f"--{option} belongs to --motions")
         return
-    files = [m if known(m) else str(Path(m).expanduser().absolute()) for m in args.motions]
+    files = [m if known(m) else os.path.abspath(os.path.expanduser(m)) for m in args.motions]
     out.values["motions"] = [{}]
     out.given(("motions", 0, "files"), files, "--motions", " ".join(args.motions))
     for name, value in options.items():
