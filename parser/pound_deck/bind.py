@@ -339,7 +339,8 @@ def _joined(spec: Spec, name: str, first: Item, second: Item) -> str:
 def _after_named(spec: Spec, before: Item, item: Item) -> str:
     joined = _joined(spec, before.name, before, item)
     if joined:
-        return f"values of one list are joined by commas without blanks: {joined}"
+        unit = f"leave {item.word[:60]} out if it is a unit" if item.word and not before.word else ""
+        return hints(unit, f"values of one list are joined by commas without blanks: {joined}")
     return f"{before.name} takes one value; write further items as NAME=value"
 
 

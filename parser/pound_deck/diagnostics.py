@@ -46,13 +46,13 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
     return any(d.severity == "error" for d in diagnostics)
 
 
-def closest(word: str, choices: Iterable[str]) -> str:
+def closest(word: str, choices: Iterable[str], cutoff: float = 0.6) -> str:
     """The choice most similar to a misspelt word, in any case; empty where none is near."""
     known = {choice.upper(): choice for choice in islice(choices, _MOST_CHOICES)}
     word = word.upper()[:100]
     if len(known) > _MANY_CHOICES:  # a slip seldom changes both ends; comparing all is slow
         known = {k: c for k, c in known.items() if k[:1] == word[:1] or k[-1:] == word[-1:]}
-    close = get_close_matches(word, known, n=1, cutoff=0.6)
+    close = get_close_matches(word, known, n=1, cutoff=cutoff)
     return known[close[0]] if close else ""
 
 

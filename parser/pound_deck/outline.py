@@ -76,7 +76,8 @@ class Outline:
         items = row.items or ()
         if not _like_a_heading(items) or row.word in self.definitions or row.word in self.lost:
             return False
-        meant = closest(row.word, (*NAMES, *SINGLE))
+        # names of records under EQUAKE are nearer to sections than other words: ELCENTRO, ELEMENTS
+        meant = closest(row.word, (*NAMES, *SINGLE), 0.65)
         family = FAMILIES.get(self._section or "", "")
         kinds = self.catalog.family(family) if family != "element" else {}
         if row.word in kinds or closest(row.word, kinds) or (not meant and len(items) == 2):

@@ -19,6 +19,9 @@ _LONGEST_NAME: Final = 300  #: of a file, with its path
 _PATH_START: Final = re.compile(r"\.{1,2}[/\\]|~/|\\\\|[A-Za-z]:[/\\]")
 _FILE: Final = re.compile(r"""[^()*"']*[A-Za-z_][^()*"']*\.[A-Za-z]\w*""")  #: a letter, and an extension
 #: at the end, or before the = of the next item
+_NUMBER: Final = r"((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
+_PERCENT: Final = re.compile(rf"(?<![\w.]){_NUMBER}\s*$")
+_WITH_UNIT: Final = re.compile(rf"{_NUMBER}[A-Za-z]+\d?$")
 _NO_VALUE: Final = re.compile(r"([A-Za-z_][\w.]*)(\s*=)(\s+[A-Za-z_][\w.]*)?$")
 _LOOKALIKES: Final = {
     "−": "-",
@@ -130,8 +133,10 @@ def _strange_character(fault: Fault) -> Mistake | None:
     if character in "\"'":
         hint = f"end the text with {character} on the same line"
         return mistake("P202", "this quote is not closed", span, hint)
-    plain = _LOOKALIKES.get(character, "")
+    plain, percent = _LOOKALIKES.get(character, ""), _PERCENT.search(fault.before)
     hint = f"write a plain {plain}" if plain else "put texts in quotes; a comment starts with !"
+    if character == "%" and percent:
+        hint = f"write a ratio: {float(percent[1]) / 100.0:.12g} for {percent[1]} %"
     shown = character if character.isprintable() else f"the character U+{ord(character):04X}"
     return mistake("P201", f"{shown} has no meaning here", span, hint)
 
@@ -201,7 +206,10 @@ def _neither_number_nor_word(fault: Fault) -> Mistake | None:
     start = max(fault.before.rfind(c) for c in " \t\n,=()+-*/^") + 1
     shown = fault.before[start:] + fault.token
     message = f"{shown[:60]} is neither a number nor a word"
-    return mistake("P207", message, place(fault.line, start, len(shown)), "a word starts with a letter")
+    hint = "a word starts with a letter"
+    if found := _WITH_UNIT.match(shown):
+        hint = f"write {found[1]} alone, in the units of the deck; {hint}"
+    return mistake("P207", message, place(fault.line, start, len(shown)), hint)
 
 
 def _incomplete_range(fault: Fault) -> Mistake | None:

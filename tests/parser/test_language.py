@@ -5,7 +5,7 @@ import math
 import pytest
 
 from pound_deck.cards import parse_items
-from pound_deck.diagnostics import render
+from pound_deck.diagnostics import has_errors, render
 from pound_deck.model import Units
 from pound_deck.reader import read_deck, read_text
 from pound_deck.source import Line
@@ -458,6 +458,24 @@ def test_paths_need_quotes(catalog, value):
 def test_lists_with_blanks_say_how_lists_are_written(catalog, line, told):
     _, found, _ = read_text(f"{HEAD}{line}\n", catalog)
     assert told in found[0].hint, found
+
+
+@pytest.mark.parametrize(
+    ("lines", "told", "cured"),
+    [
+        ("LOADS\n 2 FX=5%", "write a ratio: 0.05 for 5 %", "LOADS\n 2 FX=0.05"),
+        ("LOADS\n 2 2.5 %", "write a ratio: 0.025 for 2.5 %", "LOADS\n 2 0.025"),
+        ("WEIGHTS\n 2 1e3kN", "write 1e3 alone, in the units of the deck", "WEIGHTS\n 2 1e3"),
+        ("WEIGHTS\n 2 (4.5kN)", "write 4.5 alone", "WEIGHTS\n 2 (4.5)"),
+        ("LOADS\n 2 FX=40kN/m", "write 40 alone", "LOADS\n 2 FX=40"),
+        ("LOADS\n NODES=2 kN", "leave KN out if it is a unit", "LOADS\n NODES=2"),
+        ("EQUAKE\n ELCENTRO", "lines of EQUAKE start with RECORD;", "EQUAKE\n RECORD FILE=ELCENTRO"),
+    ],
+)
+def test_what_a_hint_says_is_taken(catalog, lines, told, cured):
+    _, found, _ = read_text(f"{HEAD}{lines}\n", catalog)
+    assert told in found[0].hint, found
+    assert not has_errors(read_text(f"{HEAD}{cured}\n", catalog)[1])
 
 
 @pytest.mark.parametrize("number", ["1E31", "-1E31", "1E300", "1E15*1E16"])

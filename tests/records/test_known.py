@@ -62,7 +62,13 @@ def test_hints_for_famous_records(name: str, where: str) -> None:
 
 
 def test_close_name(no_package: None) -> None:
-    assert "ELCENTRO_270" in missing("ELCENTRO_27O").hint
+    for name in ("ELCENTRO_27O", "ELCENTRO"):
+        hint = missing(name).hint
+        assert "ELCENTRO_270" in hint and "pound-solve[records]" in hint
+
+
+def test_the_home_of_nobody_is_a_folder_that_is_not_there() -> None:
+    assert missing("~nobody at all/a.at2").code == "R401"
 
 
 @pytest.mark.parametrize("name", ["ELCENTRO_270", "el centro 270", "ElCentro-270"])

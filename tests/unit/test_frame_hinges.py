@@ -5,6 +5,7 @@ plastic theory after it.
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -592,6 +593,7 @@ PROPS
             "LP",
             "4.2 is longer than the flexible length, 3.7",
         ),
+        ("MI=100 LP=4.0000001 RULE=BILINEAR", "LP", "4.0000001 is longer than the flexible length, 4$"),
         ("MI=100 LP=1 RULE=RAMBERG_OSGOOD N=5", "RULE", "curves: with it hinges have at most LP=0.9 here"),
         (f"MI=100 LP=3.6 {STEWART}", "RULE", "too steeply: with it hinges have at most LP=0.9 here"),
     ],
@@ -602,6 +604,20 @@ def test_cards_that_do_not_fit_together(items, at, message):
     (found,) = caught.value.diagnostics
     line = " M FRAME " + SECTION + " " + items
     assert line[: found.span.column - 1].endswith(at + "=")
+
+
+def test_a_hinge_may_be_as_long_as_a_member_whose_length_is_rounded():
+    """4 less 0.3 and 3.4 is 0.30000000000000027 or 0.2999999999999998."""
+    for ends in ("END1=0.3 END2=3.4", "END1=3.4 END2=0.3", "END1=3.7"):
+        structure_of(member(f"MI=100 LP=0.3 {ends} RULE=BILINEAR"))
+
+
+def test_the_longest_hinge_that_is_told_is_taken():
+    items = "MI=100 LP={} RULE=RAMBERG_OSGOOD N=5 END1=0.1234567"
+    with pytest.raises(AssemblyError, match="have at most LP=") as caught:
+        structure_of(member(items.format(1)))
+    most = re.search(r"LP=([\d.]+)", str(caught.value.diagnostics))[1]
+    structure_of(member(items.format(most)))
 
 
 def test_a_bar_has_no_hinge():

@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 import hashlib
 import importlib.util
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -172,14 +173,14 @@ def find(name: str, search_path: Sequence[Path] = ()) -> Path:
 
 def _places(file: str, search_path: Sequence[Path]) -> Iterator[Path]:
     """Where a file name may lead, in order, each place once."""
-    given = Path(file).expanduser()
+    given = Path(os.path.expanduser(file))
     # joining an absolute path to a folder gives that path again
     yield from dict.fromkeys([given, *(Path(folder, given) for folder in search_path)])
 
 
 def _missing(name: str, record: Known | None, search_path: Sequence[Path]) -> RecordError:
     """R401 for a record that is in none of its places."""
-    folders = [] if Path(name).expanduser().is_absolute() else [Path.cwd(), *search_path]
+    folders = [] if Path(os.path.expanduser(name)).is_absolute() else [Path.cwd(), *search_path]
     looked = ", ".join(dict.fromkeys(str(Path(folder).absolute()) for folder in folders))
     message = f"record '{name}' not found" + (f"; looked in {looked}" if looked else "")
     base = Path(name).name.casefold()
@@ -188,7 +189,9 @@ def _missing(name: str, record: Known | None, search_path: Sequence[Path]) -> Re
         return RecordError("R401", message, _cure(shipped))
     names = {plain(key): key for key in KNOWN}
     if close := difflib.get_close_matches(plain(Path(name).stem), names, n=3, cutoff=0.75):
-        return RecordError("R401", message, f"did you mean {' or '.join(names[c] for c in close)}?")
+        meant = KNOWN[names[close[0]]]
+        hint = f"did you mean {' or '.join(names[c] for c in close)}?"
+        return RecordError("R401", message, hint if meant.locate() else f"{hint} {_cure(meant)}")
     if source := next((where for word, where in _SOURCES.items() if word in plain(name)), None):
         return RecordError("R401", message, f"it is not shipped; see {source}")
     return RecordError(

@@ -330,9 +330,15 @@ def hysteretic(
     try:
         law = without(law, 1.0 - share)
     except ValueError as err:
-        most = ",".join(f"{share * length:.4g}" for length in card["LP"])
+        most = ",".join(f"{_rounded_down(share * length):.4g}" for length in card["LP"])
         raise ElementError(f"{err}: with it hinges have at most LP={most} here", "RULE") from None
     return replace(spring, law=law, k0=k / share, beside=(1.0 - share) / k)
+
+
+def _rounded_down(x: float) -> float:
+    """The next number of four digits that is not above a positive one, but for its rounding."""
+    unit = 10.0 ** (math.floor(math.log10(x)) - 3)
+    return math.floor(x / unit * (1.0 + 1e-12)) * unit
 
 
 def axes(angle: float) -> tuple[tuple[float, float], tuple[float, float]]:

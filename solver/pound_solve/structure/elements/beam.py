@@ -50,6 +50,8 @@ from pound_solve.structure.elements.beam_matrices import (
     stiffness,
 )
 
+ROUNDING = 1e-9  #: of coordinates, share of a length
+
 MOST_TAKEN = 0.9  #: share of what would leave no beam that hinges take off it at most
 INSIDE = {2: 3, 5: 4, 0: 5, 3: 6}  #: number of the element's own DOF behind a hinge, by local DOF
 
@@ -218,10 +220,11 @@ def _flexible_part(p: Card, length: float, taken: Array | None) -> _FlexiblePart
 
 
 def _lengths_fit(p: Card, length: float) -> None:
-    """Refuse a hinge that is longer than the member."""
+    """Refuse a hinge that is longer than the member, by more than the rounding of coordinates."""
     longest = max(pair(p["LP"]))
-    if longest > length:
-        raise ElementError(f"a hinge of {longest:g} is longer than the flexible length, {length:g}", "LP")
+    if longest > length * (1.0 + ROUNDING):
+        message = f"a hinge of {longest:.10g} is longer than the flexible length, {length:.10g}"
+        raise ElementError(message, "LP")
 
 
 def _kinematics(
