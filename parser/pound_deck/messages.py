@@ -407,8 +407,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "R411": (
         "the name of an output file is taken",
-        "A file of another program has the name of the results or of the report of this run. "
-        "Rename it, or give another folder with -o.",
+        "A file of another program, a folder, a pipe or a device has the name of the results or of the "
+        "report. Rename it, or give another folder with -o.",
     ),
     "A501": (
         "unstable structure",
@@ -461,7 +461,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "S603": (
         "value of the wrong kind",
-        "The item takes a text, a number, a list or a table, or a number above zero. The message states "
+        "The item takes a text, a number, a list or a table, or a number within limits. The message states "
         "which.",
     ),
     "S604": (

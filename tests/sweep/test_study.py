@@ -6,6 +6,7 @@ import pytest
 
 from pound_solve.cli.main import main
 from pound_solve.sweep.document import Document, places
+from pound_solve.sweep.session import run_study
 from pound_solve.sweep.study import StudyError, read
 from sweep.small import DECK, STUDY, folder, record
 
@@ -230,3 +231,8 @@ def test_the_command_line_says_what_a_study_says(tmp_path, capsys, monkeypatch):
 def test_what_is_told_of_an_option_of_the_decks_stands_at_the_item_of_the_study(tmp_path):
     path = folder(tmp_path, 'deck = "wall.inp"\nmethod = "EXACT"\ndt = 0.1\n')
     assert f"{path}:3:1: warning P211: EXACT has no item DT" in read(Document.read(str(path))).warnings
+
+
+def test_workers_of_python_have_the_limits_of_a_study(tmp_path):
+    with pytest.raises(StudyError, match="workers is above zero and at most 10000, not -1"):
+        run_study(folder(tmp_path), workers=-1)

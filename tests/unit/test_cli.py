@@ -131,6 +131,7 @@ def exit_status(words):
         (["study", "{deck}", "--steps", "0.1,1e-20"], 2, "DT=1e-20 asks for more than 1e+08 steps"),
         (["study", "{deck}", "--tols", "0.5"], 2, "--tols: TOL is 0.5, but must be at least 1e-09 and"),
         (["spectrum", "{deck}", "--periods", "1e-29"], 2, "the period 1e-29 is too short"),
+        (["sweep", "{deck}", "--damping", "0"], 2, "--damping belongs to --motions"),
         *((["sweep", "{deck}", "--task", task], 2, "write K/N") for task in ("²/3", "1/" + 5000 * "9")),
     ],
 )
@@ -145,6 +146,8 @@ def test_numbers_for_a_deck_without_history_have_its_limits_and_are_told(deck, c
     assert main(["check", str(deck), "--dt", "nan", "--tol", "2"]) == 2
     told = capsys.readouterr().err
     assert "--dt:1:1: error P217: DT is nan" in told and "--tol:1:1: error P217: TOL is 2" in told
+    assert main(["check", str(deck), "--method", "GUESS"]) == 2
+    assert "--method:1:1: error P210: GUESS is no method" in capsys.readouterr().err
     assert main(["check", str(deck), "--dt", "0.1"]) == 0
     assert "warning P211: a deck without HISTORY has no item DT" in capsys.readouterr().err
 

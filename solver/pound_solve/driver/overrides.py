@@ -38,6 +38,8 @@ def overridden(model: Model, request: Request, found: list[Diagnostic]) -> Model
             card = changed
         cards.append(card)
     if all(card.spec.name != "HISTORY" for card in cards):
+        if request.method is not None:
+            _method(request.method, found)
         found += _told(asked, None)
     return replace(model, analyses=tuple(cards))
 
@@ -64,11 +66,8 @@ def _changed(
     card: Card, name: str | None, asked: Mapping[str, float], found: list[Diagnostic]
 ) -> Card | None:
     """HISTORY card with the method and the items that are asked for; None where it has a mistake."""
-    methods = catalog().family("method")
-    method = methods.get((name or card["METHOD"]).upper())
+    method = _method(name or card["METHOD"], found)
     if method is None:
-        message = f"{name} is no method: known methods are {', '.join(methods)}"
-        found.append(Diagnostic("P210", message, option("METHOD")))
         return None
     told = list(_told(asked, method))
     found += told
@@ -81,6 +80,16 @@ def _changed(
         found.append(Diagnostic("P213", message, option("METHOD"), "give --dt; in a study dt"))
         return None
     return card
+
+
+def _method(name: str, found: list[Diagnostic]) -> Spec | None:
+    """Method of a name; None, with a mistake, where there is none."""
+    methods = catalog().family("method")
+    method = methods.get(name.upper())
+    if method is None:
+        message = f"{name[:60]} is no method: known methods are {', '.join(methods)}"
+        found.append(Diagnostic("P210", message, option("METHOD")))
+    return method
 
 
 def option(item: str) -> Span:
