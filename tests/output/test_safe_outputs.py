@@ -309,7 +309,7 @@ def pipe(tmp_path):
         raise AssertionError("it waits for a pipe")
 
     before = signal.signal(signal.SIGALRM, waits)
-    signal.alarm(10)
+    signal.alarm(600)  # ends a hang; no test takes that long, however busy the machine
     yield made
     signal.alarm(0)
     signal.signal(signal.SIGALRM, before)
