@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from itertools import combinations, pairwise
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -21,7 +22,7 @@ pytest.importorskip("matplotlib")
 
 from pound_solve.report import plot
 from pound_solve.report.plot import PICTURES, Choice, ChoiceError, labels, members, style
-from pound_solve.report.plot.pictures import hinges
+from pound_solve.report.plot.pictures import hinges, summary
 from pound_solve.results import Results
 
 #: two frames with hinges and a contact, stored so coarsely that no sample meets a peak
@@ -439,6 +440,13 @@ def test_the_page_of_the_animation_holds_all_and_fetches_nothing(pair: Results, 
     assert sum(np.diff([0, *(c[0] for c in film["closed"])]) > 0) >= 2
     again, _ = plot.draw(pair, ["animation"], tmp_path / "again", "html")
     assert again[0].read_bytes() == path.read_bytes()
+
+
+def test_the_summary_tells_what_calls_for_a_look_alone() -> None:
+    kinds = [(name, object) for name in ("check", "value", "verdict")]
+    rows = np.array([("a", "1", "good"), ("b", "2", "met"), ("c", "3", "look: too large")], kinds)
+    results = SimpleNamespace(status="done", tables={"checks"}, table=lambda name: rows)
+    assert summary._figures(cast(Results, results)) == ["look at: c: 3"]
 
 
 @pytest.mark.full

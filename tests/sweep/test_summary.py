@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pound_solve.results.sweep_file import Sweep, Variable
-from pound_solve.sweep import summary
+from pound_solve.sweep import quantities, summary
 from sweep.small import folder, swept
 
 
@@ -38,6 +38,14 @@ def test_fractiles_take_the_largest_label_and_stopped_runs_as_infinite():
         "gap=0.01, scale 1": (2, 0.02, 0.02, 0.05),
         "gap=0.02, scale 1": (3, 0.04, 0.09, math.inf),
     }
+
+
+def test_the_largest_of_several_estimates_is_kept():
+    rows = [
+        {"check": f"estimated error of {kind}, TOL 0.001", "value": value, "verdict": "met"}
+        for kind, value in (("drifts", "2e-4"), ("accelerations", "nan"), ("forces", "1e-5"))
+    ]
+    assert quantities.taken({"checks": rows}) == {"error_estimate": {"": 2e-4}}
 
 
 def test_groups_are_as_fine_as_the_runs_allow():

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from pound_solve.analyses.history import RESIDUAL
 from tiers import each_once
 from verification.cases import kelvin_voigt_xi, run_text
 
@@ -177,3 +178,38 @@ def test_touching_nodes_pressed_together() -> None:
     assert len(c) >= 1
     assert c["t_start"][0] == pytest.approx(0.0, abs=1e-12)
     assert c["approach_velocity"][0] == pytest.approx(0.0, abs=1e-12)
+
+
+PRESSED = """UNITS kN m s
+GRAVITY 10
+NODES
+ 1 1 0 FIX=YR
+ 2 2 0 FIX=YR
+ 3 3 0 FIX=YR
+ 90 0 0 FIX=XYR
+ELEMENTS
+ 1 C 1 2
+ 2 C 2 3
+ 3 C 3
+ 4 S 90 1
+PROPS
+ C CONTACT GAP=0 LAW=LAGRANGE E=0
+ S SPRING KX=1E3
+WEIGHTS
+ 1 TO 3 100
+EQUAKE
+ SINE AMPLITUDE=6 PERIOD=0.3
+LOADS
+ 1 FX=300
+ANALYSIS
+ STATIC
+ HISTORY 0.6 METHOD=TAYLOR
+"""
+
+
+def test_the_energy_of_rounding_is_not_judged() -> None:
+    """A load presses three masses against a wall, and the ground does not part them: nothing moves."""
+    r = run_text(PRESSED)
+    assert np.abs(r.u).max() < 1e-12 and r.status == "done"
+    (verdict,) = (c["verdict"] for c in r.tables["checks"] if c["check"] == RESIDUAL)
+    assert verdict.startswith("nothing moves")

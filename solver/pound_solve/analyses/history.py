@@ -36,6 +36,7 @@ BALANCE = "base shear and overturning moment less inertia and loads, over the la
 CLOSEUPS = "time from which on peaks of collisions found no room in close-ups"
 HINGES = "peak moment of a hinge beyond that of its member, over the latter"
 BEYOND = 0.05  #: that much a crest between two steps may be, at ten steps a period
+STILL = 1e-13  #: share of the size of a structure below which a displacement is rounding
 ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
 
 SPEC = Spec(
@@ -159,9 +160,10 @@ class HistoryResult:
         """Self-checks: the balance of energy, and those of the method."""
         energy = self.recorder.energy
         # not over the input at the end, which a free body may have given back
-        ratio = energy.largest_residual / energy.largest if energy.largest else 0.0
+        moves = energy.largest > self._rounding()
+        ratio = energy.largest_residual / energy.largest if moves else 0.0
         good = "good" if ratio < (1e-9 if self.returned.exact else 1e-2) else "look: energy is lost or made"
-        if not energy.largest:
+        if not moves:
             good = "nothing moves: there is no energy to compare"
         elif energy.samples < 2:
             good = "look: the run ended before there was anything to compare"
@@ -174,6 +176,15 @@ class HistoryResult:
         every = self.recorder.envelopes.closeups.every
         thinned = {"close-ups": f"peaks, and one instant of {every}"} if every > 1 else {}
         return {**self.returned.figures, **thinned}
+
+    def _rounding(self) -> float:
+        """Energy of the largest force of a spring or contact on a way that is `STILL` of the structure's
+        size [F L]: less is no motion.
+        """
+        nodes = self.system.structure.model.nodes.values()
+        size = float(np.ptp([(n.x, n.y) for n in nodes], axis=0).max())
+        forces = (max(abs(f.high), abs(f.low)) for f in self.returned.peaks.force)
+        return STILL * size * max((f for f in forces if math.isfinite(f)), default=0.0)
 
     def _closeups(self) -> Iterator[tuple[str, str, str]]:
         """Tell where the close-ups of collisions found no room for their peaks."""
@@ -192,11 +203,8 @@ class HistoryResult:
         """Compare the peaks of hinges, which the method tracks between the steps too, with the envelopes of
         their members, which are made of the motion of the nodes.
         """
-        rows = self.recorder.envelopes.output.rows()
-        members = {
-            (o.element, o.quantity): max(high, -low)
-            for o, (high, _, low, _) in zip(self.items.outputs, rows)
-        }
+        largest = self.recorder.envelopes.output.largest()
+        members = {(o.element, o.quantity): peak for o, (peak, _) in zip(self.items.outputs, largest)}
         both = [
             (max(peak.high, -peak.low), members[end])
             for law, peak in zip(self.system.structure.laws, self.returned.peaks.force)

@@ -69,6 +69,18 @@ class Excitation:
         i = np.searchsorted(self.breaks, t - INSTANT * np.maximum(1.0, t), side="left") - 1
         return np.clip(i, 0, len(self.coefs) - 1)
 
+    def before_jumps(self, t: Array) -> Array:
+        """Times of motions that no jump of an input has changed yet, shape (n_times,): where one jumps, the
+        time is moved to just before it.
+        """
+        after = self.pieces_after(t)
+        at = np.flatnonzero(after != self.pieces_before(t))
+        change = np.abs(self.values_after(t[at]) - self.values(t[at], before=True))
+        at = at[(change > 1e-9 * np.abs(self.coefs[:, 0]).max(axis=0, initial=0.0)).any(axis=1)]
+        out = t.copy()
+        out[at] = self.breaks[after[at]] - 4.0 * INSTANT * np.maximum(1.0, t[at])
+        return out
+
     def local(self, piece: int, t: float) -> Array:
         """Coefficients about `t`, shape (degree + 1, n_inputs)."""
         return polynomial.shift(self.coefs[piece], t - float(self.breaks[piece]))

@@ -82,6 +82,11 @@ def _number(row: Fields) -> float:
         return math.nan
 
 
+def _known(value: float) -> float:
+    """Where a value comes in the order of several: one that is not known before all others."""
+    return -math.inf if math.isnan(value) else value
+
+
 def _check(begin: str) -> Callable[[Fields], str | None]:
     return lambda row: "" if row["check"].startswith(begin) else None
 
@@ -134,7 +139,7 @@ QUANTITIES: Final = (
         ("energy_residual", "-", "largest energy residual over the largest energy", _number),
     )),
     *_each("checks", "", _check("estimated error"), (
-        ("error_estimate", "-", "error of the peaks by the estimate of AUTO", _number),
+        ("error_estimate", "-", "largest error of the peaks by the estimates of AUTO", _number),
     )),
 )  # fmt: skip
 #: tables that the quantities are taken from
@@ -144,10 +149,13 @@ SOURCES: Final[Mapping[str, Table[RunRecord]]] = MappingProxyType(
 
 
 def taken(rows: Mapping[str, list[Fields]]) -> Values:
-    """The quantities of one run from the rows of its tables."""
+    """The quantities of one run from the rows of its tables; of rows with one label the largest."""
     out: Values = {}
     for q in QUANTITIES:
-        own = {label: q.value(row) for row in rows.get(q.table, ()) if (label := q.label(row)) is not None}
+        own: dict[str, float] = {}
+        for row in rows.get(q.table, ()):
+            if (label := q.label(row)) is not None:
+                own[label] = max(own.get(label, math.nan), q.value(row), key=_known)
         if own:
             out[q.name] = own
     return out

@@ -179,7 +179,8 @@ class KernelEngine(ABC):
         buffers, shown = self.buffers, self.state.shown
         if not shown:
             return
-        times = buffers.shown_time[:shown].copy()
+        # at the end of a step a load has not jumped yet
+        times = self.system.excitation.before_jumps(buffers.shown_time[:shown])
         u, v, a = motion = np.zeros((3, len(self.order), shown))
         motion[:, self.order[buffers.which]] = buffers.shown[:shown].transpose(1, 2, 0)
         law_forces = buffers.law_forces[:shown].T.copy()

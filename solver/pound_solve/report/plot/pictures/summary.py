@@ -84,7 +84,7 @@ def _figures(results: Results) -> list[str]:
     if results.status != "done":
         lines.insert(0, ("this run", f"{results.status}: {results.message}".rstrip(": ")))
     if "checks" in results.tables:
-        bad = [row for row in results.table("checks") if not str(row["verdict"]).startswith("good")]
+        bad = [row for row in results.table("checks") if str(row["verdict"]).startswith("look")]
         looks = [("look at", f"{row['check']}: {row['value']}") for row in bad]
     told, last = _wrapped(lines), _wrapped(looks)[: MOST_LINES // 2]
     room = MOST_LINES - len(last)
