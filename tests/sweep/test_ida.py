@@ -178,6 +178,9 @@ def test_the_verbs_print_tables(tmp_path, capsys, monkeypatch):
     picture = tmp_path / "pictures/fragility.svg"
     assert main([*words, "--limit", "0.05,0.1", "--at", "0.2,0.5", "--picture", str(picture)]) == 0
     assert "limit 0.1" in picture.read_text()
-    assert "dispersion" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "dispersion" in out and "fewer than 10 data" in out
+    assert "Runs: 14 of the 14 in the sweep; sa " in out
+    assert (tmp_path / "walls.sweep/fragility_peak_drift_0.05_0.1.rpt").is_file()
     assert main(words) == 2
     assert main(["fragility", file, "--limit", "x"]) == 2

@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize
+from scipy.stats import norm
 from scipy.stats import t as student
 
 from pound_solve.theory.fragility import FragilityError, from_capacities, from_cloud, from_stripes
@@ -34,6 +36,24 @@ def test_records_that_never_reach_the_limit_raise_the_median():
     told = from_capacities(below, np.full(12 - len(below), top))
     assert from_capacities(below).median < 0.8 * told.median
     assert told.median == pytest.approx(top, rel=0.1)
+
+
+def test_capacities_between_two_levels_count_as_such():
+    """The most likely parameters by a search with the distribution function; close levels are as values."""
+    x = capacities(np.random.default_rng(4), 30)
+    levels = np.array([0.0, 0.5, 0.9, 1.4, 9.0])
+    at = np.searchsorted(levels, x)
+    found = from_capacities([], [], list(zip(levels[at - 1], levels[at])))
+
+    def unlikely(p):
+        z = norm.cdf((np.log(np.maximum(levels, 1e-300)) - p[0]) / math.exp(p[1]))
+        return -np.log(z[at] - z[at - 1]).sum()
+
+    best = minimize(unlikely, [-0.2, -0.8], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12}).x
+    assert (found.median, found.dispersion) == pytest.approx(tuple(np.exp(best)), rel=1e-5)
+    close = from_capacities([], [], list(zip(x * (1 - 1e-6), x * (1 + 1e-6))))
+    known = from_capacities(x)
+    assert (close.median, close.dispersion) == pytest.approx((known.median, known.dispersion), rel=1e-5)
 
 
 def test_stripes_of_two_intensities_meet_both_shares():
@@ -86,6 +106,8 @@ def test_intervals_hold_the_truth_as_often_as_they_say(kind):
         (lambda: from_capacities([0.5]), "1 of 1 records"),
         (lambda: from_capacities([0.5, 0.5], [1.0]), "two capacities that differ"),
         (lambda: from_capacities([0.5, -1.0]), "above zero"),
+        (lambda: from_capacities([], [], [(0.5, 1.0)] * 4), "run levels between"),
+        (lambda: from_capacities([], [0.5], [(0.0, 0.5), (0.5, 1.0)]), "run levels between"),
         (lambda: from_stripes([1, 2], [0, 20], [20, 20]), "lie apart"),
         (lambda: from_stripes([1, 2, 3], [15, 10, 3], [20, 20, 20]), "does not rise"),
         (lambda: from_cloud([1, 2], [1, 2], 1), "three runs"),

@@ -37,9 +37,10 @@ def test_a_linear_structure_has_a_straight_line_and_its_capacities():
     points = trace(linear, rules)
     assert len(points) == rules.runs and points[-1].level == 3.0
     assert set(ends(points, rules)) == {STANDS}
-    for demand in (0.001, 0.0137, 0.059):
-        assert capacity(points, rules, demand) == pytest.approx((demand / 0.02, True), rel=1e-12)
-    assert capacity(points, rules, 0.07) == (3.0, False)
+    for demand in (0.004, 0.0137, 0.059):
+        assert capacity(points, rules, demand) == pytest.approx((demand / 0.02, demand / 0.02), rel=1e-12)
+    assert capacity(points, rules, 0.001) == (0.0, points[0].level)  # nothing was run below
+    assert capacity(points, rules, 0.07) == (3.0, math.inf)
     assert demand_at(points, rules, 1.234) == pytest.approx(linear(1.234), rel=1e-12)
     assert math.isnan(demand_at(points, rules, 3.1))
 
@@ -54,7 +55,7 @@ def test_a_collapse_is_bracketed_and_the_rest_fills_the_gaps(least):
     levels = [0.0, *(p.level for p in points if p.level <= stands)]
     widest = max(b - a for a, b in pairwise(levels))
     assert widest <= 0.5 * max(0.1, least)  # the gaps that the hunt had left are halved
-    assert capacity(points, rules, math.inf) == (0.5 * (stands + falls), True)
+    assert capacity(points, rules, math.inf) == (stands, falls)
     assert demand_at(points, rules, falls) == math.inf
 
 
@@ -73,7 +74,17 @@ def test_what_stands_again_above_a_collapse_counts_as_collapsed():
     points = [Point(0.1, 0.002), Point(0.2, math.inf), Point(0.3, 0.005)]
     assert collapse(points, rules) == (0.1, 0.2)
     assert ends(points, rules) == [STANDS, STOPPED, STANDS]
-    assert capacity(points, rules, 0.004) == (pytest.approx(0.15), True)
+    assert capacity(points, rules, 0.004) == (0.1, 0.2)
+
+
+def test_counts_and_what_begins_between_two_runs_are_not_interpolated():
+    rules = Rules(step=0.1)
+    counted = [Point(0.1, 1.0), Point(0.2, 3.0), Point(0.3, 9.0)]
+    assert capacity(counted, rules, 2.0, in_steps=True) == (0.1, 0.2)
+    assert capacity(counted, rules, 1.0, in_steps=True) == (0.0, 0.1)
+    force = [Point(0.1, 0.0), Point(0.2, 300.0), Point(0.3, 500.0)]
+    assert capacity(force, rules, 100.0) == (0.1, 0.2)
+    assert capacity(force, rules, 400.0) == pytest.approx((0.25, 0.25), rel=1e-12)
 
 
 def test_levels_follow_from_the_points_alone():

@@ -13,7 +13,17 @@ from pound_solve.report.plot import suites
 from pound_solve.report.text import printed
 from pound_solve.results.schema import Column, Row, Table
 from pound_solve.results.sweep_file import Sweep
-from pound_solve.sweep.curves import COLLAPSE, Asked, Curve, CurveError, by_case, curves, unit_of, units_of
+from pound_solve.sweep.curves import (
+    COLLAPSE,
+    Asked,
+    Curve,
+    CurveError,
+    by_case,
+    curves,
+    measure,
+    unit_of,
+    units_of,
+)
 from pound_solve.sweep.incremental import Rules, capacity
 from pound_solve.theory.fragility import (
     Fragility,
@@ -25,6 +35,7 @@ from pound_solve.theory.fragility import (
 
 #: only a run that stops brings the structure down; a limit of the demand is a limit of its own
 STOPS: Final = Rules(step=1.0, slope=0.0)
+FEW: Final = 10  #: data below which a remark says so
 FEWEST: Final = 3  #: levels of a record that make a curve
 POINTS: Final = 200  #: of a curve that is drawn
 DIGITS: Final = 4  #: of probabilities that are printed
@@ -55,9 +66,12 @@ class Fitted(NamedTuple):
 
 def by_capacities(own: Sequence[Curve], limit: float, level: float) -> Fragility:
     """Of the levels at which the records reach the limit."""
-    found = [capacity(c.points, STOPS, limit) for c in own if c.points]
-    reached = [x for x, is_reached in found if is_reached]
-    return from_capacities(reached, [x for x, is_reached in found if not is_reached and x > 0.0], level)
+    demands = [p.demand for c in own for p in c.points if math.isfinite(p.demand)]
+    in_steps = all(d == round(d) for d in demands)  # as counts and indicators are
+    found = [capacity(c.points, STOPS, limit, in_steps) for c in own if c.points]
+    known = [low for low, high in found if low == high]
+    never = [low for low, high in found if 0.0 < low < high == math.inf]
+    return from_capacities(known, never, [pair for pair in found if pair[0] < pair[1] < math.inf], level)
 
 
 def by_stripes(own: Sequence[Curve], limit: float, level: float) -> Fragility:
@@ -138,6 +152,8 @@ def _fitted(case: str, own: Sequence[Curve], limit: float, method: str, level: f
         found = METHODS[method](own, limit, level)
     except FragilityError as err:
         remarks.append(str(err))
+    if found is not None and found.count < FEW:
+        remarks.append(f"fewer than {FEW} data")
     stopped = sum(math.isinf(p.demand) for c in own for p in c.points)
     if method == "cloud" and stopped:
         remarks.append(f"{stopped} runs that stopped are not in the cloud")
@@ -167,11 +183,23 @@ def report(sweep: Sweep, asked: Asked, found: Sequence[Fitted], at: Sequence[flo
     units, unit = units_of(sweep), unit_of(sweep, asked)
     sure = next((f.fragility.level for f in found if f.fragility is not None), math.nan)
     yield f"Demand: {asked.quantity} {asked.label}".rstrip()
+    yield _base(sweep, found)
     yield ""
     yield from printed(units, fragility_table(unit, sure), rows(found))
     if at:
         yield ""
         yield from printed(units, probability_table(unit, at), _probable(found, at))
+
+
+def _base(sweep: Sweep, found: Sequence[Fitted]) -> str:
+    """The runs that the fragilities rest on, in words."""
+    seen = {f.case: f.observed for f in found}
+    levels = sorted({x for observed in seen.values() for x, _, _ in observed})
+    runs = sum(count for observed in seen.values() for _, _, count in observed)
+    which = (
+        f"{measure(sweep)} {levels[0]:.6g} to {levels[-1]:.6g}, {len(levels)} levels" if levels else "none"
+    )
+    return f"Runs: {runs} of the {len(sweep)} in the sweep; {which}"
 
 
 def _probable(found: Sequence[Fitted], at: Sequence[float]) -> Iterator[Row]:

@@ -166,22 +166,27 @@ def standing(points: Sequence[Point], rules: Rules) -> list[Point]:
     return [Point(0.0, 0.0), *(p for p in points if p.level <= stands)]
 
 
-def capacity(points: Sequence[Point], rules: Rules, demand: float) -> tuple[float, bool]:
-    """Level at which a demand is first reached, and whether it is: else the highest level that was run.
+def capacity(
+    points: Sequence[Point], rules: Rules, demand: float, in_steps: bool = False
+) -> tuple[float, float]:
+    """Levels between which a demand is first reached: zero and the lowest one where the first run does, the
+    highest one and infinity where none does, twice the same where it is known.
 
-    Straight lines join the points, from the origin on.  Where the record collapses before, the capacity is
-    in the middle of the bracket.
+    A straight line joins two runs.  None does where nothing was run, below the lowest level; nor where the
+    demand comes `in_steps`, as a count does, or begins somewhere between; nor up to a collapse.
     """
     for below, point in pairwise(standing(points, rules)):
         if point.demand >= demand:
+            if in_steps or not below.demand:
+                return below.level, point.level
             share = (demand - below.demand) / (point.demand - below.demand)
-            return below.level + share * (point.level - below.level), True
-    stands, falls = collapse(points, rules)
-    return (stands, False) if falls == math.inf else (0.5 * (stands + falls), True)
+            level = below.level + share * (point.level - below.level)
+            return level, level
+    return collapse(points, rules)
 
 
 def demand_at(points: Sequence[Point], rules: Rules, level: float) -> float:
-    """Demand at a level: infinite from the middle of the bracket of a collapse on, as `capacity` has it.
+    """Demand at a level: infinite from the middle of the bracket of a collapse on.
 
     NaN beyond the highest level of a record that stands.
     """

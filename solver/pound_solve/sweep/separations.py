@@ -152,7 +152,7 @@ def _contacts(
 def _fit(needed: Array, met: Array, level: float) -> Fragility | None:
     """Lognormal distribution of the gaps that are needed; None where they determine none."""
     try:
-        return from_capacities(needed, met, level)
+        return from_capacities(needed, met, level=level)
     except FragilityError:
         return None
 

@@ -6,8 +6,9 @@ The probability that a limit is exceeded at an intensity x is
 
 with the median :math:`\theta` and the dispersion :math:`\beta`.  Each kind of data has its likelihood:
 
-* capacities, one a record: the intensity at which the limit is reached; that of a record that never
-  reached it lies beyond the largest intensity it was run at (a censored sample);
+* capacities, one a record: the intensity at which the limit is reached, or two between which it is; that of
+  a record that never reached it lies beyond the largest intensity it was run at (a censored sample), and
+  that of one that reached it in its first run below the lowest;
 * stripes: z of n runs at one intensity exceeded the limit (Baker 2015, Earthquake Spectra 31: 579-599);
 * a cloud: the demand D of runs at any intensities follows :math:`\ln D = a + b\ln x + \sigma\varepsilon`
   (Cornell et al. 2002, J. Struct. Eng. 128: 526-533), so that :math:`\ln\theta = (\ln d - a)/b` for the
@@ -27,7 +28,7 @@ keeps its level much better than :math:`\chi_1^2` does.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -116,7 +117,12 @@ class Likelihood:
     high: float
 
 
-def from_capacities(reached: ArrayLike, never: ArrayLike = (), level: float = 0.95) -> Fragility:
+def from_capacities(
+    reached: ArrayLike,
+    never: ArrayLike = (),
+    within: Sequence[tuple[float, float]] = (),
+    level: float = 0.95,
+) -> Fragility:
     """Fragility from one capacity a record.
 
     Parameters
@@ -125,26 +131,50 @@ def from_capacities(reached: ArrayLike, never: ArrayLike = (), level: float = 0.
         Intensities at which the limit was reached.
     never : array_like, shape (m,)
         Largest intensities of records that did not reach it.
+    within : sequence of pairs
+        Intensities between which others reached it; the lower may be zero.
     level : float
         Of confidence.
 
     Raises
     ------
     FragilityError
-        Fewer than two records reached the limit, all at one intensity, or an intensity is not above zero.
+        Fewer than two records reached the limit, one intensity may be the capacity of all, or an intensity
+        is not above zero.
     """
     x, c = _logarithms(reached), _logarithms(never)
-    if len(x) < 2 or np.ptp(x) == 0.0:
+    low, high = np.array(within, np.float64).reshape(-1, 2).T
+    b = _logarithms(high)
+    a = np.full(len(b), -np.inf)
+    a[low > 0.0] = _logarithms(low[low > 0.0])
+    if len(x) + len(b) < 2 or (len(x) and not len(b) and np.ptp(x) == 0.0):
+        told = f"{len(x) + len(b)} of {len(x) + len(b) + len(c)} records reach the limit"
+        raise FragilityError(f"{told}, which needs two capacities that differ")
+    if len(b) and np.concatenate([x, c, a]).max() <= np.concatenate([x, b]).min():
         raise FragilityError(
-            f"{len(x)} of {len(x) + len(c)} records reach the limit, which needs two capacities that differ"
+            "all capacities may be one level, which tells no dispersion: run levels between"
         )
 
     def of(mu: float, beta: float) -> float:
         z = (x - mu) / beta
-        return float(-len(x) * math.log(beta) - 0.5 * z @ z + log_ndtr((mu - c) / beta).sum())
+        known = -len(x) * math.log(beta) - 0.5 * z @ z
+        between = _log_between((a - mu) / beta, (b - mu) / beta)
+        return float(known + log_ndtr((mu - c) / beta).sum() + between.sum())
 
-    ends = np.concatenate([x, c])
-    return _fit(Likelihood(of, len(ends), len(ends) - 1, ends.min(), ends.max()), level)
+    ends = np.concatenate([x, c, b, a[np.isfinite(a)]])
+    count = len(x) + len(c) + len(b)
+    return _fit(Likelihood(of, count, count - 1, ends.min(), ends.max()), level)
+
+
+def _log_between(low: Array, high: Array) -> Array:
+    """Logarithm of the probability that a normal variable lies between two values, the lower of which may
+    be minus infinity.
+    """
+    flip = low > 0.0  # differences of what is nearly one have no digits
+    low, high = np.where(flip, -high, low), np.where(flip, -low, high)
+    whole = log_ndtr(high)
+    with np.errstate(divide="ignore"):
+        return np.asarray(whole + np.log1p(-np.exp(log_ndtr(low) - whole)))
 
 
 def from_stripes(

@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import re
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pound_solve.cli import common
+
+if TYPE_CHECKING:
+    from pound_solve.sweep.curves import Asked
 
 SUMMARY = "fragilities with intervals of confidence from the runs of a sweep"
 
@@ -49,7 +55,7 @@ def execute(args: argparse.Namespace) -> int:
         sweep, asked = Sweep.open(Path(args.sweep)), Asked(args.demand, args.label)
         found = fragilities.fit(sweep, asked, limits, args.method, args.confidence)
         lines = list(fragilities.report(sweep, asked, found, at))
-        told = summary.write(Path(args.sweep).with_name("fragility.h5"), sweep, "fragilities", lines)
+        told = summary.write(Path(args.sweep).with_name(_name(asked, limits)), sweep, "fragilities", lines)
     except CurveError as err:
         return common.complain(f"{args.sweep}: {err}", common.MISTAKES)
     except ResultsError as err:
@@ -58,3 +64,9 @@ def execute(args: argparse.Namespace) -> int:
     if args.picture:
         suites.fragilities(fragilities.drawn(found), axes_of(sweep, asked)[1], args.picture)
     return common.DONE
+
+
+def _name(asked: Asked, limits: Sequence[float]) -> str:
+    """Name of the report: those of other demands and limits stay."""
+    words = ["fragility", asked.quantity, asked.label, *(f"{x:g}" for x in limits)]
+    return "_".join(re.sub(r"[^\w.+-]+", "-", word) for word in words if word) + ".rpt"
