@@ -218,6 +218,27 @@ def test_the_overview_names_the_largest_of_all(tmp_path):
     )
 
 
+def test_a_bearing_is_no_storey(tmp_path):
+    """It moves further than it is high, and may stay there; drift ratios are those of the storey above."""
+    text = (
+        DECK.replace("1 0 0 FIX", "5 0 {base} FIX=XYR\n 1 0 0 FIX")
+        .replace("1 0 0 FIX=XYR", "1 0 0 FIX=YR")
+        .replace("1 COL 1 2", "1 COL 1 2\n 3 BEARING 5 1")
+        .replace("PROPS", "PROPS\n BEARING SPRING KX=300 FX=20 RULE=BILINEAR R=0.1")
+        .replace("2,3 100", "1,2,3 100")
+        .replace('"storey" 1 2', '"storey" 1 2\n "bearing" 5 1')
+    )
+    for base, name in ((-0.2, "storey"), (-2.0, "bearing")):
+        deck = tmp_path / "model.inp"
+        deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=3.0, base=base))
+        results = results_of(deck)
+        ratio = dict(zip(*(results.table("drift_envelope")[c] for c in ("name", "ratio_max"))))
+        assert ratio["bearing"] > 0.02 > ratio["storey"]
+        assert dict(results.table("overview").tolist())["largest drift ratio"].endswith(f", {name}")
+        leans = "storey drift of building 1 at the end" in looks(results)
+        assert leans == (name == "bearing") and abs(results.history("storey/drift")[-1, 0]) > 0.005
+
+
 def test_a_building_that_leans_after_the_motion_is_told(tmp_path):
     """A spring that yields to one side keeps a drift; one that yields less, or not, has nothing to tell."""
     for a, h, told in ((6.0, 3.0, True), (0.3, 3.0, False)):

@@ -37,6 +37,7 @@ CLOSEUPS = "time from which on peaks of collisions found no room in close-ups"
 HINGES = "peak moment of a hinge beyond that of its member, over the latter"
 BEYOND = 0.05  #: that much a crest between two steps may be, at ten steps a period
 STILL = 1e-13  #: share of the size of a structure below which a displacement is rounding
+BEARING = 0.25  #: height over that of the highest storey below which a drift is one of a bearing
 ROWS = 1000  #: of stored histories, about, where OUTPUT gives no interval
 
 SPEC = Spec(
@@ -226,6 +227,14 @@ class HistoryResult:
                 drift_heights(self.system.structure.model),
             )
         ]
+
+    def storey_drift_ratios(self) -> list[tuple[str, float]]:
+        """`drift_ratios` as far as they are known and their heights are those of storeys: a bearing is far
+        lower than a storey, and moves further than it is high.
+        """
+        heights = list(drift_heights(self.system.structure.model))
+        least = BEARING * max((h for h in heights if h == h), default=0.0)
+        return [own for own, h in zip(self.drift_ratios(), heights) if h >= least]
 
     @property
     def items(self) -> RecordedItems:

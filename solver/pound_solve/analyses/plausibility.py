@@ -9,8 +9,10 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
+import numpy as np
+
 from pound_deck.model import Model
-from pound_solve.analyses.history import HistoryResult
+from pound_solve.analyses.history import BEARING, HistoryResult
 from pound_solve.analyses.spring_response import ORDINARY_ROTATION
 from pound_solve.integrate.protocol import Outcome
 from pound_solve.structure.storeys import storeys
@@ -26,7 +28,7 @@ LARGEST_OVERLAP: Final = 0.02  #: of the shortest member that meets a contact
 
 def drifts(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
     """Drifts beyond a tenth of their height."""
-    for name, ratio in history.drift_ratios():
+    for name, ratio in history.storey_drift_ratios():
         if ratio > LARGEST_DRIFT:
             verdict = "look: above 10 %; check units, masses and strengths"
             yield f"drift ratio of {name}", f"{100 * ratio:.3g} %", verdict
@@ -139,7 +141,9 @@ def leaning(structure: Structure, history: HistoryResult, residual: Sequence[flo
     model, found = structure.model, list(zip(storeys(history.items.buildings), residual))
     yielded = {model.elements[r.spring.element].i for r in history.springs if r.ductility > 1.0}
     for building in history.items.buildings:
-        own = [(abs(x), storey) for (b, storey), x in found if b is building]
+        heights = np.diff(building.levels)
+        high = heights >= BEARING * heights.max(initial=0.0)
+        own = [(abs(x), storey) for (b, storey), x in found if b is building and high[storey - 1]]
         most, storey = max(own, default=(0.0, 0))
         if most > LARGEST_RESIDUAL and yielded & set(building.nodes):
             told = f"{100 * most:.3g} %, storey {storey}"

@@ -88,9 +88,8 @@ def response(run: RunRecord) -> Iterator[Row]:
     yield "method", str(figures.get("method", ""))
     yield "error of the method", error_of(history.returned)
     yield "end of the history", f"{history.recorder.reached:.6g} {units.time}"
-    drifts = [(ratio, name) for name, ratio in history.drift_ratios() if not math.isnan(ratio)]
-    if drifts:
-        ratio, name = max(drifts)
+    if drifts := history.storey_drift_ratios():
+        name, ratio = max(drifts, key=lambda own: own[1])
         yield "largest drift ratio", f"{100.0 * ratio:.3g} %, {name}"
     elif history.items.buildings:
         seen = [ratio for ratio, _ in history.recorder.envelopes.total["drift"].largest()]
