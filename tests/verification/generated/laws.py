@@ -40,7 +40,7 @@ def hysteresis(
     specs = choices("hysteresis", straight)
     # columns on hinges with slack are a mechanism, which gravity overturns
     spec = rng.choice([s for s in specs if not (carries and "SLACK" in s.sample)])
-    words = [f"RULE={spec.name}", *_items(rng, spec, force, deformation)]
+    words = [f"RULE={spec.name}", *items(rng, spec, force, deformation)]
     if spec.field(WHOLE_LOSS) and rng.random() < 0.3:
         begin = rng.uniform(1.5, 4.0)
         words += [f"ILOS={rng.choice(('EACH', 'LARGEST'))} DUCT1={begin:.3g}"]
@@ -53,13 +53,13 @@ def contact(rng: random.Random, force: float, depth: float, slab: float, straigh
     for diaphragms, these get stiffnesses about `slab`.
     """
     spec = rng.choice(choices("contact", straight))
-    words = [f"LAW={spec.name}", *_items(rng, spec, force, depth)]
+    words = [f"LAW={spec.name}", *items(rng, spec, force, depth)]
     if spec.field("MODEL"):
         words.append(f"DIAPHRAGMS={slab * rng.uniform(0.5, 2.0):.4g},{slab:.4g}")
     return " ".join(words)
 
 
-def _items(rng: random.Random, spec: Spec, force: float, deformation: float) -> list[str]:
+def items(rng: random.Random, spec: Spec, force: float, deformation: float) -> list[str]:
     """Items of a Spec's sample, scaled from yield (or contact) at one and one, each number a little other;
     now and then one of its other words.
     """
