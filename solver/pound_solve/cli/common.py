@@ -9,8 +9,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pound_deck.schema import GREAT, OF_MAGNITUDE
-
 if TYPE_CHECKING:
     from pound_solve.driver.run import Request
 
@@ -121,6 +119,8 @@ def numbers(words: Sequence[str], takes: str, error: type[Exception]) -> list[fl
     """Numbers of the magnitudes that a deck may have; raise `error`, which says what the option `takes`, at
     the first word that is none.
     """
+    from pound_deck.schema import GREAT, OF_MAGNITUDE
+
     out = []
     for word in words:
         try:
