@@ -20,6 +20,7 @@ from fuzz.cases import KINDS, bases, case
 from fuzz.judge import Outcome, judge
 from fuzz.kills import rounds
 from fuzz.workers import outcomes
+from tiers import at_night
 
 #: cases of each kind, in two processes: one without runs and one with
 COUNTS = (
@@ -73,7 +74,7 @@ def fault(case: object, folder: Path) -> Outcome:
 
 @pytest.mark.full
 @pytest.mark.skipif(sys.platform != "linux", reason="bounds of this system")
-@pytest.mark.parametrize("sort", ["traceback", "memory", "crash", "hang"])
+@pytest.mark.parametrize("sort", ["traceback", "hang", *at_night("memory", "crash")])
 def test_faults_are_found_and_the_next_case_is_judged(
     tmp_path: Path, whole: Mapping[str, bytes], monkeypatch: pytest.MonkeyPatch, sort: str
 ) -> None:

@@ -323,8 +323,11 @@ ANALYSIS
 @pytest.mark.full
 @pytest.mark.parametrize(
     ("fix", "elements", "node", "end"),
-    [("FIX=XYR", "1 S 1 2", 2, 0.1), ("FIX=YR", "1 W 1 2", 1, 1.0), ("FIX=YR", "1 W 2", 2, 0.1)],
-    ids=["no contact", "two bodies", "a body at a wall"],
+    [
+        ("FIX=YR", "1 W 1 2", 1, 1.0),
+        *at_night(("FIX=XYR", "1 S 1 2", 2, 0.1), ("FIX=YR", "1 W 2", 2, 0.1)),
+    ],
+    ids=["two bodies", "no contact", "a body at a wall"],
 )
 def test_every_picture_of_a_bare_structure_is_drawn_or_says_that_there_is_nothing(
     tmp_path: Path, fix: str, elements: str, node: int, end: float

@@ -11,6 +11,7 @@ from pound_solve.catalog import FAMILIES, specs
 from pound_solve.results import Results
 from pound_solve.results.tables.figures.imports import LIBRARIES
 from pound_solve.results.tables.reduced_system.arrays import stored
+from tiers import at_night
 
 pytestmark = pytest.mark.full
 
@@ -94,7 +95,7 @@ def engines(modules):
     return {name for name in FOLDERS if f"pound_solve.integrate.{name}" in modules}
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", ["linear static", "general history", *at_night(*list(KINDS)[1:-1])])
 def test_each_kind_of_deck_imports_what_it_needs_and_no_more(tmp_path, kind):
     # with compiled kernels AUTO takes series
     modules, _ = run(deck(tmp_path, kind), "--explain", compiling="0")

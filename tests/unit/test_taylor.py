@@ -385,6 +385,7 @@ def test_what_moves_a_frame(load: str) -> None:
 @each_once(
     ("head", ["GEOMETRY PDELTA", "GEOMETRY PDELTA_MEMBER", "MASS CONSISTENT"]),
     ("load", ["one motion of the ground", "supports apart"]),
+    at_most=2,
 )
 def test_geometry_and_mass_of_a_frame(head: str, load: str) -> None:
     deck = frames(head=head, load=LOADS[load])

@@ -101,7 +101,7 @@ def yields(r: Ran) -> int:
     return int(r.column("spring_envelope", "yield_events").sum())
 
 
-@each_once(("damping", HELD), ("turn", ["0", "0.5"]), at_most=3)
+@each_once(("damping", HELD), ("turn", ["0", "0.5"]), at_most=2)
 def test_hinges_of_a_frame(damping: str, turn: str) -> None:
     r, _ = agree(hinged(damping, turn))
     assert yields(r) > 10

@@ -52,7 +52,7 @@ def test_decks_differ_in_what_matters(texts: list[str]) -> None:
 
 @pytest.mark.full
 @FAST
-@pytest.mark.parametrize("seed", [107, *at_night(114, 0, 14)])
+@pytest.mark.parametrize("seed", at_night(107, 114, 0, 14))
 def test_steps_of_auto_keep_their_tolerance_on_generated_decks(tmp_path: Path, seed: int) -> None:
     """Against TAYLOR, which has no truncation error, on decks that both solve."""
     deck = tmp_path / f"{seed}.inp"
