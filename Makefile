@@ -83,7 +83,7 @@ docs: $(VENV)/ready-docs   # warnings are errors
 docstrings: $(VENV)/ready-docs
 	rm -rf build/docstrings
 	for folder in parser solver; do SPHINX_APIDOC_OPTIONS=members \
-	$(BIN)/sphinx-apidoc -q --separate --no-toc -o build/docstrings $$folder || exit 1; done
+	$(BIN)/sphinx-apidoc -q --separate --no-toc -o build/docstrings $$folder "*.so" || exit 1; done
 	$(BIN)/sphinx-build --fail-on-warning --keep-going -b dummy -c manual/site -D root_doc=pound_solve \
 	-D include_patterns="**" -D suppress_warnings=ref.python,toc.not_included build/docstrings build/docstrings/out
 
