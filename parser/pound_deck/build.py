@@ -83,7 +83,7 @@ def _section(name: str, outline: Outline, binder: Binder) -> tuple[Card, ...]:
     for row in rows:
         found = _row(name, row, binder)
         if found is None:
-            outline.broken.add(name)
+            outline.lose(name, *_plain_labels(item for item in (row.items or ())[:1] if not item.name))
         out += found or ()
     return tuple(out)
 

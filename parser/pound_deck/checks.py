@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence, Set
 from typing import Any, Final
 
 from pound_deck.diagnostics import Diagnostic, suggest
@@ -20,7 +20,11 @@ _MOST_HINTS: Final = 100  #: more messages are not printed, and each hint takes 
 
 
 def run_checks(
-    model: Model, cards: Iterable[Card], broken: frozenset[str] = frozenset()
+    model: Model,
+    cards: Iterable[Card],
+    broken: Set[str] = frozenset(),
+    gone: Set[str] = frozenset(),
+    maimed: Set[str] = frozenset(),
 ) -> list[Diagnostic]:
     """Run every check.
 
@@ -30,24 +34,25 @@ def run_checks(
         All that could be read.
     cards : iterable of Card
         Every card of the deck; those of NODES and ELEMENTS have the places of single items.
-    broken : frozenset of str
-        Sections that lost lines to mistakes; checks that count on them are left out.
+    broken, gone, maimed : set of str
+        Sections that lost lines to mistakes, those of which it is not known what these lines define, and
+        the property sets that the others define: checks that count on what is lost are left out.
     """
     found = [d for check, needs in CHECKS if not broken & needs for d in check(model)]
-    return found + list(_references(model, cards, broken))
+    return found + list(_references(model, cards, gone, maimed))
 
 
-def _references(model: Model, cards: Iterable[Card], broken: frozenset[str]) -> Found:
+def _references(model: Model, cards: Iterable[Card], gone: Set[str], maimed: Set[str]) -> Found:
     """Nodes, elements and property sets that are named but not defined."""
     tables: tuple[tuple[str, str, str, Any], ...] = (
         ("P305", "node", "NODES", model.nodes),
         ("P306", "element", "ELEMENTS", model.elements),
-        ("P307", "property set", "PROPS", model.props),
+        ("P307", "property set", "PROPS", dict.fromkeys((*model.props, *sorted(maimed)))),
     )
     reported: set[Span] = set()  # one report for an item is enough: a range may miss a hundred
     for value, kind, span in _named(cards):
         code, what, section, known = tables[_TABLE[kind]]
-        if section not in broken and value not in known and span not in reported:
+        if section not in gone and value not in known and span not in reported:
             reported.add(span)
             near = suggest(value, known) if isinstance(value, str) and len(reported) <= _MOST_HINTS else ""
             ground = "leave J out for the ground" if value == 0 else ""

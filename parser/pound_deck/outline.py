@@ -21,7 +21,9 @@ _KEYWORDS: Final = (*NAMES, *(spec.name for spec in CARDS))
 class Outline:
     """Rows of a deck, sorted into sections and single cards.
 
-    `broken` names the sections that lost a row to a mistake: what refers to them cannot be judged.
+    `broken` names the sections that lost a row to a mistake, and `gone` those of them of which it is not
+    known what stood in that row: what refers to it cannot be judged.  `maimed` are labels of property sets
+    whose row was lost.
     """
 
     catalog: Catalog
@@ -31,6 +33,8 @@ class Outline:
     definitions: dict[str, Definition] = field(default_factory=dict)
     lost: set[str] = field(default_factory=set)
     broken: set[str] = field(default_factory=set)
+    gone: set[str] = field(default_factory=set)
+    maimed: set[str] = field(default_factory=set)
     _section: str | None = None
     _skipping: bool = False
 
@@ -50,7 +54,7 @@ class Outline:
                 "P209", f"{name} is no named item", row.items[0].name_span, f"write {name} without ="
             )
         elif row.items is None:
-            self.broken.add(self._section or "NODES")
+            self.lose(self._section or "NODES", row.word)
         elif self._misspelt(row):
             pass
         elif self._section:
@@ -61,7 +65,20 @@ class Outline:
                 suggest(row.word, _KEYWORDS) if row.word else "", "write NODES, ELEMENTS, ... above it"
             )
             self._error("P234", "this line stands before any section", row.span, hint)
-            self.broken |= set(NAMES)
+            self.lose_all()
+
+    def lose(self, section: str, label: str = "") -> None:
+        """Note that a section has lost a row, which begins with a label where that is known."""
+        self.broken.add(section)
+        if section == "PROPS" and label:
+            self.maimed.add(label)
+        else:
+            self.gone.add(section)
+
+    def lose_all(self) -> None:
+        """Note that rows of any section may be lost."""
+        for section in NAMES:
+            self.lose(section)
 
     def _open(self, row: Row) -> None:
         self._section = row.word
@@ -87,7 +104,7 @@ class Outline:
         self._error("P235", f"{row.word[:60]} is no section", row.span, hint)
         self._section, self._skipping = (meant if meant in NAMES else None), True
         if not self._section:
-            self.broken |= set(NAMES)
+            self.lose_all()
         return True
 
     def _define(self, row: Row) -> None:

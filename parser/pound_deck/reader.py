@@ -14,7 +14,6 @@ from pound_deck.expressions import Definition, Expression, Step, Value, resolve
 from pound_deck.model import Model, Span
 from pound_deck.outline import Outline
 from pound_deck.schema import Catalog
-from pound_deck.sections import NAMES
 from pound_deck.source import Line, Source
 from pound_deck.source import opened as opened
 
@@ -93,11 +92,11 @@ def _read(source: Source, lines: list[Line], catalog: Catalog, overrides: Mappin
         outline.add(row)
     texts = {f"--set {name}": str(value) for name, value in overrides.items()}
     if unread:  # what is missing would only bring complaints about things that stand in the unread file
-        outline.broken |= set(NAMES)
+        outline.lose_all()
         texts = {}
     params = _params(outline, texts, report)
     model, cards = build(outline, params, catalog, dict(files), report)
-    report += run_checks(model, cards, frozenset(outline.broken))
+    report += run_checks(model, cards, outline.broken, outline.gone, outline.maimed)
     if unread:  # names may be defined in what could not be read
         report[:] = [d for d in report if d.code not in ("P222", "P234")]
     order = {name: k for k, name in enumerate(files)}

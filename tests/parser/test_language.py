@@ -388,6 +388,21 @@ def test_a_line_that_generates_nothing_breaks_no_check(codes):
     assert codes(HEAD.replace(" 3 1 3", " 3 1 3\n 9 TO 8 0 3") + "WEIGHTS\n 7 5\n") == ["P305"]
 
 
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        (" OTHER SPRING KX=-1", ["P307", "P217"]),
+        (" OTHER SPRING KX=(1", ["P307", "P203"]),  # not even its items are known
+        (" MISSING SPRING KX=-1", ["P217"]),  # which is the set that is named
+        (" KX=5", ["P213"]),  # any set may be meant
+    ],
+)
+def test_a_set_is_missed_beside_lines_with_mistakes(codes, line, told):
+    """But for one that may stand in such a line."""
+    text = HEAD.replace(" 2 COL 2 3", " 2 MISSING 2 3").replace("PROPS\n", f"PROPS\n{line}\n")
+    assert codes(text) == told
+
+
 def test_loads_on_nothing_move_nothing(codes):
     history = HEAD.replace("STATIC", "HISTORY T=1")
     assert codes(history + "LOADS\n 9 TO 8 5\n") == ["P317"]

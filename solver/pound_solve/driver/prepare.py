@@ -25,13 +25,19 @@ from pound_solve.structure.damping.assembly import add_damping
 from pound_solve.structure.reduction import moved_supports
 from pound_solve.structure.structure import Structure
 
+LATER = "Records and the structure are checked when these mistakes are gone."
+
 
 class DeckError(Exception):
-    """The deck has mistakes; `diagnostics` are all of them and `files` the texts they point into."""
+    """The deck has mistakes: `diagnostics` are those that could be found, `files` the texts that they are
+    in, and `later` says what was not looked at because of them.
+    """
 
-    def __init__(self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str]) -> None:
-        super().__init__(render(diagnostics, files))
-        self.diagnostics, self.files = tuple(diagnostics), dict(files)
+    def __init__(
+        self, diagnostics: Sequence[Diagnostic], files: Mapping[str, str], later: str = ""
+    ) -> None:
+        super().__init__("\n".join(filter(None, [render(diagnostics, files), later])))
+        self.diagnostics, self.files, self.later = tuple(diagnostics), dict(files), later
 
 
 @dataclass(frozen=True)
@@ -99,7 +105,7 @@ def prepare(request: Request) -> Prepared:
     try:
         ready = assembled(request, deck.model, deck.found, deck.files)
     except DeckError as err:
-        raise DeckError(deck.moved(err.diagnostics, request.deck), deck.files) from None
+        raise DeckError(deck.moved(err.diagnostics, request.deck), deck.files, err.later) from None
     return replace(ready, warnings=tuple(deck.moved(ready.warnings, request.deck)))
 
 
@@ -108,7 +114,7 @@ def assembled(
 ) -> Prepared:
     """Read the records of a deck that was read, and assemble the structure; see `prepare`."""
     if model is None or has_errors(diagnostics):
-        raise DeckError(diagnostics, files)
+        raise DeckError(diagnostics, files, LATER)
     found = list(diagnostics)
     model = overridden(model, request, found)
     context = loading.context(model, request)
