@@ -41,6 +41,7 @@ from pound_solve.numerics.types import Array, Complex, Index
 
 BLOCK: Final = 2**17  #: numbers of one kind that are held at a time, at most
 MOST: Final = 2**22  #: intervals into which an acceleration is divided for short periods, at most
+LINES: Final = 16  #: straight lines for an interval of a curved acceleration, at most
 EQUAL: Final = 12  #: digits in which steps that are taken for equal agree
 ENOUGH: Final = 1e-10  #: of an interval, to which the instant of a peak is found: the peak has its square
 
@@ -83,7 +84,7 @@ def response_spectrum(
     Parameters
     ----------
     acceleration : Piecewise, [L/T^2]
-        Of what carries the oscillators; a curved one is taken as its `chords`.
+        Of what carries the oscillators; a curved one is taken as its `lines`.
     periods : array_like, shape (n,), [T]
         Undamped periods, above zero.
     damping : array_like, shape (m,), [-]
@@ -127,18 +128,29 @@ def _largest(
     acceleration: Piecewise, t: Array, xi: Array, quantities: tuple[int, ...], free: bool
 ) -> Array:
     """Largest absolute values of some of the q_k, shape (n_quantities, m, n)."""
-    lines = acceleration.chords()
     period, ratio = (x.ravel() for x in np.broadcast_arrays(t, xi[:, None]))
+    width = np.diff(acceleration.breaks).max()
+    # what is left of a curve beside its lines falls with the square of their length, and what an oscillator
+    # follows of that, once more
+    bends = 4.0 * np.sqrt(2.0 * np.pi * width / period) if acceleration.degree > 1 else np.ones(len(period))
+    curved = _power_of_two(np.minimum(bends, LINES))
     # an interval shorter than half a period has one inflexion at most
-    parts = 2.0 ** np.ceil(np.log2(np.maximum(2.0 * np.diff(lines.breaks).max() / period, 1.0)))
-    if parts.max() * len(lines.breaks) > MOST:
+    parts = _power_of_two(2.0 * width / (curved * period))
+    if (curved * parts).max() * len(acceleration.breaks) > MOST:
         raise ValueError(f"the period {t.min():g} is too short for an acceleration of this length")
     peaks = np.empty((len(quantities), len(period)))
-    for count in np.unique(parts):
-        own, fine = np.flatnonzero(parts == count), lines.divided(int(count))
+    for lines, count in np.unique(np.stack([curved, parts]), axis=1).T.tolist():
+        own = np.flatnonzero((curved == lines) & (parts == count))
+        fine = acceleration.lines(int(lines)).divided(int(count))
         for some in np.array_split(own, -(-len(own) * len(fine.breaks) // BLOCK)):
             peaks[:, some] = _peaks(fine, 2.0 * np.pi / period[some], ratio[some], quantities, free)
     return peaks.reshape(-1, len(xi), len(t))
+
+
+def _power_of_two(x: Array) -> Array:
+    """The next power of two from each value on, 1 at least."""
+    out: Array = 2.0 ** np.ceil(np.log2(np.maximum(x, 1.0)))
+    return out
 
 
 def _peaks(lines: Piecewise, omega: Array, xi: Array, quantities: tuple[int, ...], free: bool) -> Array:

@@ -184,6 +184,22 @@ class Piecewise:
             fine.breaks, np.vstack((fine.coefs[0], (_horner(fine.coefs, width) - fine.coefs[0]) / width))
         )
 
+    def lines(self, parts: int = 1) -> Piecewise:
+        """A straight line in every one of `parts` of an interval, with the integral and the first moment of
+        the function there; the function itself if it is straight.  It may jump at the breaks.
+
+        What follows the function slowly cannot tell them apart: of a sine with 32 intervals a period, one
+        line in each gives an oscillator of the same period a response that is wrong by 2e-5.
+        """
+        if self.degree <= 1:
+            return self.chords()
+        fine = self.divided(parts)
+        width, powers = np.diff(fine.breaks), np.arange(len(fine.coefs))[:, None]
+        terms = fine.coefs * width**powers
+        mean, moment = (terms / (powers + 1)).sum(axis=0), (terms / (powers + 2)).sum(axis=0)
+        slope = 12.0 * (moment - 0.5 * mean)
+        return Piecewise(fine.breaks, np.vstack((mean - 0.5 * slope, slope / width)))
+
     def integral(self, initial: float = 0.0) -> Piecewise:
         """Continuous antiderivative that is `initial` at the first break; its degree is one higher.
 
