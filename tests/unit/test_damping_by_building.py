@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -78,6 +79,9 @@ def test_each_building_as_if_it_stood_alone(cards: tuple[str, str], contact: boo
     count = min(len(each), len(whole))
     assert count >= 6
     np.testing.assert_allclose(whole[:count], each[:count], rtol=1e-12)
+    assert all(f"building {x}" in row["group"] for x, row in zip("AB", both.tables["damping"], strict=True))
+    overview = dict(both.tables["overview"].tolist())["damping"]
+    assert re.search(r" of building A.*: .*; .* of building B", overview)
     moved = 0
     for own in alone:
         at = [both.nodes.index(n) for n in own.nodes]

@@ -36,3 +36,9 @@ def fields_of(card: Card) -> Iterator[Field]:
 def contact_name(model: Model, element: int) -> str:
     """Name of a contact in the report: its own, or its number."""
     return model.elements[element].name or str(element)
+
+
+def damped_part(card: Card) -> str:
+    """Part of the structure that a card of DAMPING is for."""
+    own = [f.name for f in card.spec.fields if f.name in ("BUILDING", "NODES", "PROPS") and card[f.name]]
+    return "; ".join(f"{name.lower()} {text_of(card[name])}" for name in own) or "all"

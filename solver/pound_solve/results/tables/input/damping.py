@@ -6,18 +6,13 @@ from collections.abc import Iterator
 
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
-from pound_solve.results.words import text_of
+from pound_solve.results.words import damped_part
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each card."""
     for card, text in run.structure.damping_texts:
-        where = [
-            f"{f.name.lower()} {text_of(card[f.name])}"
-            for f in card.spec.fields
-            if f.name in ("NODES", "PROPS") and card[f.name]
-        ]
-        yield "; ".join(where) or "all", card.spec.name, text
+        yield damped_part(card), card.spec.name, text
 
 
 TABLE = Table(
