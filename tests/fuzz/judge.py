@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import re
 import tempfile
 import traceback
@@ -152,7 +153,7 @@ def _ran(folder: Path, deck: str, *words: str) -> Outcome:
     (path,) = folder.glob("*.h5")
     with Results.open(path) as results:
         bad = [name for name in results.histories if not np.isfinite(results.history(name)).all()]
-        if "checks" in results.tables and "nan" in repr(results.table("checks").tolist()):
+        if any(math.isnan(check.value) for check in results.checks):
             bad.append("checks")
         if "energy" in results.tables and not np.isfinite(results.table("energy")["value"]).all():
             bad.append("energy")  # a share of no input is a missing number, which is NaN

@@ -22,6 +22,7 @@ ROOMS = (
     "deck",
     "modules",
     "interruption",
+    "check",
     "numerics",
     "theory",
     "loading",
@@ -270,7 +271,16 @@ def test_the_solver_takes_the_model_from_the_parser_and_only_the_top_reads_decks
 
 def test_every_room_is_known_and_few_modules_lie_outside_of_rooms():
     flat = {p.stem for p in SOLVER.glob("*.py")}
-    assert flat == {"__init__", "__main__", "catalog", "deck", "interruption", "modules", "version"}
+    assert flat == {
+        "__init__",
+        "__main__",
+        "catalog",
+        "check",
+        "deck",
+        "interruption",
+        "modules",
+        "version",
+    }
     assert {p.name for p in SOLVER.iterdir() if (p / "__init__.py").is_file()} == set(ROOMS) - flat
 
 

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import pound_solve
+from pound_solve.check import Subject, at_most
 from pound_solve.cli.main import main
 
 pytest.importorskip("matplotlib")
@@ -443,10 +444,10 @@ def test_the_page_of_the_animation_holds_all_and_fetches_nothing(pair: Results, 
 
 
 def test_the_summary_tells_what_calls_for_a_look_alone() -> None:
-    kinds = [(name, object) for name in ("check", "value", "verdict")]
-    rows = np.array([("a", "1", "good"), ("b", "2", "met"), ("c", "3", "look: too large")], kinds)
-    results = SimpleNamespace(status="done", tables={"checks"}, table=lambda name: rows)
-    assert summary._figures(cast(Results, results)) == ["look at: c: 3"]
+    values = {"b": 2.0, "c": 3.0}
+    checks = [at_most(Subject.ENERGY, name, value, 2.5, "too large", "m") for name, value in values.items()]
+    results = SimpleNamespace(status="done", tables={}, checks=checks)
+    assert summary._figures(cast(Results, results)) == ["look at: c: 3 m"]
 
 
 @pytest.mark.full

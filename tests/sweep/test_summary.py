@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from pound_solve.check import COLUMNS, Subject, at_most
 from pound_solve.results.sweep_file import Sweep, Variable
 from pound_solve.sweep import quantities, summary
 from sweep.small import folder, swept
@@ -41,11 +42,11 @@ def test_fractiles_take_the_largest_label_and_stopped_runs_as_infinite():
 
 
 def test_the_largest_of_several_estimates_is_kept():
-    rows = [
-        {"check": f"estimated error of {kind}, TOL 0.001", "value": value, "verdict": "met"}
-        for kind, value in (("drifts", "2e-4"), ("accelerations", "nan"), ("forces", "1e-5"))
-    ]
+    values = {"drifts": 2e-4, "accelerations": math.nan, "forces": 1e-5}
+    checks = [at_most(Subject.ERROR, kind, value, 1e-3, "not shown") for kind, value in values.items()]
+    rows = [dict(zip(COLUMNS, check.row())) for check in checks]
     assert quantities.taken({"checks": rows}) == {"error_estimate": {"": 2e-4}}
+    assert quantities.doubts({"checks": rows}) == "accelerations: nan, at most 0.001; not shown"
 
 
 def test_groups_are_as_fine_as_the_runs_allow():

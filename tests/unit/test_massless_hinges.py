@@ -92,6 +92,5 @@ def test_peaks_that_never_were_are_told(tmp_path, monkeypatch):
     for crest in (cubic_peak, too_high):
         monkeypatch.setattr(recording, "cubic_peak", crest)
         with interpreted(), results_of(deck) as r:
-            verdicts.append([x["verdict"] for x in r.table("checks") if x["check"] in (BETWEEN, HINGES)])
-    assert verdicts[0] == ["good", "good"]
-    assert len(verdicts[1]) == 2 and all(verdict.startswith("look") for verdict in verdicts[1])
+            verdicts.append([x.verdict for x in r.checks if x.name in (BETWEEN, HINGES)])
+    assert verdicts == [["good", "good"], ["look", "look"]]

@@ -261,9 +261,9 @@ def test_hinges_beyond_the_ductility_of_members(tmp_path, one, other, told):
     results = results_of(deck)
     springs = results.table("spring_envelope")
     assert [bool(x > 50.0) for x in springs["ductility"]] == [True, True, not told, not told]
-    found = [row for row in results.table("checks").tolist() if row[0].startswith("ductility of")]
+    found = [check for check in results.checks if check.name.startswith("ductility of")]
     assert len(found) == told
-    for check, value, verdict in found:
-        assert check.startswith("ductility of 2 hinges, largest hinge ") and "element 1" in check
-        assert value == f"{max(springs['ductility']):.3g}"
-        assert verdict.startswith("look: above 50; check yield moments")
+    for check in found:
+        assert check.name.startswith("ductility of 2 hinges, largest hinge ") and "element 1" in check.name
+        assert (check.value, check.allowed) == (max(springs["ductility"]), 50.0)
+        assert check.looks and check.remark.startswith("check yield moments")

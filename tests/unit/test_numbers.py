@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from pound_solve.analyses.recorder import HistoryRecorder
+from pound_solve.check import Check, Subject
 from pound_solve.cli.main import main
 from pound_solve.driver.run import DeckError, Request, prepare
 from tiers import each_once
@@ -76,17 +77,16 @@ def test_a_sample_that_is_no_number_stops_the_run(
 
 def test_the_check_of_a_run_without_motion_says_so() -> None:
     r = run_text(mass(v="0"))
-    (name, value, verdict), *_ = r.tables["checks"]
-    assert r.status == "done" and name.startswith("largest energy residual")
-    assert float(value) == 0.0 and verdict == "nothing moves: there is no energy to compare"
+    energy = Check.of(r.tables["checks"][0])
+    assert r.status == "done" and energy.subject is Subject.ENERGY and not energy.looks
+    assert energy.value == 0.0 and energy.remark == "nothing moves: there is no energy to compare"
 
 
 def test_the_check_of_a_run_that_ends_at_its_start_is_not_good() -> None:
     r = run_text(mass("HHT DT=0.01", *STIFF))
     assert r.status == "stopped" and r.message.startswith("A50")
-    assert [v for c, _, v in r.tables["checks"] if c.startswith("largest energy")] == [
-        "look: the run ended before there was anything to compare"
-    ]
+    energy = Check.of(r.tables["checks"][0])
+    assert energy.looks and energy.remark == "the run ended before there was anything to compare"
 
 
 @each_once(

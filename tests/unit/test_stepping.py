@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 
 from decks import results_of
 from kernels import FAST, NUMBA, as_with_numba, by_numba, interpreted, steps_alone
+from pound_solve.check import Subject, looked
 from pound_solve.integrate import auto, condensed, costs, trial
 from pound_solve.integrate.convergence import compared, estimate, refinement
 from pound_solve.integrate.convergence.compared import RESPONSES, Peak
@@ -206,9 +207,9 @@ def test_the_estimate_covers_what_yields_beside_the_drifts(tmp_path, monkeypatch
 
 
 def estimated(results):
-    (check,) = [c for c in results.table("checks") if "estimated error" in c["check"]]
-    assert check["verdict"] == "met"
-    return float(check["value"])
+    (check,) = [c for c in results.checks if c.subject is Subject.ERROR]
+    assert not check.looks
+    return check.value
 
 
 def error_against(results, truth):
@@ -234,10 +235,10 @@ def test_auto_gives_up_where_shorter_steps_bring_nothing(tmp_path, monkeypatch):
         refinement, "figures", lambda *given: Peak(np.array([next(rings)]), np.ones(1), ONE)
     )
     found = run(tmp_path, "AUTO TOL=1e-2")
-    (check,) = [c for c in found.table("checks") if "estimated error" in c["check"]]
-    assert check["verdict"].startswith("look: not shown") and "nor nearer" in check["verdict"]
+    (check,) = [c for c in found.checks if c.subject is Subject.ERROR]
+    assert check.looks and "not shown" in check.remark and "nor nearer" in check.remark
     assert dict(found.table("overview").tolist())["error of the method"].endswith("TOL 0.01, not shown")
-    assert float(check["value"]) > 1e-2 and found.status == "done"
+    assert check.value > 1e-2 and found.status == "done"
 
 
 def test_auto_keeps_its_last_whole_run_when_it_is_interrupted(tmp_path, monkeypatch):
@@ -260,8 +261,8 @@ def test_auto_keeps_its_last_whole_run_when_it_is_interrupted(tmp_path, monkeypa
     second = np.concatenate([told[1][:, -1] for told in runs[1].samples[-1:]])
     assert found.time[-1] == runs[1].samples[-1][0][-1] > 0.5
     assert np.abs(found.history("node/u")[-1]).max() == pytest.approx(np.abs(second).max(), rel=1e-12)
-    (check,) = [c for c in found.table("checks") if "estimated error" in c["check"]]
-    assert check["verdict"].startswith("look: not shown") and check["verdict"].endswith("interrupted")
+    (check,) = [c for c in found.checks if c.subject is Subject.ERROR]
+    assert check.looks and "not shown" in check.remark and check.remark.endswith("interrupted")
     assert found.table("contact_summary")["closures"][0] >= 1
 
 
@@ -700,9 +701,8 @@ def looks(folder, method, rule, k=100.0, fy=1.0, speed=1.0, end=1.0):
     deck = folder / "sprung.inp"
     deck.write_text(SPRUNG.format(method=method, rule=rule, k=k, fy=fy, speed=speed, end=end))
     results = results_of(deck)
-    told = [x for x in results.table("checks") if x["verdict"].startswith("look")]
-    told = [x for x in told if "leans" not in x["verdict"]]  # what has yielded does
-    return {x["check"][:20]: float(x["value"]) for x in told}, results
+    told = [x for x in looked(results.checks) if "leans" not in x.remark]  # what has yielded does
+    return {x.name[:20]: x.value for x in told}, results
 
 
 @pytest.mark.parametrize(("share", "told"), [(0.98, False), (1.02, True)])
@@ -909,8 +909,8 @@ def test_auto_tries_other_steps_where_one_stops(tmp_path, monkeypatch):
     bad = range(3, 100)
     found = run(tmp_path, "AUTO TOL=1e-6")
     assert found.status == "done" and len(tried) == 2 + 1 + refinement.MAX_SHORTER
-    (check,) = [c for c in found.table("checks") if "estimated error" in c["check"]]
-    assert check["verdict"].startswith("look: not shown") and "A503" in check["verdict"]
+    (check,) = [c for c in found.checks if c.subject is Subject.ERROR]
+    assert check.looks and "not shown" in check.remark and "A503" in check.remark
 
 
 def test_auto_converges_on_all_peaks_where_that_is_asked_for(tmp_path, monkeypatch):
@@ -920,10 +920,10 @@ def test_auto_converges_on_all_peaks_where_that_is_asked_for(tmp_path, monkeypat
     steps = {}
     for asked in ("RESPONSE", "ALL"):
         found = run(tmp_path, f"AUTO TOL=2e-3 PEAKS={asked}")
-        checks = [c for c in found.table("checks") if "estimated error" in c["check"]]
+        checks = [c for c in found.checks if c.subject is Subject.ERROR]
         assert len(checks) == (3 if asked == "ALL" else 1)
         told, steps[asked] = (
-            max(float(c["value"]) for c in checks),
+            max(c.value for c in checks),
             int(dict(found.table("run").tolist())["steps"]),
         )
         if asked == "ALL":

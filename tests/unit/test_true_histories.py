@@ -13,6 +13,7 @@ from kernels import steps_alone
 from pound_deck.reader import read_text
 from pound_solve.analyses.closeups import Peaks
 from pound_solve.catalog import catalog
+from pound_solve.check import Check, Subject, looked
 from pound_solve.driver.request import Request
 from pound_solve.driver.run import execute
 from pound_solve.integrate.protocol import Motion
@@ -237,8 +238,8 @@ def bytes_of_closeups(found: Results) -> int:
     return 8 * width * len(found.closeup("contact/gap")[0])
 
 
-def told_of_closeups(found: Results) -> list[tuple[str, str, str]]:
-    return [c.tolist() for c in found.table("checks") if "close-ups" in c["check"]]
+def told_of_closeups(found: Results) -> list[Check]:
+    return [check for check in found.checks if check.subject is Subject.STORAGE]
 
 
 @pytest.mark.full
@@ -280,9 +281,9 @@ def test_close_ups_without_room_for_peaks_say_so(tmp_path: Path) -> None:
     row = bytes_of_closeups(whole) / len(whole.closeup("contact/gap")[0])
     few = history(tmp_path, "EXACT", 0.1, f"CLOSEUPS={11 * row / 1e6:g}")
     assert len(collisions) == 3 and len(few.closeup("contact/gap")[0]) <= 11
-    ((told, since, verdict),) = told_of_closeups(few)
-    assert told.startswith("time from which on") and verdict.startswith("look")
-    assert float(since) == pytest.approx(collisions["t_peak"][2], abs=1e-3)
+    (told,) = told_of_closeups(few)
+    assert told.name.startswith("time up to which") and told.looks and told.unit == "s"
+    assert told.value == pytest.approx(collisions["t_peak"][2], abs=1e-3)
     heights = few.closeup("contact/force")[1].max(axis=1)
     for c in collisions[:2]:
         assert np.isclose(heights, c["peak_force"], rtol=1e-10).any()
@@ -326,12 +327,11 @@ def test_tolerances_of_their_own_for_accelerations_and_members(
     truth = extremes(history(tmp_path, "EXACT", 0.05))
     steps_alone(monkeypatch)
     plain = history(tmp_path, "AUTO TOL=2e-2", 0.05)
-    told = [str(c["check"]) for c in plain.table("checks") if "estimated error" in c["check"]]
+    told = [c.name for c in plain.checks if c.subject is Subject.ERROR]
     assert len(told) == 1 and "drifts, contact forces and hinges" in told[0]
     found = history(tmp_path, "AUTO TOL=2e-2 TOL_ACCELERATION=3e-2 TOL_MEMBER=4e-2", 0.05)
-    checks = [c for c in found.table("checks") if "estimated error" in c["check"]]
-    assert [str(c["check"]).split(", ")[-1] for c in checks] == ["TOL 0.02", "TOL 0.03", "TOL 0.04"]
-    assert all(c["verdict"] == "met" for c in checks)
+    checks = [c for c in found.checks if c.subject is Subject.ERROR]
+    assert [c.allowed for c in checks] == [0.02, 0.03, 0.04] and not looked(checks)
     own = extremes(found)
     error = np.abs(own["member_envelope"] - truth["member_envelope"])
     units = [str(u) for u in found.table("member_envelope")["quantity"]]
@@ -342,7 +342,7 @@ def test_tolerances_of_their_own_for_accelerations_and_members(
         for moment in (True, False)
     }
     worst = max(e.max() / size["moment" in u] for e, u in zip(error, units))
-    assert worst <= float(checks[2]["value"])
+    assert worst <= checks[2].value
 
 
 @pytest.mark.parametrize("item", ["TOL_ACCELERATION=0", "TOL_MEMBER=2", "TOL_ACCELERATION=x"])

@@ -14,6 +14,7 @@ from pound_solve.assess import scenes, stability
 from pound_solve.assess.scenes import case as scene_case
 from pound_solve.assess.scenes import contact, hysteresis, linear
 from pound_solve.catalog import catalog
+from pound_solve.check import Subject, beyond
 from pound_solve.cli.main import main
 
 pytestmark = pytest.mark.full
@@ -106,7 +107,8 @@ def test_the_judge_tells_right_from_wrong():
     ends = np.array([[0.0], [1.05]]), np.array([[0.0], [1.2]])
     assert judged(case, u=ends[0]) == stability.RIGHT
     assert judged(case, u=ends[1]) == stability.FAULT
-    assert judged(case, u=ends[1], looks=("energy: 2",)) == stability.FLAGGED
+    look = beyond(Subject.ENERGY, "residual", 2.0, 1e-9, "energy is lost or made")
+    assert judged(case, u=ends[1], looks=(look,)) == stability.FLAGGED
     assert judged(case, stop="A503 at t = 1 s: why") == stability.STOPPED
     assert judged(case, wrong="NaN or infinite values") == stability.FAULT
 
@@ -217,12 +219,11 @@ def test_steps_that_do_not_resolve_the_motion_are_told(tmp_path):
         deck = tmp_path / "one.inp"
         text = linear.one(linear.KICK, every=0.2).replace(scene_case.METHOD, f"NEWMARK DT={dt}")
         deck.write_text(text)
-        checks = {c["check"]: c for c in results_of(deck).table("checks")}
-        found = checks["steps in a period of the motion, about"]
+        found = {c.name: c for c in results_of(deck).checks}["steps in a period of the motion, about"]
         # the method's own period is longer: omega' = 2/h atan(omega h/2)
         own = 2 * math.pi / (2 / dt * math.atan(scene_case.OMEGA * dt / 2)) / dt
-        assert found["verdict"].startswith(verdict)
-        assert float(found["value"]) == pytest.approx(own, rel=0.35)
+        assert found.verdict == verdict
+        assert found.value == pytest.approx(own, rel=0.35)
 
 
 def test_auto_says_how_good_it_is_rather_than_its_steps(tmp_path, monkeypatch):
@@ -232,8 +233,8 @@ def test_auto_says_how_good_it_is_rather_than_its_steps(tmp_path, monkeypatch):
     k = 1e3 * scene_case.STOREY
     law = scene_case.items(spec, K=k)
     deck.write_text(contact.pair(law, end=0.2).replace(scene_case.METHOD, "AUTO TOL=0.01"))
-    checks = results_of(deck).table("checks")["check"].tolist()
-    assert any("estimated error" in c for c in checks) and not any("steps in" in c for c in checks)
+    checks = results_of(deck).checks
+    assert any(c.subject is Subject.ERROR for c in checks) and not any("steps in" in c.name for c in checks)
 
 
 OMEGA = scene_case.OMEGA

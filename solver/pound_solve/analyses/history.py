@@ -22,6 +22,7 @@ from pound_solve.analyses.damage import overall
 from pound_solve.analyses.history_start import begin, initial
 from pound_solve.analyses.recorder import HistoryRecorder, RecordedItems, SampleBlock
 from pound_solve.analyses.spring_response import SpringResponse, spring_responses
+from pound_solve.check import Bound, Check, Subject, at_least, at_most, beyond
 from pound_solve.integrate.protocol import INTERRUPTED, MonitoredOutputs, Outcome, Start, Stop
 from pound_solve.interruption import undisturbed
 from pound_solve.loading.forces.base import Force
@@ -33,7 +34,7 @@ from pound_solve.structure.structure import Structure
 
 RESIDUAL = "largest energy residual over the largest energy"  #: name of the check
 BALANCE = "base shear and overturning moment less inertia and loads, over the largest"
-CLOSEUPS = "time from which on peaks of collisions found no room in close-ups"
+CLOSEUPS = "time up to which close-ups have the peaks of collisions"
 HINGES = "peak moment of a hinge beyond that of its member, over the latter"
 BEYOND = 0.05  #: that much a crest between two steps may be, at ten steps a period
 STILL = 1e-13  #: share of the size of a structure below which a displacement is rounding
@@ -157,19 +158,10 @@ class HistoryResult:
         return overall([index for index, _ in found], [loss for _, loss in found])
 
     @property
-    def checks(self) -> list[tuple[str, str, str]]:
+    def checks(self) -> list[Check]:
         """Self-checks: the balance of energy, and those of the method."""
-        energy = self.recorder.energy
-        # not over the input at the end, which a free body may have given back
-        moves = energy.largest > self._rounding()
-        ratio = energy.largest_residual / energy.largest if moves else 0.0
-        good = "good" if ratio < (1e-9 if self.returned.exact else 1e-2) else "look: energy is lost or made"
-        if not moves:
-            good = "nothing moves: there is no energy to compare"
-        elif energy.samples < 2:
-            good = "look: the run ended before there was anything to compare"
-        found = [(RESIDUAL, f"{ratio:.2e}", good), *self._balance(), *self._hinges(), *self._closeups()]
-        return found + self.returned.checks
+        own = [self._energy(), *self._balance(), *self._hinges(), *self._closeups()]
+        return own + self.returned.checks
 
     @property
     def figures(self) -> dict[str, object]:
@@ -187,20 +179,38 @@ class HistoryResult:
         forces = (max(abs(f.high), abs(f.low)) for f in self.returned.peaks.force)
         return STILL * size * max((f for f in forces if math.isfinite(f)), default=0.0)
 
-    def _closeups(self) -> Iterator[tuple[str, str, str]]:
-        """Tell where the close-ups of collisions found no room for their peaks."""
-        closeups = self.recorder.envelopes.closeups
-        if closeups.full < math.inf:
-            yield CLOSEUPS, f"{closeups.full:.6g}", "look: a larger OUTPUT CLOSEUPS keeps all"
+    @property
+    def _allowed(self) -> float:
+        """Share of the largest that a residual may be: of rounding, or of the steps."""
+        return 1e-9 if self.returned.exact else 1e-2
 
-    def _balance(self) -> Iterator[tuple[str, str, str]]:
+    def _energy(self) -> Check:
+        """Compare the energy put in with that stored and lost."""
+        energy = self.recorder.energy
+        # not over the input at the end, which a free body may have given back
+        if energy.largest <= self._rounding():
+            told = "nothing moves: there is no energy to compare"
+            return Check(Subject.ENERGY, RESIDUAL, 0.0, Bound.MOST, self._allowed, remark=told)
+        ratio = energy.largest_residual / energy.largest
+        if energy.samples < 2:
+            told = "the run ended before there was anything to compare"
+            return beyond(Subject.ENERGY, RESIDUAL, ratio, self._allowed, told)
+        return at_most(Subject.ENERGY, RESIDUAL, ratio, self._allowed, "energy is lost or made")
+
+    def _closeups(self) -> Iterator[Check]:
+        """Tell where the close-ups of collisions found no room for their peaks."""
+        full, end = self.recorder.envelopes.closeups.full, self.recorder.reached
+        if full < math.inf:
+            unit = self.system.structure.model.units.time
+            yield at_least(Subject.STORAGE, CLOSEUPS, full, end, "a larger OUTPUT CLOSEUPS keeps all", unit)
+
+    def _balance(self) -> Iterator[Check]:
         """Compare the base shear with inertia and loads, where there are buildings."""
         if self.items.buildings:
             balance = self.recorder.envelopes.imbalance(self.items.buildings)
-            enough = balance < (1e-9 if self.returned.exact else 1e-2)
-            yield BALANCE, f"{balance:.2e}", "good" if enough else "look: forces are out of balance"
+            yield at_most(Subject.EQUILIBRIUM, BALANCE, balance, self._allowed, "forces are out of balance")
 
-    def _hinges(self) -> Iterator[tuple[str, str, str]]:
+    def _hinges(self) -> Iterator[Check]:
         """Compare the peaks of hinges, which the method tracks between the steps too, with the envelopes of
         their members, which are made of the motion of the nodes.
         """
@@ -213,9 +223,10 @@ class HistoryResult:
         ]
         least = 1e-3 * max((moment for _, moment in both), default=0.0)  # rounding below
         if least > 0.0:
-            beyond = max(max(0.0, own - moment) / max(moment, least) for own, moment in both)
-            words = "good" if beyond < BEYOND else "look: no force of the member goes with that peak"
-            yield HINGES, f"{beyond:.2e}", words
+            above = max(max(0.0, own - moment) / max(moment, least) for own, moment in both)
+            yield at_most(
+                Subject.PEAKS, HINGES, above, BEYOND, "no force of the member goes with that peak"
+            )
 
     def drift_ratios(self) -> list[tuple[str, float]]:
         """Name of every drift, and the largest absolute one over its height; NaN where it has none."""

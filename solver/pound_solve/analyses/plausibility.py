@@ -14,11 +14,12 @@ import numpy as np
 from pound_deck.model import Model
 from pound_solve.analyses.history import BEARING, HistoryResult
 from pound_solve.analyses.spring_response import ORDINARY_ROTATION
+from pound_solve.check import Check, Subject, beyond
 from pound_solve.integrate.protocol import Outcome
 from pound_solve.structure.storeys import storeys
 from pound_solve.structure.structure import Structure
 
-Check = tuple[str, str, str]
+RESPONSE: Final = Subject.RESPONSE
 
 LARGEST_DRIFT: Final = 0.1  #: drift over height; frames have lost their vertical loads before
 LARGEST_RESIDUAL: Final = 0.005  #: drift over height at the end, which the eye sees in a storey
@@ -30,25 +31,27 @@ def drifts(structure: Structure, history: HistoryResult, outcome: Outcome) -> It
     """Drifts beyond a tenth of their height."""
     for name, ratio in history.storey_drift_ratios():
         if ratio > LARGEST_DRIFT:
-            verdict = "look: above 10 %; check units, masses and strengths"
-            yield f"drift ratio of {name}", f"{100 * ratio:.3g} %", verdict
+            told = "check units, masses and strengths"
+            yield beyond(RESPONSE, f"drift ratio of {name}", 100 * ratio, 100 * LARGEST_DRIFT, told, "%")
 
 
 def failures(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
     """Components at the end of their damage index or beyond their ultimate deformation."""
-    beyond = [r.damage.by_deformation for r in history.springs if r.damage is not None]
-    beyond = [share for share in beyond if share >= 1.0]
-    if beyond:
-        name = f"largest over ultimate deformation of {len(beyond)} springs and hinges"
-        yield name, f"{max(beyond):.3g}", "look: beyond DUCTU; the model goes on as if they held"
+    shares = [r.damage.by_deformation for r in history.springs if r.damage is not None]
+    shares = [share for share in shares if share >= 1.0]
+    if shares:
+        name = f"largest over ultimate deformation of {len(shares)} springs and hinges"
+        yield beyond(RESPONSE, name, max(shares), 1, "beyond DUCTU; the model goes on as if they held")
     lost = [r.spring for r in history.springs if r.failed]
     if lost:
         name = f"springs and hinges without strength, first {lost[0].element} {lost[0].component}"
-        yield name, str(len(lost)), "look: their rule has failed them; what they carried is on others"
+        told = "their rule has failed them; what they carried is on others"
+        yield beyond(RESPONSE, name, len(lost), 0, told)
     failed = [r.damage.total for r in history.springs if r.damage is not None and r.damage.total >= 1.0]
     if failed:
-        text = "look: 1 is failure; the model goes on as if they held"
-        yield f"damage index of {len(failed)} springs and hinges", f"{max(failed):.3g}", text
+        name = f"damage index of {len(failed)} springs and hinges"
+        told = "1 is failure; the model goes on as if they held"
+        yield beyond(RESPONSE, name, max(failed), 1, told)
 
 
 def rotations(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
@@ -58,12 +61,12 @@ def rotations(structure: Structure, history: HistoryResult, outcome: Outcome) ->
         worst = max(far, key=lambda r: r.rotation)
         ends = f"{len(far)} hinges" if len(far) > 1 else "one hinge"
         where = f"{worst.spring.component} of element {worst.spring.element}"
-        yield (
-            f"plastic rotation of {ends}, largest {where}",
-            f"{worst.rotation:.3g} rad, ductility {worst.ductility:.3g}",
-            f"look: concrete members lose strength from {ORDINARY_ROTATION:g} rad on (FEMA 356, Tables 6-7 "
-            "and 6-8); DUCTU states a limit of your own",
+        name = f"plastic rotation of {ends}, largest {where}, ductility {worst.ductility:.3g}"
+        told = (
+            "concrete members lose strength from there on (FEMA 356, Tables 6-7 and 6-8); "
+            "DUCTU states a limit of your own"
         )
+        yield beyond(RESPONSE, name, worst.rotation, ORDINARY_ROTATION, told, "rad")
 
 
 def ductilities(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
@@ -83,11 +86,9 @@ def ductilities(structure: Structure, history: HistoryResult, outcome: Outcome) 
     if far:
         worst = max(far, key=lambda r: r.ductility)
         ends = f"{len(far)} hinges" if len(far) > 1 else "one hinge"
-        yield (
-            f"ductility of {ends}, largest {worst.spring.component} of element {worst.spring.element}",
-            f"{worst.ductility:.3g}",
-            f"look: above {LARGEST_DUCTILITY:g}; check yield moments, stiffnesses and their units",
-        )
+        name = f"ductility of {ends}, largest {worst.spring.component} of element {worst.spring.element}"
+        told = "check yield moments, stiffnesses and their units"
+        yield beyond(RESPONSE, name, worst.ductility, LARGEST_DUCTILITY, told)
 
 
 def unknown(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
@@ -101,12 +102,9 @@ def unknown(structure: Structure, history: HistoryResult, outcome: Outcome) -> I
         reached = (largest[0] / spring.yields[0], largest[1] / spring.yields[1])
         for ductility, limit in zip(reached, (limits[0], limits[-1])):
             if ductility > limit:
-                text = f"look: beyond DULT={limit:g} the rule {spring.rule} is not known"
-                yield (
-                    f"ductility of {spring.component} of element {spring.element}",
-                    f"{ductility:.3g}",
-                    text,
-                )
+                name = f"ductility of {spring.component} of element {spring.element}"
+                told = f"beyond DULT the rule {spring.rule} is not known"
+                yield beyond(RESPONSE, name, ductility, limit, told)
 
 
 def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
@@ -121,13 +119,13 @@ def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
         overlap = max(outcome.peaks.deformation[i].high - law.facts["gap"], 0.0)
         name, limit = contact.name or str(law.element), law.facts["limit"]
         if overlap > limit:
-            told = f"{overlap:.3g} {model.units.length}"
-            verdict = f"look: its law is meant up to {limit:.3g} {model.units.length}"
-            yield f"overlap of contact {name} beyond its law", told, verdict
+            about, told = f"overlap of contact {name} beyond its law", "its law is not meant for more"
+            yield beyond(RESPONSE, about, overlap, limit, told, model.units.length)
         length = min((shortest[n] for n in (contact.i, contact.j) if n in shortest), default=0.0)
         if length and overlap > LARGEST_OVERLAP * length:
-            share = f"{100 * overlap / length:.3g} % of the shortest member there"
-            yield f"overlap of contact {name}", share, "look: above 2 %; check the stiffness of the contact"
+            about = f"overlap of contact {name} over the shortest member there"
+            share, told = 100 * overlap / length, "check the stiffness of the contact"
+            yield beyond(RESPONSE, about, share, 100 * LARGEST_OVERLAP, told, "%")
 
 
 def leaning(structure: Structure, history: HistoryResult, residual: Sequence[float]) -> Iterator[Check]:
@@ -146,10 +144,9 @@ def leaning(structure: Structure, history: HistoryResult, residual: Sequence[flo
         own = [(abs(x), storey) for (b, storey), x in found if b is building and high[storey - 1]]
         most, storey = max(own, default=(0.0, 0))
         if most > LARGEST_RESIDUAL and yielded & set(building.nodes):
-            told = f"{100 * most:.3g} %, storey {storey}"
-            limit = f"{100 * LARGEST_RESIDUAL:g} %"
-            verdict = f"look: above {limit}, a threshold of this program; the building leans"
-            yield f"storey drift of {building.name} at the end", told, verdict
+            name = f"drift of {building.name} storey {storey} at the end"
+            told = "the building leans; the limit is one of this program"
+            yield beyond(RESPONSE, name, 100 * most, 100 * LARGEST_RESIDUAL, told, "%")
 
 
 def shortest_members(model: Model) -> dict[int, float]:

@@ -43,6 +43,7 @@ from pound_solve.analyses.equilibrium import ROUNDING, SupportReactions
 from pound_solve.analyses.load_pattern import LoadPattern
 from pound_solve.analyses.path_following import Change, EquilibriumPath, InstabilityError, Mark, PathEvent
 from pound_solve.analyses.static import StaticState
+from pound_solve.check import Check, Subject, at_most
 from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import building
 from pound_solve.structure.standing_alone import standing_alone
@@ -93,10 +94,10 @@ class PushoverResult:
     unbalanced: float = 0.0
 
     @property
-    def check(self) -> tuple[str, str, str]:
+    def check(self) -> Check:
         """Self-check: whether all forces balance."""
-        good = "good" if self.unbalanced < ROUNDING else "look: forces do not balance"
-        return "pushover, force out of balance over the largest", f"{self.unbalanced:.2e}", good
+        about = "pushover, force out of balance over the largest"
+        return at_most(Subject.EQUILIBRIUM, about, self.unbalanced, ROUNDING, "forces do not balance")
 
     def add(self, point: CapacityPoint) -> None:
         """Add a point to the curve; it replaces the last one at the same displacement and factor."""

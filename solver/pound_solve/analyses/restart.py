@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from pound_solve.check import worst
 from pound_solve.integrate.protocol import Outcome, Start
 from pound_solve.integrate.tracker import Extreme, Peaks
 from pound_solve.laws.automaton import State
@@ -92,7 +93,7 @@ def join(parts: Sequence[Outcome]) -> Outcome:
             key: value + before.figures.get(key, 0) if isinstance(value, int) else value
             for key, value in whole.figures.items()
         }
-        checks = [*before.checks, *(c for c in whole.checks if c not in before.checks)]
+        checks = worst([*before.checks, *whole.checks])
         whole = replace(whole, peaks=_both(before.peaks, whole.peaks), figures=figures, checks=checks)
     return whole
 

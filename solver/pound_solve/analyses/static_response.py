@@ -10,6 +10,7 @@ import numpy as np
 
 from pound_solve.analyses.equilibrium import ROUNDING, SupportReactions
 from pound_solve.analyses.static import StaticState
+from pound_solve.check import Check, Subject, at_most
 from pound_solve.numerics.types import Array
 from pound_solve.structure.structure import Structure
 
@@ -55,10 +56,11 @@ class StaticResponse:
     imbalance: float
 
     @property
-    def check(self) -> tuple[str, str, str]:
+    def check(self) -> Check:
         """Self-check: whether all forces balance."""
-        good = "good" if self.imbalance < ROUNDING else "look: loads and reactions do not balance"
-        return "static forces and moments out of balance over the largest", f"{self.imbalance:.2e}", good
+        about = "static forces and moments out of balance over the largest"
+        told = "loads and reactions do not balance"
+        return at_most(Subject.EQUILIBRIUM, about, self.imbalance, ROUNDING, told)
 
 
 def without_rounding(values: Array, kinds: Sequence[str]) -> Array:

@@ -40,11 +40,11 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from pound_solve.analyses.history import RESIDUAL
 from pound_solve.assess.scenes import cases
 from pound_solve.assess.scenes.case import METHOD, STEP, STOREY, Case, every
 from pound_solve.assess.scenes.linear import KICK, one
 from pound_solve.catalog import catalog
+from pound_solve.check import Check, Subject, looked
 from pound_solve.driver import run
 from pound_solve.numerics.types import Array
 from pound_solve.results import Results
@@ -85,7 +85,7 @@ class Found(NamedTuple):
     swings: Array
     blows: Array
     stop: str
-    looks: tuple[str, ...]
+    looks: tuple[Check, ...]
     wrong: str
     seconds: float
 
@@ -159,17 +159,13 @@ def solve(deck: str, files: Mapping[str, str]) -> Found:
             return found(wrong=f"{type(err).__name__}: {err}")
         with results:
             stop, moved = results.message, motion(results)
-            looks = (
-                [c for c in results.table("checks") if c["verdict"].startswith("look")]
-                if "checks" in results.tables
-                else []
-            )
+            looks = tuple(looked(results.checks))
             bad = [name for name in results.histories if not np.isfinite(results.history(name)).all()]
         if bad:
             return found(**moved, wrong=f"NaN or infinite values in {', '.join(bad)}")
         if stop and not CLEAR.match(stop):
             return found(**moved, wrong=f"unclear stop: {stop}")
-        return found(**moved, stop=stop, looks=tuple(f"{c['check']}: {c['value']}" for c in looks))
+        return found(**moved, stop=stop, looks=looks)
 
 
 def serve(line: Connection) -> None:
@@ -245,7 +241,7 @@ def reference(run: Runner, case: Case) -> tuple[Found, str, float] | None:
     """
 
     def holds(found: Found) -> bool:
-        return not any(x.startswith(RESIDUAL) for x in found.looks)
+        return not any(check.subject is Subject.ENERGY for check in found.looks)
 
     deck = case.like[0] or case.deck
     found = run(case, deck, method := "EXACT REFINE=3")
@@ -292,7 +288,7 @@ def judge(run: Runner, case: Case, method: str) -> JudgedRun:
         return row(FAULT, found.wrong)
     if found.stop:
         return row(STOPPED, found.stop)
-    says, part = "; ".join(found.looks), ""
+    says, part = "; ".join(f"{check.name}: {check.told}" for check in found.looks), ""
     if case.right is not None:
         error = shares(case.compared(found.t, found.u), case.right(found.t))
         offs = {"displacements": (error, allowed(case, method))}

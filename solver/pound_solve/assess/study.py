@@ -21,7 +21,7 @@ from typing import Final
 import numpy as np
 
 from pound_deck.schema import out_of_limits
-from pound_solve.analyses.history import RESIDUAL, ROWS
+from pound_solve.analyses.history import ROWS
 from pound_solve.assess.advice import (
     MARGIN,
     NOISY,
@@ -37,6 +37,7 @@ from pound_solve.assess.advice import (
     order,
 )
 from pound_solve.catalog import catalog
+from pound_solve.check import Subject
 from pound_solve.driver import run as driver
 from pound_solve.driver.overrides import with_method
 from pound_solve.driver.preflight import MOST_STEPS
@@ -320,17 +321,16 @@ class _Bench:
                 return 0.0, Trial(method, setting, stopped=results.message)
             figures, took = dict(results.table("run").tolist()), dict(results.table("run_figures").tolist())
             name = figures["method"].split(",")[0]
-            checks = {check: (value, verdict) for check, value, verdict in results.table("checks")}
-            residual, verdict = checks[RESIDUAL]
-            if method == "EXACT" and verdict != "good":  # it must not become the reference
-                return 0.0, Trial(method, setting, stopped=f"{RESIDUAL}: {residual}; {verdict}")
+            energy = next(check for check in results.checks if check.subject is Subject.ENERGY)
+            if method == "EXACT" and energy.looks:  # it must not become the reference
+                return 0.0, Trial(method, setting, stopped=str(energy))
             out = Trial(
                 f"AUTO: {name}" if method == "AUTO" and "steps" not in figures else method,
                 setting,
                 steps=int(figures.get("steps", 0)),
                 events=int(figures["events"]),
                 collisions=len(results.table("collisions")),
-                residual=float(residual),
+                residual=energy.value,
                 peaks=peaks(results),
             )
             return float(took["solve seconds, CPU"]), out

@@ -56,7 +56,7 @@ def fastest_rate(system: ReducedSystem) -> float:
     that dashpots resist decay at :math:`\lambda \le` the largest eigenvalue of :math:`K x = \lambda C x`.
     """
     laws = system.structure.laws
-    elastic = np.array([0.0 if s.role.collides else s.facts.get("k", s.k0) for s in laws], float)
+    elastic = np.array([0.0 if s.role.collides else s.steepest for s in laws], float)
     stiffness = system.stiffness + weighted(system.law_rows, elastic)
     damping = system.damping + weighted(system.law_rows, [s.beta * k for s, k in zip(laws, elastic)])
     light = massless(system.mass)

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
+from pound_solve.check import Check, Subject, at_most, beyond
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.laws.automaton import State
 from pound_solve.numerics.matrices import used_rows
@@ -18,7 +19,7 @@ from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.reduction import ReducedSystem
 
 STILL = 1e-12  #: share of its largest value below which an exit counts as not reached
-BETWEEN = "largest share of a peak that lies above both ends of a step"  #: name of a check
+BETWEEN = "largest share of a peak above both ends of its step"  #: name of a check
 MOST_BETWEEN = 0.1  #: of such a share; a sine has that with seven steps in its period
 SHARP = 1e-2  #: share of a spring's largest force that rounding may make
 RUNAWAY = "the motion grows without bound: its energy {:.3g} is far above what was put in"
@@ -210,7 +211,7 @@ class Outcome:
     peaks: Peaks
     figures: dict[str, Any]
     states: tuple[State, ...]
-    checks: list[tuple[str, str, str]] = field(default_factory=list)
+    checks: list[Check] = field(default_factory=list)
     exact: bool = False
 
 
@@ -299,9 +300,7 @@ def remedy(system: ReducedSystem) -> str:
     return "NEWMARK EVENTS=STEPPED"  # which passes over the changes
 
 
-def rounding_check(
-    laws: Sequence[LawSpring], peaks: Peaks, still: float = STILL
-) -> list[tuple[str, str, str]]:
+def rounding_check(laws: Sequence[LawSpring], peaks: Peaks, still: float = STILL) -> list[Check]:
     """Check whether springs are so stiff that their force is lost in the last digits of their deformation,
     of which a share `still` of the largest cannot be told from none.
     """
@@ -314,16 +313,15 @@ def rounding_check(
     if place is None:
         return []
     name = f"share of the force of element {place} that rounding of its deformation makes"
-    return [(name, f"{worst:.1e}", "look: too stiff for the distance that it gives way")]
+    return [beyond(Subject.ROUNDING, name, worst, SHARP, "too stiff for the distance that it gives way")]
 
 
-def between_check(peaks: Peaks) -> list[tuple[str, str, str]]:
+def between_check(peaks: Peaks) -> Check:
     """Check how far peaks rely on the motion between the steps, which rates at their ends tell; wrong rates
     make peaks that never were.
     """
-    enough = peaks.between < MOST_BETWEEN
-    verdict = "good" if enough else "look: peaks lie far above both ends of a step; a shorter DT shows them"
-    return [(BETWEEN, f"{peaks.between:.1e}", verdict)]
+    told = "peaks lie far above both ends of a step; a shorter DT shows them"
+    return at_most(Subject.STEPS, BETWEEN, peaks.between, MOST_BETWEEN, told)
 
 
 def refuse_rigid(system: ReducedSystem, start: Start, method: str) -> None:

@@ -15,8 +15,11 @@ Hill R (1958), A general theory of uniqueness and stability in elastic-plastic s
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
+from pound_solve.check import Check, Subject, beyond
 from pound_solve.numerics.matrices import dense, diagonal, scaled, used_columns, used_rows
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.types import Array, Flags
@@ -25,7 +28,7 @@ from pound_solve.structure.reduction import ReducedSystem
 SOFT = 1e-9  #: share of the elastic stiffness below which a tangent holds nothing
 TAKES_PART = 1e-6  #: share of the largest deformation of the motion that is not held
 SHOWN = 4  #: elements that are named
-ADVICE = "look: not unique; vary the strengths, or add a hardening R, or a weight between"
+ADVICE = "not unique; vary the strengths, or add a hardening R, or a weight between"
 
 
 class Uniqueness:
@@ -33,12 +36,14 @@ class Uniqueness:
 
     Attributes
     ----------
-    first : str
-        The first instant at which it is open which of them goes on, in words; empty where there is none.
+    first : float
+        The first instant at which it is open which of them goes on [T]; NaN where there is none.
+    elements : list of int
+        Those of which any may go on there.
     """
 
     def __init__(self, system: ReducedSystem) -> None:
-        self.system, self.first = system, ""
+        self.system, self.first, self.elements = system, math.nan, list[int]()
         self._straight = not system.structure.corotational
         self._light = massless(system.mass)
         self._undamped = self._light & ~used_rows(system.damping)
@@ -58,7 +63,7 @@ class Uniqueness:
             Above zero for laws whose deformation rises to the end of its branch, below zero where it falls
             to it, zero for all others.
         """
-        if self.first or not self._straight:  # the tangents of the members move
+        if self.elements or not self._straight:  # the tangents of the members move
             return
         key = b"".join(x.tobytes() for x in (stiffness, damping, np.sign(rising)))
         if key in self._known:
@@ -69,9 +74,7 @@ class Uniqueness:
             self._light, stiffness, rising, -SOFT
         )
         if elements:
-            named = ", ".join(str(e) for e in elements[:SHOWN])
-            more = f" and {len(elements) - SHOWN} more" if len(elements) > SHOWN else ""
-            self.first = f"{named}{more} at t = {t:.6g} {self.system.structure.model.units.time}"
+            self.first, self.elements = t, elements
 
     def _open(self, among: Flags, stiffness: Array, rising: Array, least: float) -> list[int]:
         """Elements of tied laws that take part, some going on and some turning back, in a motion of some
@@ -90,6 +93,12 @@ class Uniqueness:
                 return sorted({system.structure.laws[i].element for i in np.flatnonzero(on | back)})
         return []
 
-    def checks(self) -> list[tuple[str, str, str]]:
+    def checks(self) -> list[Check]:
         """The check of a run: none where its motion is unique."""
-        return [("elements of which any may give way", self.first, ADVICE)] if self.first else []
+        if not self.elements:
+            return []
+        named = ", ".join(str(e) for e in self.elements[:SHOWN])
+        more = f" and {len(self.elements) - SHOWN} more" if len(self.elements) > SHOWN else ""
+        when = f"t = {self.first:.6g} {self.system.structure.model.units.time}"
+        about = f"elements of which any may give way: {named}{more} at {when}"
+        return [beyond(Subject.UNIQUENESS, about, len(self.elements), 0, ADVICE)]

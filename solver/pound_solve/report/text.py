@@ -232,7 +232,9 @@ def formatted(units: Units, table: Table[Any], rows: NDArray[Any]) -> Formatted:
     for c in table.columns:
         if c.name not in (rows.dtype.names or ()):
             continue  # a file of an older minor version
-        texts = [t for g in groups for t in _format(c, rows[c.name][g].tolist())]
+        as_text = rows.dtype[c.name].kind == "O" and not c.is_text  # in a file of an older version
+        shown_as = Column(c.name) if as_text else c
+        texts = [t for g in groups for t in _format(shown_as, rows[c.name][g].tolist())]
         if any(t not in ("", "-") for t in texts):
             columns.append(c)
             cells[c.name] = texts

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pound_deck.model import Units
+from pound_solve.check import COLUMNS, Check
 from pound_solve.numerics.types import Array
 from pound_solve.results.axes import axes_of, coordinates
 from pound_solve.results.contents import HISTORIES, TABLES
@@ -255,6 +256,14 @@ class Results:
                 out[field] = [_plain(v) for v in column] if kind.kind == "O" else column
             self._read[name] = self._as_written(name, dataset, out, name in TABLES)
         return self._read[name].copy()
+
+    @property
+    def checks(self) -> list[Check]:
+        """Checks of the run; none in a file that has none, or only in sentences (format 1)."""
+        rows = self.table("checks") if "checks" in self.tables else None
+        if rows is None or set(COLUMNS) - set(rows.dtype.names or ()):
+            return []
+        return [Check.of(row) for row in rows]
 
     @_sound
     def table_units(self, name: str) -> dict[str, str]:

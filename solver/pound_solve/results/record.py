@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
+from pound_solve.check import Check
 from pound_solve.results.schema import Layout
 
 if TYPE_CHECKING:
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
     from pound_solve.numerics.types import Array
     from pound_solve.structure.diaphragms import DiaphragmCollision
     from pound_solve.structure.structure import Structure
-
-Check: TypeAlias = tuple[str, str, str]  #: what was checked, what was found, whether that is good enough
 
 
 @dataclass

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Final, TypeAlias
 
-from pound_solve.analyses.history import RESIDUAL
+from pound_solve.check import Check, Subject, looked
 from pound_solve.results.contents import TABLES
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Stage, Table
@@ -75,20 +75,13 @@ def _first_mode(row: Fields) -> str | None:
     return "" if row["mode"] == 1 else None
 
 
-def _number(row: Fields) -> float:
-    try:
-        return float(row["value"])
-    except ValueError:  # a check that is told in words
-        return math.nan
-
-
 def _known(value: float) -> float:
     """Where a value comes in the order of several: one that is not known before all others."""
     return -math.inf if math.isnan(value) else value
 
 
-def _check(begin: str) -> Callable[[Fields], str | None]:
-    return lambda row: "" if row["check"].startswith(begin) else None
+def _check(subject: Subject) -> Callable[[Fields], str | None]:
+    return lambda row: "" if row["subject"] == subject else None
 
 
 def _each(
@@ -135,11 +128,11 @@ QUANTITIES: Final = (
     *_each("spring_envelope", "hinge", _hinge, (
         ("ductility", "-", "largest absolute deformation over yield", _of("ductility")),
     )),
-    *_each("checks", "", _check(RESIDUAL), (
-        ("energy_residual", "-", "largest energy residual over the largest energy", _number),
+    *_each("checks", "", _check(Subject.ENERGY), (
+        ("energy_residual", "-", "largest energy residual over the largest energy", _of("value")),
     )),
-    *_each("checks", "", _check("estimated error"), (
-        ("error_estimate", "-", "largest error of the peaks by the estimates of AUTO", _number),
+    *_each("checks", "", _check(Subject.ERROR), (
+        ("error_estimate", "-", "largest error of the peaks by the estimates of AUTO", _of("value")),
     )),
 )  # fmt: skip
 #: tables that the quantities are taken from
@@ -171,8 +164,7 @@ def rows_at(stage: Stage, record: RunRecord) -> Iterator[tuple[str, list[Fields]
 
 def doubts(rows: Mapping[str, list[Fields]]) -> str:
     """The checks of one run whose verdict calls for a look."""
-    looked = (row for row in rows.get("checks", ()) if row["verdict"].startswith("look"))
-    return "; ".join(f"{row['check']}: {row['value']}, {row['verdict']}" for row in looked)
+    return "; ".join(map(str, looked(map(Check.of, rows.get("checks", ())))))
 
 
 def page() -> str:

@@ -294,6 +294,6 @@ DOUBTS: Final = Table(
     columns=(_RUN_COLUMN, Column("doubt", "check", doc="check and its verdict")),
     rows=lambda rows: rows,
     sample=(
-        (17, "largest energy residual over the largest energy: 2.00e-02, look: energy is lost or made"),
+        (17, "largest energy residual over the largest energy: 0.02, at most 0.01; energy is lost or made"),
     ),
 )

@@ -13,6 +13,7 @@ from unittest import mock
 import numpy as np
 
 import pound_solve
+from pound_solve.check import Subject
 from pound_solve.driver.prepare import DeckError
 from pound_solve.numerics.types import Array
 from pound_solve.results import Results
@@ -75,9 +76,9 @@ def _read(results: Results) -> Answer:
     facts = {r["item"]: r["value"] for name in ("run", "run_figures") if name in results.tables
              for r in results.table(name)}  # fmt: skip
     claimed, met = None, True
-    for check, value, verdict in results.table("checks") if "checks" in results.tables else ():
-        if "estimated error" in check:
-            claimed, met = float(value), verdict == "met"
+    for check in results.checks:
+        if check.subject is Subject.ERROR:
+            claimed, met = check.value, not check.looks
     done = results.status == "done"
     return Answer(
         results.status,

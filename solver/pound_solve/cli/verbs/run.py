@@ -67,7 +67,7 @@ def execute(args: argparse.Namespace) -> int:
 
 def _warn_of_checks(results: Results) -> None:
     """Print the checks whose verdict calls for a look at the results."""
-    if "checks" in results.tables:
-        for check, value, verdict in results.table("checks"):
-            if verdict.startswith("look"):
-                common.complain(f"warning: {check}: {value}; {verdict}")
+    from pound_solve.check import looked
+
+    for check in looked(results.checks):
+        common.complain(f"warning: {check}")

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve.check import Check, Subject, at_most
 from pound_solve.integrate import costs
 from pound_solve.integrate.closed_form import recording, work_integrals
 from pound_solve.integrate.closed_form.decomposition import MAX_CONDITION
@@ -59,9 +60,11 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import Decision, ReducedSystem
 
 MAX_PIECES = 2000  #: windows within one interval of the excitation
+FORESEEN = 16  #: of them without an event between, after which it is foreseen how many it will have
 MAX_DEFERRED = 256  #: entries of work that wait
 SAME_INSTANT = 1e-13  #: share of the time within which two events are at one instant
 MAX_RESIDUAL = 1e-10  #: of the modes, above which the check is not good
+LOST = "modes are nearly parallel: digits are lost"
 
 
 class Exact(EventDrivenRun):
@@ -98,7 +101,7 @@ class Exact(EventDrivenRun):
         self.samples = DeferredSamples(system, self.subsystems.rigid, recorder)
         self.envelopes = EnvelopeSamples(self.subsystems, recorder)
         self.windows = Windows(int(options.get("REFINE") or 0))
-        self.window_count = self.pieces = 0
+        self.window_count = self.pieces = self.unbroken = 0
 
     def run(self) -> Outcome:  # noqa: D102
         self.tracker.begin(self.system, self.t, self.u, self.v, self.branches)
@@ -148,7 +151,7 @@ class Exact(EventDrivenRun):
             return cursor + 1
         window = self.windows.next(self.t, self.goals[cursor:], self.subsystems.spectral_radius)
         if not window.whole:
-            self._check_progress(float(window.lengths[0]))
+            self._check_progress(float(window.lengths[0]), goal - self.t)
         dense = self._dense_output(window.lengths, window.starts)
         bounds = dense.derivative_bounds()
         coarse = self.search.coarse(dense, bounds, window.h, self.largest)
@@ -183,12 +186,13 @@ class Exact(EventDrivenRun):
         """Advance to the end of a window without events; return the new cursor."""
         if window.whole:
             self._sample(dense, cursor, dense.intervals)
-            self.pieces = 0
+            self.pieces = self.unbroken = 0
             cursor += dense.intervals
             self.t = float(self.goals[cursor - 1])
         else:
             self._add_work(dense, 0, window.lengths)
             self.t += dense.length
+            self.unbroken += 1
         dense.advance_subsystems(dense.intervals - 1, float(window.lengths[-1]))
         self.windows.widen()
         self.changes_at_instant = 0
@@ -208,6 +212,7 @@ class Exact(EventDrivenRun):
         self.count_change(tau, SAME_INSTANT)
         self.t = float(window.starts[interval]) + local
         self.windows.restart()
+        self.unbroken = 0
         self._switch(law, event_index, end.value[:, 0, 0], end.rate[:, 0, 0])
         return cursor + interval
 
@@ -242,10 +247,14 @@ class Exact(EventDrivenRun):
         self.work.add(np.array([put_in, 0.0, lost.sum()]))
         self.energy.dashpot_losses += lost
 
-    def _check_progress(self, length: float) -> None:
-        """Stop where the fastest mode is not resolvable: time would not advance, or too slowly."""
+    def _check_progress(self, length: float, rest: float) -> None:
+        """Stop where the fastest mode is not resolvable: time would not advance by pieces of a `length`, or
+        too slowly for the `rest` of the interval.
+        """
         self.pieces += 1
-        if length < 1e-15 * max(1.0, self.t) or self.pieces > MAX_PIECES:
+        left = MAX_PIECES - self.pieces
+        slow = left < 0 or (self.unbroken >= FORESEEN and rest > (left + 1) * length)
+        if slow or length < 1e-15 * max(1.0, self.t):
             raise self.stop(
                 "A503",
                 f"the fastest mode, {self.subsystems.spectral_radius:.3g} rad per unit of time, is too "
@@ -328,19 +337,20 @@ class Exact(EventDrivenRun):
         residual = max((x.residual for x in propagators), default=0.0)
         condition = max((x.condition for x in propagators), default=1.0)
         checks = [
-            (
-                "residual of the modes, worst decomposition",
-                f"{residual:.1e}",
-                "good" if residual < MAX_RESIDUAL else "look",
+            at_most(
+                Subject.ROUNDING, "residual of the modes, worst decomposition", residual, MAX_RESIDUAL, LOST
             ),
-            (
+            at_most(
+                Subject.ROUNDING,
                 "condition of the modes, worst decomposition",
-                f"{condition:.1e}",
-                "good" if condition < MAX_CONDITION else "look",
+                condition,
+                MAX_CONDITION,
+                LOST,
             ),
         ]
-        if any(isinstance(x, SeriesPropagator) for x in propagators):
-            checks.append(("defective modes, integrated by the exponential series", "present", "good"))
+        if defective := sum(isinstance(x, SeriesPropagator) for x in propagators):
+            about = "decompositions with defective modes, by the exponential series"
+            checks.append(Check(Subject.ROUNDING, about, defective))
         peaks = self.tracker.close(self.energy.dashpot_losses)
         checks += [*rounding_check(self.laws, peaks), *self.uniqueness.checks()]
         return Outcome(peaks, figures, tuple(self.states), checks, exact=True)

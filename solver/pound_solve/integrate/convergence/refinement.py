@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from pound_solve.check import Check, Subject, at_most, beyond
 from pound_solve.integrate import costs
 from pound_solve.integrate.convergence.compared import NAMES, figures, hardest, tolerances
 from pound_solve.integrate.convergence.estimate import error_left, likely_error
@@ -207,18 +208,17 @@ class StepRefinement:
         most = MAX_RETRIES if self.complete is None else MAX_SHORTER
         return self.retries == most or self.h <= 1e-6 * self.length or cost > MAX_RETRY_COST
 
-    def checks(self, outcome: Outcome, ended: str) -> list[tuple[str, str, str]]:
+    def checks(self, outcome: Outcome, ended: str) -> list[Check]:
         """Return checks beyond those of a single run; `ended` is why no shorter steps follow."""
         steps = outcome.figures["steps"]
         resolved = self.met or self.error > 1.0  # else the steps are too long for a collision
-        out = []
+        out, told = list[Check](), f"not shown with {steps} steps, {ended}"
         for kind, tol in self.tolerances.items():
-            error = self.errors[kind]
-            met = error <= tol and resolved
-            verdict = "met" if met else f"look: not shown with {steps} steps, {ended}"
-            out.append((f"estimated error of {NAMES[kind]}, TOL {tol:g}", f"{error:.1e}", verdict))
+            error, about = self.errors[kind], f"estimated error of {NAMES[kind]}"
+            judge = at_most if resolved else beyond
+            out.append(judge(Subject.ERROR, about, error, tol, told))
         return [
             *out,
-            *between_check(outcome.peaks),
+            between_check(outcome.peaks),
             *rounding_check(self.system.structure.laws, outcome.peaks),
         ]

@@ -99,7 +99,7 @@ def coupled_pairs(touched: Iterable[Index]) -> tuple[Index, Index]:
 def layout(system: ReducedSystem, scheme: Scheme) -> Layout:
     """Choose the order of elimination for a method."""
     laws = system.structure.laws
-    damps = np.array([damped(s) for s in laws], bool)
+    damps = np.array([s.damps for s in laws], bool)
     in_stiffness, in_damping = scheme.beta > 0.0, scheme.gamma > 0.0
     solved = [system.mass, *[system.damping] * in_damping, *[system.stiffness] * in_stiffness]
     linked = [entries(a)[:2] for a in solved]
@@ -115,11 +115,6 @@ def layout(system: ReducedSystem, scheme: Scheme) -> Layout:
     column = np.repeat(np.arange(system.size), np.diff(pattern.ap))
     position = {(int(i), int(j)): q for q, (i, j) in enumerate(zip(pattern.ai, column))}
     return Layout(order, place, pattern, column, joins, position)
-
-
-def damped(spring: LawSpring) -> bool:
-    """Whether a law adds to the damping matrix."""
-    return bool(spring.facts.get("c") or spring.beta or spring.secant) or spring.law.curved
 
 
 def linear_system(
@@ -157,7 +152,7 @@ def linear_system(
         instant=INSTANT * dt,
         implicit=in_stiffness,
         diagonal=is_diagonal(mass),
-        explicit=not (in_stiffness or len(own.pattern.li) or any(map(damped, laws))),
+        explicit=not (in_stiffness or len(own.pattern.li) or any(s.damps for s in laws)),
         monitored=sparse_rows(monitored.rows[:, o]),
         monitored_inputs=np.ascontiguousarray(monitored.input_rows),
         monitored_constants=np.ascontiguousarray(monitored.constants),

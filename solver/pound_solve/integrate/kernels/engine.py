@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from pound_solve.check import Check
 from pound_solve.integrate.energy import EnergyAccumulator
 from pound_solve.integrate.kernels import allocation, corotational
 from pound_solve.integrate.kernels import laws as law_kernels
@@ -113,7 +114,7 @@ class KernelEngine(ABC):
         """Figures of the run for the report."""
 
     @abstractmethod
-    def checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
+    def checks(self, peaks: Peaks) -> list[Check]:
         """Self-checks of the run."""
 
     def begin(self, advance: Function) -> None:

@@ -30,6 +30,7 @@ from typing import Any
 import numpy as np
 
 from pound_deck.schema import Spec
+from pound_solve.check import Check
 from pound_solve.integrate.events import polynomial_roots
 from pound_solve.integrate.kernels import allocation
 from pound_solve.integrate.kernels import laws as law_kernels
@@ -120,7 +121,7 @@ class Taylor(KernelEngine):
             system.stiffness[np.ix_(o, o)],
             system.damping[np.ix_(o, o)],
             system.law_rows[:, o],
-            np.array([s.facts.get("k", s.k0) * (not s.role.collides) for s in laws], float),
+            np.array([0.0 if s.role.collides else s.steepest for s in laws], float),
         )
         self.state.stale = 1
         m, terms, rules = (
@@ -315,7 +316,7 @@ class Taylor(KernelEngine):
             "events": int(self.state.events),
         }
 
-    def checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
+    def checks(self, peaks: Peaks) -> list[Check]:
         """Self-checks of the run."""
         return rounding_check(self.springs, peaks)
 

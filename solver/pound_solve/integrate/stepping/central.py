@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
+from pound_solve.check import Subject, at_most
 from pound_solve.integrate.kernels.state import Scheme
 from pound_solve.integrate.protocol import MonitoredOutputs, Outcome, Recorder, Start, Stop, refuse_rigid
 from pound_solve.integrate.stepping.stepper import Stepper
@@ -32,9 +33,8 @@ def limit(system: ReducedSystem, u: Array) -> float:
     and all springs elastic, members as they are at displacements `u`.  The stiffness of a curved contact
     is not known before it is pressed: it is left out.
     """
-    stiffest = [
-        0.0 if s.role.collides and s.law.curved else s.facts.get("k", s.k0) for s in system.structure.laws
-    ]
+    laws = system.structure.laws
+    stiffest = [0.0 if s.role.collides and s.law.curved else s.steepest for s in laws]
     k = system.stiffness + system.corotational.stiffness(u) + weighted(system.law_rows, stiffest)
     omega = modes.fastest(k, system.mass)
     return 2.0 / omega if omega > 0.0 else float("inf")
@@ -75,13 +75,8 @@ def integrate(
         system, start, monitored, recorder, options, Scheme(0.0, 0.5), "CENTRAL, central differences"
     )
     outcome = stepper.run()
-    outcome.checks.append(
-        (
-            "stability limit of the step, contacts pressed",
-            f"{longest:.4e}",
-            f"step {options['DT']:.4e}: stable",
-        )
-    )
+    about, unit = "time step, stable with contacts pressed", system.structure.model.units.time
+    outcome.checks.append(at_most(Subject.STEPS, about, options["DT"], longest, "not stable", unit))
     return outcome
 
 

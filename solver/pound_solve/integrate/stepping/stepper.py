@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 from pound_deck.schema import Field, Kind
+from pound_solve.check import Check, Subject, at_least, beyond, looked
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.state import Scheme
 from pound_solve.integrate.protocol import (
@@ -53,9 +54,9 @@ RESOLVED = 10  #: steps in a period or a collision at least, which gives peaks t
 QUIET = 1e-9  #: share of the energy below which a motion is rounding
 
 
-def _enough(count: float) -> str:
-    """Verdict on a number of steps."""
-    return "good" if count >= RESOLVED else f"look: {RESOLVED} at least, by a shorter DT, or EXACT"
+def _resolved(about: str, count: float) -> Check:
+    """Check a number of steps."""
+    return at_least(Subject.STEPS, about, count, RESOLVED, "by a shorter DT, or EXACT")
 
 
 class Stepper(KernelEngine):
@@ -113,7 +114,7 @@ class Stepper(KernelEngine):
             "events": int(self.state.events),
         }
 
-    def checks(self, peaks: Peaks) -> list[tuple[str, str, str]]:
+    def checks(self, peaks: Peaks) -> list[Check]:
         """Whether the steps resolve the motion, and the hardest collision of every contact.
 
         Newmark's energy balances in free vibration however long the step; so the period is taken from the
@@ -121,24 +122,24 @@ class Stepper(KernelEngine):
         """
         speed, rush = self.speed.tolist()
         moves = speed > QUIET * (self.accumulator.initial + self.accumulator.works.gross_input)
-        out = []
+        out = list[Check]()
         if moves and rush > 0.0:
             count = 2.0 * np.pi * (speed / rush) ** 0.5 / self.dt
-            out.append(("steps in a period of the motion, about", f"{count:.3g}", _enough(count)))
+            out.append(_resolved("steps in a period of the motion, about", count))
         if falls := int(self.state.falling):
-            told = "look: a DT that follows how it gives way, or EXACT"
-            out.append(("steps too long for a branch that falls", str(falls), told))
-        out += [*between_check(peaks), *self._springs(peaks), *rounding_check(self.springs, peaks)]
+            told = "a DT that follows how it gives way, or EXACT"
+            out.append(beyond(Subject.STEPS, "steps too long for a branch that falls", falls, 0, told))
+        out += [between_check(peaks), *self._springs(peaks), *rounding_check(self.springs, peaks)]
         ended = [c for c in peaks.collisions if c.t_end > c.t_start]
         hardest = [
             max((c for c in ended if c.law == law), key=lambda c: c.peak) for law in {c.law for c in ended}
         ]
         if hardest:
             count = min(c.t_end - c.t_start for c in hardest) / self.dt
-            out.append(("steps in the hardest collision of a contact", f"{count:.3g}", _enough(count)))
+            out.append(_resolved("steps in the hardest collision of a contact", count))
         return out
 
-    def _springs(self, peaks: Peaks) -> list[tuple[str, str, str]]:
+    def _springs(self, peaks: Peaks) -> list[Check]:
         """Whether the steps follow the springs' forces."""
         steepest = self.tracker.extremes.steepest[self.tracker.n_monitored + len(self.springs) :].tolist()
         rises = [
@@ -146,8 +147,6 @@ class Stepper(KernelEngine):
             for s, f, slope in zip(self.springs, peaks.force, steepest)
             if not s.role.viscous and slope > 0.0
         ]
+        about = "steps in which a spring's force rises to its largest"
         count = min(rises, default=np.inf)
-        if count >= 1.0:
-            return []
-        told = "look: 1 at least, by a shorter DT, or EXACT"
-        return [("steps in which a spring's force rises to its largest", f"{count:.2g}", told)]
+        return looked([at_least(Subject.STEPS, about, count, 1.0, "by a shorter DT, or EXACT")])

@@ -94,6 +94,12 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     return area + 0.5 * (f0 + f) * (d - p[1] - d0)
 
 
+def steepest(p: Numbers) -> float:
+    """Slope of the steepest segment, or KU, which is not below it."""
+    ends = [point(p, i) for i in range(int(p[3]) + 1)]
+    return max(p[2], *((f1 - f0) / (d1 - d0) for (d0, f0), (d1, f1) in pairwise(ends)))
+
+
 SEGMENTS = tuple(f"pressed, segment {i}" for i in range(1, MOST + 1))
 RULE = Rule(
     (
@@ -104,6 +110,7 @@ RULE = Rule(
     branch,
     transition,
     recoverable,
+    steepest=steepest,
     parameters=POINTS + 2 * MOST,
     variables=3,
 )
@@ -138,12 +145,14 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
             f"the last segment falls, and beyond its end the force would pull: end FORCES level, with a "
             f"further point of {forces[-1]:g}"
         )
-    steepest = max(slopes)
+    law = Law(
+        RULE, (slopes[0], values["GAP"], ku or 0.0, len(depths), *(x for pair in path[1:] for x in pair))
+    )
     if ku is None:
         given, note = 1.0, "elastic: back along the table"
     else:
-        if ku < steepest:
-            raise ValueError(f"KU {ku:g} is below the steepest slope of the table, {steepest:g}")
+        if ku < max(slopes):
+            raise ValueError(f"KU {ku:g} is below the steepest slope of the table, {max(slopes):g}")
         given = math.nan
         brought = sum(0.5 * (f0 + f1) * (d1 - d0) for (d0, f0), (d1, f1) in pairwise(path))
         back = 0.5 * forces[-1] ** 2 / ku
@@ -152,10 +161,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
             f"e depends on the speed: {math.sqrt(back / brought):.4g} at {at:.4g}, which reaches the last "
             "of DEPTHS for the first time"
         )
-        steepest = ku
-    points = [x for pair in path[1:] for x in pair]
-    law = Law(RULE, (slopes[0], values["GAP"], ku or 0.0, len(depths), *points))
-    return Built(law, steepest, 0.0, 0.0, math.nan, given, note, limit=depths[-1])
+    return Built(law, steepest(law.p), 0.0, 0.0, math.nan, given, note, limit=depths[-1])
 
 
 SPEC = Spec(

@@ -111,6 +111,18 @@ class LawSpring:
     role: Role = Role.SPRING
     normal_component: str = ""
 
+    @property
+    def steepest(self) -> float:
+        """Stiffness that none of its straight branches exceeds [F/L] or [F L]; 0 for a damper, whose force
+        comes of the rate.
+        """
+        return 0.0 if self.role is Role.DAMPER else self.law.rule.steepest(self.law.p)
+
+    @property
+    def damps(self) -> bool:
+        """Whether its force may follow the rate: contacts and dampers have dashpots on some branches."""
+        return self.role.viscous or bool(self.beta or self.secant) or self.law.curved
+
     def whole(self, deformation: float, force: float) -> float:
         """Deformation as `yields` count it, of the one of the law."""
         return deformation + self.beside * force

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
+from pound_solve.check import looked
 from pound_solve.report.plot import courses, style
 from pound_solve.report.plot.geometry import DrawnStructure
 from pound_solve.report.plot.members import lines, members
@@ -78,14 +79,12 @@ def _structure(axes: Any, results: Results) -> None:
 
 def _figures(results: Results) -> list[str]:
     """Lines of the main figures, item and value; what is to be looked at stands before what is left out."""
-    lines, looks = list[tuple[str, str]](), list[tuple[str, str]]()
+    lines = list[tuple[str, str]]()
     if "overview" in results.tables:
         lines += [(str(item), str(value)) for item, value in results.table("overview").tolist()]
     if results.status != "done":
         lines.insert(0, ("this run", f"{results.status}: {results.message}".rstrip(": ")))
-    if "checks" in results.tables:
-        bad = [row for row in results.table("checks") if str(row["verdict"]).startswith("look")]
-        looks = [("look at", f"{row['check']}: {row['value']}") for row in bad]
+    looks = [("look at", f"{check.name}: {check.told}") for check in looked(results.checks)]
     told, last = _wrapped(lines), _wrapped(looks)[: MOST_LINES // 2]
     room = MOST_LINES - len(last)
     return [*told[: room - 1], "…", *last] if len(told) > room else told + last

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
+from enum import StrEnum
 
+from pound_solve.check import Bound, Subject, Verdict, at_least, at_most
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 
 
-def rows(run: RunRecord) -> Sequence[Row]:
+def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each check of all analyses so far."""
-    return run.checks
+    return (check.row() for check in run.checks)
+
+
+def _all(words: type[StrEnum]) -> str:
+    return ", ".join(f"`{word}`" if word else "or empty" for word in words)
 
 
 TABLE = Table(
@@ -23,14 +29,20 @@ TABLE = Table(
         Stage.PEAKS,
     ),
     columns=(
+        Column("subject", doc=_all(Subject)),
         Column("check", doc="what was checked"),
-        Column("value", doc="what was found"),
-        Column("verdict", doc="`good`, or what to look at"),
+        Column("value", fmt="short", doc="what was found"),
+        Column("unit", doc="of value and allowed; empty for a pure number"),
+        Column("bound", doc=_all(Bound)),
+        Column("allowed", fmt="short", doc="what the value may be; NaN where there is no bound"),
+        Column("verdict", doc=_all(Verdict)),
+        Column("remark", doc="what to do about it, or how to read it"),
     ),
     rows=rows,
     sample=(
-        ("energy residual over input", "1.9E-13", "good"),
-        ("propagator against half steps", "3.1E-15", "good"),
-        ("largest open gap at an event", "2.2E-16 m", "good"),
+        at_most(Subject.ENERGY, "energy residual over input", 1.9e-13, 1e-9, "").row(),
+        at_most(Subject.ROUNDING, "residual of the modes", 3.1e-9, 1e-10, "digits are lost").row(),
+        at_least(Subject.STEPS, "steps in a period", 23.5, 10.0, "").row(),
     ),
+    group="check",  # a check has its own number of digits
 )

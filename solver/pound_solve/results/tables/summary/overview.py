@@ -6,10 +6,11 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from pound_solve.check import Subject, looked
 from pound_solve.results.columns import ITEM, VALUE
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Row, Stage, Table
-from pound_solve.results.words import contact_name
+from pound_solve.results.words import contact_name, damped_part
 
 if TYPE_CHECKING:
     from pound_solve.integrate.protocol import Outcome
@@ -50,7 +51,8 @@ def periods(run: RunRecord) -> Iterator[Row]:
 
 def damping(run: RunRecord) -> str:
     """The damping beside that of elements."""
-    found = [f"{card.spec.name}: {text}" for card, text in run.structure.damping_texts]
+    cards = [(card.spec.name, damped_part(card), text) for card, text in run.structure.damping_texts]
+    found = [f"{kind}{'' if part == 'all' else ' of ' + part}: {text}" for kind, part, text in cards]
     return _few(found, "cards") if found else "none but that of contacts and dampers"
 
 
@@ -115,10 +117,10 @@ def error_of(outcome: Outcome) -> str:
     """What is known about the error of a method in time."""
     if outcome.exact:
         return "rounding only: it makes no error from one instant to the next"
-    told = [found for found in outcome.checks if found[0].startswith("estimated error")]
-    if told:
-        check, value, verdict = next((found for found in told if found[2] != "met"), told[0])
-        return f"{value}, {check}" + ("" if verdict == "met" else ", not shown")
+    estimates = [check for check in outcome.checks if check.subject is Subject.ERROR]
+    if estimates:
+        worst = next(iter(looked(estimates)), estimates[0])
+        return f"{worst.value:.1e}, {worst.name}, TOL {worst.allowed:g}" + ", not shown" * worst.looks
     return "not estimated: METHOD=AUTO does, and a second run with half the step shows it"
 
 

@@ -1,0 +1,155 @@
+"""A check: a number that a run finds about itself, what it may be, and whether that is good enough.
+
+Methods, analyses and the driver make checks; the report, pictures and sweeps print the same objects.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Any, Final, Self
+
+#: columns of the table `checks`
+COLUMNS: Final = ("subject", "check", "value", "unit", "bound", "allowed", "verdict", "remark")
+
+
+class Subject(StrEnum):
+    """What a check is about."""
+
+    EQUILIBRIUM = "equilibrium"  #: of forces at one instant
+    ENERGY = "energy"  #: its balance over the history
+    ERROR = "error"  #: an estimate of the error in time
+    STEPS = "steps"  #: whether the steps follow the motion
+    ROUNDING = "rounding"  #: how far digits are lost
+    PEAKS = "peaks"  #: one peak against another source of it
+    UNIQUENESS = "uniqueness"  #: of the solution
+    STORAGE = "storage"  #: what found no room
+    RESPONSE = "response"  #: values that no engineer would believe, or that end what the model means
+
+
+class Verdict(StrEnum):
+    """Whether a value is good enough."""
+
+    GOOD = "good"
+    LOOK = "look"  #: the user should look at it
+
+
+class Bound(StrEnum):
+    """On which side of `Check.allowed` a value is good."""
+
+    MOST = "at most"
+    LEAST = "at least"
+    NONE = ""  #: on both: a value to know, or to look at in any case
+
+
+@dataclass(frozen=True)
+class Check:
+    """One check.
+
+    Attributes
+    ----------
+    subject : Subject
+    name : str
+        What was checked, with the place.
+    value : float
+        What was found.
+    bound, allowed : Bound, float
+        What it may be; NaN without a bound.
+    verdict : Verdict
+    remark : str
+        What to do about it, or how to read it; empty where a good value needs none.
+    unit : str
+        Of `value` and `allowed`, in the deck's units; empty for a pure number.
+    """
+
+    subject: Subject
+    name: str
+    value: float
+    bound: Bound = Bound.NONE
+    allowed: float = float("nan")
+    verdict: Verdict = Verdict.GOOD
+    remark: str = ""
+    unit: str = ""
+
+    @property
+    def looks(self) -> bool:
+        """Whether the user should look at it."""
+        return self.verdict is Verdict.LOOK
+
+    @property
+    def told(self) -> str:
+        """The value with its unit."""
+        return f"{self.value:.3g} {self.unit}".rstrip()
+
+    @property
+    def severity(self) -> tuple[bool, float]:
+        """Larger for the worse of two checks of one name."""
+        value = -self.value if self.bound is Bound.LEAST else self.value
+        return self.looks, math.inf if math.isnan(value) else value
+
+    def __str__(self) -> str:
+        allowed = f", {self.bound} {self.allowed:.3g} {self.unit}".rstrip() if self.bound else ""
+        return f"{self.name}: {self.told}{allowed}" + (f"; {self.remark}" if self.remark else "")
+
+    def row(self) -> tuple[Any, ...]:
+        """The row of the table `checks`: `COLUMNS`."""
+        own = (self.subject, self.name, self.value, self.unit, self.bound, self.allowed)
+        return tuple(str(x) if isinstance(x, str) else x for x in (*own, self.verdict, self.remark))
+
+    @classmethod
+    def of(cls, row: Mapping[str, Any]) -> Self:
+        """The check of a row of the table `checks`, by its columns."""
+        subject, name, value, unit, bound, allowed, verdict, remark = (row[column] for column in COLUMNS)
+        return cls(
+            Subject(subject),
+            name,
+            float(value),
+            Bound(bound),
+            float(allowed),
+            Verdict(verdict),
+            remark,
+            unit,
+        )
+
+
+def at_most(
+    subject: Subject, name: str, value: float, allowed: float, remark: str, unit: str = ""
+) -> Check:
+    """Check that a value is not above what is allowed; `remark` is for the case that it is, or is NaN."""
+    check = Check(subject, name, float(value), Bound.MOST, float(allowed), remark=remark, unit=unit)
+    return _judged(check, check.value <= check.allowed)
+
+
+def at_least(
+    subject: Subject, name: str, value: float, allowed: float, remark: str, unit: str = ""
+) -> Check:
+    """Check that a value is not below what is allowed; `remark` is for the case that it is, or is NaN."""
+    check = Check(subject, name, float(value), Bound.LEAST, float(allowed), remark=remark, unit=unit)
+    return _judged(check, check.value >= check.allowed)
+
+
+def beyond(subject: Subject, name: str, value: float, allowed: float, remark: str, unit: str = "") -> Check:
+    """A value to look at whatever it is: it has reached what it must stay below, or it proves nothing."""
+    check = Check(subject, name, float(value), Bound.MOST, float(allowed), remark=remark, unit=unit)
+    return _judged(check, False)
+
+
+def _judged(check: Check, good: bool) -> Check:
+    return replace(check, remark="") if good else replace(check, verdict=Verdict.LOOK)
+
+
+def worst(checks: Iterable[Check]) -> list[Check]:
+    """Of those of one name, as of the parts of a history, the worst."""
+    out = dict[tuple[Subject, str], Check]()
+    for check in checks:
+        own = out.setdefault((check.subject, check.name), check)
+        if check.severity > own.severity:
+            out[check.subject, check.name] = check
+    return list(out.values())
+
+
+def looked(checks: Iterable[Check]) -> list[Check]:
+    """Those that the user should look at."""
+    return [check for check in checks if check.looks]
