@@ -3,7 +3,7 @@
 import random
 import struct
 import zlib
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from io import BytesIO
 
 import h5py
@@ -145,6 +145,18 @@ def test_parts_that_are_missing_changed_or_elsewhere_end_in_damaged(tmp_path, ca
     for verb in ("report", "export"):
         main([verb, str(path)])
         assert "fault of the program" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("version", [(2, 0), (2, 1)])
+def test_a_table_under_the_name_of_another_is_told_in_this_version_only(tmp_path, version):
+    """The digest of a killed run names no tables; in other versions a table may have other columns."""
+    path = sample.write(tmp_path / "a.h5", status="running")
+    with h5py.File(path, "r+") as file:
+        file.attrs["format_version"] = version
+        swap(file)
+    told = pytest.raises(ResultsError, match="nodes does not have the columns")
+    with Results.open(path) as results, told if version == (2, 0) else nullcontext():
+        results.table("nodes")
 
 
 def test_a_table_that_a_verb_needs_and_a_file_lacks_is_named(tmp_path, capsys):

@@ -23,7 +23,7 @@ from pound_deck.model import Units
 from pound_solve.report.views import view_of
 from pound_solve.results import Results
 from pound_solve.results.contents import SECTIONS, TABLES
-from pound_solve.results.schema import FORMATS, Column, Row, Table
+from pound_solve.results.schema import Column, Row, Table
 
 WIDTH: Final = 132  #: columns of the report
 _INDENT: Final = "  "
@@ -202,8 +202,8 @@ def _with_notes(lines: list[str], table: Table[Any], note: str) -> list[str]:
 
 def printed(units: Units, table: Table[Any], rows: Iterable[Row], note: str = "") -> list[str]:
     """Lines of a table that no file holds, from its rows; see `block`."""
-    kinds = [(c.name, "O" if c.is_text else FORMATS[c.fmt]) for c in table.columns]
-    return [line.rstrip() for line in block(units, table, np.array(list(rows), dtype=kinds), note)]
+    own = np.array(list(rows), dtype=table.kinds)
+    return [line.rstrip() for line in block(units, table, own, note)]
 
 
 class Formatted(NamedTuple):

@@ -150,6 +150,8 @@ class Results:
         # a seal that holds vouches for every byte: the parts need no digests of their own
         self._whole = self._complete and sealed
         self.changed = self._complete and not sealed
+        # the digest of a complete file knows its tables by name; other versions have other columns
+        self._judges_columns = not self._complete and (major, minor) == FORMAT_VERSION
         self.digest: str = _plain(attrs.get(DIGEST, ""))  #: of what the file holds but the run's times
         self.message: str = _plain(attrs["message"])  #: where and why the analysis stopped, else empty
         self._datasets: dict[str, h5py.Dataset] = {}
@@ -254,6 +256,8 @@ class Results:
             for field, kind in zip(stored.dtype.names, fields):
                 column = stored[field]
                 out[field] = [_plain(v) for v in column] if kind.kind == "O" else column
+            if self._judges_columns and name in TABLES and out.dtype != TABLES[name].kinds:
+                raise self._damaged(f"{name} does not have the columns of such a table")
             self._read[name] = self._as_written(name, dataset, out, name in TABLES)
         return self._read[name].copy()
 

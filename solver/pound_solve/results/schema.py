@@ -156,6 +156,11 @@ class Table(Generic[Record]):
     group: str = ""
     limit: int = 0
 
+    @property
+    def kinds(self) -> list[tuple[str, str]]:
+        """Name and type of each column in memory, where texts are objects."""
+        return [(c.name, "O" if c.is_text else FORMATS[c.fmt]) for c in self.columns]
+
 
 class HistoryLayout(NamedTuple):
     """Shape of one row (one instant) of a history, and the attributes of its dataset.
