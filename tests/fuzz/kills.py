@@ -113,7 +113,7 @@ def rounds(folder: Path, count: int, seed: int) -> Iterator[tuple[str, str, str]
         process.kill()
         process.wait()
         yield verb, verdict(folder, verb, before, deck), left(folder, verb)
-        for path in [*folder.glob("*.partial.*"), *folder.glob(".model.inp.*")]:
+        for path in folder.glob("*.partial.*"):
             path.unlink()
 
 

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import pound_solve
+from legacy.decks import STICK
 from pound_deck.model import Units
 from pound_solve.analyses.envelopes import Envelopes
 from pound_solve.analyses.recorder import EnergyBalance, HistoryRecorder
@@ -24,6 +25,8 @@ from pound_solve.interruption import Interruption
 from pound_solve.results import Results, ResultsError, Writer, place, safe_file
 from pound_solve.results.place import digest_in
 from pound_solve.results.whole_file import partial, write_text
+from pound_solve.sweep.entry import Entry, Journal
+from sweep.small import folder, swept
 
 DECK = """UNITS N m s
 GRAVITY 1
@@ -500,15 +503,42 @@ ANALYSIS
 #: verbs that write files, and the ends of the names of those that they write first
 WRITERS = {
     "export model.h5 -o out": ".csv",
-    "export model.h5 --vtk -o out": ".vtkhdf",
+    "export model.h5 --history node/u -o out": "out/histories.csv",
+    "export model.h5 --vtk -o out": "model.vtkhdf",
     "plot model.h5 frame -o out": "frame.svg",
     "plot model.h5 frame --as png -o out": "frame.png",
+    "plot model.h5 frame --as pdf -o out": "frame.pdf",
     "plot model.h5 animation --as html -o out": "animation.html",
+    "plot model.h5 animation --as gif --between 0 0.002 -o out": "animation.gif",
+    "plot model.h5 animation --as mp4 --between 0 0.002 -o out": "animation.mp4",
     "report model.h5 --html": "model.html",
     "motions sine.inp --dt 0.01 -o out": ".at2",
     "example 01_two_oscillators -o out": "",
     "loop BILINEAR R=0.1 --svg loop.svg": "loop.svg",
+    "loop BILINEAR R=0.1 --png loop.png": "loop.png",
+    "spectrum sine.inp --periods 0.1:1:9 -o spectrum.csv": "spectrum.csv",
+    "spectrum sine.inp --periods 0.1,1 --picture spectrum.pdf": "spectrum.pdf",
+    "import old.inp -o new.inp": "new.inp",
+    "format model.inp": "model.inp",
+    "format model.inp -o laid.inp": "laid.inp",
+    "separation sweep.h5": "separation.csv",
+    "fragility sweep.h5 --demand peak_drift --limit 0.001": "fragility_peak_drift_0.001.rpt",
 }
+#: stands for the program ffmpeg, which writes what it reads
+FFMPEG = """#!/bin/sh
+for last; do :; done
+cat > "$last" || { echo "$last: no space" >&2; exit 1; }
+"""
+
+
+STUDY = """deck = "wall.inp"
+[grid]
+gap = [1]
+[[motions]]
+files = ["first.txt", "second.txt"]
+unit = "M/S2"
+scale = [1, 2]
+"""
 
 
 @pytest.mark.full
@@ -516,24 +546,64 @@ WRITERS = {
 def test_a_file_that_finds_no_room_is_named_and_not_there(tmp_path, monkeypatch, capsys, words):
     """No file becomes longer than 200 bytes: what a full disk does, with another number."""
     resource = pytest.importorskip("resource", reason="limits of the system")
-    if " animation" in words or " frame" in words:
+    if any(name in words for name in ("animation", " frame", "png", "picture")):
         pytest.importorskip("matplotlib")
     if "--html" in words:
         pytest.importorskip("plotly")
     monkeypatch.chdir(tmp_path)
-    pound_solve.run(write(tmp_path, end=0.2)).close()
+    deck = write(tmp_path, end=0.2)
+    if "model.h5" in words:
+        pound_solve.run(deck).close()
+    if "sweep.h5" in words:
+        shutil.copy(swept(folder(tmp_path, STUDY)).write(), tmp_path / "sweep.h5")
+    if "mp4" in words:
+        (tmp_path / "ffmpeg").write_text(FFMPEG)
+        (tmp_path / "ffmpeg").chmod(0o755)
+        monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
     (tmp_path / "sine.inp").write_text(MOTION)
-    before = {path.name for path in tmp_path.rglob("*") if path.is_file()}
+    (tmp_path / "old.inp").write_text(STICK)
     # Python 3.11 keeps what was cut short of a module's bytecode, and every later process fails by it
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
+
+    def ends_in_words(before):
+        soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (200, hard))
+        try:
+            status = main(words.split())
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+        told = capsys.readouterr().err
+        assert status == 3 and "fault" not in told, told
+        left = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+        assert left.items() >= before.items(), told
+        others = left.keys() - before.keys()  # short ones that a verb wrote before
+        assert all(0 < len(left[p]) <= 200 and ".partial" not in p.name for p in others), others
+        return told
+
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    told = ends_in_words(before)
+    named = re.search(r"^pound-solve: (\S+?): .*(too large|no space)", told, re.MULTILINE)
+    assert named and named[1].endswith(WRITERS[words]), told
+    path = tmp_path / named[1]
+    if path not in before:
+        assert not path.exists()
+        path.write_bytes(b"older")
+        ends_in_words({**before, path: b"older"})
+
+
+def test_nothing_stays_of_a_report_or_of_histories_that_find_no_room(tmp_path):
+    """No file becomes longer than 200 bytes."""
+    resource = pytest.importorskip("resource", reason="limits of the system")
+    results = tmp_path / "model.h5"
+    partial(results).write_bytes(b"results")
+    histories = {"time": np.arange(100.0)}
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (200, hard))
     try:
-        status = main(words.split())
+        with pytest.raises(ResultsError, match=r"model\.rpt: .*; the results of this run are in"):
+            place.put_in_place(results, "report\n" * 100, whole=True)
+        with pytest.raises(OSError, match=r"model\.npz"):
+            Journal(tmp_path).add(Entry("model", "done", histories=histories))
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-    told = capsys.readouterr().err
-    assert status != 0 and "fault" not in told, told
-    assert f"{WRITERS[words]}: " in told, told
-    left = {path for path in tmp_path.rglob("*") if path.is_file() and path.name not in before}
-    assert all(0 < path.stat().st_size <= 200 and ".partial" not in path.name for path in left), left
+    assert [path.name for path in tmp_path.iterdir()] == ["model.partial.h5"]

@@ -13,7 +13,7 @@ import re
 from pathlib import Path
 
 from pound_solve.results.form import ResultsError
-from pound_solve.results.whole_file import make_way, partial
+from pound_solve.results.whole_file import hold, make_way, partial
 
 _DIGEST = re.compile(r"^ Results [0-9a-f]+$", re.MULTILINE)
 
@@ -42,8 +42,8 @@ def put_in_place(results: Path, report: str, whole: bool) -> Path:
     own, text = partial(results), results.with_suffix(".rpt")
     try:
         for path in (results, text):
-            make_way(path)
-        partial(text).write_text(report, encoding="ascii", newline="\n")
+            make_way(path, partial(path))
+        _lay(partial(text), report)
         if not whole and (results.exists() or text.exists()):
             return own
         text.unlink(missing_ok=True)  # a kill between two renames would leave the report of other results
@@ -54,6 +54,16 @@ def put_in_place(results: Path, report: str, whole: bool) -> Path:
             f"{err.filename or text}: {err.strerror}; the results of this run are in {own}"
         ) from err
     return results
+
+
+def _lay(own: Path, report: str) -> None:
+    """Write a report under its name `partial`; nothing stays of one that finds no room."""
+    try:
+        own.write_text(report, encoding="ascii", newline="\n")
+        hold(own)
+    except OSError:
+        own.unlink(missing_ok=True)
+        raise
 
 
 def digest_in(report: Path) -> str:

@@ -186,10 +186,8 @@ def write(
 
     Raises
     ------
-    ResultsError
-        The disk is full, or another program writes the file.
     OSError
-        The folder cannot be written.
+        The files cannot be written.
     """
 
     def fill(file: h5py.File) -> None:

@@ -9,6 +9,7 @@ import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,8 +24,8 @@ def partial(path: Path) -> Path:
     return path.with_name(f"{path.stem}.partial{path.suffix}")
 
 
-def make_way(path: Path) -> None:
-    """See that an output file may take its name, and that its name `partial` is free, see `free`.
+def make_way(path: Path, own: Path) -> None:
+    """See that an output file may take its name, and that its own in the meantime is free, see `free`.
 
     Raises
     ------
@@ -33,7 +34,7 @@ def make_way(path: Path) -> None:
     """
     if path.exists() and not path.is_file():
         raise OSError(errno.EEXIST, "a folder, a pipe or a device, not a file", str(path))
-    free(partial(path))
+    free(own)
 
 
 def free(own: Path) -> None:
@@ -50,18 +51,26 @@ def free(own: Path) -> None:
 
 
 @contextmanager
-def whole(path: Path) -> Iterator[Path]:
-    """The name under which to write a file within the block; it takes its own where the block ends.
+def whole(path: Path, own: Path | None = None) -> Iterator[Path]:
+    """The name under which to write a file within the block; it takes its own where the block ends and the
+    disk holds all of it.
+
+    Parameters
+    ----------
+    path : Path
+    own : Path, optional
+        Another name than `partial` for the meantime, where several processes may write the same file.
 
     Raises
     ------
     OSError
         It cannot be written; what stood at its name stands as before.
     """
-    make_way(path)
-    own = partial(path)
+    own = own or partial(path)
+    make_way(path, own)
     try:
         yield own
+        hold(own)
         os.replace(own, path)
     except BaseException as err:
         own.unlink(missing_ok=True)
@@ -71,36 +80,38 @@ def whole(path: Path) -> Iterator[Path]:
         raise
 
 
-def write_text(path: Path, text: str) -> None:
-    """Write a text in UTF-8, see `whole`."""
-    with whole(path) as own:
-        own.write_text(text, encoding="utf-8", newline="\n")
+def hold(own: Path) -> None:
+    """Have the disk hold a file; some tell only now that they have no room for it."""
+    with own.open("r+b") as file:
+        os.fsync(file.fileno())
+
+
+def write(path: Path, data: bytes | memoryview, own: Path | None = None) -> None:
+    """Write a file, see `whole`."""
+    with whole(path, own) as place:
+        place.write_bytes(data)
+
+
+def write_text(path: Path, text: str, encoding: str = "utf-8") -> None:
+    """Write a text, see `whole`; a character that the encoding lacks becomes a question mark."""
+    write(path, text.encode(encoding, "replace"))
 
 
 @contextmanager
 def whole_hdf(path: Path) -> Iterator[h5py.File]:
-    """A new HDF5 file, see `whole`; HDF5 itself never meets a full disk.
+    """A new HDF5 file, see `whole`.
+
+    HDF5 does not survive a write that fails, and closing such a file ends the process: it writes into
+    memory.
 
     Raises
     ------
-    OSError, ResultsError
+    OSError
         It cannot be written.
     """
     import h5py  # texts are written without it
 
-    from pound_solve.results.safe_file import SafeFile
-
-    make_way(path)
-    own = partial(path)
-    disk = SafeFile(own)
-    try:
-        with undisturbed(), h5py.File(disk, "w", libver=("v108", "v108")) as file:
-            yield file
-        with undisturbed():
-            disk.commit()
-            disk.end()
-    except BaseException:
-        disk.remove()
-        raise
-    disk.close()
-    os.replace(own, path)
+    memory = BytesIO()
+    with undisturbed(), h5py.File(memory, "w", libver=("v108", "v108")) as file:
+        yield file
+    write(path, memory.getbuffer())

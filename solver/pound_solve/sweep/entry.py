@@ -13,12 +13,14 @@ import platform
 import time
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
+from io import BytesIO
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
 from pound_solve.numerics.types import Array
+from pound_solve.results.whole_file import write
 from pound_solve.sweep.quantities import Values
 
 #: how a run ends: with all, with what it had when it stopped, or with nothing
@@ -103,10 +105,9 @@ class Journal:
     def _keep(self, entry: Entry) -> None:
         """Write the histories of a run beside the journal, whole or not at all."""
         path = self.histories(entry.identity)
-        part = path.with_suffix(f".{os.getpid()}.part")
-        with part.open("wb") as file:
-            np.savez(file, allow_pickle=False, **entry.histories)
-        os.replace(part, path)
+        memory = BytesIO()  # an archive whose writing fails may raise other errors than the system's
+        np.savez(memory, allow_pickle=False, **entry.histories)
+        write(path, memory.getbuffer(), path.with_suffix(f".{os.getpid()}.part"))
 
     def histories(self, identity: str) -> Path:
         """File of the histories of a run."""

@@ -67,12 +67,11 @@ def _write(source: Path, out: Path) -> int:
     there = [out / path.name for path in files if (out / path.name).exists()]
     if there:
         return common.complain(f"{there[0]} exists already: give another folder with -o")
-    from pound_solve.results.whole_file import whole
+    from pound_solve.results.whole_file import write
 
     out.mkdir(parents=True, exist_ok=True)
     for path in files:
-        with whole(out / path.name) as own:
-            own.write_bytes(path.read_bytes())
+        write(out / path.name, path.read_bytes())
         if path.suffix in _RUN:
             print(f"{_RUN[path.suffix]} {out / path.name}")
     print(f"{out / 'README.md'}")

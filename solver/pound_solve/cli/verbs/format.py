@@ -45,19 +45,11 @@ def execute(args: argparse.Namespace) -> int:
 
 
 def _write(path: Path, data: bytes) -> None:
-    """Write a file beside it and rename that, so that no interruption leaves half a deck."""
-    from pound_solve.results.whole_file import make_way
+    """Write a deck; its mode stays, and a link to it."""
+    from pound_solve.results.whole_file import whole
 
     real = Path(os.path.realpath(path))  # of a link, what it leads to
-    make_way(real)
-    beside = real.with_name(f".{real.name}.{os.getpid()}")
-    try:
-        with beside.open("xb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
+    with whole(real) as own:
+        own.write_bytes(data)
         if real.exists():
-            shutil.copymode(real, beside)
-        beside.replace(real)
-    finally:
-        beside.unlink(missing_ok=True)
+            shutil.copymode(real, own)

@@ -24,7 +24,7 @@ def execute(args: argparse.Namespace) -> int:
     """Write the files; none that is there is replaced."""
     from pound_solve.assess import motion_files
     from pound_solve.driver.prepare import DeckError
-    from pound_solve.results.whole_file import whole
+    from pound_solve.results.whole_file import write_text
 
     if args.dt is not None and not args.dt > 0.0:
         return common.complain("--dt must be above zero", common.MISTAKES)
@@ -44,7 +44,6 @@ def execute(args: argparse.Namespace) -> int:
     for file in files:
         if file.warning:
             common.complain(f"warning: {file.name}: {file.warning}")
-        with whole(args.out / file.name) as own:
-            own.write_text(file.text, encoding="ascii", errors="replace")
+        write_text(args.out / file.name, file.text, encoding="ascii")
         print(args.out / file.name)
     return common.DONE

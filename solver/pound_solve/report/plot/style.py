@@ -5,15 +5,18 @@ The look stands in a style sheet, `pound.mplstyle`, which a user's own is laid o
 
 from __future__ import annotations
 
+import errno
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
+from io import BytesIO
 from pathlib import Path
+from subprocess import CalledProcessError
 from typing import Any, Final
 
 from pound_solve.report.plot.schema import ChoiceError
-from pound_solve.results.whole_file import whole
+from pound_solve.results.whole_file import whole, write
 
 SHEET: Final = Path(__file__).with_name("pound.mplstyle")
 BLUE, RED, GREEN = "C0", "C1", "C2"  #: of the style: members; contacts and limits; supports
@@ -205,8 +208,9 @@ def save(picture: Any, path: Path) -> None:
         dated = {"Date": None} if path.suffix == ".svg" else None
         if path.suffix == ".pdf":
             dated = {"CreationDate": None}
-        with whole(path) as own:
-            picture.savefig(own, dpi=150, metadata=dated)
+        memory = BytesIO()  # a format whose writing fails may raise other errors than the system's
+        picture.savefig(memory, format=path.suffix[1:], dpi=150, metadata=dated)
+    write(path, memory.getbuffer())
 
 
 def film(picture: Any, show: Callable[[int], None], count: int, path: Path, rate: int) -> None:
@@ -216,6 +220,8 @@ def film(picture: Any, show: Callable[[int], None], count: int, path: Path, rate
     ------
     ChoiceError
         There is no program that writes this format.
+    OSError
+        The file cannot be written.
     """
     from matplotlib.animation import writers
 
@@ -224,10 +230,14 @@ def film(picture: Any, show: Callable[[int], None], count: int, path: Path, rate
         raise ChoiceError(f"{path.suffix} needs {need}, which is not installed: html needs nothing")
     literal(picture)
     writer = writers[name](fps=rate)
-    with writer.saving(picture, str(path), dpi=100):
-        for k in range(count):
-            show(k)
-            writer.grab_frame()
+    try:
+        with whole(path) as own, writer.saving(picture, str(own), dpi=100):
+            for k in range(count):
+                show(k)
+                writer.grab_frame()
+    except CalledProcessError as err:
+        said = (err.stderr.strip().splitlines() or [f"{need} ended with status {err.returncode}"])[-1]
+        raise OSError(errno.EIO, said, str(path)) from err
 
 
 def literal(picture: Any) -> None:

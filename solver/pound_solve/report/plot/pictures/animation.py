@@ -23,7 +23,7 @@ from pound_solve.report.plot.geometry import (
 )
 from pound_solve.report.plot.schema import MOVING, Choice, Picture
 from pound_solve.results import Results
-from pound_solve.results.whole_file import whole, write_text
+from pound_solve.results.whole_file import write_text
 
 FRAMES = 240  #: pictures of a film
 RATE = 20  #: of them a second
@@ -156,8 +156,7 @@ def write(results: Results, choice: Choice, path: Path) -> None:
     stage = Stage(own)
     stage.show(0)
     style.arrange(stage.figure)
-    with whole(path) as file:
-        style.film(stage.figure, stage.show, len(own.time), file, RATE)
+    style.film(stage.figure, stage.show, len(own.time), path, RATE)
 
 
 def page(own: Film) -> str:
