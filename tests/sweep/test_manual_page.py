@@ -20,3 +20,9 @@ def test_every_item_of_a_study_is_on_the_page_and_no_other():
     assert set(study.ITEMS) | {FILES, *LEVELS, *OSCILLATOR} - {"period", "damping"} <= told
     for block in re.findall(r"```toml\n(.*?)```", PAGE, re.S):
         assert set(tomllib.loads(block)) <= set(study.ITEMS)
+
+
+def test_the_largest_values_are_on_the_page():
+    for name, largest in study.LARGEST.items():
+        (row,) = re.findall(rf"^\| .*`{name}`.* \|$", PAGE, re.M)
+        assert f"up to {largest:,.0f}".replace(",", " ") in row
