@@ -268,6 +268,16 @@ def test_options_of_sweeps_are_none_of_a_run(tmp_path, capsys):
     assert "--gap needs the runs of a sweep" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("option", ["--periods", "--damping", "--raise"])
+@pytest.mark.parametrize(
+    "word", ["0,1", "1,-1", "nan,1", "inf,1", "1e300,1", "1e-300,1", "1", "1,2,3", "a,1"]
+)
+def test_two_numbers_are_of_the_magnitudes_that_a_deck_may_have(option, word, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(["separation", "run.h5", f"{option}={word}"])
+    assert end.value.code == 2 and f"{option}: " in capsys.readouterr().err
+
+
 def test_a_sweep_without_contacts_is_refused():
     own = synthetic(np.array([[0.1]]))
     variables = {k: v for k, v in own.variables.items() if k != "needed_gap"}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -38,14 +37,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _two(word: str) -> tuple[float, float]:
-    """Two positive numbers of an option."""
-    try:
-        first, second = (float(x) for x in word.split(","))
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{word[:60]}: write two numbers, as 0.2,0.3") from None
-    if not (0.0 < first < math.inf and 0.0 < second < math.inf):
+    """Two positive numbers of an option, of the magnitudes that a deck may have."""
+    from pound_deck.schema import SMALL
+
+    values = common.numbers(word.split(","), "write two numbers, as 0.2,0.3", argparse.ArgumentTypeError)
+    if len(values) != 2:
+        raise argparse.ArgumentTypeError(f"{word[:60]}: write two numbers, as 0.2,0.3")
+    if min(values) <= 0.0:
         raise argparse.ArgumentTypeError(f"{word[:60]}: both must be above 0")
-    return first, second
+    if min(values) < SMALL:
+        raise argparse.ArgumentTypeError(f"{word[:60]}: both must be at least {SMALL:g}")
+    return values[0], values[1]
 
 
 def execute(args: argparse.Namespace) -> int:
