@@ -356,6 +356,15 @@ def test_a_pipe_is_no_file(tmp_path, monkeypatch, capsys, pipe, words, status):
     assert re.search("a pipe or a device, not a file|no such file|not found|no file of this program", told)
 
 
+@pytest.mark.parametrize("name", ["lock", "runs/local-1.jsonl"])
+def test_a_pipe_in_the_folder_of_a_sweep_is_refused(tmp_path, capsys, pipe, name):
+    study = folder(tmp_path, STUDY)
+    (tmp_path / "walls.sweep/runs").mkdir(parents=True)
+    pipe(f"walls.sweep/{name}")
+    assert main(["sweep", str(study)]) == 3
+    assert f"{name}: a pipe or a device, not a file" in capsys.readouterr().err
+
+
 def test_a_partial_file_follows_no_link_and_waits_for_no_pipe(tmp_path, pipe):
     others, text, results = (tmp_path / name for name in ("others.txt", "a.rpt", "a.h5"))
     others.write_text("of others")

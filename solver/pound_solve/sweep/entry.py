@@ -19,6 +19,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from pound_deck.reader import opened
 from pound_solve.numerics.types import Array
 from pound_solve.results.whole_file import write
 from pound_solve.sweep.quantities import Values
@@ -134,7 +135,7 @@ class Journal:
 
     def _all(self) -> Iterator[Entry]:
         for path in sorted(self.folder.glob(f"*{ENDING}")):
-            with path.open("rb") as file:
+            with opened(path) as file:
                 for line in file:
                     try:
                         own: dict[str, Any] = json.loads(line)

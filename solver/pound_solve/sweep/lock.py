@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import IO
+
+from pound_deck.reader import opened
 
 try:
     import fcntl
@@ -30,9 +33,9 @@ def locked(folder: Path, piece: str = "") -> Iterator[None]:
     """
     folder.mkdir(parents=True, exist_ok=True)
     with ExitStack() as held:
-        whole = held.enter_context((folder / "lock").open("ab"))
+        whole = held.enter_context(_lock(folder / "lock"))
         if fcntl is not None:
-            own = held.enter_context((folder / f"lock-{piece}").open("ab")) if piece else None
+            own = held.enter_context(_lock(folder / f"lock-{piece}")) if piece else None
             try:
                 fcntl.flock(whole, (fcntl.LOCK_SH if own else fcntl.LOCK_EX) | fcntl.LOCK_NB)
                 if own is not None:
@@ -44,3 +47,10 @@ def locked(folder: Path, piece: str = "") -> Iterator[None]:
             except OSError:  # a file system without locks
                 pass
         yield
+
+
+def _lock(path: Path) -> IO[bytes]:
+    """A file that is open to be locked; a pipe would wait for a reader."""
+    if path.exists():
+        opened(path).close()
+    return path.open("ab")
