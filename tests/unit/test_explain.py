@@ -173,7 +173,7 @@ def test_a_report_needs_no_numerics(tmp_path):
     assert not libraries(modules) & (NUMERICS | {"lark", "matplotlib"})
     rooms = {name.split(".")[1] for name in modules if name.startswith("pound_solve.")}
     assert rooms <= {
-        *("cli", "deck", "interruption", "modules", "numerics", "report", "results", "version")
+        *("check", "cli", "deck", "interruption", "modules", "numerics", "report", "results", "version")
     }
     assert {name for name in modules if name.startswith("pound_solve.numerics.")} == {
         "pound_solve.numerics.threads",

@@ -9,7 +9,7 @@ import numpy as np
 
 from pound_solve.integrate.kernels import state
 from pound_solve.integrate.kernels.state import Product, Rows, Scheme
-from pound_solve.integrate.protocol import MonitoredOutputs, Start
+from pound_solve.integrate.protocol import STILL, MonitoredOutputs, Start
 from pound_solve.integrate.tracker import Extremes
 from pound_solve.laws.automaton import EVENTS, Rule
 from pound_solve.laws.functions import PARAMETERS, VARIABLES
@@ -27,6 +27,7 @@ MOST_HELD = 2**20  #: numbers of one kind in those samples, at most, but for two
 FEWEST_SHOWN = (
     64  #: motions of one step, and of whole steps between two visits, that envelopes see at least
 )
+ROUNDING = 16.0 * float(np.finfo(float).eps)  #: share of a force that solving for it loses
 INSTANT = 1e-6  #: share of the longest step that the time which tells massless velocities keeps below
 FULL_DIAGONAL = 0.25  #: part of a diagonal from which its zeros cost less than naming its entries
 
@@ -196,12 +197,23 @@ def normal_of(laws: Sequence[LawSpring], law: LawSpring) -> tuple[int, int]:
     return -1, 0
 
 
+def rates_at_rest(system: ReducedSystem, start: Start, d: Array, dt: float) -> Array:
+    r"""Rates that rounding makes of the deformations `d` at a start within a step, shape (n_laws,): of the
+    strain energy E there a law has a share of :math:`\epsilon^2`, so that it moves by
+    :math:`\epsilon\sqrt{2E/k}`, whatever units its deformation has.
+    """
+    k = np.array([s.steepest for s in system.structure.laws], float)
+    doubled = float(np.abs(start.u) @ np.abs(system.stiffness @ start.u) + k @ d**2)
+    square: Array = np.divide(doubled, k, out=np.zeros_like(k), where=k > 0.0)
+    return ROUNDING / dt * np.sqrt(square)
+
+
 def law_arrays(
     system: ReducedSystem, start: Start, own: Layout, scheme: Scheme, rules: Sequence[Rule],
-    dashpot_losses: Array,
+    dashpot_losses: Array, dt: float,
 ) -> state.Laws:  # fmt: skip
-    """The laws in the state of a start, with the losses of an accumulator; their branches are not entered
-    yet.
+    """The laws in the state of a start, for steps up to `dt`, with the losses of an accumulator; their
+    branches are not entered yet.
     """
     laws, count = system.structure.laws, len(system.structure.laws)
     t, value = float(start.times[0]), system.excitation.value
@@ -250,7 +262,7 @@ def law_arrays(
         trial=state.LawMotion(zeros(), zeros()),
         largest_deformation=np.abs(d),
         largest_rate=np.abs(v),
-        largest_terms=np.abs(v),
+        largest_terms=np.maximum(np.abs(v), rates_at_rest(system, start, d, dt) / STILL),
         friction_force=zeros(),
         dashpot_loss=dashpot_losses,
         peak_force=zeros(),

@@ -74,7 +74,7 @@ class KernelEngine(ABC):
         self.order = own.order
         self.linear = allocation.linear_system(system, monitored, own, scheme, dt)
         losses = self.accumulator.dashpot_losses
-        self.laws = allocation.law_arrays(system, start, own, scheme, rules, losses)
+        self.laws = allocation.law_arrays(system, start, own, scheme, rules, losses, dt)
         self.step = allocation.step_arrays(system, start, own, self.linear, self.tracker.extremes)
         self.place = own.place
         seen = own.place[np.flatnonzero(recorder.shown)], recorder.acting

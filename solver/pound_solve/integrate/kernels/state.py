@@ -267,7 +267,7 @@ class Laws(NamedTuple):
     largest_deformation, largest_rate : ndarray
     largest_terms : ndarray
         Largest sum of the absolute terms that a rate is made of: its rounding is a share of them, however
-        small it is itself.
+        small it is itself; as large from the start that a structure at rest moves by less.
     friction_force : ndarray
         Of a coupled law, at the start of the step.
     dashpot_loss : ndarray
