@@ -72,6 +72,22 @@ def test_failed_components_are_told(tmp_path):
     assert results.table("worst_hinges")["state"][0] == "failed"
 
 
+def test_a_gap_far_above_the_motion_is_told(tmp_path):
+    """As one in mm among metres; below a hundredth of it the structure closes, or hardly."""
+    for factor, told in ((30.0, False), (300.0, True)):
+        first = run(tmp_path, a=0.3)
+        closed = 0.004 - first.table("contact_summary")["min_gap"][0]
+        gap = factor * closed
+        deck = tmp_path / "far.inp"
+        text = DECK.replace("GAP=0.004", f"GAP={gap}")
+        deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=0.3))
+        found = [c for c in looked(results_of(deck).checks) if "largest share of a gap" in c.name]
+        assert len(found) == told
+        for check in found:
+            assert check.name.endswith("contact 9") and (check.allowed, check.unit) == (1.0, "%")
+            assert check.value == pytest.approx(100.0 / factor, rel=0.05)
+
+
 def test_a_contact_pressed_into_its_building_is_told(tmp_path):
     soft = run(tmp_path, k=100.0, a=5.0)
     share = soft.table("contact_summary")["peak_penetration"][0] / 3.0

@@ -27,5 +27,5 @@ def test_peaks_are_those_of_another_method(rule: str, joints: str, method: str) 
 
 @pytest.mark.parametrize(("rule", "joints"), [("BOUC_WEN", "massless"), ("RAMBERG_OSGOOD", "mass")])
 def test_rules_that_turn_with_the_rate_begin_at_rest(rule: str, joints: str) -> None:
-    """Loads without moments: deformations of 1e-22 and rates of 1e-19, by rounding, turned them for ever."""
+    """Loads without moments: rates of 1e-19, which are rounding, turned them for ever."""
     assert frames.by(rule, joints, "NEWMARK").status == "done"

@@ -14,7 +14,7 @@ import numpy as np
 from pound_deck.model import Model
 from pound_solve.analyses.history import BEARING, HistoryResult
 from pound_solve.analyses.spring_response import ORDINARY_ROTATION
-from pound_solve.check import Check, Subject, beyond
+from pound_solve.check import Check, Subject, at_least, beyond
 from pound_solve.integrate.protocol import Outcome
 from pound_solve.structure.storeys import storeys
 from pound_solve.structure.structure import Structure
@@ -24,6 +24,7 @@ RESPONSE: Final = Subject.RESPONSE
 LARGEST_DRIFT: Final = 0.1  #: drift over height; frames have lost their vertical loads before
 LARGEST_RESIDUAL: Final = 0.005  #: drift over height at the end, which the eye sees in a storey
 LARGEST_DUCTILITY: Final = 50.0  #: of hinges; members of concrete or steel break before
+LEAST_CLOSURE: Final = 0.01  #: of a gap; a thousandth tells of other units
 LARGEST_OVERLAP: Final = 0.02  #: of the shortest member that meets a contact
 
 
@@ -107,6 +108,23 @@ def unknown(structure: Structure, history: HistoryResult, outcome: Outcome) -> I
                 yield beyond(RESPONSE, name, ductility, limit, told)
 
 
+def distant(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
+    """Contacts whose gap is far above the motion that would close it."""
+    far = [
+        (outcome.peaks.deformation[i].high / gap, i)
+        for i in history.items.contacts
+        if (gap := structure.laws[i].facts["gap"]) > 0.0
+    ]
+    far = [(share, i) for share, i in far if 0.0 < share < LEAST_CLOSURE]
+    if far:
+        share, i = max(far)
+        element = structure.model.elements[structure.laws[i].element]
+        which = f"contact {element.name or element.id}"
+        name = f"largest share of a gap that closes, {which}" + f" and {len(far) - 1} more" * (len(far) > 1)
+        told = "the gap is far above the motion: check its unit"
+        yield at_least(RESPONSE, name, 100 * share, 100 * LEAST_CLOSURE, told, "%")
+
+
 def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
     """Contacts pressed together by more than an elastic contact means."""
     model = structure.model
@@ -169,6 +187,7 @@ RULES: Final[Sequence[Callable[[Structure, HistoryResult, Outcome], Iterator[Che
     rotations,
     ductilities,
     unknown,
+    distant,
     overlaps,
 )
 
