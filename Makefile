@@ -18,6 +18,7 @@ OUT ?= build/example
 N ?= 1000
 SEED ?= 0
 JOBS ?= 2
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 PYTEST := $(BIN)/python -m pytest -n 2 --dist worksteal
 NO_RECORDS := The package of the extra "records" is not to be had: decks that name ELCENTRO_270 need the record \
 as a file (--records DIR), see manual/records.md. All else works.
@@ -31,9 +32,8 @@ unexport PYTHONDONTWRITEBYTECODE
 
 $(VENV)/ready: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -e ".[dev]"
 	# the package with El Centro 1940 is not ours: without it all else works
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -e ".[records]" || echo "$(NO_RECORDS)"
+	$(PIP) -e ".[dev,records]" || { echo "$(NO_RECORDS)"; $(PIP) -e ".[dev]"; }
 	touch $@
 
 example: kernels
