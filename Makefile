@@ -73,7 +73,7 @@ wheel: $(VENV)/ready
 	HATCH_BUILD_HOOK_ENABLE_CUSTOM=1 $(BIN)/python -m build --wheel
 
 $(VENV)/ready-docs: $(VENV)/ready
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile -e ".[docs]"
+	$(PIP) -e ".[docs]"
 	touch $@
 
 docs: $(VENV)/ready-docs   # warnings are errors

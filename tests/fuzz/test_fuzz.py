@@ -25,7 +25,7 @@ from tiers import at_night
 #: cases of each kind, in two processes: one without runs and one with
 COUNTS = (
     {"deck": 60, "verbs": 6, "editor": 2, "record": 30, "results": 8, "words": 8, "import": 12},
-    {"run": 12, "options": 8, "study": 5, "texts": 4},
+    {"run": 8, "options": 5, "study": 4, "texts": 3},
 )
 
 

@@ -18,6 +18,7 @@ import pytest
 import pound_solve
 from pound_solve.check import Subject, at_most
 from pound_solve.cli.main import main
+from tiers import each_once
 
 pytest.importorskip("matplotlib")
 
@@ -155,7 +156,7 @@ STILL = [name for name, spec in PICTURES.items() if spec.write is None and name 
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("name", STILL)
+@each_once(("name", STILL), at_most=9)
 def test_no_text_of_a_picture_covers_another(still: Callable[[str], Any], name: str) -> None:
     assert overprinted(still(name)) == []
 

@@ -27,6 +27,7 @@ from pound_solve.results.place import digest_in
 from pound_solve.results.whole_file import partial, write_text
 from pound_solve.sweep.entry import Entry, Journal
 from sweep.small import folder, swept
+from tiers import each_once
 
 DECK = """UNITS N m s
 GRAVITY 1
@@ -77,7 +78,7 @@ def small_disk(monkeypatch):
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("size", [0, *range(safe_file.RESERVE, safe_file.RESERVE + 400_000, 16_001)])
+@pytest.mark.parametrize("size", [0, *range(safe_file.RESERVE, safe_file.RESERVE + 400_000, 24_001)])
 def test_a_full_disk_ends_in_words_with_a_readable_file(tmp_path, small_disk, capsys, size):
     deck = write(tmp_path)
     small_disk(size)
@@ -551,7 +552,7 @@ scale = [1, 2]
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("words", WRITERS)
+@each_once(("words", [*WRITERS]), at_most=11)
 def test_a_file_that_finds_no_room_is_named_and_not_there(tmp_path, monkeypatch, capsys, words):
     """No file becomes longer than 200 bytes: what a full disk does, with another number."""
     resource = pytest.importorskip("resource", reason="limits of the system")

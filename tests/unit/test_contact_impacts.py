@@ -326,6 +326,7 @@ def impact(law: str, method: str, e: float, gap: float = 0.01, length: float = 0
 @each_once(
     ("law", [*LAWS, "POWER_LAW_DAMPED TENSION=YES", "RUBBER_BUMPER THICKNESS=0.03 KU=1E6"]),
     ("e", [0.2, 0.65]),
+    at_most=8,
 )
 def test_steps_give_back_what_was_asked(law: str, e: float) -> None:
     steep = law.split()[0] in ("JANKOWSKI", "POWER_LAW_DAMPED")  # forces like the fourth root of time

@@ -36,7 +36,7 @@ EQUAKE
 DRIFT
  "storey" 1 2
 OUTPUT
- EVERY=0.001
+ EVERY={every}
 ANALYSIS
  HISTORY 4 METHOD={method}
 """
@@ -61,9 +61,9 @@ def keep(law: Law) -> None:
         assert law.stored(state, 0.3) == 0.0
 
 
-def shaken(spec: Spec, method: str) -> Ran:
+def shaken(spec: Spec, method: str, every: float = 0.001) -> Ran:
     """An oscillator with such a damper under a sine."""
-    return run_text(DECK.format(law=f"{spec.name} {written(spec, 1.0, 0.1)}", method=method))
+    return run_text(DECK.format(law=f"{spec.name} {written(spec, 1.0, 0.1)}", method=method, every=every))
 
 
 def balanced(r: Ran, tol: float) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from decks import results_of
 from pound_solve.results import Results
+from tiers import each_once
 
 pytestmark = pytest.mark.full
 
@@ -49,8 +50,7 @@ def ran(folder: Path, node: int, law: str) -> Results:
     return results_of(deck)
 
 
-@pytest.mark.parametrize("node", [2, 3])
-@pytest.mark.parametrize("law", ["LINEAR K=5E4", "KELVIN_VOIGT K=5E4 C=60"])
+@each_once(("node", [2, 3]), ("law", ["LINEAR K=5E4", "KELVIN_VOIGT K=5E4 C=60"]))
 def test_impulse_is_the_integral_of_the_force(tmp_path: Path, node: int, law: str) -> None:
     r = ran(tmp_path, node, law)
     force, collisions = r.history("contact/force")[:, 0], r.table("collisions")

@@ -349,12 +349,7 @@ def test_the_example_damper_keeps_the_contract(extended):
     spec = catalog().family("damper")["TWO_STAGE"]
     test_damper_contract.keep(test_damper_contract.law_of(spec))
     forces = []
-    for method, tol in (
-        ("EXACT", 1e-12),
-        ("TAYLOR", 1e-12),
-        ("NEWMARK DT=5E-4", 2e-5),
-        ("CENTRAL DT=5E-4", 2e-5),
-    ):
+    for method, tol in (("EXACT", 1e-12), ("TAYLOR", 1e-12), ("NEWMARK DT=5E-4", 2e-5)):
         r = test_damper_contract.shaken(spec, method)
         test_damper_contract.balanced(r, tol)
         (force,) = (x for x in r.tables["spring_envelope"] if x["element"] == 2)
@@ -363,6 +358,12 @@ def test_the_example_damper_keeps_the_contract(extended):
         assert max(np.abs(forces[-1])) == pytest.approx(6.0 + 6.0 * (speed - 0.1), rel=1e-3)
     assert np.abs(np.array(forces) - forces[0]).max() < 1e-3 * np.abs(forces[0]).max()
     assert np.abs(np.array(forces[1]) - forces[0]).max() < 1e-10 * np.abs(forces[0]).max()
+    # CENTRAL sees its dashpots, and keeps its order; without that an error falls by half only
+    exact, long, short = (
+        test_damper_contract.shaken(spec, method, 0.01).u
+        for method in ("EXACT", "CENTRAL DT=0.01", "CENTRAL DT=0.005")
+    )
+    assert np.abs(long - exact).max() > 3.5 * np.abs(short - exact).max()
 
 
 LINK = """UNITS kN m s

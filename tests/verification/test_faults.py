@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tiers import each_once
 from verification.cases import DECKS, Oscillator, example, kelvin_voigt_xi, run_deck, run_text
 
 pytestmark = pytest.mark.full
@@ -310,7 +311,7 @@ def stop(law: str, dt: float, gap: float = 0.0, start: str = "INITIAL\n 1 VX=1",
     return run_text(STOP.format(law=card, dt=dt, gap=gap, start=start, length=length))
 
 
-@pytest.mark.parametrize("law", CURVED)
+@each_once(("law", CURVED), at_most=3)
 def test_other_laws_touch_at_zero_gap_with_the_speed_of_touch_whatever_the_step(law: str) -> None:
     """The approach speed is that of the located instant, so that the damping is none of the step's."""
     e = 1.0 if law == "HERTZ" else 0.5
