@@ -42,7 +42,7 @@ PIECES = [
     "\t",
 ]
 SORTS = ("node", "element", "property set", "PARAM")
-quiet = settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+quiet = settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow])
 
 
 @pytest.mark.full

@@ -162,7 +162,7 @@ def test_no_text_of_a_picture_covers_another(still: Callable[[str], Any], name: 
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("name", STILL)
+@each_once(("name", STILL), at_most=9)
 def test_axes_bear_units(still: Callable[[str], Any], name: str) -> None:
     for axes in still(name).axes:
         if not axes.axison:

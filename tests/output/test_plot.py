@@ -52,7 +52,7 @@ def test_the_pictures_are_listed(capsys: Any) -> None:
 @pytest.mark.full
 @pytest.mark.parametrize(
     ("ending", "count"),
-    [("svg", 3), ("png", 1), *at_night(("svg", None), ("png", None), ("pdf", None))],
+    [("svg", 3), *at_night(("png", 1), ("svg", None), ("png", None), ("pdf", None))],
 )
 def test_every_picture_is_drawn_and_repeats(
     results: Results, tmp_path: Path, ending: str, count: int | None

@@ -54,7 +54,9 @@ def noted(path):
 
 
 @LINUX
-@pytest.mark.parametrize("kills", [((2, None), (3, 0)), *at_night((((1, 0), (3, 0), (2, -1)),))])
+@pytest.mark.parametrize(
+    "kills", [((3, 0),), *at_night((((2, None), (3, 0)),), (((1, 0), (3, 0), (2, -1)),))]
+)
 def test_a_sweep_that_is_killed_goes_on_where_it_was(tmp_path, kills):
     """Some times; where a number is given, after a worker of it was killed, which it survives."""
     (tmp_path / "undisturbed").mkdir()

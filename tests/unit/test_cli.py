@@ -248,7 +248,7 @@ def test_a_killed_run_leaves_what_it_had_written_beside_the_older_results(deck):
 
 @pytest.mark.full
 @pytest.mark.skipif(os.name != "posix", reason="signals")
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", *at_night("SIGHUP")])
+@pytest.mark.parametrize("name", ["SIGINT", *at_night("SIGTERM", "SIGHUP")])
 def test_an_interrupted_run_ends_with_its_results_and_status_1(deck, name):
     run = standing(deck)
     told = run.signal(getattr(signal, name))

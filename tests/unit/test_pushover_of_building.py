@@ -55,7 +55,7 @@ def events(ran: Ran) -> list[tuple[object, ...]]:
         ],
     ),
     ("geometry", ["SMALL", "PDELTA", "LARGE"]),
-    at_most=2,
+    at_most=1,
 )
 def test_a_building_without_its_neighbour_is_the_deck_with_it_alone(pattern: str, geometry: str) -> None:
     """Pressed at rest by its neighbour (a gap below zero), which must leave no trace."""

@@ -56,7 +56,7 @@ def histories(results, since):
     return {name: results.history(name)[late] for name in results.histories if name != "time"}
 
 
-@each_once(("method", METHODS), ("at", [3.0, 3.0137]), at_most=4)
+@each_once(("method", METHODS), ("at", [3.0, 3.0137]), at_most=3)
 def test_a_restart_at_half_time_gives_the_bits_of_the_whole_run(tmp_path, method, at):
     whole = run(tmp_path, "whole", method, more=f"SAVE={at}")
     rest = run(tmp_path, "rest", method, more="RESTART=whole.h5")

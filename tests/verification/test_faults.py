@@ -128,7 +128,7 @@ ANALYSIS
 """
 
 
-@settings(max_examples=15)
+@settings(max_examples=8)
 @given(
     e1=st.floats(0.05, 1.0),
     e2=st.floats(0.05, 1.0),
