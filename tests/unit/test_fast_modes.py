@@ -1,4 +1,4 @@
-"""EXACT where a mode is far faster than the motion: it foresees how many windows an interval takes."""
+"""EXACT where a mode is far faster than the motion: it foresees how many windows the motion takes."""
 
 import pytest
 
@@ -18,7 +18,7 @@ WEIGHTS
 INITIAL
  2 VX=0.1
 ANALYSIS
- HISTORY 0.02 METHOD=EXACT
+ HISTORY {seconds} METHOD=EXACT
 OUTPUT
  EVERY=0.01
 """
@@ -26,10 +26,10 @@ OUTPUT
 
 @pytest.fixture
 def status(tmp_path):
-    """Runs the deck with a stiffness."""
+    """Runs the deck with a stiffness and a length of the motion."""
 
-    def run(k):
-        (tmp_path / "deck.inp").write_text(DECK.format(k=k))
+    def run(k, seconds=0.02):
+        (tmp_path / "deck.inp").write_text(DECK.format(k=k, seconds=seconds))
         return main(["run", str(tmp_path / "deck.inp"), "--quiet"])
 
     return run
@@ -40,6 +40,15 @@ def test_that_an_interval_takes_too_many_windows_is_foreseen(status, monkeypatch
     windows = []
     monkeypatch.setattr(exact.Exact, "_charge_window", lambda *_: windows.append(1))
     assert status(1e20) == 1
+    assert "too fast to be followed" in capsys.readouterr().err
+    assert len(windows) == exact.FORESEEN
+
+
+def test_that_a_run_takes_too_many_windows_is_foreseen(status, monkeypatch, capsys):
+    """Some twenty windows an interval, which is followed, but not in four thousand intervals."""
+    windows = []
+    monkeypatch.setattr(exact.Exact, "_charge_window", lambda *_: windows.append(1))
+    assert status(6.5e14, 40.0) == 1
     assert "too fast to be followed" in capsys.readouterr().err
     assert len(windows) == exact.FORESEEN
 

@@ -60,7 +60,8 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.reduction import Decision, ReducedSystem
 
 MAX_PIECES = 2000  #: windows within one interval of the excitation
-FORESEEN = 16  #: of them without an event between, after which it is foreseen how many it will have
+MAX_WINDOWS = 10000  #: windows shorter than an interval in the rest of a run, which take many minutes
+FORESEEN = 16  #: of them without an event between, after which it is foreseen how many there will be
 MAX_DEFERRED = 256  #: entries of work that wait
 SAME_INSTANT = 1e-13  #: share of the time within which two events are at one instant
 MAX_RESIDUAL = 1e-10  #: of the modes, above which the check is not good
@@ -249,11 +250,13 @@ class Exact(EventDrivenRun):
 
     def _check_progress(self, length: float, rest: float) -> None:
         """Stop where the fastest mode is not resolvable: time would not advance by pieces of a `length`, or
-        too slowly for the `rest` of the interval.
+        too slowly for the `rest` of the interval or of the run.
         """
         self.pieces += 1
         left = MAX_PIECES - self.pieces
-        slow = left < 0 or (self.unbroken >= FORESEEN and rest > (left + 1) * length)
+        slow = left < 0
+        if self.unbroken >= FORESEEN:
+            slow |= rest > (left + 1) * length or self.goals[-1] - self.t > MAX_WINDOWS * length
         if slow or length < 1e-15 * max(1.0, self.t):
             raise self.stop(
                 "A503",
