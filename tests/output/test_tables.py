@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
+import pytest
+
+from decks import structure_of
 from pound_solve.results import Results, tables
 from pound_solve.results.contents import HISTORIES, SECTIONS, TABLES
 from pound_solve.results.page import results_page
 from pound_solve.results.schema import FORMATS, Stage
+from pound_solve.results.tables.input import properties
 
 PAGE = Path(__file__).parents[2] / "manual" / "results.md"
 
@@ -49,3 +54,17 @@ def test_the_page_lists_what_a_file_holds(done: Results) -> None:
     assert all(f"`{name}`" in page for name in done.tables)
     assert all(f"`/history/{name}`" in page for name in done.histories)
     assert set(done.histories) <= HISTORIES.keys()
+
+
+@pytest.mark.parametrize(
+    ("strengths", "unit"),
+    [("KX=5 FX=60", "m"), ("KR=5 MR=60", "rad"), ("KX=5 FX=60 KR=5 MR=60", "m or rad")],
+)
+def test_the_echo_gives_deformations_of_moments_in_radians(strengths: str, unit: str) -> None:
+    deck = (
+        "UNITS kN m s\nNODES\n 1 0 0 FIX=XYR\n 2 1 0 FIX=Y\nELEMENTS\n 1 COL 1 2\nPROPS\n"
+        f" COL SPRING {strengths} RULE=IMK_BILINEAR DP=0.02 DPC=0.05\n"
+        "WEIGHTS\n 2 100 0 100\nANALYSIS\n MODAL 1\n"
+    )
+    rows = list(properties.rows(SimpleNamespace(model=structure_of(deck).model)))
+    assert {row[4] for row in rows if row[2] in ("DP", "DPC")} == {unit}

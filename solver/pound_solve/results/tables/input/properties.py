@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pound_deck.schema import Kind
+from pound_deck.model import Card
+from pound_deck.schema import Field, Kind
 from pound_solve.results.columns import DEFAULT, ITEM
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
@@ -19,8 +20,19 @@ def rows(run: RunRecord) -> Iterator[Row]:
             if card[f.name] is None and not given:
                 continue
             counts = f.kind in (Kind.REAL, Kind.INT) and f.unit != "-"
-            unit = run.model.units.text(f.unit) if counts else ""
+            unit = " or ".join(map(run.model.units.text, _dimensions(card, f))) if counts else ""
             yield label, card.spec.name, f.name, text_of(card[f.name]), unit, "" if given else "*"
+
+
+def _dimensions(card: Card, field: Field) -> tuple[str, ...]:
+    """Dimensions that an item can have: a rule's deformation is a rotation where it is for moments."""
+    rules = [spec for specs in card.laws.values() for spec in specs if spec.family == "hysteresis"]
+    if field.unit != "L" or not any(field in rule.fields for rule in rules):
+        return (field.unit,)
+    given = [f for f in card.spec.fields if card[f.name] is not None]
+    moments = any(f.name in ("MI", "MJ", "MR") for f in given)
+    forces = any(f.name in ("FX", "FY") for f in given)
+    return ("L", "rad") if moments and forces else ("rad",) if moments else ("L",)
 
 
 TABLE = Table(
