@@ -126,6 +126,7 @@ WEIGHTS = "WEIGHTS\n 2,4 500\n 6 800\n"
         ([(WEIGHTS, "")], "nothing has mass, so that nothing swings: give the nodes of its floors WEIGHTS"),
         ([(WEIGHTS, ""), ("HISTORY 1", "MODAL 1")], "nothing has mass"),
         ([(" 6 800\n", "")], "the building of nodes 5, 6 has no mass"),
+        ([(" 6 800\n", " 6 0\n")], "the building of nodes 5, 6 has no mass"),
         ([(" 6 800\n", 'BUILDINGS\n "B" NODES=6\n')], "'B' has no mass"),
         ([(" 2,4 500\n", "")], "the building of nodes 1, 2, 3, 4 has no mass"),
         ([(" 2,4 500\n", ""), ("BEAM FRAME", "BEAM FRAME WGT=25")], ""),

@@ -171,6 +171,17 @@ def test_peaks_lie_between_the_samples() -> None:
     assert response_spectrum(ground, 1.0, 0.0).psa[0, 0] == pytest.approx(2.0, rel=1e-12)
 
 
+def test_a_peak_between_low_samples_beats_one_at_a_sample() -> None:
+    """Two undamped steps of one period each, 1 - cos: that of 0.99 has its peak of 1.98 at a break.  That
+    of 1 has 1 + cos(36 deg) = 1.809 on both sides of its peak of 2; it may gain (72 deg)^2/8 = 0.197 there.
+    """
+    breaks, steps = [0.0, 0.5, 1.0, 1.4, 1.6, 2.0], [-0.99, -0.99, 1.0, 1.0, 1.0]
+    ground = Piecewise(np.array(breaks), np.array([steps, np.zeros(5)]))
+    found = response_spectrum(ground, 1.0, 0.0)
+    assert found.psa[0, 0] == pytest.approx(2.0, rel=1e-11)
+    assert found.sa[0, 0] == pytest.approx(2.0, rel=1e-11)
+
+
 @settings(max_examples=40)
 @given(st.integers(0, 1000), st.floats(0.003, 20.0), st.floats(0.0, 0.9), st.floats(0.1, 10.0))
 def test_properties(seed: int, period: float, xi: float, factor: float) -> None:
