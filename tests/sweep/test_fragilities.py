@@ -8,7 +8,7 @@ from scipy.stats import norm
 
 from pound_solve.results.sweep_file import Sweep, Variable
 from pound_solve.sweep.curves import COLLAPSE, Asked, CurveError, curves, demand
-from pound_solve.sweep.fragilities import drawn, fit
+from pound_solve.sweep.fragilities import drawn, fit, report
 
 DRIFT, FALL = Asked("peak_drift"), Asked(COLLAPSE)
 
@@ -91,6 +91,16 @@ def test_a_cloud_leaves_out_what_stopped_and_what_failed():
     (none,) = fit(made, FALL, [], "cloud")
     assert none.fragility is None and none.remark.startswith("a cloud has no collapse")
     assert drawn([none]) == []
+
+
+def test_the_report_tells_runs_and_probabilities_at_levels():
+    """The two shares that were observed, and one half at the median; none of a fit that there is not."""
+    made, at = stripes(1, 3), [1.0, math.sqrt(2.0), 2.0]
+    found = fit(made, FALL, [], "stripes") + fit(made, FALL, [], "cloud")
+    lines = [line.split() for line in report(made, FALL, found, at)]
+    assert lines[0] == ["Demand:", "collapse"]
+    assert " ".join(lines[1]) == "Runs: 8 of the 8 in the sweep; scale 1 to 2, 2 levels"
+    assert lines[-2:] == [["0.25", "0.5", "0.75"], ["-", "-", "-"]]
 
 
 def test_limits_are_asked_for_but_of_collapse():
