@@ -59,8 +59,11 @@ def test_an_ordinary_run_has_nothing_to_look_at(tmp_path):
 
 def test_a_drift_above_a_tenth_of_its_height_is_told(tmp_path):
     results = run(tmp_path, h=0.03)
-    assert results.table("drift_envelope")["ratio_max"][0] > 0.1
-    assert "drift ratio of storey" in looks(results)
+    (row,) = results.table("drift_envelope")
+    assert row["ratio_max"] > 0.1
+    (found,) = [check for check in looked(results.checks) if check.name == "drift ratio of storey"]
+    assert found.value == pytest.approx(100.0 * max(row["max"], -row["min"]) / 0.03, rel=1e-12)
+    assert (found.allowed, found.unit) == (10.0, "%")
     assert re.search(r"drift ratio of storey .* % +at most +10.0 +look", first_page(results))
 
 
