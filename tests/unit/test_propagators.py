@@ -192,6 +192,18 @@ def test_samples_steps_and_rates_agree_with_single_times(kind: str, degree: int)
         assert np.abs((4 * d[0] - d[1]) / 3 - slope).max() < 1e-10 * speed
 
 
+def test_more_samples_than_before_of_one_spacing() -> None:
+    """Responses are kept for a spacing of samples, 16 of them or more: a longer row takes new ones."""
+    inputs, coefs, constant, _, u, v = loads(4, 1)
+    propagator = make_propagator(*subsystem("damped"), inputs)
+    q, g = propagator.state_of(u, v), propagator.forcing(coefs, constant)
+    for count in (3, 20, 7):
+        single = np.stack([propagator.at(q, g, 0.125 * i) for i in range(count)], axis=1)
+        found = propagator.samples(q[:, None], g[None], 0.125, count)[:, 0]
+        assert found.shape == single.shape
+        assert np.abs(found - single).max() < 1e-13 * np.abs(single).max()
+
+
 @pytest.mark.full
 @pytest.mark.parametrize("degree", [0, 1, 4])
 @pytest.mark.parametrize("kind", KINDS)
