@@ -114,6 +114,7 @@ def test_limits_are_asked_for_but_of_collapse():
     [
         (stripes(0, 1, 3), "capacities"),  # three levels of every record
         (stripes(1, 3), "stripes"),
+        (sweep(("a", 1.0, "done", 0.01), ("a", 2.0, "done", 0.02)), "stripes"),  # of one record
         (stripes(2), "cloud"),
         (sweep(("a", 1.0, "done", 0.1), ("a", 2.0, "done", 0.2), ("b", 1.0, "done", 0.1)), "cloud"),
     ],

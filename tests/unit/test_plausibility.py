@@ -1,12 +1,14 @@
 """What no engineer would believe stands on the first page, and nothing calls it good."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import pound_solve
 from decks import results_of, structure_of
+from pound_solve.analyses.plausibility import LARGEST_DRIFT, drifts
 from pound_solve.check import looked
 from pound_solve.report.text import render
 from pound_solve.results.contents import SECTIONS
@@ -67,6 +69,12 @@ def test_a_drift_above_a_tenth_of_its_height_is_told(tmp_path):
     assert re.search(r"drift ratio of storey .* % +at most +10.0 +look", first_page(results))
 
 
+def test_a_drift_of_just_a_tenth_is_not_beyond_it():
+    ratios = [("below", 0.05), ("at", LARGEST_DRIFT), ("above", 0.2)]
+    history = SimpleNamespace(storey_drift_ratios=lambda: ratios)
+    assert [(c.name, c.value) for c in drifts(None, history, None)] == [("drift ratio of above", 20.0)]
+
+
 def test_failed_components_are_told(tmp_path):
     results = run(tmp_path, a=8.0)
     assert results.table("damage")["index"][0] >= 1.0
@@ -84,10 +92,13 @@ def test_a_gap_far_above_the_motion_is_told(tmp_path):
         deck = tmp_path / "far.inp"
         text = DECK.replace("GAP=0.004", f"GAP={gap}")
         deck.write_text(text.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=0.3))
-        found = [c for c in looked(results_of(deck).checks) if "largest share of a gap" in c.name]
+        results = results_of(deck)
+        found = [c for c in looked(results.checks) if "largest share of a gap" in c.name]
+        left = results.table("contact_summary")["min_gap"][0] / gap
         assert len(found) == told
         for check in found:
             assert check.name.endswith("contact 9") and (check.allowed, check.unit) == (1.0, "%")
+            assert check.value == pytest.approx(100.0 * (1.0 - left), rel=1e-9)
             assert check.value == pytest.approx(100.0 / factor, rel=0.05)
 
 
