@@ -85,7 +85,8 @@ def test_a_cloud_leaves_out_what_stopped_and_what_failed():
     assert found.method == "cloud" and found.fragility.count == 6
     assert found.fragility.median == pytest.approx(2.0, rel=1e-7)
     assert found.remark == (
-        "fewer than 10 data; 1 runs that stopped are not in the cloud; 1 runs failed or are missing"
+        "fewer than 10 data; stopped runs, which are not in the cloud: 1; "
+        "runs that failed or are missing: 1"
     )
     assert [p.title for p in drawn([found])] == ["limit 0.04"]
     (none,) = fit(made, FALL, [], "cloud")

@@ -51,7 +51,7 @@ def capacities(analysis: Analysis) -> Iterator[Row]:
         how = [end for end in ends(curve.points, analysis.rules) if end != STANDS]
         remark = how[0] if how else "stands"
         if curve.left_out:
-            remark += f"; {curve.left_out} runs failed or are missing"
+            remark += f"; runs that failed or are missing: {curve.left_out}"
         yield curve.record, len(curve.points), stands, falls if how else math.nan, remark
 
 

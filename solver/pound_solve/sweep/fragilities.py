@@ -156,9 +156,9 @@ def _fitted(case: str, own: Sequence[Curve], limit: float, method: str, level: f
         remarks.append(f"fewer than {FEW} data")
     stopped = sum(math.isinf(p.demand) for c in own for p in c.points)
     if method == "cloud" and stopped:
-        remarks.append(f"{stopped} runs that stopped are not in the cloud")
+        remarks.append(f"stopped runs, which are not in the cloud: {stopped}")
     if missing := sum(c.left_out for c in own):
-        remarks.append(f"{missing} runs failed or are missing")
+        remarks.append(f"runs that failed or are missing: {missing}")
     shown = limit if math.isfinite(limit) else math.nan
     return Fitted(case, shown, method, found, "; ".join(remarks), counts(own, limit))
 

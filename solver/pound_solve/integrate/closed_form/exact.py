@@ -284,8 +284,10 @@ class Exact(EventDrivenRun):
             self.samples.add(self.goals[cursor + out], motion, entries, self.states, self.branches)
         if self.work.entries > MAX_DEFERRED or cursor + count == len(self.goals):
             self._release()
-            _, v, _ = dense.motions_at_ends(np.array([count - 1]))
-            self.stop_growth(v[:, 0])
+            if count:
+                self.t = float(self.goals[cursor + count - 1])  # where a stop is told
+                _, v, _ = dense.motions_at_ends(np.array([count - 1]))
+                self.stop_growth(v[:, 0])
 
     def _release(self) -> None:
         """Evaluate the works, and pass the samples that waited for them to the recorder.
