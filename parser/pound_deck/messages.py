@@ -357,6 +357,40 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "GAP is larger than the height of both buildings at a contact, so that no earthquake closes it. "
         "GAP has the unit of length of UNITS: 20 mm are 0.02 m.",
     ),
+    "P352": (
+        "section that does not fit its member (warning)",
+        "A rectangle of the same A and I is sqrt(12 I/A) deep. It is more than five times as deep as the "
+        "member is long, and more than the building is wide and high; or A becomes usual if it is read in "
+        "mm^2. The limits are ours. Give A and I in the unit of length of UNITS.",
+    ),
+    "P353": (
+        "member far longer than others (warning)",
+        "A member has more than six times the middle length of its property set, and is more slender than "
+        "1 in 40; the limits are ours. A coordinate of one of its nodes has a wrong digit.",
+    ),
+    "P354": (
+        "member given twice (warning)",
+        "Two members of one property set join the same nodes, so that their stiffnesses add up. Take one "
+        "out.",
+    ),
+    "P355": (
+        "strength or ductility of hinges beyond sense (warning)",
+        "The yield moment M of a section that is sqrt(12 I/A) = h deep belongs to a strain M h/(E I) below "
+        "2e-5 or above 0.1, or DUCTU is above 100; ordinary members have strains of 0.0005 to 0.01 and "
+        "ductilities below 50. The limits are ours. Check the units of yield moments and of E.",
+    ),
+    "P356": (
+        "mechanism (warning)",
+        "EQUAKE shakes a building along X whose base is held, but some of its nodes can move without "
+        "resistance: too many ends are pinned, or a member is missing.",
+    ),
+    "P357": (
+        "period that does not fit the height (warning)",
+        "EQUAKE shakes a building along X whose first period T is above 2 pi sqrt(H/g), so that it would "
+        "fall over by its own weight; or it is made of members alone and has 4 H/T above 1000 m/s, a speed "
+        "of waves of shear that walls do not reach. The second limit is ours. The units of weights, "
+        "stiffnesses or lengths do not fit.",
+    ),
     "R401": (
         "record not found",
         "The record is neither in the deck's folder nor in the record folders. Check its name, "

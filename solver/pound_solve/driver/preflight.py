@@ -12,6 +12,8 @@ from pound_solve.structure.buildings import misnamed, parts
 from pound_solve.structure.damping.by_building import uneven
 from pound_solve.structure.loose_ends import loose_ends
 from pound_solve.structure.mass_checks import immovable, massless
+from pound_solve.structure.mechanisms import loose, untimely
+from pound_solve.structure.member_checks import doubled, misjudged, misshapen
 from pound_solve.structure.structure import Structure
 from pound_solve.structure.supports import adrift, shaken
 
@@ -97,6 +99,11 @@ def too_many(structure: Structure) -> list[Diagnostic]:
     return out
 
 
+def unsteady(structure: Structure) -> list[Diagnostic]:
+    """Buildings that are mechanisms; where there are none, those that could move as one body."""
+    return loose(structure) or adrift(structure)
+
+
 def rounded_up(x: float) -> float:
     """The next number of one digit that is not below `x`."""
     unit = 10.0 ** floor(log10(x))
@@ -107,10 +114,14 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     inclined,
     pressed,
     wide,
-    adrift,
+    unsteady,
     massless,
     immovable,
     loose_ends,
+    untimely,
+    misshapen,
+    doubled,
+    misjudged,
     pushover.mistakes,
     too_many,
     misnamed,

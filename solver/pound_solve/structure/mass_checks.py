@@ -18,7 +18,8 @@ def massless(structure: Structure) -> list[Diagnostic]:
     asked = next(iter(shaken(model).values()), asked)
     if asked is None:
         return []
-    heavy = {n for (n, _), mass in structure.nodal_mass.items() if mass > 0.0}
+    movable = {*structure.dofs.free, *structure.dofs.moved}
+    heavy = {n for (n, d), mass in structure.nodal_mass.items() if mass > 0.0 and (n, d) in movable}
     if not heavy:
         return [Diagnostic("P347", "nothing has mass, so that nothing swings", asked.span, cure, "warning")]
     names = {n: card.label for card in model.buildings for n in card["NODES"]}

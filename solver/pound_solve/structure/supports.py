@@ -25,7 +25,7 @@ def adrift(structure: Structure) -> list[Diagnostic]:
     for direction, card in shaken(structure.model).items():
         d = DIRECTIONS.index(direction)
         shift = _shift(structure, d)
-        if shift @ structure.ground[d] > 0.0 and not _resisted(structure, shift[:, None]).any():
+        if shift @ structure.ground[d] > 0.0 and not resisted(structure, shift[:, None]).any():
             message = (
                 f"nothing ties the structure to the ground along {direction}: it stays behind as one body"
             )
@@ -83,7 +83,7 @@ def _free_motion(structure: Structure, b: Building, directions: Sequence[int]) -
     motions = np.array(found).reshape(-1, 3)
     motions[structure.n_free :] = 0.0
     held = [rigid[n.id][DIRECTIONS.index(letter)] for n in nodes for letter in n.fixed]
-    rows = np.concatenate([np.array(held).reshape(-1, 3), _resisted(structure, motions, touching=True)])
+    rows = np.concatenate([np.array(held).reshape(-1, 3), resisted(structure, motions, touching=True)])
     rows = rows[rows.any(axis=1)]
     rows /= np.linalg.norm(rows, axis=1)[:, None]
     value, vector = np.linalg.eigh(rows.T @ rows)
@@ -112,7 +112,7 @@ def _shift(structure: Structure, d: int) -> Array:
     return np.array([float(own == d) for _, own in dofs.free] + [0.0] * len(dofs.moved))
 
 
-def _resisted(structure: Structure, motions: Array, touching: bool = False) -> Array:
+def resisted(structure: Structure, motions: Array, touching: bool = False) -> Array:
     """What opposes motions: forces of the initial stiffness and of dashpots, deformations of laws.
 
     Parameters

@@ -1,0 +1,150 @@
+"""Motions within a building that nothing resists, and periods that no building of its height has."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from pound_deck.diagnostics import Diagnostic
+from pound_solve.loading.motions.base import METRE
+from pound_solve.numerics import modes
+from pound_solve.numerics.matrices import scaled, used_rows
+from pound_solve.numerics.types import Array, Flags, Index
+from pound_solve.structure.buildings import Building, buildings, columns_of, stands
+from pound_solve.structure.dofs import DIRECTIONS
+from pound_solve.structure.member_checks import kinds
+from pound_solve.structure.structure import Structure
+from pound_solve.structure.supports import ROUNDING, resisted, shaken, some
+
+MOVES: Final = 0.1  #: share of the largest displacement of a motion that a node has which it moves
+SAME: Final = 1e-6  #: share of a motion by which that of one body may differ
+#: 4 H/T, the speed of a shear wave up a building [m/s]: walls and stiff frames have 100 to 500, a solid
+#: block of concrete 2200
+FASTEST: Final = 1000.0
+
+
+def loose(structure: Structure) -> list[Diagnostic]:
+    """Buildings of members whose nodes can move although their base is held, as with too many pins."""
+    out = list[Diagnostic]()
+    for b, columns in _standing(structure):
+        slack = _Part(structure, columns).slack()
+        bent = [m for m in slack[:, ~_allowed(structure, slack)].T if not _rigid(structure, b, m)]
+        out += [_mechanism(structure, b, motion) for motion in bent[:1]]
+    return out
+
+
+def untimely(structure: Structure) -> list[Diagnostic]:
+    """Buildings whose first period is beyond what their height allows.
+
+    One that is slower than a pendulum of its height, standing on its head, falls over by its own weight.
+    Those on springs may be rigid on purpose.
+    """
+    model, out = structure.model, list[Diagnostic]()
+    framed = {e.i for members in kinds(model).values() for e in members if model.props[e.prop]["I"]}
+    sprung = {e.i for e in model.elements.values() if model.props[e.prop].spec.name == "SPRING"}
+    metre = METRE.get(model.units.length.lower(), math.inf)
+    for b, columns in _standing(structure):
+        t1 = _Part(structure, columns).period()
+        high = max(model.nodes[n].y for n in b.nodes) - b.base
+        if not t1 or high <= 0.0:
+            continue
+        slowest = 2.0 * math.pi * math.sqrt(high / model.gravity)
+        high = max(b.levels) - b.base  # of what swings: a mast may stand on it
+        speed = 4.0 * high / t1
+        if t1 > slowest:
+            out.append(_period(structure, b, t1, f"above {slowest:.3g}", "it would fall by its own weight"))
+        elif speed > FASTEST * metre and framed & set(b.nodes) and not sprung & set(b.nodes):
+            out.append(
+                _period(
+                    *(structure, b, t1, f"below {4.0 * high / (FASTEST * metre):.2g}"),
+                    "a solid block would hardly be stiffer",
+                )
+            )
+    return out
+
+
+def _period(structure: Structure, b: Building, t1: float, limit: str, why: str) -> Diagnostic:
+    model, unit = structure.model, structure.model.units
+    message = f"the first period of {b.name!r} is about {t1:.2g} {unit.time}, {limit} {unit.time}: {why}"
+    hint = (
+        f"check the units of WEIGHTS ({unit.force}), E ({unit.text('F/L^2')}), stiffnesses and lengths, "
+        "and GRAVITY"
+    )
+    return Diagnostic("P357", message, model.nodes[b.feet[0]].span, hint, "warning")
+
+
+def _standing(structure: Structure) -> Iterator[tuple[Building, Index]]:
+    """The buildings of some height that the ground shakes along x, with the columns of their unknowns."""
+    model = structure.model
+    if "X" not in shaken(model):
+        return
+    found = [b for b in buildings(structure) if stands(model, b.nodes)]
+    yield from zip(found, columns_of(model, structure.dofs.free, [b.nodes for b in found]))
+
+
+class _Part:
+    """The stiffness of a building, contacts open, scaled to a diagonal of ones; without rotations that
+    nothing holds.
+    """
+
+    def __init__(self, structure: Structure, columns: Index) -> None:
+        k = structure.initial_stiffness[: structure.n_free, : structure.n_free]
+        shifts = np.array([structure.dofs.free[c][1] < 2 for c in columns.tolist()], bool)
+        self.columns = columns[shifts | used_rows(k[columns][:, columns])]
+        own = k[self.columns][:, self.columns]
+        self.structure, self.factors = structure, modes.scaling(own)
+        self.held = modes.Held(scaled(own, self.factors))
+
+    def slack(self) -> Array:
+        """Motions that it does not resist, shape (n, n_slack), over all columns."""
+        found = self.held.slack.copy()
+        found[abs(found) < ROUNDING] = 0.0  # else what is left of rounding counts as a deformation
+        out = np.zeros((self.structure.dofs.size, found.shape[1]))
+        out[self.columns] = self.factors[:, None] * found
+        return out
+
+    def period(self) -> float:
+        """First period along x, by the quotient of Rayleigh of the sag under its weight along x [T]; 0
+        where there is none.
+        """
+        if self.held.slack.shape[1] or self.held.negative is not None:
+            return 0.0
+        push = self.structure.ground[0, self.columns]
+        sag = self.factors * self.held.solve(self.factors * push)
+        own = self.structure.mass[: self.structure.n_free, : self.structure.n_free]
+        inertia = float(sag @ (own[self.columns][:, self.columns] @ sag))
+        work = float(push @ sag)
+        return 2.0 * math.pi * math.sqrt(inertia / work) if work > 0.0 else 0.0
+
+
+def _allowed(structure: Structure, slack: Array) -> Flags:
+    """Which motions dashpots, contacts that touch or other laws resist, or leave all nodes in place."""
+    shifts = [i for i, (_, d) in enumerate(structure.dofs.free) if d < 2]
+    still = np.abs(slack[shifts]).max(axis=0, initial=0.0) == 0.0
+    return np.asarray(still | resisted(structure, slack, touching=True).any(axis=0))
+
+
+def _rigid(structure: Structure, b: Building, motion: Array) -> bool:
+    """Whether a motion moves a building as one body, its supports included."""
+    x, y = np.array([(structure.model.nodes[n].x, structure.model.nodes[n].y) for n in b.nodes]).T
+    one, none = np.ones(len(x)), np.zeros(len(x))
+    body = np.column_stack([np.append(one, none), np.append(none, one), np.append(-y, x)])
+    found = structure.dofs.matrix([(n, d) for d in range(2) for n in b.nodes]) @ motion
+    left = found - body @ np.linalg.lstsq(body, found, rcond=None)[0]
+    return bool(abs(left).max() <= SAME * abs(found).max())
+
+
+def _mechanism(structure: Structure, b: Building, motion: Array) -> Diagnostic:
+    model, free = structure.model, structure.dofs.free
+    shifts = [(abs(motion[i]), owner, d) for i, (owner, d) in enumerate(free) if d < 2]
+    most = max(shifts)[0]
+    moved = [(owner, d) for x, owner, d in shifts if x > MOVES * most]
+    _, first = moved[0]
+    nodes = sorted({owner for owner, d in moved if d == first})
+    who = f"node{'s' * (len(nodes) > 1)} {some(nodes)}"
+    message = f"nothing holds {who} of {b.name!r} along {DIRECTIONS[first]}: the building is a mechanism"
+    hint = "take out a PIN, fix R of its base, or add a member"
+    return Diagnostic("P356", message, model.nodes[nodes[0]].span, hint, "warning")

@@ -1,0 +1,172 @@
+"""Members whose values contradict each other: shapes of sections, lengths, strengths of hinges.
+
+A rectangle of the same A and I is sqrt(12 I/A) deep.  Units that are mixed up, or items that change places,
+make it far deeper than its building is large, or so thin that nothing could be built of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator
+from statistics import median
+from typing import Final
+
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Card, Element, Model
+from pound_solve.structure.buildings import parts
+from pound_solve.structure.elements.base import Role
+from pound_solve.structure.structure import Structure
+
+MEMBERS: Final = ("FRAME", "BEAM_COLUMN")
+#: depth over length; a core of 16 m in storeys of 3 m has no more, and one that is deeper than its building
+#: is wide and high does not stand in it
+DEEPEST: Final = 5.0
+USUAL: Final = (1.0 / 50.0, 1.0 / 3.0)  #: depth over length of ordinary members
+SLENDER: Final = 1.0 / 40.0  #: depth over length; floor slabs have no less
+LONGEST: Final = 6.0  #: length over that of the middle one of its kind; a slip of a digit makes it ten
+#: M h/(E I) at yield, twice the strain of the outer fibre; sections of concrete, steel or timber have
+#: 0.0005 to 0.01, so that a factor of a thousand is beyond these limits
+LEAST_STRAIN, MOST_STRAIN = 2e-5, 0.1
+MOST_DUCTILITY: Final = 100.0  #: of the curvature of sections; members have less than 50
+
+
+def depth(card: Card) -> float:
+    """Depth of the rectangle that has the area and the second moment of a section [L]; 0 for a bar."""
+    return math.sqrt(12.0 * card["I"] / card["A"])
+
+
+def length(model: Model, e: Element) -> float:
+    """Distance of the nodes of a member [L]."""
+    i, j = model.nodes[e.i], model.nodes[e.i if e.j is None else e.j]
+    return math.hypot(i.x - j.x, i.y - j.y)
+
+
+def misshapen(structure: Structure) -> list[Diagnostic]:
+    """Sections and members of impossible proportions, once for each property set."""
+    model, out = structure.model, dict[str, Diagnostic]()
+    sizes = _sizes(model)
+    for label, members in kinds(model).items():
+        card = model.props[label]
+        if not card["I"]:
+            continue
+        h, short = depth(card), min(members, key=lambda e: length(model, e))
+        if h > max(DEEPEST * length(model, short), sizes[short.i]):
+            out[label] = _too_deep(model, card, short, h)
+            continue
+        found = _in_millimetres(model, card, members, sizes[short.i] ** 2)
+        found = found or _too_long(model, card, members, h)
+        if found:
+            out[label] = found
+    return list(out.values())
+
+
+def kinds(model: Model) -> dict[str, list[Element]]:
+    """Members by their property sets."""
+    out: dict[str, list[Element]] = defaultdict(list)
+    for e in model.elements.values():
+        if model.props[e.prop].spec.name in MEMBERS and e.j is not None:
+            out[e.prop].append(e)
+    return out
+
+
+def _sizes(model: Model) -> dict[int, float]:
+    """The larger of height and width of the part that every node belongs to [L]."""
+    out: dict[int, float] = {}
+    for nodes in parts(model):
+        x, y = [model.nodes[n].x for n in nodes], [model.nodes[n].y for n in nodes]
+        out.update(dict.fromkeys(nodes, max(max(x) - min(x), max(y) - min(y))))
+    return out
+
+
+def _too_deep(model: Model, card: Card, e: Element, h: float) -> Diagnostic:
+    unit = model.units.length
+    message = (
+        f"the section of {card.label} is {h:.3g} {unit} deep by A and I, sqrt(12 I/A), but member {e.id} "
+        f"is {length(model, e):.3g} {unit} long"
+    )
+    hint = f"A is in {unit}^2, I in {unit}^4: correct the one of other units, or exchange them"
+    return Diagnostic("P352", message, card.place("I"), hint, "warning")
+
+
+def _in_millimetres(model: Model, card: Card, members: list[Element], face: float) -> Diagnostic | None:
+    """An area in mm^2 in a deck in m, larger than the `face` of the building [L^2], beside I in m^4.
+
+    A large area alone may be that of a member without axial deformation; only one that becomes usual by
+    that factor is told.
+    """
+    middle = median(length(model, e) for e in members)
+    true = 1e3 * depth(card) / middle
+    if model.units.length.lower() != "m" or card["A"] < face or not USUAL[0] <= true <= USUAL[1]:
+        return None
+    message = f"A of {card.label} is {card['A']:g} m^2, but I makes the section {depth(card):.1g} m deep"
+    hint = f"{card['A']:g} mm^2 are {1e-6 * card['A']:g} m^2; leave it if no axial deformation is meant"
+    return Diagnostic("P352", message, card.place("A"), hint, "warning")
+
+
+def _too_long(model: Model, card: Card, members: list[Element], h: float) -> Diagnostic | None:
+    """A member far longer than others of its kind, and too slender."""
+    e = max(members, key=lambda e: length(model, e))
+    long, middle = length(model, e), median(length(model, m) for m in members)
+    if long <= LONGEST * middle or h >= SLENDER * long:
+        return None
+    unit, ends = model.units.length, " and ".join(str(n) for n in (e.i, e.j))
+    message = f"member {e.id} is {long:.3g} {unit} long, others of {card.label} {middle:.3g} {unit}"
+    hint = f"correct the coordinates of node {ends.replace(' and ', ' or ')} under NODES"
+    return Diagnostic("P353", message, e.span, hint, "warning")
+
+
+def doubled(structure: Structure) -> list[Diagnostic]:
+    """Members of one property set between the same two nodes."""
+    model, first, out = structure.model, dict[tuple[str, frozenset[int]], Element](), list[Diagnostic]()
+    for e in (e for members in kinds(model).values() for e in members):
+        assert e.j is not None
+        other = first.setdefault((e.prop, frozenset((e.i, e.j))), e)
+        if other is not e:
+            message = f"members {other.id} and {e.id} of {e.prop} join the same nodes, {e.i} and {e.j}"
+            hint = "take one out; of two members side by side, write one with twice their A and I"
+            out.append(Diagnostic("P354", message, e.span, hint, "warning"))
+    return out
+
+
+def misjudged(structure: Structure) -> list[Diagnostic]:
+    """Hinges of members whose section yields at a strain that no material has, or has no end of ductility:
+    once for each property set.  Rigid-plastic ones, with a stiffness KH of their own, are left out.
+    """
+    model, out = structure.model, dict[str, Diagnostic]()
+    for spring in structure.laws:
+        element = model.elements[spring.element]
+        card = model.props[element.prop]
+        hinge = spring.role is Role.SPRING and spring.unit == "F*L" and card.spec.name in MEMBERS
+        if not hinge or spring.strengths is None or card.values.get("KH") is not None or not card["I"]:
+            continue
+        for d in (*_strain(model, card, element, spring.strengths), *_ductility(card)):
+            out.setdefault(card.label, d)
+    return list(out.values())
+
+
+def _strain(
+    model: Model, card: Card, element: Element, strengths: tuple[float, float]
+) -> Iterator[Diagnostic]:
+    """A yield moment out of all proportion to the stiffness of its section."""
+    h, unit = depth(card), model.units.text("F*L")
+    moment = max((abs(m) for m in strengths if math.isfinite(m)), default=0.0)
+    strain = moment * h / (card["E"] * card["I"])
+    plain = USUAL[0] < h / length(model, element) < 1.0  # else A or the length may be of its own
+    if moment and plain and not LEAST_STRAIN <= strain <= MOST_STRAIN:
+        few = strain < LEAST_STRAIN
+        message = (
+            f"hinges of {card.label} yield at {moment:g} {unit}, a strain of {strain:.1g} of the section: "
+            f"{'0.001 is little' if few else '0.01 is much'}"
+        )
+        item = next(i for i in ("MI", "MJ", "MP", "NM", "LP") if card.values.get(i) is not None)
+        hint = f"yield moments are in {unit}, E in {model.units.text('F/L^2')}"
+        yield Diagnostic("P355", message, card.place(item), hint, "warning")
+
+
+def _ductility(card: Card) -> Iterator[Diagnostic]:
+    most = max(card.values.get("DUCTU") or (0.0,))
+    if most > MOST_DUCTILITY:
+        message = f"DUCTU of {card.label} is {most:g}, but no member has more than {MOST_DUCTILITY:g}"
+        hint = "DUCTU is a multiple of the yield deformation, not per cent"
+        yield Diagnostic("P355", message, card.place("DUCTU"), hint, "warning")
