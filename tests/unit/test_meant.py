@@ -89,6 +89,20 @@ def test_a_building_that_could_move_as_one_body(changes, told):
     assert len(found) == bool(told) and all(told in r for r in found)
 
 
+@pytest.mark.parametrize(
+    "hinges",
+    [
+        ("COL FRAME", "COL FRAME RULE=TAKEDA R=0.03 LP=0.3 MI=300 MJ=300"),
+        ("BEAM FRAME", "BEAM BEAM_COLUMN LP=0.3 PY=4000 MP=300"),
+    ],
+)
+@pytest.mark.parametrize("far", [A_PIN, OTHER_FREE])
+def test_hinges_do_not_hold_a_building(hinges, far):
+    """What is inside a member goes with its nodes."""
+    found = [r for r in remarks(changed(ONE_FREE, far, hinges)) if r.startswith("P337")]
+    assert len(found) == 1 and ("turning about x = 6, y = 0" if far == A_PIN else "along X") in found[0]
+
+
 BED = """ 6 BED 1
  7 BED 3
  8 SLIDE 1

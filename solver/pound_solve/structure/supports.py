@@ -5,31 +5,35 @@ A deck with an initial motion or with forces may mean that.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Final
 
 import numpy as np
 
 from pound_deck.diagnostics import Diagnostic
-from pound_deck.model import Card, Model
+from pound_deck.model import Card, Element, Model
 from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import Building, buildings, stands
 from pound_solve.structure.dofs import DIRECTIONS
+from pound_solve.structure.elements.base import direction
+from pound_solve.structure.elements.beam import INSIDE
 from pound_solve.structure.structure import Structure
 
+#: DOFs inside a member: those that turn, and those at its end I
+TURNS: Final = (INSIDE[2], INSIDE[5])
+ENDS_AT_I: Final = (INSIDE[0], INSIDE[2])
 ROUNDING = 1e-9  #: share of its terms below which a sum that should be zero is zero
 
 
 def adrift(structure: Structure) -> list[Diagnostic]:
     """Directions in which nothing joins the structure, or one of its buildings, to the shaken ground."""
     out = []
-    for direction, card in shaken(structure.model).items():
-        d = DIRECTIONS.index(direction)
+    for way, card in shaken(structure.model).items():
+        d = DIRECTIONS.index(way)
         shift = _shift(structure, d)
         if shift @ structure.ground[d] > 0.0 and not resisted(structure, shift[:, None]).any():
-            message = (
-                f"nothing ties the structure to the ground along {direction}: it stays behind as one body"
-            )
-            hint = f"fix {direction} of its base under NODES, or join it to the ground by an element"
+            message = f"nothing ties the structure to the ground along {way}: it stays behind as one body"
+            hint = f"fix {way} of its base under NODES, or join it to the ground by an element"
             out.append(Diagnostic("P337", message, card.span, hint, "warning"))
     return out or _unsupported(structure)
 
@@ -77,10 +81,7 @@ def _free_motion(structure: Structure, b: Building, directions: Sequence[int]) -
     rigid = {}
     for n, (x, y) in zip(b.nodes, ((places - middle) / size).tolist()):
         rigid[n] = ((1.0, 0.0, -y), (0.0, 1.0, x), (0.0, 0.0, 1.0 / size))
-    none = (0.0, 0.0, 0.0)  # of other buildings, and of what is inside elements
-    columns = [*structure.dofs.free, *structure.dofs.moved]
-    found = [rigid[n][d] if n in rigid and d < 3 else none for n, d in columns]
-    motions = np.array(found).reshape(-1, 3)
+    motions = _moved(structure, {n: np.array(rows) for n, rows in rigid.items()}, 3)
     motions[structure.n_free :] = 0.0
     held = [rigid[n.id][DIRECTIONS.index(letter)] for n in nodes for letter in n.fixed]
     rows = np.concatenate([np.array(held).reshape(-1, 3), resisted(structure, motions, touching=True)])
@@ -108,8 +109,36 @@ def some(nodes: Sequence[int], most: int = 6) -> str:
 
 def _shift(structure: Structure, d: int) -> Array:
     """Unit rigid-body displacement of the free DOFs along direction `d`; the supports stay."""
-    dofs = structure.dofs
-    return np.array([float(own == d) for _, own in dofs.free] + [0.0] * len(dofs.moved))
+    motions = _moved(structure, dict.fromkeys(structure.model.nodes, np.eye(3)[:, [d]]), 1)[:, 0]
+    motions[structure.n_free :] = 0.0
+    return motions
+
+
+def _moved(structure: Structure, motions: Mapping[int, Array], count: int) -> Array:
+    """Motions of all columns: those of some nodes, given, of the ends of the beams between them, and zeros.
+
+    Parameters
+    ----------
+    motions : mapping of int to ndarray, shape (3, count)
+        By node: along x and y, and the turn.
+    """
+    columns = [*structure.dofs.free, *structure.dofs.moved]
+    out = np.zeros((len(columns), count))
+    for row, (owner, d) in zip(out, columns):
+        if d < 3:
+            row[:] = motions[owner][d] if owner in motions else 0.0
+        elif (e := structure.model.elements[owner]).i in motions and e.j is not None:
+            row[:] = _inside(structure.model, e, e.j, d, motions)
+    return out
+
+
+def _inside(model: Model, e: Element, j: int, d: int, motions: Mapping[int, Array]) -> Array:
+    """Motion of the end of a beam behind a hinge, which goes with its node: a turn, or along the member."""
+    end = motions[e.i if d in ENDS_AT_I else j]
+    if d in TURNS:
+        return np.asarray(end[2])
+    c, s = direction(model.nodes[j].x - model.nodes[e.i].x, model.nodes[j].y - model.nodes[e.i].y)
+    return np.asarray(c * end[0] + s * end[1])
 
 
 def resisted(structure: Structure, motions: Array, touching: bool = False) -> Array:
@@ -136,6 +165,9 @@ def resisted(structure: Structure, motions: Array, touching: bool = False) -> Ar
         *(b.matrix @ dofs.matrix(b.dofs) for p in structure.parts.values() for b in p.damping),
     ):
         found = np.asarray(a @ motions)
-        found[abs(found) <= ROUNDING * (abs(a) @ abs(motions))] = 0.0
+        noise = (
+            ROUNDING**2 * abs(a).max() * abs(motions).max() if 0 not in (*a.shape, motions.size) else 0.0
+        )
+        found[abs(found) <= ROUNDING * (abs(a) @ abs(motions)) + noise] = 0.0
         out.append(found)
     return np.concatenate(out)
