@@ -391,6 +391,20 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "of waves of shear that walls do not reach. The second limit is ours. The units of weights, "
         "stiffnesses or lengths do not fit.",
     ),
+    "P358": (
+        "contact within a floor (warning)",
+        "Both nodes of a contact along X are ends of members that lie, or slaved to each other along X, so "
+        "that it cannot close. Name nodes of two buildings.",
+    ),
+    "P359": (
+        "contact that closes as its nodes move apart (warning)",
+        "ANGLE points from J to I. Exchange the nodes, or leave ANGLE out. A hook is meant to do so.",
+    ),
+    "P360": (
+        "gap above the distance of its nodes (warning)",
+        "GAP is more than three times the distance of the nodes of the contact, which holds the gap and half "
+        "of both bodies. The limit is ours. Nodes at one place are not told.",
+    ),
     "R401": (
         "record not found",
         "The record is neither in the deck's folder nor in the record folders. Check its name, "

@@ -8,14 +8,15 @@ from typing import Final
 
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
-from pound_solve.structure.buildings import misnamed, parts
+from pound_solve.structure.buildings import misnamed
+from pound_solve.structure.contact_checks import misplaced, wide
 from pound_solve.structure.damping.by_building import uneven
 from pound_solve.structure.loose_ends import loose_ends
 from pound_solve.structure.mass_checks import immovable, massless
 from pound_solve.structure.mechanisms import loose, untimely
 from pound_solve.structure.member_checks import doubled, misjudged, misshapen
 from pound_solve.structure.structure import Structure
-from pound_solve.structure.supports import adrift, shaken
+from pound_solve.structure.supports import adrift
 
 MOST_STEPS: Final = 10**8  #: of a history: hours of a small structure
 MOST_ROWS: Final = 5 * 10**6  #: of stored histories
@@ -56,32 +57,6 @@ def pressed(structure: Structure) -> list[Diagnostic]:
     ]
 
 
-def wide(structure: Structure) -> list[Diagnostic]:
-    """Contacts whose gap exceeds the height of the buildings beside it, once for each property set.
-
-    What falls may be further from the ground than it is high; no earthquake does that.
-    """
-    model, out = structure.model, dict[str, Diagnostic]()
-    if not shaken(model):
-        return []
-    height: dict[int | None, float] = {}
-    for nodes in parts(model):
-        y = [model.nodes[n].y for n in nodes]
-        height.update(dict.fromkeys(nodes, max(y) - min(y)))
-    for spring in structure.laws:
-        element = model.elements[spring.element]
-        high = max(height[element.i], height.get(element.j, 0.0))
-        if spring.role.collides and spring.facts["gap"] > high > 0.0:
-            card, length = model.props[element.prop], model.units.length
-            message = (
-                f"GAP is {card['GAP']:g} {length}, more than the {high:g} {length} that the buildings at "
-                f"contact {element.name or element.id} are high: it does not close"
-            )
-            hint = f"GAP is a distance in {length}; leave the contact out if it is not to close"
-            out.setdefault(card.label, Diagnostic("P351", message, card.place("GAP"), hint, "warning"))
-    return list(out.values())
-
-
 def too_many(structure: Structure) -> list[Diagnostic]:
     """Histories of more steps than anyone waits for, and of more rows than a results file holds."""
     model = structure.model
@@ -114,6 +89,7 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     inclined,
     pressed,
     wide,
+    misplaced,
     unsteady,
     massless,
     immovable,
