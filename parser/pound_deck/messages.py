@@ -402,8 +402,37 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P360": (
         "gap above the distance of its nodes (warning)",
-        "GAP is more than three times the distance of the nodes of the contact, which holds the gap and half "
-        "of both bodies. The limit is ours. Nodes at one place are not told.",
+        "GAP is more than three times the distance of the nodes of the contact, which holds the gap and "
+        "half of both bodies. The limit is ours. Nodes at one place are not told.",
+    ),
+    "P361": (
+        "weights that do not fit the members (warning)",
+        "By the masses and the gravity of the earth, beams and columns whose E is that of concrete or "
+        "steel weigh more than 0.6 of their building, or all weight shortens its lowest columns by more "
+        "than one per mille. WEIGHTS are forces, not masses; A and E have the units of UNITS. The limits "
+        "are ours: bare members are seldom half of a building, and design stresses make 0.8 per mille at "
+        "most.",
+    ),
+    "P362": (
+        "height of a building beyond sense (warning)",
+        "A building is lower than 0.1 m or higher than 1000 m. Coordinates have the unit of length of "
+        "UNITS.",
+    ),
+    "P363": (
+        "strength of springs beyond sense (warning)",
+        "The springs on which a building stands yield together along X at less than 0.002 or more than 20 "
+        "times its weight. Sliding bearings have 0.02, strong walls 3; the limits are ours. Check the "
+        "units.",
+    ),
+    "P364": (
+        "loads that pull upwards (warning)",
+        "GEOMETRY asks for P-Delta, but the sum of LOADS along Y pulls a building upwards, which stiffens "
+        "it. Loads that press are negative.",
+    ),
+    "P365": (
+        "steps as long as the history (warning)",
+        "DT divides a HISTORY into fewer than ten steps. The limit is ours. DT has the unit of time of "
+        "UNITS: 5 ms are 0.005 s.",
     ),
     "R401": (
         "record not found",

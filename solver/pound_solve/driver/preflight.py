@@ -17,8 +17,10 @@ from pound_solve.structure.mechanisms import loose, untimely
 from pound_solve.structure.member_checks import doubled, misjudged, misshapen
 from pound_solve.structure.structure import Structure
 from pound_solve.structure.supports import adrift
+from pound_solve.structure.weight_checks import lifted, misarmed, misweighed, outsized
 
 MOST_STEPS: Final = 10**8  #: of a history: hours of a small structure
+FEWEST: Final = 10  #: steps of a history that is meant to be one
 MOST_ROWS: Final = 5 * 10**6  #: of stored histories
 
 
@@ -79,10 +81,41 @@ def unsteady(structure: Structure) -> list[Diagnostic]:
     return loose(structure) or adrift(structure)
 
 
+def unlikely(structure: Structure) -> list[Diagnostic]:
+    """Heights, periods and weights of buildings: the first of each that does not fit."""
+    found = dict[str, Diagnostic]()
+    for check in (outsized, untimely, misweighed):
+        for name, diagnostic in check(structure):
+            found.setdefault(name, diagnostic)
+    return list(found.values())
+
+
+def few(structure: Structure) -> list[Diagnostic]:
+    """Histories of hardly any steps."""
+    model, out = structure.model, list[Diagnostic]()
+    for card in model.analyses:
+        dt = card.values.get("DT") if card.spec.name == "HISTORY" else None
+        if dt is not None and card["T"] < FEWEST * dt:
+            unit = model.units.time
+            message = f"DT={dt:g} divides {card['T']:g} {unit} into {card['T'] / dt:.2g} steps"
+            hint = f"DT is a time in {unit}: a hundredth of the first period is usual"
+            out.append(Diagnostic("P365", message, card.place("DT"), hint, "warning"))
+    return out
+
+
 def rounded_up(x: float) -> float:
     """The next number of one digit that is not below `x`."""
     unit = 10.0 ** floor(log10(x))
     return ceil(x / unit * (1.0 - 1e-12)) * unit
+
+
+#: those of a structure without damping and contacts, which tell why these could not be built
+CAUSES: Final = (unsteady, massless)
+
+
+def causes(structure: Structure) -> list[Diagnostic]:
+    """What is wrong with a structure that could not be assembled as a whole."""
+    return [found for check in CAUSES for found in check(structure)]
 
 
 CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
@@ -94,12 +127,15 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     massless,
     immovable,
     loose_ends,
-    untimely,
+    unlikely,
+    misarmed,
+    lifted,
     misshapen,
     doubled,
     misjudged,
     pushover.mistakes,
     too_many,
+    few,
     misnamed,
     uneven,
 )

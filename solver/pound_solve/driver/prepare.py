@@ -14,7 +14,7 @@ from pound_solve.analyses.path_following import InstabilityError
 from pound_solve.driver import loading
 from pound_solve.driver.outputs import overwritten
 from pound_solve.driver.overrides import overridden, with_motion
-from pound_solve.driver.preflight import preflight
+from pound_solve.driver.preflight import causes, preflight
 from pound_solve.driver.reading import Deck, read
 from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
@@ -125,7 +125,7 @@ def assembled(
         structure = _assembled(model, motions)
         found += preflight(structure)
     except AssemblyError as err:
-        found += err.diagnostics
+        found += [*err.diagnostics, *_causes(model)]
     found += overwritten(model, request, context)
     saved = loading.saved_state(model, request, motions, forces, found)
     if has_errors(found) or structure is None:
@@ -168,6 +168,17 @@ def _assembled(model: Model, motions: Sequence[Motion]) -> Structure:
     if any(card.values.get("AFTER") == "STATIC" for card in model.damping):
         _damp_loaded(structure)
     return structure
+
+
+def _causes(model: Model) -> list[Diagnostic]:
+    """What else may be wrong with a structure whose damping or contacts could not be built, as supports or
+    masses that are missing.
+    """
+    apart = {k: e for k, e in model.elements.items() if model.props[e.prop].spec.name != "CONTACT"}
+    try:
+        return causes(assemble(replace(model, elements=apart, damping=())))
+    except AssemblyError:
+        return []
 
 
 def _damp_loaded(structure: Structure) -> None:

@@ -36,13 +36,13 @@ def loose(structure: Structure) -> list[Diagnostic]:
     return out
 
 
-def untimely(structure: Structure) -> list[Diagnostic]:
-    """Buildings whose first period is beyond what their height allows.
+def untimely(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
+    """Names of buildings whose first period is beyond what their height allows.
 
     One that is slower than a pendulum of its height, standing on its head, falls over by its own weight.
     Those on springs may be rigid on purpose.
     """
-    model, out = structure.model, list[Diagnostic]()
+    model = structure.model
     framed = {e.i for members in kinds(model).values() for e in members if model.props[e.prop]["I"]}
     sprung = {e.i for e in model.elements.values() if model.props[e.prop].spec.name == "SPRING"}
     metre = METRE.get(model.units.length.lower(), math.inf)
@@ -55,15 +55,12 @@ def untimely(structure: Structure) -> list[Diagnostic]:
         high = max(b.levels) - b.base  # of what swings: a mast may stand on it
         speed = 4.0 * high / t1
         if t1 > slowest:
-            out.append(_period(structure, b, t1, f"above {slowest:.3g}", "it would fall by its own weight"))
+            limit, why = f"above {slowest:.3g}", "it would fall by its own weight"
         elif speed > FASTEST * metre and framed & set(b.nodes) and not sprung & set(b.nodes):
-            out.append(
-                _period(
-                    *(structure, b, t1, f"below {4.0 * high / (FASTEST * metre):.2g}"),
-                    "a solid block would hardly be stiffer",
-                )
-            )
-    return out
+            limit, why = f"below {4.0 * high / (FASTEST * metre):.2g}", "a solid block is hardly stiffer"
+        else:
+            continue
+        yield b.name, _period(structure, b, t1, limit, why)
 
 
 def _period(structure: Structure, b: Building, t1: float, limit: str, why: str) -> Diagnostic:

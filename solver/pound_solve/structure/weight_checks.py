@@ -1,0 +1,163 @@
+"""Weights, strengths and loads against the structure that bears them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
+from typing import Final
+
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Element, Model
+from pound_solve.loading.motions.base import METRE
+from pound_solve.structure.buildings import SAME_LEVEL, Building, buildings, stands
+from pound_solve.structure.member_checks import MEMBERS, USUAL, depth, length
+from pound_solve.structure.structure import Structure
+from pound_solve.structure.supports import shaken
+
+NEWTON: Final[Mapping[str, float]] = MappingProxyType(
+    {"n": 1.0, "kn": 1e3, "mn": 1e6, "lb": 4.448, "lbf": 4.448, "kip": 4448.0, "kips": 4448.0}
+)
+#: modulus of elasticity from and to [Pa], and weight by volume [N/m^3], of concrete and of steel
+MATERIALS: Final = ((15e9, 60e9, 24e3), (180e9, 220e9, 77e3))
+EARTH: Final = 9.81  #: [m/s^2]
+#: share of the bare beams and columns in all weight; slabs and walls make it 0.1 to 0.45, and masses in
+#: place of weights ten times that
+BARE: Final = 0.6
+#: strain of columns under all weight; design stresses of concrete, steel and timber make 0.0003 to 0.0008
+SQUASHED: Final = 1e-3
+#: strength of the lowest storey over the weight; sliding bearings have 0.02, walls of one storey 3
+WEAKEST, STRONGEST = 0.002, 20.0
+LOWEST, HIGHEST = 0.1, 1000.0  #: height of a building or a model of one [m]
+
+
+def outsized(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
+    """Names of buildings lower than a model on a shaking table, or higher than any."""
+    model = structure.model
+    metre = METRE.get(model.units.length.lower())
+    for b in _standing(structure) if metre else ():
+        high = (max(model.nodes[n].y for n in b.nodes) - b.base) / (metre or 1.0)
+        if high > 0.0 and not LOWEST <= high <= HIGHEST:
+            message = f"{b.name!r} is {high:.3g} m high"
+            hint = f"coordinates under NODES are in {model.units.length}: correct them, or UNITS"
+            yield b.name, Diagnostic("P362", message, model.nodes[b.nodes[0]].span, hint, "warning")
+
+
+def misweighed(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
+    """Names of buildings of members that weigh hardly more than these, or more than their columns bear."""
+    model = structure.model
+    force, metre = NEWTON.get(model.units.force.lower()), METRE.get(model.units.length.lower())
+    for b in _standing(structure) if force and metre else ():
+        assert force and metre
+        weight = b.mass * force * metre * EARTH
+        bare = _bare_weight(model, b, force * metre**2, metre)
+        strain = _strain(model, b, weight / force)
+        if bare > BARE * weight:
+            told = (
+                f"weighs {weight / force:.3g} {model.units.force}, but its beams and columns alone weigh "
+                f"{bare / force:.3g} {model.units.force} by A and E"
+            )
+            yield b.name, _weights(model, b, told)
+        elif strain > SQUASHED:
+            told = (
+                f"weighs {weight / force:.3g} {model.units.force}, which shortens its columns by "
+                f"{1e3 * strain:.2g} per mille: columns bear less than one"
+            )
+            yield b.name, _weights(model, b, told)
+
+
+def _weights(model: Model, b: Building, told: str) -> Diagnostic:
+    heavy = {n for f in b.floors for n in f.nodes}
+    card = next((c for c in model.weights if heavy & set(c["NODES"])), None)
+    place = card.place("WX") if card else model.nodes[b.nodes[0]].span
+    hint = (
+        f"WEIGHTS are forces in {model.units.force}, mass times gravity; "
+        f"gravity is {model.gravity:g} here, A is in {model.units.text('L^2')}"
+    )
+    return Diagnostic("P361", f"{b.name!r} {told}", place, hint, "warning")
+
+
+def _bare_weight(model: Model, b: Building, pascal: float, metre: float) -> float:
+    """Weight of the members whose E is that of concrete or steel and whose section is usual [N]; 0 where
+    the deck gives weights of members.
+    """
+    own, total = frozenset(b.nodes), 0.0
+    for e in model.elements.values():
+        card = model.props[e.prop]
+        if e.i not in own or e.j not in own or card.spec.name not in MEMBERS:
+            continue
+        if card["WGT"]:
+            return 0.0
+        long = length(model, e)
+        if long and USUAL[0] <= depth(card) / long <= 1.0:
+            kind = (w for low, high, w in MATERIALS if low <= card["E"] * pascal <= high)
+            total += card["A"] * long / metre**3 * next(kind, 0.0)
+    return total
+
+
+def _strain(model: Model, b: Building, weight: float) -> float:
+    """Strain of the members that stand on the base, if nothing else does; else 0."""
+    stiffness = 0.0
+    for e in _lowest(model, b):
+        card = model.props[e.prop]
+        if card.spec.name not in MEMBERS or e.j is None:
+            return 0.0
+        stiffness += card["E"] * card["A"] * abs(model.nodes[e.i].y - model.nodes[e.j].y) / length(model, e)
+    return weight / stiffness if stiffness else 0.0
+
+
+def _lowest(model: Model, b: Building) -> list[Element]:
+    """Elements between the base of a building, or the ground, and what is above."""
+    own = frozenset(b.nodes)
+    top = b.base + SAME_LEVEL * (max(model.nodes[n].y for n in b.nodes) - b.base)
+    out = []
+    for e in model.elements.values():
+        if e.i not in own or model.props[e.prop].spec.name == "CONTACT":
+            continue
+        low = e.j is None or model.nodes[e.j].y <= top
+        if low != (model.nodes[e.i].y <= top):
+            out.append(e)
+    return out
+
+
+def misarmed(structure: Structure) -> list[Diagnostic]:
+    """Buildings on springs whose strength together is beyond sense beside the weight on them."""
+    model, out = structure.model, list[Diagnostic]()
+    along = {s.element: s for s in structure.laws if s.component == "X" and s.strengths is not None}
+    for b in _standing(structure):
+        lowest = _lowest(model, b)
+        if not lowest or any(e.id not in along for e in lowest):
+            continue
+        pairs = [along[e.id].strengths or (math.inf, -math.inf) for e in lowest]
+        strength, weight = sum(max(plus, -minus) for plus, minus in pairs), b.mass * model.gravity
+        if not WEAKEST * weight <= strength <= STRONGEST * weight:
+            unit, card = model.units.force, model.props[lowest[0].prop]
+            few = strength < WEAKEST * weight
+            message = (
+                f"the springs below {b.name!r} yield at {strength:.4g} {unit} together, "
+                f"{strength / weight:.2g} of its weight: {'0.02 is little' if few else '1 is much'}"
+            )
+            hint = f"FX and WEIGHTS are in {unit}; without FX and RULE a spring does not yield"
+            out.append(Diagnostic("P363", message, card.place("FX"), hint, "warning"))
+    return out
+
+
+def lifted(structure: Structure) -> list[Diagnostic]:
+    """Buildings that LOADS pull upwards on the whole, though P-Delta is asked for."""
+    model, out = structure.model, list[Diagnostic]()
+    loads = [c for c in model.loads if c.spec.name == "LOADS"]  # not those that weights make
+    for b in _standing(structure) if model.geometry != "SMALL" else ():
+        own = frozenset(b.nodes)
+        up = sum(c["FY"] for c in loads for n in c["NODES"] if n in own)
+        if up > 0.0:
+            card = next(c for c in loads if c["FY"] > 0.0 and own & set(c["NODES"]))
+            message = f"LOADS pull {b.name!r} upwards by {up:g} {model.units.force}"
+            hint = "loads that press are negative: Y and FY point upwards"
+            out.append(Diagnostic("P364", message, card.place("FY"), hint, "warning"))
+    return out
+
+
+def _standing(structure: Structure) -> Iterator[Building]:
+    """The buildings of some height that the ground shakes along x."""
+    if "X" in shaken(structure.model):
+        yield from (b for b in buildings(structure) if stands(structure.model, b.nodes))
