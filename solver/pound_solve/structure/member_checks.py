@@ -51,7 +51,7 @@ def misshapen(structure: Structure) -> list[Diagnostic]:
         if not card["I"]:
             continue
         h, short = depth(card), min(members, key=lambda e: length(model, e))
-        if h > max(DEEPEST * length(model, short), sizes[short.i]):
+        if h > sizes[short.i] and (h > DEEPEST * length(model, short) or _exchanged(model, card, short)):
             out[label] = _too_deep(model, card, short, h)
             continue
         found = _in_millimetres(model, card, members, sizes[short.i] ** 2)
@@ -59,6 +59,11 @@ def misshapen(structure: Structure) -> list[Diagnostic]:
         if found:
             out[label] = found
     return list(out.values())
+
+
+def _exchanged(model: Model, card: Card, e: Element) -> bool:
+    """Whether the section of a member becomes usual if A and I change places."""
+    return USUAL[0] <= math.sqrt(12.0 * card["A"] / card["I"]) / length(model, e) <= USUAL[1]
 
 
 def kinds(model: Model) -> dict[str, list[Element]]:

@@ -1,0 +1,444 @@
+"""Decks with one mistake each, of kinds that engineers make, are told by name and with the cure; decks that
+only look like it are not.
+"""
+
+import re
+
+import pytest
+
+from pound_deck.reader import read_text
+from pound_solve.catalog import catalog
+from pound_solve.driver.prepare import DeckError, assembled
+from pound_solve.driver.request import Request
+
+#: two concrete frames beside each other
+FRAMES = """NODES
+ 11 0 0 FIX=XYR
+ 12 0 3.5
+ 13 0 7
+ 14 6 0 FIX=XYR
+ 15 6 3.5
+ 16 6 7
+ 21 6.45 0 FIX=XYR
+ 22 6.45 3.5
+ 23 6.45 7
+ 24 12.45 0 FIX=XYR
+ 25 12.45 3.5
+ 26 12.45 7
+ELEMENTS
+ 11 COL 11 12
+ 12 COL 12 13
+ 13 COL 14 15
+ 14 COL 15 16
+ 15 BEAM 12 15
+ 16 BEAM 13 16
+ 21 PIER 21 22
+ 22 PIER 22 23
+ 23 PIER 24 25
+ 24 PIER 25 26
+ 25 BEAM 22 25
+ 26 BEAM 23 26
+ 31 HIT 15 22
+ 32 HIT 16 23
+PROPS
+ COL FRAME E=25E6 A=0.16 I=0.0021 RULE=TAKEDA R=0.03 MI=200 MJ=200 LP=0.25
+ PIER FRAME E=25E6 A=0.25 I=0.0052 RULE=TAKEDA R=0.03 MI=400 MJ=400 LP=0.3
+ BEAM FRAME E=25E6 A=0.18 I=0.0054
+ HIT CONTACT GAP=0.03 LAW=KELVIN_VOIGT K=1E6 E=0.65
+WEIGHTS
+ 12,13,15,16 240
+ 22,23,25,26 300
+GEOMETRY PDELTA
+DAMPING
+ RAYLEIGH XI=0.05 MODES=1,3
+EQUAKE
+ SINE AMPLITUDE=2 PERIOD=1 DURATION=5
+ANALYSIS
+ STATIC GRAVITY=YES
+ HISTORY 10
+"""
+
+#: the same as storeys, springs and masses
+STOREYS = """NODES
+ 10 0 0 FIX=XYR
+ 11 TO 12 0 3.5 TO 7 FIX=YR
+ 20 8 0 FIX=XYR
+ 21 TO 22 8 3.5 TO 7 FIX=YR
+ELEMENTS
+ 11 TO 12 LEFT 10 TO 11 11 TO 12
+ 21 TO 22 RIGHT 20 TO 21 21 TO 22
+ 31 HIT 12 22
+PROPS
+ LEFT SPRING KX=30000 RULE=BILINEAR R=0.05 FX=300
+ RIGHT SPRING KX=60000 RULE=BILINEAR R=0.05 FX=500
+ HIT CONTACT GAP=0.03 K=1E6
+WEIGHTS
+ 11,12 480
+ 21,22 600
+EQUAKE
+ SINE AMPLITUDE=2 PERIOD=1 DURATION=5
+ANALYSIS
+ MODAL 2
+ HISTORY 10
+"""
+
+RIGHT_FOOT, RIGHT_FEET = " 21 6.45 0 FIX=XYR", [" 21 6.45 0 FIX=XYR", " 24 12.45 0 FIX=XYR"]
+HINGES = "RULE=TAKEDA R=0.03 MI=400 MJ=400 LP=0.3"
+
+
+def fixed(letters):
+    """The feet of the right frame with these directions fixed."""
+    return [(line, line.replace(" FIX=XYR", f" FIX={letters}" * bool(letters))) for line in RIGHT_FEET]
+
+
+def scaled(items, factor):
+    """Coordinates of the frames in another unit of length."""
+    return [
+        (line, f" {n} {factor * float(x):g} {factor * float(y):g}{rest}") for line, n, x, y, rest in items
+    ]
+
+
+def nodes():
+    """The lines of NODES, taken apart."""
+    for line in FRAMES.partition("ELEMENTS")[0].splitlines()[1:]:
+        n, x, y, *rest = line.split()
+        yield line, n, x, y, "".join(f" {r}" for r in rest)
+
+
+#: what was changed; the deck, its changes, the code, and words of the message and its cure
+MISTAKES = {
+    "foot without FIX": (
+        [(" 11 0 0 FIX=XYR", " 11 0 0")],
+        "P348 the foot of member 11, node 11, hangs free: give it FIX",
+    ),
+    "FIX at the node above": (
+        [(" 11 0 0 FIX=XYR\n 12 0 3.5", " 11 0 0\n 12 0 3.5 FIX=XYR")],
+        "P348 the foot of member 11, node 11, hangs free: give it FIX",
+    ),
+    "no supports": (
+        fixed(""),
+        "P337 nothing keeps 'building 2' from moving along X as one body: fix its base",
+    ),
+    "rollers": (
+        fixed("Y"),
+        "P337 nothing keeps 'building 2' from moving along X as one body: fix its base",
+    ),
+    "one pin": (
+        [(RIGHT_FEET[0], " 21 6.45 0 FIX=XY"), (RIGHT_FEET[1], " 24 12.45 0")],
+        "P337 nothing keeps 'building 2' from turning about x = 6.45, y = 0 as one body: fix its base",
+    ),
+    "columns pinned at both ends": (
+        [(HINGES, "PIN=BOTH")],
+        "P356 nothing holds nodes 23, 26 of 'building 2' along X: the building is a mechanism: "
+        "take out a PIN",
+    ),
+    "pinned feet and pinned beams": (
+        [*fixed("XY"), ("I=0.0054", "I=0.0054 PIN=BOTH")],
+        "P356 nothing holds nodes 22, 23, 25, 26 of 'building 2' along X",
+    ),
+    "column forgotten": ([(" 13 COL 14 15\n", "")], "P314 node 14 is connected to nothing: join it"),
+    "beam at a second node": (
+        [("ELEMENTS", "NODES\n 17 6 3.5\nELEMENTS"), ("15 BEAM 12 15", "15 BEAM 12 17")],
+        "P349 nodes 17 and 15 are both at x = 6, y = 3.5, but nothing joins them: let element 15 "
+        "end at node 15",
+    ),
+    "member twice": (
+        [(" 16 BEAM 13 16", " 16 BEAM 13 16\n 17 BEAM 16 13")],
+        "P354 members 16 and 17 of BEAM join the same nodes, 16 and 13: take one out",
+    ),
+    "member from a node to itself": (
+        [("16 BEAM 13 16", "16 BEAM 13 13")],
+        "P321 both ends of element 16 are node 13",
+    ),
+    "height of a node with a digit too many": (
+        [(" 13 0 7", " 13 0 70")],
+        "P353 member 12 is 66.5 m long, others of COL 3.5 m: correct the coordinates of node 12 or 13",
+    ),
+    "column far from upright": (
+        [(" 16 6 7", " 16 60 7")],
+        "P353 member 14 is 54.1 m long, others of COL 3.5 m: correct the coordinates of node 15 or 16",
+    ),
+    "coordinates in mm": (
+        scaled(nodes(), 1000.0),
+        "P362 'building 1' is 7e+03 m high: coordinates under NODES are in m",
+    ),
+    "UNITS of another deck": (
+        [("NODES\n", "UNITS kN mm s\nNODES\n"), ("AMPLITUDE=2", "AMPLITUDE=2000")],
+        "P362 'building 1' is 0.007 m high: coordinates under NODES are in mm",
+    ),
+    "A in mm2": (
+        [("A=0.16", "A=160000")],
+        "P352 A of COL is 160000 m^2, but I makes the section 0.0004 m deep: 160000 mm^2 are 0.16 m^2",
+    ),
+    "I in cm4": (
+        [("I=0.0054", "I=540000")],
+        "P352 the section of BEAM is 6e+03 m deep by A and I, sqrt(12 I/A), but member 25 is 6 m "
+        "long: A is in m^2",
+    ),
+    "A and I exchanged": (
+        [("A=0.18 I=0.0054", "A=0.0054 I=0.18")],
+        "P352 the section of BEAM is 20 m deep by A and I, sqrt(12 I/A), but member 25 is 6 m "
+        "long: A is in m^2",
+    ),
+    "E in MPa": (
+        [("E=25E6", "E=25E3")] * 3,
+        "P357 the first period of 'building 1' is about 17 s, above 5.31 s: it would fall by its "
+        "own weight: check",
+    ),
+    "E in Pa": (
+        [("E=25E6", "E=25E9")] * 3,
+        "P357 the first period of 'building 1' is about 0.017 s, below 0.028 s: a solid block is "
+        "hardly stiffer",
+    ),
+    "weights in N": (
+        [(" 240", " 240000"), (" 300", " 300000")],
+        "P357 the first period of 'building 2' is about 15 s, above 5.31 s",
+    ),
+    "masses under WEIGHTS": (
+        [(" 240", " 24.5"), (" 300", " 30.6")],
+        "P361 'building 1' weighs 98 kN, but its beams and columns alone weigh 106 kN by A and E: "
+        "WEIGHTS are forces",
+    ),
+    "weights where gravity is one": (
+        [("NODES\n", "GRAVITY 1\nNODES\n"), ("AMPLITUDE=2", "AMPLITUDE=0.2")],
+        "P361 'building 1' weighs 9.42e+03 kN, which shortens its columns by 1.2 per mille",
+    ),
+    "gravity in mm": (
+        [("NODES\n", "GRAVITY 9810\nNODES\n")],
+        "P342 GRAVITY is 9810, that of mm, but the unit of length is m: in m it is 9.81",
+    ),
+    "no weights": (
+        [(" 12,13,15,16 240\n 22,23,25,26 300\n", "")],
+        "P347 nothing has mass, so that nothing swings: give the nodes of its floors WEIGHTS",
+    ),
+    "weights of one building forgotten": (
+        [(" 22,23,25,26 300\n", "")],
+        "P347 the building of nodes 21, 22, 23, 24, 25, 26 has no mass",
+    ),
+    "weights at the supports": (
+        [(" 22,23,25,26 300", " 21,24 600")],
+        "P347 the building of nodes 21, 22, 23, 24, 25, 26 has no mass",
+    ),
+    "weights twice": (
+        [(" 22,23,25,26 300", " 22,23,25,26 300\n 25,26 300")],
+        "P329 node 25 has a weight in line 36 already, and this adds to it: take it out of one",
+    ),
+    "blanks in a list": (
+        [("12,13,15,16 240", "12,13 15 240")],
+        "P320 WX is 15, which is the number of a node",
+    ),
+    "floor fixed": (
+        [(" 12 0 3.5", " 12 0 3.5 FIX=X")],
+        "P343 node 12 of 'building 1' is fixed along X above the base",
+    ),
+    "gap in mm": (
+        [("GAP=0.03", "GAP=30")],
+        "P351 GAP is 30 m, more than the 7 m that the buildings at contact 31 are high",
+    ),
+    "gap in cm": (
+        [("GAP=0.03", "GAP=3")],
+        "P360 GAP is 3 m, but the nodes of contact 31 are 0.45 m apart: GAP is a distance in m: correct it",
+    ),
+    "gap below zero": (
+        [("GAP=0.03", "GAP=-0.03")],
+        "P336 contacts of HIT are pressed at rest: GAP is -0.03",
+    ),
+    "contact within a building": (
+        [("31 HIT 15 22", "31 HIT 12 15")],
+        "P358 contact 31 joins nodes 12 and 15, which members or SLAVED hold together: it does not "
+        "close: name",
+    ),
+    "diaphragm through both buildings": (
+        [(" 22 6.45 3.5", " 22 6.45 3.5 SLAVED=X MASTER=15")],
+        "P358 contact 31 joins nodes 15 and 22, which members or SLAVED hold together",
+    ),
+    "contact with its nodes exchanged": (
+        [("31 HIT 15 22", "31 HIT 22 15"), ("GAP=0.03", "GAP=0.03 ANGLE=0")],
+        "P359 contact 31 closes as nodes 22 and 15 move apart: ANGLE points from 15 to 22: "
+        "exchange I and J",
+    ),
+    "contact with the floor above": (
+        [("31 HIT 15 22", "31 HIT 15 23")],
+        "P334 contact 31 acts along the line",
+    ),
+    "yield moments in N m": (
+        [("MI=200 MJ=200", "MI=200E3 MJ=200E3")],
+        "P355 hinges of COL yield at 200000 kN*m, a strain of 2 of the section: 0.01 is much: "
+        "yield moments are in",
+    ),
+    "yield moments in MN m": (
+        [("MI=200 MJ=200", "MI=0.2 MJ=0.2")],
+        "P355 hinges of COL yield at 0.2 kN*m, a strain of 2e-06 of the section: 0.001 is little: "
+        "yield moments",
+    ),
+    "ductility per cent": (
+        [("LP=0.25", "LP=0.25 DUCTU=800")],
+        "P355 DUCTU of COL is 800, but no member has more than 100: DUCTU is a multiple",
+    ),
+    "hinge longer than its member": (
+        [("LP=0.25", "LP=4")],
+        "P330 element 11 and 3 more (COL): a hinge of 4 is longer",
+    ),
+    "damping in per cent": ([("XI=0.05", "XI=5")], "P341 a damping ratio of 5 is 500 % of critical"),
+    "Rayleigh damping without modes": (
+        [(" MODES=1,3", "")],
+        "P332 XI needs the circular frequencies (OMEGA=) or the",
+    ),
+    "P-Delta without weight": (
+        [(" STATIC GRAVITY=YES\n", "")],
+        "P340 GEOMETRY PDELTA, but nothing loads the columns: their axial forces are zero: add "
+        "STATIC GRAVITY=YES",
+    ),
+    "loads upwards": (
+        [("EQUAKE", "LOADS\n 12,13,15,16 0 240\nEQUAKE")],
+        "P364 LOADS pull 'building 1' upwards by 960 kN: loads that press are negative",
+    ),
+    "motion times gravity twice": (
+        [("AMPLITUDE=2", "AMPLITUDE=0.35*9.81^2")],
+        "R404 peak ground acceleration is 3.43 g",
+    ),
+    "motion in mm/s2": ([("AMPLITUDE=2", "AMPLITUDE=2000")], "R404 peak ground acceleration is 204 g"),
+    "steps in ms": (
+        [("HISTORY 10", "HISTORY 10 METHOD=NEWMARK DT=5")],
+        "P365 DT=5 divides 10 s into 2 steps: DT is a time in s",
+    ),
+}
+
+#: the same of the deck of storeys
+STOREY_MISTAKES = {
+    "yield forces in N": (
+        [("FX=300", "FX=300000")],
+        "P363 the springs below 'building 1' yield at 3e+05 kN together, 3.1e+02 of its weight: 1 "
+        "is much: FX",
+    ),
+    "yield forces in MN": (
+        [("FX=500", "FX=0.5")],
+        "P363 the springs below 'building 2' yield at 0.5 kN together",
+    ),
+    "stiffnesses in MN/m": (
+        [("KX=30000 RULE=BILINEAR R=0.05 FX=300", "KX=30")],
+        "P357 the first period of 'building 1' is about 13 s, above 5.31 s: it would fall by its "
+        "own weight",
+    ),
+    "one storey without a spring": (
+        [(" 11 TO 12 LEFT 10 TO 11 11 TO 12", " 12 LEFT 11 12")],
+        "P314 node 10 is",
+    ),
+}
+
+
+#: items and the powers of force and length in their unit
+DIMENSIONS = {
+    "FRAME E": (1, -2),
+    "A": (0, 2),
+    "I": (0, 4),
+    "MI": (1, 1),
+    "MJ": (1, 1),
+    "K": (1, -1),
+    "LP": (0, 1),
+    "GAP": (0, 1),
+    "AMPLITUDE": (0, 1),
+}
+
+
+def times(text, item, factor):
+    """A deck with all values of an item multiplied."""
+    return re.sub(rf" {item}=([0-9.E]+)", lambda x: f" {item}={factor * float(x[1]):.6g}", text)
+
+
+def in_units(units, force, metre):
+    """The frames in other units, so many of which are a kN and a metre."""
+    text = changed(FRAMES, scaled(nodes(), metre))
+    for item, (f, m) in DIMENSIONS.items():
+        text = times(text, item, force**f * metre**m)
+    for weight in (240, 300):
+        text = text.replace(f" {weight}\n", f" {force * weight:g}\n")
+    return f"UNITS {units}\n{text}"
+
+
+def changed(text, changes):
+    """The deck with some of its lines replaced."""
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return text
+
+
+def told(text, changes=()):
+    """What `check` says of a deck with some of its lines replaced."""
+    model, found, files = read_text(changed(text, changes), catalog())
+    try:
+        found = assembled(Request("model.inp"), model, found, files).warnings
+    except DeckError as err:
+        found = err.diagnostics
+    return [f"{d.code} {d.message}: {d.hint}" for d in found]
+
+
+@pytest.mark.parametrize("deck", [FRAMES, STOREYS], ids=["frames", "storeys"])
+def test_the_sound_decks_have_no_remark(deck):
+    assert not told(deck)
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_in_the_frames(mistake):
+    changes, words = MISTAKES[mistake]
+    found = told(FRAMES, changes)
+    assert any(words in remark for remark in found), found
+
+
+@pytest.mark.parametrize("mistake", STOREY_MISTAKES)
+def test_a_mistake_in_the_storeys(mistake):
+    changes, words = STOREY_MISTAKES[mistake]
+    found = told(STOREYS, changes)
+    assert any(words in remark for remark in found), found
+
+
+@pytest.mark.parametrize("units", [("N mm s", 1e3, 1e3), ("kip in s", 0.224809, 39.3701)])
+def test_the_frames_in_other_units_have_no_remark(units):
+    assert not told(in_units(*units))
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        [("E=25E6 A=0.18", "E=25E6 A=1E4")],
+        [(HINGES, "")],
+        [("A=0.25 I=0.0052", "A=1.2 I=3.6"), (HINGES, "")],
+        [("E=25E6 A=0.18 I=0.0054", "E=200E6 A=0.0116 I=4.8E-4")],
+        [
+            (HINGES, "PIN=BOTH"),
+            ("PROPS\n", " 27 BRACE 21 25\n 28 BRACE 22 26\nPROPS\n BRACE FRAME E=200E6 A=2E-3\n"),
+        ],
+        [(" 22 6.45 3.5", " 22 6.45 3.5 SLAVED=X MASTER=25")],
+        [("MI=200 MJ=200 LP=0.25", "MI=200 MJ=200 KH=1E9 DUCTU=1E4")],
+        [("GAP=0.03", "GAP=0.6")],
+        [("EQUAKE", "LOADS\n 12,13 0 10\n 15,16 0 -20\nEQUAKE")],
+    ],
+    ids=[
+        "beams without axial deformation",
+        "elastic",
+        "walls",
+        "steel beams",
+        "braced",
+        "diaphragm",
+        "rigid-plastic hinges",
+        "gap of a sweep",
+        "loads of wind",
+    ],
+)
+def test_frames_that_can_be_meant(changes):
+    assert not told(FRAMES, changes)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        [("KX=60000 RULE=BILINEAR R=0.05 FX=500", "KX=1E9")],
+        [("KX=30000 RULE=BILINEAR R=0.05 FX=300", "KX=600")],
+        [("FX=300", "FX=20")],
+        [("FX=300", "FX=4000")],
+    ],
+    ids=["rigid neighbour", "isolated", "sliding", "strong"],
+)
+def test_storeys_that_can_be_meant(changes):
+    assert not told(STOREYS, changes)
