@@ -29,8 +29,8 @@ FASTEST: Final = 1000.0
 def loose(structure: Structure) -> list[Diagnostic]:
     """Buildings of members whose nodes can move although their base is held, as with too many pins."""
     out = list[Diagnostic]()
-    for b, columns in _standing(structure):
-        slack = _Part(structure, columns).slack()
+    for b, part in _standing(structure):
+        slack = part.slack()
         bent = [m for m in slack[:, ~_allowed(structure, slack)].T if not _rigid(structure, b, m)]
         out += [_mechanism(structure, b, motion) for motion in bent[:1]]
     return out
@@ -46,8 +46,8 @@ def untimely(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
     framed = {e.i for members in kinds(model).values() for e in members if model.props[e.prop]["I"]}
     sprung = {e.i for e in model.elements.values() if model.props[e.prop].spec.name == "SPRING"}
     metre = METRE.get(model.units.length.lower(), math.inf)
-    for b, columns in _standing(structure):
-        t1 = _Part(structure, columns).period()
+    for b, part in _standing(structure):
+        t1 = part.period()
         high = max(model.nodes[n].y for n in b.nodes) - b.base
         if not t1 or high <= 0.0:
             continue
@@ -73,13 +73,24 @@ def _period(structure: Structure, b: Building, t1: float, limit: str, why: str) 
     return Diagnostic("P357", message, model.nodes[b.feet[0]].span, hint, "warning")
 
 
-def _standing(structure: Structure) -> Iterator[tuple[Building, Index]]:
-    """The buildings of some height that the ground shakes along x, with the columns of their unknowns."""
+def _standing(structure: Structure) -> Iterator[tuple[Building, _Part]]:
+    """The buildings of some height that the ground shakes along x, if computing does not fail them."""
     model = structure.model
     if "X" not in shaken(model):
         return
     found = [b for b in buildings(structure) if stands(model, b.nodes)]
-    yield from zip(found, columns_of(model, structure.dofs.free, [b.nodes for b in found]))
+    for b, columns in zip(found, columns_of(model, structure.dofs.free, [b.nodes for b in found])):
+        if part := _part(structure, columns):
+            yield b, part
+
+
+def _part(structure: Structure, columns: Index) -> _Part | None:
+    """The stiffness of a building, unless its numbers are beyond computing."""
+    try:
+        with np.errstate(all="ignore"):
+            return _Part(structure, columns)
+    except (np.linalg.LinAlgError, ArithmeticError):
+        return None
 
 
 class _Part:
@@ -110,11 +121,16 @@ class _Part:
         if self.held.slack.shape[1] or self.held.negative is not None:
             return 0.0
         push = self.structure.ground[0, self.columns]
-        sag = self.factors * self.held.solve(self.factors * push)
         own = self.structure.mass[: self.structure.n_free, : self.structure.n_free]
-        inertia = float(sag @ (own[self.columns][:, self.columns] @ sag))
-        work = float(push @ sag)
-        return 2.0 * math.pi * math.sqrt(inertia / work) if work > 0.0 else 0.0
+        with np.errstate(all="ignore"):
+            try:
+                sag = self.factors * self.held.solve(self.factors * push)
+            except np.linalg.LinAlgError:
+                return 0.0
+            inertia = float(sag @ (own[self.columns][:, self.columns] @ sag))
+            work = float(push @ sag)
+        ratio = inertia / work if work > 0.0 else 0.0
+        return 2.0 * math.pi * math.sqrt(ratio) if 0.0 < ratio < math.inf else 0.0
 
 
 def _allowed(structure: Structure, slack: Array) -> Flags:

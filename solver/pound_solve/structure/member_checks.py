@@ -156,9 +156,10 @@ def _strain(
     """A yield moment out of all proportion to the stiffness of its section."""
     h, unit = depth(card), model.units.text("F*L")
     moment = max((abs(m) for m in strengths if math.isfinite(m)), default=0.0)
-    strain = moment * h / (card["E"] * card["I"])
+    ei = card["E"] * card["I"]
+    strain = moment * h / ei if ei else 0.0
     plain = USUAL[0] < h / length(model, element) < 1.0  # else A or the length may be of its own
-    if moment and plain and not LEAST_STRAIN <= strain <= MOST_STRAIN:
+    if strain and plain and not LEAST_STRAIN <= strain <= MOST_STRAIN:
         few = strain < LEAST_STRAIN
         message = (
             f"hinges of {card.label} yield at {moment:g} {unit}, a strain of {strain:.1g} of the section: "
