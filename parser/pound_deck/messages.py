@@ -430,9 +430,9 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "it. Loads that press are negative.",
     ),
     "P365": (
-        "steps as long as the history (warning)",
-        "DT divides a HISTORY into fewer than ten steps. The limit is ours. DT has the unit of time of "
-        "UNITS: 5 ms are 0.005 s.",
+        "steps above half a period (warning)",
+        "A HISTORY has fewer than 100 steps, and DT is more than half of the first period of every "
+        "building. DT has the unit of time of UNITS: 5 ms are 0.005 s.",
     ),
     "R401": (
         "record not found",

@@ -300,7 +300,7 @@ MISTAKES = {
     "motion in mm/s2": ([("AMPLITUDE=2", "AMPLITUDE=2000")], "R404 peak ground acceleration is 204 g"),
     "steps in ms": (
         [("HISTORY 10", "HISTORY 10 METHOD=NEWMARK DT=5")],
-        "P365 DT=5 divides 10 s into 2 steps: DT is a time in s",
+        "P365 steps of DT=5 s do not follow a motion whose first period is about 0.53 s: DT is a time in s",
     ),
 }
 
@@ -412,6 +412,7 @@ def test_the_frames_in_other_units_have_no_remark(units):
         [(" 22 6.45 3.5", " 22 6.45 3.5 SLAVED=X MASTER=25")],
         [("MI=200 MJ=200 LP=0.25", "MI=200 MJ=200 KH=1E9 DUCTU=1E4")],
         [("GAP=0.03", "GAP=0.6")],
+        [("HISTORY 10", "HISTORY 0.1 METHOD=NEWMARK DT=0.02")],
         [("EQUAKE", "LOADS\n 12,13 0 10\n 15,16 0 -20\nEQUAKE")],
     ],
     ids=[
@@ -423,6 +424,7 @@ def test_the_frames_in_other_units_have_no_remark(units):
         "diaphragm",
         "rigid-plastic hinges",
         "gap of a sweep",
+        "first few steps",
         "loads of wind",
     ],
 )

@@ -13,14 +13,13 @@ from pound_solve.structure.contact_checks import misplaced, wide
 from pound_solve.structure.damping.by_building import uneven
 from pound_solve.structure.loose_ends import loose_ends
 from pound_solve.structure.mass_checks import immovable, massless
-from pound_solve.structure.mechanisms import loose, untimely
+from pound_solve.structure.mechanisms import hasty, loose, untimely
 from pound_solve.structure.member_checks import doubled, misjudged, misshapen
 from pound_solve.structure.structure import Structure
 from pound_solve.structure.supports import adrift
 from pound_solve.structure.weight_checks import lifted, misarmed, misweighed, outsized
 
 MOST_STEPS: Final = 10**8  #: of a history: hours of a small structure
-FEWEST: Final = 10  #: steps of a history that is meant to be one
 MOST_ROWS: Final = 5 * 10**6  #: of stored histories
 
 
@@ -90,19 +89,6 @@ def unlikely(structure: Structure) -> list[Diagnostic]:
     return list(found.values())
 
 
-def few(structure: Structure) -> list[Diagnostic]:
-    """Histories of hardly any steps."""
-    model, out = structure.model, list[Diagnostic]()
-    for card in model.analyses:
-        dt = card.values.get("DT") if card.spec.name == "HISTORY" else None
-        if dt is not None and card["T"] < FEWEST * dt:
-            unit = model.units.time
-            message = f"DT={dt:g} divides {card['T']:g} {unit} into {card['T'] / dt:.2g} steps"
-            hint = f"DT is a time in {unit}: a hundredth of the first period is usual"
-            out.append(Diagnostic("P365", message, card.place("DT"), hint, "warning"))
-    return out
-
-
 def rounded_up(x: float) -> float:
     """The next number of one digit that is not below `x`."""
     unit = 10.0 ** floor(log10(x))
@@ -135,7 +121,7 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     misjudged,
     pushover.mistakes,
     too_many,
-    few,
+    hasty,
     misnamed,
     uneven,
 )

@@ -19,6 +19,7 @@ from pound_solve.structure.member_checks import kinds
 from pound_solve.structure.structure import Structure
 from pound_solve.structure.supports import ROUNDING, resisted, shaken, some
 
+FEW: Final = 100  #: steps of a history below which they are compared with periods
 MOVES: Final = 0.1  #: share of the largest displacement of a motion that a node has which it moves
 SAME: Final = 1e-6  #: share of a motion by which that of one body may differ
 #: 4 H/T, the speed of a shear wave up a building [m/s]: walls and stiff frames have 100 to 500, a solid
@@ -71,6 +72,25 @@ def _period(structure: Structure, b: Building, t1: float, limit: str, why: str) 
         "and GRAVITY"
     )
     return Diagnostic("P357", message, model.nodes[b.feet[0]].span, hint, "warning")
+
+
+def hasty(structure: Structure) -> list[Diagnostic]:
+    """Histories whose steps are longer than half of the first period of every building."""
+    model = structure.model
+    asked = [c for c in model.analyses if c.spec.name == "HISTORY" and c.values.get("DT") is not None]
+    asked = [c for c in asked if c["T"] < FEW * c["DT"]]  # others are not worth the time
+    longest = max((part.period() for _, part in _standing(structure)), default=0.0) if asked else 0.0
+    out = []
+    for card in asked:
+        if 0.0 < longest < 2.0 * card["DT"]:
+            unit = model.units.time
+            message = (
+                f"steps of DT={card['DT']:g} {unit} do not follow a motion whose first period is about "
+                f"{longest:.2g} {unit}"
+            )
+            hint = f"DT is a time in {unit}: a hundredth of the first period is usual"
+            out.append(Diagnostic("P365", message, card.place("DT"), hint, "warning"))
+    return out
 
 
 def _standing(structure: Structure) -> Iterator[tuple[Building, _Part]]:
