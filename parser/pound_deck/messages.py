@@ -377,7 +377,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "strength or ductility of hinges beyond sense (warning)",
         "The yield moment M of a section that is sqrt(12 I/A) = h deep belongs to a strain M h/(E I) below "
         "2e-5 or above 0.1, or DUCTU is above 100; ordinary members have strains of 0.0005 to 0.01 and "
-        "ductilities below 50. The limits are ours. Check the units of yield moments and of E.",
+        "ductilities below 50. Or a hinge with KH or a spring with KR yields at a rotation above 0.2. "
+        "The limits are ours. Check the units of yield moments and of stiffnesses.",
     ),
     "P356": (
         "mechanism (warning)",

@@ -271,6 +271,10 @@ MISTAKES = {
         "P355 hinges of COL yield at 0.2 kN*m, a strain of 2e-06 of the section: 0.001 is little: "
         "yield moments",
     ),
+    "yield moments in N m beside a stiffness": (
+        [("MI=200 MJ=200 LP=0.25", "MI=200E3 MJ=200E3 KH=6E4")],
+        "P355 COL yields at a rotation of 3.3 rad: 0.05 is much: MI is in kN*m, KH in the same",
+    ),
     "ductility per cent": (
         [("LP=0.25", "LP=0.25 DUCTU=800")],
         "P355 DUCTU of COL is 800, but no member has more than 100: DUCTU is a multiple",

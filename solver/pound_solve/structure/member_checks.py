@@ -15,7 +15,7 @@ from typing import Final
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Element, Model
 from pound_solve.structure.buildings import parts
-from pound_solve.structure.elements.base import Role
+from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.structure import Structure
 
 MEMBERS: Final = ("FRAME", "BEAM_COLUMN")
@@ -28,6 +28,7 @@ LONGEST: Final = 6.0  #: length over that of the middle one of its kind; a slip 
 #: M h/(E I) at yield, twice the strain of the outer fibre; sections of concrete, steel or timber have
 #: 0.0005 to 0.01, so that a factor of a thousand is beyond these limits
 LEAST_STRAIN, MOST_STRAIN = 2e-5, 0.1
+MOST_ROTATION: Final = 0.2  #: at yield [rad]; joints of timber have 0.05
 MOST_DUCTILITY: Final = 100.0  #: of the curvature of sections; members have less than 50
 
 
@@ -135,17 +136,26 @@ def doubled(structure: Structure) -> list[Diagnostic]:
 
 
 def misjudged(structure: Structure) -> list[Diagnostic]:
-    """Hinges of members whose section yields at a strain that no material has, or has no end of ductility:
-    once for each property set.  Rigid-plastic ones, with a stiffness KH of their own, are left out.
+    """Hinges of members whose section yields at a strain that no material has, or has no end of ductility,
+    and hinges and springs of a stiffness of their own that yield too far: once for each property set.
+
+    Such ones may be rigid until they yield, so that neither a small strain nor a large ductility is told.
     """
     model, out = structure.model, dict[str, Diagnostic]()
     for spring in structure.laws:
         element = model.elements[spring.element]
         card = model.props[element.prop]
-        hinge = spring.role is Role.SPRING and spring.unit == "F*L" and card.spec.name in MEMBERS
-        if not hinge or spring.strengths is None or card.values.get("KH") is not None or not card["I"]:
+        turns = spring.role is Role.SPRING and spring.unit == "F*L" and spring.strengths is not None
+        if not turns or card.spec.name not in (*MEMBERS, "SPRING"):
             continue
-        for d in (*_strain(model, card, element, spring.strengths), *_ductility(card)):
+        assert spring.strengths is not None
+        if card.spec.name not in MEMBERS or card.values.get("KH") is not None:
+            found = list(_rotation(model, card, spring))
+        elif card["I"]:
+            found = [*_strain(model, card, element, spring.strengths), *_ductility(card)]
+        else:
+            continue
+        for d in found:
             out.setdefault(card.label, d)
     return list(out.values())
 
@@ -167,6 +177,17 @@ def _strain(
         )
         item = next(i for i in ("MI", "MJ", "MP", "NM", "LP") if card.values.get(i) is not None)
         hint = f"yield moments are in {unit}, E in {model.units.text('F/L^2')}"
+        yield Diagnostic("P355", message, card.place(item), hint, "warning")
+
+
+def _rotation(model: Model, card: Card, spring: LawSpring) -> Iterator[Diagnostic]:
+    """A yield moment that a hinge or spring of its own stiffness reaches at a rotation beyond sense."""
+    at = max((abs(x) for x in spring.yields or () if math.isfinite(x)), default=0.0)
+    if at > MOST_ROTATION:
+        k, m = ("KH", "MI") if card.spec.name in MEMBERS else ("KR", "MR")
+        item = next(i for i in (m, "MJ", k) if card.values.get(i) is not None)
+        message = f"{card.label} yields at a rotation of {at:.2g} rad: 0.05 is much"
+        hint = f"{item} is in {model.units.text('F*L')}, {k} in the same for one radian"
         yield Diagnostic("P355", message, card.place(item), hint, "warning")
 
 

@@ -130,7 +130,7 @@ def misarmed(structure: Structure) -> list[Diagnostic]:
             continue
         pairs = [along[e.id].strengths or (math.inf, -math.inf) for e in lowest]
         strength, weight = sum(max(plus, -minus) for plus, minus in pairs), b.mass * model.gravity
-        if not WEAKEST * weight <= strength <= STRONGEST * weight:
+        if math.isfinite(strength) and not WEAKEST * weight <= strength <= STRONGEST * weight:
             unit, card = model.units.force, model.props[lowest[0].prop]
             few = strength < WEAKEST * weight
             message = (
