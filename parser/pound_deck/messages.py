@@ -416,8 +416,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P362": (
         "height of a building beyond sense (warning)",
-        "A building is lower than 0.1 m or higher than 1000 m. Coordinates have the unit of length of "
-        "UNITS.",
+        "A building is lower than 0.1 m or higher than 1000 m; the limits are ours. Coordinates have the "
+        "unit of length of UNITS.",
     ),
     "P363": (
         "strength of springs beyond sense (warning)",
@@ -433,7 +433,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P365": (
         "steps above half a period (warning)",
         "A HISTORY has fewer than 100 steps, and DT is more than half of the first period of every "
-        "building. DT has the unit of time of UNITS: 5 ms are 0.005 s.",
+        "building; the limits are ours. DT has the unit of time of UNITS: 5 ms are 0.005 s.",
     ),
     "R401": (
         "record not found",

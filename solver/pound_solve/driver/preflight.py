@@ -13,7 +13,7 @@ from pound_solve.structure.contact_checks import misplaced, wide
 from pound_solve.structure.damping.by_building import uneven
 from pound_solve.structure.loose_ends import loose_ends
 from pound_solve.structure.mass_checks import immovable, massless
-from pound_solve.structure.mechanisms import hasty, loose, untimely
+from pound_solve.structure.mechanisms import hasty, loose, standing, untimely
 from pound_solve.structure.member_checks import doubled, misjudged, misshapen
 from pound_solve.structure.structure import Structure
 from pound_solve.structure.supports import adrift
@@ -77,16 +77,16 @@ def too_many(structure: Structure) -> list[Diagnostic]:
 
 def unsteady(structure: Structure) -> list[Diagnostic]:
     """Buildings that are mechanisms; where there are none, those that could move as one body."""
-    return loose(structure) or adrift(structure)
+    return loose(structure, standing(structure)) or adrift(structure)
 
 
-def unlikely(structure: Structure) -> list[Diagnostic]:
-    """Heights, periods and weights of buildings: the first of each that does not fit."""
-    found = dict[str, Diagnostic]()
-    for check in (outsized, untimely, misweighed):
-        for name, diagnostic in check(structure):
-            found.setdefault(name, diagnostic)
-    return list(found.values())
+def misbuilt(structure: Structure) -> list[Diagnostic]:
+    """Buildings that are `unsteady`; of heights, periods and weights the first of each that is wrong."""
+    parts, first = standing(structure), dict[str, Diagnostic]()
+    found = (*outsized(structure), *untimely(structure, parts), *misweighed(structure))
+    for name, diagnostic in found:
+        first.setdefault(name, diagnostic)
+    return [*(loose(structure, parts) or adrift(structure)), *first.values()]
 
 
 def rounded_up(x: float) -> float:
@@ -109,11 +109,10 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     pressed,
     wide,
     misplaced,
-    unsteady,
+    misbuilt,
     massless,
     immovable,
     loose_ends,
-    unlikely,
     misarmed,
     lifted,
     misshapen,

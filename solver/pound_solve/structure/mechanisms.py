@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
@@ -27,17 +27,19 @@ SAME: Final = 1e-6  #: share of a motion by which that of one body may differ
 FASTEST: Final = 1000.0
 
 
-def loose(structure: Structure) -> list[Diagnostic]:
+def loose(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Buildings of members whose nodes can move although their base is held, as with too many pins."""
     out = list[Diagnostic]()
-    for b, part in _standing(structure):
+    for b, part in found:
         slack = part.slack()
         bent = [m for m in slack[:, ~_allowed(structure, slack)].T if not _rigid(structure, b, m)]
         out += [_mechanism(structure, b, motion) for motion in bent[:1]]
     return out
 
 
-def untimely(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
+def untimely(
+    structure: Structure, found: Sequence[tuple[Building, Part]]
+) -> Iterator[tuple[str, Diagnostic]]:
     """Names of buildings whose first period is beyond what their height allows.
 
     One that is slower than a pendulum of its height, standing on its head, falls over by its own weight.
@@ -47,7 +49,7 @@ def untimely(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
     framed = {e.i for members in kinds(model).values() for e in members if model.props[e.prop]["I"]}
     sprung = {e.i for e in model.elements.values() if model.props[e.prop].spec.name == "SPRING"}
     metre = METRE.get(model.units.length.lower(), math.inf)
-    for b, part in _standing(structure):
+    for b, part in found:
         t1 = part.period()
         high = max(model.nodes[n].y for n in b.nodes) - b.base
         if not t1 or high <= 0.0:
@@ -79,7 +81,7 @@ def hasty(structure: Structure) -> list[Diagnostic]:
     model = structure.model
     asked = [c for c in model.analyses if c.spec.name == "HISTORY" and c.values.get("DT") is not None]
     asked = [c for c in asked if c["T"] < FEW * c["DT"]]  # others are not worth the time
-    longest = max((part.period() for _, part in _standing(structure)), default=0.0) if asked else 0.0
+    longest = max((part.period() for _, part in standing(structure)), default=0.0) if asked else 0.0
     out = []
     for card in asked:
         if 0.0 < longest < 2.0 * card["DT"]:
@@ -93,27 +95,28 @@ def hasty(structure: Structure) -> list[Diagnostic]:
     return out
 
 
-def _standing(structure: Structure) -> Iterator[tuple[Building, _Part]]:
+def standing(structure: Structure) -> list[tuple[Building, Part]]:
     """The buildings of some height that the ground shakes along x, if computing does not fail them."""
-    model = structure.model
+    model, out = structure.model, list[tuple[Building, Part]]()
     if "X" not in shaken(model):
-        return
+        return out
     found = [b for b in buildings(structure) if stands(model, b.nodes)]
     for b, columns in zip(found, columns_of(model, structure.dofs.free, [b.nodes for b in found])):
         if part := _part(structure, columns):
-            yield b, part
+            out.append((b, part))
+    return out
 
 
-def _part(structure: Structure, columns: Index) -> _Part | None:
+def _part(structure: Structure, columns: Index) -> Part | None:
     """The stiffness of a building, unless its numbers are beyond computing."""
     try:
         with np.errstate(all="ignore"):
-            return _Part(structure, columns)
+            return Part(structure, columns)
     except (np.linalg.LinAlgError, ArithmeticError):
         return None
 
 
-class _Part:
+class Part:
     """The stiffness of a building, contacts open, scaled to a diagonal of ones; without rotations that
     nothing holds.
     """
