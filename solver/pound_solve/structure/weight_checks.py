@@ -57,7 +57,7 @@ def misweighed(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
                 f"weighs {weight / force:.3g} {model.units.force}, but its beams and columns alone weigh "
                 f"{bare / force:.3g} {model.units.force} by A and E"
             )
-            yield b.name, _weights(model, b, told)
+            yield b.name, _weights(model, b, told, "; leave it if the frame bears no slab")
         elif strain > SQUASHED:
             told = (
                 f"weighs {weight / force:.3g} {model.units.force}, which shortens its columns by "
@@ -66,13 +66,13 @@ def misweighed(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
             yield b.name, _weights(model, b, told)
 
 
-def _weights(model: Model, b: Building, told: str) -> Diagnostic:
+def _weights(model: Model, b: Building, told: str, unless: str = "") -> Diagnostic:
     heavy = {n for f in b.floors for n in f.nodes}
     card = next((c for c in model.weights if heavy & set(c["NODES"])), None)
     place = card.place("WX") if card else model.nodes[b.nodes[0]].span
     hint = (
         f"WEIGHTS are forces in {model.units.force}, mass times gravity; "
-        f"gravity is {model.gravity:g} here, A is in {model.units.text('L^2')}"
+        f"gravity is {model.gravity:g} here, A is in {model.units.text('L^2')}{unless}"
     )
     return Diagnostic("P361", f"{b.name!r} {told}", place, hint, "warning")
 
