@@ -571,3 +571,16 @@ def test_methods_agree_on_an_oscillator_that_loses_strength(rule: str) -> None:
     assert series == pytest.approx(exact, rel=1e-11)
     assert stepped == pytest.approx(exact, rel=3e-5)
     assert exact[2] > 2
+
+
+@pytest.mark.parametrize(
+    ("rule", "counted"),
+    [("BILINEAR R=0.05", True), ("RAMBERG_OSGOOD N=8 ALPHA=0.5", False), ("BILINEAR_ELASTIC R=0.1", False)],
+)
+def test_yield_events_are_counted_where_a_rule_has_a_yield_line_only(rule: str, counted: bool) -> None:
+    """A smooth rule at several times its yield deformation has no number of yield events, not 0."""
+    text = LOSING.replace(" DUCT1=1.5 DUCT2=3 RDUCT=0.6", "")
+    run = run_text(text.format(rule=rule, method="TAYLOR"))
+    (row,) = run.tables["spring_envelope"]
+    assert row["ductility"] > 1.5
+    assert row["yield_events"] > 2 if counted else np.isnan(row["yield_events"])

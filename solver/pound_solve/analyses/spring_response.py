@@ -11,7 +11,7 @@ from pound_solve.analyses import damage
 from pound_solve.analyses.recorder import HistoryRecorder
 from pound_solve.integrate.protocol import Outcome
 from pound_solve.integrate.tracker import Extreme
-from pound_solve.laws.automaton import STRENGTHLESS
+from pound_solve.laws.automaton import STRENGTHLESS, BranchKind
 from pound_solve.structure.elements.base import LawSpring, Role
 from pound_solve.structure.structure import Structure
 
@@ -52,8 +52,8 @@ class SpringResponse:
     spring : LawSpring
     force, deformation : Extreme
         [F] or [F L]; [L] or [rad].
-    yields : int
-        Number of times that it started to yield.
+    yields : float
+        Number of times that it started to yield; NaN for a rule without a yield line.
     ductility : float
         Largest absolute deformation over yield; NaN for none.
     loss : float
@@ -73,7 +73,7 @@ class SpringResponse:
     spring: LawSpring
     force: Extreme
     deformation: Extreme
-    yields: int
+    yields: float
     ductility: float
     loss: float
     plastic: PlasticDeformation | None
@@ -124,13 +124,14 @@ def _response(
         sides = (ultimate[0], ultimate[-1])
         index = damage.park_ang(largest, loss, spring.strengths, spring.yields, sides, card["PA_BETA"])
     ductility = damage.ductility(largest, spring.yields)
-    at = spring.law.rule.branches[outcome.states[i][0]]
+    branches = spring.law.rule.branches
+    yielding, at = any(b.kind is BranchKind.YIELDING for b in branches), branches[outcome.states[i][0]]
     turns = spring.unit == "F*L" and spring.component.startswith("hinge")
     return SpringResponse(
         spring,
         f,
         d,
-        peaks.yields[i],
+        peaks.yields[i] if yielding else np.nan,
         ductility,
         loss,
         plastic,

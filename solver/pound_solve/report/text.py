@@ -346,6 +346,8 @@ def _decimals(fmt: str, values: list[float]) -> list[str]:
     """Finite values in the format of a column of real numbers."""
     if fmt == "time":
         return _times(values)
+    if fmt == "count":
+        return [f"{v:.0f}" for v in values]
     if fmt == "percent":
         return [_unsigned_zero(f"{v:.2f}") for v in values]
     given = fmt == "given"

@@ -23,6 +23,7 @@ FORMATS: Final = MappingProxyType(
     {
         "int": "int64",
         "text": "text",
+        "count": "float64",
         "time": "float64",
         "given": "float64",
         "num": "float64",
@@ -60,8 +61,9 @@ class Column:
     unit : str
         Dimensions, see the module's head.
     fmt : str
-        One of `FORMATS`: ``time`` shows up to six decimals, ``given`` all the digits that the deck gives
-        (ten at most), ``num`` five significant digits, ``short`` four, ``percent`` two decimals.
+        One of `FORMATS`: ``count`` is a whole number or NaN, ``time`` shows up to six decimals, ``given``
+        all the digits that the deck gives (ten at most), ``num`` five significant digits, ``short`` four,
+        ``percent`` two decimals.
     doc : str
         What the column holds, for the manual.
     zero : str

@@ -35,7 +35,7 @@ END_COLUMNS: Final = (
     Column("min", "moment\nmin", "F*L", "num"),
     time_column("t_min", "at time", ""),
     Column("ductility", "hinge\nductility", "-", "short"),
-    Column("reversals", "yield\nevents"),
+    Column("yield_events", "yield\nevents", "", "count"),
     Column("damage", "damage\nindex", "-", "short"),
 )
 
@@ -53,7 +53,7 @@ def envelopes(results: Results) -> list[Part]:
             own.add((element, names[3]))
         bent = (moment[0], round(moment[1], digits), moment[2], round(moment[3], digits))
         forces = axial[0], axial[2], shear[0], shear[2], *bent
-        out.append((element, end, *forces, *hinges.get((element, end), (math.nan, "", math.nan))))
+        out.append((element, end, *forces, *hinges.get((element, end), NONE[:3])))
     rest = [i for i, r in enumerate(rows) if (r["element"], r["quantity"]) not in own]
     stored = TABLES["member_envelope"].columns
     return [part(END_COLUMNS, out)] * bool(out) + [Part(stored, rows[rest])] * bool(rest)
@@ -93,17 +93,17 @@ def _same(one: Extremes, other: Extremes) -> bool:
     return tuple(one) in (tuple(other), (-other[2], other[3], -other[0], other[1]))
 
 
-def _hinges(results: Results) -> dict[tuple[int, str], tuple[float, str, float]]:
+def _hinges(results: Results) -> dict[tuple[int, str], tuple[float, float, float]]:
     """Ductility, yield events and damage index of the hinge at each end of a member."""
     index: dict[tuple[int, str], float] = {}
     if "damage" in results.tables:
         index = {(r["element"], r["component"]): r["index"] for r in results.table("damage")}
-    out: dict[tuple[int, str], tuple[float, str, float]] = {}
+    out: dict[tuple[int, str], tuple[float, float, float]] = {}
     for r in results.table("spring_envelope") if "spring_envelope" in results.tables else ():
         kind, _, end = r["component"].partition(" ")
         if kind == "hinge":
             key = (r["element"], r["component"])
-            out[r["element"], end] = (r["ductility"], str(r["yield_events"]), index.get(key, math.nan))
+            out[r["element"], end] = (r["ductility"], r["yield_events"], index.get(key, math.nan))
     return out
 
 

@@ -49,8 +49,8 @@ TABLE = Table(
         Column(
             "yield_events",
             "yield\nevents",
-            fmt="int",
-            doc="number of times that the spring started to yield",
+            fmt="count",
+            doc="number of times that the spring started to yield, NaN for a rule without a yield line",
         ),
         Column(
             "ductility",
@@ -65,7 +65,7 @@ TABLE = Table(
     remark=how_found,
     sample=(
         (11, "X", "ELASTO_PLASTIC", "kN", 1200.0, -1200.0, "m", 0.0234417, -0.0310928, 14, 5.4412, 93.2213),
-        (12, "X", "LINEAR", "kN", 843.19, -799.02, "m", 0.0041, -0.0039, 0, math.nan, 0.0),
+        (12, "X", "LINEAR", "kN", 843.19, -799.02, "m", 0.0041, -0.0039, math.nan, math.nan, 0.0),
         (12, "R", "TAKEDA", "kN*m", 310.2, -288.8, "rad", 0.0031, -0.0022, 3, 1.61, 2.118),
     ),
 )

@@ -79,7 +79,7 @@ TABLE = Table(
         Column(
             "rotation", "plastic\nrotation", "rad", "short", doc="largest rotation of a hinge beyond yield"
         ),
-        Column("yield_events", "yield\nevents", fmt="int", doc="number of times that it began to yield"),
+        Column("yield_events", "yield\nevents", fmt="count", doc="as in the spring envelopes"),
         Column("plastic_work", "plastic\nwork", "F*L", "short", doc="energy lost in hysteresis"),
         Column(
             "damage", "damage\nindex", "-", "short", doc="of Park and Ang; NaN without ultimate ductility"
