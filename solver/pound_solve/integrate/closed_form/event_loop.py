@@ -130,9 +130,16 @@ class EventDrivenRun(ABC):
 
     def stop_growth(self, v: Array, hint: str = "") -> None:
         """Stop where the kinetic energy at velocity `v` is far above the energy put in."""
-        kinetic = 0.5 * float(v @ self.system.mass @ v)
-        if self.energy.runs_away(kinetic):
-            raise self.stop("A504", RUNAWAY.format(kinetic) + hint)
+        if self.runs_away(v):
+            raise self.stop("A504", RUNAWAY.format(self.kinetic(v)) + hint)
+
+    def runs_away(self, v: Array) -> bool:
+        """Whether the kinetic energy at velocity `v` is far above all that is known to have been put in."""
+        return self.energy.runs_away(self.kinetic(v))
+
+    def kinetic(self, v: Array) -> float:
+        """Kinetic energy at velocity `v` [F L]."""
+        return 0.5 * float(v @ self.system.mass @ v)
 
     def count_magnitudes(self, value: Array, rate: Array) -> None:
         """Count values and rates of the first rows, shape (n_rows, n_times), into the largest."""

@@ -154,6 +154,9 @@ class Exact(EventDrivenRun):
         if not window.whole:
             self._check_progress(float(window.lengths[0]), goal - self.t)
         dense = self._dense_output(window.lengths, window.starts)
+        if dense.intervals > 1 and self.runs_away(self._velocity_at_end(dense, dense.intervals)):
+            self.windows.narrow()  # so that the works are released, and a stop is told, at the first goal
+            return cursor
         bounds = dense.derivative_bounds()
         coarse = self.search.coarse(dense, bounds, window.h, self.largest)
         if not np.isfinite(coarse.value).all() or not np.isfinite(coarse.rate).all():
@@ -282,12 +285,16 @@ class Exact(EventDrivenRun):
         if len(out):
             motion, entries = dense.motions_at_ends(out), before + out + 1
             self.samples.add(self.goals[cursor + out], motion, entries, self.states, self.branches)
-        if self.work.entries > MAX_DEFERRED or cursor + count == len(self.goals):
+        v = self._velocity_at_end(dense, count) if count else self.v
+        if self.work.entries > MAX_DEFERRED or cursor + count == len(self.goals) or self.runs_away(v):
             self._release()
             if count:
                 self.t = float(self.goals[cursor + count - 1])  # where a stop is told
-                _, v, _ = dense.motions_at_ends(np.array([count - 1]))
-                self.stop_growth(v[:, 0])
+                self.stop_growth(v)
+
+    def _velocity_at_end(self, dense: DenseOutput, count: int) -> Array:
+        """Velocities at the end of the first `count` intervals."""
+        return dense.motions_at_ends(np.array([count - 1]))[1][:, 0]
 
     def _release(self) -> None:
         """Evaluate the works, and pass the samples that waited for them to the recorder.

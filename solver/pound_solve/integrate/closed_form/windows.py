@@ -53,9 +53,13 @@ class Windows:
         """Begin with few intervals again, after an event."""
         self._intervals = INTERVALS_AFTER_EVENT
 
+    def narrow(self) -> None:
+        """Go to the next goal only."""
+        self._intervals = 0
+
     def widen(self) -> None:
         """Take more intervals next, as there was no event."""
-        self._intervals = min(2 * self._intervals, MAX_INTERVALS)
+        self._intervals = min(max(2 * self._intervals, 1), MAX_INTERVALS)
 
     def next(self, t: float, goals: Array, spectral_radius: float) -> Window:
         """Return the window from time `t` towards the next `goals`."""
