@@ -162,7 +162,7 @@ def solve(model: Model, self_weight: bool = True) -> Solved:
             if spring.role.collides
             else f"{'moment' if spring.unit == 'F*L' else 'force'} {spring.component}"
         )
-        force[spring.element, name] = spring.law.branch(law_state).force(float(row @ state.u), 0.0)
+        force[spring.element, name] = spring.law.force(law_state, float(row @ state.u))[0]
     # reactions: let the supports go, and see what must hold them
     bare = replace(model, nodes={k: replace(n, fixed="") for k, n in model.nodes.items()}, damping=())
     whole = assemble(bare, self_weight=self_weight).stressed(state.axial)

@@ -38,7 +38,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pound_solve.analyses.ties import Ties
-from pound_solve.laws.automaton import State
+from pound_solve.laws.automaton import Law, State
 from pound_solve.numerics.matrices import Matrix, bordered, by_rows, dense, gathered, scaled, used_rows
 from pound_solve.numerics.modes import Held, scaling
 from pound_solve.numerics.types import Array, Index
@@ -49,7 +49,11 @@ NOISE = 1e-12  #: share of its terms below which a rate is rounding
 SOLVED = 1e-14  #: share of the fastest rate, both times the root of their stiffness, that is rounding
 JUMP = 1e-12  #: share of its terms above which a force has changed at once
 NEAR = 1e-13  #: share of its terms below which an event is reached
+FAINT = 1e-6  #: share of the stiffness it will have below which a curved contact has only just closed
 INCREMENTS = 20  #: Newton steps to the first mark, at least, where laws are curved
+ITERATIONS = (
+    80  #: of Newton's method to one point; it comes back to a contact of overlap^n by 1 - 1/n a time
+)
 MOST_CHANGES = 10_000
 MOST_RETURNS = 5  #: of all laws to the same branches at one point
 
@@ -168,6 +172,19 @@ class EquilibriumPath:
         pairs = [s.law.force(x, at)[:2] for s, x, at in zip(self.laws, self.states, d.tolist())]
         both = np.array(pairs).reshape(len(self.laws), 2)
         return both[:, 0], both[:, 1]
+
+    def _stiffnesses(self, d: Array) -> Array:
+        """Stiffness by which the method moves every law on from deformations `d`, shape (n_laws,): the
+        tangent or, where a curved contact has only just closed, the secant.
+        """
+        tangents = self.forces(d)[1]
+        if not self.curved:
+            return tangents
+        size = float(max(np.abs(self.load).max(initial=0.0), np.abs(self.applied).max(initial=0.0)))
+        secants = [
+            _secant(s.law, x, size) if s.role.collides else 0.0 for s, x in zip(self.laws, self.states)
+        ]
+        return np.where(tangents < FAINT * np.array(secants), secants, tangents)
 
     def tangent(self) -> Matrix:
         """Tangent stiffness, shape (n_free, n_free)."""
@@ -325,7 +342,7 @@ class EquilibriumPath:
         """Rates of displacements, load factor and what events depend on (see `_arguments`), and the
         rounding errors of the last.
         """
-        stiffness = self.forces(self.deformations(u, factor))[1]
+        stiffness = self._stiffnesses(self.deformations(u, factor))
         du, rise = self._linear(u, stiffness, self._lost, 0.0 if self._lost.any() else self.sign)
         rate = self.rows @ du - self.lead * rise
         terms = np.abs(self.rows) @ np.abs(du) + np.abs(self.lead * rise)
@@ -412,7 +429,7 @@ class EquilibriumPath:
         """
         u, factor = self.u + span * du, self.factor + span * rise
         last = np.inf
-        for _ in range(15):
+        for _ in range(ITERATIONS):
             rest, size = self._rest(u, factor)
             error = _share(self.ties.along(rest), size)
             if not np.isfinite(error):
@@ -420,7 +437,7 @@ class EquilibriumPath:
             try:
                 if error <= 1e-15 or 0.25 * last <= error <= 1e-11:
                     return (u, factor), self._values(u, factor, marks)
-                stiffness = self.forces(self.deformations(u, factor))[1]
+                stiffness = self._stiffnesses(self.deformations(u, factor))
                 more, up = self._linear(u, stiffness, -rest, 0.0)
             except InstabilityError:
                 return None
@@ -459,6 +476,15 @@ class EquilibriumPath:
     def _push(self, stiffness: Array) -> Array:
         """Force per load factor, that of the deformations applied with it included, shape (n_free,)."""
         return np.asarray(self.load + self.rows.T @ (stiffness * self.lead))
+
+
+def _secant(law: Law, state: State, size: float) -> float:
+    """Stiffness of a contact from no force to one of that size; zero if it is open or not curved."""
+    if law.rule.powers is None:
+        return 0.0
+    k, n = law.rule.powers(law.p, state[0], state[3])[:2]
+    secant: float = k ** (1.0 / n) * size ** (1.0 - 1.0 / n)
+    return secant
 
 
 def _share(rest: Array, size: Array) -> float:
