@@ -104,6 +104,31 @@ def test_the_report_tells_runs_and_probabilities_at_levels():
     assert lines[-2:] == [["0.25", "0.5", "0.75"], ["-", "-", "-"]]
 
 
+def test_gaps_below_what_the_lowest_level_needs_are_reached_in_proportion():
+    """A gap of 0.2 m between frames of four and six storeys; the capacities are levels of straight lines
+    from rest, of which a normal distribution has mean and deviation.
+    """
+    levels = (0.5, 1.0, 1.5)
+    needed = {
+        "elcentro": (0.022071, 0.043259, 0.092641),
+        "gilroy": (0.037330, 0.045283, 0.051989),
+        "hachinohe": (0.015838, 0.031772, 0.084388),
+        "kobe": (0.060388, 0.138707, 0.158720),
+    }
+    made = sweep(*((name, x, "done", d) for name, own in needed.items() for x, d in zip(levels, own)))
+    made.variables["needed_gap"] = made.variables["peak_drift"]
+    made.variables["given_gap"] = Variable(np.full((12, 1), 0.2), "storey", "m")
+    found = fit(made, Asked("needed_gap"), [0.005, 0.01, 0.02])
+    assert [round(f.fragility.median, 3) for f in found] == [0.084, 0.168, 0.336]
+    for f in found:
+        at = [np.interp(f.limit, (0.0, *own), (0.0, *levels)) for own in needed.values()]
+        assert f.fragility.median == pytest.approx(np.exp(np.log(at).mean()), rel=1e-6)
+    remark = "fewer than 10 data; below the lowest level, in proportion to it: "
+    assert [f.remark.removeprefix(remark) for f in found] == ["4", "4", "3"]
+    drifts = fit(made, DRIFT, [0.005])  # may begin anywhere
+    assert drifts[0].fragility is None
+
+
 def test_limits_are_asked_for_but_of_collapse():
     with pytest.raises(CurveError, match="--limit"):
         fit(stripes(1, 3), DRIFT, [])

@@ -19,6 +19,7 @@ LEVELS: Final = ("sa", "pga", "scale")  #: variables that tell how strong a reco
 FRACTILES: Final = (0.16, 0.5, 0.84)  #: shares of the records, or runs, in tables and pictures
 PARAM: Final = "PARAM "  #: how the description of a PARAM's variable begins
 COLLAPSE: Final = "collapse"  #: demand that is infinite where a run stopped early, else zero
+NEEDED: Final = "needed_gap"  #: demand that is infinite where something met: more than the gap, not known
 
 
 class Asked(NamedTuple):
@@ -53,19 +54,29 @@ class Curve:
         In the order of their levels.
     left_out : int
         Runs that failed or have not ended.
+    from_rest : bool
+        Whether the demand grows in proportion to the level before anything yields or meets.
     """
 
     case: str
     record: str
     points: tuple[Point, ...]
     left_out: int = 0
+    from_rest: bool = False
 
     @classmethod
-    def of(cls, case: str, record: str, levels: Iterable[float], found: Iterable[float]) -> Self:
+    def of(
+        cls,
+        case: str,
+        record: str,
+        levels: Iterable[float],
+        found: Iterable[float],
+        from_rest: bool = False,
+    ) -> Self:
         """The curve of some runs by their levels and demands."""
         pairs = sorted(zip(levels, found))
         points = tuple(Point(float(x), float(d)) for x, d in pairs if not math.isnan(d))
-        return cls(case, record, points, len(pairs) - len(points))
+        return cls(case, record, points, len(pairs) - len(points), from_rest)
 
 
 def measure(sweep: Sweep) -> str:
@@ -99,7 +110,7 @@ def unit_of(sweep: Sweep, asked: Asked) -> str:
 
 
 def demand(status: str, reached: float, values: Mapping[str, float], asked: Asked) -> float:
-    """Demand of one run: infinite where it stopped on its way, NaN where it has none.
+    """Demand of one run: infinite where it stopped on its way or needed a wider gap, NaN where it has none.
 
     Parameters
     ----------
@@ -125,7 +136,8 @@ def demand(status: str, reached: float, values: Mapping[str, float], asked: Aske
     if asked.label and asked.label not in values:
         raise CurveError(f"{asked.quantity} has no {asked.label}: there are {', '.join(values) or 'none'}")
     own = [values[asked.label]] if asked.label else values.values()
-    return max((abs(x) for x in own if not math.isnan(x)), default=math.nan)
+    unknown = math.inf if asked.quantity == NEEDED and values else math.nan
+    return max((abs(x) for x in own if not math.isnan(x)), default=unknown)
 
 
 def demands(sweep: Sweep, asked: Asked) -> Array:
@@ -151,7 +163,24 @@ def _rows(sweep: Sweep, quantity: str) -> Iterator[Mapping[str, float]]:
         return iter([{}] * len(sweep))
     own = sweep.variables[quantity]
     labels = sweep.labels[own.axis] if own.axis else ("",)
-    return (dict(zip(labels, map(float, row))) for row in own.values.reshape(len(sweep), len(labels)))
+    rows = own.values.reshape(len(sweep), len(labels))
+    there = np.ones(rows.shape, bool)
+    if quantity == NEEDED:  # NaN of a deck that has not the contact means nothing
+        there = ~np.isnan(sweep["given_gap"])
+    return ({n: float(x) for n, x, h in zip(labels, *own) if h} for own in zip(rows, there))
+
+
+def widest_known(sweep: Sweep) -> dict[str, float]:
+    """Gap of every case up to which its runs tell whether they needed it; infinite where nothing met.
+
+    A collision changes the motion: a run in which something met needed more than its smallest gap.
+    """
+    out = dict.fromkeys(cases(sweep), math.inf)
+    own = (sweep[name] for name in ("status", NEEDED, "given_gap"))
+    for case, status, needed, given in zip(cases(sweep), *own):
+        if status == DONE and (np.isnan(needed) & ~np.isnan(given)).any():
+            out[case] = min(out[case], float(np.nanmin(given)))
+    return out
 
 
 def cases(sweep: Sweep) -> list[str]:
@@ -181,7 +210,8 @@ def curves(sweep: Sweep, asked: Asked) -> list[Curve]:
     groups: dict[tuple[str, str], list[int]] = {}
     for i, key in enumerate(zip(cases(sweep), sweep["record"].tolist())):
         groups.setdefault(key, []).append(i)
-    return [Curve.of(*key, levels[own], found[own]) for key, own in groups.items()]
+    free = asked.quantity == NEEDED  # its motion is without collisions, and elastic at low levels
+    return [Curve.of(*key, levels[own], found[own], free) for key, own in groups.items()]
 
 
 def by_case(curves: Sequence[Curve]) -> dict[str, list[Curve]]:

@@ -15,6 +15,7 @@ from pound_solve.results.schema import Column, Row, Table
 from pound_solve.results.sweep_file import Sweep
 from pound_solve.sweep.curves import (
     COLLAPSE,
+    NEEDED,
     Asked,
     Curve,
     CurveError,
@@ -23,6 +24,7 @@ from pound_solve.sweep.curves import (
     measure,
     unit_of,
     units_of,
+    widest_known,
 )
 from pound_solve.sweep.incremental import Rules, capacity
 from pound_solve.theory.fragility import (
@@ -68,7 +70,7 @@ def by_capacities(own: Sequence[Curve], limit: float, level: float) -> Fragility
     """Of the levels at which the records reach the limit."""
     demands = [p.demand for c in own for p in c.points if math.isfinite(p.demand)]
     in_steps = all(d == round(d) for d in demands)  # as counts and indicators are
-    found = [capacity(c.points, STOPS, limit, in_steps) for c in own if c.points]
+    found = [capacity(c.points, STOPS, limit, in_steps, c.from_rest) for c in own if c.points]
     known = [low for low, high in found if low == high]
     never = [low for low, high in found if 0.0 < low < high == math.inf]
     return from_capacities(known, never, [pair for pair in found if pair[0] < pair[1] < math.inf], level)
@@ -138,25 +140,40 @@ def fit(
         limits = (math.inf,)
     elif not limits:
         raise CurveError(f"{asked.quantity} needs limits: --limit")
+    found = by_case(curves(sweep, asked))
+    known = widest_known(sweep) if asked.quantity == NEEDED else {}
+    met = min(known.values(), default=math.inf) < math.inf
+    if met and asked.label and len(sweep.labels[sweep.variables[NEEDED].axis]) > 1:
+        raise CurveError(
+            "runs in which something met do not tell what a single contact needs: leave --label out"
+        )
     return [
-        _fitted(case, own, limit, method or suited(own), level)
-        for case, own in by_case(curves(sweep, asked)).items()
+        _fitted(case, own, limit, method or suited(own), level, known.get(case, math.inf))
+        for case, own in found.items()
         for limit in limits
     ]
 
 
-def _fitted(case: str, own: Sequence[Curve], limit: float, method: str, level: float) -> Fitted:
-    """One fragility."""
+def _fitted(
+    case: str, own: Sequence[Curve], limit: float, method: str, level: float, known: float
+) -> Fitted:
+    """One fragility, of limits up to the largest of which the runs tell."""
     remarks, found = [], None
     try:
+        if known < limit:
+            raise FragilityError(f"met at a gap of {known:.6g}: wider gaps are not known")
         found = METHODS[method](own, limit, level)
     except FragilityError as err:
         remarks.append(str(err))
     if found is not None and found.count < FEW:
         remarks.append(f"fewer than {FEW} data")
-    stopped = sum(math.isinf(p.demand) for c in own for p in c.points)
-    if method == "cloud" and stopped:
-        remarks.append(f"stopped runs, which are not in the cloud: {stopped}")
+    below = sum(c.from_rest and limit <= c.points[0].demand < math.inf for c in own if c.points)
+    if found is not None and method == "capacities" and below:
+        remarks.append(f"below the lowest level, in proportion to it: {below}")
+    endless = sum(math.isinf(p.demand) for c in own for p in c.points)
+    if method == "cloud" and endless:
+        what = "stopped runs" if known == math.inf else "runs that met"
+        remarks.append(f"{what}, which are not in the cloud: {endless}")
     if missing := sum(c.left_out for c in own):
         remarks.append(f"runs that failed or are missing: {missing}")
     shown = limit if math.isfinite(limit) else math.nan

@@ -167,17 +167,18 @@ def standing(points: Sequence[Point], rules: Rules) -> list[Point]:
 
 
 def capacity(
-    points: Sequence[Point], rules: Rules, demand: float, in_steps: bool = False
+    points: Sequence[Point], rules: Rules, demand: float, in_steps: bool = False, from_rest: bool = False
 ) -> tuple[float, float]:
     """Levels between which a demand is first reached: zero and the lowest one where the first run does, the
     highest one and infinity where none does, twice the same where it is known.
 
-    A straight line joins two runs.  None does where nothing was run, below the lowest level; nor where the
-    demand comes `in_steps`, as a count does, or begins somewhere between; nor up to a collapse.
+    A straight line joins two runs.  None does where nothing was run, below the lowest level, but for a
+    demand that grows `from_rest` in proportion to the level; nor where the demand comes `in_steps`, as a
+    count does, or begins somewhere between; nor up to a collapse.
     """
     for below, point in pairwise(standing(points, rules)):
         if point.demand >= demand:
-            if in_steps or not below.demand:
+            if in_steps or not (below.demand or (from_rest and not below.level)):
                 return below.level, point.level
             share = (demand - below.demand) / (point.demand - below.demand)
             level = below.level + share * (point.level - below.level)

@@ -147,9 +147,7 @@ def _told(value: Any, name: str) -> str:
 
 
 def _shown(sweep: Sweep) -> Iterator[tuple[str, Array]]:
-    """Name of every quantity that is shown, and the largest of its labels in each run; infinite where a run
-    stopped on its way, NaN where it has none.
-    """
+    """Name of every quantity that is shown, and the largest of its labels in each run, see `demand`."""
     for name in SHOWN:
         if name in sweep.variables:
             values = demands(sweep, Asked(name))
