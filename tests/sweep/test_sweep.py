@@ -6,7 +6,7 @@ import json
 import math
 import multiprocessing
 import os
-from concurrent.futures import Future
+from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from itertools import pairwise
 from pathlib import Path
@@ -384,8 +384,69 @@ def test_the_plan_tells_what_is_ahead(tmp_path, capsys):
     assert "16 runs: 1 deck, 4 cases of PARAMs, 2 records, 2 factors" in out and "to be run: 16" in out
     assert "trial: 3 runs" in out and "the other 13: about" in out
     assert main(["sweep", str(path), "--plan", "--task", "1/2"]) == 0
-    assert "done before, skipped: 2" in capsys.readouterr().out
+    assert "done before, skipped: 1" in capsys.readouterr().out
     assert not (tmp_path / "walls.sweep/sweep.h5").exists()
+
+
+class Foreseen(Executor):
+    """Runs take the CPU time that is foreseen for their tolerance, and meet it with steps or without."""
+
+    def __init__(self, cpu, stepped=True):
+        self.cpu, self.values, self.ran = cpu, {"error_estimate": {"": 1e-5}} if stepped else {}, []
+
+    def submit(self, function, run, settings):
+        self.ran.append((run.number, run.case.tol))
+        entry = Entry(run.identity, "done", cpu=self.cpu[run.case.tol], values=self.values)
+        Journal(settings.journal).add(entry)
+        future = Future()
+        future.set_result(entry)
+        return future
+
+
+@pytest.mark.parametrize(
+    ("study", "executor", "ran", "told"),
+    [
+        (STUDY, Foreseen({None: 1.0}), [(10, None), (1, None), (16, None)], ["13: about 13 s"]),
+        (STUDY, Foreseen({None: 30.0}), [(10, None)], ["15: about 7.5 min"]),
+        (
+            STUDY,
+            Foreseen({None: 1000.0, 1e-3: 500.0, 1e-2: 30.0}),
+            [(10, None), (10, 1e-3), (10, 1e-2)],
+            [
+                "15: about 4.17 h",
+                "all 16 with --tol 0.001: about 2.22 h",
+                "16 with --tol 0.01: about 8 min",
+            ],
+        ),
+        (
+            STUDY,
+            Foreseen({None: 60.0, 1e-3: 20.0}),
+            [(10, None), (10, 1e-3)],
+            ["15: about 15 min", "16 with --tol 0.001: about 5.33 min"],
+        ),
+        (STUDY, Foreseen({None: 60.0}, stepped=False), [(10, None)], ["15: about 15 min"]),
+        (f"tol = 1e-2\n{STUDY}", Foreseen({1e-2: 60.0}), [(10, 1e-2)], ["15: about 15 min"]),
+        (f'method = "TAYLOR"\n{STUDY}', Foreseen({None: 60.0}), [(10, None)], ["15: about 15 min"]),
+    ],
+)
+def test_a_plan_costs_little_and_names_the_tolerance_that_fits(tmp_path, study, executor, ran, told):
+    """One run where runs take long; the same one with looser tolerances, until all take ten minutes."""
+    out = session(folder(tmp_path, study), executor=executor)
+    lines = list(out.estimate(out.trial(lambda state: None)))
+    assert executor.ran == ran and len(lines) == 1 + len(told)
+    assert all(part in line for part, line in zip(told, lines[1:]))
+
+
+def test_an_interruption_ends_a_plan_with_what_it_has(tmp_path):
+    def interrupted(state):
+        if not state.ending and not state.done:
+            raise KeyboardInterrupt
+
+    executor = Foreseen({None: 1.0})
+    out = session(folder(tmp_path), executor=executor)
+    trial = out.trial(interrupted)
+    assert len(executor.ran) == 1 and trial.left == 15
+    assert list(out.estimate(trial))[1].startswith("the other 15: about 15 s")
 
 
 @pytest.mark.parametrize("name", ["wall.inp", "second.txt"])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
@@ -12,6 +12,9 @@ from pound_solve.sweep.run import Run
 from pound_solve.sweep.study import Study
 
 SHOWN: Final = 20  #: runs of one kind that are listed
+LITTLE: Final = 5.0  #: CPU time of a trial after which no further run is tried [s]
+LONG: Final = 600.0  #: time of the runs that are left from which on looser tolerances are tried [s]
+LOOSER: Final = (1e-3, 1e-2)  #: tolerances that are tried then
 _WIDEST: Final = 100  #: characters of a reason
 
 
@@ -87,19 +90,61 @@ def reasons(runs: Sequence[Run], entries: Mapping[str, Entry]) -> Iterator[str]:
         yield f"  and {len(runs) - SHOWN} more"
 
 
-def estimate(trial: Sequence[Entry], left: int, workers: int, size: float) -> Iterator[str]:
-    """What the runs that are left will take, from those of a trial.
+@dataclass
+class Trial:
+    """Runs that were carried out to know what the others take.
 
-    Parameters
+    Attributes
     ----------
-    trial : sequence of Entry
-    left : int
+    ahead : int
+        Runs that were ahead.
     workers : int
-    size : float
-        Bytes that one run leaves on the disk.
+    entries : list of Entry
+        Those with the tolerance of the study; the first was tried with others, too.
+    looser : dict of float to Entry
+        By tolerances above that of the study.
     """
-    cpu = sum(e.cpu for e in trial) / len(trial)
-    beyond = 1000.0 * sum(e.cpu - e.solve for e in trial) / len(trial)
-    yield f"trial: {len(trial)} runs, {cpu:.3g} s of CPU time each, {beyond:.0f} ms beyond the integration"
-    seconds, disk = cpu * left / workers, size * left / 1e6
-    yield f"the other {left}: about {seconds:.3g} s with {workers} at a time, {disk:.2g} MB"
+
+    ahead: int
+    workers: int
+    entries: list[Entry] = field(default_factory=list)
+    looser: dict[float, Entry] = field(default_factory=dict)
+
+    @property
+    def spent(self) -> float:
+        """CPU time of the trial [s]."""
+        return sum(e.cpu for e in self.entries)
+
+    @property
+    def left(self) -> int:
+        """Runs that are still ahead."""
+        return self.ahead - len(self.entries)
+
+    @property
+    def seconds(self) -> float:
+        """Time that the runs take that are left [s]."""
+        return self.spent / max(len(self.entries), 1) * self.left / self.workers
+
+    def seconds_with(self, looser: Entry) -> float:
+        """Time that all runs take with the tolerance of one that was tried [s]."""
+        mean = self.spent / len(self.entries) * looser.cpu / self.entries[0].cpu
+        return mean * self.ahead / self.workers
+
+
+def estimate(trial: Trial, size: float) -> Iterator[str]:
+    """What the runs that are left will take, from those of a trial; `size` is what one leaves [bytes]."""
+    count, left = len(trial.entries), trial.left
+    beyond = 1000.0 * sum(e.cpu - e.solve for e in trial.entries) / count
+    each = f"{trial.spent / count:.3g} s of CPU time each, {beyond:.0f} ms beyond the integration"
+    yield f"trial: {_many(count, 'run')}, {each}"
+    disk = size * left / 1e6
+    yield f"the other {left}: about {_time(trial.seconds)} with {trial.workers} at a time, {disk:.2g} MB"
+    for tol, entry in trial.looser.items():
+        yield f"  all {trial.ahead} with --tol {tol:g}: about {_time(trial.seconds_with(entry))}"
+
+
+def _time(seconds: float) -> str:
+    """A time in a unit that leaves it small."""
+    if seconds < 120.0:
+        return f"{seconds:.3g} s"
+    return f"{seconds / 60.0:.3g} min" if seconds < 7200.0 else f"{seconds / 3600.0:.3g} h"

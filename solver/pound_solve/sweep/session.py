@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from pound_solve.driver.overrides import overridden
+from pound_solve.driver.reading import read as read_deck
 from pound_solve.results.sweep_file import Sweep
 from pound_solve.sweep import plan, summary, table
 from pound_solve.sweep.conduct import Conductor, State
@@ -13,9 +15,10 @@ from pound_solve.sweep.document import Document
 from pound_solve.sweep.entry import DONE, ENDS, FAILED, Entry, Journal
 from pound_solve.sweep.executors import Engine, engine
 from pound_solve.sweep.lock import locked
+from pound_solve.sweep.plan import Trial
 from pound_solve.sweep.run import Run
-from pound_solve.sweep.study import Study, read
-from pound_solve.sweep.work import Settings
+from pound_solve.sweep.study import Study, read, request_of
+from pound_solve.sweep.work import Settings, options_of_auto
 
 
 class Session:
@@ -45,10 +48,49 @@ class Session:
         """What is to be run, in words."""
         return plan.lines(self.study, self.agenda, self.entries)
 
-    def trial(self) -> list[Run]:
-        """The first, the middle and the last of the runs ahead."""
+    def trial(self, report: Callable[[State], None]) -> Trial:
+        """Carry out some of the runs ahead, to know what the others take.
+
+        The strongest shaking of the middle case tells it, since collisions and yielding take time; so do
+        the first and the last run where all cost little.  Where the others take long, the same run follows
+        with looser tolerances until one fits.
+        """
         ahead = self.agenda.ahead
-        return list(dict.fromkeys(ahead[i] for i in (0, len(ahead) // 2, -1))) if ahead else []
+        some = list(dict.fromkeys([_strongest(ahead), ahead[0], ahead[-1]])) if ahead else []
+        out = Trial(len(ahead), self.engine.workers)
+        with self.conductor(report) as conductor:
+            for entry in self._one_by_one(conductor, some):
+                out.entries.append(entry)
+                if out.spent > plan.LITTLE:
+                    break
+            if out.seconds > plan.LONG:
+                looser = list(self._looser(some[0]))
+                for run, entry in zip(looser, self._one_by_one(conductor, looser)):
+                    out.looser[run.case.tol or 0.0] = entry
+                    if out.seconds_with(entry) <= plan.LONG:
+                        break
+        return out
+
+    def _one_by_one(self, conductor: Conductor, runs: Sequence[Run]) -> Iterator[Entry]:
+        """What runs have come to, each carried out when it is asked for, up to an interruption."""
+        for run in runs:
+            interrupted = conductor.run([run]).ending
+            self.entries = self.journal.entries()
+            if run.identity in self.entries:
+                yield self.entries[run.identity]
+            if interrupted:
+                return
+
+    def _looser(self, run: Run) -> Iterator[Run]:
+        """The same run with tolerances above its own, if it took steps to meet one."""
+        ((_, values),) = self.journal.values({run.identity: self.entries[run.identity]})
+        request = request_of(run.case)
+        model = read_deck(request).model
+        if "error_estimate" in values and model is not None:
+            own = options_of_auto(overridden(model, request, []))
+            for tol in plan.LOOSER:
+                if own and tol > own["TOL"]:
+                    yield replace(run, case=replace(run.case, tol=tol))
 
     def conductor(self, report: Callable[[State], None]) -> Conductor:
         """What carries runs of the study out, for a ``with``."""
@@ -69,12 +111,11 @@ class Session:
             self.entries = self.journal.entries()
         return [self.entries[r.identity] for r in runs if r.identity in self.entries]
 
-    def estimate(self, tried: Sequence[Entry]) -> Iterator[str]:
+    def estimate(self, trial: Trial) -> Iterator[str]:
         """What the runs ahead will take beside those that were tried, in words."""
-        if tried:
+        if trial.entries:
             size = sum(p.stat().st_size for p in self.journal.folder.iterdir()) / len(self.entries)
-            left = len(self.agenda.ahead) - len(tried)
-            yield from plan.estimate(tried, left, self.engine.workers, size)
+            yield from plan.estimate(trial, size)
 
     def extend(self, runs: Sequence[Run]) -> None:
         """Take these runs for those of the study."""
@@ -118,6 +159,12 @@ class Session:
         yield f"{len(ends)} runs: {', '.join(counts)}" + (f"; {before} of them before" if before else "")
         others = [r for r, end in zip(self.runs, ends) if end not in (DONE, "")]
         yield from plan.reasons(others, self.entries)
+
+
+def _strongest(runs: Sequence[Run]) -> Run:
+    """The run of the highest level among those of the middle one's case."""
+    middle = runs[len(runs) // 2].case
+    return max((r for r in runs if r.case == middle), key=lambda r: r.shaking.level if r.shaking else 0.0)
 
 
 def run_study(path: str | Path, *, workers: int = 0, executor: str = "", retry: bool = False) -> Sweep:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from itertools import count
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -214,11 +214,17 @@ def output_of(model: Model, structure: Structure, histories: Sequence[str]) -> C
 
 def compared_peaks(model: Model) -> Collection[int]:
     """What AUTO compares between runs, see `compared.tolerances`; nothing with another method."""
+    options = options_of_auto(model)
+    return tolerances(options) if options else ()
+
+
+def options_of_auto(model: Model) -> dict[str, Any]:
+    """Items of HISTORY that are those of AUTO; none with another method."""
     for card in model.analyses:
         spec = card.laws["METHOD"][0] if card.spec.name == "HISTORY" else None
         if spec is not None and spec.name == "AUTO":
-            return tolerances({field.name: card[field.name] for field in spec.fields})
-    return ()
+            return {field.name: card[field.name] for field in spec.fields}
+    return {}
 
 
 def histories_of(record: RunRecord, names: tuple[str, ...]) -> dict[str, Array]:

@@ -133,9 +133,10 @@ def _swept(args: argparse.Namespace) -> int:
         progress = studies.Progress(args)
         if args.plan:
             print("\n".join(session.plan()))
-        tried = session.carry_out(session.trial() if args.plan else session.agenda.ahead, progress)
-        progress.end()
-        if args.plan:
-            print("\n".join(session.estimate(tried)))
+            trial = session.trial(progress)
+            progress.end()
+            print("\n".join(session.estimate(trial)))
             return common.DONE
+        session.carry_out(session.agenda.ahead, progress)
+        progress.end()
         return studies.ended(args, session, session.write() if args.task is None else None)
