@@ -15,7 +15,6 @@ from pound_deck.model import Model, Span
 from pound_deck.outline import Outline
 from pound_deck.schema import Catalog
 from pound_deck.source import Line, Source
-from pound_deck.source import opened as opened
 
 Reading = tuple[Model | None, list[Diagnostic], dict[str, str]]
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import errno
 import os
 import re
-import stat
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import IO, Final
+from typing import Final
 
 from pound_deck.diagnostics import Diagnostic
+from pound_deck.files import opened
 from pound_deck.model import Span
 
 MAX_BYTES: Final = 8_000_000
@@ -169,21 +168,6 @@ class Source:
 
     def _error(self, code: str, message: str, span: Span, hint: str = "") -> None:
         self.report.append(Diagnostic(code, message, span, hint))
-
-
-def opened(name: str | os.PathLike[str]) -> IO[bytes]:
-    """A file that is open to be read.
-
-    Raises
-    ------
-    OSError
-        It cannot be read.  Pipes and devices are no files: their end may never come, and what was read once
-        is gone.
-    """
-    kind = os.stat(name).st_mode
-    if not (stat.S_ISREG(kind) or stat.S_ISDIR(kind)):
-        raise OSError(errno.EINVAL, "a pipe or a device, not a file", os.fspath(name))
-    return open(name, "rb")
 
 
 def is_end(text: str) -> bool:

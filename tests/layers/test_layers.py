@@ -172,6 +172,16 @@ NUMERICS = (
 )
 
 
+#: modules that read files of the program, or of the system, whole; those of a user go through
+#: `pound_deck.files`, which refuses pipes and devices
+OF_THE_PROGRAM = {
+    "cards.py",
+    "numerics/digest.py",
+    "sweep/limits.py",
+    "report/html/__init__.py",
+    "report/plot/pictures/animation.py",
+    "cli/verbs/example.py",
+}
 #: methods that change a value in place
 CHANGING = {"append", "add", "update", "pop", "setdefault", "extend", "clear"}
 
@@ -226,6 +236,16 @@ def room(dotted):
     return words[1] if len(words) > 1 and words[1] in ROOMS else "__init__"
 
 
+def test_files_of_a_user_are_read_in_one_way():
+    reading = {
+        place(path)
+        for path in modules()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Attribute) and node.attr in ("read_text", "read_bytes")
+    }
+    assert reading == OF_THE_PROGRAM
+
+
 def test_the_parser_knows_nothing_of_the_solver_nor_of_numbers():
     allowed = set(sys.stdlib_module_names) | {"lark", "pound_deck"}
     for path in DECK.rglob("*.py"):
@@ -233,7 +253,7 @@ def test_the_parser_knows_nothing_of_the_solver_nor_of_numbers():
 
 
 def test_old_decks_are_read_with_the_parts_of_the_parser_that_hold_no_grammar():
-    allowed = {"pound_deck.diagnostics", "pound_deck.model", "pound_deck.schema", "pound_deck.source"}
+    allowed = {f"pound_deck.{name}" for name in ("diagnostics", "files", "model", "schema", "source")}
     for path in LEGACY.rglob("*.py"):
         for name in imported(path):
             package = name.split(".")[0]
@@ -257,7 +277,7 @@ def test_each_library_has_one_door(library):
 def test_the_solver_takes_the_model_from_the_parser_and_only_the_top_reads_decks():
     for path in SOLVER.rglob("*.py"):
         taken = {n.split(".")[1] for n in imported(path) if n.startswith("pound_deck.")}
-        allowed = {"model", "schema", "diagnostics", "messages"}
+        allowed = {"model", "schema", "diagnostics", "messages", "files"}
         if place(path).startswith(("driver/", "cli/", "assess/", "sweep/")):
             allowed |= {"reader"}
         if place(path).startswith("cli/"):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from pound_deck.diagnostics import Diagnostic
+from pound_deck.files import opened
 from pound_deck.model import Model, Span
 from pound_solve.driver.request import Request
 from pound_solve.loading.motions.base import LoadingContext
@@ -56,7 +57,7 @@ def _of_others(path: Path, mark: bytes) -> bool:
     """Whether there is a file, not empty, that does not bear our mark, or a folder, a pipe or a device."""
     if not path.is_file():
         return path.exists()
-    with suppress(OSError), path.open("rb") as file:
+    with suppress(OSError), opened(path) as file:
         start = file.read(START)
         return bool(start) and mark not in start
     return False

@@ -12,6 +12,7 @@ import os
 import re
 from pathlib import Path
 
+from pound_deck.files import contents
 from pound_solve.results.form import ResultsError
 from pound_solve.results.whole_file import hold, make_way, partial
 
@@ -68,7 +69,5 @@ def _lay(own: Path, report: str) -> None:
 
 def digest_in(report: Path) -> str:
     """Digest of the results that a report was made from; empty where it has none."""
-    found = (
-        _DIGEST.search(report.read_text(encoding="ascii", errors="replace")) if report.is_file() else None
-    )
+    found = _DIGEST.search(contents(report).decode("ascii", "replace")) if report.is_file() else None
     return found[0].split()[-1] if found else ""

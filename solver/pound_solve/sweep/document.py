@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from pound_deck.diagnostics import Diagnostic, suggest
+from pound_deck.files import contents
 from pound_deck.model import Span
-from pound_deck.reader import opened
 from pound_deck.schema import GREAT, OF_MAGNITUDE
 
 Path_ = tuple[str | int, ...]  #: of an item: names of tables, numbers in lists of tables, its own name
@@ -89,8 +89,7 @@ class Document:
     @classmethod
     def read(cls, path: str) -> Document:
         """Read a file; raises OSError where it cannot be read."""
-        with opened(path) as file:
-            text = file.read().decode("utf-8-sig", "replace")
+        text = contents(path).decode("utf-8-sig", "replace")
         out = cls(path, Path(path).parent, files={path: text}, places=places(text, path))
         if deep := next((place for names, place in out.places.items() if len(names) > DEEPEST), None):
             message = f"a name of more than {DEEPEST} parts"

@@ -19,7 +19,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from pound_deck.reader import opened
+from pound_deck.files import opened
 from pound_solve.numerics.types import Array
 from pound_solve.results.whole_file import write
 from pound_solve.sweep.quantities import Values

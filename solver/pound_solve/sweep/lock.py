@@ -7,7 +7,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import IO
 
-from pound_deck.reader import opened
+from pound_deck.files import opened
 
 try:
     import fcntl

@@ -16,8 +16,8 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from pound_deck.diagnostics import Diagnostic, has_errors, render, suggest
+from pound_deck.files import contents
 from pound_deck.model import Model
-from pound_deck.reader import opened
 from pound_solve.driver import loading
 from pound_solve.driver.overrides import option
 from pound_solve.driver.prepare import DeckError, prepare
@@ -254,8 +254,7 @@ class _Reader:
             return None
         file = self._beside(name)
         try:
-            with opened(file) as stream:
-                text = stream.read().decode("utf-8-sig")
+            text = contents(file).decode("utf-8-sig")
         except (OSError, UnicodeDecodeError) as err:
             document.mistake("S604", f"{name} cannot be read: {err}", path)
             return []

@@ -26,11 +26,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Lay out the deck and write it, unless it has mistakes of syntax."""
     from pound_deck.diagnostics import render
+    from pound_deck.files import contents
     from pound_deck.layout import arranged
-    from pound_deck.reader import opened
 
-    with opened(args.deck) as file:
-        data = file.read()
+    data = contents(args.deck)
     new, found, files = arranged(str(args.deck), data)
     if found:
         print(render(found, files), file=sys.stderr)

@@ -31,15 +31,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Write the new deck; print how the old one was read."""
     from pound_deck.diagnostics import has_errors, render
-    from pound_deck.reader import opened
+    from pound_deck.files import contents
     from pound_legacy.equake import File
     from pound_solve.driver.reading import imported
 
     folder = args.out.parent if args.out else Path()
-    records = []
-    for path in args.record:
-        with opened(path) as file:
-            records.append(File(_from(folder, path), file.read().decode("latin-1")))
+    records = [File(_from(folder, path), contents(path).decode("latin-1")) for path in args.record]
     text, old = imported(str(args.deck), records, _from(folder, args.deck))
     print(render(old.report, {str(args.deck): text}), file=sys.stderr)
     if has_errors(old.report):

@@ -61,15 +61,14 @@ def execute(args: argparse.Namespace) -> int:
 
 def _turning_points(args: argparse.Namespace) -> list[float]:
     """Numbers of --path or --file; empty where neither is given."""
-    from pound_deck.reader import opened
+    from pound_deck.files import contents
     from pound_solve.assess.law_test import LawTestError
 
     if args.path and args.file:
         raise LawTestError("give --path or --file, not both")
     text = args.path or ""
     if args.file:
-        with opened(args.file) as file:
-            text = file.read().decode("utf-8")
+        text = contents(args.file).decode("utf-8")
     words = [w for line in text.splitlines() for w in line.split("#")[0].replace(",", " ").split()]
     out = common.numbers(words, "--path and --file take deformations", LawTestError)
     if (args.path is not None or args.file) and not out:

@@ -47,7 +47,7 @@ def _time(word: str) -> float:
 
 def execute(args: argparse.Namespace) -> int:
     """Draw the pictures, print their paths and name those left out."""
-    from pound_deck.reader import opened
+    from pound_deck.files import opened
     from pound_solve.report import plot
     from pound_solve.results import Results, ResultsError
 

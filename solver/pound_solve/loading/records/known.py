@@ -16,6 +16,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final
 
+from pound_deck.files import contents
 from pound_solve.loading.records.base import RecordError
 from pound_solve.loading.records.foreign import refuse_binary
 
@@ -217,7 +218,7 @@ def load(path: Path) -> tuple[str, str]:
         R401 where the file cannot be opened, R402 where it is no text.
     """
     try:
-        data = path.read_bytes()
+        data = contents(path)
     except OSError as error:
         raise RecordError("R401", f"{path}: {error.strerror or error}") from error
     try:

@@ -15,6 +15,7 @@ from pathlib import Path
 from subprocess import CalledProcessError
 from typing import Any, Final
 
+from pound_deck.files import contents
 from pound_solve.report.plot.schema import ChoiceError
 from pound_solve.results.whole_file import whole, write
 
@@ -56,7 +57,7 @@ def _settings(path: Path) -> Any:
     from matplotlib import RcParams, rcParams
 
     out: Any = RcParams()
-    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+    for number, line in enumerate(contents(path).decode("utf-8", "replace").splitlines(), 1):
         name, colon, value = (part.strip() for part in line.partition("#")[0].partition(":"))
         where = f"{path}:{number}"
         if not name and not colon:
