@@ -11,10 +11,12 @@ crack points.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from pound_deck.schema import Field, Kind
 from pound_solve.laws.automaton import Numbers, above, below, linear
+from pound_solve.laws.hysteresis.backbone import R as SHARE_OF_INITIAL
 from pound_solve.laws.mirror import need_both_sides, outward, pair, side, turns_inward
 
 # branches of the positive side; those of the negative side are one more
@@ -24,6 +26,9 @@ PARAMETERS = 9  #: numbers of a law that belong to the backbone, with the power 
 
 Point = tuple[float, float]  #: deformation and force, mirrored
 
+R = replace(
+    SHARE_OF_INITIAL, doc="post-yield stiffness as a share of the secant stiffness to the yield point"
+)
 FCR = Field(
     "FCR",
     Kind.REAL,

@@ -39,7 +39,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, linear
-from pound_solve.laws.hysteresis.backbone import ALFA, R
+from pound_solve.laws.hysteresis.backbone import ALFA
 from pound_solve.laws.hysteresis.cracking import (
     ELASTIC,
     FCR,
@@ -47,6 +47,7 @@ from pound_solve.laws.hysteresis.cracking import (
     RHO,
     YIELDING,
     Point,
+    R,
     backbone,
     backbone_branch,
     enter,

@@ -45,13 +45,14 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import BranchKind, Law, Numbers, Rule, linear
-from pound_solve.laws.hysteresis.backbone import ALFA, R
+from pound_solve.laws.hysteresis.backbone import ALFA
 from pound_solve.laws.hysteresis.cracking import (
     ELASTIC,
     FCR,
     PARAMETERS,
     RHO,
     YIELDING,
+    R,
     backbone,
     backbone_branch,
     enter,
