@@ -7,7 +7,8 @@ which falls little by little while everything else is still: with the force F th
 
 .. math:: K_{ZZ}\,u_Z + f_Z(u_Z) = p_Z - (1 - \lambda)\,F\,b_Z, \qquad 0 \le \lambda \le 1 ,
 
-from one change of branch to the next.  The force at work on the way is lost with the law that failed.
+from one change of branch to the next.  The force at work on the way is lost with the law that failed; loads
+put in what they do on it.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from typing import Protocol
 import numpy as np
 
 from pound_solve.integrate.protocol import CHANGES, CHANGES_PER_LAW, Stop
+from pound_solve.integrate.tracker import ResponseTracker
 from pound_solve.laws.automaton import Branch, EventFunction
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.matrices import dense, used_rows, weighted
@@ -43,6 +45,7 @@ class JumpingRun(Protocol):
     t: float
     u: Array
     system: ReducedSystem
+    tracker: ResponseTracker
 
     @property
     def branches(self) -> Sequence[Branch]:
@@ -57,8 +60,8 @@ class JumpingRun(Protocol):
         """Let a law leave its branch at deformation `d` on a way in the direction of `v`."""
         ...
 
-    def take_release(self, law: int, lost: float) -> None:
-        """Count the work that a falling force has done into that on its law."""
+    def take_release(self, law: int, lost: float, put_in: float) -> None:
+        """Count the work that a falling force has done into that on its law, and what loads have put in."""
         ...
 
     def stop(self, code: str, why: str) -> Stop:
@@ -113,8 +116,9 @@ def release(run: JumpingRun, law: int) -> None:
     Stop
         Nothing holds one of them on the way, or the changes of branch do not end.
     """
-    system = run.system
+    system, members = run.system, run.system.structure.corotational
     rows, own = system.law_rows, system.excitation.about(np.array([run.t]))[0]
+    columns = np.array(system.columns)
     s = polynomial.value(own, 0.0, 0)
     for _ in range(CHANGES + CHANGES_PER_LAW * len(run.branches)):
         z = quick(system, run.branches)
@@ -123,9 +127,13 @@ def release(run: JumpingRun, law: int) -> None:
         d = rows @ run.u + system.law_inputs @ s
         force, tangent = np.array([run.force(i, x) for i, x in enumerate(d.tolist())]).T
         left = (system.inputs @ s + system.constant - system.stiffness @ run.u - rows.T @ force)[z]
+        stiffness = dense(system.stiffness[np.ix_(z, z)] + weighted(rows[:, z], tangent))
+        if members:
+            whole, at = system.all_dofs(run.u, run.t), columns[z]
+            left -= members.forces(whole)[at]
+            stiffness += dense(members.stiffness(whole)[np.ix_(at, at)])
         if (np.abs(left) <= BALANCED * sizes(system, run.u, force)[z]).all():
             return
-        stiffness = dense(system.stiffness[np.ix_(z, z)] + weighted(rows[:, z], tangent))
         try:
             np.linalg.cholesky(stiffness)
         except np.linalg.LinAlgError:
@@ -138,7 +146,12 @@ def release(run: JumpingRun, law: int) -> None:
             return
         share, i, e = first_on_way(run.branches, d, move)
         run.u[z] += share * way
-        run.take_release(law, float(left @ way) * (share - 0.5 * share * share))
+        put_in = float(system.applied(s) @ (system.expand[:, z] @ (share * way)))
+        run.take_release(law, float(left @ way) * (share - 0.5 * share * share), put_in)
+        d += share * move
+        for j in np.flatnonzero(move).tolist():  # extremes stand at the ends of the straight parts
+            run.tracker.deformation(j).take(float(d[j]), run.t)
+            run.tracker.force(j).take(run.force(j, float(d[j]))[0], run.t)
         if i >= 0:
-            run.transition(i, e, float(d[i] + share * move[i]), float(move[i]))
+            run.transition(i, e, float(d[i]), float(move[i]))
     raise run.stop("A503", "the changes of branch where a force is lost do not end")

@@ -38,6 +38,8 @@ class Answer(NamedTuple):
         Error that AUTO estimates; None where it takes no steps.
     met : bool
         Whether it says that the tolerance is met.
+    unique : bool
+        Whether it finds only one motion.
     peaks : dict
         By kind: drift, contact, spring, hinge, displacement, acceleration, member; an array of rows.
     units : list of str
@@ -50,6 +52,7 @@ class Answer(NamedTuple):
     seconds: float
     claimed: float | None
     met: bool
+    unique: bool
     peaks: dict[str, Array]
     units: list[str]
 
@@ -68,17 +71,19 @@ def answer(deck: Path, records: Path | None, method: str, options: Mapping[str, 
             with bar, pound_solve.run(deck, out=out, records=folders, method=chosen, **options) as results:
                 return _read(results)
         except DeckError as err:
-            return Answer("refused", str(err), "", 0.0, None, False, {}, [])
+            return Answer("refused", str(err), "", 0.0, None, False, True, {}, [])
 
 
 def _read(results: Results) -> Answer:
     """Read an answer from a results file."""
     facts = {r["item"]: r["value"] for name in ("run", "run_figures") if name in results.tables
              for r in results.table(name)}  # fmt: skip
-    claimed, met = None, True
+    claimed, met, unique = None, True, True
     for check in results.checks:
         if check.subject is Subject.ERROR:
             claimed, met = check.value, not check.looks
+        elif check.subject is Subject.UNIQUENESS:
+            unique = not check.looks
     done = results.status == "done"
     return Answer(
         results.status,
@@ -87,6 +92,7 @@ def _read(results: Results) -> Answer:
         float(facts.get("solve seconds, CPU", "nan")),
         claimed,
         met,
+        unique,
         _peaks(results) if done else {},
         [re.sub(r" [IJ]$", "", str(q)) for q in results.table("member_envelope")["quantity"]]
         if done

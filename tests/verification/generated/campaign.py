@@ -7,6 +7,8 @@ For every seed AUTO solves the deck, and, where it took no steps, AUTO that may 
 (``STEPS``).  NEWMARK with ever shorter steps, TAYLOR and EXACT give the independent answer: that of
 another method than AUTO took.  How sure it is: TAYLOR and EXACT have no truncation error; steps are
 quartered until a third of the difference to the run before is a small share of TOL, and that is told.
+Where collisions make small differences large that share is too small: EXACT decides where steps and TAYLOR
+are further apart than TOL.
 One row per answer of AUTO goes into a file of JSON lines, in which a later run goes on.  Without seeds, the
 tables of a file are printed.
 """
@@ -57,7 +59,7 @@ class Worker:
             self._start()
         self.tasks += 1
         self.connection.send(task)
-        limit = self.limit if task[2] == "AUTO" else min(self.limit, CHECK_LIMIT)
+        limit = self.limit if task[2] in ("AUTO", "EXACT") else min(self.limit, CHECK_LIMIT)
         begun = self.used()
         while not self.connection.poll(0.2) and self.used() < begun + limit:
             pass
@@ -67,9 +69,9 @@ class Worker:
                 return found
             except EOFError:
                 self.end()
-                return Answer("crashed", "the process ended", "", np.nan, None, False, {}, [])
+                return Answer("crashed", "the process ended", "", np.nan, None, False, True, {}, [])
         self.end()
-        return Answer("timeout", f"no end in {limit:g} s", "", limit, None, False, {}, [])
+        return Answer("timeout", f"no end in {limit:g} s", "", limit, None, False, True, {}, [])
 
     def used(self) -> float:
         """CPU seconds of the process; seconds where the system does not tell [s]."""
@@ -117,7 +119,7 @@ def serve(connection: Connection) -> None:
             connection.send(answer(*task))
         except Exception as err:
             connection.send(
-                Answer("crashed", f"{type(err).__name__}: {err}", "", np.nan, None, False, {}, [])
+                Answer("crashed", f"{type(err).__name__}: {err}", "", np.nan, None, False, True, {}, [])
             )
 
 
@@ -179,7 +181,11 @@ class Seed:
         if taken != "TAYLOR" and self.by("TAYLOR").status == "done":
             return Reference("TAYLOR", 0.0, self.by("TAYLOR"))
         step, found, left = self.ladder[-1] if self.ladder else (0.0, None, np.inf)
-        if left > SURE * self.tol and taken != "EXACT" and self.by("EXACT").status == "done":
+        doubtful = left > SURE * self.tol
+        own = self.by("AUTO")
+        if own.method == taken == "TAYLOR" and own.status == "done" and found is not None:
+            doubtful |= errors(own, found)["auto"] > self.tol
+        if doubtful and taken != "EXACT" and self.by("EXACT").status == "done":
             return Reference("EXACT", 0.0, self.by("EXACT"))
         return None if found is None else Reference(f"NEWMARK {step:.2g}", left, found)
 
@@ -209,6 +215,7 @@ class Seed:
             row |= {"reference": truth.name, "uncertain": truth.uncertain}
             row["best"], row["best seconds"] = self.best(truth)
             if own.status == "done":
+                row["unique"] = own.unique and truth.answer.unique
                 row["errors"] = {k: float(f"{x:.3g}") for k, x in errors(own, truth.answer).items()}
         return row | {"outcome": outcome(row)}
 
@@ -225,6 +232,8 @@ def outcome(row: Mapping[str, Any]) -> str:
         return "not met, told"
     if error <= tol:
         return "right"
+    if not row["unique"]:
+        return "not unique, told"
     return "unsure" if error <= tol + uncertain or uncertain > SURE * tol else "above"
 
 

@@ -92,10 +92,16 @@ class EventDrivenRun(ABC):
         """Force of a law at rest at deformation `d`, and its tangent."""
         return self.laws[law].law.force(self.states[law], d)[:2]
 
-    def take_release(self, law: int, lost: float) -> None:
-        """Count the work that a falling force has done into that on its law."""
+    def take_release(self, law: int, lost: float, put_in: float) -> None:
+        """Count the work that a falling force has done into that on its law, and what loads have put in."""
         at, d, work, m = self.states[law]
         self.states[law] = at, d, work + lost, m
+        self.take_works(np.array([put_in, 0.0, 0.0]))
+
+    def take_works(self, works: Array) -> None:
+        """Count works that are done in no time, shape (3,)."""
+        before = self.energy.array()
+        self.energy.advance(np.array([before, before + works]))
 
     def _look_for_ties(self, law: int, d: Array, v: Array) -> None:
         """Look which laws come to the end of their branches with one that is softer now."""

@@ -246,9 +246,13 @@ class Exact(EventDrivenRun):
         """Forces of all laws at deformations and rates (see `RigidRun`)."""
         return linear_forces(self.branches)(d, v)
 
+    def take_works(self, works: Array) -> None:
+        """Count works that are done in no time, shape (3,)."""
+        self.work.add(works)
+
     def take_impact(self, put_in: float, lost: Array) -> None:
         """Count the works of an impact of rigid contacts (see `RigidRun`)."""
-        self.work.add(np.array([put_in, 0.0, lost.sum()]))
+        self.take_works(np.array([put_in, 0.0, lost.sum()]))
         self.energy.dashpot_losses += lost
 
     def _check_progress(self, length: float, rest: float) -> None:

@@ -197,15 +197,15 @@ def normal_of(laws: Sequence[LawSpring], law: LawSpring) -> tuple[int, int]:
     return -1, 0
 
 
-def rates_at_rest(system: ReducedSystem, start: Start, d: Array, dt: float) -> Array:
-    r"""Rates that rounding makes of the deformations `d` at a start within a step, shape (n_laws,): of the
-    strain energy E there a law has a share of :math:`\epsilon^2`, so that it moves by
-    :math:`\epsilon\sqrt{2E/k}`, whatever units its deformation has.
+def rounding_at_rest(system: ReducedSystem, start: Start, d: Array) -> Array:
+    r"""What rounding makes of the deformations `d` at a start, shape (n_laws,): of the strain energy E
+    there a law has a share of :math:`\epsilon^2`, so that it moves by :math:`\epsilon\sqrt{2E/k}`, whatever
+    units its deformation has.
     """
     k = np.array([s.steepest for s in system.structure.laws], float)
     doubled = float(np.abs(start.u) @ np.abs(system.stiffness @ start.u) + k @ d**2)
     square: Array = np.divide(doubled, k, out=np.zeros_like(k), where=k > 0.0)
-    return ROUNDING / dt * np.sqrt(square)
+    return ROUNDING * np.sqrt(square)
 
 
 def law_arrays(
@@ -219,6 +219,7 @@ def law_arrays(
     t, value = float(start.times[0]), system.excitation.value
     d = np.asarray(system.law_rows @ start.u + system.law_inputs @ value(t), float)
     v = np.asarray(system.law_rows @ start.v + system.law_inputs @ value(t, 1), float)
+    rounding = rounding_at_rest(system, start, d)
     rows = sparse_rows(system.law_rows[:, own.order])
     pointers, places, values = places_in_pattern(rows, own)
     normal = np.array([normal_of(laws, s) for s in laws], np.int64).reshape(count, 2).T
@@ -260,9 +261,9 @@ def law_arrays(
         limits_at_start=np.zeros((count, EVENTS)),
         now=state.LawMotion(d, v),
         trial=state.LawMotion(zeros(), zeros()),
-        largest_deformation=np.abs(d),
+        largest_deformation=np.maximum(np.abs(d), rounding / STILL),
         largest_rate=np.abs(v),
-        largest_terms=np.maximum(np.abs(v), rates_at_rest(system, start, d, dt) / STILL),
+        largest_terms=np.maximum(np.abs(v), rounding / dt / STILL),
         friction_force=zeros(),
         dashpot_loss=dashpot_losses,
         peak_force=zeros(),
@@ -399,5 +400,6 @@ def run_record(t: float, initial_energy: float) -> state.Run:
     out: state.Run = record(state.Run)
     out.time, out.factor_length, out.initial_energy = t, -1.0, initial_energy
     out.longest_part = np.inf
-    out.fault = -1
+    out.fault = out.fell = -1
+    out.rest = -1.0
     return out

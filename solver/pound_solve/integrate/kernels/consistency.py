@@ -28,6 +28,7 @@ from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import quantity_stiffness
 
 NEAR = 1e-6  #: share of its largest value within which an event is accepted where it cannot be met better
+LOST = 10.0 * NEAR  #: share of the forces of a law above which it has lost one at an event
 DELAY = 1e-8  #: share of the longest C / K among massless unknowns that e is
 
 
@@ -38,6 +39,18 @@ def touches_massless(linear: LinearSystem, laws: Laws, i: int) -> bool:
             if not linear.has_mass[laws.rows.columns[q]]:
                 return True
     return False
+
+
+def lets_go(linear: LinearSystem, laws: Laws, i: int, stiffness: float, offset: float, d: float) -> bool:
+    """Whether law `i` has lost a force that holds an unknown without mass, as it left a branch of that
+    `stiffness` and `offset` at the deformation `d`.
+    """
+    if laws.contact[i] or laws.curved[i]:
+        return False
+    own, now, after = laws.largest_deformation[i], laws.stiffness[i], laws.offset[i]
+    size = (abs(stiffness) + abs(now)) * own + abs(offset) + abs(after)
+    lost = abs((stiffness - now) * d + offset - after) > LOST * size
+    return lost and touches_massless(linear, laws, i)
 
 
 def slowest_decay(linear: LinearSystem, laws: Laws, step: Step) -> float:

@@ -12,8 +12,8 @@ from pound_solve.integrate.tracker import Extremes
 from pound_solve.numerics.ldl import Pattern, Place
 from pound_solve.numerics.types import Array, Flags, Index
 
-# why a kernel returns to Python
-DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON = range(7)
+#: why a kernel returns to Python; `FALL`: a force falls that holds a joint without mass
+DONE, FULL, RUNAWAY, CHATTER, CROWD, PIVOT, NEWTON, FALL = range(8)
 #: rows of `Step.factors` and of their pivots: A for the nominal step, A for a part of it, M, and
 #: ``K + C / e``, e a tiny time, over the massless unknowns
 WHOLE, PART, MASS, MASSLESS = range(4)
@@ -35,6 +35,7 @@ class Run(Protocol):
     steps: int
     events: int
     same_instant: int  #: transitions at one instant
+    fell: int  #: law whose force has fallen and holds a joint without mass, -1 for none
     driven: int  #: branches left in a step that is not cut at events
     updates: int  #: of rank one since the factor was made
     stale: int  #: whether what follows from the branches of the laws, as a factor, must be made anew
@@ -45,6 +46,7 @@ class Run(Protocol):
     factor_length: float  #: step that the factor at hand is for
     initial_energy: float  #: kinetic and recoverable
     longest_part: float  #: that a step may take at once for now
+    rest: float  #: of a step that stopped where a force fell, negative for none
     last_event: float  #: time of the last transition
 
 

@@ -19,6 +19,7 @@ from pound_solve.integrate.kernels.recording import (
 from pound_solve.integrate.kernels.state import (
     CHATTER,
     DONE,
+    FALL,
     FULL,
     RUNAWAY,
     Buffers,
@@ -65,8 +66,8 @@ AHEAD = 1e-3  #: part of a step that laws are looked at for which may leave at t
 CUT = 0.5  #: part of a step, as it was tried, that is taken at least
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
 #: why `march` came back, beside those of `kernels.state`: steps are too short for the clock; an unknown
-#: without mass is not held; a rigid contact touches or parts; a force at a joint without mass falls
-SHORT, LOOSE, STRIKE, FALL = 7, 8, 9, 10
+#: without mass is not held; a rigid contact touches or parts
+SHORT, LOOSE, STRIKE = 8, 9, 10
 
 
 def add_law_losses(

@@ -36,7 +36,7 @@ from pound_solve.integrate.kernels import allocation
 from pound_solve.integrate.kernels import laws as law_kernels
 from pound_solve.integrate.kernels.engine import KernelEngine
 from pound_solve.integrate.kernels.recording import PAUSE
-from pound_solve.integrate.kernels.state import CHATTER, RUNAWAY, Scheme
+from pound_solve.integrate.kernels.state import CHATTER, FALL, RUNAWAY, Scheme
 from pound_solve.integrate.protocol import CHATTER as CHATTERS
 from pound_solve.integrate.protocol import RUNAWAY as GROWS
 from pound_solve.integrate.protocol import (
@@ -214,12 +214,12 @@ class Taylor(KernelEngine):
         """Let rigid contacts strike, close or part, or joints without mass move where a force falls; stop
         where there is no going on.
         """
-        if why not in (march.STRIKE, march.FALL):
+        if why not in (march.STRIKE, FALL):
             raise self.trouble(why)
-        if why == march.FALL:
+        if why == FALL:
             present = Present(self, self.series)
             release(present, int(self.state.fault))
-            present.hand_back(np.zeros(0, np.int64))
+            present.hand_back()
             self.state.fault = -1  # it has fallen: what is left of a jump is rounding
             return
         self._at_instant(self._strike)
@@ -247,7 +247,7 @@ class Taylor(KernelEngine):
         except ArithmeticError as err:
             raise self.stop("A503", str(err)) from None
         known = (self.massless.law_number < 0) & (self.series.friction.number < 0)
-        present.hand_back(np.flatnonzero(known))
+        present.hand_back_impact(np.flatnonzero(known))
         self._hold(instants.rounding)
 
     def _hold(self, rounding: Array | float = 0.0) -> None:

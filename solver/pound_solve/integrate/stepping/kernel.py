@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pound_solve.integrate.energy import Works, runs_away
 from pound_solve.integrate.events.within_step import first_event
-from pound_solve.integrate.kernels.consistency import make_consistent
+from pound_solve.integrate.kernels.consistency import lets_go, make_consistent
 from pound_solve.integrate.kernels.laws import (
     event_on_path,
     linear_force,
@@ -41,27 +41,31 @@ from pound_solve.integrate.kernels.state import (
     Step,
 )
 from pound_solve.integrate.protocol import STILL
-from pound_solve.integrate.stepping.locating import step_in_parts
+from pound_solve.integrate.stepping.locating import go_on, step_in_parts
 from pound_solve.integrate.stepping.step import REFRESH, accept, factorise, try_step, update_factor
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.jit import flat
 from pound_solve.numerics.types import Array, Flags, Index
 
 
-def drive_law(laws: Laws, rules: Tables, i: int, run: Run) -> None:
+def drive_law(linear: LinearSystem, laws: Laws, rules: Tables, i: int, run: Run) -> bool:
     """Drive law `i` along a straight path from its start in the step to its end, by the branches on the
-    way.
+    way; False where it loses a force on it that holds a joint without mass.
     """
     d, d1, v1 = laws.now.deformation[i], laws.trial.deformation[i], laws.trial.rate[i]
     for _ in range(100):
         event, where = event_on_path(laws, i, d, d1, v1)
         if event < 0:
             break
+        k, f0 = laws.stiffness[i], laws.offset[i]
         transition(laws, rules, i, event, where, v1)
+        if lets_go(linear, laws, i, k, f0, where):
+            return False
         run.driven += 1
         d = where
     if laws.curved[i]:
         linearise_law(laws, rules, i, d1, v1)
+    return True
 
 
 def drive_laws(
@@ -72,7 +76,8 @@ def drive_laws(
     Returns
     -------
     int
-        DONE where no law has changed, FULL where one has and the step must be solved again, or PIVOT.
+        DONE where no law has changed, FULL where one has and the step must be solved again, NEWTON where
+        the step must be cut at its events, or PIVOT.
     """
     why = DONE
     for i in range(len(laws.rule)):
@@ -85,7 +90,8 @@ def drive_laws(
         else:
             restore_state(laws, rules, i)
         run.stale = 1
-        drive_law(laws, rules, i, run)
+        if not drive_law(linear, laws, rules, i, run):
+            return NEWTON
         changed = laws.stiffness[i] != k or laws.damping[i] != c
         if not changed and abs(laws.offset[i] - f0) <= STILL * abs(f0):
             continue
@@ -120,6 +126,8 @@ def step_through(
             continue
         if why == PIVOT:
             return PIVOT
+        if why == NEWTON:
+            break
         accept(linear, laws, step, rules, scheme, length, WHOLE, works, run)
         run.time += length
         run.events += run.driven
@@ -271,19 +279,24 @@ def advance(
             why = renew_factor(linear, laws, step, scheme, h, run)
             if why != DONE:
                 return why
-            last = min(steps[goal] - 1, run.step + min(pause - run.steps, more))
-            tried = plain_steps(
-                linear, laws, step, buffers, rules, scheme, piece, begin, works, run, h, last
-            )
-            if not tried and (run.step == last < steps[goal] - 1 or run.updates > REFRESH):
-                continue
-            length = h if run.step < steps[goal] - 1 else goals[goal] - run.time
-            why = NEWTON
-            if not scheme.locate:
-                why = step_through(
-                    linear, laws, step, buffers, rules, scheme, piece, begin, works, run, length, tried
+            why, tried = NEWTON, False
+            if run.rest >= 0.0:
+                go_on(linear, laws, step, buffers, rules, run)
+                length, run.rest = run.rest, -1.0
+            else:
+                last = min(steps[goal] - 1, run.step + min(pause - run.steps, more))
+                tried = plain_steps(
+                    linear, laws, step, buffers, rules, scheme, piece, begin, works, run, h, last
                 )
-                tried = False
+                if not tried and (run.step == last < steps[goal] - 1 or run.updates > REFRESH):
+                    continue
+                length = h if run.step < steps[goal] - 1 else goals[goal] - run.time
+                run.same_instant = 0
+                if not scheme.locate:
+                    why = step_through(
+                        linear, laws, step, buffers, rules, scheme, piece, begin, works, run, length, tried
+                    )
+                    tried = False
             if why == NEWTON:  # cut at its events a step always has a solution
                 why = step_in_parts(
                     linear, laws, step, buffers, rules, scheme, piece, begin, works, run, length, h, tried

@@ -16,7 +16,12 @@ from pound_solve.integrate.events.within_step import (
     time_of_event,
     value_at_start,
 )
-from pound_solve.integrate.kernels.consistency import NEAR, make_consistent, touches_massless
+from pound_solve.integrate.kernels.consistency import (
+    NEAR,
+    lets_go,
+    make_consistent,
+    touches_massless,
+)
 from pound_solve.integrate.kernels.laws import (
     couple,
     hold_friction_limits,
@@ -29,6 +34,7 @@ from pound_solve.integrate.kernels.state import (
     CHATTER,
     CROWD,
     DONE,
+    FALL,
     NEWTON,
     PART,
     PIVOT,
@@ -69,8 +75,10 @@ def change_branch(
     before, k, c = laws.branch[i], laws.stiffness[i], laws.damping[i]
     if laws.normal[i] >= 0:
         couple(laws, rules, step.now.acceleration, i)
-    d, v = laws.now.deformation[i], laws.now.rate[i]
+    d, v, f0 = laws.now.deformation[i], laws.now.rate[i], laws.offset[i]
     transition(laws, rules, i, event, d, v)
+    if laws.normal[i] < 0 and lets_go(linear, laws, i, k, f0, d):
+        run.fell = i
     if laws.curved[i]:
         linearise_law(laws, rules, i, d, v)
     change = scheme.gamma * h * (laws.damping[i] - c) + scheme.beta * h * h * (laws.stiffness[i] - k)
@@ -130,7 +138,9 @@ def change_branches(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
     run: Run, h: float, event: LocatedEvent,
 ) -> None:  # fmt: skip
-    """Let a law leave its branch, and those that are marked, and make the state consistent."""
+    """Let a law leave its branch, and those that are marked, and make the state consistent, unless a force
+    has fallen: joints must move first.
+    """
     laws.saved[event.law] = 1 + event.event_index
     for j in range(len(step.product)):
         step.product[j] = 0.0
@@ -145,8 +155,15 @@ def change_branches(
         for q in range(laws.rows.pointers[i], laws.rows.pointers[i + 1]):
             step.product[laws.rows.columns[q]] = 1.0
         laws.saved[i] = 0
+    if run.fell < 0:
+        go_on(linear, laws, step, buffers, rules, run)
+
+
+def go_on(linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, run: Run) -> None:
+    """Make the state consistent after what has jumped, and keep it."""
     make_consistent(linear, laws, step)
     track(linear, laws, step, run.time, 0.0)
+    store_motion(laws, step, buffers, rules, run, run.time)
 
 
 class Bracket(NamedTuple):
@@ -279,9 +296,10 @@ def step_in_parts(
     and `tried` says that the first trial is made.
 
     A part is halved until Newton converges.  After the touch of a curved contact the parts grow from a
-    short one: forces like the fourth root of time begin there.
+    short one: forces like the fourth root of time begin there.  Where a force falls that holds a joint
+    without mass, the step stops, for Python to move the joint (see `integrate.release`).
     """
-    left, same, halvings, longest = length, 0, 0, np.inf
+    left, halvings, longest = length, 0, np.inf
     most, curved = 100 + 8 * len(laws.rule), laws.curved.any()
     at = WHOLE if abs(length - h) <= 1e-9 * h else PART
     while left > 0.0:
@@ -315,7 +333,7 @@ def step_in_parts(
                 return why
             part = event.time
             if part > 1e-9 * h:
-                same = 0
+                run.same_instant = 0
         else:
             run.longest_part *= 2.0
         if part > 0.0:
@@ -330,9 +348,11 @@ def step_in_parts(
         if law < 0:
             continue
         change_branches(linear, laws, step, buffers, rules, scheme, run, h, event)
-        store_motion(laws, step, buffers, rules, run, run.time)  # it may have jumped
         run.fault = law
-        same += 1
-        if same > most:
+        run.same_instant += 1
+        if run.same_instant > most:
             return CHATTER
+        if run.fell >= 0:
+            run.rest = left
+            return FALL
     return DONE

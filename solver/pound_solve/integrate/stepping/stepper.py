@@ -24,7 +24,8 @@ import numpy as np
 from pound_deck.schema import Field, Kind
 from pound_solve.check import Check, Subject, at_least, beyond, looked
 from pound_solve.integrate.kernels.engine import KernelEngine
-from pound_solve.integrate.kernels.state import Scheme
+from pound_solve.integrate.kernels.present import KernelPresent
+from pound_solve.integrate.kernels.state import FALL, Scheme
 from pound_solve.integrate.protocol import (
     MonitoredOutputs,
     Recorder,
@@ -34,7 +35,9 @@ from pound_solve.integrate.protocol import (
     refuse_rigid,
     rounding_check,
 )
+from pound_solve.integrate.release import release
 from pound_solve.integrate.stepping import kernel
+from pound_solve.integrate.stepping.step import REFRESH
 from pound_solve.integrate.tracker import Peaks
 from pound_solve.structure.elements.base import Role
 from pound_solve.structure.reduction import ReducedSystem
@@ -104,6 +107,15 @@ class Stepper(KernelEngine):
         pieces = ex.pieces_after(ends - lengths)
         coefs = np.ascontiguousarray(ex.coefs)
         self.advance(kernel.advance, self.scheme, coefs, ex.breaks, ends, steps, h, is_output, pieces)
+
+    def resume(self, why: int) -> None:
+        """Let joints without mass move where a force falls that held them; stop where nothing else can."""
+        if why != FALL:
+            raise self.trouble(why)
+        present = KernelPresent(self)
+        release(present, int(self.state.fell))
+        present.hand_back()
+        self.state.fell, self.state.updates = -1, REFRESH + 1
 
     def figures(self) -> dict[str, Any]:
         """What the report tells of the run."""

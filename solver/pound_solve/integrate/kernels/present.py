@@ -1,0 +1,81 @@
+"""The present of a run of kernels, as what happens in no time sees and changes it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pound_solve.integrate.kernels import laws as law_kernels
+from pound_solve.integrate.kernels.engine import KernelEngine
+from pound_solve.integrate.kernels.recording import log_transition
+from pound_solve.integrate.protocol import Stop
+from pound_solve.laws.automaton import Branch
+
+
+class KernelPresent:
+    """One instant of a run, see `release.JumpingRun`.
+
+    Parameters
+    ----------
+    engine : KernelEngine
+        Its kernel has returned, and its transitions are taken in.
+    """
+
+    def __init__(self, engine: KernelEngine) -> None:
+        self.engine, self.system, self.tracker = engine, engine.system, engine.tracker
+        self.t = float(engine.state.time)
+        back, now = np.argsort(engine.order), engine.step.now
+        self.u, self.v = now.displacement[back], now.velocity[back]
+        self._branches = [s.branch(engine.law_state(i)) for i, s in enumerate(engine.springs)]
+
+    @property
+    def branches(self) -> Sequence[Branch]:
+        """Present branches of all laws."""
+        return self._branches
+
+    def transition(self, law: int, event_index: int, d: float, v: float) -> None:
+        """Let a law leave its branch at deformation `d` and rate `v`."""
+        own, laws = self.engine, self.engine.laws
+        before = int(laws.branch[law])
+        laws.now.deformation[law], laws.now.rate[law] = d, v
+        law_kernels.transition(laws, own.rules, law, event_index, d, v)
+        self.enter(law)
+        log_transition(laws, own.buffers, own.state, law, before, self.t, 0.0)
+        own.fetch_transitions()
+        self._branches[law] = own.springs[law].branch(own.law_state(law))
+
+    def enter(self, law: int) -> None:
+        """Take over the branch that a law has gone to, where that is not a straight line."""
+        laws = self.engine.laws
+        if laws.curved[law]:
+            d, v = float(laws.now.deformation[law]), float(laws.now.rate[law])
+            law_kernels.linearise_law(laws, self.engine.rules, law, d, v)
+
+    def force(self, law: int, d: float) -> tuple[float, float]:
+        """Force of a law at rest at deformation `d`, and its tangent."""
+        return self.engine.springs[law].law.force(self.engine.law_state(law), d)[:2]
+
+    def take_release(self, law: int, lost: float, put_in: float) -> None:
+        """Count the work that a falling force has done into that on its law, and what loads have put in."""
+        self.engine.laws.entry_work[law] += lost
+        self.take_input(put_in)
+
+    def take_input(self, put_in: float) -> None:
+        """Count work that is put in in no time."""
+        works = self.engine.accumulator.works
+        works.input += put_in
+        works.gross_input += abs(put_in)
+
+    def stop(self, code: str, why: str) -> Stop:
+        """Return the exception that ends the run here."""
+        return self.engine.stop(code, why)
+
+    def hand_back(self) -> None:
+        """Let the run go on from the displacements and velocities that are reached."""
+        laws, now, order = self.engine.laws, self.engine.step.now, self.engine.order
+        now.displacement[:], now.velocity[:] = self.u[order], self.v[order]
+        inputs = [self.system.excitation.value(self.t, derivative) for derivative in (0, 1)]
+        laws.now.deformation[:] = self.system.law_rows @ self.u + self.system.law_inputs @ inputs[0]
+        laws.now.rate[:] = self.system.law_rows @ self.v + self.system.law_inputs @ inputs[1]
+        self.engine.state.stale = 1
