@@ -435,6 +435,13 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "A HISTORY has fewer than 100 steps, and DT is more than half of the first period of every "
         "building; the limits are ours. DT has the unit of time of UNITS: 5 ms are 0.005 s.",
     ),
+    "P366": (
+        "hinges that face each other (warning)",
+        "Two members end with hinges at a node that no mass, spring or other member holds against turning. "
+        "Both hinges yield at the same moment and do not harden: only the sum of their rotations is "
+        "determined, not which of them turns. A hinge belongs to the ends of a column, not to a node "
+        "within it. Leave the yield moment out at one of the two ends, or give R.",
+    ),
     "R401": (
         "record not found",
         "The record is neither in the deck's folder nor in the record folders. Check its name, "

@@ -84,6 +84,21 @@ ANALYSIS
 
 RIGHT_FOOT, RIGHT_FEET = " 21 6.45 0 FIX=XYR", [" 21 6.45 0 FIX=XYR", " 24 12.45 0 FIX=XYR"]
 HINGES = "RULE=TAKEDA R=0.03 MI=400 MJ=400 LP=0.3"
+#: a column in two pieces, as where a floor of the neighbour strikes it
+SPLIT = [
+    ("ELEMENTS", " 27 6.45 1.75\nELEMENTS"),
+    (" 21 PIER 21 22", " 21 PIER 21 27\n 27 PIER 27 22"),
+]
+
+#: without dashpots across hinges, which divide the rotation between them
+PLASTIC = [
+    ("RULE=TAKEDA R=0.03 MI=400", "RULE=ELASTO_PLASTIC MI=400"),
+    ("RAYLEIGH XI=0.05 MODES=1,3", "MODAL XI=0.05"),
+]
+ONE_HINGE = [
+    (" 27 PIER 27", " 27 UPPER 27"),
+    (" BEAM FRAME", " UPPER FRAME E=25E6 A=0.25 I=0.0052 RULE=ELASTO_PLASTIC MJ=400 LP=0.3\n BEAM FRAME"),
+]
 
 
 def fixed(letters):
@@ -283,6 +298,11 @@ MISTAKES = {
         [("LP=0.25", "LP=4")],
         "P330 element 11 and 3 more (COL): a hinge of 4 is longer",
     ),
+    "hinges on both sides of a node within a column": (
+        [*SPLIT, *PLASTIC],
+        "P366 hinges of members 21 and 27 face each other at node 27 and yield at the same moment, 400 "
+        "kN*m, without hardening: which of them turns is open: give member 27 a property set without MI",
+    ),
     "damping in per cent": ([("XI=0.05", "XI=5")], "P341 a damping ratio of 5 is 500 % of critical"),
     "Rayleigh damping without modes": (
         [(" MODES=1,3", "")],
@@ -416,6 +436,8 @@ def test_the_frames_in_other_units_have_no_remark(units):
         [(" 22 6.45 3.5", " 22 6.45 3.5 SLAVED=X MASTER=25")],
         [("MI=200 MJ=200 LP=0.25", "MI=200 MJ=200 KH=1E9 DUCTU=1E4")],
         [("GAP=0.03", "GAP=0.6")],
+        SPLIT,
+        [*SPLIT, *PLASTIC, *ONE_HINGE],
         [("HISTORY 10", "HISTORY 0.1 METHOD=NEWMARK DT=0.02")],
         [("EQUAKE", "LOADS\n 12,13 0 10\n 15,16 0 -20\nEQUAKE")],
     ],
@@ -428,6 +450,8 @@ def test_the_frames_in_other_units_have_no_remark(units):
         "diaphragm",
         "rigid-plastic hinges",
         "gap of a sweep",
+        "column in two pieces",
+        "hinge on one side of a node within a column",
         "first few steps",
         "loads of wind",
     ],

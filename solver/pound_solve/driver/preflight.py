@@ -11,6 +11,7 @@ from pound_solve.analyses import pushover
 from pound_solve.structure.buildings import misnamed
 from pound_solve.structure.contact_checks import misplaced, wide
 from pound_solve.structure.damping.by_building import uneven
+from pound_solve.structure.hinge_checks import facing
 from pound_solve.structure.loose_ends import loose_ends
 from pound_solve.structure.mass_checks import immovable, massless
 from pound_solve.structure.mechanisms import hasty, loose, standing, untimely
@@ -118,6 +119,7 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     misshapen,
     doubled,
     misjudged,
+    facing,
     pushover.mistakes,
     too_many,
     hasty,

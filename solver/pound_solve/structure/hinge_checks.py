@@ -1,0 +1,76 @@
+"""Hinges in series whose rotations equilibrium does not determine."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from typing import Final
+
+from pound_deck.diagnostics import Diagnostic
+from pound_solve.laws.automaton import drive
+from pound_solve.numerics.matrices import entries, used_rows
+from pound_solve.structure.dofs import label
+from pound_solve.structure.elements.base import LawSpring
+from pound_solve.structure.structure import Structure
+
+EQUAL: Final = 1e-6  #: share by which two strengths may differ that are meant to be the same
+BEYOND: Final = 1.01  #: deformation over that at yield, where a rule is asked whether it hardens
+FLAT: Final = 1e-9  #: share of the initial stiffness that is no hardening
+
+
+def facing(structure: Structure) -> list[Diagnostic]:
+    """Perfectly plastic hinges of equal strength on both sides of a joint that nothing else holds.
+
+    Both have the same moment.  At their common strength only the sum of their rotations is determined, but
+    where dashpots across the hinges divide it.
+    """
+    n, out = structure.n_free, list[Diagnostic]()
+    held = used_rows(structure.stiffness) | used_rows(structure.mass) | used_rows(structure.damping)
+    at = defaultdict[int, list[tuple[LawSpring, float]]](list)
+    for law, column, factor in zip(*entries(structure.law_rows)):
+        if column < n and not held[column] and factor:
+            at[int(column)].append((structure.laws[law], float(factor)))
+    for column, joined in sorted(at.items()):
+        if len(joined) != 2 or any(not s.component.startswith("hinge") for s, _ in joined):
+            continue
+        (one, a), (other, b) = joined
+        moment = _common(one, other, -a / b)
+        if moment and one.element != other.element:
+            out.append(_told(structure, column, one, other, moment))
+    return out
+
+
+def _common(one: LawSpring, other: LawSpring, ratio: float) -> float:
+    """Strength at which both stay, where the other's moment is `ratio` times that of one; 0 for none."""
+    for side in (0, 1):
+        facing_side = side if ratio > 0.0 else 1 - side
+        mine, theirs = _plastic(one, side), _plastic(other, facing_side)
+        if mine and math.isclose(abs(ratio) * mine, theirs, rel_tol=EQUAL):
+            return mine
+    return 0.0
+
+
+def _plastic(spring: LawSpring, side: int) -> float:
+    """Strength of a hinge on a side without hardening there; 0 where it hardens or does not yield."""
+    law = spring.law
+    if law.curved or spring.strengths is None or spring.yields is None:
+        return 0.0
+    strength = spring.strengths[side]
+    at_yield = spring.yields[side] - spring.beside * strength
+    if not math.isfinite(at_yield):
+        return 0.0
+    stiffness = law.branch(drive(law, law.start(), 0.0, BEYOND * at_yield)).stiffness
+    return abs(strength) if abs(stiffness) <= FLAT * law.p[0] else 0.0
+
+
+def _told(structure: Structure, column: int, one: LawSpring, other: LawSpring, moment: float) -> Diagnostic:
+    """The warning of two hinges."""
+    model, end = structure.model, other.component.rpartition(" ")[2]
+    element = model.elements[other.element]
+    joint = label(structure.dofs.free[column]).removesuffix(" rz")
+    message = (
+        f"hinges of members {one.element} and {other.element} face each other at {joint} and yield at the "
+        f"same moment, {moment:g} {model.units.text('F*L')}, without hardening: which of them turns is open"
+    )
+    hint = f"give member {other.element} a property set without M{end}, or harden both by R"
+    return Diagnostic("P366", message, element.span, hint, "warning")
