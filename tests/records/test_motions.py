@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import pound_solve
 from pound_solve.loading.forces import record as force_record
 from pound_solve.loading.forces import sine as force_sine
 from pound_solve.loading.forces import table as force_table
@@ -510,3 +511,18 @@ class TestMatched:
     def test_refusals(self, given: dict[str, Any], why: str) -> None:
         with pytest.raises(RecordError, match=why):
             matched.build(self.card(**given), context())
+
+
+def test_the_report_tells_how_well_a_spectrum_is_met(tmp_path: Path) -> None:
+    deck = tmp_path / "matched.inp"
+    deck.write_text(
+        "NODES\n 1 0 0 FIX=XYR\n 2 0 3 FIX=YR\nELEMENTS\n 1 S 1 2\nPROPS\n S SPRING KX=5000\n"
+        "WEIGHTS\n 2 300\nDAMPING\n RAYLEIGH XI=0.05 OMEGA=5,20\nEQUAKE\n"
+        " MATCHED SPECTRUM=0.1,5,0.2,10,0.6,10,2,3,4,0.9 SEED=1\n SINE AMPLITUDE=1 PERIOD=1 DURATION=2\n"
+        "ANALYSIS\n HISTORY 1\n"
+    )
+    with pound_solve.run(deck, out=tmp_path) as results:
+        matched, sine = results.table("motions")["misfit"]
+        told = results.table("overview")["value"]
+    assert 0.0 < matched <= 0.05 and math.isnan(sine)
+    assert any(f"misses the given one by {100 * matched:.2g} % at most" in value for value in told)

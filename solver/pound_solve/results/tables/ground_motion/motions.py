@@ -30,6 +30,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
             float(i["pgd"]),
             float(i.get("start") or 0.0),
             float(m.acceleration.end),
+            float(i.get("misfit", math.nan)),
             str(i.get("sha256") or ""),
         )
 
@@ -55,6 +56,12 @@ TABLE = Table(
         Column("pgd", "peak\ndisp.", "L", "short", doc="largest absolute displacement, scaled"),
         time_column("start", "start", "time at which the record starts"),
         time_column("end", "end", "time at which the motion ends"),
+        Column(
+            "misfit",
+            unit="-",
+            fmt="short",
+            doc="largest share by which the spectrum of a MATCHED motion misses the given one, else NaN",
+        ),
         Column("sha256", doc="checksum of the record's file", clip=12),
     ),
     rows=rows,
@@ -78,6 +85,7 @@ TABLE = Table(
             0.242387,
             0.0,
             53.71,
+            math.nan,
             "9b0c5a1f3e77aa019b0c5a1f3e77aa019b0c5a1f3e77aa019b0c5a1f3e77aa01",
         ),
     ),

@@ -78,7 +78,10 @@ def ground_motion(run: RunRecord, motion: Motion) -> str:
     if motion.direction == "R":
         return f"{name}: peak {info['pga']:.4g} rad/{units.time}^2"
     share = info["pga"] / run.model.gravity
-    return f"{name}: peak {info['pga']:.4g} {units.text('L/T^2')}, {share:.3g} of gravity"
+    misfit = ""
+    if "misfit" in info:
+        misfit = f"; its spectrum misses the given one by {100 * info['misfit']:.2g} % at most"
+    return f"{name}: peak {info['pga']:.4g} {units.text('L/T^2')}, {share:.3g} of gravity{misfit}"
 
 
 def response(run: RunRecord) -> Iterator[Row]:
