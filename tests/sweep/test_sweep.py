@@ -449,6 +449,19 @@ def test_an_interruption_ends_a_plan_with_what_it_has(tmp_path):
     assert list(out.estimate(trial))[1].startswith("the other 15: about 15 s")
 
 
+def test_runs_that_go_on_from_a_state_are_made_anew_where_it_changes(tmp_path):
+    path = folder(
+        tmp_path, 'deck = "wall.inp"\n', DECK.replace("HISTORY 1", 'HISTORY 2 RESTART="first.h5"')
+    )
+    (tmp_path / "first.inp").write_text(DECK.replace("HISTORY 1", "HISTORY 1.5 SAVE=1"))
+    assert main([str(tmp_path / "first.inp"), "-o", str(tmp_path)]) == 0
+    assert [e.status for e in swept(path).entries.values()] == ["done"]
+    assert not session(path).agenda.ahead
+    (tmp_path / "first.inp").write_text(DECK.replace("HISTORY 1", "HISTORY 1.5 SAVE=0.5"))
+    assert main([str(tmp_path / "first.inp"), "-o", str(tmp_path)]) == 0
+    assert len(session(path).agenda.ahead) == 1
+
+
 @pytest.mark.parametrize("name", ["wall.inp", "second.txt"])
 def test_a_file_that_changes_while_the_sweep_runs_fails_the_runs_that_need_it(tmp_path, name):
     out = session(folder(tmp_path))
