@@ -170,7 +170,8 @@ def _translate(
         points = nodes.read(sections["NODES"].rows, control.whole("NNP"), draft)
         nodes.write(points, draft)
     if "DRIFT" in sections:
-        nodes.drifts(sections["DRIFT"].rows, control.whole("NLEVEL"), points, draft)
+        levels = control.whole("NLEVEL"), control.place("NLEVEL")
+        nodes.drifts(sections["DRIFT"].rows, *levels, points, draft)
     members = {}
     if "ELEMENTS" in sections:
         counts = control.whole("NMEM"), control.whole("NTYPE")

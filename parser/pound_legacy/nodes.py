@@ -11,6 +11,7 @@ from itertools import pairwise
 from typing import Final
 
 from pound_deck.diagnostics import Diagnostic, Mistake, mistake
+from pound_deck.model import Span
 from pound_legacy.draft import Draft, number
 from pound_legacy.lines import Row, Rows
 
@@ -144,8 +145,10 @@ def _keep(error: Mistake, draft: Draft) -> None:
         draft.report.append(error.diagnostic)
 
 
-def drifts(rows: Rows, levels: int, nodes: dict[int, Node], draft: Draft) -> None:
-    """Add the lines of DRIFT: each storey between neighbours in the list."""
+def drifts(rows: Rows, levels: int, place: Span, nodes: dict[int, Node], draft: Draft) -> None:
+    """Add the lines of DRIFT: each storey between neighbours in the list, which holds as many nodes as
+    NLEVEL says, at its `place` among the control lines.
+    """
     listed: list[tuple[int, Row]] = []
     for found in rows:
         for item in found.items:
@@ -161,7 +164,10 @@ def drifts(rows: Rows, levels: int, nodes: dict[int, Node], draft: Draft) -> Non
             listed.append((id_, found))
     if len(listed) != levels:
         text = f"DRIFT lists {len(listed)} nodes, and NLEVEL is {levels}"
-        draft.report.append(Diagnostic("L608", text, rows.here, "correct the list or NLEVEL"))
+        hint = f"NLEVEL stands in line {place.line}, column {place.column}: write {len(listed)} there"
+        if levels > 1:
+            hint += f", or list {levels} nodes"
+        draft.report.append(Diagnostic("L608", text, rows.here, hint))
     draft.rest("DRIFT: levels from the base up")
     for k, ((low, _), (high, found)) in enumerate(pairwise(listed), 1):
         draft.add("DRIFT", f'"level {k}" {low} {high}', found.span)

@@ -258,6 +258,22 @@ def test_a_mistake_stands_at_its_place(old, new, code, place):
     assert all(d.hint for d in found)
 
 
+@pytest.mark.parametrize(
+    ("levels", "cure"),
+    [
+        (1, "NLEVEL stands in line 4, column 19: write 2 there"),
+        (3, "NLEVEL stands in line 4, column 19: write 2 there, or list 3 nodes"),
+    ],
+)
+def test_the_cure_of_a_list_of_drifts_does_not_lead_to_another_refusal(levels, cure):
+    text = PORTAL.replace("0 10 10 0 1 5 1 1 2 2", f"0 10 10 0 1 5 1 1 {levels} 2")
+    (told,) = (d for d in read(text).report if d.code == "L608")
+    assert told.hint == cure
+    cured = text.splitlines()
+    cured[3] = f"{cured[3][:18]}2{cured[3][19:]}"
+    assert "L608" not in codes(read("\n".join(cured)))
+
+
 def test_a_record_in_a_file_of_its_own_must_be_named():
     assert "L611" in codes(read(PORTAL))
 
