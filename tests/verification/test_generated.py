@@ -62,13 +62,16 @@ def test_steps_of_auto_keep_their_tolerance_on_generated_decks(tmp_path: Path, s
     assert answers.errors(own, truth)["auto"] <= own.claimed <= 1e-2
 
 
-def test_hinges_at_rest_do_not_leave_their_branches_by_rounding(tmp_path: Path) -> None:
-    """Their deformations under gravity are rounding, which the first step changes by more than itself."""
-    deck, text = tmp_path / "rest.inp", decks.deck(175)
-    asked = "HISTORY 6 METHOD=AUTO TOL=1E-4"
-    assert asked in text
-    deck.write_text(text.replace(asked, "HISTORY 0.02 METHOD=NEWMARK DT=1E-3"), encoding="utf-8")
-    assert answers.answer(deck, None, "NEWMARK", {}).status == "done"
+@pytest.mark.parametrize("seed", [175, 177])
+def test_hinges_at_rest_do_not_leave_their_branches_again_and_again(tmp_path: Path, seed: int) -> None:
+    """Their deformations under gravity are rounding, which the first step changes by more than itself; or a
+    slack without width takes the hold from their joints.
+    """
+    deck = tmp_path / "rest.inp"
+    text, count = re.subn(r"HISTORY \d+ METHOD=AUTO TOL=\S+", "HISTORY 0.02", decks.deck(seed))
+    assert count == 1
+    deck.write_text(text, encoding="utf-8")
+    assert answers.answer(deck, None, "NEWMARK", {"dt": 1e-3}).status == "done"
 
 
 def made_up(seed: int, **more: object) -> dict[str, object]:

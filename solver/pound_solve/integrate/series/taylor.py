@@ -302,7 +302,8 @@ class Taylor(KernelEngine):
             joints = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else name
             return f"{joints} have no mass, and only dashpots to each other resist them: give one weight"
         if held.pivots[STIFFNESS, n] < 0.0:
-            return f"{name} has no mass, and its stiffness has become negative: it snaps through"
+            why = f"{name} has no mass, and its stiffness has become negative: it snaps through"
+            return f"{why}; give it weight, or let METHOD=NEWMARK step over it"
         return f"{name} has no mass and nothing holds it"
 
     def figures(self) -> dict[str, Any]:

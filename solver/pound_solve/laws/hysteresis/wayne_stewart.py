@@ -59,9 +59,14 @@ ELASTIC, YIELDING, BEYOND, PINCHED, RELOADING = 3, 5, 7, 9, 11
 Line = tuple[float, float]  #: slope and force at zero deformation
 
 
+def is_slack(p: Numbers) -> bool:
+    """Whether there is a slack: at a width of zero, joints without mass would lose their hold at rest."""
+    return p[8] > p[9]
+
+
 def start(p: Numbers) -> tuple[int, Numbers]:
-    """Virgin: in the slack."""
-    return SLACK, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    """Virgin: in the slack, or elastic."""
+    return (SLACK if is_slack(p) else ELASTIC), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def backbone(p: Numbers, s: float) -> tuple[float, float, float, Line, Line]:
@@ -177,14 +182,15 @@ def unload(p: Numbers, at: int, m: Numbers, s: float, d: float, f: float) -> tup
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
-    """Engage, yield, become slack, pass the ultimate force, fail, reverse, or reach the next line."""
+    """Engage, yield, leave a side, pass the ultimate force, fail, reverse, or reach the next line."""
     if at == SLACK:
         return (ELASTIC if event == 0 else ELASTIC + 1), m
     if at == UNLOADING:
         return (int(m[3]) if event == 0 else int(m[5])), m
     s = side(at)
     if at < YIELDING:
-        return (pair(YIELDING, s) if event == 0 else SLACK), m
+        back = SLACK if is_slack(p) else pair(ELASTIC, -s)
+        return (pair(YIELDING, s) if event == 0 else back), m
     if at < PINCHED:
         if event == 0:
             most = s * d - backbone(p, s)[0]
