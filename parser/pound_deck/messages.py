@@ -440,7 +440,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "Two members end with hinges at a node that no mass, spring or other member holds against turning. "
         "Both hinges yield at the same moment and do not harden: only the sum of their rotations is "
         "determined, not which of them turns. A hinge belongs to the ends of a column, not to a node "
-        "within it. Leave the yield moment out at one of the two ends, or give R.",
+        "within it. Leave the yield moment out at one of the two ends, or give both a rule that hardens, "
+        "such as BILINEAR with R.",
     ),
     "R401": (
         "record not found",

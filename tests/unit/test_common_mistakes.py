@@ -300,8 +300,38 @@ MISTAKES = {
     ),
     "hinges on both sides of a node within a column": (
         [*SPLIT, *PLASTIC],
-        "P366 hinges of members 21 and 27 face each other at node 27 and yield at the same moment, 400 "
-        "kN*m, without hardening: which of them turns is open: give member 27 a property set without MI",
+        "P366 hinge J of member 21 and hinge I of member 27 face each other at node 27 and yield at the "
+        "same moment, 400 kN*m, without hardening: which of them turns is open: give member 27 a property "
+        "set without MI, or both a rule that hardens, such as BILINEAR with R above zero",
+    ),
+    "hinges that face each other, and dashpots that a pushover does not have": (
+        [*SPLIT, PLASTIC[0], ("HISTORY 10", "PUSHOVER 23 0.1")],
+        "P366 hinge J of member 21 and hinge I of member 27 face each other",
+    ),
+    "hinges on both sides of a node within a column, drawn towards it": (
+        [
+            *SPLIT,
+            *PLASTIC,
+            *ONE_HINGE,
+            ("PLASTIC MI=400 MJ=400", "PLASTIC MI=400,-300 MJ=400,-300"),
+            (" MJ=400 LP=0.3\n BEAM", " MI=300,-400 MJ=300,-400 LP=0.3\n BEAM"),
+            ("27 UPPER 27 22", "27 UPPER 22 27"),
+        ],
+        "P366 hinge J of member 21 and hinge J of member 27 face each other at node 27",
+    ),
+    "no hinge but the two on both sides of a node": (
+        [
+            *SPLIT,
+            *PLASTIC,
+            (" 21 PIER 21", " 21 LOWER 21"),
+            *ONE_HINGE,
+            ("RULE=ELASTO_PLASTIC MJ=400 LP=0.3\n BEAM", "RULE=ELASTO_PLASTIC MI=400 LP=0.3\n BEAM"),
+            (
+                " BEAM FRAME",
+                " LOWER FRAME E=25E6 A=0.25 I=0.0052 RULE=ELASTO_PLASTIC MJ=400 LP=0.3\n BEAM FRAME",
+            ),
+        ],
+        "which of them turns is open: give member 27 a property set without hinges, or both a rule",
     ),
     "damping in per cent": ([("XI=0.05", "XI=5")], "P341 a damping ratio of 5 is 500 % of critical"),
     "Rayleigh damping without modes": (
@@ -438,6 +468,13 @@ def test_the_frames_in_other_units_have_no_remark(units):
         [("GAP=0.03", "GAP=0.6")],
         SPLIT,
         [*SPLIT, *PLASTIC, *ONE_HINGE],
+        [*SPLIT, *PLASTIC, ("ELASTO_PLASTIC", "BILINEAR R=1E-3")],
+        [
+            *SPLIT,
+            *PLASTIC,
+            ("MI=400 MJ=400", "MI=400,-300 MJ=400,-300"),
+            ("27 PIER 27 22", "27 PIER 22 27"),
+        ],
         [("HISTORY 10", "HISTORY 0.1 METHOD=NEWMARK DT=0.02")],
         [("EQUAKE", "LOADS\n 12,13 0 10\n 15,16 0 -20\nEQUAKE")],
     ],
@@ -452,6 +489,8 @@ def test_the_frames_in_other_units_have_no_remark(units):
         "gap of a sweep",
         "column in two pieces",
         "hinge on one side of a node within a column",
+        "hinges that harden on both sides of a node within a column",
+        "hinges of other strengths on both sides of a node within a column",
         "first few steps",
         "loads of wind",
     ],

@@ -22,10 +22,12 @@ def facing(structure: Structure) -> list[Diagnostic]:
     """Perfectly plastic hinges of equal strength on both sides of a joint that nothing else holds.
 
     Both have the same moment.  At their common strength only the sum of their rotations is determined, but
-    where dashpots across the hinges divide it.
+    where dashpots across the hinges divide it.  A PUSHOVER has no rates and so no dashpots.
     """
     n, out = structure.n_free, list[Diagnostic]()
-    held = used_rows(structure.stiffness) | used_rows(structure.mass) | used_rows(structure.damping)
+    held = used_rows(structure.stiffness) | used_rows(structure.mass)
+    if all(card.spec.name != "PUSHOVER" for card in structure.model.analyses):
+        held |= used_rows(structure.damping)
     at = defaultdict[int, list[tuple[LawSpring, float]]](list)
     for law, column, factor in zip(*entries(structure.law_rows)):
         if column < n and not held[column] and factor:
@@ -64,13 +66,21 @@ def _plastic(spring: LawSpring, side: int) -> float:
 
 
 def _told(structure: Structure, column: int, one: LawSpring, other: LawSpring, moment: float) -> Diagnostic:
-    """The warning of two hinges."""
+    """The warning of two hinges.
+
+    The cure names a rule with R, since ELASTO_PLASTIC has none.  A member without hinges may have no rule.
+    """
     model, end = structure.model, other.component.rpartition(" ")[2]
-    element = model.elements[other.element]
     joint = label(structure.dofs.free[column]).removesuffix(" rz")
     message = (
-        f"hinges of members {one.element} and {other.element} face each other at {joint} and yield at the "
-        f"same moment, {moment:g} {model.units.text('F*L')}, without hardening: which of them turns is open"
+        f"{one.component} of member {one.element} and {other.component} of member {other.element} face "
+        f"each other at {joint} and yield at the same moment, {moment:g} {model.units.text('F*L')}, "
+        "without hardening: which of them turns is open"
     )
-    hint = f"give member {other.element} a property set without M{end}, or harden both by R"
-    return Diagnostic("P366", message, element.span, hint, "warning")
+    lonely = sum(law.element == other.element for law in structure.laws) == 1
+    without = "hinges" if lonely else f"M{end}"
+    hint = (
+        f"give member {other.element} a property set without {without}, or both a rule that hardens, "
+        "such as BILINEAR with R above zero"
+    )
+    return Diagnostic("P366", message, model.elements[other.element].span, hint, "warning")
