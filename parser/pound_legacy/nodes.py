@@ -150,8 +150,10 @@ def drifts(rows: Rows, levels: int, place: Span, nodes: dict[int, Node], draft: 
     NLEVEL says, at its `place` among the control lines.
     """
     listed: list[tuple[int, Row]] = []
+    count = 0  # with the items that are told as wrong: NLEVEL need not change where these are corrected
     for found in rows:
         for item in found.items:
+            count += 1
             try:
                 id_ = item.whole("a node of DRIFT")
             except Mistake as error:
@@ -162,9 +164,9 @@ def drifts(rows: Rows, levels: int, place: Span, nodes: dict[int, Node], draft: 
                 draft.report.append(Diagnostic("L608", text, item.span, "correct the number"))
                 continue
             listed.append((id_, found))
-    if len(listed) != levels:
-        text = f"DRIFT lists {len(listed)} nodes, and NLEVEL is {levels}"
-        hint = f"NLEVEL stands in line {place.line}, column {place.column}: write {len(listed)} there"
+    if count != levels:
+        text = f"DRIFT lists {count} node{'s' * (count != 1)}, and NLEVEL is {levels}"
+        hint = f"NLEVEL stands in line {place.line}, column {place.column}: write {count} there"
         if levels > 1:
             hint += f", or list {levels} nodes"
         draft.report.append(Diagnostic("L608", text, rows.here, hint))

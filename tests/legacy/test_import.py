@@ -274,6 +274,30 @@ def test_the_cure_of_a_list_of_drifts_does_not_lead_to_another_refusal(levels, c
     assert "L608" not in codes(read("\n".join(cured)))
 
 
+@pytest.mark.parametrize(
+    ("listed", "levels", "told"),
+    [
+        ("1 2 3", 2, "DRIFT lists 3 nodes, and NLEVEL is 2"),
+        ("1\n3", 3, "DRIFT lists 2 nodes, and NLEVEL is 3"),
+        ("1", 2, "DRIFT lists 1 node, and NLEVEL is 2"),
+        ("", 2, "DRIFT lists 0 nodes, and NLEVEL is 2"),
+    ],
+)
+def test_a_list_of_drifts_of_another_length(listed, levels, told):
+    text = STICK.replace("DRIFT\n1 3", f"DRIFT\n{listed}")
+    text = text.replace("0 2 10 0 1 5 1 1 2 2", f"0 2 10 0 1 5 1 1 {levels} 2")
+    (found,) = [d for d in read(text).report if d.severity == "error"]
+    assert (found.code, found.message) == ("L608", told)
+    assert f"line 5, column 18: write {len(listed.split())} there" in found.hint
+
+
+@pytest.mark.parametrize(("wrong", "code"), [("9", "L608"), ("x", "L603"), ("0", "L608")])
+def test_a_wrong_node_in_a_list_of_drifts_does_not_question_nlevel(wrong, code):
+    text = STICK.replace("DRIFT\n1 3", f"DRIFT\n1 {wrong}")
+    (found,) = [d for d in read(text).report if d.severity == "error"]
+    assert (found.code, found.span.line, found.span.column) == (code, 14, 3)
+
+
 def test_a_record_in_a_file_of_its_own_must_be_named():
     assert "L611" in codes(read(PORTAL))
 
