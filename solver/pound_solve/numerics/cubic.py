@@ -32,6 +32,13 @@ def cubic_peak(g0: float, g1: float, s0: float, s1: float, h: float) -> tuple[fl
     return (0.0, g0) if g0 > g1 else (h, g1)
 
 
+def cubic_value(g0: float, g1: float, s0: float, s1: float, h: float, t: float) -> float:
+    """The cubic with values `g0`, `g1` and slopes `s0`, `s1` at 0 and `h`, at `t`."""
+    a = 2.0 * (g0 - g1) / (h * h * h) + (s0 + s1) / (h * h)
+    b = 3.0 * (g1 - g0) / (h * h) - (2.0 * s0 + s1) / h
+    return ((a * t + b) * t + s0) * t + g0
+
+
 def cubic_rise(g0: float, g1: float, s0: float, s1: float, h: float) -> float:
     """First place where a cubic that is not above zero at 0 and above it at `h` rises through zero."""
     if g0 >= 0.0 and s0 > 0.0:

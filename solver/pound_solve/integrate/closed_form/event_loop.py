@@ -44,6 +44,8 @@ class EventDrivenRun(ABC):
         Deformations of the laws, then the drifts.
     largest : ndarray, shape (2, n_rows)
         Largest magnitudes of the rows and their rates so far: the scale of the event functions.
+    contacts : list of int
+        Laws that are contacts.
     tracker : ResponseTracker
     energy : EnergyAccumulator
     """
@@ -66,6 +68,7 @@ class EventDrivenRun(ABC):
         self.t, self.u, self.v = float(start.times[0]), start.u.copy(), start.v.copy()
         self.events = self.changes_at_instant = 0
         self._massless_laws = light(system)
+        self.contacts = [i for i, s in enumerate(self.laws) if s.role.collides]
         self.uniqueness = Uniqueness(system)
 
     def transition(self, law: int, event_index: int, d: float, v: float) -> None:
@@ -146,6 +149,13 @@ class EventDrivenRun(ABC):
     def kinetic(self, v: Array) -> float:
         """Kinetic energy at velocity `v` [F L]."""
         return 0.5 * float(v @ self.system.mass @ v)
+
+    def count_reach(self, u: Array) -> None:
+        """Count the displacements of the bodies that contacts are between into what their deformations are
+        rounded to: of bodies that move alike these are nothing else.
+        """
+        far = np.abs(self.rows.rows[self.contacts]) @ np.abs(u)
+        self.largest[0, self.contacts] = np.maximum(self.largest[0, self.contacts], far)
 
     def count_magnitudes(self, value: Array, rate: Array) -> None:
         """Count values and rates of the first rows, shape (n_rows, n_times), into the largest."""

@@ -140,7 +140,8 @@ class Laplace(EventDrivenRun):
         motion, rows = self._transformed(end)
         span = min(float(rows.t[0, -1]), end - self.t)
         functions = EventFunctions(self.branches, {})
-        found = functions.first_event(rows, self.largest, STILL)
+        self.count_reach(np.abs(motion.u).max(axis=1))
+        found = functions.first_event(rows, self.largest, STILL, self.contacts)
         event = None if found is None or found.event.time >= span else found.event
         event = functions.violated(rows, self.largest, SURE * STILL, self._massless_laws) or event
         tau = span if event is None else event.time

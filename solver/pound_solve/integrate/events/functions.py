@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -155,8 +155,13 @@ class EventFunctions(RowFunctions):
                 return LocatedEvent(*self.keys[n], 0.0)
         return None
 
-    def first_event(self, samples: Sampled, largest: Array, tolerance: float) -> GridEvent | None:
+    def first_event(
+        self, samples: Sampled, largest: Array, tolerance: float, late: Collection[int] = ()
+    ) -> GridEvent | None:
         """Return the earliest event of some samples, or None.
+
+        An event of the laws `late`, which are contacts, counts if it is there before that of another law:
+        bodies that move alike meet only where a hinge of one has yielded, and that of the other not yet.
 
         Parameters
         ----------
@@ -165,15 +170,24 @@ class EventFunctions(RowFunctions):
             Largest magnitudes of rows and rates so far.
         tolerance : float
             Share of the magnitude of its terms up to which a function counts as not above zero.
+        late : collection of int
         """
         if not self.keys or not samples.t.size:
             return None
         g, slope = self.sampled(samples)
         scale = np.maximum(self.scale(largest), np.abs(g[:, 0, :2]).max(axis=1, initial=0.0))
         tol = tolerance * scale[:, None, None]
-        rise = grid.first_rise(samples.t, g, slope, tol, self.evaluator(samples))
+        evaluate = self.evaluator(samples)
+        rise = grid.first_rise(samples.t, g, slope, tol, evaluate)
         if rise is None:
             return None
+        if self.keys[rise.function][0] in late:
+            there = tol[rise.function, 0, 0]
+            others = np.where([[[law in late]] for law, _ in self.keys], np.inf, tol)
+            other = grid.first_rise(samples.t, g, slope, others, evaluate)
+            if other is not None:
+                value, _ = evaluate(rise.function, other.segment, other.cell, other.time)
+                rise = rise if value > there else other
         law, event_index = self.keys[rise.function]
         return GridEvent(LocatedEvent(law, event_index, rise.time), rise.segment, rise.cell)
 

@@ -8,8 +8,11 @@ from pound_solve.integrate.events.protocol import LocatedEvent, none
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, Step
 from pound_solve.integrate.protocol import STILL
-from pound_solve.numerics.cubic import cubic_peak, cubic_rise
+from pound_solve.numerics.cubic import cubic_peak, cubic_rise, cubic_value
 
+#: times `STILL`: share of their displacements within which bodies stay that move alike in steps; each of
+#: their events is met to `STILL`
+ALIKE = 1e3
 BACK = 1e-6  #: share of its largest rate that a law must move back with before that counts as a reversal
 
 
@@ -46,15 +49,35 @@ def first_event(laws: Laws, step: Step, h: float) -> LocatedEvent:
     """The first event in the step of length `h` that was tried, see `none`.
 
     Its time is that of the cubic through values and slopes at both ends, for an event at a rate that of the
-    straight line.
+    straight line.  An event of a contact counts if it is there before that of another law: bodies that move
+    alike meet only in a trial in which a hinge of one has yielded, and that of the other has not yet.
     """
     first = none(np.inf)
     for i in range(len(laws.rule)):
-        for e in range(laws.n_events[i]):
+        for e in range(0 if laws.contact[i] else laws.n_events[i]):
             at = time_of_event(laws, step, i, e, h)
             if at < first.time:
                 first = LocatedEvent(i, e, at)
+    other = first
+    for i in range(len(laws.rule)):
+        for e in range(laws.n_events[i] if laws.contact[i] else 0):
+            at = time_of_event(laws, step, i, e, h)
+            if at < first.time and (other.law < 0 or is_there(laws, step, i, e, h, other.time)):
+                first = LocatedEvent(i, e, at)
     return first
+
+
+def is_there(laws: Laws, step: Step, i: int, e: int, h: float, t: float) -> bool:
+    """Whether the cubic of event function `e` of law `i` in the step of length `h` is above rounding at the
+    time `t`.
+    """
+    on_d, on_v = laws.events[i, e, 0], laws.events[i, e, 1]
+    g1, size = event_value(laws, i, e, laws.trial.deformation[i], laws.trial.rate[i])
+    s0, s1 = on_d * laws.now.rate[i], on_d * laws.trial.rate[i]
+    if on_v != 0.0:
+        s0 += on_v * along(laws.rows, i, step.now.acceleration)
+        s1 += on_v * along(laws.rows, i, step.trial.acceleration)
+    return cubic_value(min(start_value(laws, i, e), 0.0), g1, s0, s1, h, t) > ALIKE * STILL * size
 
 
 def time_of_event(laws: Laws, step: Step, i: int, e: int, h: float) -> float:
@@ -66,7 +89,7 @@ def time_of_event(laws: Laws, step: Step, i: int, e: int, h: float) -> float:
     g1, size = event_value(laws, i, e, d1, v1)
     s0, s1 = on_d * v, on_d * v1
     turns = s0 > 0.0 and s1 < 0.0
-    tol = STILL * max(size, abs(g1))
+    tol = STILL * max(ALIKE * size if laws.contact[i] else size, abs(g1))
     if g1 <= tol and not turns:
         return np.inf
     if on_v != 0.0:

@@ -6,6 +6,7 @@ import numpy as np
 
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import STIFFNESS, TURN, Laws
+from pound_solve.integrate.protocol import STILL
 from pound_solve.laws.automaton import PUSH, PUSH_RATE
 from pound_solve.laws.functions import (
     PARAMETERS,
@@ -234,6 +235,9 @@ def event_place(laws: Laws, i: int, e: int, start: float, end: float, rate: floa
     if a != 0.0:
         c += b * rate
     value, slope = a * start + c, a * sign
+    rounding = STILL * abs(a) * laws.largest_deformation[i]
+    if laws.contact[i] and a != 0.0 and a * end + c <= rounding:
+        return np.nan
     if b != 0.0 and a == 0.0 and c == 0.0:
         return np.nan if b * sign <= 0.0 or end == start else start
     if value >= 0.0 and (slope > 0.0 or (slope == 0.0 and value > 0.0)):

@@ -57,6 +57,14 @@ def along(rows: Rows, i: int, x: Array) -> float:
     return total
 
 
+def reach(rows: Rows, i: int, x: Array) -> float:
+    """Sum of the magnitudes of the terms of one sparse row times a vector."""
+    total = 0.0
+    for j in range(rows.pointers[i], rows.pointers[i + 1]):
+        total += abs(rows.values[j] * x[rows.columns[j]])
+    return total
+
+
 def spread(rows: Rows, i: int, factor: float, out: Array) -> None:
     """Add `factor` times one sparse row to a vector."""
     for j in range(rows.pointers[i], rows.pointers[i + 1]):

@@ -162,6 +162,22 @@ def add_works(
     works.gross_input += abs(put)
 
 
+def count_reach(laws: Laws, series: Series, terms: int, end: float) -> None:
+    """Count the displacements of the bodies that contacts are between, up to the place `end`, into what
+    their deformations are rounded to: of bodies that move alike these are nothing else.
+    """
+    rows, motion = laws.rows, series.motion
+    for i in range(len(laws.rule)):
+        if laws.contact[i]:
+            far = 0.0
+            for q in range(rows.pointers[i], rows.pointers[i + 1]):
+                x, at = 0.0, rows.columns[q]
+                for k in range(terms, -1, -1):
+                    x = x * end + motion[k, at]
+                far += abs(rows.values[q]) * max(abs(x), abs(motion[0, at]))
+            laws.largest_deformation[i] = max(laws.largest_deformation[i], far)
+
+
 def accept(laws: Laws, now: MotionState, series: Series, terms: int, h: float, end: float) -> None:
     """Make the place `end` the present."""
     evaluate(series.motion, terms, end, h, 0, now.displacement)
@@ -365,6 +381,7 @@ def stride(
         whole = end == 1.0 and h == left
         # terms that were not needed make room for a longer step
         lengths.next = max(h * min(fit * TERMS / terms, GROW), lengths.next if end == 1.0 else 0.0)
+        count_reach(laws, series, terms, end)
         event = first_event(laws, series, terms, h, end)
         at = event.time
         take(linear, laws, step, series, lengths, coefs, begin, terms, h, at, works, run, rules)

@@ -94,12 +94,18 @@ def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: in
 
 
 def first_event(laws: Laws, series: Series, terms: int, h: float, end: float) -> LocatedEvent:
-    """The first event of any law before the place `end`, in lengths of the step, see `none`."""
+    """The first event of any law before the place `end`, in lengths of the step, see `none`.
+
+    An event of a contact counts if it is there before that of another law: bodies that move alike meet only
+    where a hinge of one has yielded, and that of the other has not yet.
+    """
     first = none(end)
-    for i in range(len(laws.rule)):
-        own = event_of(laws, series, terms, h, first.time, i)
-        if own.law >= 0 and (first.law < 0 or own.time < first.time):
-            first = own
+    for late in range(2):
+        for i in range(len(laws.rule)):
+            if laws.contact[i] == (late == 1):
+                own = event_of(laws, series, terms, h, first.time, i)
+                if own.law >= 0 and (first.law < 0 or own.time < first.time):
+                    first = own
     return first
 
 

@@ -42,7 +42,14 @@ from pound_solve.integrate.kernels.laws import (
     set_normal_force,
     update_friction_limits,
 )
-from pound_solve.integrate.kernels.products import along, copy, evaluate_inputs, form_load, multiply
+from pound_solve.integrate.kernels.products import (
+    along,
+    copy,
+    evaluate_inputs,
+    form_load,
+    multiply,
+    reach,
+)
 from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Run, Scheme, Step
 from pound_solve.integrate.kernels.work import (
     load_on_nodes,
@@ -252,6 +259,9 @@ def try_step(
         a = along(laws.rows, i, trial.acceleration)
         laws.trial.deformation[i] += bk * a
         laws.trial.rate[i] += gk * a
+        if laws.contact[i]:  # of bodies that move alike the deformation is rounding
+            far = reach(laws.rows, i, trial.displacement)
+            laws.largest_deformation[i] = max(laws.largest_deformation[i], far)
     if len(laws.coupled) > 0:
         update_friction_limits(laws, rules, trial.acceleration)
     if linear.implicit and not linear.all_mass:
