@@ -11,6 +11,8 @@ import pytest
 from decks import results_of
 from kernels import steps_alone
 from pound_deck.reader import read_text
+from pound_solve.analyses.cells import NODES as OWN_NODES
+from pound_solve.analyses.cells import among_equals, may_exceed_alone
 from pound_solve.analyses.closeups import Peaks
 from pound_solve.catalog import catalog
 from pound_solve.check import Check, Subject, looked
@@ -187,6 +189,94 @@ def test_no_cell_that_holds_an_extreme_is_passed_over() -> None:
             assert np.abs(y(cells + place) - top).max() < 1e-9
             most = max(most, top.max())
         assert most >= fine.max() - 1e-9 * size.sum()
+
+
+def test_no_cell_on_its_own_that_holds_an_extreme_is_passed_over() -> None:
+    """As above in one cell, whatever was before and is after it."""
+    random = np.random.default_rng(6)
+    searched = 0
+    for _ in range(1000):
+        parts = int(random.integers(1, 4))
+        rate, phase = random.uniform(0.01, 2.5, parts), random.uniform(0.0, 6.3, parts)
+        size = random.uniform(0.0, 1.0, parts)
+        y = np.sin(np.multiply.outer(np.linspace(0.0, 1.0, 401), rate) + phase) @ size
+        nodes = np.sin(np.multiply.outer(OWN_NODES, rate) + phase) @ size
+        most, span = y.max(), np.ptp(y)
+        for best, found in (
+            (most - 1e-9 * size.sum(), True),
+            (most + 0.3 * span + 0.2 * size.sum(), False),
+        ):
+            known = np.array([-np.inf]), np.array([best])
+            doubts = may_exceed_alone(nodes[None, None], np.array([7]), *known)
+            assert doubts.cell.tolist() == [7] * found
+            searched += len(doubts.cell)
+    assert searched == 1000
+
+
+def test_cells_among_equals() -> None:
+    """Two as long as it before and three after it, without a gap, a shorter cell or an end among them."""
+    lengths = np.ones(20)
+    lengths[12] = 0.5
+    t = np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
+    t[6:] += 0.1
+    assert np.flatnonzero(among_equals(t, lengths)).tolist() == [2, 8, 15, 16]
+    assert not among_equals(t[:3], lengths[:3]).any()
+
+
+HINGED = """TITLE two frames with hinges
+UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 6 0 FIX=XYR
+ 3 0 4
+ 4 6 4
+ 11 6.01 0 FIX=XYR
+ 12 12 0 FIX=XYR
+ 13 6.01 4
+ 14 12 4
+ELEMENTS
+ 1 LEFT 1 3
+ 2 LEFT 2 4
+ 3 BEAM 3 4
+ 4 RIGHT 11 13
+ 5 RIGHT 12 14
+ 6 BEAM 13 14
+ 9 POUND 4 13
+PROPS
+ LEFT FRAME E=2.7E7 A=0.13 I=0.0008 LP=0.2 MI=115 MJ=115 RULE=CLOUGH R=0.04
+ RIGHT FRAME E=2.7E7 A=0.12 I=0.0006 LP=0.2 MI=90 MJ=90 RULE=TAKEDA R=0.05
+ BEAM FRAME E=2.7E7 A=0.14 I=0.0013
+ POUND CONTACT GAP=0.01 LAW=KELVIN_VOIGT K=3E5 E=0.6
+WEIGHTS
+ 3,4 150
+ 13,14 100
+EQUAKE
+ SINE AMPLITUDE=3 PERIOD=0.58
+OUTPUT
+ EVERY={every}
+ANALYSIS
+ STATIC GRAVITY=YES
+ HISTORY 0.8 METHOD=TAYLOR
+"""
+
+
+def test_peaks_just_before_an_event_are_found(tmp_path: Path) -> None:
+    """The rotation of a node without rotational mass accelerates most where a hinge yields, and jumps
+    there: no sample of a run that stores many lies above the peaks of one that stores three.
+    """
+    runs = []
+    for every in (0.5, 0.0002):
+        deck = tmp_path / f"{every}.inp"
+        deck.write_text(HINGED.format(every=every))
+        runs.append(results_of(deck, out=tmp_path))
+    peaks, samples = runs[0].table("node_envelope"), runs[1].history("node/a")
+    peaks = peaks[peaks["quantity"] == "acceleration"]
+    samples = samples.reshape(len(samples), -1)
+    place = {label: k for k, label in enumerate(runs[1].labels("node/a"))}
+    for row in peaks:
+        own = samples[:, place[f"{row['node']} {row['direction']}"]]
+        assert own.max() <= row["max"] + 1e-9 * np.ptp(own)
+        assert own.min() >= row["min"] - 1e-9 * np.ptp(own)
 
 
 def test_crests_of_polynomials() -> None:

@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from pound_solve.analyses.cells import AT_ONCE, COUNT, among_equals, may_exceed_alone
+from pound_solve.analyses.cells import NODES as OWN_NODES
 from pound_solve.analyses.closeups import Closeups
 from pound_solve.analyses.extremes import Extremes, intervals
 from pound_solve.analyses.quantities import MOTION, Quantities
@@ -200,11 +202,27 @@ class Envelopes:
         if course.within is None or not len(t):
             return
         self.searched = True
-        found = may_exceed(values, self._all.low[own.place], self._all.high[own.place])
+        found = self._doubts(course, values)
         rest = np.ones(len(found.row), bool)
         rest[first := found.first()] = False
         for doubts in (found.some(first), found.some(rest)):  # these seldom exceed what the first hold
             self._search(course, doubts)
+
+    def _doubts(self, course: Course, values: Array) -> Doubts:
+        """Which quantities may exceed what is known of them, and in which cells, by their values at the
+        starts of these and, where the cells around one tell nothing of it, within it.
+        """
+        own, lone = self.quantities, ~among_equals(course.motion.t, course.lengths)
+        low, high = self._all.low[own.place], self._all.high[own.place]
+        found = may_exceed(values, low, high)
+        parts = [found.some(~lone[found.cell])]
+        at_once = max(AT_ONCE // (COUNT * max(len(values), 1)), 1)
+        cells = np.flatnonzero(lone)
+        for first in range(0, len(cells), at_once):
+            some = cells[first : first + at_once]
+            within = own.within(course, some, OWN_NODES)
+            parts.append(may_exceed_alone(within, some, low, high))
+        return Doubts(*map(np.concatenate, zip(*parts)))
 
     def _search(self, course: Course, doubts: Doubts) -> None:
         """Count in the extremes of quantities where they still may exceed what is known."""

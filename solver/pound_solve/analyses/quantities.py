@@ -156,6 +156,12 @@ class Quantities:
                     out[self._of(name)] += x.turned(motion.u, s[0])
         return np.asarray(out)
 
+    def within(self, course: Course, cells: Index, shares: Array) -> Array:
+        """Values of all rows at shares of some cells, shape (n_rows, n_cells, n_shares)."""
+        assert course.within is not None
+        motion = course.within(cells, shares)
+        return self.values(motion, self.inputs(motion.t)).reshape(-1, len(cells), len(shares))
+
     def along(self, course: Course, row: Index, cell: Index, shares: Array) -> Array:
         """Values of a row in a cell each, at shares of it, shape (n, n_shares)."""
         cells, at = np.unique(cell, return_inverse=True)
