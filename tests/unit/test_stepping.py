@@ -444,6 +444,7 @@ def test_changes_at_one_instant_stop_with_time_place_and_what_helps(tmp_path, mo
         return within_step.event_value(laws, i, e, laws.now.deformation[i], laws.now.rate[i])[0]
 
     monkeypatch.setattr(locating, "value_at_start", at_start)
+    monkeypatch.setattr(within_step, "ALIKE", 1.0)  # else that counts as rounding
     with interpreted():
         told = bar(tmp_path, 0.05).message
     assert told.startswith("A503 at t = 0.703") and "at one instant" in told

@@ -150,12 +150,15 @@ class EventDrivenRun(ABC):
         """Kinetic energy at velocity `v` [F L]."""
         return 0.5 * float(v @ self.system.mass @ v)
 
-    def count_reach(self, u: Array) -> None:
-        """Count the displacements of the bodies that contacts are between into what their deformations are
-        rounded to: of bodies that move alike these are nothing else.
+    def reaching(self, u: Array) -> Array:
+        """Largest magnitudes of the rows and their rates where the bodies that contacts are between come to
+        displacements `u`: to these their deformations are rounded, and those of bodies that move alike are
+        nothing else.
         """
+        out = self.largest.copy()
         far = np.abs(self.rows.rows[self.contacts]) @ np.abs(u)
-        self.largest[0, self.contacts] = np.maximum(self.largest[0, self.contacts], far)
+        out[0, self.contacts] = np.maximum(out[0, self.contacts], far)
+        return out
 
     def count_magnitudes(self, value: Array, rate: Array) -> None:
         """Count values and rates of the first rows, shape (n_rows, n_times), into the largest."""

@@ -158,9 +158,6 @@ class Exact(EventDrivenRun):
             self.windows.narrow()  # so that the works are released, and a stop is told, at the first goal
             return cursor
         bounds = dense.derivative_bounds()
-        if self.contacts:
-            self.count_reach(self.u)
-            self.count_reach(dense.motions_at_ends(np.array([dense.intervals - 1]))[0][:, 0])
         coarse = self.search.coarse(dense, bounds, window.h, self.largest)
         if not np.isfinite(coarse.value).all() or not np.isfinite(coarse.rate).all():
             raise self.stop("A504", "the motion grew beyond all numbers")
@@ -173,7 +170,11 @@ class Exact(EventDrivenRun):
         fine = self.search.fine(coarse, bounds, window.h, self.largest)
         self.window_count += 1
         self._charge_window(dense, window.h, coarse.t.size + fine.t.size)
-        found = self.search.events.first_event(fine, self.largest, STILL, self.contacts)
+        largest = self.largest
+        if self.contacts:  # the end of the window is not reached if there is an event before
+            self.largest = self.reaching(self.u)
+            largest = self.reaching(dense.motions_at_ends(np.array([dense.intervals - 1]))[0][:, 0])
+        found = self.search.events.first_event(fine, largest, STILL, self.contacts)
         if found is None:
             self._count_peaks(coarse, fine, dense.length)
             self.envelopes.add(dense, self.t, window.h, dense.length)

@@ -140,8 +140,9 @@ class Laplace(EventDrivenRun):
         motion, rows = self._transformed(end)
         span = min(float(rows.t[0, -1]), end - self.t)
         functions = EventFunctions(self.branches, {})
-        self.count_reach(np.abs(motion.u).max(axis=1))
-        found = functions.first_event(rows, self.largest, STILL, self.contacts)
+        self.largest = self.reaching(self.u)
+        largest = self.reaching(np.abs(motion.u).max(axis=1))
+        found = functions.first_event(rows, largest, STILL, self.contacts)
         event = None if found is None or found.event.time >= span else found.event
         event = functions.violated(rows, self.largest, SURE * STILL, self._massless_laws) or event
         tau = span if event is None else event.time

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+LOOKS = 9  #: places up to the event of another law at which that of a contact is looked at
+
 
 class LocatedEvent(NamedTuple):
     """The instant at which an event function of a law rises through zero.

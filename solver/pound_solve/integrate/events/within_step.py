@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pound_solve.integrate.events.protocol import LocatedEvent, none
+from pound_solve.integrate.events.protocol import LOOKS, LocatedEvent, none
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, Step
 from pound_solve.integrate.protocol import STILL
@@ -68,8 +68,8 @@ def first_event(laws: Laws, step: Step, h: float) -> LocatedEvent:
 
 
 def is_there(laws: Laws, step: Step, i: int, e: int, h: float, t: float) -> bool:
-    """Whether the cubic of event function `e` of law `i` in the step of length `h` is above rounding at the
-    time `t`.
+    """Whether the cubic of event function `e` of law `i` in the step of length `h` is above rounding up to
+    the time `t`.
     """
     on_d, on_v = laws.events[i, e, 0], laws.events[i, e, 1]
     g1, size = event_value(laws, i, e, laws.trial.deformation[i], laws.trial.rate[i])
@@ -77,7 +77,11 @@ def is_there(laws: Laws, step: Step, i: int, e: int, h: float, t: float) -> bool
     if on_v != 0.0:
         s0 += on_v * along(laws.rows, i, step.now.acceleration)
         s1 += on_v * along(laws.rows, i, step.trial.acceleration)
-    return cubic_value(min(start_value(laws, i, e), 0.0), g1, s0, s1, h, t) > ALIKE * STILL * size
+    g0 = min(start_value(laws, i, e), 0.0)
+    for k in range(1, LOOKS):
+        if cubic_value(g0, g1, s0, s1, h, t * k / (LOOKS - 1)) > ALIKE * STILL * size:
+            return True
+    return False
 
 
 def time_of_event(laws: Laws, step: Step, i: int, e: int, h: float) -> float:
