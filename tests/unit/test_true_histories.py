@@ -207,7 +207,7 @@ def test_no_cell_on_its_own_that_holds_an_extreme_is_passed_over() -> None:
             (most + 0.3 * span + 0.2 * size.sum(), False),
         ):
             known = np.array([-np.inf]), np.array([best])
-            doubts = may_exceed_alone(nodes[None, None], np.array([7]), *known)
+            doubts = may_exceed_alone(nodes[:, None, None], np.array([7]), *known)
             assert doubts.cell.tolist() == [7] * found
             searched += len(doubts.cell)
     assert searched == 1000

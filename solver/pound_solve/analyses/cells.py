@@ -6,9 +6,9 @@ one is longer or shorter; accelerations and forces may jump there, so that the s
 next cell is not what the cell itself ends with.  The same holds at both ends of a course, and where the
 motion between two of its cells is part of another one.
 
-Such a cell is sampled at `COUNT` nodes of Chebyshev of its own.  Where it has no more than 2.5 radians of
-an oscillation, their polynomial is right to about :math:`2 J_5(1.25) \approx 0.002` of this, and the last
-two of its coefficients together are larger than that.
+Such a cell is sampled at the `NODES`, of which its start is known.  Where it has no more than 2.5 radians
+of an oscillation, their polynomial is right to some hundredths of this, and the last two of its
+coefficients together are larger than that.
 """
 
 from __future__ import annotations
@@ -18,21 +18,20 @@ import numpy as np
 from pound_solve.numerics.crests import BEFORE, Doubts
 from pound_solve.numerics.types import Array, Flags, Index
 
-COUNT = 5  #: nodes of a cell
+#: places in a cell: short of its end, at which a quantity may jump
+NODES = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 0.99])
 GRID = 8  #: parts of a cell, at whose ends its polynomial is looked at
 EXCESS = 0.05  #: share of the range of a polynomial there, by which it may exceed what it is there
 EQUAL = 1e-6  #: share of the length of a cell, by which those next to it may differ
-AT_ONCE = 2**20  #: samples of several quantities that are looked at together
+AT_ONCE = 2**17  #: samples of several quantities that are looked at together
 
-_TURN = np.pi * (np.arange(COUNT) + 0.5) / COUNT
-#: places of the nodes in (0, 1): without the ends, at which a quantity may jump
-NODES = 0.5 * (1.0 - np.cos(_TURN))
-_FIT = 2.0 / COUNT * np.cos(np.arange(COUNT)[:, None] * (np.pi - _TURN))
-_FIT[0] *= 0.5
+_FIT = np.linalg.inv(np.polynomial.chebyshev.chebvander(2.0 * NODES - 1.0, len(NODES) - 1))
+_GRID = np.polynomial.chebyshev.chebvander(np.linspace(-1.0, 1.0, GRID + 1), len(NODES) - 1)
 #: values on the grid, then the last two coefficients, from values at the nodes
-_LOOKS = np.vstack(
-    [np.polynomial.chebyshev.chebvander(np.linspace(-1.0, 1.0, GRID + 1), COUNT - 1) @ _FIT, _FIT[-2:]]
-)
+_LOOKS = np.vstack([_GRID @ _FIT, _FIT[-2:]])
+_UP = np.maximum(_LOOKS, 0.0).sum(axis=1)  # the most of each where the values lie in (0, 1)
+#: of the range of the values, by which what a quantity may be is above the largest of them at most
+_MOST = _UP[:-2].max() - 1.0 + _UP[-2:].sum() + EXCESS * (2.0 * _UP[:-2].max() - 1.0)
 
 
 def among_equals(t: Array, lengths: Array) -> Flags:
@@ -58,18 +57,21 @@ def may_exceed_alone(values: Array, cells: Index, low: Array, high: Array) -> Do
 
     Parameters
     ----------
-    values : ndarray, shape (n, n_cells, COUNT)
+    values : ndarray, shape (n_nodes, n, n_cells)
         At the `NODES` of the cells.
     cells : ndarray of int, shape (n_cells,)
         Their numbers.
     low, high : ndarray, shape (n,)
         Smallest and largest values so far.
     """
-    looks = (_LOOKS @ values.reshape(-1, COUNT).T).reshape(-1, *values.shape[:2])
+    top, bottom = values.max(axis=0), values.min(axis=0)
+    margin = _MOST * (top - bottom)
+    row, at = np.nonzero((top + margin > high[:, None]) | (bottom - margin < low[:, None]))
+    looks = _LOOKS @ values[:, row, at]
     top, bottom = looks[:-2].max(axis=0), looks[:-2].min(axis=0)
     rest = np.abs(looks[-2:]).sum(axis=0) + EXCESS * (top - bottom)
     found = []
-    for sign, most, best in ((1.0, top + rest, high), (-1.0, rest - bottom, -low)):
-        row, at = np.nonzero(most > best[:, None])
-        found.append(Doubts(np.full(len(row), sign), row, cells[at], most[row, at]))
+    for sign, most, best in ((1.0, top + rest, high[row]), (-1.0, rest - bottom, -low[row])):
+        more = most > best
+        found.append(Doubts(np.full(more.sum(), sign), row[more], cells[at[more]], most[more]))
     return Doubts(*map(np.concatenate, zip(*found)))

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from pound_solve.analyses.cells import AT_ONCE, COUNT, among_equals, may_exceed_alone
+from pound_solve.analyses.cells import AT_ONCE, among_equals, may_exceed_alone
 from pound_solve.analyses.cells import NODES as OWN_NODES
 from pound_solve.analyses.closeups import Closeups
 from pound_solve.analyses.extremes import Extremes, intervals
@@ -216,12 +216,12 @@ class Envelopes:
         low, high = self._all.low[own.place], self._all.high[own.place]
         found = may_exceed(values, low, high)
         parts = [found.some(~lone[found.cell])]
-        at_once = max(AT_ONCE // (COUNT * max(len(values), 1)), 1)
+        at_once = max(AT_ONCE // (len(OWN_NODES) * max(len(values), 1)), 1)
         cells = np.flatnonzero(lone)
         for first in range(0, len(cells), at_once):
             some = cells[first : first + at_once]
-            within = own.within(course, some, OWN_NODES)
-            parts.append(may_exceed_alone(within, some, low, high))
+            within = np.moveaxis(own.within(course, some, OWN_NODES[1:]), 2, 0)
+            parts.append(may_exceed_alone(np.stack([values[:, some], *within]), some, low, high))
         return Doubts(*map(np.concatenate, zip(*parts)))
 
     def _search(self, course: Course, doubts: Doubts) -> None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Sequence
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from pound_solve.laws.automaton import Branch
 from pound_solve.numerics import polynomial
 from pound_solve.numerics.types import Array, Index
 
+ALIKE = 1e-12  #: share of the length of an interval by which instants may differ from those of another
 Kinematics = tuple[Array, Array, Array]  #: displacement, velocity and acceleration of the unknowns
 
 
@@ -151,10 +152,18 @@ class DenseOutput:
         (n, n_times) each.
         """
         interval = np.clip(np.searchsorted(self.edges, times, "right") - 1, 0, self.intervals - 1)
-        out = np.zeros((3, self.subsystems.system.size, len(times)))
+        local = times - self.edges[interval]
+        alike: dict[bytes, list[Index]] = {}  # columns of each interval, by the shares of its length
         for i in np.unique(interval).tolist():
-            here = interval == i
-            out[:, :, here] = self.motions(i, times[here] - self.edges[i], enveloped=True)
+            columns = np.flatnonzero(interval == i)
+            shares = np.round(local[columns] / self.lengths[i] / ALIKE)
+            alike.setdefault(shares.tobytes() + self.lengths[i].tobytes(), []).append(columns)
+        out = np.zeros((3, self.subsystems.system.size, len(times)))
+        for some in map(np.array, alike.values()):
+            chosen, t = interval[some[:, 0]], local[some[0]]
+            states = partial(_trajectories, chosen, t)
+            motion = self._motions(chosen, np.tile(t, (len(chosen), 1)), states, enveloped=True)
+            out[:, :, some.ravel()] = motion
         u, v, a = out
         return u, v, a
 
@@ -163,12 +172,21 @@ class DenseOutput:
         t = self.lengths[chosen, None]
         return self._motions(chosen, t, lambda subsystem: subsystem.states[:, chosen + 1, None])
 
-    def enveloped_grid(self, h: float, end: float) -> tuple[Array, Kinematics]:
-        """Return local times at steps of `h` in each interval up to `end`, shape (n_times,), and the motion
-        then of the unknowns in the envelopes, zero elsewhere, shape (n, n_times) each.
+    @cached_property
+    def end(self) -> tuple[Array, Array]:
+        """Displacements and velocities at the end, shape (n,) each; to be asked for before the branches or
+        the subsystems change.
         """
-        last = self.locate(end)[0]
-        count = int(np.ceil(self.lengths[: last + 1].max() / h * (1 - 1e-12)))
+        u, v, _ = self.motions_at_ends(np.array([self.intervals - 1]))
+        return u[:, 0], v[:, 0]
+
+    def enveloped_grid(self, h: float, end: float) -> tuple[Array, Kinematics]:
+        """Return local times at equal steps of at most `h` in each interval up to `end`, shape (n_times,),
+        and the motion then of the unknowns in the envelopes, zero elsewhere, shape (n, n_times) each.
+        """
+        last, longest = self.locate(end)[0], float(self.lengths.max())
+        count = int(np.ceil(longest / h * (1 - 1e-12)))
+        h = longest / count
         t = np.tile(h * np.arange(count), (last + 1, 1))
         chosen = np.arange(last + 1)
 
@@ -263,6 +281,12 @@ class DenseOutput:
             area += x.on_rate @ (polynomial.value(p, tau) - p[0])
             return float(area[x.laws == law][0])
         return 0.0
+
+
+def _trajectories(chosen: Index, t: Array, subsystem: Subsystem) -> NDArray[Any]:
+    """States q of a subsystem at times `t` of some intervals, shape (n_q, n_chosen, n_times)."""
+    states, forcing = subsystem.states[:, chosen], subsystem.forcing[chosen]
+    return subsystem.decomposition.propagator.trajectories(states, forcing, t)
 
 
 def _integral(coefs: Array, tau: float) -> Array:

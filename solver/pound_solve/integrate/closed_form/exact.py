@@ -154,8 +154,8 @@ class Exact(EventDrivenRun):
         if not window.whole:
             self._check_progress(float(window.lengths[0]), goal - self.t)
         dense = self._dense_output(window.lengths, window.starts)
-        if dense.intervals > 1 and self.runs_away(self._velocity_at_end(dense, dense.intervals)):
-            self.windows.narrow()  # so that the works are released, and a stop is told, at the first goal
+        if dense.intervals > 1 and self._grows(dense):
+            self.windows.narrow()  # so that a stop is told at the first goal
             return cursor
         bounds = dense.derivative_bounds()
         coarse = self.search.coarse(dense, bounds, window.h, self.largest)
@@ -173,7 +173,7 @@ class Exact(EventDrivenRun):
         largest = self.largest
         if self.contacts:  # the end of the window is not reached if there is an event before
             self.largest = self.reaching(self.u)
-            largest = self.reaching(dense.motions_at_ends(np.array([dense.intervals - 1]))[0][:, 0])
+            largest = self.reaching(dense.end[0])
         found = self.search.events.first_event(fine, largest, STILL, self.contacts)
         if found is None:
             self._count_peaks(coarse, fine, dense.length)
@@ -293,16 +293,18 @@ class Exact(EventDrivenRun):
         if len(out):
             motion, entries = dense.motions_at_ends(out), before + out + 1
             self.samples.add(self.goals[cursor + out], motion, entries, self.states, self.branches)
-        v = self._velocity_at_end(dense, count) if count else self.v
-        if self.work.entries > MAX_DEFERRED or cursor + count == len(self.goals) or self.runs_away(v):
+        ends = cursor + count == len(self.goals)
+        if self.work.entries > MAX_DEFERRED or ends or (count == dense.intervals and self._grows(dense)):
             self._release()
             if count:
                 self.t = float(self.goals[cursor + count - 1])  # where a stop is told
-                self.stop_growth(v)
+                self.stop_growth(dense.motions_at_ends(np.array([count - 1]))[1][:, 0])
 
-    def _velocity_at_end(self, dense: DenseOutput, count: int) -> Array:
-        """Velocities at the end of the first `count` intervals."""
-        return dense.motions_at_ends(np.array([count - 1]))[1][:, 0]
+    def _grows(self, dense: DenseOutput) -> bool:
+        """Whether the motion grows without bound up to the end of a window, by all works up to now."""
+        if self.runs_away(dense.end[1]):
+            self._release()
+        return self.runs_away(dense.end[1])
 
     def _release(self) -> None:
         """Evaluate the works, and pass the samples that waited for them to the recorder.

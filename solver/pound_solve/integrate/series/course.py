@@ -35,31 +35,31 @@ class ShownSteps:
             self.rows[derivative * self.size + self.unknowns] = np.arange(len(shown.which))
         self.rows[3 * self.size :] = len(shown.which) + np.arange(len(shown.acting))
 
-    def _motion(self, coefs: Array, steps: Index, places: Array) -> Motion:
-        """The motion at places in some steps, by the coefficients of these."""
-        x, n, h = self.shown, len(self.unknowns), np.repeat(self.shown.length[steps], len(places))
-        table = _powers(places)
-        values = table.reshape(-1, TERMS + 1) @ coefs[:, :n].transpose(0, 2, 1)
-        forces = table[0] @ coefs[:, n:].transpose(0, 2, 1)
-        out = np.zeros((3, self.size, len(steps), len(places)))
-        for j in range(len(places)):
-            out[..., j][:, self.unknowns] = values[:, j :: len(places)].transpose(1, 2, 0)
-        u, v, a = out.reshape(3, self.size, len(h))
-        v /= h
-        a /= h**2
-        t = (x.begin[steps, None] + places * x.length[steps, None]).ravel()
-        return Motion(t, u, v, a, forces.transpose(2, 0, 1).reshape(coefs.shape[1] - n, len(h)))
+    def _motion(self, steps: Index, places: Array) -> Motion:
+        """The motion at places in some steps."""
+        x, n, count = self.shown, len(self.unknowns), len(places)
+        first, last = (int(steps[0]), int(steps[-1]) + 1) if len(steps) else (0, 0)
+        coefs = x.coefs[first:last] if last - first == len(steps) else x.coefs[steps]
+        h, table = x.length[steps, None], _powers(places)
+        values = coefs[:, :n] @ table.reshape(-1, TERMS + 1).T
+        out = np.zeros((3, self.size, len(steps), count))
+        out[:, self.unknowns] = values.reshape(-1, n, 3, count).transpose(2, 1, 0, 3)
+        out[1] /= h
+        out[2] /= h**2
+        forces = (coefs[:, n:] @ table[0].T).transpose(1, 0, 2)
+        t = (x.begin[steps, None] + places * h).ravel()
+        u, v, a = out.reshape(3, self.size, len(t))
+        return Motion(t, u, v, a, forces.reshape(coefs.shape[1] - n, len(t)))
 
     def _within(self, cells: Index, shares: Array) -> Motion:
         """The motion at shares of some cells (see `protocol.Course`)."""
-        steps, half = np.divmod(cells, LOOKS)
-        parts = [np.flatnonzero(half == k) for k in range(LOOKS)]
-        found = [
-            self._motion(self.shown.coefs[steps[part]], steps[part], (k + shares) / LOOKS)
-            for k, part in enumerate(parts)
-        ]
-        back = np.argsort(np.concatenate(parts))
-        return Motion(*(_in_order(x, back) for x in zip(*found)))
+        steps = np.unique(cells // LOOKS)
+        places = ((np.arange(LOOKS)[:, None] + shares) / LOOKS).ravel()
+        whole = self._motion(steps, places)
+        chosen = np.searchsorted(steps, cells // LOOKS) * LOOKS + cells % LOOKS
+        if len(chosen) == LOOKS * len(steps) and np.all(np.diff(chosen) == 1):
+            return whole
+        return Motion(*(_of_cells(x, chosen, len(shares)) for x in whole))
 
     def _along(self, rows: Rows, cells: Index, shares: Array) -> Array:
         """Values of rows at shares of a cell for each (see `protocol.Course`): of their own series."""
@@ -79,7 +79,7 @@ class ShownSteps:
     def course(self) -> Course:
         """The motion of all that were kept."""
         steps, shares = np.arange(self.shown.kept[STEPS]), np.arange(LOOKS) / LOOKS
-        motion = self._motion(self.shown.coefs[: len(steps)], steps, shares)
+        motion = self._motion(steps, shares)
         lengths = np.repeat(self.shown.length[steps] / LOOKS, LOOKS)
         return Course(motion, lengths, self._within, self._along)
 
@@ -94,11 +94,10 @@ def _powers(places: Array) -> Array:
     return out
 
 
-def _in_order(parts: Sequence[Array], order: Index) -> Array:
-    """Parts of what is known of cells joined, the cells in an order."""
-    whole = np.concatenate(parts, axis=-1)
-    shape = *whole.shape[:-1], len(order), whole.shape[-1] // len(order)
-    return np.asarray(whole.reshape(shape)[..., order, :].reshape(whole.shape))
+def _of_cells(x: Array, chosen: Index, count: int) -> Array:
+    """What is known of some of the cells at `count` places of each."""
+    cells = x.reshape(*x.shape[:-1], x.shape[-1] // count, count)
+    return np.asarray(cells[..., chosen, :].reshape(*x.shape[:-1], len(chosen) * count))
 
 
 class ShownIntervals:
