@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from decks import results_of
 from paths import Walk
 from pound_solve.catalog import catalog
-from pound_solve.laws.automaton import drive
+from pound_solve.laws.automaton import GAP, drive
 from pound_solve.laws.contact import bilinear_impact, table
 
 BILINEAR = {
@@ -61,7 +61,7 @@ def impact(folder, law, v, gap=0.02, method="EXACT", t=2.0):
 def test_published_constants():
     """k_h 25 000 kip/in^1.5, 1 in, e 0.8, a 0.1: the numbers that OpenSees' documentation gives."""
     built = bilinear(KH=25000.0, DM=1.0, E=0.8, RELATION="PUBLISHED")
-    assert built.law.p[:4] == pytest.approx((61000.0, 21000.0, 0.1, 0.02), rel=1e-14)
+    assert built.law.p[:4] == pytest.approx((61000.0, 21000.0, 0.02, 0.1), rel=1e-14)
     # the loop loses E = 3600 exactly, but brings 14300 and not the 10000 of a Hertz contact
     assert built.e_given == pytest.approx(math.sqrt(1.0 - 3600.0 / 14300.0), rel=1e-14)
     assert round(built.e_given, 3) == 0.865 and built.e_asked == 0.8
@@ -69,7 +69,7 @@ def test_published_constants():
 
 def areas(built, overlap):
     """Work brought up to an overlap and given back, walked exit by exit."""
-    gap = built.law.p[3]
+    gap = built.law.p[GAP]
     walk = Walk(built.law).move(gap + overlap)
     brought = walk.work
     return brought, brought - walk.move(gap - 0.01).work
@@ -91,7 +91,7 @@ def test_asked_restitution_comes_back_at_the_overlap_expected(e, n, kh, dm):
 def test_a_free_impact_gives_back_what_was_asked(tmp_path, e):
     a = 0.004 if e < 0.3 else 0.1
     built = bilinear(E=e, A=a)
-    k1, k2, dy = built.law.p[:3]
+    k1, k2, _, dy = built.law.p
     v = bilinear_impact.speed(k1, k2, dy, 0.04, MASS)
     results = impact(tmp_path, f"BILINEAR_IMPACT KH=3000 E={e} DM=0.04 A={a}", v)
     (hit,) = results.table("collisions")

@@ -25,6 +25,7 @@ from pound_solve.catalog import specs
 from pound_solve.laws import functions
 from pound_solve.laws.automaton import (
     EVENTS,
+    GAP,
     NEVER,
     REVERSAL_DOWN,
     BranchKind,
@@ -208,13 +209,13 @@ def contacts() -> list[Any]:
                 except ValueError:  # a mixture that the law refuses
                     continue
                 built += 1
+                assert made.law.p[GAP] == gap, spec.name
                 if made.law.rigid:  # no force follows from its deformation, see test_rigid_contact
                     continue
                 found.append(pytest.param(made.law, gap, made.k, id=f"{spec.name} {gap} {values}"))
             if not built:  # items that only go together: the law's own example
                 spring = specimen(spec, [])[0]
-                facts = spring.facts
-                found.append(pytest.param(spring.law, facts["gap"], facts["k"], id=spec.name))
+                found.append(pytest.param(spring.law, spring.gap, spring.facts["k"], id=spec.name))
     return found
 
 

@@ -113,7 +113,7 @@ def distant(structure: Structure, history: HistoryResult, outcome: Outcome) -> I
     far = [
         (outcome.peaks.deformation[i].high / gap, i)
         for i in history.items.contacts
-        if (gap := structure.laws[i].facts["gap"]) > 0.0
+        if (gap := structure.laws[i].gap) > 0.0
     ]
     far = [(share, i) for share, i in far if 0.0 < share < LEAST_CLOSURE]
     if far:
@@ -134,7 +134,7 @@ def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
     for i in history.items.contacts:
         law = structure.laws[i]
         contact = model.elements[law.element]
-        overlap = max(outcome.peaks.deformation[i].high - law.facts["gap"], 0.0)
+        overlap = max(outcome.peaks.deformation[i].high - law.gap, 0.0)
         name, limit = contact.name or str(law.element), law.facts["limit"]
         if overlap > limit:
             about, told = f"overlap of contact {name} beyond its law", "its law is not meant for more"

@@ -152,7 +152,7 @@ def protocol(spring: LawSpring) -> list[float]:
         The spring has no yield deformation on one of its sides.
     """
     if spring.role.collides:
-        return [spring.facts["gap"] + x for x in CLOSURES]
+        return [spring.gap + x for x in CLOSURES]
     plus, minus = spring.yields or (0.0, 0.0)
     if plus == 0.0 or minus == 0.0:
         raise LawTestError("without a yield deformation on both sides the path must be given: --path")

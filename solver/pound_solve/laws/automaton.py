@@ -19,6 +19,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 EVENTS = 3  #: most event functions of a branch
+GAP = 2  #: place of the gap among the parameters of a contact
 PAST = 1e-12  #: share of its scale up to which the variable of a smooth rule has come to zero
 PUSH, PUSH_RATE = 0, 1  #: internal variables of a law with normal-force coupling: normal force and its rate
 
@@ -126,7 +127,7 @@ class Rule:
     ----------
     branches : tuple of BranchType
         Names and kinds; ``at`` counts them from 0.  A rigid contact has one branch of the kind HELD, on
-        which the deformation stays at ``p[2]``; its event functions are those of the force instead of the
+        which the deformation stays at ``p[GAP]``; its event functions are those of the force instead of the
         deformation, and its entry is an impact with the restitution ``p[1]``.
     start : callable
         ``start(p) -> (at, m)``: virgin, at zero deformation.
@@ -147,7 +148,7 @@ class Rule:
         branch dissipates ``c v^2``.
     powers : callable or None
         ``powers(p, at, m) -> (k, n, c, q, pulls, shift)``: the force of a pressed contact with a `curve`
-        is ``k x^n + c x^q v``, where x is the overlap ``d - p[2]`` less `shift`, and, unless `pulls` is
+        is ``k x^n + c x^q v``, where x is the overlap ``d - p[GAP]`` less `shift`, and, unless `pulls` is
         above zero, nothing where that would pull.  That of a damper on a branch that is not linear is
         ``k |v|^n``; `k` has the sign of the rate there.  None: it is not of this kind.
     smooth : callable or None

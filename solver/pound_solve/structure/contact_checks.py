@@ -40,9 +40,9 @@ def wide(structure: Structure) -> list[Diagnostic]:
     for spring in (s for s in structure.laws if s.role.collides):
         e = model.elements[spring.element]
         high, between = max(height[e.i], height.get(e.j, 0.0)), apart(model, spring)
-        if spring.facts["gap"] > high > 0.0:
+        if spring.gap > high > 0.0:
             found = _beyond(model, e, high)
-        elif high and 0.0 < WIDEST * between < spring.facts["gap"]:
+        elif high and 0.0 < WIDEST * between < spring.gap:
             found = _between(model, e, between)
         else:
             continue
@@ -120,7 +120,7 @@ def apart(model: Model, spring: LawSpring) -> float:
 
 def _backwards(model: Model, spring: LawSpring, e: Element) -> Iterator[Diagnostic]:
     """A contact that closes as its nodes move apart."""
-    if apart(model, spring) < 0.0 <= spring.facts["gap"]:
+    if apart(model, spring) < 0.0 <= spring.gap:
         message = (
             f"contact {e.name or e.id} closes as nodes {e.i} and {e.j} move apart: "
             f"ANGLE points from {e.j} to {e.i}"

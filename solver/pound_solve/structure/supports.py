@@ -156,7 +156,7 @@ def resisted(structure: Structure, motions: Array, touching: bool = False) -> Ar
         Exact zeros where terms cancel.
     """
     dofs, laws = structure.dofs, structure.laws
-    apart = {s.element for s in laws if touching and s.role.collides and s.facts["gap"] > 0.0}
+    apart = {s.element for s in laws if touching and s.role.collides and s.gap > 0.0}
     ties = np.array([i for i, s in enumerate(laws) if s.element not in apart], np.int64)
     out = []
     for a in (

@@ -36,7 +36,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
             *(_peak(run, node, along) for node in ends),
             _correlation(run, ends, along),
             math.nan if peaks.collisions else closure,
-            law.facts["gap"],
+            law.gap,
         )
 
 

@@ -93,7 +93,7 @@ class RigidContacts:
         self.velocity_change = np.zeros(self.rows.T.shape)
         self.velocity_change[with_mass] = least_squares(mass, self.rows[:, with_mass].T)
         self.delassus = self.rows @ self.velocity_change
-        self.gap = np.array([laws[i].law.p[2] for i in self.laws])
+        self.gap = np.array([laws[i].gap for i in self.laws])
         self.restitution = np.array([laws[i].law.p[1] for i in self.laws])
 
     def plastic_impulses(self, rates: Array, chosen: Flags) -> Array:

@@ -29,6 +29,7 @@ from pound_solve.integrate.kernels.products import spread
 from pound_solve.integrate.kernels.state import Laws
 from pound_solve.integrate.series.springs import deformation
 from pound_solve.integrate.series.state import Curved, Lengths, Series
+from pound_solve.laws.automaton import GAP
 from pound_solve.laws.functions import Tables, powers_of
 from pound_solve.numerics.types import Array, Flags
 
@@ -39,7 +40,6 @@ NEAR = 0.4  #: share of the time since touch that the first step after it is tri
 TOUCHES, PARTS, RELEASES, PRESSES_AGAIN = -1, -2, -3, -4  #: events beside those of the branch
 SPRING, DASHPOT = range(2)  #: rows of `Curved.power`
 K, N, C, Q, PULLS, SHIFT = range(6)  #: columns of `Curved.numbers`
-GAP = 2  #: of a contact, among its parameters
 
 
 def allocate(curved: Flags, terms: int) -> Curved:

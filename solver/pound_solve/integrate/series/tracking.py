@@ -11,7 +11,6 @@ from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
 from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.series.curved import (
     APART,
-    GAP,
     PARTS,
     PRESSED,
     PRESSES_AGAIN,
@@ -29,6 +28,7 @@ from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.smooth import bend_event
 from pound_solve.integrate.series.state import Series
 from pound_solve.integrate.series.viscous import turn_event
+from pound_solve.laws.automaton import GAP
 
 
 def parting(series: Series, terms: int, end: float, i: int) -> LocatedEvent:

@@ -54,12 +54,12 @@ OPEN, STIFF, SOFT, BACK = 0, 1, 2, 3
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (STIFF if p[3] < 0.0 else OPEN), (0.0,)
+    return (STIFF if p[2] < 0.0 else OPEN), (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure; the internal variable is the position of the slider."""
-    k1, k2, dy, gap = p[:4]
+    k1, k2, gap, dy = p[:4]
     if at == OPEN:
         return linear(0.0, 0.0, above(gap))
     if at == SOFT:
@@ -71,7 +71,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, slide, reverse, or part."""
-    dy, overlap = p[2], d - p[3]
+    dy, overlap = p[3], d - p[2]
     if at == OPEN:
         return STIFF, (0.0,)
     if at == SOFT:
@@ -85,7 +85,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Area below the unloading path."""
-    k2, dy, gap = p[1:4]
+    k2, gap, dy = p[1:4]
     if at == OPEN:
         return 0.0
     overlap = d - gap
@@ -159,7 +159,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
         at = speed(k1, k2, dy, values["DM"], reduced_mass)
         relation = values["RELATION"].lower()
         note = f"{relation} relation of E; e depends on the speed: as given at {at:.4g}, which reaches DM"
-    law = Law(RULE, (k1, k2, dy, values["GAP"]))
+    law = Law(RULE, (k1, k2, values["GAP"], dy))
     return Built(law, k1, 0.0, 0.0, required, given, note)
 
 

@@ -37,7 +37,7 @@ from pound_solve.laws.contact.kelvin_voigt import Built
 
 OPEN, MOST = 0, 8  #: segments of the table are branches 1 to MOST
 UNLOADING = MOST + 1
-POINTS = 4  #: place of the points in the parameters, after the first slope, gap, KU, their number
+POINTS = 4  #: place of the points in the parameters, after the first slope, KU, the gap, their number
 
 
 def point(p: Numbers, i: int) -> tuple[float, float]:
@@ -47,12 +47,12 @@ def point(p: Numbers, i: int) -> tuple[float, float]:
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (1 if p[1] < 0.0 else OPEN), (0.0, 0.0, 0.0)
+    return (1 if p[2] < 0.0 else OPEN), (0.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """The internal variables: residual depth, largest overlap, and the segment of the table at that."""
-    gap, ku, count = p[1], p[2], int(p[3])
+    ku, gap, count = p[1], p[2], int(p[3])
     if at == OPEN:
         return linear(0.0, 0.0, above(gap + m[0]))
     if at == UNLOADING:
@@ -65,7 +65,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, go to the next segment of the table or back, unload, or part."""
-    gap, ku = p[1], p[2]
+    ku, gap = p[1], p[2]
     if at == OPEN:
         return (1 if m[1] == 0.0 else UNLOADING), m
     if at == UNLOADING:
@@ -84,20 +84,20 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Area below the table, or below the line of unloading."""
     if at == OPEN:
         return 0.0
-    if p[2] != 0.0:
-        return 0.5 * f * f / p[2]
+    if p[1] != 0.0:
+        return 0.5 * f * f / p[1]
     area = 0.0
     for i in range(1, at):
         (d0, f0), (d1, f1) = point(p, i - 1), point(p, i)
         area += 0.5 * (f0 + f1) * (d1 - d0)
     d0, f0 = point(p, at - 1)
-    return area + 0.5 * (f0 + f) * (d - p[1] - d0)
+    return area + 0.5 * (f0 + f) * (d - p[2] - d0)
 
 
 def steepest(p: Numbers) -> float:
     """Slope of the steepest segment, or KU, which is not below it."""
     ends = [point(p, i) for i in range(int(p[3]) + 1)]
-    return max(p[2], *((f1 - f0) / (d1 - d0) for (d0, f0), (d1, f1) in pairwise(ends)))
+    return max(p[1], *((f1 - f0) / (d1 - d0) for (d0, f0), (d1, f1) in pairwise(ends)))
 
 
 SEGMENTS = tuple(f"pressed, segment {i}" for i in range(1, MOST + 1))
@@ -146,7 +146,7 @@ def build(values: Mapping[str, Any], reduced_mass: float) -> Built:
             f"further point of {forces[-1]:g}"
         )
     law = Law(
-        RULE, (slopes[0], values["GAP"], ku or 0.0, len(depths), *(x for pair in path[1:] for x in pair))
+        RULE, (slopes[0], ku or 0.0, values["GAP"], len(depths), *(x for pair in path[1:] for x in pair))
     )
     if ku is None:
         given, note = 1.0, "elastic: back along the table"

@@ -24,7 +24,7 @@ def labels(items: RecordedItems) -> list[str]:
 def gaps(block: SampleBlock) -> Array:
     """Initial gaps less closures, shape (n_times, n_contacts)."""
     laws, contacts = block.items.system.structure.laws, list(block.items.contacts)
-    initial = np.array([laws[i].facts["gap"] for i in contacts])
+    initial = np.array([laws[i].gap for i in contacts])
     return initial - block.deformation[contacts].T
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from pound_deck.model import Card, Element, Node
 from pound_deck.schema import Field, Kind, Spec
-from pound_solve.laws.automaton import Branch, Law, State
+from pound_solve.laws.automaton import GAP, Branch, Law, State
 from pound_solve.laws.condensed import without
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import CorotationalMember
@@ -91,7 +91,7 @@ class LawSpring:
     normal_component : str
         Of friction: the component of the same element whose force presses the faces together.
     facts : mapping
-        For a contact: figures of the report (xi, e_asked, e_given, note, reduced_mass, k, c, gap).
+        For a contact: figures of the report (xi, e_asked, e_given, note, reduced_mass, k, c).
     """
 
     element: int
@@ -110,6 +110,11 @@ class LawSpring:
     secant: float = 0.0
     role: Role = Role.SPRING
     normal_component: str = ""
+
+    @property
+    def gap(self) -> float:
+        """Of a contact: the deformation at which it touches [L]."""
+        return self.law.p[GAP]
 
     @property
     def steepest(self) -> float:

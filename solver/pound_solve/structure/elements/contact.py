@@ -128,7 +128,6 @@ def build(context: ElementContext) -> Parts:
         "k": built.k,
         "k_unit": built.unit,
         "c": built.c,
-        "gap": card["GAP"],
         "xi": built.xi,
         "e_asked": built.e_asked,
         "e_given": built.e_given,

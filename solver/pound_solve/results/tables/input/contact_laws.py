@@ -27,7 +27,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
                 f["e_given"],
                 f["reduced_mass"] or math.nan,
                 f["angle"],
-                f["gap"],
+                s.gap,
                 f["note"],
             )
 

@@ -18,7 +18,7 @@ def rows(run: RunRecord) -> Iterator[Row]:
     peaks = run.history.returned.peaks
     for i in run.history.items.contacts:
         law, closure = structure.laws[i], peaks.deformation[i]
-        gap = law.facts["gap"]
+        gap = law.gap
         own = [c for c in peaks.collisions if c.law == i]
         best = max(own, key=lambda c: (c.peak == c.peak, c.peak), default=None)  # NaN: an impact
         ends = [c.t_end if math.isfinite(c.t_end) else recorder.reached for c in own]
