@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from pound_solve.driver.prepare import DeckError, prepare
 from pound_solve.driver.request import Request
@@ -92,6 +94,60 @@ def test_a_building_is_held_by_its_neighbour() -> None:
     whole = curve(run_text(deck("AB", card.replace("BUILDING=A", "NODES=3 TO 6"))))
     np.testing.assert_allclose(whole[:, 1], 17.0 + whole[:, 2], rtol=1e-12)
     np.testing.assert_allclose(whole[:, [0, 2]], of_a[:, [0, 2]], rtol=1e-12)
+
+
+TOUCHING = """UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 3 0 FIX=YR
+ 3 3 0 FIX=YR
+ 4 6 0 FIX=XYR
+ELEMENTS
+ 1 ONE 1 2
+ 2 OTHER 3 4
+ 3 HIT 2 3
+PROPS
+ ONE SPRING KX=4000
+ OTHER SPRING KX=3000
+ HIT CONTACT GAP=0 ANGLE=0 LAW={law}
+WEIGHTS
+ 2,3 500
+BUILDINGS
+ "A" NODES=2
+ "B" NODES=3
+ANALYSIS
+ STATIC
+ PUSHOVER 2 {target} PATTERN=UNIFORM BUILDING=A STEPS=10
+"""
+
+
+@pytest.mark.parametrize(
+    ("law", "force"),
+    [
+        ("LINEAR K=1E5", lambda x: 1e5 * x),
+        ("KELVIN_VOIGT K=1E5 E=0.6", lambda x: 1e5 * x),
+        ("HERTZ K=1E6", lambda x: 1e6 * x**1.5),
+        ("HUNT_CROSSLEY K=1E6 E=0.6", lambda x: 1e6 * x**1.5),
+        (
+            "TABLE DEPTHS=0.001,0.002 FORCES=50,200",
+            lambda x: 5e4 * min(x, 1e-3) + 1.5e5 * max(x - 1e-3, 0.0),
+        ),
+        ("BILINEAR_IMPACT K1=1E5 K2=4E4 DY=0.001", lambda x: 1e5 * min(x, 1e-3) + 4e4 * max(x - 1e-3, 0.0)),
+        ("STEREOMECHANICS E=0.6", None),
+    ],
+)
+def test_buildings_that_touch_share_the_push_from_the_start(
+    law: str, force: Callable[[float], float] | None
+) -> None:
+    """A gap of zero: the contact is in series with the neighbour; away from it there is neither."""
+    pushed = curve(run_text(TOUCHING.format(law=law, target=0.1)))[1:]
+    for u, push in pushed[:, [0, 2]]:
+        moved = u
+        if force is not None:
+            moved = brentq(lambda w, u: force(u - w) - 3000.0 * w, 0.0, u, args=(u,), xtol=1e-15)
+        assert push == pytest.approx(4000.0 * u + 3000.0 * moved, rel=1e-9)
+    pulled = curve(run_text(TOUCHING.format(law=law, target=-0.1)))
+    np.testing.assert_allclose(np.abs(pulled[:, 2]), 4000.0 * np.abs(pulled[:, 0]), rtol=1e-12, atol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -83,7 +83,8 @@ def _consistent(context: ElementContext, strengths: list[str]) -> None:
         )
     if len(given) != 1:
         raise ElementError(
-            "a hinge needs its stiffness KH or its length LP" + (", not both" if given else ""),
+            "a hinge needs its stiffness KH or its length LP, often half the depth of the section"
+            + ("; not both" if given else ""),
             given[0] if given else strengths[0],
         )
     for d, end, item in ENDS:

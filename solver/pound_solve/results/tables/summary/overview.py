@@ -62,7 +62,8 @@ def contact_law(run: RunRecord) -> str:
     for s in run.structure.laws:
         if s.role.collides:
             k, e = s.facts["k"], s.facts["e_given"]
-            stiffness = f", {k:.5g} {units.text(s.facts['k_unit'])}" if k else ""
+            stiff = math.isfinite(k) and k > 0.0  # a rigid contact has none that is finite
+            stiffness = f", {k:.5g} {units.text(s.facts['k_unit'])}" if stiff else ""
             found[f"{s.rule}{stiffness}" + ("" if math.isnan(e) else f", restitution {e:.3g}")] = None
     return _few(list(found), "kinds")
 
