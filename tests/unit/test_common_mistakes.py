@@ -304,6 +304,10 @@ MISTAKES = {
         "same moment, 400 kN*m, without hardening: which of them turns is open: give member 27 a property "
         "set without MI, or both a rule that hardens, such as BILINEAR with R above zero",
     ),
+    "hinges that soften on both sides of a node within a column": (
+        [*SPLIT, ("RULE=TAKEDA R=0.03 MI=400", "RULE=BILINEAR R=-0.01 MI=400"), PLASTIC[1]],
+        "P366 hinge J of member 21 and hinge I of member 27 face each other",
+    ),
     "hinges that face each other, and dashpots that a pushover does not have": (
         [*SPLIT, PLASTIC[0], ("HISTORY 10", "PUSHOVER 23 0.1")],
         "P366 hinge J of member 21 and hinge I of member 27 face each other",

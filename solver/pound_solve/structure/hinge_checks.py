@@ -19,7 +19,7 @@ FLAT: Final = 1e-9  #: share of the initial stiffness that is no hardening
 
 
 def facing(structure: Structure) -> list[Diagnostic]:
-    """Perfectly plastic hinges of equal strength on both sides of a joint that nothing else holds.
+    """Hinges of equal strength that do not harden on both sides of a joint that nothing else holds.
 
     Both have the same moment.  At their common strength only the sum of their rotations is determined, but
     where dashpots across the hinges divide it.  A PUSHOVER has no rates and so no dashpots.
@@ -53,7 +53,7 @@ def _common(one: LawSpring, other: LawSpring, ratio: float) -> float:
 
 
 def _plastic(spring: LawSpring, side: int) -> float:
-    """Strength of a hinge on a side without hardening there; 0 where it hardens or does not yield."""
+    """Strength of a hinge on a side where it does not harden; 0 where it does, or does not yield."""
     law = spring.law
     if law.curved or spring.strengths is None or spring.yields is None:
         return 0.0
@@ -62,7 +62,7 @@ def _plastic(spring: LawSpring, side: int) -> float:
     if not math.isfinite(at_yield):
         return 0.0
     stiffness = law.branch(drive(law, law.start(), 0.0, BEYOND * at_yield)).stiffness
-    return abs(strength) if abs(stiffness) <= FLAT * law.p[0] else 0.0
+    return abs(strength) if stiffness <= FLAT * law.p[0] else 0.0
 
 
 def _told(structure: Structure, column: int, one: LawSpring, other: LawSpring, moment: float) -> Diagnostic:
