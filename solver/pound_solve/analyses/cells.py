@@ -29,7 +29,7 @@ _FIT = np.linalg.inv(np.polynomial.chebyshev.chebvander(2.0 * NODES - 1.0, len(N
 _GRID = np.polynomial.chebyshev.chebvander(np.linspace(-1.0, 1.0, GRID + 1), len(NODES) - 1)
 #: values on the grid, then the last two coefficients, from values at the nodes
 _LOOKS = np.vstack([_GRID @ _FIT, _FIT[-2:]])
-_UP = np.maximum(_LOOKS, 0.0).sum(axis=1)  # the most of each where the values lie in (0, 1)
+_UP = np.maximum(_LOOKS, 0.0).sum(axis=1)  # the most that each can be where the values lie in (0, 1)
 #: of the range of the values, by which what a quantity may be is above the largest of them at most
 _MOST = _UP[:-2].max() - 1.0 + _UP[-2:].sum() + EXCESS * (2.0 * _UP[:-2].max() - 1.0)
 
