@@ -43,7 +43,7 @@ class ShownSteps:
         h, table = x.length[steps, None], _powers(places)
         values = coefs[:, :n] @ table.reshape(-1, TERMS + 1).T
         out = np.zeros((3, self.size, len(steps), count))
-        out[:, self.unknowns] = values.reshape(-1, n, 3, count).transpose(2, 1, 0, 3)
+        out[:, self.unknowns] = values.reshape(len(steps), n, 3, count).transpose(2, 1, 0, 3)
         out[1] /= h
         out[2] /= h**2
         forces = (coefs[:, n:] @ table[0].T).transpose(1, 0, 2)
