@@ -581,7 +581,7 @@ PROPS
     [
         ("MI=100", "MI", "RULE=ELASTIC"),
         ("MI=100 RULE=BILINEAR", "MI", "needs its stiffness KH or its length LP"),
-        ("MI=100 RULE=BILINEAR KH=1e5 LP=0.3", "KH", "not both"),
+        ("MI=100 RULE=BILINEAR KH=1e5 LP=0.3", "LP", "KH and LP both give .*: keep one"),
         ("RULE=BILINEAR", "RULE", "needs a yield moment"),
         ("LP=0.3", "LP", "no effect without a yield moment"),
         ("KH=1e5", "KH", "no effect without a yield moment"),

@@ -578,3 +578,18 @@ def test_frames_with_hinges_come_to_rest_on_each_other(law: str, load: str) -> N
     assert np.abs(r.force - e.force).max() <= 1e-9 * np.abs(e.force).max()
     assert len(r.tables["collisions"]) == len(e.tables["collisions"])
     assert r.check() < 1e-11 and e.check() < 1e-11
+
+
+@BOTH
+def test_the_report_tells_impacts_from_forces_and_rigid_bodies_do_not_overlap(method: str) -> None:
+    """A mass bounces on a wall and then is pressed to it, by a force that can be told by hand."""
+    deck = row([1e9, 2.0], [0.0, -3.0], 0.5, t=8.0, more="LOADS\n 2 FX=-5")
+    r = run_text(deck, None, method)
+    assert r.status == "done", r.message
+    told = dict(r.tables["overview"].tolist())["collisions"]
+    (summary,) = r.tables["contact_summary"]
+    lasting = np.isfinite(r.tables["collisions"]["peak_force"])
+    assert lasting.sum() == 1
+    start = f"{len(lasting)}, {len(lasting) - 1} of them impacts in no time, without a force, "
+    assert told.startswith(start + "largest force while closed 5 N at ")
+    assert summary["peak_penetration"] == summary["min_gap"] == 0.0

@@ -29,9 +29,14 @@ _FIT = np.linalg.inv(np.polynomial.chebyshev.chebvander(2.0 * NODES - 1.0, len(N
 _GRID = np.polynomial.chebyshev.chebvander(np.linspace(-1.0, 1.0, GRID + 1), len(NODES) - 1)
 #: values on the grid, then the last two coefficients, from values at the nodes
 _LOOKS = np.vstack([_GRID @ _FIT, _FIT[-2:]])
-_UP = np.maximum(_LOOKS, 0.0).sum(axis=1)  # the most that each can be where the values lie in (0, 1)
-#: of the range of the values, by which what a quantity may be is above the largest of them at most
-_MOST = _UP[:-2].max() - 1.0 + _UP[-2:].sum() + EXCESS * (2.0 * _UP[:-2].max() - 1.0)
+# Let the values be b + r w with w in (0, 1).  A row for the grid sums to one, since constants are met: it
+# gives b + r times its sum of w, which is at most the sum of its positive parts, and at least one less that
+# sum.  A row for a coefficient sums to zero, and gives as much to either side.
+_UP = np.maximum(_LOOKS, 0.0).sum(axis=1)
+_GRID_UP, _REST_UP = _UP[:-2].max(), _UP[-2:].sum()
+#: of the range of the values, by which what a quantity may be is above the largest of them at most: the
+#: polynomial, its last coefficients, and the share of its range
+_MOST = (_GRID_UP - 1.0) + _REST_UP + EXCESS * (2.0 * _GRID_UP - 1.0)
 
 
 def among_equals(t: Array, lengths: Array) -> Flags:

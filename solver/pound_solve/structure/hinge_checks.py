@@ -46,13 +46,13 @@ def _common(one: LawSpring, other: LawSpring, ratio: float) -> float:
     """Strength at which both stay, where the other's moment is `ratio` times that of one; 0 for none."""
     for side in (0, 1):
         facing_side = side if ratio > 0.0 else 1 - side
-        mine, theirs = _plastic(one, side), _plastic(other, facing_side)
+        mine, theirs = _flat_strength(one, side), _flat_strength(other, facing_side)
         if mine and math.isclose(abs(ratio) * mine, theirs, rel_tol=EQUAL):
             return mine
     return 0.0
 
 
-def _plastic(spring: LawSpring, side: int) -> float:
+def _flat_strength(spring: LawSpring, side: int) -> float:
     """Strength of a hinge on a side where it does not harden; 0 where it does, or does not yield."""
     law = spring.law
     if law.curved or spring.strengths is None or spring.yields is None:

@@ -81,6 +81,7 @@ class DenseOutput:
     def kept(self) -> DenseOutput:
         """One that stays as it is when the run goes on."""
         out = copy.copy(self)
+        out.__dict__.pop("end", None)  # nobody asks for it then
         out.branches = list(self.branches)
         out.subsystems = copy.copy(self.subsystems)
         out.subsystems.present = [copy.copy(x) for x in self.subsystems.present]
@@ -133,10 +134,8 @@ class DenseOutput:
         u, v, a = self.motions(interval, np.array([tau]))
         return u[:, 0], v[:, 0], a[:, 0]
 
-    def motions(self, interval: int, times: Array, enveloped: bool = False) -> Kinematics:
-        """Return the motion at several times of an interval, shape (n, n_times) each; with `enveloped` that
-        of the unknowns in the envelopes, zero elsewhere.
-        """
+    def motions(self, interval: int, times: Array) -> Kinematics:
+        """Return the motion at several times of an interval, shape (n, n_times) each."""
 
         def states(subsystem: Subsystem) -> NDArray[Any]:
             if len(times) == 1:  # the ends of intervals are known, other times recur
@@ -145,7 +144,7 @@ class DenseOutput:
                 subsystem.states[:, interval], subsystem.forcing[interval], times
             )[:, None]
 
-        return self._motions(np.array([interval]), times[None], states, enveloped)
+        return self._motions(np.array([interval]), times[None], states)
 
     def enveloped_motions(self, times: Array) -> Kinematics:
         """Return the motion of the unknowns in the envelopes at several local times, zero elsewhere, shape

@@ -154,9 +154,11 @@ class Exact(EventDrivenRun):
         if not window.whole:
             self._check_progress(float(window.lengths[0]), goal - self.t)
         dense = self._dense_output(window.lengths, window.starts)
-        if dense.intervals > 1 and self._grows(dense):
-            self.windows.narrow()  # so that a stop is told at the first goal
-            return cursor
+        if dense.intervals > 1 and self.runs_away(dense.end[1]):
+            self._release()  # the works that wait may have put in what it moves with
+            if self.runs_away(dense.end[1]):
+                self.windows.narrow()  # so that a stop is told at the first goal
+                return cursor
         bounds = dense.derivative_bounds()
         coarse = self.search.coarse(dense, bounds, window.h, self.largest)
         if not np.isfinite(coarse.value).all() or not np.isfinite(coarse.rate).all():
@@ -294,17 +296,12 @@ class Exact(EventDrivenRun):
             motion, entries = dense.motions_at_ends(out), before + out + 1
             self.samples.add(self.goals[cursor + out], motion, entries, self.states, self.branches)
         ends = cursor + count == len(self.goals)
-        if self.work.entries > MAX_DEFERRED or ends or (count == dense.intervals and self._grows(dense)):
+        grows = count == dense.intervals and self.runs_away(dense.end[1])
+        if self.work.entries > MAX_DEFERRED or ends or grows:
             self._release()
             if count:
                 self.t = float(self.goals[cursor + count - 1])  # where a stop is told
                 self.stop_growth(dense.motions_at_ends(np.array([count - 1]))[1][:, 0])
-
-    def _grows(self, dense: DenseOutput) -> bool:
-        """Whether the motion grows without bound up to the end of a window, by all works up to now."""
-        if self.runs_away(dense.end[1]):
-            self._release()
-        return self.runs_away(dense.end[1])
 
     def _release(self) -> None:
         """Evaluate the works, and pass the samples that waited for them to the recorder.

@@ -37,6 +37,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
+    GAP,
     REVERSAL_DOWN,
     REVERSAL_UP,
     BranchKind,
@@ -54,7 +55,7 @@ OPEN, STIFF, SOFT, BACK = 0, 1, 2, 3
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (STIFF if p[2] < 0.0 else OPEN), (0.0,)
+    return (STIFF if p[GAP] < 0.0 else OPEN), (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -71,7 +72,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, slide, reverse, or part."""
-    dy, overlap = p[3], d - p[2]
+    dy, overlap = p[3], d - p[GAP]
     if at == OPEN:
         return STIFF, (0.0,)
     if at == SOFT:

@@ -28,6 +28,7 @@ from typing import Any
 
 from pound_deck.schema import Spec
 from pound_solve.laws.automaton import (
+    GAP,
     BranchKind,
     Law,
     Numbers,
@@ -53,7 +54,7 @@ BEYOND = 2  #: branch of overlaps that no free impact reaches
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative; the internal variable is the approach speed."""
-    return (BEYOND if p[2] < 0.0 else OPEN), (0.0,)
+    return (BEYOND if p[GAP] < 0.0 else OPEN), (0.0,)
 
 
 def reach(p: Numbers, m: Numbers) -> float:
@@ -65,13 +66,13 @@ def reach(p: Numbers, m: Numbers) -> float:
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure, overlap = closure - gap."""
     if at == OPEN:
-        return linear(0.0, 0.0, above(p[2]))
+        return linear(0.0, 0.0, above(p[GAP]))
     if m[0] == 0.0:  # all overlaps are beyond
-        return linear(0.0, 0.0, below(p[2]))
-    far = p[2] + reach(p, m)
+        return linear(0.0, 0.0, below(p[GAP]))
+    far = p[GAP] + reach(p, m)
     if far == math.inf:
-        return linear(0.0, 0.0, below(p[2]))
-    return linear(0.0, 0.0, below(p[2]), above(far) if at == PRESSED else below(far))
+        return linear(0.0, 0.0, below(p[GAP]))
+    return linear(0.0, 0.0, below(p[GAP]), above(far) if at == PRESSED else below(far))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
@@ -85,7 +86,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy of the contact spring."""
-    return 0.0 if at == OPEN else spring_energy(p[0], p[1], d - p[2])
+    return 0.0 if at == OPEN else spring_energy(p[0], p[1], d - p[GAP])
 
 
 def curve(

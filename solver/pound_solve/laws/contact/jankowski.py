@@ -20,6 +20,7 @@ from typing import Any
 
 from pound_deck.schema import Spec
 from pound_solve.laws.automaton import (
+    GAP,
     REVERSAL_DOWN,
     REVERSAL_UP,
     Law,
@@ -46,15 +47,15 @@ from pound_solve.laws.contact.power import (
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure, overlap = closure - gap."""
     if at == OPEN:
-        return linear(0.0, 0.0, above(p[2]))
+        return linear(0.0, 0.0, above(p[GAP]))
     if at == APPROACH:
-        return linear(0.0, 0.0, REVERSAL_DOWN, below(p[2]))
-    return linear(0.0, 0.0, below(p[2]), REVERSAL_UP)
+        return linear(0.0, 0.0, REVERSAL_DOWN, below(p[GAP]))
+    return linear(0.0, 0.0, below(p[GAP]), REVERSAL_UP)
 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy of the contact spring."""
-    return 0.0 if at == OPEN else spring_energy(p[0], p[1], d - p[2])
+    return 0.0 if at == OPEN else spring_energy(p[0], p[1], d - p[GAP])
 
 
 def curve(

@@ -22,6 +22,7 @@ from typing import Any, NamedTuple
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
+    GAP,
     BranchKind,
     Law,
     Numbers,
@@ -38,7 +39,7 @@ OPEN, PRESSED, RELEASED = 0, 1, 2
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (PRESSED if p[2] < 0.0 else OPEN), ()
+    return (PRESSED if p[GAP] < 0.0 else OPEN), ()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
@@ -61,7 +62,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy of the contact spring, which a released contact gives up to itself as the overlap goes."""
-    return 0.0 if at == OPEN else 0.5 * p[0] * (d - p[2]) ** 2
+    return 0.0 if at == OPEN else 0.5 * p[0] * (d - p[GAP]) ** 2
 
 
 RULE = Rule(

@@ -18,6 +18,7 @@ from typing import Any
 
 from pound_deck.schema import Spec
 from pound_solve.laws.automaton import (
+    GAP,
     REVERSAL_DOWN,
     REVERSAL_UP,
     BranchKind,
@@ -58,7 +59,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy of the contact spring."""
-    return 0.0 if at == OPEN else 0.5 * p[0] * (d - p[2]) ** 2
+    return 0.0 if at == OPEN else 0.5 * p[0] * (d - p[GAP]) ** 2
 
 
 RULE = Rule(

@@ -21,6 +21,7 @@ from typing import Any
 
 from pound_deck.schema import Spec
 from pound_solve.laws.automaton import (
+    GAP,
     BranchKind,
     Law,
     Numbers,
@@ -44,12 +45,12 @@ from pound_solve.laws.contact.power import (
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative."""
-    return (PRESSED if p[2] < 0.0 else OPEN), ()
+    return (PRESSED if p[GAP] < 0.0 else OPEN), ()
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure, overlap = closure - gap."""
-    return linear(0.0, 0.0, above(p[2]) if at == OPEN else below(p[2]))
+    return linear(0.0, 0.0, above(p[GAP]) if at == OPEN else below(p[GAP]))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
@@ -59,7 +60,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy of the contact spring."""
-    return 0.0 if at == OPEN else spring_energy(p[0], p[1], d - p[2])
+    return 0.0 if at == OPEN else spring_energy(p[0], p[1], d - p[GAP])
 
 
 def curve(

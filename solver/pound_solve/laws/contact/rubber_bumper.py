@@ -26,6 +26,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
+    GAP,
     REVERSAL_DOWN,
     REVERSAL_UP,
     BranchKind,
@@ -46,14 +47,14 @@ OPEN, APPROACH, PARTING, STIFF_APPROACH, STIFF_PARTING = range(5)  #: stiff: the
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative; the internal variable is the speed v0."""
-    if p[2] >= 0.0:
+    if p[GAP] >= 0.0:
         return OPEN, (0.0,)
-    return (APPROACH if -p[2] <= p[3] else STIFF_APPROACH), (0.0,)
+    return (APPROACH if -p[GAP] <= p[3] else STIFF_APPROACH), (0.0,)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """Deformation is the closure, overlap = closure - gap."""
-    gap, limit = p[2], p[3]
+    gap, limit = p[GAP], p[3]
     if at == OPEN:
         return linear(0.0, 0.0, above(gap))
     if at == STIFF_APPROACH:
@@ -73,7 +74,7 @@ def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) 
         return APPROACH, (max(v, 0.0),)
     approaching = at in (APPROACH, STIFF_APPROACH)
     if approaching and event == 0:
-        turned = max(m[0], math.sqrt(2.0 * spring(p, d - p[2])[2] / p[6]))
+        turned = max(m[0], math.sqrt(2.0 * spring(p, d - p[GAP])[2] / p[6]))
         return (PARTING if at == APPROACH else STIFF_PARTING), (turned,)
     if approaching:
         return (STIFF_APPROACH, m) if event == 2 else (OPEN, (0.0,))
@@ -96,7 +97,7 @@ def spring(p: Numbers, x: float) -> tuple[float, float, float]:
 
 def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
     """Energy of the bumper."""
-    return 0.0 if at == OPEN else spring(p, d - p[2])[2]
+    return 0.0 if at == OPEN else spring(p, d - p[GAP])[2]
 
 
 def curve(
@@ -105,8 +106,8 @@ def curve(
     """Force; `p` holds k, n, gap, the limit, the stiffness beyond it, d, and the mass."""
     if at == OPEN:
         return 0.0, 0.0, 0.0, 0.0
-    force, stiffness, energy = spring(p, d - p[2])
-    work = energy - spring(p, d0 - p[2])[2]
+    force, stiffness, energy = spring(p, d - p[GAP])
+    work = energy - spring(p, d0 - p[GAP])[2]
     if at in (APPROACH, STIFF_APPROACH) or m[0] == 0.0:
         return force, stiffness, 0.0, work
     c, slope = p[5] * force / m[0], p[5] * stiffness / m[0]

@@ -23,6 +23,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
+    GAP,
     BranchKind,
     Law,
     Numbers,
@@ -46,7 +47,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
     The internal variable is the force in a static state; a history has forces of its own.
     """
-    return linear(0.0, m[0], above(p[2]) if at == OPEN else below(0.0))
+    return linear(0.0, m[0], above(p[GAP]) if at == OPEN else below(0.0))
 
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:

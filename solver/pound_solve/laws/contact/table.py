@@ -24,6 +24,7 @@ from typing import Any
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import (
+    GAP,
     REVERSAL_DOWN,
     BranchKind,
     Law,
@@ -47,12 +48,12 @@ def point(p: Numbers, i: int) -> tuple[float, float]:
 
 def start(p: Numbers) -> tuple[int, Numbers]:
     """Open, or pressed where the gap is negative (an overlap from the start)."""
-    return (1 if p[2] < 0.0 else OPEN), (0.0, 0.0, 0.0)
+    return (1 if p[GAP] < 0.0 else OPEN), (0.0, 0.0, 0.0)
 
 
 def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
     """The internal variables: residual depth, largest overlap, and the segment of the table at that."""
-    ku, gap, count = p[1], p[2], int(p[3])
+    ku, gap, count = p[1], p[GAP], int(p[3])
     if at == OPEN:
         return linear(0.0, 0.0, above(gap + m[0]))
     if at == UNLOADING:
@@ -65,7 +66,7 @@ def branch(p: Numbers, at: int, m: Numbers) -> Numbers:
 
 def transition(p: Numbers, at: int, m: Numbers, event: int, d: float, v: float) -> tuple[int, Numbers]:
     """Touch, go to the next segment of the table or back, unload, or part."""
-    ku, gap = p[1], p[2]
+    ku, gap = p[1], p[GAP]
     if at == OPEN:
         return (1 if m[1] == 0.0 else UNLOADING), m
     if at == UNLOADING:
@@ -91,7 +92,7 @@ def recoverable(p: Numbers, at: int, m: Numbers, d: float, f: float) -> float:
         (d0, f0), (d1, f1) = point(p, i - 1), point(p, i)
         area += 0.5 * (f0 + f1) * (d1 - d0)
     d0, f0 = point(p, at - 1)
-    return area + 0.5 * (f0 + f) * (d - p[2] - d0)
+    return area + 0.5 * (f0 + f) * (d - p[GAP] - d0)
 
 
 def steepest(p: Numbers) -> float:

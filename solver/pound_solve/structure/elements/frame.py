@@ -81,12 +81,13 @@ def _consistent(context: ElementContext, strengths: list[str]) -> None:
         raise ElementError(
             f"{strengths[0]} has no effect with RULE=ELASTIC: name a rule that yields", strengths[0]
         )
-    if len(given) != 1:
+    if not given:
         raise ElementError(
-            "a hinge needs its stiffness KH or its length LP, often half the depth of the section"
-            + ("; not both" if given else ""),
-            given[0] if given else strengths[0],
+            "a hinge needs its stiffness KH or its length LP, often half the depth of the section",
+            strengths[0],
         )
+    if len(given) > 1:
+        raise ElementError("KH and LP both give the stiffness of a hinge: keep one of them", "LP")
     for d, end, item in ENDS:
         if item in strengths and d in beam.pinned(p):
             why = f"end {end} is pinned" if p["I"] > 0.0 else "I=0 is a bar without bending"

@@ -11,14 +11,20 @@ from pound_solve.results.remarks import how_found
 from pound_solve.results.schema import Column, Row, Stage, Table
 from pound_solve.results.words import contact_name
 
+ROUNDING = 1e-9  #: share of the displacements that the overlap of rigid bodies may be, which have none
+
 
 def rows(run: RunRecord) -> Iterator[Row]:
     """One row for each contact."""
     structure, recorder = run.structure, run.history.recorder
     peaks = run.history.returned.peaks
+    moved = recorder.envelopes.node["u"].largest()  # along x and y, and a rotation, of each node
+    farthest = max((u for i, (u, _) in enumerate(moved) if i % 3 < 2), default=0.0)
     for i in run.history.items.contacts:
         law, closure = structure.laws[i], peaks.deformation[i]
-        gap = law.gap
+        closest = law.gap - closure.high
+        if law.law.rigid and abs(closest) <= ROUNDING * (law.gap + farthest):
+            closest = 0.0
         own = [c for c in peaks.collisions if c.law == i]
         best = max(own, key=lambda c: (c.peak == c.peak, c.peak), default=None)  # NaN: an impact
         ends = [c.t_end if math.isfinite(c.t_end) else recorder.reached for c in own]
@@ -27,10 +33,10 @@ def rows(run: RunRecord) -> Iterator[Row]:
             len(own),
             best.peak if best else 0.0,
             best.t_peak if best else math.nan,
-            max(closure.high - gap, 0.0),
+            max(-closest, 0.0),
             sum(c.impulse for c in own),
             recorder.losses[i] + peaks.dashpot_losses[i],
-            gap - closure.high,
+            closest,
             sum(end - c.t_start for c, end in zip(own, ends)),
         )
 

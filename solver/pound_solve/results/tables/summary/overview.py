@@ -129,15 +129,20 @@ def error_of(outcome: Outcome) -> str:
 
 
 def _collisions(run: RunRecord) -> str:
-    found = run.history.returned.peaks.collisions
-    hard = [c for c in found if c.peak == c.peak]
-    if not hard:
-        return str(len(found))
-    worst = max(hard, key=lambda c: c.peak)
-    name = contact_name(run.model, run.structure.laws[worst.law].element)
-    units = run.model.units
-    when = f"{worst.t_peak:.6g} {units.time}"
-    return f"{len(found)}, largest force {worst.peak:.5g} {units.force} at {when}, contact {name}"
+    """Number of collisions and their largest force; an impact of a rigid contact has an impulse instead."""
+    found, units = run.history.returned.peaks.collisions, run.model.units
+    lasting = [c for c in found if c.peak == c.peak]
+    impacts = len(found) - len(lasting)
+    count = str(len(found)) + (
+        f", {impacts} of them impacts in no time, without a force" if impacts else ""
+    )
+    if not lasting:
+        return count
+    worst = max(lasting, key=lambda c: c.peak)
+    spring = run.structure.laws[worst.law]
+    force = "largest force while closed" if spring.law.rigid else "largest force"
+    when, name = f"{worst.t_peak:.6g} {units.time}", contact_name(run.model, spring.element)
+    return f"{count}, {force} {worst.peak:.5g} {units.force} at {when}, contact {name}"
 
 
 TABLE = Table(
