@@ -107,6 +107,14 @@ def test_hinges_of_a_frame(damping: str, turn: str) -> None:
     assert yields(r) > 10
 
 
+def test_hinges_beside_a_mass_matrix_that_is_not_diagonal() -> None:
+    """Loads on what has no mass must not become accelerations of it."""
+    deck = hinged("RAYLEIGH ALPHA=0.4 BETA=0.001", head="MASS CONSISTENT")
+    deck = deck.replace("I=0.0007", "I=0.0007 WGT=3").replace("I=0.0005", "I=0.0005 WGT=5")
+    r, _ = agree(deck)
+    assert yields(r) > 10
+
+
 @pytest.mark.parametrize(
     "load",
     [

@@ -147,3 +147,34 @@ def test_parts_that_nothing_holds_are_taken_by_series() -> None:
         CHAIN.replace(" 1 COLUMN 1 10\n", "").replace(" STATIC\n", "").replace("LOADS\n 16 FX=5\n", "")
     )
     assert counts(run_text(floating, {}, "TAYLOR"))[1] == 0
+
+
+def test_a_structure_without_any_law_is_taken_in_modes() -> None:
+    """Two masses and two springs: no force of a law is kept between the ends of intervals."""
+    deck = """UNITS N m s
+GRAVITY 1
+NODES
+ 1 0 0 FIX=XYR
+ 2 1 0 FIX=YR
+ 3 2 0 FIX=YR
+ELEMENTS
+ 1 SOFT 1 2
+ 2 STIFF 2 3
+PROPS
+ SOFT SPRING KX=25
+ STIFF SPRING KX=1e6
+WEIGHTS
+ 2 1
+ 3 1e-6
+INITIAL
+ 2,3 UX=1
+OUTPUT
+ EVERY=0.05
+ANALYSIS
+ HISTORY 10
+"""
+    r = run_text(deck, None, "TAYLOR")
+    assert r.status == "done", r.message
+    assert counts(r)[1] > 100
+    w = math.sqrt(25.0 / (1.0 + 1e-6))
+    assert np.abs(r.u[:, r.nodes.index(2), 0] - np.cos(w * r.time)).max() < 1e-6

@@ -7,6 +7,7 @@ from math import asin
 import pytest
 
 from pound_solve.check import Check, Subject
+from pound_solve.integrate import auto
 from tiers import each_once
 from verification.cases import Ran, run_text
 
@@ -62,6 +63,15 @@ def test_two_equal_storeys_in_series(method: str, dt: float | None, vx: float) -
     when = asin(150 * w / (k * 2.0)) / w
     assert found.startswith("1, 2 at t = ")
     assert float(found.split()[5]) == pytest.approx(when, rel=1e-4 if dt else 1e-5)
+
+
+@pytest.mark.full
+def test_auto_tells_it_of_its_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(auto, "not_linear", lambda system: "barred")
+    monkeypatch.setattr(auto, "has_series", lambda system: False)
+    r = run_text(storeys(), None, "AUTO")
+    assert {x["item"]: x["value"] for x in r.tables["run"]}["method"].startswith("NEWMARK")
+    assert told(r).startswith("1, 2 at t = ")
 
 
 @pytest.mark.full

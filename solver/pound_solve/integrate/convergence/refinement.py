@@ -221,4 +221,5 @@ class StepRefinement:
             *out,
             between_check(outcome.peaks),
             *rounding_check(self.system.structure.laws, outcome.peaks),
+            *(check for check in outcome.checks if check.subject is Subject.UNIQUENESS),
         ]

@@ -159,10 +159,10 @@ class ShownIntervals:
         for b, (moved, (_, q, _, seen)) in enumerate(zip(parts, modal.counts.tolist())):
             own = self.unknowns[modal.shown[b, :seen]]
             for k, motion in enumerate(out):
-                motion[own] = moved[k * seen : (k + 1) * seen].reshape(seen, -1)
+                motion[own] = moved[k * seen : (k + 1) * seen].reshape(seen, t.size)
             still = self.rows[b][:seen, : 2 * q] @ shown.rest[intervals, b, : 2 * q].T
             u[own] += np.repeat(still, t.shape[1], axis=1)
-            forces += moved[3 * seen :].reshape(len(forces), -1)
+            forces += moved[3 * seen :].reshape(len(forces), t.size)
         return Motion(t.ravel(), u, v, a, forces)
 
     def course(self) -> Course:

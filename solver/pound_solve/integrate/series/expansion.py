@@ -142,6 +142,8 @@ def next_term(
         for i in range(n):
             new[i] *= below
         solve(linear.pattern, step.factors[MASS], step.pivots[MASS], new)
+        for i in series.massless.unknown:  # loads on these are for `add_massless`
+            new[i] = 0.0
     hold(laws, series, k + 2, h, top)
     find_rests(laws, series, k + 2, top)
     find_drags(laws, series, k + 1, h, top)
