@@ -16,7 +16,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from pound_solve.integrate.protocol import Course, Motion, Rows
-from pound_solve.integrate.series.expansion import TERMS
 from pound_solve.integrate.series.shown import INTERVALS, STEPS
 from pound_solve.integrate.series.state import Modal, Shown
 from pound_solve.numerics.types import Array, Complex, Index
@@ -40,8 +39,8 @@ class ShownSteps:
         x, n, count = self.shown, len(self.unknowns), len(places)
         first, last = (int(steps[0]), int(steps[-1]) + 1) if len(steps) else (0, 0)
         coefs = x.coefs[first:last] if last - first == len(steps) else x.coefs[steps]
-        h, table = x.length[steps, None], _powers(places)
-        values = coefs[:, :n] @ table.reshape(-1, TERMS + 1).T
+        h, table = x.length[steps, None], _powers(places, coefs.shape[2])
+        values = coefs[:, :n] @ table.reshape(-1, coefs.shape[2]).T
         out = np.zeros((3, self.size, len(steps), count))
         out[:, self.unknowns] = values.reshape(len(steps), n, 3, count).transpose(2, 1, 0, 3)
         out[1] /= h
@@ -73,7 +72,7 @@ class ShownSteps:
             series *= x.length[steps[which], None] ** -k
             for part in range(LOOKS):
                 mine = half[which] == part
-                out[which[mine]] += series[mine] @ _powers((part + shares) / LOOKS)[k].T
+                out[which[mine]] += series[mine] @ _powers((part + shares) / LOOKS, x.coefs.shape[2])[k].T
         return out
 
     def course(self) -> Course:
@@ -84,10 +83,10 @@ class ShownSteps:
         return Course(motion, lengths, self._within, self._along)
 
 
-def _powers(places: Array) -> Array:
-    """What powers and their first two derivatives are at some places, shape (3, n_places, TERMS + 1)."""
-    k = np.arange(TERMS + 1)
-    out = np.zeros((3, len(places), TERMS + 1))
+def _powers(places: Array, count: int) -> Array:
+    """Powers up to so many and their first two derivatives at places, shape (3, n_places, count)."""
+    k = np.arange(count)
+    out = np.zeros((3, len(places), count))
     out[0] = places[:, None] ** k
     out[1, :, 1:] = out[0, :, :-1] * k[1:]
     out[2, :, 2:] = out[0, :, :-2] * (k * (k - 1))[2:]

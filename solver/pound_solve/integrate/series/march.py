@@ -50,6 +50,7 @@ from pound_solve.integrate.series.massless import factorise, jumps, violated
 from pound_solve.integrate.series.modal import from_modes, renew_modes, take_in_modes
 from pound_solve.integrate.series.rigid import is_held
 from pound_solve.integrate.series.shown import has_room, is_full, keep_step
+from pound_solve.integrate.series.single_pole import expand_implicit, is_implicit
 from pound_solve.integrate.series.smooth import BENDS, bend, linearise
 from pound_solve.integrate.series.springs import add_up, deformation
 from pound_solve.integrate.series.state import Lengths, Series
@@ -258,7 +259,7 @@ def renew(linear: LinearSystem, laws: Laws, rules: Tables, series: Series, run: 
         if fault >= 0:
             run.fault = held.unknown[fault]
             return False
-        run.stale = 0
+        run.stale, run.factor_length = 0, -1.0
     return True
 
 
@@ -371,16 +372,21 @@ def stride(
             why = settle(linear, laws, step, buffers, rules, series, coefs, t - begin, run)
             if why != DONE:
                 return why
-        terms, fit = expand(linear, laws, step, series, lengths, coefs, t - begin, h)
-        if not fit >= CUT:  # what is known of the motion from terms far too large misleads
+        if is_implicit(series):
+            terms, fit = expand_implicit(linear, laws, step, series, lengths, coefs, t - begin, h, run)
+            least, room = 1.0, 1.0
+        else:
+            terms, fit = expand(linear, laws, step, series, lengths, coefs, t - begin, h)
+            least, room = CUT, TERMS / terms  # terms that were not needed make room for a longer step
+        if not fit >= least:  # what is known of the motion from terms far too large misleads
             lengths.next = h * (fit if fit > SHRINK else SHRINK)
+            lengths.rejected += 1
             continue
         end = 1.0 if fit >= 1.0 else (t + fit * h - t) / h
         if end == 0.0:
             return SHORT
         whole = end == 1.0 and h == left
-        # terms that were not needed make room for a longer step
-        lengths.next = max(h * min(fit * TERMS / terms, GROW), lengths.next if end == 1.0 else 0.0)
+        lengths.next = max(h * min(fit * room, GROW), lengths.next if end == 1.0 else 0.0)
         count_reach(laws, series, terms, end)
         event = first_event(laws, series, terms, h, end)
         at = event.time

@@ -7,7 +7,6 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.kernels.state import Laws
-from pound_solve.integrate.series.expansion import TERMS
 from pound_solve.integrate.series.forces import whole_force
 from pound_solve.integrate.series.state import Modal, Series, Shown
 from pound_solve.numerics.types import Index
@@ -17,10 +16,12 @@ MOST_STEPS, FEWEST = 4096, 8  #: of these
 STEPS, INTERVALS = range(2)  #: places in `Shown.kept`
 
 
-def allocate(which: Index, acting: Index, modal: Modal) -> Shown:
-    """Room for steps and intervals, of which the unknowns `which` and the laws `acting` are seen."""
+def allocate(which: Index, acting: Index, modal: Modal, terms: int) -> Shown:
+    """Room for steps, whose series have so many `terms`, and for intervals, of which the unknowns `which`
+    and the laws `acting` are seen.
+    """
     b, _, size = modal.x.shape
-    steps = MOST_HELD // max((TERMS + 1) * (len(which) + len(acting)), 1)
+    steps = MOST_HELD // max(terms * (len(which) + len(acting)), 1)
     intervals = MOST_HELD // max(3 * modal.x.shape[1] * len(which), 2 * b * size, 1)
     s, i = (int(np.clip(x, FEWEST, MOST_STEPS)) for x in (steps, intervals))
     return Shown(
@@ -28,7 +29,7 @@ def allocate(which: Index, acting: Index, modal: Modal) -> Shown:
         which=which,
         acting=acting,
         kept=np.zeros(2, np.int64),
-        coefs=np.zeros((s, len(which) + len(acting), TERMS + 1)),
+        coefs=np.zeros((s, len(which) + len(acting), terms)),
         begin=np.zeros(s),
         length=np.zeros(s),
         x=np.zeros((i, b, size)),
@@ -56,7 +57,7 @@ def keep_step(laws: Laws, series: Series, terms: int, h: float, end: float, t: f
     for i in range(len(shown.acting)):
         whole_force(laws, series, terms, h, shown.acting[i], shown.coefs[at, n + i])
     for i in range(shown.coefs.shape[1]):
-        for k in range(terms + 1, TERMS + 1):
+        for k in range(terms + 1, shown.coefs.shape[2]):
             shown.coefs[at, i, k] = 0.0
     if end < 1.0:
         power = 1.0

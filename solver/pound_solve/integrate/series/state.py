@@ -18,6 +18,8 @@ class Lengths(Protocol):
     before: float  #: length that was next when a curved contact began to press; 0 if none did
     carried: int  #: terms of the present series that carry energy
     in_modes: int  #: intervals that were taken in modes
+    factored: int  #: factorisations of the matrix of a step
+    rejected: int  #: steps that were taken again, shorter
 
 
 class Springs(NamedTuple):
@@ -440,6 +442,37 @@ class Shown(NamedTuple):
     start: Array
 
 
+class SinglePole(NamedTuple):
+    """Laguerre series of a step, with one pole gamma (see `single_pole`); empty for power series.
+
+    Attributes
+    ----------
+    basis : ndarray, shape (s + 1, s + 1)
+        Powers of the place in each polynomial.
+    monomials : ndarray, shape (s + 1, s + 1)
+        Polynomials in each power.
+    numbers : ndarray, shape (2,)
+        gamma, and the energy that the last term may have, as a share of that of the motion.
+    displacement, velocity : ndarray, shape (s + 1, n)
+        Coefficients of the unknowns.
+    inputs : ndarray, shape (s + 2, n_inputs)
+        Coefficients of the inputs.
+    force : ndarray, shape (n,)
+        Scratch.
+    hump : ndarray, shape (s + 1,)
+        Powers of the place in a polynomial of slope one at 0, that is zero there and, with its slope, at 1.
+    """
+
+    basis: Array
+    monomials: Array
+    numbers: Array
+    displacement: Array
+    velocity: Array
+    inputs: Array
+    force: Array
+    hump: Array
+
+
 class Series(NamedTuple):
     """The series of a step.
 
@@ -469,6 +502,7 @@ class Series(NamedTuple):
     damped : Damped
     modal : Modal
     shown : Shown
+    single_pole : SinglePole
     """
 
     motion: Array
@@ -490,3 +524,4 @@ class Series(NamedTuple):
     damped: Damped
     modal: Modal
     shown: Shown
+    single_pole: SinglePole

@@ -64,6 +64,7 @@ from pound_solve.integrate.series import (
     modal_tables,
     rigid,
     shown,
+    single_pole,
     smooth,
     springs,
     state,
@@ -99,6 +100,8 @@ class Taylor(KernelEngine):
 
     exact = True
     shows_steps = False
+    words = "TAYLOR, power series"
+    asking = "the fastest mode"  #: what makes steps short
 
     def __init__(
         self,
@@ -108,12 +111,11 @@ class Taylor(KernelEngine):
         recorder: Recorder,
         contacts: RigidContacts,
         most: float,
+        tolerance: float | None = None,
     ) -> None:
         length = float(start.times[-1] - start.times[0])
-        nothing_to_solve = Scheme(0.0, 0.0)
-        super().__init__(
-            system, start, monitored, recorder, nothing_to_solve, length, "TAYLOR, power series"
-        )
+        solved = Scheme(0.0, 0.0) if tolerance is None else Scheme(1.0, 1.0)  # nothing, or C and K
+        super().__init__(system, start, monitored, recorder, solved, length, self.words)
         o, laws = self.order, self.springs
         self.contacts, self.most = contacts, most
         self.massless = massless.allocate(
@@ -129,6 +131,7 @@ class Taylor(KernelEngine):
             expansion.TERMS + 1,
             expansion.TERMS // expansion.CHECK + 1,
         )
+        kept = terms if tolerance is None else single_pole.LAST + 1
         dampers = np.array([s.law.curved and s.role is Role.DAMPER for s in laws], bool)
         is_smooth = np.array([s.law.rule.smooth is not None for s in laws], bool)
         which, acting = self.place[np.flatnonzero(recorder.shown)], recorder.acting
@@ -164,7 +167,8 @@ class Taylor(KernelEngine):
             strings=strings.allocate(len(self.laws.members.parameters), terms),
             damped=self._damped(terms),
             modal=modal,
-            shown=shown.allocate(which, acting, modal),
+            shown=shown.allocate(which, acting, modal, kept),
+            single_pole=single_pole.allocate(system.size, system.inputs.shape[1], tolerance),
         )
         for i in self.series.curved.laws.tolist():
             law_kernels.enter_branch(self.laws, self.rules, i)  # no tangent: its force is a series
@@ -272,7 +276,7 @@ class Taylor(KernelEngine):
         done, steps = float(self.state.time - self.times[0]), int(self.state.steps)
         if steps > PAUSE // 2 and steps * self.dt > self.most * done:
             count = f"some {steps * self.dt / done:.1g}" if done else "far too many"
-            why = f"the fastest mode asks for {count} steps (now {self.lengths.next:.3g} long)"
+            why = f"{self.asking} asks for {count} steps (now {self.lengths.next:.3g} long)"
             others = ["EXACT"] * (not not_linear(self.system)) + ["NEWMARK"] * (not self.contacts.laws)
             cure = f", which {' and '.join(others)} need not follow" if others else ""
             raise self.stop("A502", why + cure)
@@ -280,7 +284,7 @@ class Taylor(KernelEngine):
     def trouble(self, why: int) -> Stop:
         """What the kernel came back for, in words."""
         if why == march.SHORT:
-            return self.stop("A502", "the fastest mode asks for steps too short to tell the times apart")
+            return self.stop("A502", f"{self.asking} asks for steps too short to tell the times apart")
         if why == march.LOOSE:
             return self.stop("A501", self._loose())
         if why == RUNAWAY:

@@ -1,0 +1,93 @@
+"""LAGUERRE: event-driven integration by implicit series, for structures with modes far above the motion.
+
+Axial modes, small masses at joints and damping in proportion to stiffness make modes that no motion shows
+but that the steps of TAYLOR must follow.  Here a step solves a few times with one matrix instead (see
+`single_pole`), is as long as the motion allows, and has an error that TOL bounds, step by step.  Between
+its ends the motion is a polynomial, and all else is as in TAYLOR: events, peaks, works.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from pound_deck.schema import Field, Kind, Spec
+from pound_solve.integrate.protocol import (
+    MonitoredOutputs,
+    Outcome,
+    Recorder,
+    Start,
+    Stop,
+    not_linear,
+    refuse_rigid,
+)
+from pound_solve.integrate.rigid.contacts import RigidContacts
+from pound_solve.integrate.series.single_pole import LAST
+from pound_solve.integrate.series.taylor import MAX_STEPS, Taylor
+from pound_solve.structure.reduction import ReducedSystem
+
+
+class Laguerre(Taylor):
+    """One run; see the module's head."""
+
+    exact = False
+    words = f"LAGUERRE, implicit series of {LAST} terms"
+    asking = "TOL"
+
+    def figures(self) -> dict[str, Any]:
+        """Figures of the run for the report."""
+        own = self.lengths
+        return {
+            "method": self.name,
+            "steps": int(self.state.steps - own.in_modes),
+            **({"intervals in modes": in_modes} if (in_modes := int(own.in_modes)) else {}),
+            **({"shortest step": f"{own.shortest:.4g}"} if np.isfinite(own.shortest) else {}),
+            "steps taken again": int(own.rejected),
+            "factorisations": int(own.factored),
+            "events": int(self.state.events),
+        }
+
+
+def integrate(
+    system: ReducedSystem,
+    start: Start,
+    monitored: MonitoredOutputs,
+    options: Mapping[str, Any],
+    recorder: Recorder,
+) -> Outcome:
+    """Integrate a reduced system by implicit series; see the module's head.
+
+    Raises
+    ------
+    Stop
+        A reduced system that is not piecewise linear or has rigid contacts, massless DOFs that nothing
+        holds, too many changes at one instant, too many steps, numbers beyond all bounds, or an interrupt.
+    """
+    refuse_rigid(system, start, "LAGUERRE")
+    if why := not_linear(system):
+        told = f"LAGUERRE needs linear pieces, and {why}: AUTO takes another method"
+        raise Stop("A505", float(start.times[0]), told)
+    contacts = RigidContacts(system)
+    return Laguerre(system, start, monitored, recorder, contacts, MAX_STEPS, options["TOL"]).run()
+
+
+SPEC = Spec(
+    "method",
+    "LAGUERRE",
+    "event-driven, implicit series between events",
+    (
+        Field(
+            "TOL",
+            Kind.REAL,
+            "-",
+            default=1e-6,
+            lo=1e-12,
+            hi=1e-2,
+            doc="largest share of the motion, by its energy, that the last term of a step may be",
+        ),
+    ),
+    reference="Nørsett 1974; Hairer & Wanner 1996, IV.6",
+    impl=integrate,
+)

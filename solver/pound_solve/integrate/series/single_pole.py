@@ -1,0 +1,255 @@
+r"""Kernels of LAGUERRE: the motion of a step as a Laguerre series with one pole, and how far it is right.
+
+Written as :math:`E\dot y = A y + g`, :math:`y = (u, v)`, the equations of motion have in
+:math:`\theta = t/h` the solution
+
+.. math:: y = \sum_{n \ge 0} L_n^{(-1)}(\theta/\gamma)\, y_n, \qquad
+          (E - \gamma h A)(y_n - y_{n+1}) = E y_n + \gamma h\,(g_n - g_{n+1}),
+
+:math:`g_n` being the coefficients of the loads in the same polynomials.  So each term is one solve with one
+matrix, :math:`S = M + \gamma h C + (\gamma h)^2 K` over the unknowns:
+
+.. math:: S\,\delta = M v_n + \gamma h\,(p_n - p_{n+1} - K u_n), \qquad
+          u_{n+1} = -\gamma h\,\delta, \quad v_{n+1} = v_n - \delta .
+
+Unknowns without mass are no special case: E leaves out their rates.  The series ends with the term s, of
+which :math:`L_s(1/\gamma) = 0`: the equations of motion are then met at the end of the step, and what is
+stiff has decayed there (the method is L-stable).  Within the step the sum is a polynomial, of which powers
+of :math:`\theta` make the same series as TAYLOR's: events, peaks, works and contacts are those of TAYLOR.
+
+The rate with which the truncated sum begins is off by the terms that are left out.  Hinges that turn back
+are told by the sign of their rate, so that a polynomial is added that gives the motion its rate at the
+start, :math:`\theta(1-\theta)^{s-1}`, and leaves its end.
+
+The length of a step is such that the last term is below a share of the motion in the norm of energy,
+:math:`v^T M v + u^T K u`; it bounds the error of the step while the terms decrease.
+
+References
+----------
+Nørsett SP (1974), One-step methods of Hermite type for numerical integration of stiff systems, BIT 14:
+63-77; Hairer E, Wanner G (1996), Solving Ordinary Differential Equations II, 2nd ed., Springer, IV.6
+(methods with one real pole, their stability and the polynomials of Laguerre).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pound_solve.integrate.kernels.products import along, multiply, spread
+from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Run, Step
+from pound_solve.integrate.series.expansion import dot, expand_deformations, expand_inputs
+from pound_solve.integrate.series.springs import add_product
+from pound_solve.integrate.series.state import Lengths, Series, SinglePole
+from pound_solve.numerics.jit import flat
+from pound_solve.numerics.ldl import factor, solve
+from pound_solve.numerics.types import Array
+
+LAST = 6  #: term with which a series ends
+ROOT = (
+    2  #: number of the root of that polynomial, from the least, that 1/gamma is: so the method is A-stable
+)
+GROW = 2.0  #: how much longer than the last a step may be
+SAFE = 0.5  #: share of the error that a step is made for
+NOISE = 1e-24  #: share of the energy of a state that the rounding of a term may have
+CARRIED = 8  #: terms for which works are integrated right
+
+
+def pole(last: int, root: int) -> float:
+    """The pole gamma of a series that ends with a term: one over a root of Laguerre's polynomial."""
+    return 1.0 / float(np.sort(np.polynomial.laguerre.lagroots(np.eye(last + 1)[last]).real)[root])
+
+
+def basis(last: int, gamma: float) -> Array:
+    r"""Powers of :math:`\theta` in :math:`L_n^{(-1)}(\theta/\gamma)`, shape (last + 1, last + 1)."""
+    out = np.zeros((last + 1, last + 1))
+    out[0, 0] = 1.0
+    for n in range(1, last + 1):
+        for k in range(1, n + 1):
+            out[n, k] = math.comb(n - 1, k - 1) * (-1.0 / gamma) ** k / math.factorial(k)
+    return out
+
+
+def monomials(last: int, gamma: float) -> Array:
+    r""":math:`\theta^k` in :math:`L_n^{(-1)}(\theta/\gamma)`, shape (last + 1, last + 1): the inverse of
+    `basis`.
+    """
+    out = np.zeros((last + 1, last + 1))
+    out[0, 0] = 1.0
+    for k in range(1, last + 1):
+        for n in range(1, k + 1):
+            out[k, n] = math.factorial(k) * gamma**k * (-1.0) ** n * math.comb(k - 1, n - 1)
+    return out
+
+
+def allocate(n: int, n_inputs: int, tolerance: float | None) -> SinglePole:
+    """Lay out series of `n` unknowns whose last term is below a share of the motion; None for none."""
+    if tolerance is None:
+        none, empty = np.zeros(0), np.zeros((0, 0))
+        return SinglePole(empty, empty, np.zeros(2), empty, empty, empty, none, none)
+    gamma = pole(LAST, ROOT)
+    terms = basis(LAST, gamma)
+    highest = np.abs(np.polynomial.polynomial.polyval(np.linspace(0.0, 1.0, 1001), terms[LAST])).max()
+    return SinglePole(
+        basis=terms,
+        monomials=monomials(LAST, gamma),
+        numbers=np.array([gamma, (tolerance / float(highest)) ** 2]),
+        displacement=np.zeros((LAST + 1, n)),
+        velocity=np.zeros((LAST + 1, n)),
+        inputs=np.zeros((LAST + 2, n_inputs)),
+        force=np.zeros(n),
+        hump=np.array([0.0, *np.polynomial.polynomial.polypow([1.0, -1.0], LAST - 1)]),
+    )
+
+
+def is_implicit(series: Series) -> bool:
+    """Whether the steps of a run are Laguerre series."""
+    return len(series.single_pole.basis) > 0
+
+
+def elastic_force(linear: LinearSystem, series: Series, u: Array, out: Array) -> None:
+    """Forces of the structure and of the laws' springs at displacements `u`."""
+    springs = series.springs
+    if len(series.massless.unknown):  # K is part of these sums then
+        for r in range(len(springs.row)):
+            out[springs.row[r]] = along(springs.rows, r, u)
+        return
+    multiply(linear.stiffness, u, out)
+    add_product(springs, u, out)
+
+
+def factorise(linear: LinearSystem, laws: Laws, step: Step, scale: float) -> int:
+    """Factorise M + e C + e^2 K for e = `scale`, laws included; return -1, or the unknown that is loose."""
+    matrix = step.matrix
+    for q in range(len(matrix)):
+        own = linear.on_pattern
+        matrix[q] = own[0, q] + scale * (own[1, q] + scale * own[2, q])
+    for i in range(len(laws.rule)):
+        change = scale * (laws.damping[i] + scale * laws.stiffness[i])
+        if change != 0.0:
+            for q in range(laws.pair_pointers[i], laws.pair_pointers[i + 1]):
+                matrix[laws.pair_places[q]] += change * laws.pair_values[q]
+    return factor(linear.pattern, matrix, step.factors[WHOLE], step.pivots[WHOLE], step.row)
+
+
+def expand_loads(series: Series, top: int) -> None:
+    """Coefficients of the inputs in Laguerre's polynomials; they have `top` powers."""
+    own = series.single_pole
+    for j in range(own.inputs.shape[1]):
+        for n in range(len(own.inputs)):
+            own.inputs[n, j] = 0.0
+        for k in range(min(top, len(own.monomials))):
+            for n in range(k + 1):
+                own.inputs[n, j] += own.monomials[k, n] * series.inputs[k, j]
+
+
+def add_loads(laws: Laws, series: Series, n: int, h: float, top: int, out: Array) -> None:
+    """Add the coefficient `n` of the loads, less the next one, times gamma h."""
+    own, springs = series.single_pole, series.springs
+    scale = own.numbers[0] * h
+    if n == 0:
+        for i in range(len(out)):
+            out[i] += scale * springs.constant[i]
+    if n >= top:
+        return
+    for j in range(own.inputs.shape[1]):
+        push = scale * (own.inputs[n, j] - own.inputs[n + 1, j])
+        if push != 0.0:
+            for i in range(len(out)):
+                out[i] += springs.inputs[j, i] * push
+    for q in range(springs.n_dashpots[0]):  # rates of moved supports: the coefficients k + 1 of a power k
+        law, rate = springs.dashpots[q], 0.0
+        for k in range(min(top - 1, len(own.monomials))):
+            change = own.monomials[k, n] - (own.monomials[k, n + 1] if n + 1 <= k else 0.0)
+            for j in range(own.inputs.shape[1]):
+                rate += change * (k + 1) / h * laws.inputs[law, j] * series.inputs[k + 1, j]
+        if rate != 0.0:
+            spread(laws.rows, law, -scale * laws.damping[law] * rate, out)
+
+
+def energy(linear: LinearSystem, series: Series, n: int) -> float:
+    """Twice the kinetic energy and twice the elastic one of a term."""
+    own, work = series.single_pole, series.damping_product
+    multiply(linear.mass, own.velocity[n], work)
+    total: float = abs(dot(own.velocity[n], work))
+    elastic_force(linear, series, own.displacement[n], work)
+    total += abs(dot(own.displacement[n], work))
+    return total
+
+
+def meet_rates(series: Series, velocity: Array, h: float) -> None:
+    """Let the motion begin with the present velocities, from which its truncated series deviates by the
+    terms that are left out; its end remains as it is.
+    """
+    own, last = series.single_pole, len(series.single_pole.basis) - 1
+    for i in range(len(velocity)):
+        own.force[i] = h * velocity[i] - series.motion[1, i]
+    for k in range(1, last + 1):
+        out, share = series.motion[k], own.hump[k]
+        for i in range(len(velocity)):
+            out[i] += share * own.force[i]
+
+
+@flat
+def expand_implicit(
+    linear: LinearSystem, laws: Laws, step: Step, series: Series, lengths: Lengths, coefs: Array,
+    begin: float, h: float, run: Run,
+) -> tuple[int, float]:  # fmt: skip
+    """Find the series of a step of length `h` from the present state on, as `expansion.expand` does.
+
+    Returns
+    -------
+    terms : int
+        Its highest power.
+    fit : float
+        Multiple of the step that would be right; below 1 the step must be taken again, shorter.  NaN where
+        an unknown is loose or numbers are beyond all bounds.
+    """
+    own, now, top = series.single_pole, step.now, len(coefs)
+    last, scale, n_unknowns = len(own.basis) - 1, own.numbers[0] * h, len(now.displacement)
+    if run.factor_length != h:
+        run.factor_length = -1.0
+        if factorise(linear, laws, step, scale) >= 0:
+            return last, np.nan
+        run.factor_length = h
+        lengths.factored += 1
+    expand_inputs(series, coefs, begin, h)
+    expand_loads(series, top)
+    u, v, delta = own.displacement, own.velocity, own.force
+    for i in range(n_unknowns):
+        u[0, i], v[0, i] = now.displacement[i], now.velocity[i]
+    multiply(linear.mass, v[0], delta)
+    lengths.kinetic = max(lengths.kinetic, dot(v[0], delta))
+    for n in range(last):
+        multiply(linear.mass, v[n], delta)
+        elastic_force(linear, series, u[n], series.stiffness_product)
+        for i in range(n_unknowns):
+            delta[i] -= scale * series.stiffness_product[i]
+        add_loads(laws, series, n, h, top, delta)
+        solve(linear.pattern, step.factors[WHOLE], step.pivots[WHOLE], delta)
+        for i in range(n_unknowns):
+            u[n + 1, i] = -scale * delta[i]
+            v[n + 1, i] = v[n, i] - delta[i]
+    for k in range(last + 1):
+        out = series.motion[k]
+        for i in range(n_unknowns):
+            out[i] = 0.0
+        for n in range(k, last + 1):
+            share = own.basis[n, k]
+            for i in range(n_unknowns):
+                out[i] += share * u[n, i]
+    meet_rates(series, now.velocity, h)
+    lengths.carried = CARRIED
+    expand_deformations(laws, series, last, top)
+    most = lengths.kinetic
+    if most == 0.0:  # from rest
+        most = energy(linear, series, 1)
+    off = energy(linear, series, last)
+    if not off < np.inf:
+        return last, np.nan
+    allowed = max(SAFE * SAFE * own.numbers[1] * most, NOISE * energy(linear, series, 0))
+    fit = GROW
+    if off > 0.0:
+        fit = min(fit, (allowed / off) ** (0.5 / last))
+    return last, fit
