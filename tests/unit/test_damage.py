@@ -76,6 +76,13 @@ def test_a_side_without_strength_is_left_out() -> None:
     assert math.isnan(damage.ductility((2.0, -1.0), None))
 
 
+def test_a_spring_without_strength_has_no_path_though_its_slack_ends_somewhere() -> None:
+    """FX=0 with a SLACK: it begins to slide where the slack ends, without a force."""
+    slack = (0.02, -0.02)
+    assert all(map(math.isnan, damage.plastic_path(1.0, (0.0, 0.0), slack)))
+    assert math.isnan(damage.park_ang((0.1, -0.1), 1.0, (0.0, 0.0), slack, (4.0, 4.0), 0.05).total)
+
+
 def test_whole() -> None:
     assert damage.overall([0.2, 0.8], [3.0, 1.0]) == pytest.approx(0.35)
     assert math.isnan(damage.overall([0.1, 0.2], [0.0, 0.0]))

@@ -92,7 +92,7 @@ def plastic_path(loss: float, strengths: Sides | None, yields: Sides | None) -> 
     Of an elastic, perfectly plastic spring it is the sum of all plastic deformations, if these return to
     where they began or both strengths are equal.
     """
-    sides = [(abs(f), abs(y)) for f, y in zip(strengths or NONE, yields or NONE) if holds(y)]
+    sides = [(abs(f), abs(y)) for f, y in zip(strengths or NONE, yields or NONE) if holds(f) and holds(y)]
     if not sides:
         return math.nan, math.nan
     strength, at_yield = (sum(x) / len(sides) for x in zip(*sides))
@@ -137,7 +137,7 @@ def park_ang(
     """
     sides = []
     for d, f, y, most in zip(largest, strengths, yields, ultimate):
-        if holds(y):
+        if holds(f) and holds(y):
             reached = max(d / y, 0.0)
             sides.append(Damage(most, reached, reached / most, beta * loss / (f * y * most)))
     return max(sides, key=lambda side: side.total, default=Damage(*[math.nan] * 4))
