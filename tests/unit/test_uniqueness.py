@@ -37,7 +37,14 @@ ANALYSIS
  HISTORY 0.3
 """
 PLASTIC = "ELASTO_PLASTIC FX=150"
-METHODS = [("EXACT", None), ("TAYLOR", None), ("LAPLACE", 2e-3), ("NEWMARK", 1e-3), ("HHT", 1e-3)]
+METHODS = [
+    ("EXACT", None),
+    ("TAYLOR", None),
+    ("LAGUERRE", None),
+    ("LAPLACE", 2e-3),
+    ("NEWMARK", 1e-3),
+    ("HHT", 1e-3),
+]
 NAME = "elements of which any may give way: "
 
 
