@@ -84,7 +84,7 @@ SPEC = Spec(
             "-",
             default=1e-6,
             lo=1e-12,
-            hi=1e-2,
+            hi=0.1,
             doc="largest share of the motion, by its energy, that the last term of a step may be",
         ),
     ),
