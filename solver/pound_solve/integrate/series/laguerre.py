@@ -82,7 +82,7 @@ SPEC = Spec(
             "TOL",
             Kind.REAL,
             "-",
-            default=1e-6,
+            default=1e-8,
             lo=1e-12,
             hi=0.1,
             doc="largest share of the motion, by its energy, that the last term of a step may be",
