@@ -125,7 +125,7 @@ def error_of(outcome: Outcome) -> str:
     if estimates:
         worst = next(iter(looked(estimates)), estimates[0])
         return f"{worst.value:.1e}, {worst.name}, TOL {worst.allowed:g}" + ", not shown" * worst.looks
-    return "not estimated: METHOD=AUTO does, and a second run with half the step shows it"
+    return "not estimated: METHOD=AUTO does, and a second run with half the step, or TOL, shows it"
 
 
 def _collisions(run: RunRecord) -> str:
