@@ -28,6 +28,7 @@ from unit.test_taylor import (
     storeys,
 )
 from unit.test_taylor_massless import HELD, ZENER, hinged, of_first_order
+from unit.test_taylor_modal import LIGHT
 from verification.cases import Ran, run_text
 
 LAST, GAMMA = single_pole.LAST, single_pole.pole(single_pole.LAST, single_pole.ROOT)
@@ -171,33 +172,6 @@ def test_geometry_and_mass_of_a_frame(head: str) -> None:
 
 
 # ---------------------------------------------------------------- stiff structures
-
-LIGHT = """UNITS N m s
-PARAM k = 1e6   c = 0
-GRAVITY 1
-NODES
- 1 0 0 FIX=XYR
- 2 1 0 FIX=YR
- 3 2 0 FIX=YR
-ELEMENTS
- 1 SOFT 1 2
- 2 STIFF 2 3
- 3 DRAG 2 3
-PROPS
- SOFT SPRING KX=25
- STIFF SPRING KX=k
- DRAG DASHPOT CX=c
-WEIGHTS
- 2 1
- 3 1e-6
-INITIAL
- 2 UX=1
- 3 UX=1
-OUTPUT
- EVERY=0.05
-ANALYSIS
- HISTORY 10
-"""
 
 
 @pytest.mark.parametrize("c", [1e-9, 1.0, 1e6])

@@ -37,13 +37,14 @@ import math
 
 import numpy as np
 
+from pound_solve.integrate.kernels.effective_mass import factorise_effective_mass
 from pound_solve.integrate.kernels.products import along, multiply, spread
 from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Run, Step
 from pound_solve.integrate.series.expansion import dot, expand_deformations, expand_inputs
 from pound_solve.integrate.series.springs import add_product
 from pound_solve.integrate.series.state import Lengths, Series, SinglePole
 from pound_solve.numerics.jit import flat
-from pound_solve.numerics.ldl import factor, solve
+from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
 LAST = 6  #: term with which a series ends
@@ -87,19 +88,20 @@ def allocate(n: int, n_inputs: int, tolerance: float | None) -> SinglePole:
     """Lay out series of `n` unknowns whose last term is below a share of the motion; None for none."""
     if tolerance is None:
         none, empty = np.zeros(0), np.zeros((0, 0))
-        return SinglePole(empty, empty, np.zeros(2), empty, empty, empty, none, none)
+        return SinglePole(empty, empty, 0.0, 0.0, empty, empty, empty, none, none)
     gamma = pole(LAST, ROOT)
     terms = basis(LAST, gamma)
     highest = np.abs(np.polynomial.polynomial.polyval(np.linspace(0.0, 1.0, 1001), terms[LAST])).max()
     return SinglePole(
         basis=terms,
         monomials=monomials(LAST, gamma),
-        numbers=np.array([gamma, (tolerance / float(highest)) ** 2]),
+        gamma=gamma,
+        allowed=(SAFE * tolerance / float(highest)) ** 2,
         displacement=np.zeros((LAST + 1, n)),
         velocity=np.zeros((LAST + 1, n)),
         inputs=np.zeros((LAST + 2, n_inputs)),
         force=np.zeros(n),
-        hump=np.array([0.0, *np.polynomial.polynomial.polypow([1.0, -1.0], LAST - 1)]),
+        initial_slope=np.array([0.0, *np.polynomial.polynomial.polypow([1.0, -1.0], LAST - 1)]),
     )
 
 
@@ -119,20 +121,6 @@ def elastic_force(linear: LinearSystem, series: Series, u: Array, out: Array) ->
     add_product(springs, u, out)
 
 
-def factorise(linear: LinearSystem, laws: Laws, step: Step, scale: float) -> int:
-    """Factorise M + e C + e^2 K for e = `scale`, laws included; return -1, or the unknown that is loose."""
-    matrix = step.matrix
-    for q in range(len(matrix)):
-        own = linear.on_pattern
-        matrix[q] = own[0, q] + scale * (own[1, q] + scale * own[2, q])
-    for i in range(len(laws.rule)):
-        change = scale * (laws.damping[i] + scale * laws.stiffness[i])
-        if change != 0.0:
-            for q in range(laws.pair_pointers[i], laws.pair_pointers[i + 1]):
-                matrix[laws.pair_places[q]] += change * laws.pair_values[q]
-    return factor(linear.pattern, matrix, step.factors[WHOLE], step.pivots[WHOLE], step.row)
-
-
 def expand_loads(series: Series, top: int) -> None:
     """Coefficients of the inputs in Laguerre's polynomials; they have `top` powers."""
     own = series.single_pole
@@ -147,7 +135,7 @@ def expand_loads(series: Series, top: int) -> None:
 def add_loads(laws: Laws, series: Series, n: int, h: float, top: int, out: Array) -> None:
     """Add the coefficient `n` of the loads, less the next one, times gamma h."""
     own, springs = series.single_pole, series.springs
-    scale = own.numbers[0] * h
+    scale = own.gamma * h
     if n == 0:
         for i in range(len(out)):
             out[i] += scale * springs.constant[i]
@@ -178,7 +166,7 @@ def energy(linear: LinearSystem, series: Series, n: int) -> float:
     return total
 
 
-def meet_rates(series: Series, velocity: Array, h: float) -> None:
+def match_initial_velocity(series: Series, velocity: Array, h: float) -> None:
     """Let the motion begin with the present velocities, from which its truncated series deviates by the
     terms that are left out; its end remains as it is.
     """
@@ -186,9 +174,48 @@ def meet_rates(series: Series, velocity: Array, h: float) -> None:
     for i in range(len(velocity)):
         own.force[i] = h * velocity[i] - series.motion[1, i]
     for k in range(1, last + 1):
-        out, share = series.motion[k], own.hump[k]
+        out, share = series.motion[k], own.initial_slope[k]
         for i in range(len(velocity)):
             out[i] += share * own.force[i]
+
+
+def find_terms(
+    linear: LinearSystem, laws: Laws, step: Step, series: Series, lengths: Lengths, h: float, top: int
+) -> float:
+    """Find the terms of the series from the present state on; return twice the energy of that state."""
+    own, now, present = series.single_pole, step.now, 0.0
+    u, v, delta, force = own.displacement, own.velocity, own.force, series.stiffness_product
+    scale = own.gamma * h
+    for i in range(len(delta)):
+        u[0, i], v[0, i] = now.displacement[i], now.velocity[i]
+    for n in range(len(own.basis) - 1):
+        multiply(linear.mass, v[n], delta)
+        elastic_force(linear, series, u[n], force)
+        if n == 0:
+            kinetic = dot(v[0], delta)
+            lengths.kinetic = max(lengths.kinetic, kinetic)
+            present = abs(kinetic) + abs(dot(u[0], force))
+        for i in range(len(delta)):
+            delta[i] -= scale * force[i]
+        add_loads(laws, series, n, h, top, delta)
+        solve(linear.pattern, step.factors[WHOLE], step.pivots[WHOLE], delta)
+        for i in range(len(delta)):
+            u[n + 1, i] = -scale * delta[i]
+            v[n + 1, i] = v[n, i] - delta[i]
+    return present
+
+
+def write_in_powers(series: Series) -> None:
+    """Write the series in powers of the place, as TAYLOR has them."""
+    own = series.single_pole
+    for k in range(len(own.basis)):
+        out = series.motion[k]
+        for i in range(len(out)):
+            out[i] = 0.0
+        for n in range(k, len(own.basis)):
+            share = own.basis[n, k]
+            for i in range(len(out)):
+                out[i] += share * own.displacement[n, i]
 
 
 @flat
@@ -206,50 +233,30 @@ def expand_implicit(
         Multiple of the step that would be right; below 1 the step must be taken again, shorter.  NaN where
         an unknown is loose or numbers are beyond all bounds.
     """
-    own, now, top = series.single_pole, step.now, len(coefs)
-    last, scale, n_unknowns = len(own.basis) - 1, own.numbers[0] * h, len(now.displacement)
+    own, top = series.single_pole, len(coefs)
+    last = len(own.basis) - 1
     if run.factor_length != h:
         run.factor_length = -1.0
-        if factorise(linear, laws, step, scale) >= 0:
+        scale = own.gamma * h
+        if factorise_effective_mass(linear, laws, step, 1.0, scale, scale * scale, WHOLE) >= 0:
             return last, np.nan
         run.factor_length = h
         lengths.factored += 1
     expand_inputs(series, coefs, begin, h)
     expand_loads(series, top)
-    u, v, delta = own.displacement, own.velocity, own.force
-    for i in range(n_unknowns):
-        u[0, i], v[0, i] = now.displacement[i], now.velocity[i]
-    multiply(linear.mass, v[0], delta)
-    lengths.kinetic = max(lengths.kinetic, dot(v[0], delta))
-    for n in range(last):
-        multiply(linear.mass, v[n], delta)
-        elastic_force(linear, series, u[n], series.stiffness_product)
-        for i in range(n_unknowns):
-            delta[i] -= scale * series.stiffness_product[i]
-        add_loads(laws, series, n, h, top, delta)
-        solve(linear.pattern, step.factors[WHOLE], step.pivots[WHOLE], delta)
-        for i in range(n_unknowns):
-            u[n + 1, i] = -scale * delta[i]
-            v[n + 1, i] = v[n, i] - delta[i]
-    for k in range(last + 1):
-        out = series.motion[k]
-        for i in range(n_unknowns):
-            out[i] = 0.0
-        for n in range(k, last + 1):
-            share = own.basis[n, k]
-            for i in range(n_unknowns):
-                out[i] += share * u[n, i]
-    meet_rates(series, now.velocity, h)
+    present = find_terms(linear, laws, step, series, lengths, h, top)
+    write_in_powers(series)
+    match_initial_velocity(series, step.now.velocity, h)
     lengths.carried = CARRIED
     expand_deformations(laws, series, last, top)
     most = lengths.kinetic
     if most == 0.0:  # from rest
         most = energy(linear, series, 1)
-    off = energy(linear, series, last)
-    if not off < np.inf:
+    left_out = energy(linear, series, last)
+    if not left_out < np.inf:
         return last, np.nan
-    allowed = max(SAFE * SAFE * own.numbers[1] * most, NOISE * energy(linear, series, 0))
     fit = GROW
-    if off > 0.0:
-        fit = min(fit, (allowed / off) ** (0.5 / last))
+    if left_out > 0.0:
+        allowed = max(own.allowed * most, NOISE * present)
+        fit = min(fit, (allowed / left_out) ** (0.5 / last))
     return last, fit

@@ -451,26 +451,28 @@ class SinglePole(NamedTuple):
         Powers of the place in each polynomial.
     monomials : ndarray, shape (s + 1, s + 1)
         Polynomials in each power.
-    numbers : ndarray, shape (2,)
-        gamma, and the energy that the last term may have, as a share of that of the motion.
+    gamma : float
+    allowed : float
+        Energy that the last term may have, as a share of that of the motion.
     displacement, velocity : ndarray, shape (s + 1, n)
         Coefficients of the unknowns.
     inputs : ndarray, shape (s + 2, n_inputs)
         Coefficients of the inputs.
     force : ndarray, shape (n,)
         Scratch.
-    hump : ndarray, shape (s + 1,)
+    initial_slope : ndarray, shape (s + 1,)
         Powers of the place in a polynomial of slope one at 0, that is zero there and, with its slope, at 1.
     """
 
     basis: Array
     monomials: Array
-    numbers: Array
+    gamma: float
+    allowed: float
     displacement: Array
     velocity: Array
     inputs: Array
     force: Array
-    hump: Array
+    initial_slope: Array
 
 
 class Series(NamedTuple):

@@ -21,7 +21,6 @@ import numpy as np
 from pound_solve.integrate.energy import Works
 from pound_solve.integrate.kernels.consistency import correct_massless_rates
 from pound_solve.integrate.kernels.corotational import (
-    add_tangent,
     anchor,
     correct_members,
     force_size,
@@ -30,6 +29,7 @@ from pound_solve.integrate.kernels.corotational import (
     subtract_force,
     take_tangents,
 )
+from pound_solve.integrate.kernels.effective_mass import factorise_effective_mass
 from pound_solve.integrate.kernels.laws import (
     add_slip_work,
     curve,
@@ -59,8 +59,8 @@ from pound_solve.integrate.kernels.work import (
 )
 from pound_solve.laws.functions import Tables
 from pound_solve.numerics.jit import flat
-from pound_solve.numerics.ldl import factor, update
 from pound_solve.numerics.ldl import solve as solve_factored
+from pound_solve.numerics.ldl import update
 from pound_solve.numerics.types import Array
 from pound_solve.structure.corotational import KIND, LENGTH, STRING
 
@@ -73,20 +73,7 @@ MOST_ITERATIONS = 50
 def factorise(linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, h: float, at: int) -> int:
     """Factorise A for steps of length `h`; return -1 or the unknown whose pivot vanishes."""
     on_mass = (1.0 - scheme.alpha_m) / (1.0 - scheme.alpha_f)
-    on_damping, on_stiffness = scheme.gamma * h, scheme.beta * h * h
-    a = linear.on_pattern
-    for q in range(len(step.matrix)):
-        step.matrix[q] = on_mass * a[0, q] + on_damping * a[1, q] + on_stiffness * a[2, q]
-    for i in range(len(laws.rule)):
-        change = on_damping * laws.damping[i] + on_stiffness * laws.stiffness[i]
-        if change != 0.0:
-            for q in range(laws.pair_pointers[i], laws.pair_pointers[i + 1]):
-                step.matrix[laws.pair_places[q]] += change * laws.pair_values[q]
-    if on_stiffness != 0.0:
-        members = laws.members
-        for c in range(len(members.parameters)):
-            add_tangent(linear, members, step, c, members.tangent, on_stiffness, False)
-    return factor(linear.pattern, step.matrix, step.factors[at], step.pivots[at], step.row)
+    return factorise_effective_mass(linear, laws, step, on_mass, scheme.gamma * h, scheme.beta * h * h, at)
 
 
 def update_factor(linear: LinearSystem, laws: Laws, step: Step, i: int, change: float, at: int) -> bool:

@@ -132,10 +132,9 @@ def _collisions(run: RunRecord) -> str:
     """Number of collisions and their largest force; an impact of a rigid contact has an impulse instead."""
     found, units = run.history.returned.peaks.collisions, run.model.units
     lasting = [c for c in found if c.peak == c.peak]
-    impacts = len(found) - len(lasting)
-    count = str(len(found)) + (
-        f", {impacts} of them impacts in no time, without a force" if impacts else ""
-    )
+    count = str(len(found))
+    if impacts := len(found) - len(lasting):
+        count += f", {impacts} of them impacts in no time, without a force"
     if not lasting:
         return count
     worst = max(lasting, key=lambda c: c.peak)

@@ -1,0 +1,29 @@
+"""Kernel that factorises the matrix of an implicit step, its effective mass."""
+
+from __future__ import annotations
+
+from pound_solve.integrate.kernels.corotational import add_tangent
+from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
+from pound_solve.numerics.ldl import factor
+
+
+def factorise_effective_mass(
+    linear: LinearSystem, laws: Laws, step: Step, on_mass: float, on_damping: float, on_stiffness: float,
+    at: int,
+) -> int:  # fmt: skip
+    """Factorise the sum of M, C and K times factors, laws and corotational members included, into row `at`
+    of the factors; return -1 or the unknown whose pivot vanishes.
+    """
+    a = linear.on_pattern
+    for q in range(len(step.matrix)):
+        step.matrix[q] = on_mass * a[0, q] + on_damping * a[1, q] + on_stiffness * a[2, q]
+    for i in range(len(laws.rule)):
+        change = on_damping * laws.damping[i] + on_stiffness * laws.stiffness[i]
+        if change != 0.0:
+            for q in range(laws.pair_pointers[i], laws.pair_pointers[i + 1]):
+                step.matrix[laws.pair_places[q]] += change * laws.pair_values[q]
+    if on_stiffness != 0.0:
+        members = laws.members
+        for c in range(len(members.parameters)):
+            add_tangent(linear, members, step, c, members.tangent, on_stiffness, False)
+    return factor(linear.pattern, step.matrix, step.factors[at], step.pivots[at], step.row)
