@@ -12,7 +12,7 @@ from decks import results_of
 from kernels import FAST, NUMBA, as_with_numba, by_numba, interpreted, steps_alone
 from pound_solve.check import Subject, looked
 from pound_solve.integrate import auto, condensed, costs, trial
-from pound_solve.integrate.convergence import compared, estimate, refinement
+from pound_solve.integrate.convergence import compared, estimate, step_refinement
 from pound_solve.integrate.convergence.compared import RESPONSES, Peak
 from pound_solve.integrate.events import within_step
 from pound_solve.integrate.kernels import allocation, products
@@ -229,10 +229,12 @@ def test_auto_learns_nothing_from_two_runs_with_the_same_steps(tmp_path, monkeyp
 def test_auto_gives_up_where_shorter_steps_bring_nothing(tmp_path, monkeypatch):
     """A peak that differs by a tenth from run to run, as a force that rings does."""
     steps_alone(monkeypatch)
-    monkeypatch.setattr(refinement, "MAX_STALE_RUNS", 3)  # each takes twice the steps of the one before
+    monkeypatch.setattr(
+        step_refinement, "MAX_STALE_RUNS", 3
+    )  # each takes twice the steps of the one before
     rings = itertools.cycle((1.0, 1.1))
     monkeypatch.setattr(
-        refinement, "figures", lambda *given: Peak(np.array([next(rings)]), np.ones(1), ONE)
+        step_refinement, "figures", lambda *given: Peak(np.array([next(rings)]), np.ones(1), ONE)
     )
     found = run(tmp_path, "AUTO TOL=1e-2")
     (check,) = [c for c in found.checks if c.subject is Subject.ERROR]
@@ -245,7 +247,7 @@ def test_auto_keeps_its_last_whole_run_when_it_is_interrupted(tmp_path, monkeypa
     steps_alone(monkeypatch)
     runs = []
 
-    class Interrupted(refinement.Replay):
+    class Interrupted(step_refinement.Replay):
         def __init__(self, recorder):
             super().__init__(recorder)
             runs.append(self)
@@ -255,7 +257,7 @@ def test_auto_keeps_its_last_whole_run_when_it_is_interrupted(tmp_path, monkeypa
                 raise KeyboardInterrupt
             super().sample(t, *motion)
 
-    monkeypatch.setattr(refinement, "Replay", Interrupted)
+    monkeypatch.setattr(step_refinement, "Replay", Interrupted)
     found = run(tmp_path, "AUTO TOL=1e-6")
     assert len(runs) == 3 and found.status == "stopped" and found.message.startswith("A506 at t = ")
     second = np.concatenate([told[1][:, -1] for told in runs[1].samples[-1:]])
@@ -271,7 +273,7 @@ def test_an_interrupt_between_two_runs_ends_with_a_report(tmp_path, monkeypatch)
         raise KeyboardInterrupt
 
     steps_alone(monkeypatch)
-    monkeypatch.setattr(refinement, "figures", interrupt)
+    monkeypatch.setattr(step_refinement, "figures", interrupt)
     found = run(tmp_path, "AUTO TOL=1e-3")
     assert found.status == "stopped" and found.message.startswith("A506 at t = 0 s: interrupted")
 
@@ -775,7 +777,7 @@ def test_the_dashpot_of_a_contact_does_not_hit_a_node_without_mass(tmp_path, met
     assert peak == pytest.approx(40.0 * u.max(), rel=1e-4)
 
 
-class Refinement(refinement.StepRefinement):
+class Refinement(step_refinement.StepRefinement):
     """Runs that are made up."""
 
     def __init__(self, tol, most=1.0, length=1.0, cost=0.0):
@@ -788,11 +790,11 @@ class Refinement(refinement.StepRefinement):
 def test_auto_gives_up_what_would_cost_too_much():
     """After a run that stopped, where a quarter of its step is too short, and after some retries."""
     steps = Refinement(1e-3, most=1e-3, length=2.0)
-    limit = refinement.MAX_RETRY_COST / (4.0 * 2000)
+    limit = step_refinement.MAX_RETRY_COST / (4.0 * 2000)
     for cost, hopeless in ((1.001 * limit, True), (0.999 * limit, False)):
         steps.step_cost = cost
         assert steps._hopeless() is hopeless
-    steps.retries = refinement.MAX_SHORTER
+    steps.retries = step_refinement.MAX_SHORTER
     assert not steps._hopeless()
     steps.complete = "a run"
     assert steps._hopeless()
@@ -851,21 +853,21 @@ def test_no_peak_hides_behind_the_others():
 def test_auto_wants_runs_that_show_their_order_and_steps_in_the_hardest_collision(tmp_path, monkeypatch):
     """Made-up peaks of second order; three runs at least, and a fourth that confirms the order."""
     steps_alone(monkeypatch)
-    real, h = refinement.StepRefinement.run, []
+    real, h = step_refinement.StepRefinement.run, []
 
     def run_once(self):
         h.append(self.h)
         return real(self)
 
-    monkeypatch.setattr(refinement.StepRefinement, "run", run_once)
+    monkeypatch.setattr(step_refinement.StepRefinement, "run", run_once)
     for gap, lasts, runs in ((2e-2, 1.0, 4), (1e-3, 1.0, 3), (1e-3, 1e-4, 4)):
         h.clear()
         monkeypatch.setattr(
-            refinement,
+            step_refinement,
             "figures",
             lambda *given, gap=gap: Peak(np.array([1.0 + gap * (h[-1] / h[0]) ** 2]), np.ones(1), ONE),
         )
-        monkeypatch.setattr(refinement, "hardest", lambda peaks, lasts=lasts: lasts)
+        monkeypatch.setattr(step_refinement, "hardest", lambda peaks, lasts=lasts: lasts)
         found = run(tmp_path, "AUTO TOL=1e-2", every=0.1)
         facts = dict(found.table("run").tolist())
         assert int(facts["runs"]) == runs, (gap, lasts, facts["runs"])
@@ -904,12 +906,12 @@ def test_auto_tries_other_steps_where_one_stops(tmp_path, monkeypatch):
     bad = range(1, 4)
     found = run(tmp_path, "AUTO TOL=1e-2")
     assert found.status == "done" and estimated(found) <= 1e-2 and len(tried) > 4
-    assert tried[1] == pytest.approx(refinement.NEARBY * tried[0])
+    assert tried[1] == pytest.approx(step_refinement.NEARBY * tried[0])
     found.close()
     tried.clear()
     bad = range(3, 100)
     found = run(tmp_path, "AUTO TOL=1e-6")
-    assert found.status == "done" and len(tried) == 2 + 1 + refinement.MAX_SHORTER
+    assert found.status == "done" and len(tried) == 2 + 1 + step_refinement.MAX_SHORTER
     (check,) = [c for c in found.checks if c.subject is Subject.ERROR]
     assert check.looks and "not shown" in check.remark and "A503" in check.remark
 
@@ -954,7 +956,7 @@ def test_trials_of_exact_cost_a_third_of_the_whole_at_most(tmp_path, monkeypatch
         spent.append(limits["COST"])
         raise costs.CostlyError(limits["COST"], 0.9 * float(start.times[-1]))
 
-    real = refinement.StepRefinement.least_cost
+    real = step_refinement.StepRefinement.least_cost
 
     def least_cost(self):
         others.append(real(self))
@@ -964,7 +966,7 @@ def test_trials_of_exact_cost_a_third_of_the_whole_at_most(tmp_path, monkeypatch
     monkeypatch.setattr(trial.exact, "integrate", endless)
     monkeypatch.setattr(trial, "LEAST_OF_MANY", 0.0)
     monkeypatch.setattr(costs, "DECOMPOSITION", 0.0)
-    monkeypatch.setattr(refinement.StepRefinement, "least_cost", least_cost)
+    monkeypatch.setattr(step_refinement.StepRefinement, "least_cost", least_cost)
     found = run(tmp_path, "AUTO TOL=1e-5")
     assert found.status == "done" and len(others) > 3 and spent
     assert sum(spent) <= 0.5 * (others[-1] + trial.REST + trial.loading()) * (1 + 1e-12)

@@ -1,13 +1,14 @@
-r"""AUTO: EXACT or TAYLOR where they cost less, else NEWMARK with the step that meets a tolerance.
+r"""AUTO: EXACT or TAYLOR where they cost less, else runs of LAGUERRE or NEWMARK that meet a tolerance.
 
 EXACT needs no step, but piecewise linear laws, and every new combination of stiffnesses costs it a modal
-decomposition.  TAYLOR has no truncation error either; its steps resolve the fastest mode.  With NEWMARK
-the whole run is repeated with a shorter step until the peaks no longer change, or until shorter steps
-bring no improvement (a force that rings at a node without mass): see :mod:`.convergence`.
+decomposition.  TAYLOR has no truncation error either; its steps resolve the fastest mode.  LAGUERRE, for
+piecewise linear laws, and NEWMARK, for all others and where LAGUERRE stops, have errors: the whole run is
+repeated with a smaller tolerance or a shorter step until the peaks no longer change, or until that brings
+no improvement (a force that rings at a node without mass): see :mod:`.convergence`.
 
 The cost of TAYLOR is known in advance; that of EXACT depends on the events.  TAYLOR is used where it
-costs little, or no more than the NEWMARK runs that were made and the one to come.  Where that is not so
-from the start, and before each run of NEWMARK, EXACT is tried with a share of what the others cost
+costs little, or no more than the runs that were made and the one to come.  Where that is not so
+from the start, and before each such run, EXACT is tried with a share of what the others cost
 (:mod:`.trial`).  Costs are counted from windows, decompositions, steps and unknowns (:mod:`.costs`), not
 measured, so that a deck is always solved in the same way.
 """
@@ -23,8 +24,9 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.integrate import costs
 from pound_solve.integrate.closed_form import exact
 from pound_solve.integrate.convergence.compared import ALL, RESPONSE, tolerances
-from pound_solve.integrate.convergence.refinement import StepRefinement
 from pound_solve.integrate.convergence.replay import Replay
+from pound_solve.integrate.convergence.step_refinement import StepRefinement
+from pound_solve.integrate.convergence.tolerance_refinement import ToleranceRefinement, UnfitError
 from pound_solve.integrate.intervals import MOST_UNKNOWNS, WORTH, usual
 from pound_solve.integrate.protocol import (
     EnvelopeRecorder,
@@ -47,13 +49,19 @@ from pound_solve.structure.elements.base import Role
 from pound_solve.structure.reduction import Decision, ReducedSystem
 
 MAX_SERIES = 500_000  #: steps of TAYLOR, where dampers that hardly move may ask for more than is foreseen
-SERIES_FIRST = 1.0  #: cost up to which TAYLOR is taken before any steps: it has no error to be estimated
+#: costs up to which TAYLOR is taken before runs whose errors have to be estimated: those of NEWMARK, and
+#: of LAGUERRE where it seems to cost less
+SERIES_FIRST, SERIES_ALWAYS = 1.0, 0.05
 
 #: why no steps are taken
 LINEAR = "all laws are piecewise linear, so no time step is needed; stepping would cost more"
 SERIES = "all forces have power series between events, so no time step is needed; stepping would cost more"
 DEAR = "EXACT would cost more: too many unknowns or changes of stiffness"
 RIGID = "steps take no rigid contacts"
+
+#: the decision that implicit series were taken
+WHY = "EXACT and TAYLOR would cost more; its tolerance is reduced until the peaks converge"
+IMPLICIT = Decision("method", "LAGUERRE", WHY)
 
 
 def has_series(system: ReducedSystem) -> bool:
@@ -88,9 +96,8 @@ def cost_of_series(system: ReducedSystem, start: Start) -> float:
     return costs.of_series_step(system) * steps
 
 
-def stepped(system: ReducedSystem) -> Decision:
-    """Return the decision that steps were taken."""
-    reason = not_in_series(system) or not_linear(system) or DEAR
+def stepped(system: ReducedSystem, reason: str) -> Decision:
+    """Return the decision that steps were taken, and the reason."""
     return Decision("method", "NEWMARK", f"{reason}; steps are shortened until the peaks converge")
 
 
@@ -138,33 +145,35 @@ def by_trial(trial: ExactTrial, others: float) -> Outcome | None:
 
 
 def to_tolerance(
-    system: ReducedSystem,
-    start: Start,
-    monitored: MonitoredOutputs,
-    options: Mapping[str, Any],
-    recorder: EnvelopeRecorder,
-    trial: ExactTrial,
-    series: float,
+    runs: StepRefinement | ToleranceRefinement, chosen: Decision, trial: ExactTrial | None, series: float
 ) -> Outcome:
-    """Repeat the run with shorter steps until the peaks converge, or EXACT costs less, or TAYLOR, which
+    """Repeat runs until the peaks converge, which `chosen` states, or EXACT costs less, or TAYLOR, which
     costs `series`.
+
+    Raises
+    ------
+    Stop
+        A run stopped, and no other run may pass.
+    UnfitError
+        Another method may pass.
     """
-    steps = StepRefinement(system, start, monitored, recorder, options)
+    system = runs.system
     while True:
         # so both cost no more than twice what series alone would
-        if series <= max(SERIES_FIRST, steps.spent + steps.cost_ahead()):
-            if (outcome := by_few_series(system, start, monitored, recorder)) is not None:
+        if series + runs.events * costs.of_series_step(system) <= runs.spent + runs.cost_ahead():
+            outcome = by_few_series(system, runs.start, runs.monitored, runs.recorder)
+            if outcome is not None:
                 return outcome
             series = np.inf
-        if (outcome := by_trial(trial, steps.least_cost())) is not None:
+        if trial is not None and (outcome := by_trial(trial, runs.least_cost())) is not None:
             return outcome
         try:
-            outcome = steps.run()
+            outcome = runs.run()
         except Stop:
-            system.decisions.append(stepped(system))
+            system.decisions.append(chosen)
             raise
         if outcome is not None:
-            system.decisions.append(stepped(system))
+            system.decisions.append(chosen)
             return outcome
 
 
@@ -184,8 +193,12 @@ def integrate(
         if not has_series(system):
             system.decisions.append(Decision("method", "EXACT", RIGID))
             return exact.integrate(system, start, monitored, {}, recorder)
-    series = cost_of_series(system, start)
-    if series + loading() <= SERIES_FIRST:
+    asked = system, start, monitored, recorder, options
+    series, reason = cost_of_series(system, start), not_in_series(system) or not_linear(system)
+    serves = provider().fast and not rigid and not not_linear(system)
+    implicit = ToleranceRefinement(*asked, series) if serves else None
+    at_once = SERIES_FIRST if implicit is None else max(SERIES_ALWAYS, implicit.cost_ahead())
+    if series + loading() <= at_once:
         if (outcome := by_few_series(system, start, monitored, recorder)) is not None:
             return outcome
         series = np.inf
@@ -194,18 +207,27 @@ def integrate(
     )
     if rigid:
         return by_trial(trial, series) or by_series(system, start, monitored, recorder)
-    if series <= SERIES_FIRST:
+    if series <= at_once:
         outcome = by_trial(trial, series) or by_few_series(system, start, monitored, recorder)
         if outcome is not None:
             return outcome
         series = np.inf
-    return to_tolerance(system, start, monitored, options, recorder, trial, series)
+    if implicit is not None:
+        try:
+            worth = series + loading() > SERIES_FIRST  # else a trial may cost more than all the rest
+            return to_tolerance(implicit, IMPLICIT, trial if worth else None, series)
+        except UnfitError as err:
+            reason = str(err)
+            if err.dear:
+                return by_series(system, start, monitored, recorder)
+        series = np.inf  # which stop there, too
+    return to_tolerance(StepRefinement(*asked), stepped(system, reason or DEAR), trial, series)
 
 
 SPEC = Spec(
     "method",
     "AUTO",
-    "EXACT where it pays, else steps that meet a tolerance",
+    "EXACT or TAYLOR where they pay, else runs that meet a tolerance",
     (
         Field(
             "TOL",
@@ -214,7 +236,7 @@ SPEC = Spec(
             default=1e-4,
             lo=1e-9,
             hi=0.1,
-            doc="largest error of the peaks as a share of them, if steps are taken",
+            doc="largest error of the peaks as a share of them, by LAGUERRE or NEWMARK",
         ),
         Field(
             "PEAKS",

@@ -43,7 +43,7 @@ def smooth_laws(system: ReducedSystem) -> int:
 
 
 def of_series_step(system: ReducedSystem) -> float:
-    """Return the cost of a compiled step of TAYLOR."""
+    """Return the cost of a compiled step of TAYLOR, or of LAGUERRE."""
     unknowns = system.size + len(system.structure.laws)
     return TAYLOR_STEP + TAYLOR_UNKNOWN * unknowns + TAYLOR_SMOOTH * smooth_laws(system)
 

@@ -16,6 +16,8 @@ def how_found(run: RunRecord) -> str:
     """Tell whether the peaks that the method tracks are exact."""
     if run.history.returned.exact:
         return "Peaks are exact."
+    if run.history.recorder.envelopes.searched:
+        return "Peaks between the ends of the steps are included."
     return "Peaks are those of the steps, interpolated between them."
 
 

@@ -14,11 +14,12 @@ from pound_solve.structure.reduction import ReducedSystem
 class Replay:
     """Keeps the samples of a run, to pass them on if it is the final one; knows the extremes of u.
 
-    Of the motion between the samples only the envelopes are kept.
+    Of the motion between the samples only the envelopes are kept; nothing where the run is not `enveloped`,
+    as it will not be the final one.
     """
 
-    def __init__(self, recorder: EnvelopeRecorder) -> None:
-        self.recorder, self.samples = recorder, list[tuple[Any, ...]]()
+    def __init__(self, recorder: EnvelopeRecorder, enveloped: bool = True) -> None:
+        self.recorder, self.enveloped, self.samples = recorder, enveloped, list[tuple[Any, ...]]()
         self.envelopes = recorder.envelopes.blank()
         self.high: Array | float = -np.inf
         self.low: Array | float = np.inf
@@ -32,17 +33,18 @@ class Replay:
 
     def between(self, course: Course) -> None:
         """Take the motion between samples (see `Recorder`)."""
-        self.envelopes.between(course)
+        if self.enveloped:
+            self.envelopes.between(course)
 
     @property
     def shown(self) -> Flags:
         """Which unknowns `between` needs (see `Recorder`)."""
-        return self.recorder.shown
+        return self.recorder.shown & self.enveloped
 
     @property
     def acting(self) -> Index:
         """Laws whose forces `between` needs (see `Recorder`)."""
-        return self.recorder.acting
+        return self.recorder.acting if self.enveloped else self.recorder.acting[:0]
 
     def trial(self, t: float, doing: str = "") -> None:
         """Pass the progress of a trial on."""

@@ -57,7 +57,8 @@ def integrate(
     options: Mapping[str, Any],
     recorder: Recorder,
 ) -> Outcome:
-    """Integrate a reduced system by implicit series; see the module's head.
+    """Integrate a reduced system by implicit series; see the module's head.  `options` may hold STEPS, the
+    most that a run may come to.
 
     Raises
     ------
@@ -69,8 +70,8 @@ def integrate(
     if why := not_linear(system):
         told = f"LAGUERRE needs linear pieces, and {why}: AUTO takes another method"
         raise Stop("A505", float(start.times[0]), told)
-    contacts = RigidContacts(system)
-    return Laguerre(system, start, monitored, recorder, contacts, MAX_STEPS, options["TOL"]).run()
+    contacts, most = RigidContacts(system), min(options.get("STEPS", MAX_STEPS), MAX_STEPS)
+    return Laguerre(system, start, monitored, recorder, contacts, most, options["TOL"]).run()
 
 
 SPEC = Spec(

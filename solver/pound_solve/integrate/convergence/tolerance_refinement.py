@@ -1,0 +1,180 @@
+"""Runs of LAGUERRE with smaller and smaller tolerances, until the peaks converge.
+
+The tolerance of LAGUERRE bounds the error of a step, not that of the run.  So the run is repeated with a
+smaller one.  The difference between the peaks of two runs is nearly the error of the first, which is some
+ten times that of the second; it is taken for that of the second.  Two runs may agree by chance: differences
+to the runs before them count, too, as if errors fell with the root of the tolerance only.  Steps that end
+with the intervals of the record may be the same in both runs, and then no difference tells nothing: an
+estimate is at least the tolerance of the first run, and runs of as many steps are compared only where no
+tolerance is smaller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from pound_solve.check import Check, Subject, at_most
+from pound_solve.integrate import costs
+from pound_solve.integrate.convergence.compared import NAMES, RESPONSES, Peak, figures, tolerances
+from pound_solve.integrate.convergence.replay import Replay
+from pound_solve.integrate.protocol import (
+    INTERRUPTED,
+    EnvelopeRecorder,
+    MonitoredOutputs,
+    Outcome,
+    Start,
+    Stop,
+    goals,
+)
+from pound_solve.structure.reduction import ReducedSystem
+
+STEPS = 2.0  #: of a run that are expected between two samples of the excitation or instants of output
+FIRST = 0.1  #: tolerance of the first run, as a share of that of the peaks
+NEXT, NEXT_LEAST = 0.1, 1e-3  #: tolerance of the next run over that of the last, at most and at least
+LEAST = 1e-12  #: smallest tolerance of a run
+POWER = 0.5  #: of the tolerance that errors are assumed to fall with, at least
+ORDER = 6  #: steps grow with the root of this order
+MAX_RUNS = 6  #: after which smaller tolerances are given up
+
+
+class UnfitError(Exception):
+    """LAGUERRE stops on its way, where another method may pass, or because it is `dear`."""
+
+    def __init__(self, why: str, dear: bool) -> None:
+        super().__init__(why)
+        self.dear = dear
+
+
+class ToleranceRefinement:
+    """Runs of LAGUERRE with smaller and smaller tolerances, until the peaks converge.
+
+    Parameters
+    ----------
+    others : float
+        Cost of another method: of a run that would cost more no more is made.
+
+    Attributes
+    ----------
+    tolerances, errors : dict
+        Of each kind of peaks that has a tolerance, and the estimate for the last run.
+    error : float
+        The largest estimate for the last run, over its tolerance.
+    tol, floor : float
+        Tolerances of the next run and of the one before it.
+    peaks : list
+        Tolerances and peaks of the runs that were completed.
+    spent : float
+        Cost of the runs that were completed.
+    most : float
+        Steps that a run may come to, beside one for each event.
+    events : int
+        Of the last run.
+    steps : float
+        That the next run is expected to take.
+    """
+
+    def __init__(
+        self,
+        system: ReducedSystem,
+        start: Start,
+        monitored: MonitoredOutputs,
+        recorder: EnvelopeRecorder,
+        options: Mapping[str, Any],
+        others: float,
+    ) -> None:
+        self.system, self.start, self.monitored, self.recorder = system, start, monitored, recorder
+        self.tolerances = tolerances(options)
+        self.errors, self.error = dict.fromkeys(self.tolerances, np.inf), np.inf
+        self.tol = self.floor = max(FIRST * min(self.tolerances.values()), LEAST)
+        self.step_cost = costs.of_series_step(system)
+        self.steps = STEPS * len(goals(system, start.times)[0])
+        self.most = max(self.steps, others / self.step_cost)
+        self.runs, self.events, self.spent = 0, 0, 0.0
+        self.peaks = list[tuple[float, Peak]]()
+        self.complete: tuple[Outcome, Replay] | None = None  # the last run that was completed
+
+    def cost_ahead(self) -> float:
+        """Return the cost of the run that is likely to meet the tolerance, and of one before it."""
+        return self.step_cost * self.steps * (1 if self.runs else 2)
+
+    least_cost = cost_ahead
+
+    def run(self) -> Outcome | None:
+        """Run once; return the outcome if no run follows, else None with the next tolerance chosen.
+
+        Raises
+        ------
+        Stop
+            An interrupt.
+        UnfitError
+            The run stopped for another reason.
+        """
+        from pound_solve.integrate.series import laguerre  # where it is not needed it is not loaded
+
+        # the first run is never the final one
+        replay = Replay(self.recorder, self.runs > 0 or set(self.tolerances) != {RESPONSES})
+        try:
+            options = {"TOL": self.tol, "STEPS": self.most + self.events}
+            outcome = laguerre.integrate(self.system, self.start, self.monitored, options, replay)
+        except Stop as stop:
+            if stop.code != "A506":
+                why = f"LAGUERRE stops: {stop.code} at t = {stop.t:.6g}"
+                raise UnfitError(why, stop.code == "A502" and np.isfinite(self.most)) from None
+            raise self._interrupted(stop, replay) from None
+        return self._judge(outcome, replay)
+
+    def _judge(self, outcome: Outcome, replay: Replay) -> Outcome | None:
+        """Estimate the error of a run that was completed; hand it on if no run follows."""
+        before, self.complete = self.complete, (outcome, replay)
+        own = figures(self.system, outcome.peaks, replay, self.tolerances)
+        taken = outcome.figures["steps"] + outcome.figures["steps taken again"]
+        self.runs, self.events = self.runs + 1, outcome.figures["events"]
+        self.spent += self.step_cost * taken
+        share = NEXT
+        if before is not None:
+            share = NEXT_LEAST  # which makes other steps
+            if outcome.figures["steps"] > before[0].figures["steps"] or self.tol == LEAST:
+                self._compare(own)
+                share = float(np.clip(FIRST / self.error, NEXT_LEAST, NEXT))
+        if self.error <= 1.0 or self.runs == MAX_RUNS or self.tol == LEAST:
+            replay.pass_on()
+            outcome.figures = {**outcome.figures, "runs": self.runs}
+            outcome.checks = self.checks(outcome, "the smallest that is tried")
+            return outcome
+        self.peaks.append((self.tol, own))
+        self.steps = taken * share ** (-1.0 / ORDER)
+        self.floor, self.tol = self.tol, max(share * self.tol, LEAST)
+        return None
+
+    def _compare(self, own: Peak) -> None:
+        """Estimate the error of a run from its differences to those before."""
+        scales = np.where(own.scales > 0.0, own.scales, 1.0)
+        apart = np.zeros(len(scales))
+        for tol, before in self.peaks:
+            fallen = (self.floor / tol) ** POWER
+            apart = np.maximum(apart, fallen * np.abs(own.values - before.values) / scales)
+        for kind in self.tolerances:
+            self.errors[kind] = max(float(apart[own.kinds == kind].max(initial=0.0)), self.floor)
+        self.error = max(error / self.tolerances[kind] for kind, error in self.errors.items())
+
+    def _interrupted(self, stop: Stop, replay: Replay) -> Stop:
+        """The exception for an interrupt: with the last run that was completed, if there is one."""
+        if self.complete is None:
+            replay.pass_on()
+            return stop
+        outcome, replay = self.complete
+        replay.pass_on()
+        outcome.checks = self.checks(outcome, "interrupted")
+        return Stop("A506", float(self.start.times[-1]), INTERRUPTED, outcome)
+
+    def checks(self, outcome: Outcome, ended: str) -> list[Check]:
+        """Return checks of a run with the estimates; `ended` is why no smaller tolerances follow."""
+        told = f"not shown with TOL={self.tol:.2g} of LAGUERRE, {ended}"
+        estimates = [
+            at_most(Subject.ERROR, f"estimated error of {NAMES[kind]}", self.errors[kind], tol, told)
+            for kind, tol in self.tolerances.items()
+        ]
+        return [*estimates, *outcome.checks]
