@@ -12,7 +12,7 @@ from decks import results_of
 from kernels import FAST, NUMBA, as_with_numba, by_numba, interpreted, steps_alone
 from pound_solve.check import Subject, looked
 from pound_solve.integrate import auto, condensed, costs, trial
-from pound_solve.integrate.convergence import compared, estimate, step_refinement
+from pound_solve.integrate.convergence import compared, estimate, step_refinement, tolerance_refinement
 from pound_solve.integrate.convergence.compared import RESPONSES, Peak
 from pound_solve.integrate.events import within_step
 from pound_solve.integrate.kernels import allocation, products
@@ -949,8 +949,11 @@ def test_a_trial_ends_where_the_whole_would_cost_more_than_its_budget():
 
 
 def test_trials_of_exact_cost_a_third_of_the_whole_at_most(tmp_path, monkeypatch):
-    """Where EXACT never ends, each trial before a run by steps counts those before."""
+    """Where EXACT never ends and LAGUERRE stops, each trial before a run counts those before."""
     spent, others = [], []
+
+    def unfit(self):
+        raise tolerance_refinement.UnfitError("stopped", False)
 
     def endless(system, start, monitored, limits, recorder):
         spent.append(limits["COST"])
@@ -966,6 +969,7 @@ def test_trials_of_exact_cost_a_third_of_the_whole_at_most(tmp_path, monkeypatch
     monkeypatch.setattr(trial.exact, "integrate", endless)
     monkeypatch.setattr(trial, "LEAST_OF_MANY", 0.0)
     monkeypatch.setattr(costs, "DECOMPOSITION", 0.0)
+    monkeypatch.setattr(tolerance_refinement.ToleranceRefinement, "run", unfit)
     monkeypatch.setattr(step_refinement.StepRefinement, "least_cost", least_cost)
     found = run(tmp_path, "AUTO TOL=1e-5")
     assert found.status == "done" and len(others) > 3 and spent
@@ -976,8 +980,8 @@ def test_auto_goes_over_to_series_once_steps_have_cost_as_much(monkeypatch):
     """Each run costs two, the series five: after two runs the third would make six."""
 
     class Steps:
-        def __init__(self, *given):
-            self.spent = 0.0
+        system = start = monitored = recorder = None
+        spent, events = 0.0, 0
 
         def cost_ahead(self):
             return 2.0
@@ -989,10 +993,9 @@ def test_auto_goes_over_to_series_once_steps_have_cost_as_much(monkeypatch):
             runs.append(self.spent)
 
     runs = []
-    monkeypatch.setattr(auto, "StepRefinement", Steps)
-    monkeypatch.setattr(auto, "by_trial", lambda *given: None)
+    monkeypatch.setattr(auto.costs, "of_series_step", lambda system: 1.0)
     monkeypatch.setattr(auto, "by_few_series", lambda *given: "series")
-    assert auto.to_tolerance(None, None, None, {}, None, None, 5.0) == "series"
+    assert auto.to_tolerance(Steps(), None, None, 5.0) == "series"
     assert runs == [2.0, 4.0]
 
 

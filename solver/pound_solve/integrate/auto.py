@@ -51,7 +51,7 @@ from pound_solve.structure.reduction import Decision, ReducedSystem
 MAX_SERIES = 500_000  #: steps of TAYLOR, where dampers that hardly move may ask for more than is foreseen
 #: costs up to which TAYLOR is taken before runs whose errors have to be estimated: those of NEWMARK, and
 #: of LAGUERRE where it seems to cost less
-SERIES_FIRST, SERIES_ALWAYS = 1.0, 0.05
+SERIES_FIRST, SERIES_ALWAYS = 1.0, 0.25
 
 #: why no steps are taken
 LINEAR = "all laws are piecewise linear, so no time step is needed; stepping would cost more"
