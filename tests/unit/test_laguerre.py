@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from pound_solve.catalog import catalog
-from pound_solve.integrate.series import single_pole
+from pound_solve.integrate.series import march, single_pole, state
+from pound_solve.numerics.record import record
 from pound_solve.numerics.types import Array
 from samples import written
 from tiers import at_night, each_once
@@ -169,6 +170,51 @@ def test_geometry_and_mass_of_a_frame(head: str) -> None:
     if head.startswith("MASS"):
         deck = deck.replace("I=0.0007", "I=0.0007 WGT=3").replace("I=0.0005", "I=0.0005 WGT=5")
     agree(deck)
+
+
+#: a column that is touched at the joint of its two halves, where its mass is small, by its neighbour
+TOUCHING = """UNITS kN m s
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 2
+ 3 0 4
+ 4 0 0 FIX=XYR
+ 5 0 2 FIX=YR
+ELEMENTS
+ 1 COL 1 2
+ 2 COL 2 3
+ 3 COL 4 5
+ 4 MEET 2 5
+PROPS
+ COL FRAME E=2E7 A=0.1 I=0.002
+ MEET CONTACT GAP=0 ANGLE=0 LAW={law}
+WEIGHTS
+ 2 2
+ 3 150
+ 5 65
+EQUAKE
+ TABLE POINTS={points}
+OUTPUT
+ EVERY=0.02
+ANALYSIS
+ HISTORY 0.2
+"""
+
+
+@pytest.mark.parametrize("points", ["0,0,0.07,-3,0.2,3", "0,0,0.03,0,0.1,-3,0.2,3"])
+@pytest.mark.parametrize("law", ["KELVIN_VOIGT K=1E6 E=0.6", "LINEAR K=1E5"])
+def test_buildings_that_touch_at_rest(law: str, points: str) -> None:
+    """The first powers of the motion that are not zero are below the error of a usual polynomial."""
+    agree(TOUCHING.format(law=law, points=points))
+
+
+def test_a_step_is_none_where_the_clock_does_not_show_it() -> None:
+    """At 0, too, where each step shows, however short."""
+    lengths = record(state.Lengths)
+    for t in (0.0, 0.5):
+        for length, shows in ((1e-3, True), (1e-17, False), (1e-300, False)):
+            lengths.next = length
+            assert (march.step_length(lengths, t, 1.0) > 0.0) == shows
 
 
 # ---------------------------------------------------------------- stiff structures

@@ -144,3 +144,59 @@ def test_two_equal_springs_that_soften_together(method: str, dt: float | None) -
     assert found.startswith("1, 2 at t = ")
     other = SOFTENING.replace("FX=150", "FX=150.15")
     assert told(run_text(storeys(a=SOFTENING, b=other), None, method, dt)) == ""
+
+
+BRITTLE = """UNITS kN m s
+GRAVITY 9.81
+NODES
+ 1 0 0 FIX=XYR
+ 2 0 3 FIX=YR
+ 3 0 6 FIX=YR
+ 4 0 9 FIX=YR
+ELEMENTS
+ 1 A 1 2
+ 2 B 2 3
+ 3 TOP 3 4
+ 4 HOLD 1 2
+ 5 HOLD 2 3
+PROPS
+ A SPRING KX=30000 FX=150 {rule} FU=200
+ B SPRING KX=30000 FX=150 {rule} FU={ultimate}
+ TOP SPRING KX=5E4
+ HOLD SPRING KX=3000
+WEIGHTS
+ 4 300
+{damping}
+INITIAL
+ 4 VX=4
+OUTPUT
+ EVERY=0.01
+ANALYSIS
+ HISTORY 0.1
+"""
+#: beyond its ultimate force it softens, less than HOLD is stiff, and then loses what is left at once
+FALLING = "RULE=WAYNE_STEWART R=0.1 FI=10 PTRI=-0.05 RPINCH=0.09"
+DAMPINGS = {"none": "", "little": "DAMPING\n RAYLEIGH XI=0.002 OMEGA=5,50"}
+
+
+@each_once(("method, dt", METHODS), ("damping", DAMPINGS), at_most=2)
+def test_two_equal_storeys_of_which_the_first_to_fail_relieves_the_other(
+    method: str, dt: float | None, damping: str
+) -> None:
+    """With a dashpot at the joint, too, which then moves with a rate that has jumped."""
+
+    def run(ultimate: float) -> Ran:
+        given = {"rule": FALLING, "damping": damping, "ultimate": ultimate}
+        return run_text(BRITTLE.format(**given), None, method, dt)
+
+    assert told(run(200.0)).startswith("1, 2 at t = 0.031")
+    assert told(run(200.2)) == ""
+
+
+def test_storeys_that_fail_together_are_told_only_if_one_relieves_the_other() -> None:
+    """Dashpots that let the joint move slowly only let the other fail at the same instant."""
+    damping = "DAMPING\n RAYLEIGH XI=0.05 OMEGA=5,50"
+    r = run_text(BRITTLE.format(rule=FALLING, damping=damping, ultimate=200), None, "TAYLOR")
+    assert told(r) == ""
+    first, second = r.column("spring_envelope", "plastic_work")[:2]
+    assert first == pytest.approx(second, rel=1e-9)

@@ -7,6 +7,9 @@ motion that it does not hold, in which some of these laws go on and others turn 
 alone, and rounding chooses.  Dashpots hold such a motion where the tangent is zero; where it is negative
 they only slow it down, and what rounding makes of it grows without the structure's doing.
 
+Laws may also come to lose a force together.  What one loses others take over, or are relieved: those that
+turn back then, and do not lose theirs, might as well have been the first.
+
 References
 ----------
 Hill R (1958), A general theory of uniqueness and stability in elastic-plastic solids, J. Mech. Phys. Solids
@@ -44,6 +47,7 @@ class Uniqueness:
 
     def __init__(self, system: ReducedSystem) -> None:
         self.system, self.first, self.elements = system, math.nan, list[int]()
+        self._falls: list[tuple[float, int, dict[int, int]]] = []  # instants, laws, the branches of others
         self._straight = not system.structure.corotational
         self._light = massless(system.mass)
         self._undamped = self._light & ~used_rows(system.damping)
@@ -58,12 +62,19 @@ class Uniqueness:
         t : float
             [T]
         stiffness, damping : ndarray, shape (n_laws,)
-            Tangents and dashpots of the laws if all that are tied go on [F/L], [F T/L].
+            Tangents and dashpots of the laws if all that are tied go on [F/L], [F T/L].  Where a force has
+            fallen: minus infinity for others that come to lose theirs, and the branches they go to.
         rising : ndarray, shape (n_laws,)
             Above zero for laws whose deformation rises to the end of its branch, below zero where it falls
             to it, zero for all others.
         """
-        if self.elements or not self._straight:  # the tangents of the members move
+        if self.elements:
+            return
+        if (fall := np.isneginf(stiffness)).any():
+            law = int(np.flatnonzero((rising != 0.0) & ~fall)[0])
+            self._falls.append((t, law, {int(i): int(damping[i]) for i in np.flatnonzero(fall)}))
+            return
+        if not self._straight:  # the tangents of the members move
             return
         key = b"".join(x.tobytes() for x in (stiffness, damping, np.sign(rising)))
         if key in self._known:
@@ -75,6 +86,18 @@ class Uniqueness:
         )
         if elements:
             self.first, self.elements = t, elements
+
+    def changed(self, t: float, law: int, branch: int) -> None:
+        """Take in that a law leaves its branch for another, by number."""
+        for since, first, others in self._falls:
+            if t >= since and others.pop(law, branch) != branch:
+                self._tell(since, [first, law])
+
+    def _tell(self, t: float, laws: list[int]) -> None:
+        """Note that any of some laws may go on."""
+        if not self.elements:
+            self.first = t
+            self.elements = sorted({self.system.structure.laws[i].element for i in laws})
 
     def _open(self, among: Flags, stiffness: Array, rising: Array, least: float) -> list[int]:
         """Elements of tied laws that take part, some going on and some turning back, in a motion of some
@@ -95,6 +118,9 @@ class Uniqueness:
 
     def checks(self) -> list[Check]:
         """The check of a run: none where its motion is unique."""
+        for since, first, others in self._falls:
+            if others:
+                self._tell(since, [first, *others])
         if not self.elements:
             return []
         named = ", ".join(str(e) for e in self.elements[:SHOWN])

@@ -76,6 +76,7 @@ class EventDrivenRun(ABC):
         before = self.branches[law].kind
         self.states[law] = self.laws[law].law.transition(self.states[law], event_index, d, v)
         after = self.branches[law] = self.laws[law].branch(self.states[law])
+        self.uniqueness.changed(self.t, law, self.states[law][0])
         force = self.laws[law].force(self.states[law], d, 0.0 if self._massless_laws[law] else v)
         self.tracker.switched(law, before, after.kind, self.t, d, v, force)
         self.tracker.force(law).take(force, self.t)
@@ -86,9 +87,10 @@ class EventDrivenRun(ABC):
         """
         before, own = self.branches[law], float(d[law])
         self.transition(law, event_index, own, float(v[law]))
-        if self.branches[law].stiffness < before.stiffness:
-            self._look_for_ties(law, d, v)
-        if self._massless_laws[law] and falls(before, self.branches[law], own):
+        fell = self._massless_laws[law] and falls(before, self.branches[law], own)
+        if fell or self.branches[law].stiffness < before.stiffness:
+            self._look_for_ties(law, d, v, fell)
+        if fell:
             release(self, law)
 
     def force(self, law: int, d: float) -> tuple[float, float]:
@@ -106,24 +108,29 @@ class EventDrivenRun(ABC):
         before = self.energy.array()
         self.energy.advance(np.array([before, before + works]))
 
-    def _look_for_ties(self, law: int, d: Array, v: Array) -> None:
-        """Look which laws come to the end of their branches with one that is softer now."""
-        k = np.array([b.stiffness for b in self.branches])
+    def _look_for_ties(self, law: int, d: Array, v: Array, fell: bool) -> None:
+        """Look which laws come to the end of their branches with one that is softer now, or whose force
+        `fell`.
+        """
+        k, c = (np.array([getattr(b, name) for b in self.branches]) for name in ("stiffness", "damping"))
         rising = np.where(np.arange(len(k)) == law, v[: len(k)], 0.0)
         if self.laws[law].role.collides or not self._massless_laws[law]:
             return
         from pound_solve.integrate.kernels.ties import arrives  # which most decks do not need
 
         for i in np.flatnonzero(self._massless_laws & (np.arange(len(k)) != law)).tolist():
-            events = () if self.laws[i].role.collides else self.branches[i].events
-            for n, e in enumerate(events):
-                if arrives(*e, float(d[i]), float(v[i]), float(self.largest[0, i])):
-                    after = self.laws[i].law.transition(self.states[i], n, float(d[i]), float(v[i]))
-                    softer = self.laws[i].branch(after).stiffness
-                    rising[i], k[i] = v[i] if softer < k[i] else 0.0, min(softer, k[i])
+            own, rate, before = float(d[i]), float(v[i]), self.branches[i]
+            for n, e in enumerate(() if self.laws[i].role.collides else before.events):
+                if arrives(*e, own, rate, float(self.largest[0, i])):
+                    state = self.laws[i].law.transition(self.states[i], n, own, rate)
+                    after = self.laws[i].branch(state)
+                    if fell and falls(before, after, own):
+                        k[i], c[i], rising[i] = -np.inf, state[0], rate
+                    elif not fell and after.stiffness < k[i]:
+                        k[i], rising[i] = after.stiffness, rate
                     break
         if np.count_nonzero(rising) > 1:
-            self.uniqueness.take(self.t, k, np.array([b.damping for b in self.branches]), rising)
+            self.uniqueness.take(self.t, k, c, rising)
 
     def count_change(self, elapsed: float, rounding: float) -> None:
         """Count changes of branch at one instant: an event after a share `rounding` of the time is one."""

@@ -153,7 +153,6 @@ class KernelEngine(ABC):
     def fetch(self) -> None:
         """Take in the samples and the transitions that were kept."""
         self.fetch_transitions()
-        self._fetch_ties()
         self.fetch_shown()
         self._fetch_samples()
         if not self.state.kept:  # a signal that has come is answered at each return of a kernel
@@ -161,19 +160,18 @@ class KernelEngine(ABC):
         self.state.kept = self.state.shown = 0
 
     def fetch_transitions(self) -> None:
-        """Take in the transitions that were kept."""
+        """Take in the transitions that were kept, and which laws came to theirs together."""
+        for k in range(int(self.state.tied)):
+            self.uniqueness.take(float(self.buffers.tie_time[k]), *self.buffers.ties[k])
+        self.state.tied = 0
         for row in self.buffers.log[: self.state.logged].tolist():
             law, before, after = (int(x) for x in row[:3])
             branches = self.springs[law].law.rule.branches
             if law in self.tracker.open:
                 self.tracker.open[law].count(*row[7:])
             self.tracker.switched(law, branches[before].kind, branches[after].kind, *row[3:7])
+            self.uniqueness.changed(row[3], law, after)
         self.state.logged = 0
-
-    def _fetch_ties(self) -> None:
-        for k in range(int(self.state.tied)):
-            self.uniqueness.take(float(self.buffers.tie_time[k]), *self.buffers.ties[k])
-        self.state.tied = 0
 
     def fetch_shown(self) -> None:
         """Show the recorder the motion that was kept between the samples."""

@@ -397,7 +397,7 @@ class Buffers(NamedTuple):
         Transitions.
     ties : ndarray, shape (n_ties, 3, n_laws)
         Of instants at which laws come to their events together: tangents and dashpots if these go on, and
-        the rates at which they come; zero for all others.
+        the rates at which they come; zero for all others (see `ties.note_ties`).
     tie_time : ndarray, shape (n_ties,)
     which : ndarray, shape (n_which,)
         Unknowns that the envelopes look at.

@@ -4,7 +4,9 @@ them, which of them goes on may hang on rounding (see `integrate.uniqueness`).
 
 from __future__ import annotations
 
-from pound_solve.integrate.kernels.consistency import touches_massless
+import numpy as np
+
+from pound_solve.integrate.kernels.consistency import lets_go, touches_massless
 from pound_solve.integrate.kernels.laws import restore_state, save_state, transition
 from pound_solve.integrate.kernels.state import Buffers, Laws, LinearSystem, Run
 from pound_solve.laws.functions import Tables
@@ -21,13 +23,20 @@ def arrives(a: float, b: float, c: float, d: float, v: float, largest: float) ->
 
 
 def note_ties(
-    linear: LinearSystem, laws: Laws, buffers: Buffers, rules: Tables, run: Run, law: int, before: float
-) -> None:
-    """Keep the tangents that the laws have if all go on that come to their events together with `law`,
-    which has just become softer than `before`; nothing where none does.
+    linear: LinearSystem, laws: Laws, buffers: Buffers, rules: Tables, run: Run, law: int, stiffness: float,
+    offset: float,
+) -> None:  # fmt: skip
+    """Keep what becomes of the laws if all go on that come to their events together with `law`; nothing
+    where none does.
+
+    It has just left a branch of that `stiffness` and `offset`.  Where it has become softer, these are other
+    laws that do, and their tangents; where its force has fallen, other laws whose forces fall: minus
+    infinity, and the branch that they go to.
     """
-    softer = laws.stiffness[law] < before and not laws.contact[law] and not laws.curved[law]
-    if not softer or not touches_massless(linear, laws, law) or run.tied == len(buffers.ties):
+    plain = not laws.contact[law] and not laws.curved[law]
+    fell = lets_go(linear, laws, law, stiffness, offset, laws.now.deformation[law])
+    softer = plain and laws.stiffness[law] < stiffness and touches_massless(linear, laws, law)
+    if not (fell or softer) or run.tied == len(buffers.ties):
         return
     row, found = buffers.ties[run.tied], 0
     rate = laws.now.rate
@@ -35,13 +44,16 @@ def note_ties(
         row[0, i], row[1, i], row[2, i] = laws.stiffness[i], laws.damping[i], 0.0
         if i == law or laws.contact[i] or laws.curved[i] or laws.normal[i] >= 0:
             continue
-        d, v, k = laws.now.deformation[i], rate[i], laws.stiffness[i]
+        d, v, k, f0 = laws.now.deformation[i], rate[i], laws.stiffness[i], laws.offset[i]
         for e in range(laws.n_events[i]):
             a, b, c = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
             if arrives(a, b, c, d, v, laws.largest_deformation[i]) and touches_massless(linear, laws, i):
                 save_state(laws, i)
                 transition(laws, rules, i, e, d, v)
-                if laws.stiffness[i] < k:
+                if fell and lets_go(linear, laws, i, k, f0, d):
+                    row[0, i], row[1, i], row[2, i] = -np.inf, laws.branch[i], v
+                    found += 1
+                elif not fell and laws.stiffness[i] < k:
                     row[0, i], row[2, i] = laws.stiffness[i], v
                     found += 1
                 restore_state(laws, rules, i)

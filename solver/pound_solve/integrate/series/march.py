@@ -65,6 +65,7 @@ from pound_solve.numerics.types import Array, Flags, Index
 SHRINK = 1.0 / 16.0  #: of the length of a step that is tried again, at least
 AHEAD = 1e-3  #: part of a step that laws are looked at for which may leave at the instant of another
 CUT = 0.5  #: part of a step, as it was tried, that is taken at least
+FROM_REST = 1e-4  #: share of the time to the goal: longest implicit step in which a contact leaves its rest
 INSTANT = 1e-13  #: share of the time within which two events are at one instant
 #: why `march` came back, beside those of `kernels.state`: steps are too short for the clock; an unknown
 #: without mass is not held; a rigid contact touches or parts
@@ -227,9 +228,10 @@ def change_branches(
     end: float, event: LocatedEvent, run: Run,
 ) -> None:  # fmt: skip
     """Let a law leave its branch, and others whose events are at the same instant."""
-    now, instant, before = run.time, INSTANT * max(run.time, h), laws.stiffness[event.law]
+    now, instant = run.time, INSTANT * max(run.time, h)
+    stiffness, offset = laws.stiffness[event.law], laws.offset[event.law]
     change_branch(laws, buffers, rules, series, run, now, event)
-    note_ties(linear, laws, buffers, rules, run, event.law, before)
+    note_ties(linear, laws, buffers, rules, run, event.law, stiffness, offset)
     for i in range(len(laws.rule) if len(series.massless.unknown) == 0 else 0):  # else `settle` decides
         if i != event.law and series.rigid.number[i] < 0:
             own = event_of(laws, series, terms, h, min(event.time + AHEAD, end), i)
@@ -313,18 +315,28 @@ def settle(
     return CHATTER
 
 
+def begins_to_move(laws: Laws, series: Series, event: LocatedEvent) -> bool:
+    """Whether the contact of an event is at rest where an implicit step begins: the first powers of its
+    motion may be below the error of the polynomial then, which does not know which way it turns.
+    """
+    at_rest = event.law >= 0 and laws.contact[event.law] and laws.now.rate[event.law] == 0.0
+    return at_rest and is_implicit(series)
+
+
 def must_pause(buffers: Buffers, series: Series, run: Run, pause: int) -> bool:
     """Whether Python must empty the buffers, or may look whether the user wants to stop."""
     crowded = len(buffers.log) - run.logged < len(buffers.log) // 2 or run.tied > len(buffers.ties) // 2
     return crowded or run.steps >= pause or is_full(series.shown)
 
 
-def step_length(lengths: Lengths, t: float, left: float) -> float:
-    """Length of the next step: what is `left` in equal parts; 0 where the clock cannot tell it from
-    none.
-    """
+def step_length(lengths: Lengths, t: float, goal: float) -> float:
+    """Length of the next step: what is left in equal parts; 0 where the clock cannot tell it from none."""
+    left = goal - t
     h: float = left / np.ceil(max(left / lengths.next, 1.0) * (1.0 - 1e-9))
-    return t + h - t if h < left else h  # the motion goes as far as the clock does, which is rounded
+    if h == left:
+        return h
+    # the motion goes as far as the clock does, which is rounded, but at 0: there any step is time enough
+    return t + h - t if goal + h > goal else 0.0
 
 
 def take(
@@ -362,8 +374,7 @@ def stride(
         if must_pause(buffers, series, run, pause):
             return FULL
         t = run.time
-        left = goal - t
-        h = step_length(lengths, t, left)
+        h = step_length(lengths, t, goal)
         if h == 0.0:
             return SHORT
         if not renew(linear, laws, rules, series, run):
@@ -385,11 +396,15 @@ def stride(
         end = 1.0 if fit >= 1.0 else (t + fit * h - t) / h
         if end == 0.0:
             return SHORT
-        whole = end == 1.0 and h == left
+        whole = end == 1.0 and h == goal - t
         lengths.next = max(h * min(fit * room, GROW), lengths.next if end == 1.0 else 0.0)
         count_reach(laws, series, terms, end)
         event = first_event(laws, series, terms, h, end)
         at = event.time
+        if h > FROM_REST * (goal - t) and begins_to_move(laws, series, event):
+            lengths.next = SHRINK * h
+            lengths.rejected += 1
+            continue
         take(linear, laws, step, series, lengths, coefs, begin, terms, h, at, works, run, rules)
         if event.law < 0:
             if not whole:

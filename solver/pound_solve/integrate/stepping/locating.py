@@ -92,7 +92,7 @@ def change_branch(
         force -= laws.damping[i] * v
     if before != laws.branch[i]:
         log_transition(laws, buffers, run, i, before, run.time, force)
-    note_ties(linear, laws, buffers, rules, run, i, k)
+    note_ties(linear, laws, buffers, rules, run, i, k, f0)
     run.events += 1
     for j in laws.coupled:
         before = laws.branch[j]
