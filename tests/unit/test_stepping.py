@@ -976,6 +976,24 @@ def test_trials_of_exact_cost_a_third_of_the_whole_at_most(tmp_path, monkeypatch
     assert sum(spent) <= 0.5 * (others[-1] + trial.REST + trial.loading()) * (1 + 1e-12)
 
 
+@pytest.mark.parametrize(("code", "status"), [("A503", "done"), ("A501", "stopped")])
+def test_others_follow_a_trial_of_exact_that_rounding_stops(tmp_path, monkeypatch, code, status):
+    """Where the structure gives way they do not, and EXACT is not tried again."""
+    tried = []
+
+    def stops(system, start, monitored, limits, recorder):
+        tried.append(limits["COST"])
+        raise Stop(code, 0.5, "stopped")
+
+    monkeypatch.setattr(auto, "has_series", lambda system: False)
+    monkeypatch.setattr(trial.exact, "integrate", stops)
+    monkeypatch.setattr(trial, "LEAST_OF_MANY", 0.0)
+    monkeypatch.setattr(costs, "DECOMPOSITION", 0.0)
+    found = run(tmp_path, "AUTO TOL=1e-5")
+    assert found.status == status and len(tried) == 1
+    found.close()
+
+
 def test_auto_goes_over_to_series_once_steps_have_cost_as_much(monkeypatch):
     """Each run costs two, the series five: after two runs the third would make six."""
 

@@ -65,7 +65,13 @@ class ExactTrial:
 
     def run(self, others: float) -> Outcome | None:
         """Return its run, or None where all trials would cost more than a share of what the `others` do,
-        which still have to load their kernels.
+        which still have to load their kernels, or where it stops because a mode is too fast for it or
+        changes do not end.
+
+        Raises
+        ------
+        Stop
+            The structure gives way, or an interrupt.
         """
         budget = SHARE * (others + loading() + REST) - self.spent
         if self.cost >= budget:
@@ -81,7 +87,11 @@ class ExactTrial:
             self.spent += err.cost
             self.cost = err.cost * ((end - begin) / (err.t - begin) if err.t > begin else 1.0)
             return None
-        except Stop:
+        except Stop as stop:
+            if stop.code == "A503":  # rounding stops EXACT, which others may not feel
+                del decisions[known:]
+                self.cost = np.inf
+                return None
             replay.pass_on()
             raise
         replay.pass_on()
