@@ -82,6 +82,7 @@ MOTIONS = (
 )
 METHODS = (
     *("METHOD=AUTO", "METHOD=AUTO TOL=1E-2", "METHOD=EXACT", "METHOD=TAYLOR", "METHOD=NEWMARK DT=0.005"),
+    *("METHOD=LAGUERRE", "METHOD=LAGUERRE TOL=1E-4"),
     *("METHOD=HHT DT=0.005", "METHOD=CENTRAL DT=0.001", "METHOD=LAPLACE DT=0.005", ""),
 )
 #: items of a study: what is put in front of its tables

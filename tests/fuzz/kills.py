@@ -26,7 +26,13 @@ from pound_solve.results import Results, ResultsError
 from pound_solve.results.place import digest_in
 from pound_solve.results.whole_file import partial
 
-METHODS = ("METHOD=EXACT", "METHOD=TAYLOR", "METHOD=NEWMARK DT=0.005", "METHOD=AUTO TOL=1E-2")
+METHODS = (
+    "METHOD=EXACT",
+    "METHOD=TAYLOR",
+    "METHOD=LAGUERRE",
+    "METHOD=NEWMARK DT=0.005",
+    "METHOD=AUTO TOL=1E-2",
+)
 OLD, NEW = "the older results are intact", "the new results are whole"
 #: verbs that write, and the names of what they write beside the deck
 VERBS = {

@@ -330,6 +330,7 @@ class TestTable:
             ((-1.0, 1.0, 2.0, 1.0), "before the history"),
             ((1.0, 0.0, 1.0, 2.0), "all its points are at time 1"),
             ((0.0, 0.0, 1.0, 2.0, 1.0, 3.0, 1.0, 4.0), "three times"),
+            ((0.0, 0.0, 1.0, 2.0, 1.0 + 1e-15, 1e300, 2.0, 0.0), "too fast after 1: a jump"),
         ],
     )
     def test_points_that_are_no_table(self, points: tuple[float, ...], why: str) -> None:
@@ -511,6 +512,15 @@ class TestMatched:
     def test_refusals(self, given: dict[str, Any], why: str) -> None:
         with pytest.raises(RecordError, match=why):
             matched.build(self.card(**given), context())
+
+    def test_a_spectrum_that_no_motion_has_is_soon_told(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Most samples exceed its first ordinate, so that each correction has as many unknowns."""
+        corrections, correct = [], matched._correction
+        monkeypatch.setattr(matched, "_correction", lambda *x: corrections.append(1) or correct(*x))
+        steep = self.card(SPECTRUM=(0.1, 5.0, 0.6, 10.0, 2.0, 1e6, 4.0, 0.9), DURATION=5.0)
+        with pytest.raises(RecordError, match=r"is met to .* % only"):
+            matched.build(steep, context())
+        assert len(corrections) == matched.EARLY
 
 
 def test_the_report_tells_how_well_a_spectrum_is_met(tmp_path: Path) -> None:

@@ -152,6 +152,15 @@ def test_numbers_for_a_deck_without_history_have_its_limits_and_are_told(deck, c
     assert "warning P211: a deck without HISTORY has no item DT" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(("written", "tol"), [("", "1e-08"), (" TOL=1E-3", "0.001")])
+def test_another_method_has_its_own_defaults_beside_what_the_deck_says(deck, written, tol):
+    """AUTO's tolerance, 1E-4, is that of peaks, LAGUERRE's that of a step."""
+    deck.write_text(DECK.replace("HISTORY 3", f"HISTORY 3 METHOD=AUTO{written}"))
+    with run(deck, method="LAGUERRE") as found:
+        (row,) = [r for r in found.table("options") if r["item"].strip() == "TOL"]
+        assert row["value"] == tol
+
+
 @pytest.mark.parametrize("number", [{"dt": math.nan}, {"dt": 0}, {"dt": -1.0}, {"tol": math.inf}])
 def test_numbers_of_python_have_the_deck_s_limits(deck, number):
     with pytest.raises(DeckError, match=f"P217: {next(iter(number)).upper()} is"):

@@ -207,9 +207,9 @@ def test_a_massless_node_on_a_dashpot_comes_after_its_force() -> None:
     # at an output time, just before it, and at 0.3, beyond which rounding puts the output time 3 * 0.1
     [(0.01, 0.1, False), (0.01, 0.1 - 1e-7, True), (0.1, 0.3, False)],
 )
-@pytest.mark.parametrize("method", ["EXACT", "TAYLOR"])
+@pytest.mark.parametrize(("method", "bound"), [("EXACT", 1e-9), ("TAYLOR", 1e-9), ("LAGUERRE", 1e-6)])
 def test_jumps_of_a_force_on_a_massless_node_keep_the_balance(
-    every: float, first: float, moved: bool, method: str
+    every: float, first: float, moved: bool, method: str, bound: float
 ) -> None:
     """The node jumps with the force, which puts in half the product of both, to be taken out again.
     A sample at that instant has motion, forces and energies from just before it.
@@ -217,7 +217,7 @@ def test_jumps_of_a_force_on_a_massless_node_keep_the_balance(
     more = f"FORCES\n TABLE 5 0 -40 POINTS={first},1,0.4,1,0.4,-2,0.9,-2\nLOADS\n 5 0 -10\n"
     r = run_text(FRAME.replace("EVERY=0.01", f"EVERY={every}").format(more=more), method=method)
     energy, forces, *_ = (float(x) for x in r.tables["checks"]["value"])
-    assert energy < 1e-9 and forces < 1e-9
+    assert energy < bound and forces < bound
     at = round(first / every)
     assert (abs(r.u[at, 4, 1] - r.u[at - 1, 4, 1]) > 1e-5) == moved
     assert abs(r.u[at + 1, 4, 1] - r.u[at - 1, 4, 1]) > 1e-5

@@ -527,7 +527,7 @@ def test_the_ductility_of_a_long_hinge_is_that_of_its_curvature():
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("method", ["TAYLOR", *at_night("EXACT", "NEWMARK")])
+@pytest.mark.parametrize("method", ["TAYLOR", *at_night("LAGUERRE", "EXACT", "NEWMARK")])
 def test_a_cantilever_with_a_long_hinge_is_a_bilinear_oscillator(method):
     """Its tip is k = 3EI/n^3 up to My/n, and beyond it the flexibility is more by (1/r - 1) Lp n^2/EI."""
     n, my, r, mass = 4.0, 100.0, 0.1, 10.0

@@ -32,6 +32,7 @@ ANALYSIS
 METHODS = (
     "EXACT",
     "TAYLOR",
+    "LAGUERRE TOL=1E-12",
     "AUTO",
     "NEWMARK DT=0.01",
     "HHT DT=0.01",
@@ -135,7 +136,8 @@ def test_an_oscillator_pulls_at_its_support_as_its_spring_and_dashpot_do(tmp_pat
     assert np.abs(reaction[:, 0, 1:]).max() == np.abs(reaction[:, 1]).max() == 0.0
     assert np.abs(base[:, 0] - spring).max() < 1e-13 * np.abs(spring).max()
     assert np.abs(base[:, 2] - 3.0 * spring).max() < 1e-12 * np.abs(spring).max()
-    tolerance = 0.05 if method.startswith("HHT") else 1e-10  # whose balance is a mean over the step
+    # HHT balances the mean over a step, LAGUERRE has an error
+    tolerance = {"HHT": 0.05, "LAGUERRE": 1e-9}.get(method.split()[0], 1e-10)
     assert balance(r) < tolerance  # though the sine ends with a jump
     assert np.abs(base[:, 0] + a + 0.3 * v).max() < tolerance * np.abs(spring).max()
     (row,) = r.table("storey_envelope")
@@ -148,7 +150,7 @@ def test_an_oscillator_pulls_at_its_support_as_its_spring_and_dashpot_do(tmp_pat
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("method", ["EXACT", "TAYLOR"])
+@pytest.mark.parametrize("method", ["EXACT", "TAYLOR", "LAGUERRE"])
 def test_envelopes_do_not_depend_on_the_output(tmp_path, method):
     """Between samples more than a period apart the peaks are found, as closely as those of nodes are."""
     coarse, fine = (run(tmp_path, SDOF.format(method=method, every=every)) for every in (0.8, 0.001))
@@ -326,7 +328,7 @@ ANALYSIS
 
 
 @pytest.mark.full
-@pytest.mark.parametrize("method", ["EXACT", "TAYLOR", "NEWMARK DT=0.01"])
+@pytest.mark.parametrize("method", ["EXACT", "TAYLOR", "LAGUERRE TOL=1E-12", "NEWMARK DT=0.01"])
 @pytest.mark.parametrize(
     ("gap", "loads", "scale", "force"),
     [(0.01, "", 1, 0.0), (0, "LOADS\n 3 FX=7.3", 1e-12, 7.3)],

@@ -42,7 +42,7 @@ OUTPUT
 """
 
 STEPS = [f"{name} DT=1e-3" for name in stepping_methods()]
-METHODS = ["EXACT", "TAYLOR", *STEPS]
+METHODS = ["EXACT", "TAYLOR", "LAGUERRE", *STEPS]
 
 
 def run(folder, name, method, end=6, more=""):

@@ -201,8 +201,10 @@ def balanced(supports: np.ndarray, n: int = 10) -> np.ndarray:
     return np.array(out)
 
 
-@pytest.mark.parametrize("method", ["TAYLOR", *at_night("EXACT")])
-def test_a_law_that_another_makes_turn_back(method: str) -> None:
+@pytest.mark.parametrize(
+    ("method", "rounding"), [("TAYLOR", 1e-12), *at_night(("LAGUERRE", 1e-8), ("EXACT", 1e-12))]
+)
+def test_a_law_that_another_makes_turn_back(method: str, rounding: float) -> None:
     """Where spring B yields, its node runs away with it, and a spring that was yielding has to unload at
     once: its rate changes its sign without passing through zero.
     """
@@ -213,7 +215,7 @@ def test_a_law_that_another_makes_turn_back(method: str) -> None:
         assert (r.status, r.message) == ("done", "")
         z = r.u[:, r.nodes.index(2), 0]
         assert np.abs(z - want[::every]).max() < 1e-5 * np.abs(want).max()
-        assert r.check() < 1e-12
+        assert r.check() < rounding
         assert yields(r) == 6
 
 

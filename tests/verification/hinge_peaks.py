@@ -63,6 +63,7 @@ METHODS = {
     "GENERALISED_ALPHA": {"dt": STEP},
     "EXACT": {},
     "TAYLOR": {},
+    "LAGUERRE": {},
     "AUTO": {"tol": 1e-3},
 }
 JOINTS = {"massless": "", "mass": "2"}  #: what WEIGHTS give the rotations of the joints

@@ -9,7 +9,7 @@ from verification.hinge_peaks import JOINTS, METHODS, RULES, Frames
 
 pytestmark = pytest.mark.full
 
-BOUNDS = {"AUTO": 1e-3, "TAYLOR": 1e-4}  #: of the others 1e-2: their steps are of 2 ms
+BOUNDS = {"AUTO": 1e-3, "TAYLOR": 1e-4, "LAGUERRE": 1e-6}  #: of the others 1e-2: their steps are of 2 ms
 LEFT_OUT = ("WAYNE_STEWART",)  #: its hinges fall, which no step follows
 frames = Frames()
 
@@ -22,6 +22,9 @@ frames = Frames()
 )
 def test_peaks_are_those_of_another_method(rule: str, joints: str, method: str) -> None:
     found = frames.deviation(rule, joints, method)
+    if frames.by(rule, joints, method).message.startswith("A505"):  # it does not take such a law
+        assert method in ("TAYLOR", "LAGUERRE")
+        return
     assert isinstance(found, float) and found < BOUNDS.get(method, 1e-2), found
 
 

@@ -69,7 +69,7 @@ class Plan:
         Time steps, descending [T]; empty: from the step of the record on by halves until errors are below
         the last of `TARGETS`, or a run would take too long.
     tols : tuple of float
-        Tolerances of AUTO.
+        Tolerances of AUTO and LAGUERRE.
     repeat : int
         Timed runs of each.
     longest : float
@@ -77,7 +77,7 @@ class Plan:
     """
 
     methods: tuple[str, ...] = (
-        "EXACT", "TAYLOR", "NEWMARK", "HHT", "GENERALISED_ALPHA", "CENTRAL", "AUTO",
+        "EXACT", "TAYLOR", "LAGUERRE", "NEWMARK", "HHT", "GENERALISED_ALPHA", "CENTRAL", "AUTO",
     )  # fmt: skip
     steps: tuple[float, ...] = ()
     tols: tuple[float, ...] = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
@@ -259,7 +259,7 @@ class _Bench:
         return out
 
     def _tolerances(self, method: str) -> list[Trial]:
-        """Trials of AUTO."""
+        """Trials of a method with a tolerance."""
         out: list[Trial] = []
         for tol in self.plan.tols:
             out.append(self.trial(method, TOL=tol))

@@ -114,12 +114,10 @@ def _told(asked: Mapping[str, float], method: Spec | None) -> Iterator[Diagnosti
 
 
 def with_method(card: Card, method: Spec, given: Mapping[str, Any]) -> Card:
-    """HISTORY card with another method: the card's own items where the method has them, else the defaults,
-    and what is given.
+    """HISTORY card with another method: what is given, else what the card's line says where the method has
+    such an item, else the method's defaults, which for the same item are other ones for each method.
     """
-    own = {f.name: card.values.get(f.name, f.default) for f in method.fields}
-    # an item of the deck's own method that was left out there may be one that this method must have
-    own |= {f.name: f.default for f in method.fields if own[f.name] is None}
+    own = {f.name: card.values[f.name] if f.name in card.spans else f.default for f in method.fields}
     own |= {item: value for item, value in given.items() if item in own}
     spans = dict(card.spans) | {item: option(item) for item in ("METHOD", *given)}
     values = {**card.values, **own, "METHOD": method.name}

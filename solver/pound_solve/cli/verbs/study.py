@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="DT,DT,...",
         help="time steps (default: halves of the record's until it suffices)",
     )
-    parser.add_argument("--tols", metavar="TOL,TOL,...", help="tolerances of AUTO")
+    parser.add_argument("--tols", metavar="TOL,TOL,...", help="tolerances of AUTO and LAGUERRE")
     parser.add_argument("--repeat", type=int, metavar="N", help="timed runs of each (default 3)")
     parser.add_argument(
         "--longest", type=common.finite, metavar="S", help="CPU seconds a run may take (default 5)"

@@ -28,6 +28,7 @@ from pound_solve.numerics.types import Array
 
 CLOSE: Final = 0.6  #: distance of the periods that are matched, in half band widths
 MOST_STEPS: Final = 40
+EARLY, HOPELESS = 8, 1.0  #: steps after which a least misfit above this is given up
 LOOSE: Final = 1.05  #: of the diagonal of H W H^T: close peaks need not be met to the last digit
 NEAR: Final = 0.95  #: share of the first ordinate: larger samples are drawn to `PEAK` of it
 PEAK: Final = 0.9
@@ -120,12 +121,12 @@ def matched(target: Target, t: Array, e: Array, seed: int, tol: float) -> tuple[
     """
     a, best, least = _noise(target, t, e, seed), np.zeros_like(t), math.inf
     responses = _impulse_responses(target, t)
-    for _ in range(MOST_STEPS):
+    for step in range(MOST_STEPS):
         found = pseudo_acceleration(Piecewise.from_samples(t, a), target.periods, target.xi)[0]
         misfit = float(np.abs(found / target.psa - 1.0).max())
         if misfit < least:
             best, least = a, misfit
-        if misfit <= tol:
+        if misfit <= tol or (step == EARLY and least > HOPELESS):
             break
         a = a + _correction(target, t, e, a, found, responses)
     return best, least

@@ -37,7 +37,8 @@ def lines(points: Sequence[float]) -> Piecewise:
     Raises
     ------
     RecordError
-        R405 for half a pair, times that descend or begin before 0, or a time that stands three times.
+        R405 for half a pair, times that descend or begin before 0, a time that stands three times, or a
+        slope beyond the largest number.
     """
     t, f = points[::2], points[1::2]
     if len(t) != len(f):
@@ -55,8 +56,12 @@ def lines(points: Sequence[float]) -> Piecewise:
     t, f = (0.0, t[0], *t), (0.0, 0.0, *f)
     breaks, width, values = np.array(t), np.diff(t), np.array(f)
     some = width > 0.0
-    coefs = np.vstack([values[:-1][some], np.diff(values)[some] / width[some]])
-    return Piecewise(np.append(breaks[:-1][some], breaks[-1]), coefs)
+    with np.errstate(over="ignore"):
+        slopes = np.diff(values)[some] / width[some]
+    if not np.isfinite(slopes).all():
+        at = breaks[:-1][some][~np.isfinite(slopes)][0]
+        raise _wrong(f"the value changes too fast after {at:g}: a jump has its time twice")
+    return Piecewise(np.append(breaks[:-1][some], breaks[-1]), np.vstack([values[:-1][some], slopes]))
 
 
 def _wrong(message: str) -> RecordError:
