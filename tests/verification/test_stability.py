@@ -14,7 +14,7 @@ from pound_solve.assess import scenes, stability
 from pound_solve.assess.scenes import case as scene_case
 from pound_solve.assess.scenes import contact, hysteresis, linear
 from pound_solve.catalog import catalog
-from pound_solve.check import Subject, beyond
+from pound_solve.check import Subject, beyond, looked
 from pound_solve.cli.main import main
 
 pytestmark = pytest.mark.full
@@ -113,6 +113,18 @@ def test_the_judge_tells_right_from_wrong():
     assert judged(case, wrong="NaN or infinite values") == stability.FAULT
 
 
+def test_an_answer_that_no_engineer_would_believe_excuses_no_error(tmp_path):
+    """Bodies that overlap by a tenth of their lengths over a soft contact."""
+    spec = catalog().family("contact")["LINEAR"]
+    case = next(c for c in contact.contact_scenes(spec) if c.variant == "1e-06")
+    text = case.deck.replace(scene_case.METHOD, "EXACT")
+    deck = tmp_path / "soft.inp"
+    deck.write_text(text)
+    with results_of(deck) as results:
+        assert {check.subject for check in looked(results.checks)} == {Subject.RESPONSE}
+    assert stability.solve(text, case.files).looks == ()
+
+
 LINE = np.linspace(0.0, 1.0, 11)
 RIGHT_RUN = stability.NOTHING._replace(
     t=LINE, u=LINE[:, None], f=LINE[:, None], swings=np.array([[1.0, 0.0]]), blows=np.array([2.0, 1e-3])
@@ -141,6 +153,8 @@ def compared(method, off=RIGHT_RUN, nudged=RIGHT_RUN):
         ("AUTO", {"blows": np.array([2.01, 1e-3])}, stability.FAULT),
         ("AUTO", {"u": 1.05 * LINE[:, None]}, stability.RIGHT),
         ("EXACT", {"u": (1.0 + 1e-5) * LINE[:, None]}, stability.FAULT),
+        ("LAGUERRE", {"u": (1.0 + 1e-5) * LINE[:, None]}, stability.RIGHT),
+        ("LAGUERRE", {"u": (1.0 + 1e-3) * LINE[:, None]}, stability.FAULT),
     ],
 )
 def test_forces_are_judged_and_auto_by_what_it_promises(method, off, end):
