@@ -652,6 +652,7 @@ def test_a_light_stiff_node_for_a_long_time_is_told_early(monkeypatch: pytest.Mo
     monkeypatch.setattr(taylor, "MAX_STEPS", 200_000)
     r = run_text(OSCILLATOR, {"w": 1e6, "end": 30, "gap": 99, "xi": 1e-6}, "TAYLOR")
     assert r.message.startswith("A502"), r.message
+    assert r.message.endswith("which LAGUERRE and NEWMARK need not follow")
 
 
 def test_a_mode_beyond_all_clocks_is_told() -> None:

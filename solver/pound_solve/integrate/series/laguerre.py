@@ -36,6 +36,10 @@ class Laguerre(Taylor):
     words = f"LAGUERRE, implicit series of {LAST} terms"
     asking = "TOL"
 
+    def cure(self) -> str:
+        """What takes fewer steps."""
+        return ", a larger one for fewer"
+
     def figures(self) -> dict[str, Any]:
         """Figures of the run for the report."""
         own = self.lengths

@@ -277,9 +277,14 @@ class Taylor(KernelEngine):
         if steps > PAUSE // 2 and steps * self.dt > self.most * done:
             count = f"some {steps * self.dt / done:.1g}" if done else "far too many"
             why = f"{self.asking} asks for {count} steps (now {self.lengths.next:.3g} long)"
-            others = ["EXACT"] * (not not_linear(self.system)) + ["NEWMARK"] * (not self.contacts.laws)
-            cure = f", which {' and '.join(others)} need not follow" if others else ""
-            raise self.stop("A502", why + cure)
+            raise self.stop("A502", why + self.cure())
+
+    def cure(self) -> str:
+        """Which methods need not follow the fastest mode."""
+        linear = not not_linear(self.system)
+        if self.contacts.laws:
+            return ", which EXACT need not follow" if linear else ""
+        return f", which {'LAGUERRE and ' if linear else ''}NEWMARK need not follow"
 
     def trouble(self, why: int) -> Stop:
         """What the kernel came back for, in words."""
@@ -307,7 +312,8 @@ class Taylor(KernelEngine):
             return f"{joints} have no mass, and only dashpots to each other resist them: give one weight"
         if held.pivots[STIFFNESS, n] < 0.0:
             why = f"{name} has no mass, and its stiffness has become negative: it snaps through"
-            return f"{why}; give it weight, or let METHOD=NEWMARK step over it"
+            steps = "" if self.contacts.laws else ", or let METHOD=NEWMARK step over it"
+            return f"{why}; give it weight{steps}"
         return f"{name} has no mass and nothing holds it"
 
     def figures(self) -> dict[str, Any]:
