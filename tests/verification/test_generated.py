@@ -42,7 +42,17 @@ def test_decks_without_curved_laws_can_be_asked_for() -> None:
 
 
 def test_decks_differ_in_what_matters(texts: list[str]) -> None:
-    words = "MU=", "MODAL", "STIFFNESS=TANGENT", "ALPHA=0.3", "PDELTA", "LARGE", "DRIFT", "GRAVITY=YES"
+    words = (
+        "MU=",
+        "MODAL",
+        "STIFFNESS=TANGENT",
+        "ALPHA=0.3",
+        "PDELTA",
+        "LARGE",
+        "DRIFT",
+        "GRAVITY=YES",
+        "CONSISTENT",
+    )
     for word in (*words, "MEMBER_LOADS", "SYNTHETIC", "SINE", "TOL=1E-2", "TOL=1E-4"):
         share = sum(word in text for text in texts) / len(texts)
         assert 0.03 < share < 0.97, (word, share)

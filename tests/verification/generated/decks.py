@@ -2,7 +2,8 @@
 
 What is drawn: storeys, bays, heights of floors, sections, strengths, hysteresis rules and contact laws of
 the catalog, friction, damping, P-Delta, gravity, a ground motion, TOL, and whether drifts are followed.  A
-draw that the program refuses is drawn anew, so that every seed gives a deck that can be run.
+draw that the program refuses is drawn anew, so that every seed gives a deck that can be run.  Whether the
+mass of members is a matrix is drawn apart, so that all other decks are those of their seeds before.
 """
 
 from __future__ import annotations
@@ -19,6 +20,9 @@ from pound_solve.driver.request import Request
 from verification.generated import laws, motions
 
 E: Final = 27e6  #: modulus of elasticity of concrete [kN/m2]
+CONCRETE: Final = 24.0  #: weight of concrete [kN/m3]
+CONSISTENT: Final = 0.2  #: share of decks whose members have a matrix of mass
+ON_MEMBERS: Final = 0.5  #: share of the floors' weight that is the beams' there
 SAME: Final = 1e-6  #: floors closer than that are of one height [m]
 DAMPING: Final = (
     "RAYLEIGH XI=0.05 MODES=1,3",
@@ -89,14 +93,14 @@ class Frame:
 
 
 class Deck:
-    """The lines of a deck by section, while it is drawn."""
+    """The lines of a deck by section, while it is drawn; `consistent` for a matrix of mass of members."""
 
-    def __init__(self, rng: random.Random, records: Path | None) -> None:
-        self.rng, self.element = rng, 0
+    def __init__(self, rng: random.Random, records: Path | None, consistent: bool) -> None:
+        self.rng, self.element, self.consistent = rng, 0, consistent
         self.lines: dict[str, list[str]] = {name: [] for name in SECTIONS}
         self.straight = rng.random() < STRAIGHT
         geometry = rng.choice(CONSTANT if self.straight else GEOMETRY)
-        self.head = ["UNITS kN m s", f"GEOMETRY {geometry}"]
+        self.head = ["UNITS kN m s", *["MASS CONSISTENT"] * consistent, f"GEOMETRY {geometry}"]
         self.gravity = rng.choice(("WEIGHTS", "WEIGHTS", "BEAMS", "NONE"))
         self._draw(records)
 
@@ -171,7 +175,8 @@ class Deck:
         x = [frame.left]
         for bay in frame.bays:
             x.append(round(x[-1] + bay, 6))
-        share = [frame.weight * 0.5 * (p + q) for p, q in zip([0.0, *frame.bays], [*frame.bays, 0.0])]
+        weight = frame.weight * (1.0 - ON_MEMBERS if self.consistent else 1.0)
+        share = [weight * 0.5 * (p + q) for p, q in zip([0.0, *frame.bays], [*frame.bays, 0.0])]
         for floor, y in enumerate(frame.floors):
             for column, place in enumerate(x):
                 number = frame.node(column, floor)
@@ -197,8 +202,9 @@ class Deck:
         moment = max(moment, gravity if self.gravity == "BEAMS" else 0.0)
         width = rng.uniform(0.3, 0.4) + 0.04 * storeys
         yields = rng.choice(("BOTH", "BOTH", "BOTH", "BEAMS", "COLUMNS", "NONE"))
-        self._props(f"C{n}", width, width, moment if yields in ("BOTH", "COLUMNS") else 0.0, True)
-        self._props(f"B{n}", 0.3, width + 0.1, strength if yields in ("BOTH", "BEAMS") else 0.0)
+        on_beams = ON_MEMBERS * frame.weight if self.consistent else 0.0
+        self._props(f"C{n}", width, width, moment if yields in ("BOTH", "COLUMNS") else 0.0, 0.0, True)
+        self._props(f"B{n}", 0.3, width + 0.1, strength if yields in ("BOTH", "BEAMS") else 0.0, on_beams)
         columns = len(frame.bays) + 1
         for floor in range(1, storeys + 1):
             for column in range(columns):
@@ -215,12 +221,18 @@ class Deck:
             for column in range(columns - 1):
                 beam = self.join(f"B{n}", frame.node(column, floor), frame.node(column + 1, floor))
                 if self.gravity == "BEAMS":
-                    self.add("MEMBER_LOADS", f"{beam} WY={-frame.weight:.4g}")
+                    self.add("MEMBER_LOADS", f"{beam} WY={on_beams - frame.weight:.4g}")
 
-    def _props(self, label: str, width: float, depth: float, moment: float, carries: bool = False) -> None:
-        """Append a property set of members, with hinges where there is a yield moment."""
+    def _props(
+        self, label: str, width: float, depth: float, moment: float, load: float, carries: bool = False
+    ) -> None:
+        """Append a property set of members, with hinges where there is a yield moment; of a mass that is a
+        matrix `load` is a part.
+        """
         inertia = 0.5 * width * depth**3 / 12.0
         card = f"{label} FRAME E={E:g} A={width * depth:.4f} I={inertia:.6f}"
+        if self.consistent:
+            card += f" WGT={load or CONCRETE * width * depth:.4g}"
         if moment:
             length = 0.5 * depth
             rule = laws.hysteresis(
@@ -262,9 +274,9 @@ def deck(seed: int, records: Path | None = None) -> str:
     records : Path or None
         Folder of record files, from which half of the motions are taken; none if left out.
     """
-    rng = random.Random(seed)
+    rng, consistent = random.Random(seed), random.Random(f"mass {seed}").random() < CONSISTENT
     for _ in range(MOST_DRAWS):
-        text = Deck(rng, records).text(f"generated from seed {seed}")
+        text = Deck(rng, records, consistent).text(f"generated from seed {seed}")
         if not refused(text, records):
             return text
     raise RuntimeError(f"seed {seed}: {MOST_DRAWS} draws were all refused")
