@@ -153,8 +153,8 @@ def compared(method, off=RIGHT_RUN, nudged=RIGHT_RUN):
         ("AUTO", {"blows": np.array([2.01, 1e-3])}, stability.FAULT),
         ("AUTO", {"u": 1.05 * LINE[:, None]}, stability.RIGHT),
         ("EXACT", {"u": (1.0 + 1e-5) * LINE[:, None]}, stability.FAULT),
-        ("LAGUERRE", {"u": (1.0 + 1e-5) * LINE[:, None]}, stability.RIGHT),
-        ("LAGUERRE", {"u": (1.0 + 1e-3) * LINE[:, None]}, stability.FAULT),
+        ("LAGUERRE", {"u": (1.0 + 1e-4) * LINE[:, None]}, stability.RIGHT),
+        ("LAGUERRE", {"u": (1.0 + 1e-2) * LINE[:, None]}, stability.FAULT),
     ],
 )
 def test_forces_are_judged_and_auto_by_what_it_promises(method, off, end):

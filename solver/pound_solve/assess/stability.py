@@ -52,7 +52,7 @@ from pound_solve.results import Results
 
 STEPLESS: Final = ("EXACT", "TAYLOR")  #: methods whose only error is rounding
 #: errors allowed, as shares of the largest value
-EXACT_WITHIN, LAGUERRE_WITHIN, AUTO_WITHIN = 1e-6, 1e-4, 2e-3
+EXACT_WITHIN, LAGUERRE_WITHIN, AUTO_WITHIN = 1e-6, 1e-3, 2e-3
 FASTER: Final = 1.5  #: factor on the allowed error of forces, in which fast modes have a larger share
 ROUNDING: Final = 1e-9  #: share of the force of a storey below which that of a contact counts as none
 NUDGE: Final = 1e-6  #: share of the allowed error by which masses are changed
