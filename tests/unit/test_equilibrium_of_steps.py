@@ -7,7 +7,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pound_solve.assess.scenes.case import items
+from pound_solve.analyses.history import BALANCE
+from pound_solve.assess.scenes import cases
+from pound_solve.assess.scenes.case import METHOD, items
 from pound_solve.catalog import catalog
 from tiers import each_once
 from verification.cases import run_text
@@ -57,3 +59,19 @@ def imbalance(law: str, method: str) -> float:
 @each_once(("method", ["NEWMARK", "CENTRAL"]), ("law", LAWS))
 def test_forces_are_in_balance(law: str, method: str) -> None:
     assert imbalance(law, method) < 1e-11
+
+
+STEPS = {case.law: case.deck for case in cases(("hysteresis",)) if case.variant == "a step"}
+
+
+@pytest.mark.parametrize("rule", STEPS)
+def test_a_ground_that_begins_to_accelerate_at_once_is_in_balance(rule: str) -> None:
+    """Laws that turn at that instant are kept with the load after it, and the total accelerations, too:
+    they are the springs' forces, which do not jump.
+    """
+    text = STEPS[rule].replace(METHOD, "NEWMARK DT=0.002").replace("HISTORY 2.0", "HISTORY 0.3")
+    r = run_text(text)
+    checks = {row["check"]: float(row["value"]) for row in r.tables["checks"]}
+    assert checks[BALANCE] < 1e-9
+    rows = r.tables["node_envelope"]
+    assert rows["min"][rows["quantity"] == "acceleration"].min() > -1.0  # -5 with the load before the jump

@@ -171,7 +171,9 @@ def _check_settings(plan: Plan, end: float) -> None:
     """
     methods = [catalog().family("method")[name] for name in plan.methods]
     for option, item, values in (("--steps", "DT", plan.steps), ("--tols", "TOL", plan.tols)):
-        for value, field in itertools.product(values, filter(None, (m.field(item) for m in methods))):
+        fields = filter(None, (m.field(item) for m in methods))
+        narrow = sorted(fields, key=lambda field: field.lo or 0.0, reverse=True)  # its limits suit all
+        for value, field in itertools.product(values, narrow):
             if wrong := out_of_limits(value, field):
                 raise StudyError(f"{option}: {item} {wrong}")
     if plan.steps and end / min(plan.steps) > MOST_STEPS:

@@ -401,5 +401,5 @@ def run_record(t: float, initial_energy: float) -> state.Run:
     out.time, out.factor_length, out.initial_energy = t, -1.0, initial_energy
     out.longest_part = np.inf
     out.fault = out.fell = -1
-    out.rest = -1.0
+    out.rest = out.jumped = -1.0
     return out

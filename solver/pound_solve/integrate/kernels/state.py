@@ -48,6 +48,7 @@ class Run(Protocol):
     longest_part: float  #: that a step may take at once for now
     rest: float  #: of a step that stopped where a force fell, negative for none
     last_event: float  #: time of the last transition
+    jumped: float  #: time at which a load has jumped, negative for none
 
 
 class Product(NamedTuple):

@@ -203,6 +203,7 @@ def begin_goal(
             jumps = True
         now.load[i] = load[i]
     if jumps:
+        run.jumped = run.time
         make_consistent(linear, laws, step)
         track(linear, laws, step, run.time, 0.0)
 

@@ -57,6 +57,7 @@ from pound_solve.integrate.stepping.step import (
     update_factor,
 )
 from pound_solve.laws.functions import Tables
+from pound_solve.loading.excitation import INSTANT
 from pound_solve.numerics.cubic import next_trial
 from pound_solve.numerics.types import Array
 
@@ -160,10 +161,15 @@ def change_branches(
 
 
 def go_on(linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, run: Run) -> None:
-    """Make the state consistent after what has jumped, and keep it."""
+    """Make the state consistent after what has jumped, and keep it.
+
+    Where a load has jumped at that instant, the time is moved to just after it: a motion at the instant
+    itself counts as one before.
+    """
     make_consistent(linear, laws, step)
     track(linear, laws, step, run.time, 0.0)
-    store_motion(laws, step, buffers, rules, run, run.time)
+    after = 4.0 * INSTANT * max(1.0, run.time) if run.time == run.jumped else 0.0
+    store_motion(laws, step, buffers, rules, run, run.time + after)
 
 
 class Bracket(NamedTuple):
