@@ -113,6 +113,14 @@ def test_the_order_is_that_between_two_rungs_by_the_steps_they_took():
     assert math.isnan(advice.order(trial(10, 0.1), trial(10, 0.01)))
 
 
+def test_a_tolerance_has_no_order():
+    """It shortens some steps and not those that end with the record's."""
+    rungs = trial(3726, 3.7e-4), trial(3743, 8.5e-5)
+    by_tolerance = tuple(replace(t, method="LAGUERRE", setting=f"TOL={t.error:g}") for t in rungs)
+    orders = study.Study(rungs + by_tolerance, EXACTLY, ()).orders
+    assert [math.isnan(x) for x in orders] == [True, False, True, True]
+
+
 def test_advice_does_not_trust_an_error_that_happens_to_be_small():
     smooth = [trial(10 * 2**k, 0.01 / 4**k) for k in range(4)]
     assert advice.allowed(smooth, EXACTLY) == pytest.approx([advice.MARGIN * t.error for t in smooth])

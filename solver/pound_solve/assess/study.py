@@ -120,10 +120,12 @@ class Study:
 
     @property
     def orders(self) -> list[float]:
-        """Observed order of each trial against the one before; NaN where there is none."""
+        """Observed order of each trial against the one before; NaN where there is none: a tolerance does
+        not shorten all steps alike.
+        """
         out, before = [], None
         for t in self.trials:
-            along = before is not None and before.method == t.method
+            along = before is not None and before.method == t.method and t.setting.startswith("DT=")
             out.append(order(before, t) if before is not None and along else math.nan)
             before = None if t.stopped else t
         return out
