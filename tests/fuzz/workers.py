@@ -50,6 +50,8 @@ def limit(seconds: float, kind: str) -> None:
 
     signal.signal(signal.SIGPROF, ask if kind in RUNS else signal.SIG_DFL)
     signal.setitimer(signal.ITIMER_PROF, seconds)
+    # compiled code that never returns to Python hears none of this: the system ends it
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds + 3.0 * GRACE if seconds else 0.0)
 
 
 def bound_memory() -> None:
@@ -126,7 +128,7 @@ class Worker:
             self.process.kill()
         self.process.join()
         code = self.process.exitcode or 0
-        hangs = code in (-getattr(signal, "SIGPROF", 0), -getattr(signal, "SIGKILL", 0))
+        hangs = code in [-getattr(signal, name, 0) for name in ("SIGPROF", "SIGVTALRM", "SIGKILL")]
         (kind, number), self.task = self.task, None
         self.start()
         return kind, number, Outcome("hang" if hangs else "crash", f"the process ended with {code}")

@@ -217,6 +217,16 @@ def test_a_step_is_none_where_the_clock_does_not_show_it() -> None:
             assert (march.step_length(lengths, t, 1.0) > 0.0) == shows
 
 
+@pytest.mark.parametrize("fit", [math.nan, 0.0, 0.5, 0.999, 1.0 - 1e-12])
+def test_a_step_that_did_not_fit_is_tried_shorter(fit: float) -> None:
+    """By so much that equal parts of what is left are not as long as before."""
+    lengths = record(state.Lengths)
+    for parts in (1, 2, 1000):
+        h = 1.0 / parts
+        march.shorten(lengths, h, fit)
+        assert march.step_length(lengths, 0.0, 1.0) < h
+
+
 # ---------------------------------------------------------------- stiff structures
 
 

@@ -63,6 +63,7 @@ from pound_solve.numerics.jit import flat
 from pound_solve.numerics.types import Array, Flags, Index
 
 SHRINK = 1.0 / 16.0  #: of the length of a step that is tried again, at least
+SHORTER = 0.9  #: of it, at most
 AHEAD = 1e-3  #: part of a step that laws are looked at for which may leave at the instant of another
 CUT = 0.5  #: part of a step, as it was tried, that is taken at least
 FROM_REST = 1e-4  #: share of the time to the goal: longest implicit step in which a contact leaves its rest
@@ -339,6 +340,14 @@ def step_length(lengths: Lengths, t: float, goal: float) -> float:
     return t + h - t if goal + h > goal else 0.0
 
 
+def shorten(lengths: Lengths, h: float, fit: float) -> None:
+    """Have a step tried again that did not fit, shorter by a tenth at least: where less is missing, the equal
+    parts of what is left would be as long as before.
+    """
+    lengths.next = h * (min(fit, SHORTER) if fit > SHRINK else SHRINK)
+    lengths.rejected += 1
+
+
 def take(
     linear: LinearSystem, laws: Laws, step: Step, series: Series, lengths: Lengths,
     coefs: Array, begin: float, terms: int, h: float, end: float, works: Works, run: Run, rules: Tables,
@@ -390,8 +399,8 @@ def stride(
             terms, fit = expand(linear, laws, step, series, lengths, coefs, t - begin, h)
             least, room = CUT, TERMS / terms  # terms that were not needed make room for a longer step
         if not fit >= least:  # what is known of the motion from terms far too large misleads
-            lengths.next = h * (fit if fit > SHRINK else SHRINK)
-            lengths.rejected += 1
+            shorten(lengths, h, fit)
+            pause -= 1
             continue
         end = 1.0 if fit >= 1.0 else (t + fit * h - t) / h
         if end == 0.0:
@@ -402,8 +411,8 @@ def stride(
         event = first_event(laws, series, terms, h, end)
         at = event.time
         if h > FROM_REST * (goal - t) and begins_to_move(laws, series, event):
-            lengths.next = SHRINK * h
-            lengths.rejected += 1
+            shorten(lengths, h, SHRINK)
+            pause -= 1
             continue
         take(linear, laws, step, series, lengths, coefs, begin, terms, h, at, works, run, rules)
         if event.law < 0:
