@@ -189,6 +189,9 @@ def test_check_tells_all_mistakes_and_runs_nothing(tmp_path, capsys):
     path.write_text(DECK)
     assert main(["check", str(path)]) == 0
     assert "no mistakes" in capsys.readouterr().out
+    path.write_text(DECK.replace("AMPLITUDE=2", "AMPLITUDE=200"))
+    assert main(["check", str(path)]) == 0
+    assert "no errors, 1 warning;" in capsys.readouterr().out
 
 
 def test_mistakes_reach_python_as_one_exception(tmp_path):

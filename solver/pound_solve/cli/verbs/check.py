@@ -53,9 +53,10 @@ def _print(deck: str, ready: Prepared, size: Mapping[str, int]) -> None:
 
     if ready.warnings:
         print(render(ready.warnings, ready.files), file=sys.stderr)
-    n = size["unknowns"]
+    n, told = size["unknowns"], len(ready.warnings)
+    mistakes = f"no errors, {told} warning{'s' * (told != 1)}" if told else "no mistakes"
     print(
-        f"{deck}: no mistakes; {size['nodes']} nodes, {size['elements']} elements, "
+        f"{deck}: {mistakes}; {size['nodes']} nodes, {size['elements']} elements, "
         f"{n} unknown{'s' * (n != 1)}"
     )
 
