@@ -22,7 +22,7 @@ _FILE: Final = re.compile(r"""[^()*"']*[A-Za-z_][^()*"']*\.[A-Za-z]\w*""")  #: a
 _NUMBER: Final = r"((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
 _PERCENT: Final = re.compile(rf"(?<![\w.]){_NUMBER}\s*$")
 _WITH_UNIT: Final = re.compile(rf"{_NUMBER}[A-Za-z]+\d?$")
-_NO_VALUE: Final = re.compile(r"([A-Za-z_][\w.]*)(\s*=)(\s+[A-Za-z_][\w.]*)?$")
+_NO_VALUE: Final = re.compile(r"(?<![\w.])([A-Za-z_][\w.]*)(\s*=)(\s+[A-Za-z_][\w.]*)?$")
 _LOOKALIKES: Final = {
     "−": "-",
     "–": "-",
@@ -118,8 +118,9 @@ def _unquoted_path(fault: Fault) -> Mistake | None:
     while end < len(text) and text[end] not in " \t\n=,":
         end += 1
     name = text[start:end]
-    like_a_file = _PATH_START.match(name) or _FILE.fullmatch(name)
-    if end == fault.at or len(name) > _LONGEST_NAME or not like_a_file:
+    if end == fault.at or len(name) > _LONGEST_NAME:
+        return None
+    if not _PATH_START.match(name) and not _FILE.fullmatch(name):
         return None
     message = f"{name[:60]} is neither a word nor an expression"
     hint = f'the name of a file stands in quotes: "{name[:60]}"'

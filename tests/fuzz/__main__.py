@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import shutil
+import signal
 import sys
 import tempfile
 from collections import Counter
@@ -22,6 +23,7 @@ from pathlib import Path
 from fuzz.cases import KINDS, bases, case
 from fuzz.judge import ENDS, Outcome
 from fuzz.workers import outcomes
+from pound_solve.numerics import threads
 
 #: share of each kind in N decks: half of all cases are whole runs
 SHARES = {
@@ -78,6 +80,8 @@ def arguments() -> argparse.Namespace:
 
 def main() -> int:
     """Run the cases and print the counts."""
+    threads.one()  # of each worker, as on the command line
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # which a shell may have had ignored
     args = arguments()
     given = {kind: getattr(args, kind) for kind in KINDS}
     if args.only:

@@ -457,6 +457,13 @@ def test_paths_need_quotes(catalog, value):
     assert model.equake[0]["FILE"] == value
 
 
+@pytest.mark.parametrize("mark", ["é", "a", ".", "1", "="])
+def test_a_line_without_end_is_refused_at_once(catalog, mark):
+    """Nothing that looks for what is meant takes a time that grows with the square of the line."""
+    _, found, _ = read_text(f"{HEAD}EQUAKE\n {mark * 1_000_000} $\n", catalog)
+    assert [d.code for d in found] == ["P201" if mark != "=" else "P209"]
+
+
 @pytest.mark.parametrize(
     ("line", "told"),
     [

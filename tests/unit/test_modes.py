@@ -214,6 +214,34 @@ WEIGHTS
     assert s.free_vibration.omega[1] == pytest.approx(math.sqrt(2e10), rel=1e-9)
 
 
+@pytest.mark.parametrize("far", [3e8, 1e9, 2147483649, 5e9, 1e10, 1e11])
+def test_a_node_far_away(far):
+    """Modes below the rounding of others are told in their order, if as zero; the others are right."""
+    s = structure_of(f"""
+NODES
+ 1 0 0 FIX=XYR
+ 2 5 0 FIX=XYR
+ 3 0 3
+ 4 5 3
+ 5 -{far:.12g} 6
+ 6 5 6
+ELEMENTS
+ 1 C 1 3
+ 2 C 2 4
+ 3 C 3 5
+ 4 C 4 6
+ 5 C 3 4
+ 6 C 5 6
+PROPS
+ C FRAME E=2.8E7 A=0.16 I=6E-4
+WEIGHTS
+ 3 TO 6 100
+""")
+    omega = s.free_vibration.omega
+    assert np.all(np.diff(omega) >= 0.0)
+    assert omega[2] == pytest.approx(8.9302, rel=1e-4)
+
+
 @settings(max_examples=60)
 @given(st.data())
 def test_random_systems(data):

@@ -335,5 +335,6 @@ def _eigen(k: Array, m: Array) -> tuple[Array, Array]:
         lower = np.linalg.inv(np.linalg.cholesky(0.5 * (work + work.T)))
         squares, y = np.linalg.eigh(lower @ energy @ lower.T)  # of 1 / omega^2
         squares, y = squares[::-1], lower.T @ y[:, ::-1]
-        values[low], shapes[:, low] = 1.0 / squares, x @ (y / np.sqrt(squares))
+        if squares[-1] > 1e-14 * squares[0]:  # else rounding is all that is left of some of them
+            values[low], shapes[:, low] = 1.0 / squares, x @ (y / np.sqrt(squares))
     return values, shapes

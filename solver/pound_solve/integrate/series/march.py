@@ -341,8 +341,8 @@ def step_length(lengths: Lengths, t: float, goal: float) -> float:
 
 
 def shorten(lengths: Lengths, h: float, fit: float) -> None:
-    """Have a step tried again that did not fit, shorter by a tenth at least: where less is missing, the equal
-    parts of what is left would be as long as before.
+    """Have a step tried again that did not fit, shorter by a tenth at least: where less is missing, the
+    equal parts of what is left would be as long as before.
     """
     lengths.next = h * (min(fit, SHORTER) if fit > SHRINK else SHRINK)
     lengths.rejected += 1
