@@ -40,6 +40,7 @@ def build(
     gravity = _single("GRAVITY", outline, binder)
     mass = _single("MASS", outline, binder)
     geometry = _single("GEOMETRY", outline, binder)
+    meant = _single("MEANT", outline, binder)
     output = bound["OUTPUT"] or (_default_output(),)
     nodes = _nodes(bound["NODES"], report)
     elements = _elements(bound["ELEMENTS"], report)
@@ -68,6 +69,7 @@ def build(
         analyses=bound["ANALYSIS"],
         output=output[0],
         files=files,
+        meant=frozenset(meant or ()),
         defaults=frozenset(key for key, card in left.items() if card not in outline.single),
     )
     return model, [card for cards in bound.values() for card in cards]

@@ -191,39 +191,18 @@ def _initial(model: Model) -> Found:
 
 
 def _excitation(model: Model) -> Found:
+    histories = [card for card in model.analyses if card.spec.name == "HISTORY"]
+    still = all(card.values.get("FROM") != "REST" for card in histories)  # they start under the loads
+    loads = [card for card in model.loads if not still or card["HELD"] == "NO"]
     # a list may be empty
-    loaded = any(card["NODES"] for card in (*model.initial, *model.loads, *model.forces))
+    moved = any(card["NODES"] for card in (*model.initial, *loads, *model.forces))
+    moved |= not still and any(card["ELEMENTS"] for card in model.member_loads)
     overlaps = any(x.spec.name == "CONTACT" and x["GAP"] < 0.0 for x in model.props.values())
-    if model.equake or loaded or overlaps or any(card["ELEMENTS"] for card in model.member_loads):
+    if model.equake or moved or overlaps:
         return
-    for card in model.analyses:
-        if card.spec.name == "HISTORY":
-            hint = "add EQUAKE, FORCES, INITIAL or LOADS"
-            yield Diagnostic("P317", "nothing sets this history in motion", card.span, hint, "warning")
-
-
-def _no_axial_force(model: Model) -> Found:
-    """P-Delta without a load that compresses the columns: weights are masses only, unless GRAVITY=YES."""
-    compressed = _has_axial_load(model)
-    if model.geometry.startswith("PDELTA") and model.weights and model.analyses and not compressed:
-        message = f"GEOMETRY {model.geometry}, but nothing loads the columns: their axial forces are zero"
-        hint = "add STATIC GRAVITY=YES, which lets the WEIGHTS press, or LOADS"
-        yield Diagnostic("P340", message, (_static(model) or model.analyses)[0].span, hint, "warning")
-
-
-def _has_axial_load(model: Model) -> bool:
-    """Whether static loads, an initial axial force or the self-weight of members may compress columns."""
-    if any(card.values.get("GRAVITY") == "YES" for card in _static(model)) or model.member_loads:
-        return True
-    if any(card["FX"] or card["FY"] or card["MZ"] for card in model.loads):
-        return True
-    props = [model.props[e.prop] for e in model.elements.values() if e.prop in model.props]
-    with_weight = all(card.values.get("SELF_WEIGHT") != "NO" for card in _static(model))
-    return any(card.values.get("N0") or (with_weight and card.values.get("WGT")) for card in props)
-
-
-def _static(model: Model) -> list[Card]:
-    return [card for card in model.analyses if card.spec.name == "STATIC"]
+    for card in histories:
+        hint = f"add EQUAKE, FORCES, INITIAL or LOADS{' with HELD=NO' * still}"
+        yield Diagnostic("P317", "nothing sets this history in motion", card.span, hint, "warning")
 
 
 def _percent(model: Model) -> Found:
@@ -261,7 +240,7 @@ def _drift_nodes(model: Model) -> Found:
 def _node_like(model: Model, card: Card) -> bool:
     """Whether a weight looks like the second of two nodes that should have a comma between them."""
     wx, wy = card["WX"], card["WY"]
-    return wy is not None and wx != wy and wx in model.nodes and not {"WX", "WY"} - card.spans.keys()
+    return wy is not None and wx < wy and wx in model.nodes and not {"WX", "WY"} - card.spans.keys()
 
 
 def _node_like_weights(model: Model) -> Found:
@@ -333,10 +312,6 @@ CHECKS: Final[tuple[tuple[Callable[[Model], Found], frozenset[str]], ...]] = (
     (_unused_props, _MEMBERS | _PROPS),
     (_loose_nodes, _NODES | _MEMBERS),
     (_excitation, frozenset({"EQUAKE", "FORCES", "INITIAL", "LOADS", "MEMBER_LOADS"})),
-    (
-        _no_axial_force,
-        _MEMBERS | _PROPS | frozenset({"ANALYSIS", "LOADS", "MEMBER_LOADS", "WEIGHTS"}),
-    ),
     (_percent, frozenset()),
     (_drift_names, frozenset()),
     (_drift_nodes, frozenset()),

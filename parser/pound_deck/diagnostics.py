@@ -5,7 +5,7 @@ The numbers of diagnostics are those of `pound_deck.messages`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from itertools import islice
@@ -44,6 +44,11 @@ def mistake(code: str, message: str, span: Span, hint: str = "") -> Mistake:
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
     """Whether any of them is an error."""
     return any(d.severity == "error" for d in diagnostics)
+
+
+def doubted(diagnostics: Iterable[Diagnostic], meant: Container[str]) -> list[Diagnostic]:
+    """Those of them that are not warnings of a code which the deck says is meant so."""
+    return [d for d in diagnostics if d.severity == "error" or d.code not in meant]
 
 
 def closest(word: str, choices: Iterable[str], cutoff: float = 0.6) -> str:

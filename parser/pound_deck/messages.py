@@ -171,7 +171,10 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "words after a section's name",
         "A section's name must be alone on its line. Put column heads after an exclamation mark.",
     ),
-    "P237": ("card given twice", "TITLE, UNITS, GRAVITY, MASS and GEOMETRY are allowed once in a deck."),
+    "P237": (
+        "card given twice",
+        "TITLE, UNITS, GRAVITY, MASS, GEOMETRY and MEANT are allowed once in a deck.",
+    ),
     "P238": ("UNITS not understood", "Write UNITS force length time, for example UNITS kN m s."),
     "P239": (
         "file name without quotes",
@@ -217,7 +220,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P316": ("no analysis", "The deck requests no analysis. Add a section ANALYSIS."),
     "P317": (
         "nothing moves the model (warning)",
-        "A HISTORY has no EQUAKE, no FORCES, no INITIAL motion and no loads, so all results are zero.",
+        "A HISTORY has no EQUAKE, no FORCES, no INITIAL motion and no loads that set it in "
+        "motion: it starts in the state under its loads, but for those with HELD=NO, or with FROM=REST.",
     ),
     "P318": (
         "drift without height (warning)",
@@ -264,7 +268,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "comes out negative. The message states which; the manual's page on damping has the ranges.",
     ),
     "P334": (
-        "contact along an inclined line",
+        "contact along an inclined line (warning)",
         "A contact without ANGLE acts along the line from I to J. Nodes at different heights make "
         "that line inclined; for floors that meet along x give ANGLE=0.",
     ),
@@ -298,7 +302,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P340": (
         "P-Delta without axial forces (warning)",
-        "GEOMETRY requests P-Delta, but no load compresses the columns, so it has no effect. Weights are "
+        "GEOMETRY requests P-Delta, but no load acts on a building: it has no effect there. Weights are "
         "masses; STATIC GRAVITY=YES makes them loads too.",
     ),
     "P341": (
@@ -361,24 +365,25 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "section that does not fit its member (warning)",
         "A rectangle of the same A and I is sqrt(12 I/A) deep. It is more than five times as deep as the "
         "member is long, and more than the building is wide and high; or A becomes usual if it is read in "
-        "mm^2. The limits are ours. Give A and I in the unit of length of UNITS.",
+        "mm^2 or cm^2. The limits are ours. Give A and I in the unit of length of UNITS.",
     ),
     "P353": (
-        "member far longer than others (warning)",
+        "member far longer or shorter than others (warning)",
         "A member has more than six times the middle length of its property set, and is more slender than "
-        "1 in 40; the limits are ours. A coordinate of one of its nodes has a wrong digit.",
+        "1 in 40; or a column between floors has less than a quarter of it. The limits are ours. A "
+        "coordinate of one of its nodes has a wrong digit.",
     ),
     "P354": (
         "member given twice (warning)",
-        "Two members of one property set join the same nodes, so that their stiffnesses add up. Take one "
-        "out.",
+        "Two members join the same nodes, so that their stiffnesses add up. Take one out.",
     ),
     "P355": (
         "strength or ductility of hinges beyond sense (warning)",
         "The yield moment M of a section that is sqrt(12 I/A) = h deep belongs to a strain M h/(E I) below "
         "2e-5 or above 0.1, or DUCTU is above 100; ordinary members have strains of 0.0005 to 0.01 and "
-        "ductilities below 50. Or a hinge with KH or a spring with KR yields at a rotation above 0.2. "
-        "The limits are ours. Check the units of yield moments and of stiffnesses.",
+        "ductilities below 50. Or a hinge with KH or a spring with KR yields at a rotation above 0.2; or "
+        "the hinges at both ends of a member are longer than it; or R is 0.2 or more. The limits are ours. "
+        "Check the units of yield moments and of stiffnesses.",
     ),
     "P356": (
         "mechanism (warning)",
@@ -422,18 +427,19 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P363": (
         "strength of springs beyond sense (warning)",
         "The springs on which a building stands yield together along X at less than 0.002 or more than 20 "
-        "times its weight. Sliding bearings have 0.02, strong walls 3; the limits are ours. Check the "
-        "units.",
+        "times its weight. Sliding bearings have 0.02, strong walls 3; the limits are ours. Or a spring "
+        "yields at a deformation above the height of its building. Check the units.",
     ),
     "P364": (
         "loads that pull upwards (warning)",
-        "GEOMETRY asks for P-Delta, but the sum of LOADS along Y pulls a building upwards, which stiffens "
-        "it. Loads that press are negative.",
+        "The sum of LOADS and MEMBER_LOADS along Y pulls a building upwards. Loads that press are "
+        "negative.",
     ),
     "P365": (
-        "steps above half a period (warning)",
-        "A HISTORY has fewer than 100 steps, and DT is more than half of the first period of every "
-        "building; the limits are ours. DT has the unit of time of UNITS: 5 ms are 0.005 s.",
+        "steps or rows too far apart (warning)",
+        "DT of a HISTORY is more than an eighth of the first period of every building, or EVERY of OUTPUT "
+        "more than that period; the limits are ours. Both have the unit of time of UNITS: 5 ms are 0.005 "
+        "s.",
     ),
     "P366": (
         "hinges that face each other (warning)",
@@ -442,6 +448,61 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "determined, not which of them turns. A hinge belongs to the ends of a column, not to a node "
         "within it. Leave the yield moment out at one of the two ends, or give both a rule that hardens, "
         "such as BILINEAR with R.",
+    ),
+    "P367": (
+        "drift of no storey (warning)",
+        "The nodes of a drift belong to two buildings, or the first of them is the upper one. Drifts with "
+        "a HEIGHT of their own are not told.",
+    ),
+    "P368": (
+        "contact that misses (warning)",
+        "A contact joins floors at two heights though a node above or below one of them, at the same x, is "
+        "at the height of the other; or it acts along Y between nodes that lie beside each other.",
+    ),
+    "P369": (
+        "stiffness of a contact beyond sense (warning)",
+        "The weight of the bodies would press a contact by more than their buildings are high, or a "
+        "collision takes less than 0.1 ms, in which sound does not pass a column. The limits are ours. K "
+        "has the units of UNITS.",
+    ),
+    "P370": (
+        "loads that do not fit the weight (warning)",
+        "While the ground shakes: LOADS and MEMBER_LOADS push a building along X by more than half of its "
+        "weight; they press by 0.7 to 1.4 of its weight beside STATIC GRAVITY=YES, which makes loads of "
+        "WEIGHTS, so that gravity acts twice; they press by less than 0.01 or more than 8 times the "
+        "weight; or one floor bears no load, all others do. The limits are ours.",
+    ),
+    "P371": (
+        "frame upon a frame (warning)",
+        "All nodes of a frame are at the places of nodes of another one that it is not joined to: it is "
+        "given twice, or its X is that of the other.",
+    ),
+    "P372": (
+        "foot that SUPPORTS leave out (warning)",
+        "SUPPORTS of EQUAKE move some feet of a building, but a foot that is fixed along X stands still. "
+        "Name it, too.",
+    ),
+    "P373": (
+        "damping beyond sense (warning)",
+        "By the shape of its sag under weights along X, DAMPING gives the first mode of a building more "
+        "than 20 % of critical damping, or its dashpots give more than 1000 % or less than 0.1 %; or an "
+        "earthquake shakes it and nothing damps it. The limits are ours. Check units, and ALPHA and BETA, "
+        "which are no shares; XI=0 says that no damping is meant.",
+    ),
+    "P374": (
+        "motion across all contacts (warning)",
+        "EQUAKE moves the ground along Y alone, but buildings meet at contacts along X.",
+    ),
+    "P375": (
+        "member missing or out of place (warning)",
+        "A beam ends above a column that ends below it; no beam joins two columns whose feet one joins; "
+        "the one beam of its property set slopes; or an element passes a node from which nothing leads up.",
+    ),
+    "P376": (
+        "no such material (warning)",
+        "E of members is below 100 MPa; columns weigh by length what concrete or steel weigh by volume; or "
+        "the soil of a footing has G outside 0.5 MPa to 100 GPa, a weight outside 8 to 35 kN/m^3, or a "
+        "half width above 100 m. The limits are ours. Values have the units of UNITS.",
     ),
     "R401": (
         "record not found",
@@ -457,7 +518,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "The number of values in the record differs from that in its header. The file may be truncated.",
     ),
     "R404": (
-        "record value out of range",
+        "record value out of range (error or warning)",
         "A value of the record is not a finite number, or far beyond any earthquake. Check the "
         "units and the columns.",
     ),
@@ -495,6 +556,13 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "the name of an output file is taken",
         "A file of another program, a folder, a pipe or a device has the name of the results or of the "
         "report. Rename it, or give another folder with -o.",
+    ),
+    "R412": (
+        "motion cut or stretched (warning)",
+        "START without DURATION cuts off the peak of a record, or the HISTORY ends before a fifth of the "
+        "Arias intensity of an earthquake has acted, or a synthetic one ends within its RISE; or the step "
+        "DT makes a record swing faster than hard rock (every 0.03 s), or longer than the bed of a lake "
+        "(every 1.5 s, and this times the significant duration above 130 s^2). The limits are ours.",
     ),
     "A501": (
         "unstable structure",
@@ -635,6 +703,9 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
 }
 
+#: codes of warnings, which a card MEANT may name
+WARNINGS: Final = tuple(c for c, (title, _) in MESSAGES.items() if "warning)" in title and c[0] in "PR")
+
 
 def messages_page() -> str:
     """Text of ``manual/messages.md``: every code with its meaning and cure."""
@@ -651,7 +722,8 @@ def messages_page() -> str:
         "# Messages",
         "",
         "Every message names its place as `file:line:column` and shows the line with the place underlined.",
-        "An error stops the run before it starts; a warning (marked below) does not.",
+        "An error stops the run before it starts; a warning (marked below) does not. If the deck means",
+        "what a warning doubts, name its code on a card: `MEANT P334,P359`. These are not told then.",
         "This page is written from `MESSAGES` in `pound_deck/messages.py`.",
     ]
     for prefix, head in heads.items():

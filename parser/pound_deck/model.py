@@ -128,6 +128,8 @@ class Model:
     damping, equake, forces, analyses : tuples of Card
     output : Card
         The OUTPUT card, all defaults where the deck has none.
+    meant : frozenset of str
+        Codes of the warnings that the deck says are meant so.
     files : mapping of str to str
         Text of the deck and of every included file, by the name in its Spans.
     defaults : frozenset of str
@@ -155,4 +157,5 @@ class Model:
     analyses: tuple[Card, ...]
     output: Card
     files: Mapping[str, str]
+    meant: frozenset[str] = frozenset()
     defaults: frozenset[str] = frozenset()

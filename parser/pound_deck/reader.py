@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pound_deck.build import build
 from pound_deck.cards import parse, parse_items
 from pound_deck.checks import run_checks
-from pound_deck.diagnostics import Diagnostic, Mistake, has_errors, hints, suggest
+from pound_deck.diagnostics import Diagnostic, Mistake, doubted, has_errors, hints, suggest
 from pound_deck.expressions import Definition, Expression, Step, Value, resolve
 from pound_deck.model import Model, Span
 from pound_deck.outline import Outline
@@ -104,6 +104,7 @@ def _read(source: Source, lines: list[Line], catalog: Catalog, overrides: Mappin
             (order.get(d.span.file, -1), d.span.line, d.span.column) if d.span else (len(order), 0, 0)
         )
     )
+    report[:] = doubted(report, model.meant)
     return (None if has_errors(report) else model), report, {**files, **texts}
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
+from pound_deck.messages import WARNINGS
 from pound_deck.schema import Field, Kind, Spec
 
 #: a field by position that steps along with the ranges of its card
@@ -273,8 +274,23 @@ CARDS: Final = (
             ),
         ),
     ),
+    Spec(
+        "card",
+        "MEANT",
+        "warnings about what is meant so",
+        (
+            Field(
+                "MEANT",
+                Kind.WORD,
+                doc="codes of warnings that are not to be told",
+                words=WARNINGS,
+                count=(1, len(WARNINGS)),
+                positional=True,
+            ),
+        ),
+    ),
     Spec("card", "PARAM", "names for numbers or texts: PARAM name = value"),
     Spec("card", "INCLUDE", "reads another file here"),
     Spec("card", "END", "ends the file"),
 )
-SINGLE: Final = tuple(spec.name for spec in CARDS[:5])  #: cards that stand once
+SINGLE: Final = tuple(spec.name for spec in CARDS[:6])  #: cards that stand once

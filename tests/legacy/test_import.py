@@ -125,7 +125,7 @@ def test_the_record_behind_the_deck_acts_from_the_line_that_istart_counts(tmp_pa
     assert motion.acceleration.value(t) == pytest.approx(
         [0.0, 0.3 * 9.81, -0.2 * 9.81, 0.1 * 9.81, -0.1 * 9.81], abs=1e-9
     )
-    assert [d.code for d in ready.warnings] == ["L606", "P318"]  # the drift is level
+    assert [d.code for d in ready.warnings] == ["L606", "P318", "R412"]  # the drift is level
 
 
 def test_an_old_deck_runs_as_the_one_made_of_it(tmp_path, capsys):

@@ -406,7 +406,8 @@ def test_a_set_is_missed_beside_lines_with_mistakes(codes, line, told):
 def test_loads_on_nothing_move_nothing(codes):
     history = HEAD.replace("STATIC", "HISTORY T=1")
     assert codes(history + "LOADS\n 9 TO 8 5\n") == ["P317"]
-    assert codes(history + "LOADS\n 2 5\n") == []
+    assert codes(history + "LOADS\n 2 5\n") == ["P317"]  # it starts in the state under them
+    assert codes(history + "LOADS\n 2 5 HELD=NO\n") == []
 
 
 # words and texts

@@ -6,13 +6,11 @@ from pathlib import Path
 import pytest
 
 from pound_deck.diagnostics import caret, has_errors
-from pound_deck.messages import MESSAGES
+from pound_deck.messages import MESSAGES, WARNINGS
 from pound_solve.driver.run import DeckError, Request, prepare
 
 BAD = Path(__file__).parents[1] / "parser" / "bad"
 EXPECT = re.compile(r"! expect ([PR]\d+) (\d+):(\d+) solver\n")
-WARNINGS = {"P334", "P336", "P337", "P339", "P346", "P347", "P348", "P349", "P351"}
-WARNINGS |= {f"P{number}" for number in range(352, 367)}
 DECKS = sorted(path for path in BAD.glob("*.inp") if EXPECT.match(path.read_text("utf-8")))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -14,6 +14,7 @@ from pound_deck.model import Card, Model
 from pound_solve.driver.identity import MOTION, differences, identity
 from pound_solve.driver.request import Request
 from pound_solve.loading.forces.base import Force
+from pound_solve.loading.intensity import share
 from pound_solve.loading.motions.base import METRE, LoadingContext, Motion
 from pound_solve.loading.motions.wave import fronts
 from pound_solve.loading.records.base import RecordError
@@ -21,6 +22,9 @@ from pound_solve.numerics.types import Array
 from pound_solve.results import Results, ResultsError
 from pound_solve.version import __version__
 
+#: motions that are doubted; pulses and sines are those of a textbook, and may be cut
+EARTHQUAKES: Final = ("RECORD", "SYNTHETIC", "MATCHED")
+LEAST_ACTED: Final = 0.2  #: share of the Arias intensity of an earthquake before the end of a history
 MOST: Final = 6  #: differences from a saved run that are named
 
 
@@ -56,8 +60,24 @@ def motions(model: Model, surroundings: LoadingContext, found: list[Diagnostic])
             if not ways & set(model.nodes[node].fixed):
                 message = f"node {node} is not fixed along {motion.direction}: a support that moves must be"
                 found.append(Diagnostic("R405", message, card.place("SUPPORTS")))
+        found += _cut_short(model, card, motion)
         out += fronts(motion, place)
     return out
+
+
+def _cut_short(model: Model, card: Card, motion: Motion) -> Iterator[Diagnostic]:
+    """A history that ends before a fifth of an earthquake has acted."""
+    histories = [c for c in model.analyses if c.spec.name == "HISTORY" and not c["RESTART"]]
+    for history in histories if card.spec.name in EARTHQUAKES else ():
+        unit, end = model.units.time, motion.acceleration.end
+        acted = share(motion.acceleration, history["T"])
+        if acted < LEAST_ACTED:
+            message = (
+                f"the history ends at {history['T']:g} {unit}, when {100.0 * acted:.0f} % of the Arias "
+                f"intensity of the motion has acted, which lasts {end:.4g} {unit}"
+            )
+            hint = "give HISTORY a later end, or the motion a DURATION"
+            yield Diagnostic("R412", message, history.span, hint, "warning")
 
 
 def forces(model: Model, surroundings: LoadingContext, found: list[Diagnostic]) -> list[Force]:
@@ -74,6 +94,8 @@ def forces(model: Model, surroundings: LoadingContext, found: list[Diagnostic]) 
 def _tell(card: Card, info: Mapping[str, Any], found: list[Diagnostic]) -> None:
     """Warn where the record of a card contradicts its header."""
     notes = info.get("notes", ())
+    cuts = info.get("cuts", ())
+    found += [Diagnostic("R412", what, card.place(item), cure, "warning") for what, item, cure in cuts]
     found += [Diagnostic("R409", n, card.place("FILE"), severity="warning") for n in notes]
 
 

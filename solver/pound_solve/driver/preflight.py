@@ -9,36 +9,24 @@ from typing import Final
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
 from pound_solve.structure.buildings import misnamed
-from pound_solve.structure.contact_checks import misplaced, wide
+from pound_solve.structure.contact_checks import idle, inclined, misplaced, wide
 from pound_solve.structure.damping.by_building import uneven
+from pound_solve.structure.drift_checks import misdrawn
+from pound_solve.structure.frame_checks import ill_framed
 from pound_solve.structure.hinge_checks import facing
+from pound_solve.structure.load_checks import misloaded, unloaded
 from pound_solve.structure.loose_ends import loose_ends
 from pound_solve.structure.mass_checks import immovable, massless
+from pound_solve.structure.material_checks import immaterial
 from pound_solve.structure.mechanisms import hasty, loose, standing, untimely
 from pound_solve.structure.member_checks import doubled, misjudged, misshapen
+from pound_solve.structure.response_checks import misdamped, unlike_contacts
 from pound_solve.structure.structure import Structure
-from pound_solve.structure.supports import adrift
-from pound_solve.structure.weight_checks import lifted, misarmed, misweighed, outsized
+from pound_solve.structure.supports import adrift, left_behind
+from pound_solve.structure.weight_checks import far, misarmed, misweighed, outsized
 
 MOST_STEPS: Final = 10**8  #: of a history: hours of a small structure
 MOST_ROWS: Final = 5 * 10**6  #: of stored histories
-
-
-def inclined(structure: Structure) -> list[Diagnostic]:
-    """Contacts along an inclined line between their nodes: seldom meant between floors."""
-    out = []
-    for spring in structure.laws:
-        if not spring.role.collides:
-            continue
-        element = structure.model.elements[spring.element]
-        angle = spring.facts["angle"]
-        if structure.model.props[element.prop]["ANGLE"] is None and angle % 90.0:
-            message = (
-                f"contact {spring.element} acts along the line between its nodes, at {angle:.4g} degrees"
-            )
-            hint = "give ANGLE (0 for floors that meet along x) if that is not meant"
-            out.append(Diagnostic("P334", message, element.span, hint, "warning"))
-    return out
 
 
 def pressed(structure: Structure) -> list[Diagnostic]:
@@ -82,12 +70,17 @@ def unsteady(structure: Structure) -> list[Diagnostic]:
 
 
 def misbuilt(structure: Structure) -> list[Diagnostic]:
-    """Buildings that are `unsteady`; of heights, periods and weights the first of each that is wrong."""
+    """Buildings that are `unsteady`; of heights, periods and weights the first of each that is wrong; what
+    does not fit their periods.
+    """
     parts, first = standing(structure), dict[str, Diagnostic]()
     found = (*outsized(structure), *untimely(structure, parts), *misweighed(structure))
     for name, diagnostic in found:
         first.setdefault(name, diagnostic)
-    return [*(loose(structure, parts) or adrift(structure)), *first.values()]
+    out = [*(loose(structure, parts) or adrift(structure)), *first.values()]
+    for check in (hasty, misdamped, unlike_contacts):
+        out += check(structure, parts)
+    return out
 
 
 def rounded_up(x: float) -> float:
@@ -110,21 +103,27 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     pressed,
     wide,
     misplaced,
+    idle,
     misbuilt,
     massless,
     immovable,
     loose_ends,
     misarmed,
-    lifted,
+    far,
+    unloaded,
+    misloaded,
     misshapen,
     doubled,
     misjudged,
     facing,
     pushover.mistakes,
     too_many,
-    hasty,
     misnamed,
     uneven,
+    left_behind,
+    misdrawn,
+    ill_framed,
+    immaterial,
 )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pound_deck.diagnostics import Diagnostic, has_errors, render
+from pound_deck.diagnostics import Diagnostic, doubted, has_errors, render
 from pound_deck.model import Model
 from pound_solve.analyses import static
 from pound_solve.analyses.path_following import InstabilityError
@@ -88,7 +88,7 @@ def ground(request: Request, deck: Deck | None = None) -> Ground:
     found = deck.moved(found, request.deck)
     if model is None or has_errors(found):
         raise DeckError(found, deck.files)
-    return Ground(model, tuple(motions), tuple(found), deck.files)
+    return Ground(model, tuple(motions), tuple(doubted(found, model.meant)), deck.files)
 
 
 def prepare(request: Request) -> Prepared:
@@ -128,6 +128,7 @@ def assembled(
         found += [*err.diagnostics, *_causes(model)]
     found += overwritten(model, request, context)
     saved = loading.saved_state(model, request, motions, forces, found)
+    found = doubted(found, model.meant)
     if has_errors(found) or structure is None:
         raise DeckError(found, files)
     return Prepared(model, tuple(motions), tuple(forces), structure, tuple(found), files, saved)
@@ -154,7 +155,7 @@ def shaken(ready: Prepared, request: Request) -> Prepared:
     motions = loading.motions(model, loading.context(model, request), found)
     if has_errors(found):
         raise DeckError(found, ready.files)
-    return replace(ready, model=model, motions=tuple(motions), warnings=tuple(found))
+    return replace(ready, model=model, motions=tuple(motions), warnings=tuple(doubted(found, model.meant)))
 
 
 def _assembled(model: Model, motions: Sequence[Motion]) -> Structure:

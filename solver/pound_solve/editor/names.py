@@ -98,7 +98,7 @@ def _of_row(row: Row, section: str, reading: Reading, values: Values) -> Iterato
             if item.name:
                 yield Mention("PARAM", (item.name,), item.name_span, defines=True, plain=True)
             yield from _params(item.parts, reading)
-    elif section or row.word in ("GRAVITY", "MASS", "GEOMETRY"):
+    elif section or row.word in ("GRAVITY", "MASS", "GEOMETRY", "MEANT"):
         known = fields(words_of(row), section, reading.catalog, reading.params)
         for item, f in zip(items, known.matched):
             if f:

@@ -98,6 +98,16 @@ def arias(acceleration: Piecewise, gravity: float) -> float:
     return math.pi / (2.0 * gravity) * float(_squares(acceleration.chords()).sum())
 
 
+def share(acceleration: Piecewise, end: float) -> float:
+    """Share of the Arias intensity up to a time [T]; 1 without acceleration."""
+    whole = arias(acceleration, 1.0)
+    if not whole or end >= acceleration.end:
+        return 1.0
+    return (
+        arias(acceleration.slice(acceleration.start, end), 1.0) / whole if end > acceleration.start else 0.0
+    )
+
+
 def significant_duration(acceleration: Piecewise, start: float = 0.05, end: float = 0.95) -> float:
     """Time between two shares of the Arias intensity [T]; NaN without acceleration."""
     lines = acceleration.chords()

@@ -303,6 +303,7 @@ These cards stand anywhere, once each but for the last two:
 | `GRAVITY g` | acceleration of gravity; mass = weight / gravity | by the unit of length |
 | `MASS LUMPED` or `MASS CONSISTENT` | mass of FRAME members that have a weight | `LUMPED` |
 | `GEOMETRY word` | `PDELTA`, `PDELTA_MEMBER`, `PDELTA_VARYING` or `LARGE` displacements | `SMALL` |
+| `MEANT codes` | [warnings](messages.md) not to be told, such as `P334,P359`: the deck means it so | none |
 | `PARAM name = value` | a name for a number or a text; several on a line are fine | |
 | `INCLUDE "file"` | reads another file here; its name counts from the folder of this one | |
 

@@ -177,8 +177,9 @@ class Levels:
         return tuple(f for f in self._levels if f.mass >= LEAST * heaviest or f in last)
 
     def at(self, node: int) -> Floor | None:
-        """The level at the height of a node, if there is one."""
-        near = (f for f in self._levels if abs(self._height[node] - f.level) <= self._close)
+        """The level at the height of a node of the building, if there is one."""
+        height = self._height.get(node, np.nan)
+        near = (f for f in self._levels if abs(height - f.level) <= self._close)
         return next(near, None)
 
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 import numpy as np
 
 from pound_deck.diagnostics import Diagnostic
-from pound_deck.model import Element, Model
+from pound_deck.model import Element, Model, Node
 from pound_solve.numerics.graph import components
-from pound_solve.structure.buildings import parts
+from pound_solve.structure.buildings import parts, stands
 from pound_solve.structure.elements.base import LawSpring
 from pound_solve.structure.member_checks import kinds
 from pound_solve.structure.structure import Structure
@@ -21,6 +22,8 @@ SAME: Final = 1e-9  #: share of the distance of nodes that is none
 #: gap over the distance of the nodes, which the bodies between them make less than one; coordinates may
 #: stay as they are while a gap is varied
 WIDEST: Final = 3.0
+LEAST_ANGLE: Final = 1e-6  #: degrees by which a contact may slope
+LEVEL: Final = 0.1  #: share of a difference that is none beside it
 ALONG: Final = 0.99  #: cosine of the angle between a member and a contact that lies along it
 
 
@@ -73,13 +76,105 @@ def _between(model: Model, e: Element, between: float) -> Diagnostic:
 def misplaced(structure: Structure) -> list[Diagnostic]:
     """Contacts between nodes of one floor, or with I and J exchanged."""
     model, out = structure.model, list[Diagnostic]()
-    floors = _floors(model)
+    floors, columns = _floors(model), _columns(model)
+    collide = [s for s in structure.laws if s.role.collides and apart(model, s) > 0.0]
+    forward = {frozenset((e.i, e.j)) for e in (model.elements[s.element] for s in collide)}
     for spring in structure.laws:
         e = model.elements[spring.element]
         if spring.role.collides and e.j is not None:
             within = floors[e.i] == floors[e.j] and abs(_way(spring)[0]) > ALONG
-            out += [_within(e)] if within else _backwards(model, spring, e)
+            twin = frozenset((e.i, e.j)) in forward
+            out += [_within(e)] if within else _backwards(model, spring, e, twin)
+            out += _crooked(model, columns, spring, e)
     return out
+
+
+def inclined(structure: Structure) -> list[Diagnostic]:
+    """Contacts along an inclined line between their nodes: seldom meant between floors."""
+    model, out = structure.model, list[Diagnostic]()
+    columns = _columns(model)
+    for spring in (s for s in structure.laws if s.role.collides):
+        e, angle = model.elements[spring.element], spring.facts["angle"]
+        if (
+            model.props[e.prop]["ANGLE"] is None
+            and abs(math.remainder(angle, 90.0)) > LEAST_ANGLE
+            and _beside(model, columns, e) is None
+        ):
+            message = (
+                f"contact {e.name or e.id} acts along the line between its nodes, at {angle:.4g} degrees"
+            )
+            hint = (
+                "correct its nodes or their heights; give ANGLE (0 for floors that meet along x) if these "
+            )
+            hint += "are right"
+            out.append(Diagnostic("P334", message, e.span, hint, "warning"))
+    return out
+
+
+def idle(structure: Structure) -> list[Diagnostic]:
+    """Contacts along X between buildings that an earthquake along Y alone shakes."""
+    model = structure.model
+    ways = shaken(model)
+    of = {n: k for k, nodes in enumerate(parts(model)) if stands(model, nodes) for n in nodes}
+    for spring in structure.laws if ways.keys() == {"Y"} else ():
+        e = model.elements[spring.element]
+        across = spring.role.collides and abs(_way(spring)[0]) > ALONG and spring.gap > 0.0
+        if across and e.j in of and e.i in of and of[e.i] != of[e.j]:
+            card = ways["Y"]
+            message = f"the ground moves along Y alone, but contact {e.name or e.id} closes along X"
+            hint = "add a motion along X, or leave DIRECTION out, which is X"
+            return [Diagnostic("P374", message, card.place("DIRECTION"), hint, "warning")]
+    return []
+
+
+def _columns(model: Model) -> dict[float, list[Node]]:
+    """Nodes above each other, by their x."""
+    out = defaultdict[float, list[Node]](list)
+    for n in model.nodes.values():
+        out[n.x].append(n)
+    return out
+
+
+def _beside(model: Model, columns: Mapping[float, Sequence[Node]], e: Element) -> tuple[int, int] | None:
+    """Node above or below an end of a contact, at the height of its other end, if there is one, and that
+    end: it is the node of a floor which meets the other one.
+    """
+    nodes = model.nodes
+    for own, other in ((e.i, e.j), (e.j, e.i)) if e.j is not None else ():
+        assert own is not None and other is not None
+        rise = abs(nodes[own].y - nodes[other].y)
+        for n in columns[nodes[other].x] if rise else ():
+            if abs(n.y - nodes[own].y) < LEVEL * rise:
+                return n.id, other
+    return None
+
+
+def _crooked(
+    model: Model, columns: Mapping[float, Sequence[Node]], spring: LawSpring, e: Element
+) -> Iterator[Diagnostic]:
+    """A contact between floors of two heights though there is a node at the same height, and one that acts
+    across the line between its nodes.
+    """
+    assert e.j is not None
+    i, j = model.nodes[e.i], model.nodes[e.j]
+    across, along = abs(i.x - j.x), abs(i.y - j.y)
+    sloping = model.props[e.prop]["ANGLE"] is None
+    if abs(_way(spring)[1]) > ALONG and along < LEVEL * across:
+        message = (
+            f"contact {e.name or e.id} acts along Y, but its nodes {e.i} and {e.j} lie beside each other: "
+            "they pass without a collision"
+        )
+        yield Diagnostic("P368", message, e.span, "give it ANGLE=0, or leave ANGLE out", "warning")
+    elif across and (sloping or abs(_way(spring)[1]) <= ALONG):
+        found = _beside(model, columns, e)
+        if found is None:
+            return
+        n, other = found
+        message = (
+            f"contact {e.name or e.id} joins node {e.i} at y = {i.y:g} with node {e.j} at y = {j.y:g}, but "
+            f"node {n} faces it"
+        )
+        yield Diagnostic("P368", message, e.span, f"name node {n} in place of node {other}", "warning")
 
 
 def _floors(model: Model) -> dict[int, int]:
@@ -118,9 +213,9 @@ def apart(model: Model, spring: LawSpring) -> float:
     return found if abs(found) > SAME * math.hypot(j.x - i.x, j.y - i.y) else 0.0
 
 
-def _backwards(model: Model, spring: LawSpring, e: Element) -> Iterator[Diagnostic]:
-    """A contact that closes as its nodes move apart."""
-    if apart(model, spring) < 0.0 <= spring.gap:
+def _backwards(model: Model, spring: LawSpring, e: Element, twin: bool) -> Iterator[Diagnostic]:
+    """A contact that closes as its nodes move apart, and has no twin that closes as they approach."""
+    if apart(model, spring) < 0.0 <= spring.gap and not twin:
         message = (
             f"contact {e.name or e.id} closes as nodes {e.i} and {e.j} move apart: "
             f"ANGLE points from {e.j} to {e.i}"

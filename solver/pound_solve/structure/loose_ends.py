@@ -43,8 +43,8 @@ class Ends:
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        places, at = _places(model)
-        self.groups = [group for group in places if len(group) > 1]
+        groups, at = places(model)
+        self.groups = [group for group in groups if len(group) > 1]
         self.members: dict[int, list[Element]] = defaultdict(list)
         pairs = [(n.id, master) for n in model.nodes.values() for master in n.slaved.values()]
         self.used = {n for pair in pairs for n in pair}
@@ -82,15 +82,15 @@ class Ends:
         return self.reach(n)[0] < self.model.nodes[n].y
 
 
-def _places(model: Model) -> tuple[list[list[int]], dict[int, int]]:
+def places(model: Model) -> tuple[list[list[int]], dict[int, int]]:
     """Nodes at every place, and the number of the place of each node."""
     x, y = np.array([(n.x, n.y) for n in model.nodes.values()]).T
     unit = SAME_PLACE * max(np.ptp(x), np.ptp(y)) or 1.0
     found: dict[tuple[float, float], list[int]] = defaultdict(list)
     for n, a, b in zip(model.nodes, np.round(x / unit).tolist(), np.round(y / unit).tolist()):
         found[a, b].append(n)
-    places = list(found.values())
-    return places, {n: i for i, group in enumerate(places) for n in group}
+    groups = list(found.values())
+    return groups, {n: i for i, group in enumerate(groups) for n in group}
 
 
 def _feet(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
@@ -106,7 +106,8 @@ def _feet(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
             continue
         base, close = min(supports), SAME_LEVEL * (max(y) - min(y))
         for n in part:
-            if ends.free(n) and model.nodes[n].y <= base + close and base + close < ends.reach(n)[1]:
+            alone = len(ends.members[n]) == 1 and n not in ends.used and "Y" not in model.nodes[n].fixed
+            if alone and model.nodes[n].y <= base + close < ends.reach(n)[1]:
                 message = f"the foot of member {ends.members[n][0].id}, node {n}, hangs free"
                 hint = "give it FIX, or join it to the ground by an element"
                 yield n, Diagnostic("P348", message, model.nodes[n].span, hint, "warning")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.loading.motions.base import METRE
 from pound_solve.numerics import modes
-from pound_solve.numerics.matrices import scaled, used_rows
+from pound_solve.numerics.matrices import Matrix, scaled, used_rows
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.buildings import Building, buildings, columns_of, stands
 from pound_solve.structure.dofs import DIRECTIONS
@@ -19,8 +20,8 @@ from pound_solve.structure.member_checks import kinds
 from pound_solve.structure.structure import Structure
 from pound_solve.structure.supports import ROUNDING, resisted, shaken, some
 
-FEW: Final = 100  #: steps of a history below which they are compared with periods
 MOVES: Final = 0.1  #: share of the largest displacement of a motion that a node has which it moves
+FEWEST: Final = 8  #: steps in a first period
 SAME: Final = 1e-6  #: share of a motion by which that of one body may differ
 #: 4 H/T, the speed of a shear wave up a building [m/s]: walls and stiff frames have 100 to 500, a solid
 #: block of concrete 2200
@@ -76,22 +77,23 @@ def _period(structure: Structure, b: Building, t1: float, limit: str, why: str) 
     return Diagnostic("P357", message, model.nodes[b.feet[0]].span, hint, "warning")
 
 
-def hasty(structure: Structure) -> list[Diagnostic]:
-    """Histories whose steps are longer than half of the first period of every building."""
-    model = structure.model
-    asked = [c for c in model.analyses if c.spec.name == "HISTORY" and c.values.get("DT") is not None]
-    asked = [c for c in asked if c["T"] < FEW * c["DT"]]  # others are not worth the time
-    longest = max((part.period() for _, part in standing(structure)), default=0.0) if asked else 0.0
-    out = []
-    for card in asked:
-        if 0.0 < longest < 2.0 * card["DT"]:
-            unit = model.units.time
-            message = (
-                f"steps of DT={card['DT']:g} {unit} do not follow a motion whose first period is about "
-                f"{longest:.2g} {unit}"
-            )
+def hasty(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+    """Histories of fewer than `FEWEST` steps in the first period of every building, and rows further apart
+    than that period.
+    """
+    model, out = structure.model, list[Diagnostic]()
+    longest, unit = max((part.period() for _, part in found), default=0.0), model.units.time
+    for card in (c for c in model.analyses if c.spec.name == "HISTORY" and longest):
+        first = f"a motion whose first period is about {longest:.2g} {unit}"
+        dt, every = card.values.get("DT"), model.output["EVERY"]
+        if dt is not None and longest < FEWEST * dt:
+            message = f"steps of DT={dt:g} {unit} do not follow {first}"
             hint = f"DT is a time in {unit}: a hundredth of the first period is usual"
             out.append(Diagnostic("P365", message, card.place("DT"), hint, "warning"))
+        if every is not None and longest < every < card["T"]:
+            message = f"rows every {every:g} {unit} do not show {first}"
+            hint = f"EVERY is a time in {unit}; peaks are found between the rows, too"
+            out.append(Diagnostic("P365", message, model.output.place("EVERY"), hint, "warning"))
     return out
 
 
@@ -141,19 +143,34 @@ class Part:
         """First period along x, by the quotient of Rayleigh of the sag under its weight along x [T]; 0
         where there is none.
         """
-        if self.held.slack.shape[1] or self.held.negative is not None:
-            return 0.0
-        push = self.structure.ground[0, self.columns]
-        own = self.structure.mass[: self.structure.n_free, : self.structure.n_free]
-        with np.errstate(all="ignore"):
-            try:
-                sag = self.factors * self.held.solve(self.factors * push)
-            except np.linalg.LinAlgError:
-                return 0.0
-            inertia = float(sag @ (own[self.columns][:, self.columns] @ sag))
-            work = float(push @ sag)
+        push, inertia = self.structure.ground[0, self.columns], self._form(self.structure.mass)
+        work = float(push @ self.sag) if self.sag is not None else 0.0
         ratio = inertia / work if work > 0.0 else 0.0
         return 2.0 * math.pi * math.sqrt(ratio) if 0.0 < ratio < math.inf else 0.0
+
+    def damped(self, damping: Matrix) -> float:
+        """Share of critical damping that a matrix over all columns gives this motion; 0 without period."""
+        inertia, t1 = self._form(self.structure.mass), self.period()
+        return self._form(damping) * t1 / (4.0 * math.pi * inertia) if t1 else 0.0
+
+    @cached_property
+    def sag(self) -> Array | None:
+        """Displacements of `columns` under its weight along x; None for a mechanism."""
+        if self.held.slack.shape[1] or self.held.negative is not None:
+            return None
+        with np.errstate(all="ignore"):
+            try:
+                push = self.structure.ground[0, self.columns]
+                return np.asarray(self.factors * self.held.solve(self.factors * push))
+            except np.linalg.LinAlgError:
+                return None
+
+    def _form(self, matrix: Matrix) -> float:
+        """Quadratic form of the sag and a matrix over all columns; 0 for a mechanism."""
+        if self.sag is None:
+            return 0.0
+        with np.errstate(all="ignore"):
+            return float(self.sag @ (matrix[self.columns][:, self.columns] @ self.sag))
 
 
 def _allowed(structure: Structure, slack: Array) -> Flags:

@@ -7,7 +7,7 @@ make it far deeper than its building is large, or so thin that nothing could be 
 from __future__ import annotations
 
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 from statistics import median
 from typing import Final
@@ -23,12 +23,17 @@ MEMBERS: Final = ("FRAME", "BEAM_COLUMN")
 #: is wide and high does not stand in it
 DEEPEST: Final = 5.0
 USUAL: Final = (1.0 / 50.0, 1.0 / 3.0)  #: depth over length of ordinary members
+ALONG: Final = 0.999  #: cosine of the angle by which a member that lies may slope
 SLENDER: Final = 1.0 / 40.0  #: depth over length; floor slabs have no less
 LONGEST: Final = 6.0  #: length over that of the middle one of its kind; a slip of a digit makes it ten
 #: M h/(E I) at yield, twice the strain of the outer fibre; sections of concrete, steel or timber have
 #: 0.0005 to 0.01, so that a factor of a thousand is beyond these limits
 LEAST_STRAIN, MOST_STRAIN = 2e-5, 0.1
 MOST_ROTATION: Final = 0.2  #: at yield [rad]; joints of timber have 0.05
+FAR: Final = 2.0  #: depth over the size of a building; the stick of a whole building has less
+WIDEST: Final = 8.0  #: width over depth of a section
+MOST_HARDENING: Final = 0.2  #: share of the stiffness of a section that is left as it yields
+ROUNDING: Final = 1e-9  #: share of a length
 MOST_DUCTILITY: Final = 100.0  #: of the curvature of sections; members have less than 50
 
 
@@ -43,6 +48,13 @@ def length(model: Model, e: Element) -> float:
     return math.hypot(i.x - j.x, i.y - j.y)
 
 
+def lies(model: Model, e: Element) -> bool:
+    """Whether an element with two nodes lies."""
+    assert e.j is not None
+    i, j = model.nodes[e.i], model.nodes[e.j]
+    return abs(i.x - j.x) > ALONG * math.hypot(i.x - j.x, i.y - j.y)
+
+
 def misshapen(structure: Structure) -> list[Diagnostic]:
     """Sections and members of impossible proportions, once for each property set."""
     model, out = structure.model, dict[str, Diagnostic]()
@@ -52,19 +64,22 @@ def misshapen(structure: Structure) -> list[Diagnostic]:
         if not card["I"]:
             continue
         h, short = depth(card), min(members, key=lambda e: length(model, e))
-        if h > sizes[short.i] and (h > DEEPEST * length(model, short) or _exchanged(model, card, short)):
+        size, long = sizes[short.i], length(model, short)
+        if h > size and (h > DEEPEST * long or _exchanged(card, long, h / size)):
             out[label] = _too_deep(model, card, short, h)
             continue
-        found = _in_millimetres(model, card, members, sizes[short.i] ** 2)
+        found = _in_millimetres(model, card, members, size**2)
         found = found or _too_long(model, card, members, h)
         if found:
             out[label] = found
     return list(out.values())
 
 
-def _exchanged(model: Model, card: Card, e: Element) -> bool:
-    """Whether the section of a member becomes usual if A and I change places."""
-    return USUAL[0] <= math.sqrt(12.0 * card["A"] / card["I"]) / length(model, e) <= USUAL[1]
+def _exchanged(card: Card, long: float, beyond: float) -> bool:
+    """Whether the section of a member of a length, `beyond` times as deep as its building is large, becomes
+    usual if A and I change places.
+    """
+    return beyond > FAR and USUAL[0] <= math.sqrt(12.0 * card["A"] / card["I"]) / long <= USUAL[1]
 
 
 def kinds(model: Model) -> dict[str, list[Element]]:
@@ -96,18 +111,25 @@ def _too_deep(model: Model, card: Card, e: Element, h: float) -> Diagnostic:
 
 
 def _in_millimetres(model: Model, card: Card, members: list[Element], face: float) -> Diagnostic | None:
-    """An area in mm^2 in a deck in m, larger than the `face` of the building [L^2], beside I in m^4.
+    """An area in mm^2 or cm^2 in a deck in m, larger than the `face` of the building [L^2], beside I in
+    m^4.
 
     A large area alone may be that of a member without axial deformation; only one that becomes usual by
     that factor is told.
     """
     middle = median(length(model, e) for e in members)
-    true = 1e3 * depth(card) / middle
-    if model.units.length.lower() != "m" or card["A"] < face or not USUAL[0] <= true <= USUAL[1]:
+    if model.units.length.lower() != "m" or card["A"] < face:
         return None
-    message = f"A of {card.label} is {card['A']:g} m^2, but I makes the section {depth(card):.1g} m deep"
-    hint = f"{card['A']:g} mm^2 are {1e-6 * card['A']:g} m^2; leave it if no axial deformation is meant"
-    return Diagnostic("P352", message, card.place("A"), hint, "warning")
+    for unit, factor in (("mm", 1e-3), ("cm", 1e-2)):
+        high, area = depth(card) / factor, factor**2 * card["A"]
+        if USUAL[0] <= high / middle <= USUAL[1] and area <= WIDEST * high**2:
+            message = (
+                f"A of {card.label} is {card['A']:g} m^2, but I makes the section {depth(card):.1g} m deep"
+            )
+            hint = f"{card['A']:g} {unit}^2 are {area:g} m^2; leave it if no axial "
+            hint += "deformation is meant"
+            return Diagnostic("P352", message, card.place("A"), hint, "warning")
+    return None
 
 
 def _too_long(model: Model, card: Card, members: list[Element], h: float) -> Diagnostic | None:
@@ -123,14 +145,23 @@ def _too_long(model: Model, card: Card, members: list[Element], h: float) -> Dia
 
 
 def doubled(structure: Structure) -> list[Diagnostic]:
-    """Members of one property set between the same two nodes."""
-    model, first, out = structure.model, dict[tuple[str, frozenset[int]], Element](), list[Diagnostic]()
+    """Members between the same two nodes, but those of a set whose members all stand beside others, as the
+    jackets of columns do.
+    """
+    model, first, out = structure.model, dict[frozenset[int], Element](), list[Diagnostic]()
+    beside = Counter(frozenset((e.i, e.j)) for members in kinds(model).values() for e in members)
+    added = {
+        label
+        for label, members in kinds(model).items()
+        if all(beside[frozenset((e.i, e.j))] > 1 for e in members)
+    }
     for e in (e for members in kinds(model).values() for e in members):
         assert e.j is not None
-        other = first.setdefault((e.prop, frozenset((e.i, e.j))), e)
-        if other is not e:
-            message = f"members {other.id} and {e.id} of {e.prop} join the same nodes, {e.i} and {e.j}"
-            hint = "take one out; of two members side by side, write one with twice their A and I"
+        other = first.setdefault(frozenset((e.i, e.j)), e)
+        if other is not e and (e.prop == other.prop or added.isdisjoint((e.prop, other.prop))):
+            of = f" of {e.prop}" if e.prop == other.prop else f", {other.prop} and {e.prop},"
+            message = f"members {other.id} and {e.id}{of} join the same nodes, {e.i} and {e.j}"
+            hint = "take one out, unless two members stand side by side"
             out.append(Diagnostic("P354", message, e.span, hint, "warning"))
     return out
 
@@ -142,6 +173,9 @@ def misjudged(structure: Structure) -> list[Diagnostic]:
     Such ones may be rigid until they yield, so that neither a small strain nor a large ductility is told.
     """
     model, out = structure.model, dict[str, Diagnostic]()
+    for label, members in kinds(model).items():
+        for d in _long_hinges(model, label, members):
+            out[label] = d
     for spring in structure.laws:
         element = model.elements[spring.element]
         card = model.props[element.prop]
@@ -158,6 +192,28 @@ def misjudged(structure: Structure) -> list[Diagnostic]:
         for d in found:
             out.setdefault(card.label, d)
     return list(out.values())
+
+
+def _long_hinges(model: Model, label: str, members: list[Element]) -> Iterator[Diagnostic]:
+    """Hinges at both ends that together are longer than the middle one of their members, or that harden as
+    nothing does.
+    """
+    card, e = model.props[label], sorted(members, key=lambda e: length(model, e))[len(members) // 2]
+    both = card.values.get("HINGES") == "BOTH" or None not in (card.values.get("MI"), card.values.get("MJ"))
+    hinges, long, unit = card.values.get("LP"), length(model, e), model.units.length
+    if hinges and both and sum((*hinges, *hinges)[:2]) > long * (1.0 + ROUNDING):
+        one, other = (*hinges, *hinges)[:2]
+        message = (
+            f"the hinges of {label} are {one:g} and {other:g} {unit} long, but member {e.id} is {long:g} "
+            f"{unit}"
+        )
+        hint = f"LP is in {unit}: half the depth of the section is usual"
+        yield Diagnostic("P355", message, card.place("LP"), hint, "warning")
+    hardening = card.values.get("R")
+    if hinges and hardening is not None and hardening >= MOST_HARDENING:
+        message = f"hinges of {label} keep R={hardening:g} of the stiffness of the section as they yield"
+        hint = f"R is a share: {hardening:g} % is R={hardening / 100.0:g}; 0.01 to 0.05 are usual"
+        yield Diagnostic("P355", message, card.place("R"), hint, "warning")
 
 
 def _strain(

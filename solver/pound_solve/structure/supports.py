@@ -107,6 +107,20 @@ def some(nodes: Sequence[int], most: int = 6) -> str:
     return ", ".join(map(str, nodes[:most])) + ", ..." * (len(nodes) > most)
 
 
+def left_behind(structure: Structure) -> list[Diagnostic]:
+    """Feet of buildings that stand still while SUPPORTS move other feet of the same building."""
+    model, out = structure.model, list[Diagnostic]()
+    cards = [c for c in model.equake if c["SUPPORTS"] is not None and c["DIRECTION"] != "Y"]
+    moved = {n for c in cards for n in c["SUPPORTS"]}
+    for b in buildings(structure) if moved else ():
+        still = [n for n in b.feet if "X" in model.nodes[n].fixed and n not in moved]
+        if still and not moved.isdisjoint(b.feet):
+            message = f"no motion has node {some(still)} of {b.name!r} among its SUPPORTS: it stands still"
+            hint = "name all feet of the building, or leave SUPPORTS out, which moves the whole base"
+            out.append(Diagnostic("P372", message, cards[0].place("SUPPORTS"), hint, "warning"))
+    return out
+
+
 def _shift(structure: Structure, d: int) -> Array:
     """Unit rigid-body displacement of the free DOFs along direction `d`; the supports stay."""
     motions = _moved(structure, dict.fromkeys(structure.model.nodes, np.eye(3)[:, [d]]), 1)[:, 0]

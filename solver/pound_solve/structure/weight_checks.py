@@ -1,4 +1,4 @@
-"""Weights, strengths and loads against the structure that bears them."""
+"""Weights and strengths against the structure that bears them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Element, Model
 from pound_solve.loading.motions.base import METRE
 from pound_solve.structure.buildings import SAME_LEVEL, Building, buildings, stands
-from pound_solve.structure.member_checks import MEMBERS, USUAL, depth, length
+from pound_solve.structure.member_checks import MEMBERS, USUAL, depth, kinds, length, lies
 from pound_solve.structure.structure import Structure
 from pound_solve.structure.supports import shaken
 
@@ -21,6 +21,7 @@ NEWTON: Final[Mapping[str, float]] = MappingProxyType(
 #: modulus of elasticity from and to [Pa], and weight by volume [N/m^3], of concrete and of steel
 MATERIALS: Final = ((15e9, 60e9, 24e3), (180e9, 220e9, 77e3))
 EARTH: Final = 9.81  #: [m/s^2]
+SPUN: Final = 0.1  #: share of gravity by which that of a model in a centrifuge differs at least
 #: share of the bare beams and columns in all weight; slabs and walls make it 0.1 to 0.45, and masses in
 #: place of weights ten times that
 BARE: Final = 0.6
@@ -32,10 +33,13 @@ LOWEST, HIGHEST = 0.1, 1000.0  #: height of a building or a model of one [m]
 
 
 def outsized(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
-    """Names of buildings lower than a model on a shaking table, or higher than any."""
+    """Names of buildings lower than a model on a shaking table, or higher than any; those in a centrifuge
+    have another gravity.
+    """
     model = structure.model
     metre = METRE.get(model.units.length.lower())
-    for b in _standing(structure) if metre else ():
+    spun = metre and not math.isclose(model.gravity, EARTH * metre, rel_tol=SPUN)
+    for b in _standing(structure) if metre and not spun else ():
         high = (max(model.nodes[n].y for n in b.nodes) - b.base) / (metre or 1.0)
         if high > 0.0 and not LOWEST <= high <= HIGHEST:
             message = f"{b.name!r} is {high:.3g} m high"
@@ -47,12 +51,13 @@ def misweighed(structure: Structure) -> Iterator[tuple[str, Diagnostic]]:
     """Names of buildings of members that weigh hardly more than these, or more than their columns bear."""
     model = structure.model
     force, metre = NEWTON.get(model.units.force.lower()), METRE.get(model.units.length.lower())
+    beams = {e.i for members in kinds(model).values() for e in members if lies(model, e)}
     for b in _standing(structure) if force and metre else ():
         assert force and metre
         weight = b.mass * force * metre * EARTH
         bare = _bare_weight(model, b, force * metre**2, metre)
         strain = _strain(model, b, weight / force)
-        if bare > BARE * weight:
+        if bare > BARE * weight and beams & set(b.nodes):
             told = (
                 f"weighs {weight / force:.3g} {model.units.force}, but its beams and columns alone weigh "
                 f"{bare / force:.3g} {model.units.force} by A and E"
@@ -142,19 +147,32 @@ def misarmed(structure: Structure) -> list[Diagnostic]:
     return out
 
 
-def lifted(structure: Structure) -> list[Diagnostic]:
-    """Buildings that LOADS pull upwards on the whole, though P-Delta is asked for."""
-    model, out = structure.model, list[Diagnostic]()
-    loads = [c for c in model.loads if c.spec.name == "LOADS"]  # not those that weights make
-    for b in _standing(structure) if model.geometry != "SMALL" else ():
-        own = frozenset(b.nodes)
-        up = sum(c["FY"] for c in loads for n in c["NODES"] if n in own)
-        if up > 0.0:
-            card = next(c for c in loads if c["FY"] > 0.0 and own & set(c["NODES"]))
-            message = f"LOADS pull {b.name!r} upwards by {up:g} {model.units.force}"
-            hint = "loads that press are negative: Y and FY point upwards"
-            out.append(Diagnostic("P364", message, card.place("FY"), hint, "warning"))
-    return out
+def far(structure: Structure) -> list[Diagnostic]:
+    """Springs weaker than the weight that yield at a deformation beyond the height of their building."""
+    model, out = structure.model, dict[str, Diagnostic]()
+    high = {n: b for b in _standing(structure) for n in b.nodes}
+    for s in structure.laws:
+        e = model.elements[s.element]
+        b, card = high.get(e.i), model.props[e.prop]
+        if (
+            b is None
+            or card.spec.name != "SPRING"
+            or s.unit != "F"
+            or s.yields is None
+            or s.strengths is None
+        ):
+            continue
+        at, strength = (max(map(abs, pair)) for pair in (s.yields, s.strengths))
+        tall = max(model.nodes[n].y for n in b.nodes) - b.base
+        if tall < at < math.inf and strength < b.mass * model.gravity:
+            unit = model.units.length
+            message = (
+                f"springs of {card.label} yield at {at:.3g} {unit}; {b.name!r} is {tall:.3g} {unit} high"
+            )
+            item = f"F{s.component}" if card.values.get(f"F{s.component}") is not None else "RULE"
+            hint = f"stiffnesses are in {model.units.text('F/L')}, strengths in {model.units.force}"
+            out.setdefault(e.prop, Diagnostic("P363", message, card.place(item), hint, "warning"))
+    return list(out.values())
 
 
 def _standing(structure: Structure) -> Iterator[Building]:

@@ -118,7 +118,8 @@ class Motion:
     info : mapping
         For the report: ``kind name file format component npts dt unit scale start duration pga t_pga
         pgv pgd sha256 warnings notes`` and items of the kind's own; `warnings` doubt the size of the
-        motion, `notes` tell where a file contradicts its header.
+        motion, `notes` tell where a file contradicts its header, `cuts` doubt what of it acts and
+        how fast: words, item of the card, cure.
     closed : pair of callables, or None
         Make velocity and displacement, where the kind has a closed form; they are not kept, because few
         decks request them.
@@ -191,6 +192,7 @@ def finish(
     velocity0: float = 0.0,
     displacement0: float = 0.0,
     closed: Closed | None = None,
+    weakest: float | None = None,
 ) -> Motion:
     """Motion with the common items of its card, its peaks and the warnings about them.
 
@@ -206,6 +208,8 @@ def finish(
     velocity0, displacement0 : float, [L/T], [L]
     closed : pair of callables, optional
         See `Motion`.
+    weakest : float, optional
+        Share of gravity below which the peak is doubted.
 
     Raises
     ------
@@ -230,7 +234,11 @@ def finish(
     strength = abs(pga) / context.gravity
     # a factor of zero is a motion switched off on purpose; a rotation is no share of gravity
     unit = str(info.get("unit") or "")  # of a record alone
-    if scale != 0 and bare.direction != "R" and not _WEAK <= strength <= (_RARE if unit else _STRONG):
+    if (
+        scale != 0
+        and bare.direction != "R"
+        and not (_WEAK if weakest is None else weakest) <= strength <= (_RARE if unit else _STRONG)
+    ):
         other = _likely_unit(strength, unit, context)
         warnings.append(f"peak ground acceleration is {strength:.3g} g; {other}check UNIT and SCALE")
     peaks = {

@@ -17,6 +17,7 @@ import numpy as np
 
 from pound_deck.schema import Field, Kind, Spec
 from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, finish
+from pound_solve.loading.motions.doubts import mispaced
 from pound_solve.loading.records import formats
 from pound_solve.loading.records.base import RawRecord, RecordError
 from pound_solve.loading.records.known import find, known, load
@@ -128,8 +129,23 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
             "sha256": found.sha256,
             "warnings": warnings,
             "notes": raw.notes,
+            "cuts": _cuts(raw, card_values),
         },
+        weakest=_USED if raw.unit is None and scale == 1.0 else None,
     )
+
+
+def _cuts(raw: RawRecord, card_values: Mapping[str, Any]) -> tuple[tuple[str, str, str], ...]:
+    """Doubts whether the strong part of a record acts, and whether its step is right."""
+    whole = Piecewise.from_samples(raw.t, raw.values)
+    start, out = float(card_values.get("START", 0.0)), list[tuple[str, str, str]]()
+    at, _ = whole.peak()
+    if card_values.get("DURATION") is None and at < start:
+        told = f"START={start:g} cuts off the peak of the record, at {at:.4g} s"
+        out.append((told, "START", "give an earlier START, or a DURATION to the part that is meant"))
+    if card_values.get("DT") is not None and (wrong := mispaced(whole)):
+        out.append((wrong, "DT", "DT is the time from one sample to the next in s"))
+    return tuple(out)
 
 
 def _lines(text: str, span: tuple[int, int] | None) -> str:
@@ -184,6 +200,8 @@ def step(raw: RawRecord) -> float | None:
     # nine digits: 0.02 shall not come out as 0.019999999999999997
     return float(f"{mean:.9g}") if np.abs(steps - mean).max() <= 0.01 * mean else None
 
+
+_USED: Final = 0.05  #: share of gravity that a record has which someone uses as it stands
 
 #: what of a file acts, and when
 FIELDS: Final = (

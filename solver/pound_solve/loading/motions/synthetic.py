@@ -26,6 +26,8 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.loading.motions.base import COMMON, LoadingContext, Motion, Piecewise, RecordError, finish
 from pound_solve.numerics.types import Array
 
+LIKE_G: Final = (0.1, 1.2)  #: numbers that are shares of gravity of earthquakes
+WEAK: Final = 0.06  #: the same, below which an earthquake does nothing
 MOST_SAMPLES: Final = 10_000_000
 
 
@@ -55,8 +57,15 @@ def build(card_values: Mapping[str, Any], context: LoadingContext) -> Motion:
     a = np.fft.irfft(np.fft.rfft(noise) * transfer(w, wg, zg, wf, zf), n)
     a *= envelope(t, float(card_values["RISE"]), float(card_values["STRONG"]), float(card_values["DECAY"]))
     a *= float(card_values["PGA"]) / np.abs(a).max()
-    facts = {"seed": seed, "wg": wg, "zg": zg, "wf": wf, "zf": zf}
+    facts = {"seed": seed, "wg": wg, "zg": zg, "wf": wf, "zf": zf, "cuts": _cuts(card_values)}
     return of_samples(SPEC, card_values, context, t, a, facts)
+
+
+def _cuts(card_values: Mapping[str, Any]) -> tuple[tuple[str, str, str], ...]:
+    """Doubts whether the strong part has room."""
+    rise, duration = float(card_values["RISE"]), float(card_values["DURATION"])
+    told = f"the motion ends at DURATION={duration:g}, within its RISE={rise:g}"
+    return () if rise < duration else ((told, "DURATION", "give DURATION room for RISE and STRONG"),)
 
 
 def of_samples(
@@ -76,8 +85,19 @@ def of_samples(
         "dt": float(card_values["DT"]),
         "start": 0.0,
     }
-    scaled = Piecewise.from_samples(t, a * float(card_values.get("SCALE", 1.0)))
-    return finish(card_values, scaled, context, own | dict(facts))
+    scale = float(card_values.get("SCALE", 1.0))
+    doubts = _in_g(card_values.get("PGA"), context) if scale == 1.0 else ()
+    own["warnings"] = doubts
+    return finish(card_values, Piecewise.from_samples(t, a * scale), context, own | dict(facts))
+
+
+def _in_g(pga: float | None, context: LoadingContext) -> tuple[str, ...]:
+    """Doubt whether a weak peak [L/T^2] is meant as a share of gravity."""
+    round_number = pga is not None and float(f"{pga:.2g}") == pga
+    if pga is None or not round_number or not LIKE_G[0] <= pga <= min(LIKE_G[1], WEAK * context.gravity):
+        return ()
+    told = f"PGA={pga:g} is {pga / context.gravity:.2g} g: PGA is no share of gravity"
+    return (f"{told}; {pga:g} g is PGA={pga * context.gravity:.4g}",)
 
 
 def samples(card_values: Mapping[str, Any]) -> Array:

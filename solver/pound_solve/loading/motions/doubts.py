@@ -1,0 +1,52 @@
+"""Records that are stretched beyond what earthquakes are: their step is another."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from pound_solve.loading.intensity import significant_duration
+from pound_solve.loading.motions.piecewise import Piecewise
+
+#: mean time between every second crossing of zero within the significant duration [s]: rock has 0.05 to
+#: 0.2, firm soil 0.2 to 0.5, the bed of a lake 2
+FASTEST, SLOWEST = 0.03, 1.5
+#: the same times the significant duration [s^2]: 40 s of 2 s, or 150 s of 0.4 s; it grows with the square
+#: of a step that is too long
+LONGEST: Final = 130.0
+FEWEST: Final = 100  #: samples of a record of which this is known
+
+
+def pace(acceleration: Piecewise) -> tuple[float, float]:
+    """Mean period by crossings of zero within the significant duration, and this duration [T].
+
+    Parameters
+    ----------
+    acceleration : Piecewise
+        Straight lines between samples.
+
+    Returns
+    -------
+    period, duration : float, [T]
+        Zeros for fewer than `FEWEST` samples, or where it does not cross zero.
+    """
+    duration = significant_duration(acceleration)
+    values = acceleration.coefs[0]
+    strong = values[
+        np.abs(values) > 0.05 * np.abs(values).max(initial=0.0)
+    ]  # a drifting line counts nothing
+    if len(values) < FEWEST or not duration > 0.0 or not len(strong):
+        return 0.0, 0.0
+    turns = int(np.count_nonzero(np.diff(np.sign(strong))))
+    return (2.0 * duration / turns, duration) if turns else (0.0, 0.0)
+
+
+def mispaced(acceleration: Piecewise) -> str:
+    """What is wrong with the step of a record, in words; empty where nothing is."""
+    period, duration = pace(acceleration)
+    if 0.0 < period < FASTEST:
+        return f"the record swings every {period:.2g} s for {duration:.2g} s: hard rock has 0.05 s"
+    if period > SLOWEST and period * duration > LONGEST:
+        return f"the record swings every {period:.2g} s for {duration:.2g} s: lake beds have 2 s for 40 s"
+    return ""

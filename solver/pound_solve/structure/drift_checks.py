@@ -1,0 +1,32 @@
+"""Drifts that are those of no storey."""
+
+from __future__ import annotations
+
+from pound_deck.diagnostics import Diagnostic
+from pound_solve.structure.buildings import buildings
+from pound_solve.structure.structure import Structure
+
+
+def misdrawn(structure: Structure) -> list[Diagnostic]:
+    """Drifts between nodes of two buildings, or from the upper node to the lower one.
+
+    Those with a HEIGHT of their own may be the distance of two buildings, and so may those of nodes at one
+    height.
+    """
+    nodes, out = structure.model.nodes, list[Diagnostic]()
+    of = {n: b.name for b in buildings(structure) for n in b.nodes}
+    for card in structure.model.drifts:
+        i, j = card["I"], card["J"]
+        rise = nodes[j].y - nodes[i].y
+        if card["HEIGHT"] is not None or not rise or not {i, j} <= of.keys():
+            continue
+        if of[i] != of[j]:
+            message = f'drift "{card.label}" is that of node {j} of {of[j]!r} against node {i} of {of[i]!r}'
+            hint = "name two nodes of one building; a distance of buildings takes a HEIGHT"
+        elif rise < 0.0:
+            message = f'drift "{card.label}" is that of node {j} below against node {i} above'
+            hint = "exchange I and J: the lower node comes first"
+        else:
+            continue
+        out.append(Diagnostic("P367", message, card.place("J"), hint, "warning"))
+    return out

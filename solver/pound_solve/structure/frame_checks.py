@@ -1,0 +1,187 @@
+"""Members and buildings that are missing, out of place or given twice, by what stands around them."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator
+from functools import partial
+from itertools import pairwise
+from statistics import median
+from typing import Final
+
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Element, Model
+from pound_solve.structure.buildings import Building, Floor, buildings, joints, parts, stands
+from pound_solve.structure.loose_ends import places
+from pound_solve.structure.member_checks import kinds, length, lies
+from pound_solve.structure.structure import Structure
+from pound_solve.structure.supports import shaken, some
+
+SHORTEST: Final = 0.25  #: height of a storey over the middle one of its columns
+
+_warn = partial(Diagnostic, severity="warning")
+
+
+def ill_framed(structure: Structure) -> list[Diagnostic]:
+    """Buildings that lie on others, and members that are missing or slope by mistake."""
+    model = structure.model
+    if not shaken(model):
+        return []
+    out = list(_upon(model))
+    lines = Lines(model)
+    for b in buildings(structure):
+        if stands(model, b.nodes):
+            out += [*_without_column(lines, b), *_without_beam(lines, b), *_past(lines, b)]
+    return out + list(_sloping(model)) + list(_low(structure))
+
+
+def _upon(model: Model) -> Iterator[Diagnostic]:
+    """Frames all of whose nodes lie on those of another one."""
+    _, at = places(model)
+    first: dict[int, int] = {}
+    frames = [p for p in parts(model) if stands(model, p) and len({model.nodes[n].x for n in p}) > 1]
+    covers = [frozenset(at[n] for n in p) for p in frames]
+    for k, (nodes, own) in enumerate(zip(frames, covers)):
+        below = next((i for i in {first.get(a, k) for a in own} if i != k and own <= covers[i]), k)
+        if below != k:
+            message = (
+                f"the frame of nodes {some(nodes)} lies upon that of nodes {some(frames[below])}: each of "
+                "its nodes is at the place of one of the other"
+            )
+            hint = "move it by its X under NODES, or take it out if it is given twice"
+            yield _warn("P371", message, model.nodes[nodes[0]].span, hint)
+        for a in own:
+            first.setdefault(a, k)
+
+
+class Lines:
+    """Members that lie and members that stand, by their nodes.
+
+    Attributes
+    ----------
+    model : Model
+    beams, up, down : mapping of int to list of Element
+        At every node: those that lie, and all elements that lead upwards and downwards.
+    joined : set of frozenset of int
+        Pairs of nodes that elements join.
+    grounded : set of int
+        Nodes on elements that end at the ground.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.beams, self.up, self.down = (defaultdict[int, list[Element]](list) for _ in range(3))
+        self.joined = {frozenset(pair) for pair in joints(model)}
+        self.grounded = {e.i for e in model.elements.values() if e.j is None}
+        for e in model.elements.values():
+            if e.j is None or model.props[e.prop].spec.name == "CONTACT":
+                continue
+            i, j = model.nodes[e.i], model.nodes[e.j]
+            if lies(model, e):
+                self.beams[e.i].append(e)
+                self.beams[e.j].append(e)
+            elif i.y != j.y:
+                low, high = (e.i, e.j) if i.y < j.y else (e.j, e.i)
+                self.up[low].append(e)
+                self.down[high].append(e)
+
+    def held(self, n: int) -> bool:
+        """Whether a node is a support, or hangs on a master or on the ground."""
+        node = self.model.nodes[n]
+        return "Y" in node.fixed or "Y" in node.slaved or n in self.grounded
+
+    def end(self, n: int) -> bool:
+        """Whether beams lead from a node to one side only, and nothing leads down from it."""
+        x = self.model.nodes[n].x
+        ways = {self.model.nodes[m].x > x for e in self.beams[n] for m in (e.i, e.j) if m not in (n, None)}
+        return len(ways) == 1 and not self.down[n]
+
+
+def _without_column(lines: Lines, b: Building) -> Iterator[Diagnostic]:
+    """Ends of beams above a column that ends below them."""
+    nodes = lines.model.nodes
+    upright = defaultdict[float, list[int]](list)
+    for n in sorted(b.nodes, key=lambda n: nodes[n].y):
+        upright[nodes[n].x].append(n)
+    for line in upright.values():
+        for below, n in pairwise(line):
+            ends = (lines.down[below] or "Y" in nodes[below].fixed) and not lines.up[below]
+            if ends and lines.end(n) and not lines.held(n):
+                message = (
+                    f"nothing stands below node {n} of {b.name!r}, where a beam ends, but node {below} is "
+                    "right below it"
+                )
+                yield _warn("P375", message, nodes[n].span, f"is a column missing from {below} to {n}?")
+
+
+def _without_beam(lines: Lines, b: Building) -> Iterator[Diagnostic]:
+    """Pairs of columns without a beam between them, though one joins them at the floor below."""
+    for below, floor in pairwise(b.floors):
+        for left, right in pairwise(_by_x(lines.model, floor)):
+            feet = [_foot(lines, n, below) for n in (left, right)]
+            free = not any(lines.beams[n] or lines.model.nodes[n].slaved for n in (left, right))
+            tied = frozenset((left, right)) in lines.joined
+            if free and not tied and None not in feet and frozenset(feet) in lines.joined:
+                message = (
+                    f"no beam joins nodes {left} and {right} of {b.name!r}, as one joins {feet[0]} and "
+                    f"{feet[1]} below them"
+                )
+                yield _warn("P375", message, lines.model.nodes[left].span, "is a beam missing?")
+
+
+def _past(lines: Lines, b: Building) -> Iterator[Diagnostic]:
+    """Elements that pass a node from which nothing leads up."""
+    nodes = lines.model.nodes
+    ends = [n for n in b.nodes if lines.down[n] and not lines.up[n] and n not in lines.grounded]
+    for n in ends:
+        for other in (m for m in b.nodes if nodes[m].x == nodes[n].x and nodes[m].y > nodes[n].y):
+            for e in lines.down[other]:
+                foot = nodes[e.i if e.j == other else e.j or e.i]
+                if foot.x == nodes[n].x and foot.y < nodes[n].y:
+                    message = f"element {e.id} passes node {n} of {b.name!r}, from which nothing leads up"
+                    yield _warn("P375", message, e.span, f"should it end at node {n}?")
+
+
+def _by_x(model: Model, floor: Floor) -> list[int]:
+    return sorted(floor.nodes, key=lambda n: model.nodes[n].x)
+
+
+def _foot(lines: Lines, n: int, floor: Floor) -> int | None:
+    """Node of a floor on which the only column below a node stands."""
+    lower = {m for e in lines.down[n] for m in (e.i, e.j) if m != n}
+    return lower.pop() if len(lower) == 1 and lower <= set(floor.nodes) else None
+
+
+def _sloping(model: Model) -> Iterator[Diagnostic]:
+    """The one beam of a property set that slopes, where at least two others lie and none stands."""
+    for members in kinds(model).values():
+        flat = [e for e in members if lies(model, e)]
+        others = [e for e in members if not lies(model, e)]
+        if len(others) != 1 or len(flat) < 2:
+            continue
+        (e,) = others
+        assert e.j is not None
+        i, j = model.nodes[e.i], model.nodes[e.j]
+        slope = math.degrees(math.atan2(abs(j.y - i.y), abs(j.x - i.x)))
+        if slope < 45.0:
+            message = f"member {e.id} slopes by {slope:.3g} degrees, all others of {e.prop} lie"
+            hint = f"correct its nodes, {e.i} and {e.j}, or their heights under NODES"
+            yield _warn("P375", message, e.span, hint)
+
+
+def _low(structure: Structure) -> Iterator[Diagnostic]:
+    """Columns between floors that are far shorter than others of their kind."""
+    model = structure.model
+    floors = {n for b in buildings(structure) for floor in b.floors for n in floor.nodes}
+    for label, members in kinds(model).items():
+        high = [e for e in members if model.nodes[e.i].x == model.nodes[e.j or e.i].x]
+        short = [e for e in high if {e.i, e.j} <= floors]
+        if not short:
+            continue
+        e, middle = min(short, key=lambda e: length(model, e)), median(length(model, e) for e in high)
+        own, unit = length(model, e), model.units.length
+        if own < SHORTEST * middle:
+            message = f"column {e.id} is {own:.3g} {unit} high, others of {label} {middle:.3g} {unit}"
+            hint = f"correct the height of node {e.i} or {e.j} under NODES"
+            yield _warn("P353", message, e.span, hint)

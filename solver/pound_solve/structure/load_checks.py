@@ -1,0 +1,152 @@
+"""Static loads against the weights of the buildings that bear them."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from typing import Final, NamedTuple
+
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Card, Model
+from pound_solve.structure.buildings import SAME_LEVEL, Building, buildings, stands
+from pound_solve.structure.member_checks import length
+from pound_solve.structure.structure import Structure
+from pound_solve.structure.supports import shaken, some
+
+#: of loads along x over the weight; a pushover load that is left in the deck may be more
+SIDEWAYS: Final = 0.5
+#: of loads downwards over the weight, apart from which they have other units; columns that lean on the
+#: building may bear several times what it does
+LIGHTEST, HEAVIEST = 0.01, 8.0
+TWICE: Final = (0.7, 1.4)  #: of the same beside the weight itself, which they repeat
+SEVERAL: Final = 3  #: floors of a building one of which may lack its load
+PRESSES: Final = 0.1  #: the same of the floors that bear loads beside one without any
+
+
+class Load(NamedTuple):
+    """A force on a node [F], and the card that makes it, with its item along y."""
+
+    node: int
+    x: float
+    y: float
+    card: Card
+    item: str
+
+
+def given(model: Model) -> Iterator[Load]:
+    """Forces of LOADS that stay and of MEMBER_LOADS, half of these at either end."""
+    for c in model.loads:
+        if c.spec.name == "LOADS" and c["HELD"] == "YES":  # not those that weights make
+            yield from (Load(n, c["FX"], c["FY"], c, "FY") for n in c["NODES"])
+    for c in model.member_loads:
+        item = "WY" if c["WY"] else "PY"
+        for e in (model.elements[k] for k in c["ELEMENTS"]):
+            long = length(model, e)
+            x, y = c["PX"] + c["WX"] * long, c["PY"] + c["WY"] * long
+            yield from (Load(n, x / 2.0, y / 2.0, c, item) for n in (e.i, e.j) if n is not None)
+
+
+def weighty(model: Model) -> bool:
+    """Whether STATIC lets the weights press."""
+    return any(c.values.get("GRAVITY") == "YES" for c in model.analyses)
+
+
+def unloaded(structure: Structure) -> list[Diagnostic]:
+    """Buildings whose members take P-Delta into account, but bear no load."""
+    model, out = structure.model, list[Diagnostic]()
+    if not model.geometry.startswith("PDELTA") or not model.analyses or weighty(model):
+        return out
+    bent = {model.elements[g.element].i for g in structure.geometric}
+    loaded = {n for c in (*model.loads, *model.forces) for n in c["NODES"]}
+    loaded |= {load.node for load in given(model)}
+    for e in model.elements.values():
+        card = model.props[e.prop]
+        if card.values.get("N0") or (structure.self_weight and card.values.get("WGT")):
+            loaded.add(e.i)
+    found = [b for b in buildings(structure) if bent & set(b.nodes)]
+    idle = [b for b in found if loaded.isdisjoint(b.nodes)]
+    place = next((c for c in model.analyses if c.spec.name == "STATIC"), model.analyses[0]).span
+    for b in idle:
+        who = "the columns" if len(idle) == len(found) else f"the columns of {b.name!r}"
+        message = f"GEOMETRY {model.geometry}, but nothing loads {who}: their axial forces are zero"
+        hint = "add STATIC GRAVITY=YES, which lets the WEIGHTS press, or LOADS"
+        out.append(Diagnostic("P340", message, place, hint, "warning"))
+        if len(idle) == len(found):
+            break
+    return out
+
+
+def misloaded(structure: Structure) -> list[Diagnostic]:
+    """Buildings whose loads contradict their weight: the first contradiction of each."""
+    model, out = structure.model, list[Diagnostic]()
+    if not shaken(model):
+        return out
+    loads = defaultdict[int, list[Load]](list)
+    for load in given(model):
+        loads[load.node].append(load)
+    for b in buildings(structure):
+        own = [load for n in b.nodes for load in loads[n]]
+        if own and b.mass and stands(model, b.nodes):
+            out += next(filter(None, (look(structure, b, own) for look in LOOKS)), [])
+    return out
+
+
+def _lifted(structure: Structure, b: Building, own: list[Load]) -> list[Diagnostic]:
+    """Loads that pull upwards on the whole."""
+    up, unit = sum(load.y for load in own), structure.model.units.force
+    if up <= 0.0:
+        return []
+    load = max(own, key=lambda load: load.y)
+    message = f"loads pull {b.name!r} upwards by {up:.4g} {unit}"
+    hint = f"loads that press are negative: Y and {load.item} point upwards"
+    return [Diagnostic("P364", message, load.card.place(load.item), hint, "warning")]
+
+
+def _sideways(structure: Structure, b: Building, own: list[Load]) -> list[Diagnostic]:
+    """Loads along x of the size of the weight."""
+    model, push = structure.model, sum(load.x for load in own)
+    weight, unit = b.mass * model.gravity, model.units.force
+    if abs(push) < SIDEWAYS * weight:
+        return []
+    card = max(own, key=lambda load: abs(load.x)).card
+    message = f"loads push {b.name!r} sideways by {push:.4g} {unit}; it weighs {weight:.4g} {unit}"
+    hint = f"loads that press act along Y: {'FY' if card.spec.name == 'LOADS' else 'WY or PY'} below zero"
+    return [Diagnostic("P370", message, card.span, hint, "warning")]
+
+
+def _again(structure: Structure, b: Building, own: list[Load]) -> list[Diagnostic]:
+    """Loads that repeat the weight, or have other units."""
+    model, press = structure.model, -sum(load.y for load in own)
+    weight, unit = b.mass * model.gravity, model.units.force
+    if not press or not weight:
+        return []
+    load = min(own, key=lambda load: load.y)
+    told = f"loads press {b.name!r} by {press:.4g} {unit}"
+    if weighty(model) and TWICE[0] <= press / weight <= TWICE[1]:
+        message = f"{told}, and STATIC GRAVITY=YES by its weight, {weight:.4g} {unit}, once more"
+        hint = "leave one of them out: GRAVITY=YES turns WEIGHTS into loads"
+    elif not LIGHTEST <= press / weight <= HEAVIEST and not weighty(model):
+        message = f"{told}, {press / weight:.2g} of its weight, {weight:.4g} {unit}"
+        hint = f"loads are in {model.units.text('F')}, loads by length in {model.units.text('F/L')}"
+    else:
+        return []
+    return [Diagnostic("P370", message, load.card.place(load.item), hint, "warning")]
+
+
+def _forgotten(structure: Structure, b: Building, own: list[Load]) -> list[Diagnostic]:
+    """A floor without load, where the others bear loads of the size of their weights."""
+    model = structure.model
+    if weighty(model) or len(b.floors) < SEVERAL:
+        return []
+    close = SAME_LEVEL * (b.levels[-1] - b.base)
+    at = [[load for load in own if abs(model.nodes[load.node].y - f.level) <= close] for f in b.floors]
+    press = [-sum(load.y for load in a) / (f.mass * model.gravity) for a, f in zip(at, b.floors)]
+    bare = [f for f, p in zip(b.floors, press) if not p]
+    if len(bare) != 1 or any(0.0 < p < PRESSES for p in press):
+        return []
+    message = f"no load presses nodes {some(bare[0].nodes)} of {b.name!r}, as loads press its other floors"
+    hint = "load them, too, or their beams"
+    return [Diagnostic("P370", message, own[0].card.span, hint, "warning")]
+
+
+LOOKS: Final = (_lifted, _sideways, _again, _forgotten)

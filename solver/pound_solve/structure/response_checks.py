@@ -1,0 +1,99 @@
+"""What the first mode of a building tells: its damping, and contacts that are softer than it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Final
+
+from pound_deck.diagnostics import Diagnostic
+from pound_deck.model import Card, Model
+from pound_solve.structure.buildings import Building
+from pound_solve.structure.mechanisms import Part
+from pound_solve.structure.structure import Structure
+
+#: shares of critical damping of a first mode: by DAMPING, which materials and walls make 0.01 to 0.1, and
+#: by dashpots, where a snubber may hold what it joins to a building
+MOST_OWN, MOST_ADDED = 0.2, 10.0
+LEAST_ADDED: Final = 1e-3  #: by dashpots that someone wrote down
+#: a collision in which sound of 3500 m/s does not pass a column [s]
+BRIEFEST: Final = 1e-4
+RECORDS: Final = ("RECORD", "SYNTHETIC", "MATCHED")  #: earthquakes; others may be those of a textbook
+
+
+def misdamped(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+    """Buildings whose first mode is damped beyond sense, or not at all under an earthquake."""
+    model, out = structure.model, list[Diagnostic]()
+    blocks = [b for p in structure.parts.values() for b in p.damping]
+    added = structure.dofs.assembled((b.dofs, b.matrix) for b in blocks)
+    for b, part in found:
+        if not part.period():
+            continue
+        whole, own = part.damped(structure.initial_damping), part.damped(added)
+        by_cards = whole - own
+        place: Card | None = next(iter(model.damping), None)
+        dashpots = _dashpots(model, b)
+        if place and by_cards > MOST_OWN:
+            message = (
+                f"DAMPING gives the first mode of {b.name!r} {_percent(by_cards)} of critical: 5 % is usual"
+            )
+            hint = "XI is a share; ALPHA [1/T] and BETA [T] are factors of M and K, not shares"
+            out.append(Diagnostic("P373", message, place.span, hint, "warning"))
+        elif dashpots and own > MOST_ADDED:
+            message = (
+                f"dashpots give the first mode of {b.name!r} {_percent(own)} of critical: it does not swing"
+            )
+            hint = f"coefficients are in {model.units.text('F*T/L')}"
+            out.append(Diagnostic("P373", message, dashpots.place("CX"), hint, "warning"))
+        elif dashpots and 0.0 < own < LEAST_ADDED:
+            message = f"dashpots give the first mode of {b.name!r} no more than {_percent(own)} of critical"
+            hint = f"coefficients are in {model.units.text('F*T/L')}"
+            out.append(Diagnostic("P373", message, dashpots.place("CX"), hint, "warning"))
+        elif not whole and not model.damping and any(c.spec.name in RECORDS for c in model.equake):
+            message = f"nothing damps the first mode of {b.name!r}"
+            hint = "add DAMPING, such as RAYLEIGH XI=0.05 MODES=1,3; XI=0 says that none is meant"
+            out.append(Diagnostic("P373", message, model.nodes[b.feet[0]].span, hint, "warning"))
+    return out
+
+
+def _dashpots(model: Model, b: Building) -> Card | None:
+    """Property set of a dashpot of a building."""
+    own = frozenset(b.nodes)
+    cards = (model.props[e.prop] for e in model.elements.values() if e.i in own)
+    return next((card for card in cards if card.spec.name == "DASHPOT"), None)
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2g} %"
+
+
+def unlike_contacts(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+    """Contacts so soft that the weight of the bodies would press them by more than the height of their
+    buildings, or so stiff that a collision ends before it is felt behind the face: one for each property
+    set.
+    """
+    model, out = structure.model, dict[str, Diagnostic]()
+    tall = {n: max(model.nodes[m].y for m in b.nodes) - b.base for b, _ in found for n in b.nodes}
+    for s in structure.laws:
+        e = model.elements[s.element]
+        if not s.role.collides or s.facts.get("k_unit") != "F/L" or e.prop in out:
+            continue
+        m, k = s.facts["reduced_mass"], s.facts["k"]
+        high = max(tall.get(e.i, 0.0), tall.get(e.j or e.i, 0.0))
+        if not (m and k and high) or math.isinf(k):
+            continue
+        deep, half, unit = m * model.gravity / k, math.pi * math.sqrt(m / k), model.units
+        if deep > high:
+            message = (
+                f"the weight of the bodies at contact {e.name or e.id} would press it by {deep:.2g} "
+                f"{unit.length}: it stops nothing"
+            )
+        elif half < BRIEFEST and unit.time.lower() in ("s", "sec"):
+            message = (
+                f"a collision at contact {e.name or e.id} takes {half:.1g} {unit.time}: 0.001 s is brief"
+            )
+        else:
+            continue
+        card, hint = model.props[e.prop], f"K is in {model.units.text('F/L')}"
+        out[e.prop] = Diagnostic("P369", message, card.place("K"), hint, "warning")
+    return list(out.values())
