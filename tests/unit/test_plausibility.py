@@ -1,6 +1,7 @@
 """What no engineer would believe stands on the first page, and nothing calls it good."""
 
 import re
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 import pound_solve
 from decks import results_of, structure_of
-from pound_solve.analyses.plausibility import LARGEST_DRIFT, drifts
+from pound_solve.analyses.plausibility import LARGEST_DRIFT, drifts, lengths
 from pound_solve.check import looked
 from pound_solve.report.text import render
 from pound_solve.results.contents import SECTIONS
@@ -272,6 +273,44 @@ def test_a_bearing_is_no_storey(tmp_path):
         assert dict(results.table("overview").tolist())["largest drift ratio"].endswith(f", {name}")
         leans = "drift of building 1 storey 1 at the end" in looks(results)
         assert leans == (name == "bearing") and abs(results.history("storey/drift")[-1, 0]) > 0.005
+
+
+def test_a_slider_alone_is_no_storey(tmp_path):
+    """The storey above it has no line under DRIFT, but a height."""
+    text = (
+        DECK.replace("1 COL 1 2", "1 SLIDER 1 2\n 3 COL 2 4")
+        .replace(" 3 {x} {h} FIX=YR", " 3 {x} {h} FIX=YR\n 4 0 {h}+3 FIX=YR")
+        .replace("PROPS", "PROPS\n SLIDER SPRING KX=4E4 FX=4 RULE=ELASTO_PLASTIC")
+        .replace("2,3 100", "2 TO 4 100")
+    )
+    deck = tmp_path / "model.inp"
+    deck.write_text(text.format(units="kN m s", g=9.81, h=0.2, x=5.0, k=1e6, a=-3.0))
+    results = results_of(deck)
+    assert results.table("drift_envelope")["ratio_max"][0] > LARGEST_DRIFT
+    assert not looks(results)
+
+
+def test_overlaps_are_those_of_members_or_storeys_and_not_of_bearings(tmp_path):
+    """A bearing is as long as the joint it bridges."""
+    bearing = DECK.replace("9 WALL 3", "9 WALL 3\n 4 BEARING 3 4").replace(
+        "ELEMENTS", " 4 {x}+0.05 {h} FIX=XYR\nELEMENTS"
+    )
+    model = structure_of(
+        bearing.replace("PROPS", "PROPS\n BEARING SPRING KX=100").format(
+            units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=1.0
+        )
+    ).model
+    members, others = lengths(model)
+    assert members == {2: 5.0, 3: 5.0}
+    assert others == pytest.approx({1: 3.0, 2: 3.0, 3: 0.05, 4: 0.05})
+
+
+def test_the_moments_of_what_has_no_height_balance(tmp_path):
+    """A girder that lies on two bearings: a moment counts beside the forces times its length."""
+    text = (Path(__file__).parent / "sound" / "girder_on_bearings.inp").read_text("utf-8")
+    deck = tmp_path / "model.inp"
+    deck.write_text(text.replace("LAW=LINEAR", "LAW=HUNT_CROSSLEY E=0.5").replace("HISTORY 8", "HISTORY 3"))
+    assert not looks(results_of(deck))
 
 
 def test_a_building_that_leans_after_the_motion_is_told(tmp_path):

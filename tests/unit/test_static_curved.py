@@ -116,3 +116,30 @@ def test_a_history_starts_from_the_pressed_state() -> None:
     r = run_text(text + "ANALYSIS\n STATIC\n HISTORY 0.5\n")
     assert r.status == "done", r.message
     assert r.force == pytest.approx(np.repeat(300.0 - r.u[:, :1, 0], 3, axis=1), rel=1e-9)
+
+
+@pytest.mark.parametrize("load", [0.0, -7.0])
+@pytest.mark.parametrize("name", LAWS)
+def test_a_girder_that_lies_on_its_bearings(name: str, load: float) -> None:
+    """The first contact alone leaves it to turn, by which it closes the other; supports carry w L/2 each."""
+    law = LAWS[name].replace("GAP=0.01", "GAP=0")
+    s = solved(f"""
+NODES
+ 1 0 0 FIX=X
+ 2 2 0 FIX=X
+ 3 6 0 FIX=X
+ 4 TO 5 0 TO 6 -1 FIX=XYR
+ELEMENTS
+ 1 TO 2 GIRDER 1 TO 2 2 TO 3
+ 3 BEARING 1 4
+ 4 BEARING 3 5
+PROPS
+ GIRDER FRAME E=34E6 A=0.75 I=0.14 WGT=24
+ BEARING CONTACT {law} ANGLE=270
+WEIGHTS
+ 2 1
+LOADS
+ 2 0 {load}
+""")
+    forces = [s.force[i, "contact"] for i in (3, 4)]
+    assert forces == pytest.approx([72.0 - load * 2 / 3, 72.0 - load / 3], rel=1e-8)

@@ -170,15 +170,15 @@ class Envelopes:
 
     def imbalance(self, buildings: Sequence[Building]) -> float:
         """Largest difference of both ways to the forces of a building on the ground, over the largest of
-        these forces, of its inertia and of what drives it; a moment counts beside the force at the top of
-        the building too.
+        these forces, of its inertia and of what drives it; a moment counts beside the force at the far end
+        of the building too.
         """
         off, base = (np.array([x for x, _ in self.total[name].largest()]) for name in ("imbalance", "base"))
         off, *others = off.reshape(3, -1, 3)
         worst = 0.0
         for b, x, force in zip(buildings, off, np.maximum(base.reshape(-1, 3), np.max(others, axis=0))):
             shear = float(force[:2].max())
-            moment = max(float(force[2]), shear * (b.levels[-1] - b.base))
+            moment = max(float(force[2]), shear * b.reach)
             worst = max(worst, float(x[:2].max()) / (shear or 1.0), float(x[2]) / (moment or 1.0))
         return worst
 

@@ -16,6 +16,7 @@ from pound_solve.structure.dofs import Dof
 from pound_solve.structure.equations import fixed_dofs, rigid_motions
 from pound_solve.structure.structure import Structure
 
+DIGITS = 16 * 2.2e-16  #: share of the terms of a sum of forces that is the rounding of a solution
 ROUNDING = 1e-9  #: share of the largest term below which a sum of forces is zero
 
 
@@ -92,14 +93,17 @@ class SupportReactions:
         rows.append(("sum", sum(x for _, x in rows)))
         return [(name, *map(float, x)) for name, x in rows]
 
-    def imbalance(self, rows: Sequence[tuple[Any, ...]]) -> float:
-        """Sum of the rows of `balance` as a share of the largest of them; a moment counts beside
-        the largest force at the far end of the structure too.
+    def imbalance(self, rows: Sequence[tuple[Any, ...]], u: Array, states: Sequence[State]) -> float:
+        """Sum of the rows of `balance`, less the rounding of its terms, as a share of the largest row; a
+        moment counts beside the largest force at the far end of the structure too.
         """
         values = np.abs(np.array([row[1:] for row in rows]))
         force = values[:-1, :2].max()
         moment = max(values[:-1, 2].max(), force * np.abs(self.rigid[2]).max(initial=0.0))
-        return float(max(values[-1, :2].max() / (force or 1.0), values[-1, 2] / (moment or 1.0)))
+        s, (full, laws) = self.structure, self._at(u, states)
+        terms = abs(s.stiffness) @ np.abs(full) + abs(s.law_rows).T @ np.abs(laws) + np.abs(s.loads)
+        off = np.maximum(values[-1] - DIGITS * (np.abs(self.rigid) @ terms), 0.0)
+        return float(max(off[:2].max() / (force or 1.0), off[2] / (moment or 1.0)))
 
     def _held(self, full: Array, force: Array) -> tuple[Array, Array]:
         """Force and moment of the elements that resist a motion of the whole, shape (3,) each:

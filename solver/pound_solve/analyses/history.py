@@ -244,7 +244,8 @@ class HistoryResult:
         lower than a storey, and moves further than it is high.
         """
         heights = list(drift_heights(self.system.structure.model))
-        least = BEARING * max((h for h in heights if h == h), default=0.0)
+        storeys = [float(h) for b in self.items.buildings for h in np.diff(b.levels)]
+        least = BEARING * max((h for h in (*heights, *storeys) if h == h), default=0.0)
         return [own for own, h in zip(self.drift_ratios(), heights) if h >= least]
 
     @property

@@ -313,9 +313,11 @@ class EquilibriumPath:
                     yield PathEvent(i, n), 0.0 if reached else -off / (a * v)
 
     def _blocking(self, motion: Array) -> PathEvent | None:
-        """The first contact that touches and that a motion of a mechanism runs into, if there is one."""
+        """The first open contact that touches and that a motion of a mechanism closes; None for none."""
         rate, noise = self.rows @ motion, NOISE * (np.abs(self.rows) @ np.abs(motion))
         rate[[not s.role.collides or b.held for s, b in zip(self.laws, self.branches)]] = 0.0
+        # the motion leaves those that press where they are, but for rounding
+        rate[self._stiffnesses(self.deformations(self.u, self.factor)) > 0.0] = 0.0
         return next((event for event, at in self._events(rate, noise) if at == 0.0), None)
 
     def _arguments(self, u: Array, factor: float) -> tuple[Array, Array]:

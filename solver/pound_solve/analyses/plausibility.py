@@ -16,6 +16,7 @@ from pound_solve.analyses.history import BEARING, HistoryResult
 from pound_solve.analyses.spring_response import ORDINARY_ROTATION
 from pound_solve.check import Check, Subject, at_least, beyond
 from pound_solve.integrate.protocol import Outcome
+from pound_solve.structure.member_checks import MEMBERS, length
 from pound_solve.structure.storeys import storeys
 from pound_solve.structure.structure import Structure
 
@@ -130,7 +131,7 @@ def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
     model = structure.model
     if not history.items.contacts:
         return
-    shortest = shortest_members(model)
+    members, others = lengths(model)
     for i in history.items.contacts:
         law = structure.laws[i]
         contact = model.elements[law.element]
@@ -139,10 +140,12 @@ def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
         if overlap > limit:
             about, told = f"overlap of contact {name} beyond its law", "its law is not meant for more"
             yield beyond(RESPONSE, about, overlap, limit, told, model.units.length)
-        length = min((shortest[n] for n in (contact.i, contact.j) if n in shortest), default=0.0)
-        if length and overlap > LARGEST_OVERLAP * length:
+        own = [n for n in (contact.i, contact.j) if n is not None]
+        near = [members[n] for n in own if n in members] or [others[n] for n in own if n in others]
+        there = min(near, default=0.0)
+        if there and overlap > LARGEST_OVERLAP * there:
             about = f"overlap of contact {name} over the shortest member there"
-            share, told = 100 * overlap / length, "check the stiffness of the contact"
+            share, told = 100 * overlap / there, "check the stiffness of the contact"
             yield beyond(RESPONSE, about, share, 100 * LARGEST_OVERLAP, told, "%")
 
 
@@ -167,18 +170,20 @@ def leaning(structure: Structure, history: HistoryResult, residual: Sequence[flo
             yield beyond(RESPONSE, name, 100 * most, 100 * LARGEST_RESIDUAL, told, "%")
 
 
-def shortest_members(model: Model) -> dict[int, float]:
-    """Length of the shortest element, contacts apart, at every node that has one [L]."""
-    shortest: dict[int, float] = {}
+def lengths(model: Model) -> tuple[dict[int, float], dict[int, float]]:
+    """Length of the shortest member at every node that has one, and of the longest spring or dashpot, which
+    may be a bearing beside a storey [L].
+    """
+    shortest, longest = dict[int, float](), dict[int, float]()
     for e in model.elements.values():
-        if e.j is None or model.props[e.prop].spec.name == "CONTACT":
-            continue
-        i, j = model.nodes[e.i], model.nodes[e.j]
-        length = math.hypot(i.x - j.x, i.y - j.y)
-        if length > 0.0:
-            for end in (e.i, e.j):
-                shortest[end] = min(length, shortest.get(end, length))
-    return shortest
+        kind = model.props[e.prop].spec.name
+        long = 0.0 if e.j is None or kind == "CONTACT" else length(model, e)
+        for end in (e.i, e.j or e.i) if long else ():
+            if kind in MEMBERS:
+                shortest[end] = min(long, shortest.get(end, long))
+            else:
+                longest[end] = max(long, longest.get(end, long))
+    return shortest, longest
 
 
 RULES: Final[Sequence[Callable[[Structure, HistoryResult, Outcome], Iterator[Check]]]] = (

@@ -97,7 +97,7 @@ def static_response(structure: Structure, state: StaticState) -> StaticResponse:
         held,
         without_rounding(reactions, "FFM" * len(held)).reshape(-1, 3),
         balance,
-        ground.imbalance(balance),
+        ground.imbalance(balance, state.u, state.states),
     )
 
 

@@ -68,6 +68,8 @@ class Building:
         From below.
     mass : float
         Of all its nodes along x, or along y where there is none [F T^2/L].
+    reach : float
+        Largest distance along x or y of its nodes from the middle of its base [L].
     """
 
     name: str
@@ -77,6 +79,7 @@ class Building:
     feet: tuple[int, ...]
     floors: tuple[Floor, ...]
     mass: float
+    reach: float
 
     @property
     def levels(self) -> list[float]:
@@ -128,7 +131,9 @@ def buildings(structure: Structure) -> list[Building]:
         mass = sum(along[n] for n in nodes) or sum(up[n] for n in nodes)
         axis = float(np.mean([structure.model.nodes[n].x for n in stack.feet]))
         name = card.label if card else f"building {i}"
-        out.append(Building(name, nodes, stack.base, axis, stack.feet, floors, mass))
+        own = (structure.model.nodes[n] for n in nodes)
+        reach = max(max(abs(n.x - axis), abs(n.y - stack.base)) for n in own)
+        out.append(Building(name, nodes, stack.base, axis, stack.feet, floors, mass, reach))
     return out
 
 
