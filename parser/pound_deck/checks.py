@@ -100,7 +100,7 @@ def _zero_length(model: Model) -> Found:
             yield Diagnostic("P321", message, element.span, "name two nodes, or leave J out for the ground")
         elif prop and prop.spec.name in _LONG and (i.x, i.y) == (j.x, j.y):
             message = f"member {element.id} has no length: nodes {i.id} and {j.id} are at the same place"
-            hint = f"a {prop.spec.name} needs a length; use a SPRING"
+            hint = "correct the coordinates of one of them; a SPRING alone joins nodes at one place"
             yield Diagnostic("P312", message, element.span, hint)
 
 
@@ -123,7 +123,11 @@ def _unused_props(model: Model) -> Found:
         if label not in used:
             message = f"no element has the property set {label}"
             yield Diagnostic(
-                "P313", message, card.span, "take it out, or name it under ELEMENTS", "warning"
+                "P313",
+                message,
+                card.span,
+                "name it under ELEMENTS, or take it out if it is idle",
+                "warning",
             )
 
 

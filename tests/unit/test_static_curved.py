@@ -121,7 +121,7 @@ def test_a_history_starts_from_the_pressed_state() -> None:
 @pytest.mark.parametrize("load", [0.0, -7.0])
 @pytest.mark.parametrize("name", LAWS)
 def test_a_girder_that_lies_on_its_bearings(name: str, load: float) -> None:
-    """The first contact alone leaves it to turn, by which it closes the other; supports carry w L/2 each."""
+    """On the first contact alone it would turn, and close the other; each carries half of its weight."""
     law = LAWS[name].replace("GAP=0.01", "GAP=0")
     s = solved(f"""
 NODES

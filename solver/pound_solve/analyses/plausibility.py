@@ -65,7 +65,7 @@ def rotations(structure: Structure, history: HistoryResult, outcome: Outcome) ->
         where = f"{worst.spring.component} of element {worst.spring.element}"
         name = f"plastic rotation of {ends}, largest {where}, ductility {worst.ductility:.3g}"
         told = (
-            "concrete members lose strength from there on (FEMA 356, Tables 6-7 and 6-8); "
+            "members of concrete lose strength from there on (FEMA 356, Tables 6-7 and 6-8); "
             "DUCTU states a limit of your own"
         )
         yield beyond(RESPONSE, name, worst.rotation, ORDINARY_ROTATION, told, "rad")
@@ -122,7 +122,7 @@ def distant(structure: Structure, history: HistoryResult, outcome: Outcome) -> I
         element = structure.model.elements[structure.laws[i].element]
         which = f"contact {element.name or element.id}"
         name = f"largest share of a gap that closes, {which}" + f" and {len(far) - 1} more" * (len(far) > 1)
-        told = "the gap is far above the motion: check its unit"
+        told = "check the unit of the gap, the direction of the contact and the strength of the motion"
         yield at_least(RESPONSE, name, 100 * share, 100 * LEAST_CLOSURE, told, "%")
 
 
@@ -166,7 +166,7 @@ def leaning(structure: Structure, history: HistoryResult, residual: Sequence[flo
         most, storey = max(own, default=(0.0, 0))
         if most > LARGEST_RESIDUAL and yielded & set(building.nodes):
             name = f"drift of {building.name} storey {storey} at the end"
-            told = "the building leans; the limit is one of this program"
+            told = "it leans: check strengths and hardening (R); without hardening drifts add up"
             yield beyond(RESPONSE, name, 100 * most, 100 * LARGEST_RESIDUAL, told, "%")
 
 

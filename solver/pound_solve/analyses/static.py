@@ -91,9 +91,12 @@ def solve(structure: Structure) -> StaticState:
         found = structure.axial(np.append(state.u, pad))
         if np.abs(found - axial).max() <= 1e-12 * np.abs(found).max():
             return replace(state, axial=axial, buckling=factor, rounds=rounds)
-        axial = found
+        change, axial = np.abs(found - axial), found
+    worst = structure.geometric[int(np.argmax(change))].element
     raise InstabilityError(
-        f"the axial forces did not settle within {MOST_ROUNDS} rounds of P-Delta", "A507"
+        f"the axial forces did not settle within {MOST_ROUNDS} rounds of P-Delta, least that of member "
+        f"{worst}: its building is near buckling under these loads, or a member is missing there",
+        "A507",
     )
 
 

@@ -53,12 +53,13 @@ def _print(deck: str, ready: Prepared, size: Mapping[str, int]) -> None:
 
     if ready.warnings:
         print(render(ready.warnings, ready.files), file=sys.stderr)
-    n, told = size["unknowns"], len(ready.warnings)
-    mistakes = f"no errors, {told} warning{'s' * (told != 1)}" if told else "no mistakes"
-    print(
-        f"{deck}: {mistakes}; {size['nodes']} nodes, {size['elements']} elements, "
-        f"{n} unknown{'s' * (n != 1)}"
-    )
+    told = f"no errors, {_counted(len(ready.warnings), 'warning')}" if ready.warnings else "no mistakes"
+    sizes = ", ".join(_counted(size[f"{what}s"], what) for what in ("node", "element", "unknown"))
+    print(f"{deck}: {told}; {sizes}")
+
+
+def _counted(n: int, what: str) -> str:
+    return f"{n} {what}{'s' * (n != 1)}"
 
 
 def _print_json(deck: str, found: Iterable[Diagnostic], size: Mapping[str, int] | None) -> None:

@@ -58,8 +58,7 @@ def chosen(values: Mapping[str, Any], names: tuple[str, ...], reduced_mass: floa
             f"give the damping once: {ways}" + (", not " + " and ".join(given) if given else "")
         )
     if given[0] != free and reduced_mass == 0.0:
-        instead = f", or {free}" if free else ""
-        raise ValueError(f"{given[0]} needs colliding masses: give the nodes weight, or MASSES{instead}")
+        raise ValueError(f"{given[0]} needs colliding masses: give the nodes weight, or MASSES")
     return given[0]
 
 

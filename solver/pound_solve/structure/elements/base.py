@@ -297,7 +297,8 @@ def signed(values: tuple[float, ...], item: str) -> tuple[float, float]:
     """
     plus, minus = (values[0], -values[0]) if len(values) == 1 else values
     if plus < 0 or minus > 0:
-        raise ElementError(f"{item} is written positive, then negative (signed)", item)
+        right = f"{item}={abs(plus):g},{-abs(minus):g}"
+        raise ElementError(f"{item} is written positive, then negative: {right}", item)
     return plus, minus
 
 

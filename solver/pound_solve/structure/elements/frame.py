@@ -88,10 +88,20 @@ def _consistent(context: ElementContext, strengths: list[str]) -> None:
         )
     if len(given) > 1:
         raise ElementError("KH and LP both give the stiffness of a hinge: keep one of them", "LP")
-    for d, end, item in ENDS:
-        if item in strengths and d in beam.pinned(p):
-            why = f"end {end} is pinned" if p["I"] > 0.0 else "I=0 is a bar without bending"
-            raise ElementError(f"{why}: it has no hinge that yields", item)
+    pinned = [(end, item) for d, end, item in ENDS if item in strengths and d in beam.pinned(p)]
+    if pinned:
+        ends = " and ".join(end for end, _ in pinned)
+        items = [item for _, item in pinned]
+        if len(items) == len(strengths):  # the rest of the hinges has no effect then
+            items += ["RULE", *given, *(["DUCTU"] if p["DUCTU"] is not None else [])]
+        many = len(pinned) > 1
+        why = f"end{'s' * many} {ends} {'are' if many else 'is'} pinned, where no hinge yields"
+        if p["I"] == 0.0:
+            why = "I=0 is a bar without bending"
+        raise ElementError(f"{why}: leave out {', '.join(items)}", items[0])
+    wrong = [item for item in strengths if len(p[item]) == 2 and not p[item][0] >= 0.0 >= p[item][1]]
+    if len(wrong) > 1:
+        raise ElementError("MI and MJ are written positive, then negative: MI=200,-150", wrong[0])
 
 
 SPEC = Spec(
