@@ -298,12 +298,14 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "P339": (
         "building damped twice, or not at all (warning)",
         "Lines of DAMPING name buildings (BUILDING=), and another building has no line, or one building "
-        "has several, which add up. Lines for some NODES or PROPS of a building may stand side by side.",
+        "has several, which add up. Lines for some NODES or PROPS of a building may stand side by side. "
+        "The same where no element of PROPS ends at one of the NODES of its line.",
     ),
     "P340": (
         "P-Delta without axial forces (warning)",
-        "GEOMETRY requests P-Delta, but no load acts on a building: it has no effect there. Weights are "
-        "masses; STATIC GRAVITY=YES makes them loads too.",
+        "GEOMETRY requests P-Delta, but no load acts on a building, so it has no effect there; or its "
+        "loads are less than 0.3 of its weight (the limit is ours). Weights are masses; STATIC GRAVITY=YES "
+        "makes them loads too.",
     ),
     "P341": (
         "damping ratio above one (warning)",
@@ -337,13 +339,15 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P347": (
         "no mass (warning)",
-        "MODAL or EQUAKE needs mass, and nothing has any, or a building with a height has none. It has no "
-        "modes, and the ground does not shake it. Give its floors WEIGHTS.",
+        "MODAL or EQUAKE needs mass, and nothing has any, or a building with a height has none: it has no "
+        "modes, and the ground does not shake it. Or the nodes of its highest beams have none, while those "
+        "of others have. Give its floors WEIGHTS.",
     ),
     "P348": (
         "column foot that hangs free (warning)",
         "A member ends at the height of the supports of its building, or below, at a node that has no FIX "
-        "along X or Y, no mass, no load and no other element. Give the node FIX, or join it to the ground.",
+        "along Y and no other element. One that has mass or load is told if a member of its property set "
+        "stands on a support. Give the node FIX, or join it to the ground.",
     ),
     "P349": (
         "nodes at one place that nothing joins (warning)",
@@ -374,8 +378,9 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "coordinate of one of its nodes has a wrong digit.",
     ),
     "P354": (
-        "member given twice (warning)",
-        "Two members join the same nodes, so that their stiffnesses add up. Take one out.",
+        "member or contact given twice (warning)",
+        "Two members join the same nodes, so that their stiffnesses add up; or two contacts of one "
+        "property set have the same nodes, direction and gap. Take one out, or correct an end or ANGLE.",
     ),
     "P355": (
         "strength or ductility of hinges beyond sense (warning)",
@@ -432,12 +437,12 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P364": (
         "loads that pull upwards (warning)",
-        "The sum of LOADS and MEMBER_LOADS along Y pulls a building upwards. Loads that press are "
-        "negative.",
+        "LOADS and MEMBER_LOADS that pull a building upwards are more than 0.3 of those that press it; the "
+        "limit is ours. Loads that press are negative.",
     ),
     "P365": (
         "steps or rows too far apart (warning)",
-        "DT of a HISTORY is more than an eighth of the first period of every building, or EVERY of OUTPUT "
+        "DT of a HISTORY is more than a tenth of the first period of every building, or EVERY of OUTPUT "
         "more than that period; the limits are ours. Both have the unit of time of UNITS: 5 ms are 0.005 "
         "s.",
     ),
@@ -461,9 +466,9 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P369": (
         "stiffness of a contact beyond sense (warning)",
-        "The weight of the bodies would press a contact by more than their buildings are high, or a "
-        "collision takes less than 0.1 ms, in which sound does not pass a column. The limits are ours. K "
-        "has the units of UNITS.",
+        "The weight of the bodies would press a contact by more than their buildings are high; or K is 300 "
+        "times the axial stiffness EA/L of the beams behind it; or a collision takes less than 0.1 ms, in "
+        "which sound does not pass a column. The limits are ours. K has the units of UNITS.",
     ),
     "P370": (
         "loads that do not fit the weight (warning)",
@@ -486,8 +491,9 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "damping beyond sense (warning)",
         "By the shape of its sag under weights along X, DAMPING gives the first mode of a building more "
         "than 20 % of critical damping, or its dashpots give more than 1000 % or less than 0.1 %; or an "
-        "earthquake shakes it and nothing damps it. The limits are ours. Check units, and ALPHA and BETA, "
-        "which are no shares; XI=0 says that no damping is meant.",
+        "earthquake shakes it and nothing damps it; or all OMEGA are below 0.6 of the first circular "
+        "frequency. The limits are ours. Check units, and ALPHA and BETA, which are no shares; XI=0 says "
+        "that no damping is meant.",
     ),
     "P374": (
         "motion across all contacts (warning)",
@@ -503,6 +509,16 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
         "E of members is below 100 MPa; columns weigh by length what concrete or steel weigh by volume; or "
         "the soil of a footing has G outside 0.5 MPa to 100 GPa, a weight outside 8 to 35 kN/m^3, or a "
         "half width above 100 m. The limits are ours. Values have the units of UNITS.",
+    ),
+    "P377": (
+        "target of a pushover beyond sense (warning)",
+        "TARGET of PUSHOVER is more than a fifth of the height of its node above the base of its building; "
+        "the limit is ours. It is a displacement in the unit of length of UNITS.",
+    ),
+    "P378": (
+        "dashpot across the line of its nodes (warning)",
+        "A DASHPOT with CX alone joins nodes on a slope of 10 to 70 degrees, as those of braces do, but "
+        "acts along X. ANGLE=MEMBER lets it act along the line between them.",
     ),
     "R401": (
         "record not found",
@@ -559,7 +575,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "R412": (
         "motion cut or stretched (warning)",
-        "START without DURATION cuts off the peak of a record, or the HISTORY ends before a fifth of the "
+        "START cuts off the peak of a record, or the HISTORY ends before a fifth of the "
         "Arias intensity of an earthquake has acted, or a synthetic one ends within its RISE; or the step "
         "DT makes a record swing faster than hard rock (every 0.03 s), or longer than the bed of a lake "
         "(every 1.5 s, and this times the significant duration above 130 s^2). The limits are ours.",

@@ -401,6 +401,52 @@ MISTAKES = {
         [*THIRD, UNWEIGHTED, ("EQUAKE", "MEMBER_LOADS\n 15,19 WY=-75\n 25,26 WY=-90\nEQUAKE")],
         "P370 no load presses nodes 13, 16 of 'building 1', as loads press its other floors: load them",
     ),
+    "loads of beams upwards beside others": (
+        [UNWEIGHTED, ("EQUAKE", "LOADS\n 12,13,15,16 0 -200\nMEMBER_LOADS\n 15,16 WY=50\nEQUAKE")],
+        "P364 loads pull 'building 1' upwards by 600 kN: loads that press are negative",
+    ),
+    "loads forgotten, but for the weight of columns": (
+        [UNWEIGHTED, ("A=0.16 I=0.0021", "A=0.16 I=0.0021 WGT=4"), ("I=0.0052", "I=0.0052 WGT=6")],
+        "P340 GEOMETRY PDELTA, but loads press 'building 1', which weighs 1016 kN, by 56 kN: add STATIC",
+    ),
+    "roof without weights": (
+        [("12,13,15,16 240", "12,15 240"), ("LAW=KELVIN_VOIGT K=1E6 E=0.65", "K=1E6")],
+        "P347 the highest beams of 'building 1' have no mass at their nodes, 13, 16: give the nodes of "
+        "each",
+    ),
+    "foot with a weight, without its footing": (
+        [(RIGHT_FOOT, " 21 6.45 0"), ("EQUAKE", "WEIGHTS\n 21 60\nEQUAKE")],
+        "P348 the foot of member 21, node 21, hangs free: give it FIX",
+    ),
+    "dashpot of a brace along X": (
+        [("31 HIT", "30 DAMP 11 15\n 31 HIT"), ("PROPS", "PROPS\n DAMP DASHPOT CX=200")],
+        "P378 dashpot 30 acts along X, but its nodes lie on a slope of 30.3 degrees: ANGLE=MEMBER lets it",
+    ),
+    "frequencies of damping in Hz": (
+        [("MODES=1,3", "OMEGA=1.9,6")],
+        "P373 OMEGA=1.9,6 is below the first mode, about 11.8 rad/s: OMEGA are circular frequencies",
+    ),
+    "nodes of another building under DAMPING": (
+        [("MODES=1,3", "OMEGA=12,60 NODES=12,13 PROPS=PIER")],
+        "P339 no element of PROPS=PIER ends at one of these NODES: NODES are those of the building",
+    ),
+    "target of a pushover in cm": (
+        [("HISTORY 10", "PUSHOVER 16 30")],
+        "P377 TARGET is 30 m, node 16 7 m above its base: TARGET is a displacement in m",
+    ),
+    "stiffness of a contact of another unit": (
+        [("K=1E6", "K=1E9")],
+        "P369 contact 31 is 1.3e+03 times as stiff as the beams behind it, EA/L, which give way: K is in "
+        "kN/m",
+    ),
+    "two walls on one side": (
+        [
+            ("31 HIT", "33 WALL 12\n 34 OTHER 12\n 31 HIT"),
+            ("PROPS", "PROPS\n WALL CONTACT GAP=0.2 ANGLE=180 K=2E5"),
+            ("PROPS", "PROPS\n OTHER CONTACT GAP=0.2 ANGLE=180 K=3E5"),
+        ],
+        "P354 contacts 33 and 34 are the same: they close at 180 degrees together: give one ANGLE=180",
+    ),
     "frame entered twice": (
         [
             (
@@ -455,12 +501,11 @@ MISTAKES = {
     ),
     "stiffness of a contact in N/mm2": (
         [("K=1E6", "K=1")],
-        "P369 the weight of the bodies at contact 31 would press it by 1.3e+02 m: it stops nothing: K is "
-        "in",
+        "P369 the weight of the bodies at contact 31 would press it by 1.3e+02 m: K is in",
     ),
     "stiffness of a contact in MN and mm": (
         [("K=1E6", "K=1E12")],
-        "P369 a collision at contact 31 takes 1e-05 s: 0.001 s is brief: K is in kN/m",
+        "P369 contact 31 is 1.3e+06 times as stiff as the beams behind it, EA/L, which give way: K is in",
     ),
     "foot that SUPPORTS leave out": (
         [("DURATION=5", "DURATION=5 SUPPORTS=11,14,21")],
@@ -574,7 +619,7 @@ STOREY_MISTAKES = {
     ),
     "spring that passes a storey": (
         [(" 11 TO 12 LEFT 10 TO 11 11 TO 12", " 11 LEFT 10 11\n 12 LEFT 10 12")],
-        "P375 element 12 passes node 11 of 'building 1', from which nothing leads up: should it end",
+        "P375 element 12 passes node 11 of 'building 1', from which nothing leads up: let it end or",
     ),
     "one storey without a spring": (
         [(" 11 TO 12 LEFT 10 TO 11 11 TO 12", " 12 LEFT 11 12")],

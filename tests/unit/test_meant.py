@@ -169,6 +169,7 @@ def test_a_floor_that_is_fixed(changes, told):
     assert len(found) == bool(told) and all(told in r and "take X out of FIX" in r for r in found)
 
 
+ROD = "PROPS\n ROD FRAME E=200E6 A=1E-3\n"
 UPPER = ("ELEMENTS\n", "NODES\n 8 0 7\n 9 6 7\nELEMENTS\n 11 COL 2 8\n 12 COL 4 9\n 13 BEAM 8 9\n")
 JOINT = ("ELEMENTS\n", "NODES\n 7 6 3.5\nELEMENTS\n")
 BEAM = (" 3 BEAM 2 4", " 3 BEAM 2 7")
@@ -181,7 +182,11 @@ BEAM = (" 3 BEAM 2 4", " 3 BEAM 2 7")
         ([(" 1 0 0 FIX=XYR", " 1 0 0 FIX=R")], "P348 the foot of member 1, node 1"),
         ([(" 1 0 0 FIX=XYR", " 1 0 -1 FIX=R")], "P348"),
         ([ONE_FREE, ("PROPS\n", " 6 SOIL 1\nPROPS\n SOIL SPRING KX=9 KY=9 KR=9\n")], ""),
-        ([ONE_FREE, ("2,4 500", "1,2,4 500")], ""),  # a pendulum, perhaps
+        ([ONE_FREE, ("2,4 500", "1,2,4 500")], "P348 the foot of member 1, node 1"),
+        (
+            [ONE_FREE, ("2,4 500", "1,2,4 500"), (" 1 COL 1 2", " 1 ROD 1 2"), ("PROPS\n", ROD)],
+            "",  # a pendulum, perhaps
+        ),
         ([ONE_FREE, OTHER_FREE], ""),  # P337 says more
         ([ONE_FREE, OTHER_FREE, (" 4 6 3.5", " 4 6 3.5 FIX=XYR")], ""),  # it hangs
         ([("ELEMENTS\n", "NODES\n 7 -2 3.5\nELEMENTS\n 9 BEAM 7 2\n")], ""),  # a balcony

@@ -110,6 +110,15 @@ def test_a_contact_pressed_into_its_building_is_told(tmp_path):
     assert "overlap of contact 9 over the shortest member there" not in looks(run(tmp_path, k=1e6, a=3.0))
 
 
+def test_a_force_of_many_weights_is_told(tmp_path):
+    told = "force of contact 9 over the weight of the lighter building"
+    stiff = run(tmp_path, k=1e9, a=6.0)
+    (check,) = (c for c in looked(stiff.checks) if c.name == told)
+    force = stiff.table("contact_summary")["peak_force"][0]
+    assert check.value == pytest.approx(abs(force) / 200.0) and check.value > check.allowed == 100.0
+    assert told not in looks(run(tmp_path, k=1e6, a=6.0))
+
+
 @pytest.mark.full
 def test_a_hinge_that_its_rule_fails_is_told(tmp_path):
     """IMK loses all strength at DU; the deck asks for no damage index."""

@@ -16,6 +16,7 @@ from pound_solve.analyses.history import BEARING, HistoryResult
 from pound_solve.analyses.spring_response import ORDINARY_ROTATION
 from pound_solve.check import Check, Subject, at_least, beyond
 from pound_solve.integrate.protocol import Outcome
+from pound_solve.structure.buildings import stands
 from pound_solve.structure.member_checks import MEMBERS, length
 from pound_solve.structure.storeys import storeys
 from pound_solve.structure.structure import Structure
@@ -26,6 +27,9 @@ LARGEST_DRIFT: Final = 0.1  #: drift over height; frames have lost their vertica
 LARGEST_RESIDUAL: Final = 0.005  #: drift over height at the end, which the eye sees in a storey
 LARGEST_DUCTILITY: Final = 50.0  #: of hinges; members of concrete or steel break before
 LEAST_CLOSURE: Final = 0.01  #: of a gap; a thousandth tells of other units
+#: force of a contact over the weight of the lighter building; 1 m/s against a stiff wall makes 5
+#: for a large floor, 30 for a garage
+MOST_FORCE: Final = 100.0
 LARGEST_OVERLAP: Final = 0.02  #: of the shortest member that meets a contact
 
 
@@ -65,7 +69,7 @@ def rotations(structure: Structure, history: HistoryResult, outcome: Outcome) ->
         where = f"{worst.spring.component} of element {worst.spring.element}"
         name = f"plastic rotation of {ends}, largest {where}, ductility {worst.ductility:.3g}"
         told = (
-            "members of concrete lose strength from there on (FEMA 356, Tables 6-7 and 6-8); "
+            "many members lose strength from there on (of concrete: FEMA 356, Tables 6-7 and 6-8); "
             "DUCTU states a limit of your own"
         )
         yield beyond(RESPONSE, name, worst.rotation, ORDINARY_ROTATION, told, "rad")
@@ -149,6 +153,22 @@ def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
             yield beyond(RESPONSE, about, share, 100 * LARGEST_OVERLAP, told, "%")
 
 
+def fierce(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
+    """Contacts of standing buildings whose force is many times the weight of the lighter one."""
+    model = structure.model
+    standing = [b for b in history.items.buildings if stands(model, b.nodes)]
+    weights = {n: b.mass * model.gravity for b in standing for n in b.nodes}
+    for i in history.items.contacts:
+        law = structure.laws[i]
+        contact, peak = model.elements[law.element], outcome.peaks.force[i]
+        own = [weights[n] for n in (contact.i, contact.j) if n in weights]
+        force = max(peak.high, -peak.low)
+        if own and force > MOST_FORCE * min(own):
+            about = f"force of contact {contact.name or contact.id} over the weight of the lighter building"
+            told = "check the stiffness of the contact"
+            yield beyond(RESPONSE, about, force / min(own), MOST_FORCE, told)
+
+
 def leaning(structure: Structure, history: HistoryResult, residual: Sequence[float]) -> Iterator[Check]:
     """Buildings whose springs or hinges have yielded and that lean at the end of the history.
 
@@ -194,6 +214,7 @@ RULES: Final[Sequence[Callable[[Structure, HistoryResult, Outcome], Iterator[Che
     unknown,
     distant,
     overlaps,
+    fierce,
 )
 
 

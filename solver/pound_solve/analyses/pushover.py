@@ -45,9 +45,11 @@ from pound_solve.analyses.path_following import Change, EquilibriumPath, Instabi
 from pound_solve.analyses.static import StaticState
 from pound_solve.check import Check, Subject, at_most
 from pound_solve.numerics.types import Array
-from pound_solve.structure.buildings import building
+from pound_solve.structure.buildings import building, buildings
 from pound_solve.structure.standing_alone import standing_alone
 from pound_solve.structure.structure import Structure
+
+FURTHEST = 0.2  #: target over the height of the control node above its base
 
 
 @dataclass(frozen=True)
@@ -114,6 +116,24 @@ def mistakes(structure: Structure) -> list[Diagnostic]:
             message, item, hint = wrong
             return [Diagnostic("P335", message, card.place(item), hint)]
     return []
+
+
+def distant(structure: Structure) -> list[Diagnostic]:
+    """Targets of a PUSHOVER beyond what the height of its control node allows."""
+    model, out = structure.model, list[Diagnostic]()
+    for card in model.analyses:
+        if card.spec.name != "PUSHOVER" or card["TARGET"] is None or card["DIRECTION"] != "X":
+            continue
+        b = next((b for b in buildings(structure) if card["NODE"] in b.nodes), None)
+        high = model.nodes[card["NODE"]].y - b.base if b else 0.0
+        if abs(card["TARGET"]) > FURTHEST * high > 0.0:
+            unit = model.units.length
+            message = (
+                f"TARGET is {card['TARGET']:g} {unit}, node {card['NODE']} {high:.4g} {unit} above its base"
+            )
+            hint = f"TARGET is a displacement in {unit}: buildings fall at a tenth of their height"
+            out.append(Diagnostic("P377", message, card.place("TARGET"), hint, "warning"))
+    return out
 
 
 def _wrong(structure: Structure, card: Card) -> tuple[str, str, str] | None:

@@ -9,18 +9,18 @@ from typing import Final
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
 from pound_solve.structure.buildings import misnamed
-from pound_solve.structure.contact_checks import idle, inclined, misplaced, wide
+from pound_solve.structure.contact_checks import idle, inclined, misplaced, twins, wide
 from pound_solve.structure.damping.by_building import uneven
 from pound_solve.structure.drift_checks import misdrawn
 from pound_solve.structure.frame_checks import ill_framed
 from pound_solve.structure.hinge_checks import facing
 from pound_solve.structure.load_checks import misloaded, unloaded
 from pound_solve.structure.loose_ends import loose_ends
-from pound_solve.structure.mass_checks import immovable, massless
+from pound_solve.structure.mass_checks import immovable, massless, roofless
 from pound_solve.structure.material_checks import immaterial
 from pound_solve.structure.mechanisms import hasty, loose, standing, untimely
 from pound_solve.structure.member_checks import doubled, misjudged, misshapen
-from pound_solve.structure.response_checks import misdamped, unlike_contacts
+from pound_solve.structure.response_checks import in_hertz, misdamped, unlike_contacts
 from pound_solve.structure.structure import Structure
 from pound_solve.structure.supports import adrift, left_behind
 from pound_solve.structure.weight_checks import far, misarmed, misweighed, outsized
@@ -78,7 +78,7 @@ def misbuilt(structure: Structure) -> list[Diagnostic]:
     for name, diagnostic in found:
         first.setdefault(name, diagnostic)
     out = [*(loose(structure, parts) or adrift(structure)), *first.values()]
-    for check in (hasty, misdamped, unlike_contacts):
+    for check in (hasty, misdamped, in_hertz, unlike_contacts):
         out += check(structure, parts)
     return out
 
@@ -103,10 +103,13 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     pressed,
     wide,
     misplaced,
+    twins,
     idle,
+    immaterial,
     misbuilt,
     massless,
     immovable,
+    roofless,
     loose_ends,
     misarmed,
     far,
@@ -117,13 +120,13 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     misjudged,
     facing,
     pushover.mistakes,
+    pushover.distant,
     too_many,
     misnamed,
     uneven,
     left_behind,
     misdrawn,
     ill_framed,
-    immaterial,
 )
 
 

@@ -89,6 +89,21 @@ def misplaced(structure: Structure) -> list[Diagnostic]:
     return out
 
 
+def twins(structure: Structure) -> list[Diagnostic]:
+    """Contacts of the same nodes, direction and gap: those of two bodies of one property set."""
+    model, first, out = structure.model, dict[tuple[object, ...], Element](), list[Diagnostic]()
+    for spring in (s for s in structure.laws if s.role.collides):
+        e, angle = model.elements[spring.element], round(spring.facts["angle"], 6) % 360.0
+        kind = "" if e.j is None else e.prop  # of two bodies, others may be side by side
+        other = first.setdefault((e.i, e.j, angle, spring.gap, kind), e)
+        if other is not e:
+            both = f"contacts {other.name or other.id} and {e.name or e.id}"
+            message = f"{both} are the same: they close at {angle:g} degrees together"
+            hint = "give one ANGLE=180 if it is that of the other side, or take it out"
+            out.append(Diagnostic("P354", message, e.span, hint, "warning"))
+    return out
+
+
 def inclined(structure: Structure) -> list[Diagnostic]:
     """Contacts along an inclined line between their nodes: seldom meant between floors."""
     model, out = structure.model, list[Diagnostic]()
@@ -103,10 +118,7 @@ def inclined(structure: Structure) -> list[Diagnostic]:
             message = (
                 f"contact {e.name or e.id} acts along the line between its nodes, at {angle:.4g} degrees"
             )
-            hint = (
-                "correct its nodes or their heights; give ANGLE (0 for floors that meet along x) if these "
-            )
-            hint += "are right"
+            hint = "correct its nodes or their heights, or give ANGLE: 0 for floors that meet along x"
             out.append(Diagnostic("P334", message, e.span, hint, "warning"))
     return out
 

@@ -20,6 +20,8 @@ from pound_solve.structure.supports import shaken, some
 
 SHORTEST: Final = 0.25  #: height of a storey over the middle one of its columns
 
+GENTLE, STEEP = 10.0, 70.0  #: slopes of braces from and to [degrees]
+
 _warn = partial(Diagnostic, severity="warning")
 
 
@@ -33,7 +35,7 @@ def ill_framed(structure: Structure) -> list[Diagnostic]:
     for b in buildings(structure):
         if stands(model, b.nodes):
             out += [*_without_column(lines, b), *_without_beam(lines, b), *_past(lines, b)]
-    return out + list(_sloping(model)) + list(_low(structure))
+    return out + list(_sloping(model)) + list(_low(structure)) + list(_level(model))
 
 
 def _upon(model: Model) -> Iterator[Diagnostic]:
@@ -140,7 +142,7 @@ def _past(lines: Lines, b: Building) -> Iterator[Diagnostic]:
                 foot = nodes[e.i if e.j == other else e.j or e.i]
                 if foot.x == nodes[n].x and foot.y < nodes[n].y:
                     message = f"element {e.id} passes node {n} of {b.name!r}, from which nothing leads up"
-                    yield _warn("P375", message, e.span, f"should it end at node {n}?")
+                    yield _warn("P375", message, e.span, f"let it end or begin at node {n}")
 
 
 def _by_x(model: Model, floor: Floor) -> list[int]:
@@ -168,6 +170,22 @@ def _sloping(model: Model) -> Iterator[Diagnostic]:
             message = f"member {e.id} slopes by {slope:.3g} degrees, all others of {e.prop} lie"
             hint = f"correct its nodes, {e.i} and {e.j}, or their heights under NODES"
             yield _warn("P375", message, e.span, hint)
+
+
+def _level(model: Model) -> Iterator[Diagnostic]:
+    """Dashpots along X alone between nodes on a slope, as those of braces: one for each property set."""
+    told = set[str]()
+    for e in model.elements.values():
+        card = model.props[e.prop]
+        if e.j is None or card.spec.name != "DASHPOT" or e.prop in told or card["ANGLE"] not in (None, 0.0):
+            continue
+        i, j = model.nodes[e.i], model.nodes[e.j]
+        slope = math.degrees(math.atan2(abs(j.y - i.y), abs(j.x - i.x)))
+        if card["CX"] and not card["CY"] and GENTLE < slope < STEEP:
+            told.add(e.prop)
+            message = f"dashpot {e.id} acts along X, but its nodes lie on a slope of {slope:.3g} degrees"
+            hint = "ANGLE=MEMBER lets it act along the line between them"
+            yield _warn("P378", message, card.place("CX"), hint)
 
 
 def _low(structure: Structure) -> Iterator[Diagnostic]:

@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
 from pound_solve.structure.buildings import SAME_LEVEL, Building, buildings, stands
-from pound_solve.structure.member_checks import length
+from pound_solve.structure.member_checks import kinds, length
 from pound_solve.structure.structure import Structure
 from pound_solve.structure.supports import shaken, some
 
@@ -18,6 +18,8 @@ SIDEWAYS: Final = 0.5
 #: of loads downwards over the weight, apart from which they have other units; columns that lean on the
 #: building may bear several times what it does
 LIGHTEST, HEAVIEST = 0.01, 8.0
+UPWARDS: Final = 0.3  #: of loads upwards over those downwards
+PART: Final = 0.3  #: the same, below which P-Delta is that of a part of the weight
 TWICE: Final = (0.7, 1.4)  #: of the same beside the weight itself, which they repeat
 SEVERAL: Final = 3  #: floors of a building one of which may lack its load
 PRESSES: Final = 0.1  #: the same of the floors that bear loads beside one without any
@@ -73,7 +75,25 @@ def unloaded(structure: Structure) -> list[Diagnostic]:
         out.append(Diagnostic("P340", message, place, hint, "warning"))
         if len(idle) == len(found):
             break
-    return out
+    return out + [d for b in found if b not in idle for d in _hardly(structure, b)]
+
+
+def _hardly(structure: Structure, b: Building) -> list[Diagnostic]:
+    """Loads of a building that are a small part of its weight, so that P-Delta has hardly an effect."""
+    model = structure.model
+    own, weight = set(b.nodes), b.mass * model.gravity
+    loads = [load for load in given(model) if load.node in own]
+    press = -sum(load.y for load in loads)
+    for e in (e for members in kinds(model).values() for e in members if e.i in own):
+        press += structure.self_weight * model.props[e.prop]["WGT"] * length(model, e)
+    if not 0.0 <= press < PART * weight or not shaken(model) or any(load.y > 0.0 for load in loads):
+        return []
+    unit, kind = model.units.force, model.geometry
+    told = f"loads press {b.name!r}, which weighs {weight:.4g} {unit}, by {press:.4g} {unit}"
+    message = f"GEOMETRY {kind}, but {told}"
+    hint = "add STATIC GRAVITY=YES, which lets the WEIGHTS press, or LOADS of their size"
+    place = model.analyses[0].span
+    return [Diagnostic("P340", message, place, hint, "warning")]
 
 
 def misloaded(structure: Structure) -> list[Diagnostic]:
@@ -92,9 +112,12 @@ def misloaded(structure: Structure) -> list[Diagnostic]:
 
 
 def _lifted(structure: Structure, b: Building, own: list[Load]) -> list[Diagnostic]:
-    """Loads that pull upwards on the whole."""
-    up, unit = sum(load.y for load in own), structure.model.units.force
-    if up <= 0.0:
+    """Loads that pull upwards by more than a share of what others press."""
+    unit = structure.model.units.force
+    up = sum(load.y for load in own if load.y > 0.0)
+    press = -sum(load.y for load in own if load.y < 0.0)
+    press += b.mass * structure.model.gravity if weighty(structure.model) else 0.0
+    if up <= UPWARDS * press:
         return []
     load = max(own, key=lambda load: load.y)
     message = f"loads pull {b.name!r} upwards by {up:.4g} {unit}"

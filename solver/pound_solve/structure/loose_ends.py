@@ -34,7 +34,9 @@ class Ends:
     members : mapping of int to list of Element
         Elements at every node that lead to another place, contacts apart.
     used : set of int
-        Nodes at which there is anything else but a support: mass, load, contact, short element, slaving.
+        Nodes at which there is a contact, an element without length or to the ground, or slaving.
+    loaded : set of int
+        Nodes that have mass or load.
     groups : list of list of int
         Nodes at one place, where there are several.
     joined : mapping of int to int
@@ -48,8 +50,8 @@ class Ends:
         self.members: dict[int, list[Element]] = defaultdict(list)
         pairs = [(n.id, master) for n in model.nodes.values() for master in n.slaved.values()]
         self.used = {n for pair in pairs for n in pair}
-        for cards in (model.weights, model.loads, model.forces, model.initial):
-            self.used.update(n for card in cards for n in card["NODES"])
+        cards = (*model.weights, *model.loads, *model.forces, *model.initial)
+        self.loaded = {n for card in cards for n in card["NODES"]}
         for e in model.elements.values():
             i, j = e.i, e.i if e.j is None else e.j
             if at[i] == at[j]:
@@ -65,7 +67,8 @@ class Ends:
 
     def free(self, n: int) -> bool:
         """Whether a node is the end of one member and nothing else."""
-        return len(self.members[n]) == 1 and n not in self.used and not self.held(n)
+        alone = len(self.members[n]) == 1 and n not in self.used
+        return alone and n not in self.loaded and not self.held(n)
 
     def held(self, n: int) -> bool:
         """Whether the ground holds a node along x or y."""
@@ -99,14 +102,18 @@ def _feet(ends: Ends) -> Iterator[tuple[int, Diagnostic]]:
     What hangs from its supports is meant to.
     """
     model = ends.model
+    grounded = {e.i for e in model.elements.values() if e.j is None}
     for part in parts(model):
         y = [model.nodes[n].y for n in part]
-        supports = [model.nodes[n].y for n in part if ends.held(n)]
+        supports = [n for n in part if ends.held(n) or n in grounded]
         if not supports:
             continue
-        base, close = min(supports), SAME_LEVEL * (max(y) - min(y))
+        base, close = min(model.nodes[n].y for n in supports), SAME_LEVEL * (max(y) - min(y))
+        columns = {e.prop for n in supports if model.nodes[n].y <= base + close for e in ends.members[n]}
         for n in part:
             alone = len(ends.members[n]) == 1 and n not in ends.used and "Y" not in model.nodes[n].fixed
+            # what is heavy and stands like no other foot may be a pendulum
+            alone = alone and (n not in ends.loaded or ends.members[n][0].prop in columns)
             if alone and model.nodes[n].y <= base + close < ends.reach(n)[1]:
                 message = f"the foot of member {ends.members[n][0].id}, node {n}, hangs free"
                 hint = "give it FIX, or join it to the ground by an element"

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.structure.buildings import buildings, parts, stands
+from pound_solve.structure.member_checks import kinds, lies
 from pound_solve.structure.structure import Structure
 from pound_solve.structure.supports import shaken, some
 
@@ -31,6 +34,27 @@ def massless(structure: Structure) -> list[Diagnostic]:
             who = repr(name) if name else f"the building of nodes {some(nodes)}"
             message = f"{who} has no mass, so that the ground does not shake it"
             out.append(Diagnostic("P347", message, model.nodes[nodes[0]].span, cure, "warning"))
+    return out
+
+
+def roofless(structure: Structure) -> list[Diagnostic]:
+    """Buildings whose highest beams end at nodes without mass, while others end at nodes with mass."""
+    model, out = structure.model, list[Diagnostic]()
+    heavy = {n for (n, d), mass in structure.nodal_mass.items() if d == 0 and mass > 0.0}
+    beams = [e for members in kinds(model).values() for e in members if lies(model, e)]
+    for b in buildings(structure) if "X" in shaken(model) else ():
+        own, levels = set(b.nodes), defaultdict[float, set[int]](set)
+        for e in beams:
+            if e.i in own and model.nodes[e.i].y > b.base:
+                levels[model.nodes[e.i].y].update((e.i, e.j or e.i))
+        highest = levels.pop(max(levels)) if levels else set()
+        masters = {m for n in highest for m in model.nodes[n].slaved.values()}
+        if heavy.isdisjoint(highest | masters) and any(heavy & level for level in levels.values()):
+            message = (
+                f"the highest beams of {b.name!r} have no mass at their nodes, {some(sorted(highest))}"
+            )
+            cure, place = "give the nodes of each floor WEIGHTS", model.nodes[min(highest)].span
+            out.append(Diagnostic("P347", message, place, cure, "warning"))
     return out
 
 

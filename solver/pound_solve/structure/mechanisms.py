@@ -21,7 +21,7 @@ from pound_solve.structure.structure import Structure
 from pound_solve.structure.supports import ROUNDING, resisted, shaken, some
 
 MOVES: Final = 0.1  #: share of the largest displacement of a motion that a node has which it moves
-FEWEST: Final = 8  #: steps in a first period
+FEWEST: Final = 10  #: steps in a first period
 SAME: Final = 1e-6  #: share of a motion by which that of one body may differ
 #: 4 H/T, the speed of a shear wave up a building [m/s]: walls and stiff frames have 100 to 500, a solid
 #: block of concrete 2200
@@ -71,7 +71,7 @@ def _period(structure: Structure, b: Building, t1: float, limit: str, why: str) 
     model, unit = structure.model, structure.model.units
     message = f"the first period of {b.name!r} is about {t1:.2g} {unit.time}, {limit} {unit.time}: {why}"
     hint = (
-        f"check the units of WEIGHTS ({unit.force}), E ({unit.text('F/L^2')}), stiffnesses and lengths, "
+        f"check the units of WEIGHTS ({unit.force}), E ({unit.text('F/L^2')}), I, stiffnesses and lengths, "
         "and GRAVITY"
     )
     return Diagnostic("P357", message, model.nodes[b.feet[0]].span, hint, "warning")

@@ -161,7 +161,7 @@ def doubled(structure: Structure) -> list[Diagnostic]:
         if other is not e and (e.prop == other.prop or added.isdisjoint((e.prop, other.prop))):
             of = f" of {e.prop}" if e.prop == other.prop else f", {other.prop} and {e.prop},"
             message = f"members {other.id} and {e.id}{of} join the same nodes, {e.i} and {e.j}"
-            hint = "take one out, unless two members stand side by side"
+            hint = "take one out, or correct an end, unless two members stand side by side"
             out.append(Diagnostic("P354", message, e.span, hint, "warning"))
     return out
 

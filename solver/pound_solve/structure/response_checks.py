@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Sequence
 from typing import Final
 
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
+from pound_solve.numerics.matrices import Matrix
 from pound_solve.structure.buildings import Building
 from pound_solve.structure.mechanisms import Part
+from pound_solve.structure.member_checks import kinds, length, lies
 from pound_solve.structure.structure import Structure
 
 #: shares of critical damping of a first mode: by DAMPING, which materials and walls make 0.01 to 0.1, and
 #: by dashpots, where a snubber may hold what it joins to a building
 MOST_OWN, MOST_ADDED = 0.2, 10.0
+LOWEST: Final = 0.6  #: of the largest frequency with a damping ratio over that of the first mode
 LEAST_ADDED: Final = 1e-3  #: by dashpots that someone wrote down
+#: stiffness of a contact over the axial one of the beams behind it; slabs may stiffen them tenfold
+STIFFEST: Final = 300.0
 #: a collision in which sound of 3500 m/s does not pass a column [s]
 BRIEFEST: Final = 1e-4
 RECORDS: Final = ("RECORD", "SYNTHETIC", "MATCHED")  #: earthquakes; others may be those of a textbook
@@ -24,8 +30,7 @@ RECORDS: Final = ("RECORD", "SYNTHETIC", "MATCHED")  #: earthquakes; others may 
 def misdamped(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Buildings whose first mode is damped beyond sense, or not at all under an earthquake."""
     model, out = structure.model, list[Diagnostic]()
-    blocks = [b for p in structure.parts.values() for b in p.damping]
-    added = structure.dofs.assembled((b.dofs, b.matrix) for b in blocks)
+    added = _by_dashpots(structure)
     for b, part in found:
         if not part.period():
             continue
@@ -56,15 +61,51 @@ def misdamped(structure: Structure, found: Sequence[tuple[Building, Part]]) -> l
     return out
 
 
+def in_hertz(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+    """Circular frequencies of DAMPING below the first one of every building that they may mean."""
+    model, out = structure.model, list[Diagnostic]()
+    for card in model.damping:
+        given, nodes = card.values.get("OMEGA"), card.values.get("NODES")
+        own = [part for b, part in found if not nodes or set(nodes) & set(b.nodes)]
+        periods = [t for part in own if (t := part.period())]
+        if not given or not periods:
+            continue
+        first = 2.0 * math.pi / max(periods)
+        if max(given) < LOWEST * first:
+            written = ",".join(f"{w:g}" for w in given)
+            message = f"OMEGA={written} is below the first mode, about {first:.3g} rad/{model.units.time}"
+            hint = "OMEGA are circular frequencies: 2 pi times those in 1/s"
+            out.append(Diagnostic("P373", message, card.place("OMEGA"), hint, "warning"))
+    return out
+
+
+def _by_dashpots(structure: Structure) -> Matrix:
+    """Damping matrix of dashpots that end at two nodes; those of the soil radiate, and may add little."""
+    own = (p for e, p in structure.parts.items() if structure.model.elements[e].j is not None)
+    return structure.dofs.assembled((b.dofs, b.matrix) for p in own for b in p.damping)
+
+
 def _dashpots(model: Model, b: Building) -> Card | None:
-    """Property set of a dashpot of a building."""
-    own = frozenset(b.nodes)
-    cards = (model.props[e.prop] for e in model.elements.values() if e.i in own)
+    """Property set of a dashpot above the base of a building."""
+    own = {n for n in b.nodes if model.nodes[n].y > b.base}
+    cards = (model.props[e.prop] for e in model.elements.values() if e.j and {e.i, e.j} & own)
     return next((card for card in cards if card.spec.name == "DASHPOT"), None)
 
 
 def _percent(share: float) -> str:
     return f"{100.0 * share:.2g} %"
+
+
+def _axial(model: Model) -> dict[int, float]:
+    """Sum of EA/L of the members that lie, by their nodes [F/L]."""
+    out = defaultdict[int, float](float)
+    for label, members in kinds(model).items():
+        card = model.props[label]
+        for e in members:
+            if lies(model, e):
+                for n in (e.i, e.j or e.i):
+                    out[n] += card["E"] * card["A"] / length(model, e)
+    return out
 
 
 def unlike_contacts(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
@@ -73,6 +114,7 @@ def unlike_contacts(structure: Structure, found: Sequence[tuple[Building, Part]]
     set.
     """
     model, out = structure.model, dict[str, Diagnostic]()
+    beams = _axial(model)
     tall = {n: max(model.nodes[m].y for m in b.nodes) - b.base for b, _ in found for n in b.nodes}
     for s in structure.laws:
         e = model.elements[s.element]
@@ -83,15 +125,15 @@ def unlike_contacts(structure: Structure, found: Sequence[tuple[Building, Part]]
         if not (m and k and high) or math.isinf(k):
             continue
         deep, half, unit = m * model.gravity / k, math.pi * math.sqrt(m / k), model.units
+        behind, which = max(beams.get(e.i, 0.0), beams.get(e.j or e.i, 0.0)), f"contact {e.name or e.id}"
         if deep > high:
+            message = f"the weight of the bodies at {which} would press it by {deep:.2g} {unit.length}"
+        elif k > STIFFEST * behind > 0.0:
             message = (
-                f"the weight of the bodies at contact {e.name or e.id} would press it by {deep:.2g} "
-                f"{unit.length}: it stops nothing"
+                f"{which} is {k / behind:.2g} times as stiff as the beams behind it, EA/L, which give way"
             )
         elif half < BRIEFEST and unit.time.lower() in ("s", "sec"):
-            message = (
-                f"a collision at contact {e.name or e.id} takes {half:.1g} {unit.time}: 0.001 s is brief"
-            )
+            message = f"a collision at {which} takes {half:.1g} {unit.time}: 0.001 s is brief"
         else:
             continue
         card, hint = model.props[e.prop], f"K is in {model.units.text('F/L')}"

@@ -140,7 +140,7 @@ def _cuts(raw: RawRecord, card_values: Mapping[str, Any]) -> tuple[tuple[str, st
     whole = Piecewise.from_samples(raw.t, raw.values)
     start, out = float(card_values.get("START", 0.0)), list[tuple[str, str, str]]()
     at, _ = whole.peak()
-    if card_values.get("DURATION") is None and at < start:
+    if at < start:
         told = f"START={start:g} cuts off the peak of the record, at {at:.4g} s"
         out.append((told, "START", "give an earlier START, or a DURATION to the part that is meant"))
     if card_values.get("DT") is not None and (wrong := mispaced(whole)):

@@ -13,7 +13,7 @@ def uneven(structure: Structure) -> list[Diagnostic]:
 
     A card for some NODES or PROPS only is meant to go with others.
     """
-    cards, out = structure.model.damping, list[Diagnostic]()
+    cards, out = structure.model.damping, _apart(structure)
     named = [c for c in cards if c["BUILDING"]]
     for b in buildings(structure) if named else ():
         whole = [c for c in cards if _of_whole(c, b)]
@@ -26,6 +26,19 @@ def uneven(structure: Structure) -> list[Diagnostic]:
             message = f"building {b.name!r} has no damping"
             hint = f'add a line with BUILDING="{b.name}", or leave BUILDING out for all'
             out.append(Diagnostic("P339", message, named[0].place("BUILDING"), hint, "warning"))
+    return out
+
+
+def _apart(structure: Structure) -> list[Diagnostic]:
+    """Cards whose NODES and PROPS have nothing in common: K is damped elsewhere than M."""
+    model, out = structure.model, list[Diagnostic]()
+    for card in model.damping:
+        props, nodes = card.values.get("PROPS"), card.values.get("NODES")
+        chosen = [e for e in model.elements.values() if props and e.prop in props]
+        if props and chosen and nodes and all({e.i, e.j}.isdisjoint(nodes) for e in chosen):
+            message = f"no element of PROPS={','.join(props)} ends at one of these NODES"
+            hint = "NODES are those of the building whose members PROPS names"
+            out.append(Diagnostic("P339", message, card.place("NODES"), hint, "warning"))
     return out
 
 
