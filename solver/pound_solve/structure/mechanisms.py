@@ -51,7 +51,7 @@ def untimely(
     sprung = {e.i for e in model.elements.values() if model.props[e.prop].spec.name == "SPRING"}
     metre = METRE.get(model.units.length.lower(), math.inf)
     for b, part in found:
-        t1 = part.period()
+        t1 = part.period
         high = max(model.nodes[n].y for n in b.nodes) - b.base
         if not t1 or high <= 0.0:
             continue
@@ -82,7 +82,7 @@ def hasty(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[
     than that period.
     """
     model, out = structure.model, list[Diagnostic]()
-    longest, unit = max((part.period() for _, part in found), default=0.0), model.units.time
+    longest, unit = max((part.period for _, part in found), default=0.0), model.units.time
     for card in (c for c in model.analyses if c.spec.name == "HISTORY" and longest):
         first = f"a motion whose first period is about {longest:.2g} {unit}"
         dt, every = card.values.get("DT"), model.output["EVERY"]
@@ -139,19 +139,24 @@ class Part:
         out[self.columns] = self.factors[:, None] * found
         return out
 
+    @cached_property
     def period(self) -> float:
         """First period along x, by the quotient of Rayleigh of the sag under its weight along x [T]; 0
         where there is none.
         """
-        push, inertia = self.structure.ground[0, self.columns], self._form(self.structure.mass)
+        push = self.structure.ground[0, self.columns]
         work = float(push @ self.sag) if self.sag is not None else 0.0
-        ratio = inertia / work if work > 0.0 else 0.0
+        ratio = self._inertia / work if work > 0.0 else 0.0
         return 2.0 * math.pi * math.sqrt(ratio) if 0.0 < ratio < math.inf else 0.0
 
     def damped(self, damping: Matrix) -> float:
         """Share of critical damping that a matrix over all columns gives this motion; 0 without period."""
-        inertia, t1 = self._form(self.structure.mass), self.period()
-        return self._form(damping) * t1 / (4.0 * math.pi * inertia) if t1 else 0.0
+        t1 = self.period
+        return self._form(damping) * t1 / (4.0 * math.pi * self._inertia) if t1 else 0.0
+
+    @cached_property
+    def _inertia(self) -> float:
+        return self._form(self.structure.mass)
 
     @cached_property
     def sag(self) -> Array | None:

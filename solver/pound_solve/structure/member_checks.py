@@ -7,7 +7,7 @@ make it far deeper than its building is large, or so thin that nothing could be 
 from __future__ import annotations
 
 import math
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Iterator
 from statistics import median
 from typing import Final
@@ -148,21 +148,20 @@ def doubled(structure: Structure) -> list[Diagnostic]:
     """Members between the same two nodes, but those of a set whose members all stand beside others, as the
     jackets of columns do.
     """
-    model, first, out = structure.model, dict[frozenset[int], Element](), list[Diagnostic]()
-    beside = Counter(frozenset((e.i, e.j)) for members in kinds(model).values() for e in members)
-    added = {
-        label
-        for label, members in kinds(model).items()
-        if all(beside[frozenset((e.i, e.j))] > 1 for e in members)
-    }
-    for e in (e for members in kinds(model).values() for e in members):
-        assert e.j is not None
-        other = first.setdefault(frozenset((e.i, e.j)), e)
-        if other is not e and (e.prop == other.prop or added.isdisjoint((e.prop, other.prop))):
-            of = f" of {e.prop}" if e.prop == other.prop else f", {other.prop} and {e.prop},"
-            message = f"members {other.id} and {e.id}{of} join the same nodes, {e.i} and {e.j}"
-            hint = "take one out, or correct an end, unless two members stand side by side"
-            out.append(Diagnostic("P354", message, e.span, hint, "warning"))
+    out, sets = list[Diagnostic](), kinds(structure.model)
+    at = defaultdict[frozenset[int | None], list[Element]](list)
+    for members in sets.values():
+        for e in members:
+            at[frozenset((e.i, e.j))].append(e)
+    beside = {e.id for members in at.values() if len(members) > 1 for e in members}
+    added = {label for label, members in sets.items() if all(e.id in beside for e in members)}
+    for first, *others in at.values():
+        for e in others:
+            if e.prop == first.prop or added.isdisjoint((e.prop, first.prop)):
+                of = f" of {e.prop}" if e.prop == first.prop else f", {first.prop} and {e.prop},"
+                message = f"members {first.id} and {e.id}{of} join the same nodes, {e.i} and {e.j}"
+                hint = "take one out, or correct an end, unless two members stand side by side"
+                out.append(Diagnostic("P354", message, e.span, hint, "warning"))
     return out
 
 

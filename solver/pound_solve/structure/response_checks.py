@@ -32,7 +32,7 @@ def misdamped(structure: Structure, found: Sequence[tuple[Building, Part]]) -> l
     model, out = structure.model, list[Diagnostic]()
     added = _by_dashpots(structure)
     for b, part in found:
-        if not part.period():
+        if not part.period:
             continue
         whole, own = part.damped(structure.initial_damping), part.damped(added)
         by_cards = whole - own
@@ -67,7 +67,7 @@ def in_hertz(structure: Structure, found: Sequence[tuple[Building, Part]]) -> li
     for card in model.damping:
         given, nodes = card.values.get("OMEGA"), card.values.get("NODES")
         own = [part for b, part in found if not nodes or set(nodes) & set(b.nodes)]
-        periods = [t for part in own if (t := part.period())]
+        periods = [t for part in own if (t := part.period)]
         if not given or not periods:
             continue
         first = 2.0 * math.pi / max(periods)
@@ -115,7 +115,9 @@ def unlike_contacts(structure: Structure, found: Sequence[tuple[Building, Part]]
     """
     model, out = structure.model, dict[str, Diagnostic]()
     beams = _axial(model)
-    tall = {n: max(model.nodes[m].y for m in b.nodes) - b.base for b, _ in found for n in b.nodes}
+    tall = dict[int, float]()
+    for b, _ in found:
+        tall.update(dict.fromkeys(b.nodes, max(model.nodes[n].y for n in b.nodes) - b.base))
     for s in structure.laws:
         e = model.elements[s.element]
         if not s.role.collides or s.facts.get("k_unit") != "F/L" or e.prop in out:
