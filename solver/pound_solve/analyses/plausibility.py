@@ -17,7 +17,7 @@ from pound_solve.analyses.spring_response import ORDINARY_ROTATION
 from pound_solve.check import Check, Subject, at_least, beyond
 from pound_solve.integrate.protocol import Outcome
 from pound_solve.structure.buildings import stands
-from pound_solve.structure.member_checks import MEMBERS, length
+from pound_solve.structure.checks.members import MEMBERS, length
 from pound_solve.structure.storeys import storeys
 from pound_solve.structure.structure import Structure
 

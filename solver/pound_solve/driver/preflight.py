@@ -9,21 +9,21 @@ from typing import Final
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
 from pound_solve.structure.buildings import misnamed
-from pound_solve.structure.contact_checks import idle, inclined, misplaced, twins, wide
+from pound_solve.structure.checks.contacts import idle, inclined, misplaced, twins, wide
+from pound_solve.structure.checks.drifts import misdrawn
+from pound_solve.structure.checks.ends import loose_ends
+from pound_solve.structure.checks.first_modes import in_hertz, misdamped, unlike_contacts
+from pound_solve.structure.checks.frames import ill_framed
+from pound_solve.structure.checks.hinges import facing
+from pound_solve.structure.checks.loads import misloaded, unloaded
+from pound_solve.structure.checks.masses import immovable, massless, roofless
+from pound_solve.structure.checks.materials import immaterial
+from pound_solve.structure.checks.mechanisms import hasty, loose, standing, untimely
+from pound_solve.structure.checks.members import doubled, misjudged, misshapen
+from pound_solve.structure.checks.supports import adrift, left_behind
+from pound_solve.structure.checks.weights import far, misarmed, misweighed, outsized
 from pound_solve.structure.damping.by_building import uneven
-from pound_solve.structure.drift_checks import misdrawn
-from pound_solve.structure.frame_checks import ill_framed
-from pound_solve.structure.hinge_checks import facing
-from pound_solve.structure.load_checks import misloaded, unloaded
-from pound_solve.structure.loose_ends import loose_ends
-from pound_solve.structure.mass_checks import immovable, massless, roofless
-from pound_solve.structure.material_checks import immaterial
-from pound_solve.structure.mechanisms import hasty, loose, standing, untimely
-from pound_solve.structure.member_checks import doubled, misjudged, misshapen
-from pound_solve.structure.response_checks import in_hertz, misdamped, unlike_contacts
 from pound_solve.structure.structure import Structure
-from pound_solve.structure.supports import adrift, left_behind
-from pound_solve.structure.weight_checks import far, misarmed, misweighed, outsized
 
 MOST_STEPS: Final = 10**8  #: of a history: hours of a small structure
 MOST_ROWS: Final = 5 * 10**6  #: of stored histories

@@ -11,8 +11,8 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
 from pound_solve.numerics.matrices import Matrix
 from pound_solve.structure.buildings import Building
-from pound_solve.structure.mechanisms import Part
-from pound_solve.structure.member_checks import kinds, length, lies
+from pound_solve.structure.checks.mechanisms import Part
+from pound_solve.structure.checks.members import kinds, length, lies
 from pound_solve.structure.structure import Structure
 
 #: shares of critical damping of a first mode: by DAMPING, which materials and walls make 0.01 to 0.1, and

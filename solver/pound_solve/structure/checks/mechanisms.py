@@ -15,10 +15,10 @@ from pound_solve.numerics import modes
 from pound_solve.numerics.matrices import Matrix, scaled, used_rows
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.buildings import Building, buildings, columns_of, stands
+from pound_solve.structure.checks.members import kinds
+from pound_solve.structure.checks.supports import ROUNDING, resisted, shaken, some
 from pound_solve.structure.dofs import DIRECTIONS
-from pound_solve.structure.member_checks import kinds
 from pound_solve.structure.structure import Structure
-from pound_solve.structure.supports import ROUNDING, resisted, shaken, some
 
 MOVES: Final = 0.1  #: share of the largest displacement of a motion that a node has which it moves
 FEWEST: Final = 10  #: steps in a first period

@@ -11,9 +11,9 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Element, Model
 from pound_solve.loading.motions.base import METRE
 from pound_solve.structure.buildings import SAME_LEVEL, Building, buildings, stands
-from pound_solve.structure.member_checks import MEMBERS, USUAL, depth, kinds, length, lies
+from pound_solve.structure.checks.members import MEMBERS, USUAL, depth, kinds, length, lies
+from pound_solve.structure.checks.supports import shaken
 from pound_solve.structure.structure import Structure
-from pound_solve.structure.supports import shaken
 
 NEWTON: Final[Mapping[str, float]] = MappingProxyType(
     {"n": 1.0, "kn": 1e3, "mn": 1e6, "lb": 4.448, "lbf": 4.448, "kip": 4448.0, "kips": 4448.0}

@@ -9,9 +9,9 @@ from typing import Final, NamedTuple
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Model
 from pound_solve.structure.buildings import SAME_LEVEL, Building, buildings, stands
-from pound_solve.structure.member_checks import kinds, length
+from pound_solve.structure.checks.members import kinds, length
+from pound_solve.structure.checks.supports import shaken, some
 from pound_solve.structure.structure import Structure
-from pound_solve.structure.supports import shaken, some
 
 #: of loads along x over the weight; a pushover load that is left in the deck may be more
 SIDEWAYS: Final = 0.5

@@ -8,9 +8,9 @@ from typing import Final
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Element, Model
 from pound_solve.loading.motions.base import METRE
-from pound_solve.structure.member_checks import kinds
+from pound_solve.structure.checks.members import kinds
+from pound_solve.structure.checks.weights import NEWTON
 from pound_solve.structure.structure import Structure
-from pound_solve.structure.weight_checks import NEWTON
 
 #: least modulus of elasticity of members [Pa]: adobe has 0.2e9, rubber 1e6
 SOFTEST: Final = 1e8

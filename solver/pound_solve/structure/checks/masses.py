@@ -6,9 +6,9 @@ from collections import defaultdict
 
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.structure.buildings import buildings, parts, stands
-from pound_solve.structure.member_checks import kinds, lies
+from pound_solve.structure.checks.members import kinds, lies
+from pound_solve.structure.checks.supports import shaken, some
 from pound_solve.structure.structure import Structure
-from pound_solve.structure.supports import shaken, some
 
 
 def massless(structure: Structure) -> list[Diagnostic]:

@@ -13,10 +13,10 @@ from typing import Final
 from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Element, Model
 from pound_solve.structure.buildings import Building, Floor, buildings, joints, parts, stands
-from pound_solve.structure.loose_ends import places
-from pound_solve.structure.member_checks import kinds, length, lies
+from pound_solve.structure.checks.ends import places
+from pound_solve.structure.checks.members import kinds, length, lies
+from pound_solve.structure.checks.supports import shaken, some
 from pound_solve.structure.structure import Structure
-from pound_solve.structure.supports import shaken, some
 
 SHORTEST: Final = 0.25  #: height of a storey over the middle one of its columns
 

@@ -13,10 +13,10 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Element, Model, Node
 from pound_solve.numerics.graph import components
 from pound_solve.structure.buildings import parts, stands
+from pound_solve.structure.checks.members import kinds
+from pound_solve.structure.checks.supports import shaken
 from pound_solve.structure.elements.base import LawSpring
-from pound_solve.structure.member_checks import kinds
 from pound_solve.structure.structure import Structure
-from pound_solve.structure.supports import shaken
 
 SAME: Final = 1e-9  #: share of the distance of nodes that is none
 #: gap over the distance of the nodes, which the bodies between them make less than one; coordinates may
