@@ -367,7 +367,8 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     ),
     "P352": (
         "section that does not fit its member (warning)",
-        "A rectangle of the same A and I is sqrt(12 I/A) deep. It is more than five times as deep as the "
+        "A rectangle of the same A and I is sqrt(12 I/A) deep. It is less than a 300th of the length of a "
+        "member that bends; or it is more than five times as deep as the "
         "member is long, and more than the building is wide and high; or A becomes usual if it is read in "
         "mm^2 or cm^2. The limits are ours. Give A and I in the unit of length of UNITS.",
     ),

@@ -210,6 +210,10 @@ MISTAKES = {
         "P352 the section of BEAM is 6e+03 m deep by A and I, sqrt(12 I/A), but member 25 is 6 m "
         "long: A is in m^2",
     ),
+    "I in dm4": (
+        [("I=0.0021", "I=2.1E-7")],
+        "P352 the section of COL is 0.004 m deep by A and I, sqrt(12 I/A), but member 11 is 3.5 m long: A",
+    ),
     "A and I exchanged": (
         [("A=0.18 I=0.0054", "A=0.0054 I=0.18")],
         "P352 the section of BEAM is 20 m deep by A and I, sqrt(12 I/A), but member 25 is 6 m "
@@ -370,11 +374,11 @@ MISTAKES = {
     ),
     "loads upwards": (
         [("EQUAKE", "LOADS\n 12,13,15,16 0 240\nEQUAKE")],
-        "P364 loads pull 'building 1' upwards by 960 kN: loads that press are negative",
+        "P364 loads pull 'building 1' upwards by 960 kN, others press by 960 kN: loads that press are",
     ),
     "loads of beams upwards": (
         [("EQUAKE", "MEMBER_LOADS\n 25,26 WY=40\nEQUAKE")],
-        "P364 loads pull 'building 2' upwards by 480 kN: loads that press are negative: Y and WY point",
+        "P364 loads pull 'building 2' upwards by 480 kN, others press by 1200 kN: loads that",
     ),
     "loads of one building alone": (
         [UNWEIGHTED, ("EQUAKE", "LOADS\n 12,13,15,16 0 -240\nEQUAKE")],
@@ -403,7 +407,7 @@ MISTAKES = {
     ),
     "loads of beams upwards beside others": (
         [UNWEIGHTED, ("EQUAKE", "LOADS\n 12,13,15,16 0 -200\nMEMBER_LOADS\n 15,16 WY=50\nEQUAKE")],
-        "P364 loads pull 'building 1' upwards by 600 kN: loads that press are negative",
+        "P364 loads pull 'building 1' upwards by 600 kN, others press by 800 kN: loads",
     ),
     "loads forgotten, but for the weight of columns": (
         [UNWEIGHTED, ("A=0.16 I=0.0021", "A=0.16 I=0.0021 WGT=4"), ("I=0.0052", "I=0.0052 WGT=6")],

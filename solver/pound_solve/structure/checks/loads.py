@@ -120,7 +120,7 @@ def _lifted(structure: Structure, b: Building, own: list[Load]) -> list[Diagnost
     if up <= UPWARDS * press:
         return []
     load = max(own, key=lambda load: load.y)
-    message = f"loads pull {b.name!r} upwards by {up:.4g} {unit}"
+    message = f"loads pull {b.name!r} upwards by {up:.4g} {unit}, others press by {press:.4g} {unit}"
     hint = f"loads that press are negative: Y and {load.item} point upwards"
     return [Diagnostic("P364", message, load.card.place(load.item), hint, "warning")]
 

@@ -24,6 +24,7 @@ MEMBERS: Final = ("FRAME", "BEAM_COLUMN")
 DEEPEST: Final = 5.0
 USUAL: Final = (1.0 / 50.0, 1.0 / 3.0)  #: depth over length of ordinary members
 ALONG: Final = 0.999  #: cosine of the angle by which a member that lies may slope
+THINNEST: Final = 1.0 / 300.0  #: depth over length of a member that bends
 SLENDER: Final = 1.0 / 40.0  #: depth over length; floor slabs have no less
 LONGEST: Final = 6.0  #: length over that of the middle one of its kind; a slip of a digit makes it ten
 #: M h/(E I) at yield, twice the strain of the outer fibre; sections of concrete, steel or timber have
@@ -69,7 +70,7 @@ def misshapen(structure: Structure) -> list[Diagnostic]:
             out[label] = _too_deep(model, card, short, h)
             continue
         found = _in_millimetres(model, card, members, size**2)
-        found = found or _too_long(model, card, members, h)
+        found = found or _too_thin(model, card, short, h, size**2) or _too_long(model, card, members, h)
         if found:
             out[label] = found
     return list(out.values())
@@ -130,6 +131,21 @@ def _in_millimetres(model: Model, card: Card, members: list[Element], face: floa
             hint += "deformation is meant"
             return Diagnostic("P352", message, card.place("A"), hint, "warning")
     return None
+
+
+def _too_thin(model: Model, card: Card, e: Element, h: float, face: float) -> Diagnostic | None:
+    """A section that is hardly as thick as a wire, though its members bend; an area above the `face` of the
+    building [L^2] is that of a member without axial deformation.
+    """
+    if h >= THINNEST * length(model, e) or card["PIN"] == "BOTH" or card["A"] > face:
+        return None
+    unit = model.units.length
+    message = (
+        f"the section of {card.label} is {h:.2g} {unit} deep by A and I, sqrt(12 I/A), but member {e.id} "
+        f"is {length(model, e):.3g} {unit} long"
+    )
+    hint = f"A is in {unit}^2, I in {unit}^4: correct the one of other units; a bar has PIN=BOTH or no I"
+    return Diagnostic("P352", message, card.place("I"), hint, "warning")
 
 
 def _too_long(model: Model, card: Card, members: list[Element], h: float) -> Diagnostic | None:
