@@ -130,6 +130,16 @@ def test_impacts_keep_momentum_and_never_win_energy(n: int, seed: int) -> None:
     assert 0.5 * scale - 0.5 * masses @ w**2 == pytest.approx(lost.sum(), abs=1e-10 * scale)
 
 
+@pytest.mark.parametrize("e", [0.0, 0.5])
+def test_impacts_end_where_nothing_has_moved_before(e: float) -> None:
+    """Each passes on a share of what is left, down to the least of all numbers."""
+    r = RigidContacts(scene_of(row([900 / 9.81] * 6, [3e-14, 0.0, 0.0, 0.0, 0.0, 0.0], e)))
+    v = np.array([3e-14, 0.0, 0.0, 0.0, 0.0, 0.0])
+    impulse, _, after = r.impact(r.rows @ v, np.ones(5, bool), np.zeros(5))
+    assert np.all(after <= 1e-12 * v[0]) and np.all(impulse > 0.0)
+    assert (v - r.velocity_change @ impulse).sum() == pytest.approx(v[0], rel=1e-12)
+
+
 @BOTH
 def test_redundant_contacts_share(method: str) -> None:
     """Two contacts between the same two masses act as one."""

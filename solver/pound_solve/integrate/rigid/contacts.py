@@ -145,6 +145,9 @@ class RigidContacts:
             The impacts do not end, or `plastic_impulses` finds none.
         """
         impulse, lost = np.zeros(len(rates)), np.zeros(len(rates))
+        # bodies in a row pass on a share of what is left, for ever: where none has moved before, what is
+        # left is compared with the impact itself
+        slow = np.maximum(slow, ROUNDING * rates[touching].max(initial=0.0))
         for _ in range(MAX_IMPACTS):
             hit = touching & (rates > slow)
             if not hit.any():
