@@ -314,6 +314,14 @@ def test_overlaps_are_those_of_members_or_storeys_and_not_of_bearings(tmp_path):
     assert others == pytest.approx({1: 3.0, 2: 3.0, 3: 0.05, 4: 0.05})
 
 
+def test_the_report_names_the_warnings_that_are_not_told(tmp_path):
+    deck = tmp_path / "model.inp"
+    text = DECK.format(units="kN m s", g=9.81, h=3.0, x=5.0, k=1e5, a=1.0)
+    deck.write_text(f"MEANT P359,P334\n{text}".replace("HISTORY 4", "HISTORY 0.1"))
+    values = {row["item"]: row["value"] for row in results_of(deck).table("options")}
+    assert values["MEANT"] == "P334, P359"
+
+
 def test_the_moments_of_what_has_no_height_balance(tmp_path):
     """A girder that lies on two bearings: a moment counts beside the forces times its length."""
     text = (Path(__file__).parent / "sound" / "girder_on_bearings.inp").read_text("utf-8")

@@ -24,7 +24,7 @@ GEOMETRY: Final[Mapping[str, str]] = MappingProxyType(
 
 
 def rows(run: RunRecord) -> Iterator[Row]:
-    """Units, mass and geometry, PARAMs, analyses with their items, and OUTPUT."""
+    """Units, mass, geometry, warnings that are not told, PARAMs, analyses with their items, and OUTPUT."""
     model, units = run.model, run.model.units
 
     def default(key: str) -> str:
@@ -35,6 +35,8 @@ def rows(run: RunRecord) -> Iterator[Row]:
     yield "gravity", f"{model.gravity:.10g}", default("gravity"), "mass = weight / gravity"
     yield "mass of members", model.mass, default("mass"), ""
     yield "geometry", model.geometry, default("geometry"), GEOMETRY[model.geometry]
+    if model.meant:
+        yield "MEANT", ", ".join(sorted(model.meant)), "", "codes of warnings that are not told"
     for name, value in model.params.items():
         remark = "set on the command line" if name.lower() in run.overridden else ""
         yield f"PARAM {name}", text_of(value), "", remark
