@@ -733,6 +733,18 @@ def test_the_frames_in_other_units_have_no_remark(units):
             ("27 PIER 27 22", "27 PIER 22 27"),
         ],
         [("HISTORY 10", "HISTORY 0.1 METHOD=NEWMARK DT=0.02")],
+        [
+            ("ELEMENTS", " 17 0 7\n 18 6 7\nELEMENTS\n 17 JOINT 13 17\n 18 JOINT 16 18"),
+            ("16 BEAM 13 16", "16 BEAM 17 18"),
+            ("PROPS", "PROPS\n JOINT SPRING KX=1E7 KY=1E7 KR=1E5"),
+        ],
+        [
+            (RIGHT_FOOT, " 21 6.45 0\n 27 6.45 0 FIX=XYR"),
+            ("31 HIT", "30 FOOT 21 27\n 31 HIT"),
+            ("PROPS", "PROPS\n FOOT FOUNDATION G=40000 NU=0.3 WGT=18 B=1.2 L=1.2 UPLIFT=YES"),
+            (" 24 12.45 0 FIX=XYR", " 24 12.45 0\n 28 12.45 0 FIX=XYR"),
+            ("31 HIT", "29 FOOT 24 28\n 31 HIT"),
+        ],
         [("EQUAKE", "LOADS\n 12,13 0 10\n 15,16 0 -20\nEQUAKE")],
     ],
     ids=[
@@ -749,6 +761,8 @@ def test_the_frames_in_other_units_have_no_remark(units):
         "hinges that harden on both sides of a node within a column",
         "hinges of other strengths on both sides of a node within a column",
         "first few steps",
+        "joints of no length",
+        "footings that lift, between two nodes",
         "loads of wind",
     ],
 )

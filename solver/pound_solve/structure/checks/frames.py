@@ -69,6 +69,8 @@ class Lines:
         Pairs of nodes that elements join.
     grounded : set of int
         Nodes on elements that end at the ground.
+    group, at : list of list of int, mapping of int to int
+        Nodes at every place, and the place of every node.
     """
 
     def __init__(self, model: Model) -> None:
@@ -76,6 +78,7 @@ class Lines:
         self.beams, self.up, self.down = (defaultdict[int, list[Element]](list) for _ in range(3))
         self.joined = {frozenset(pair) for pair in joints(model)}
         self.grounded = {e.i for e in model.elements.values() if e.j is None}
+        self.group, self.at = places(model)
         for e in model.elements.values():
             if e.j is None or model.props[e.prop].spec.name == "CONTACT":
                 continue
@@ -87,6 +90,10 @@ class Lines:
                 low, high = (e.i, e.j) if i.y < j.y else (e.j, e.i)
                 self.up[low].append(e)
                 self.down[high].append(e)
+
+    def beamed(self, n: int) -> bool:
+        """Whether a beam ends at the place of a node, perhaps at another one behind a joint."""
+        return any(self.beams[m] for m in self.group[self.at[n]])
 
     def held(self, n: int) -> bool:
         """Whether a node is a support, or hangs on a master or on the ground."""
@@ -109,6 +116,7 @@ def _without_column(lines: Lines, b: Building) -> Iterator[Diagnostic]:
     for line in upright.values():
         for below, n in pairwise(line):
             ends = (lines.down[below] or "Y" in nodes[below].fixed) and not lines.up[below]
+            ends = ends and nodes[below].y < nodes[n].y  # else a joint of no length
             if ends and lines.end(n) and not lines.held(n):
                 message = (
                     f"nothing stands below node {n} of {b.name!r}, where a beam ends, but node {below} is "
@@ -122,7 +130,7 @@ def _without_beam(lines: Lines, b: Building) -> Iterator[Diagnostic]:
     for below, floor in pairwise(b.floors):
         for left, right in pairwise(_by_x(lines.model, floor)):
             feet = [_foot(lines, n, below) for n in (left, right)]
-            free = not any(lines.beams[n] or lines.model.nodes[n].slaved for n in (left, right))
+            free = not any(lines.beamed(n) or lines.model.nodes[n].slaved for n in (left, right))
             tied = frozenset((left, right)) in lines.joined
             if free and not tied and None not in feet and frozenset(feet) in lines.joined:
                 message = (

@@ -6,6 +6,7 @@ from collections import defaultdict
 
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.structure.buildings import buildings, parts, stands
+from pound_solve.structure.checks.ends import places
 from pound_solve.structure.checks.members import kinds, lies
 from pound_solve.structure.checks.supports import shaken, some
 from pound_solve.structure.structure import Structure
@@ -40,7 +41,9 @@ def massless(structure: Structure) -> list[Diagnostic]:
 def roofless(structure: Structure) -> list[Diagnostic]:
     """Buildings whose highest beams end at nodes without mass, while others end at nodes with mass."""
     model, out = structure.model, list[Diagnostic]()
-    heavy = {n for (n, d), mass in structure.nodal_mass.items() if d == 0 and mass > 0.0}
+    group, at = places(model)
+    own_mass = {n for (n, d), mass in structure.nodal_mass.items() if d == 0 and mass > 0.0}
+    heavy = {n for m in own_mass for n in group[at[m]]}  # a joint may lie between a beam and its mass
     beams = [e for members in kinds(model).values() for e in members if lies(model, e)]
     for b in buildings(structure) if "X" in shaken(model) else ():
         own, levels = set(b.nodes), defaultdict[float, set[int]](set)

@@ -14,6 +14,7 @@ from pound_deck.diagnostics import Diagnostic
 from pound_deck.model import Card, Element, Model
 from pound_solve.numerics.types import Array
 from pound_solve.structure.buildings import Building, buildings, stands
+from pound_solve.structure.checks.members import kinds
 from pound_solve.structure.dofs import DIRECTIONS
 from pound_solve.structure.elements.base import direction
 from pound_solve.structure.elements.beam import INSIDE
@@ -138,10 +139,11 @@ def _moved(structure: Structure, motions: Mapping[int, Array], count: int) -> Ar
     """
     columns = [*structure.dofs.free, *structure.dofs.moved]
     out = np.zeros((len(columns), count))
+    beams = {e.id: e for members in kinds(structure.model).values() for e in members}
     for row, (owner, d) in zip(out, columns):
         if d < 3:
             row[:] = motions[owner][d] if owner in motions else 0.0
-        elif (e := structure.model.elements[owner]).i in motions and e.j is not None:
+        elif (e := beams.get(owner)) is not None and e.i in motions and e.j is not None:
             row[:] = _inside(structure.model, e, e.j, d, motions)
     return out
 
