@@ -153,7 +153,7 @@ def overlaps(structure: Structure, history: HistoryResult, outcome: Outcome) -> 
             yield beyond(RESPONSE, about, share, 100 * LARGEST_OVERLAP, told, "%")
 
 
-def fierce(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
+def large_forces(structure: Structure, history: HistoryResult, outcome: Outcome) -> Iterator[Check]:
     """Contacts of standing buildings whose force is many times the weight of the lighter one."""
     model = structure.model
     standing = [b for b in history.items.buildings if stands(model, b.nodes)]
@@ -214,7 +214,7 @@ RULES: Final[Sequence[Callable[[Structure, HistoryResult, Outcome], Iterator[Che
     unknown,
     distant,
     overlaps,
-    fierce,
+    large_forces,
 )
 
 

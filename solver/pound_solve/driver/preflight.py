@@ -9,18 +9,18 @@ from typing import Final
 from pound_deck.diagnostics import Diagnostic
 from pound_solve.analyses import pushover
 from pound_solve.structure.buildings import misnamed
-from pound_solve.structure.checks.contacts import idle, inclined, misplaced, twins, wide
-from pound_solve.structure.checks.drifts import misdrawn
+from pound_solve.structure.checks.contacts import duplicate_contacts, idle, misplaced, wide
+from pound_solve.structure.checks.drifts import doubtful_drifts
 from pound_solve.structure.checks.ends import loose_ends
-from pound_solve.structure.checks.first_modes import in_hertz, misdamped, unlike_contacts
-from pound_solve.structure.checks.frames import ill_framed
+from pound_solve.structure.checks.first_modes import contact_stiffnesses, frequencies_in_hertz, misdamped
+from pound_solve.structure.checks.frames import framing_mistakes
 from pound_solve.structure.checks.hinges import facing
 from pound_solve.structure.checks.loads import misloaded, unloaded
-from pound_solve.structure.checks.masses import immovable, massless, roofless
-from pound_solve.structure.checks.materials import immaterial
+from pound_solve.structure.checks.masses import immovable, massless, roof_without_mass
+from pound_solve.structure.checks.materials import impossible_materials
 from pound_solve.structure.checks.mechanisms import hasty, loose, standing, untimely
 from pound_solve.structure.checks.members import doubled, misjudged, misshapen
-from pound_solve.structure.checks.supports import adrift, left_behind
+from pound_solve.structure.checks.supports import adrift, unmoved_feet
 from pound_solve.structure.checks.weights import far, misarmed, misweighed, outsized
 from pound_solve.structure.damping.by_building import uneven
 from pound_solve.structure.structure import Structure
@@ -78,7 +78,7 @@ def misbuilt(structure: Structure) -> list[Diagnostic]:
     for name, diagnostic in found:
         first.setdefault(name, diagnostic)
     out = [*(loose(structure, parts) or adrift(structure)), *first.values()]
-    for check in (hasty, misdamped, in_hertz, unlike_contacts):
+    for check in (hasty, misdamped, frequencies_in_hertz, contact_stiffnesses):
         out += check(structure, parts)
     return out
 
@@ -99,18 +99,17 @@ def causes(structure: Structure) -> list[Diagnostic]:
 
 
 CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
-    inclined,
     pressed,
     wide,
     misplaced,
-    twins,
+    duplicate_contacts,
     idle,
-    immaterial,
+    impossible_materials,
     loose_ends,
     misbuilt,
     massless,
     immovable,
-    roofless,
+    roof_without_mass,
     misarmed,
     far,
     unloaded,
@@ -124,9 +123,9 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     too_many,
     misnamed,
     uneven,
-    left_behind,
-    misdrawn,
-    ill_framed,
+    unmoved_feet,
+    doubtful_drifts,
+    framing_mistakes,
 )
 
 

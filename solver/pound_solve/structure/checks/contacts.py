@@ -1,4 +1,4 @@
-"""Contacts whose gap no motion closes, or that close as their bodies move apart."""
+"""Contacts whose gap no motion closes, that miss, or that close as their bodies move apart."""
 
 from __future__ import annotations
 
@@ -85,11 +85,11 @@ def misplaced(structure: Structure) -> list[Diagnostic]:
             within = floors[e.i] == floors[e.j] and abs(_way(spring)[0]) > ALONG
             twin = frozenset((e.i, e.j)) in forward
             out += [_within(e)] if within else _backwards(model, spring, e, twin)
-            out += _crooked(model, columns, spring, e)
+            out += _misaligned(model, columns, spring, e)
     return out
 
 
-def twins(structure: Structure) -> list[Diagnostic]:
+def duplicate_contacts(structure: Structure) -> list[Diagnostic]:
     """Contacts of the same nodes, direction and gap: those of two bodies of one property set."""
     model, first, out = structure.model, dict[tuple[object, ...], Element](), list[Diagnostic]()
     for spring in (s for s in structure.laws if s.role.collides):
@@ -101,25 +101,6 @@ def twins(structure: Structure) -> list[Diagnostic]:
             message = f"{both} are the same: they close at {angle:g} degrees together"
             hint = "give one ANGLE=180 if it is that of the other side, or take it out"
             out.append(Diagnostic("P354", message, e.span, hint, "warning"))
-    return out
-
-
-def inclined(structure: Structure) -> list[Diagnostic]:
-    """Contacts along an inclined line between their nodes: seldom meant between floors."""
-    model, out = structure.model, list[Diagnostic]()
-    columns = _columns(model)
-    for spring in (s for s in structure.laws if s.role.collides):
-        e, angle = model.elements[spring.element], spring.facts["angle"]
-        if (
-            model.props[e.prop]["ANGLE"] is None
-            and abs(math.remainder(angle, 90.0)) > LEAST_ANGLE
-            and _beside(model, columns, e) is None
-        ):
-            message = (
-                f"contact {e.name or e.id} acts along the line between its nodes, at {angle:.4g} degrees"
-            )
-            hint = "correct its nodes or their heights, or give ANGLE: 0 for floors that meet along x"
-            out.append(Diagnostic("P334", message, e.span, hint, "warning"))
     return out
 
 
@@ -161,11 +142,11 @@ def _beside(model: Model, columns: Mapping[float, Sequence[Node]], e: Element) -
     return None
 
 
-def _crooked(
+def _misaligned(
     model: Model, columns: Mapping[float, Sequence[Node]], spring: LawSpring, e: Element
 ) -> Iterator[Diagnostic]:
-    """A contact between floors of two heights though there is a node at the same height, and one that acts
-    across the line between its nodes.
+    """A contact between floors of two heights, though there may be a node at the same height, and one that
+    acts across the line between its nodes.
     """
     assert e.j is not None
     i, j = model.nodes[e.i], model.nodes[e.j]
@@ -178,15 +159,20 @@ def _crooked(
         )
         yield Diagnostic("P368", message, e.span, "give it ANGLE=0, or leave ANGLE out", "warning")
     elif across and (sloping or abs(_way(spring)[1]) <= ALONG):
-        found = _beside(model, columns, e)
-        if found is None:
-            return
-        n, other = found
-        message = (
-            f"contact {e.name or e.id} joins node {e.i} at y = {i.y:g} with node {e.j} at y = {j.y:g}, but "
-            f"node {n} faces it"
-        )
-        yield Diagnostic("P368", message, e.span, f"name node {n} in place of node {other}", "warning")
+        found, angle = _beside(model, columns, e), spring.facts["angle"]
+        if found:
+            n, other = found
+            message = (
+                f"contact {e.name or e.id} joins node {e.i} at y = {i.y:g} with node {e.j} at y = {j.y:g}, "
+                f"but node {n} faces it"
+            )
+            yield Diagnostic("P368", message, e.span, f"name node {n} in place of node {other}", "warning")
+        elif sloping and abs(math.remainder(angle, 90.0)) > LEAST_ANGLE:
+            message = (
+                f"contact {e.name or e.id} acts along the line between its nodes, at {angle:.4g} degrees"
+            )
+            hint = "correct its nodes or their heights, or give ANGLE: 0 for floors that meet along x"
+            yield Diagnostic("P334", message, e.span, hint, "warning")
 
 
 def _floors(model: Model) -> dict[int, int]:

@@ -7,7 +7,7 @@ from pound_solve.structure.buildings import buildings
 from pound_solve.structure.structure import Structure
 
 
-def misdrawn(structure: Structure) -> list[Diagnostic]:
+def doubtful_drifts(structure: Structure) -> list[Diagnostic]:
     """Drifts between nodes of two buildings, or from the upper node to the lower one.
 
     Those with a HEIGHT of their own may be the distance of two buildings, and so may those of nodes at one

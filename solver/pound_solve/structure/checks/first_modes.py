@@ -61,7 +61,7 @@ def misdamped(structure: Structure, found: Sequence[tuple[Building, Part]]) -> l
     return out
 
 
-def in_hertz(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+def frequencies_in_hertz(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Circular frequencies of DAMPING below the first one of every building that they may mean."""
     model, out = structure.model, list[Diagnostic]()
     for card in model.damping:
@@ -108,7 +108,7 @@ def _axial(model: Model) -> dict[int, float]:
     return out
 
 
-def unlike_contacts(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
+def contact_stiffnesses(structure: Structure, found: Sequence[tuple[Building, Part]]) -> list[Diagnostic]:
     """Contacts so soft that the weight of the bodies would press them by more than the height of their
     buildings, or so stiff that a collision ends before it is felt behind the face: one for each property
     set.

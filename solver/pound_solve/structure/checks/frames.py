@@ -25,20 +25,20 @@ GENTLE, STEEP = 10.0, 70.0  #: slopes of braces from and to [degrees]
 _warn = partial(Diagnostic, severity="warning")
 
 
-def ill_framed(structure: Structure) -> list[Diagnostic]:
+def framing_mistakes(structure: Structure) -> list[Diagnostic]:
     """Buildings that lie on others, and members that are missing or slope by mistake."""
     model = structure.model
     if not shaken(model):
         return []
-    out = list(_upon(model))
+    out = list(_coincident_frames(model))
     lines = Lines(model)
     for b in buildings(structure):
         if stands(model, b.nodes):
-            out += [*_without_column(lines, b), *_without_beam(lines, b), *_past(lines, b)]
-    return out + list(_sloping(model)) + list(_low(structure)) + list(_level(model))
+            out += [*_without_column(lines, b), *_without_beam(lines, b), *_passing_a_floor(lines, b)]
+    return [*out, *_sloping_beams(model), *_short_columns(structure), *_inclined_dashpots(model)]
 
 
-def _upon(model: Model) -> Iterator[Diagnostic]:
+def _coincident_frames(model: Model) -> Iterator[Diagnostic]:
     """Frames all of whose nodes lie on those of another one."""
     _, at = places(model)
     first: dict[int, int] = {}
@@ -140,7 +140,7 @@ def _without_beam(lines: Lines, b: Building) -> Iterator[Diagnostic]:
                 yield _warn("P375", message, lines.model.nodes[left].span, "is a beam missing?")
 
 
-def _past(lines: Lines, b: Building) -> Iterator[Diagnostic]:
+def _passing_a_floor(lines: Lines, b: Building) -> Iterator[Diagnostic]:
     """Elements that pass a node from which nothing leads up."""
     nodes = lines.model.nodes
     ends = [n for n in b.nodes if lines.down[n] and not lines.up[n] and n not in lines.grounded]
@@ -163,7 +163,7 @@ def _foot(lines: Lines, n: int, floor: Floor) -> int | None:
     return lower.pop() if len(lower) == 1 and lower <= set(floor.nodes) else None
 
 
-def _sloping(model: Model) -> Iterator[Diagnostic]:
+def _sloping_beams(model: Model) -> Iterator[Diagnostic]:
     """The one beam of a property set that slopes, where at least two others lie and none stands."""
     for members in kinds(model).values():
         flat = [e for e in members if lies(model, e)]
@@ -180,7 +180,7 @@ def _sloping(model: Model) -> Iterator[Diagnostic]:
             yield _warn("P375", message, e.span, hint)
 
 
-def _level(model: Model) -> Iterator[Diagnostic]:
+def _inclined_dashpots(model: Model) -> Iterator[Diagnostic]:
     """Dashpots along X alone between nodes on a slope, as those of braces: one for each property set."""
     told = set[str]()
     for e in model.elements.values():
@@ -196,7 +196,7 @@ def _level(model: Model) -> Iterator[Diagnostic]:
             yield _warn("P378", message, card.place("CX"), hint)
 
 
-def _low(structure: Structure) -> Iterator[Diagnostic]:
+def _short_columns(structure: Structure) -> Iterator[Diagnostic]:
     """Columns between floors that are far shorter than others of their kind."""
     model = structure.model
     floors = {n for b in buildings(structure) for floor in b.floors for n in floor.nodes}

@@ -48,7 +48,7 @@ def given(model: Model) -> Iterator[Load]:
             yield from (Load(n, x / 2.0, y / 2.0, c, item) for n in (e.i, e.j) if n is not None)
 
 
-def weighty(model: Model) -> bool:
+def gravity_acts(model: Model) -> bool:
     """Whether STATIC lets the weights press."""
     return any(c.values.get("GRAVITY") == "YES" for c in model.analyses)
 
@@ -56,7 +56,7 @@ def weighty(model: Model) -> bool:
 def unloaded(structure: Structure) -> list[Diagnostic]:
     """Buildings whose members take P-Delta into account, but bear no load."""
     model, out = structure.model, list[Diagnostic]()
-    if not model.geometry.startswith("PDELTA") or not model.analyses or weighty(model):
+    if not model.geometry.startswith("PDELTA") or not model.analyses or gravity_acts(model):
         return out
     bent = {model.elements[g.element].i for g in structure.geometric}
     loaded = {n for c in (*model.loads, *model.forces) for n in c["NODES"]}
@@ -75,10 +75,10 @@ def unloaded(structure: Structure) -> list[Diagnostic]:
         out.append(Diagnostic("P340", message, place, hint, "warning"))
         if len(idle) == len(found):
             break
-    return out + [d for b in found if b not in idle for d in _hardly(structure, b)]
+    return out + [d for b in found if b not in idle for d in _lightly_loaded(structure, b)]
 
 
-def _hardly(structure: Structure, b: Building) -> list[Diagnostic]:
+def _lightly_loaded(structure: Structure, b: Building) -> list[Diagnostic]:
     """Loads of a building that are a small part of its weight, so that P-Delta has hardly an effect."""
     model = structure.model
     own, weight = set(b.nodes), b.mass * model.gravity
@@ -116,7 +116,7 @@ def _lifted(structure: Structure, b: Building, own: list[Load]) -> list[Diagnost
     unit = structure.model.units.force
     up = sum(load.y for load in own if load.y > 0.0)
     press = -sum(load.y for load in own if load.y < 0.0)
-    press += b.mass * structure.model.gravity if weighty(structure.model) else 0.0
+    press += b.mass * structure.model.gravity if gravity_acts(structure.model) else 0.0
     if up <= UPWARDS * press:
         return []
     load = max(own, key=lambda load: load.y)
@@ -145,10 +145,10 @@ def _again(structure: Structure, b: Building, own: list[Load]) -> list[Diagnosti
         return []
     load = min(own, key=lambda load: load.y)
     told = f"loads press {b.name!r} by {press:.4g} {unit}"
-    if weighty(model) and TWICE[0] <= press / weight <= TWICE[1]:
+    if gravity_acts(model) and TWICE[0] <= press / weight <= TWICE[1]:
         message = f"{told}, and STATIC GRAVITY=YES by its weight, {weight:.4g} {unit}, once more"
         hint = "leave one of them out: GRAVITY=YES turns WEIGHTS into loads"
-    elif not LIGHTEST <= press / weight <= HEAVIEST and not weighty(model):
+    elif not LIGHTEST <= press / weight <= HEAVIEST and not gravity_acts(model):
         message = f"{told}, {press / weight:.2g} of its weight, {weight:.4g} {unit}"
         hint = f"loads are in {model.units.text('F')}, loads by length in {model.units.text('F/L')}"
     else:
@@ -159,7 +159,7 @@ def _again(structure: Structure, b: Building, own: list[Load]) -> list[Diagnosti
 def _forgotten(structure: Structure, b: Building, own: list[Load]) -> list[Diagnostic]:
     """A floor without load, where the others bear loads of the size of their weights."""
     model = structure.model
-    if weighty(model) or len(b.floors) < SEVERAL:
+    if gravity_acts(model) or len(b.floors) < SEVERAL:
         return []
     close = SAME_LEVEL * (b.levels[-1] - b.base)
     at = [[load for load in own if abs(model.nodes[load.node].y - f.level) <= close] for f in b.floors]

@@ -38,7 +38,7 @@ def massless(structure: Structure) -> list[Diagnostic]:
     return out
 
 
-def roofless(structure: Structure) -> list[Diagnostic]:
+def roof_without_mass(structure: Structure) -> list[Diagnostic]:
     """Buildings whose highest beams end at nodes without mass, while others end at nodes with mass."""
     model, out = structure.model, list[Diagnostic]()
     group, at = places(model)

@@ -21,7 +21,7 @@ VOLUMES, COLUMN = ((22e3, 26e3), (76e3, 79e3)), 0.6
 SHEAR, SOIL, WIDEST = (5e5, 1e11), (8e3, 35e3), 100.0
 
 
-def immaterial(structure: Structure) -> list[Diagnostic]:
+def impossible_materials(structure: Structure) -> list[Diagnostic]:
     """Property sets of members and footings that are made of nothing that exists."""
     model = structure.model
     newton, metre = NEWTON.get(model.units.force.lower()), METRE.get(model.units.length.lower())

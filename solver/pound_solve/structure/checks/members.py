@@ -69,7 +69,7 @@ def misshapen(structure: Structure) -> list[Diagnostic]:
         if h > size and (h > DEEPEST * long or _exchanged(card, long, h / size)):
             out[label] = _too_deep(model, card, short, h)
             continue
-        found = _in_millimetres(model, card, members, size**2)
+        found = _area_in_smaller_units(model, card, members, size**2)
         found = found or _too_thin(model, card, short, h, size**2) or _too_long(model, card, members, h)
         if found:
             out[label] = found
@@ -103,15 +103,22 @@ def _sizes(model: Model) -> dict[int, float]:
 
 def _too_deep(model: Model, card: Card, e: Element, h: float) -> Diagnostic:
     unit = model.units.length
+    hint = f"A is in {unit}^2, I in {unit}^4: correct the one of other units, or exchange them"
+    return _out_of_proportion(model, card, e, f"{h:.3g}", hint)
+
+
+def _out_of_proportion(model: Model, card: Card, e: Element, depth: str, hint: str) -> Diagnostic:
+    unit = model.units.length
     message = (
-        f"the section of {card.label} is {h:.3g} {unit} deep by A and I, sqrt(12 I/A), but member {e.id} "
+        f"the section of {card.label} is {depth} {unit} deep by A and I, sqrt(12 I/A), but member {e.id} "
         f"is {length(model, e):.3g} {unit} long"
     )
-    hint = f"A is in {unit}^2, I in {unit}^4: correct the one of other units, or exchange them"
     return Diagnostic("P352", message, card.place("I"), hint, "warning")
 
 
-def _in_millimetres(model: Model, card: Card, members: list[Element], face: float) -> Diagnostic | None:
+def _area_in_smaller_units(
+    model: Model, card: Card, members: list[Element], face: float
+) -> Diagnostic | None:
     """An area in mm^2 or cm^2 in a deck in m, larger than the `face` of the building [L^2], beside I in
     m^4.
 
@@ -140,12 +147,8 @@ def _too_thin(model: Model, card: Card, e: Element, h: float, face: float) -> Di
     if h >= THINNEST * length(model, e) or card["PIN"] == "BOTH" or card["A"] > face:
         return None
     unit = model.units.length
-    message = (
-        f"the section of {card.label} is {h:.2g} {unit} deep by A and I, sqrt(12 I/A), but member {e.id} "
-        f"is {length(model, e):.3g} {unit} long"
-    )
     hint = f"A is in {unit}^2, I in {unit}^4: correct the one of other units; a bar has PIN=BOTH or no I"
-    return Diagnostic("P352", message, card.place("I"), hint, "warning")
+    return _out_of_proportion(model, card, e, f"{h:.2g}", hint)
 
 
 def _too_long(model: Model, card: Card, members: list[Element], h: float) -> Diagnostic | None:

@@ -108,7 +108,7 @@ def some(nodes: Sequence[int], most: int = 6) -> str:
     return ", ".join(map(str, nodes[:most])) + ", ..." * (len(nodes) > most)
 
 
-def left_behind(structure: Structure) -> list[Diagnostic]:
+def unmoved_feet(structure: Structure) -> list[Diagnostic]:
     """Feet of buildings that stand still while SUPPORTS move other feet of the same building."""
     model, out = structure.model, list[Diagnostic]()
     cards = [c for c in model.equake if c["SUPPORTS"] is not None and c["DIRECTION"] != "Y"]
