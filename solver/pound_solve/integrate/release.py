@@ -70,8 +70,14 @@ class JumpingRun(Protocol):
 
 
 def falls(before: Branch, after: Branch, d: float) -> bool:
-    """Whether the force of a law at rest jumps where it changes branch at the deformation `d`."""
-    terms = sum(abs(b.stiffness * d) + abs(b.force0) for b in (before, after))
+    """Whether the force of a law at rest jumps where it changes branch at the deformation `d`.
+
+    A jump within the rounding of the forces that the branch `before` reaches is none: where nothing has
+    moved yet, `d` itself is rounding.
+    """
+    ends = [abs(e.constant / e.d_factor) for e in before.events if e.d_factor != 0.0]
+    reach = max(abs(d), *ends, 0.0)
+    terms = sum(abs(b.stiffness * reach) + abs(b.force0) for b in (before, after))
     return abs(before.force(d, 0.0) - after.force(d, 0.0)) > LOST * terms
 
 

@@ -25,6 +25,7 @@ from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.reduction import ReducedSystem
 
 MAX_CONDITION = 1e6  #: of the mode matrix; beyond it the exponential series is used
+MAX_RESIDUAL = 1e-10  #: of the modes, likewise
 
 
 def make_propagator(m: Array, c: Array, k: Array, inputs: Array, rows: Array | None = None) -> Propagator:
@@ -53,7 +54,8 @@ def make_propagator(m: Array, c: Array, k: Array, inputs: Array, rows: Array | N
         propagator = ModalPropagator(space, inputs)
     except np.linalg.LinAlgError:
         return SeriesPropagator(space, inputs)
-    return propagator if propagator.condition < MAX_CONDITION else SeriesPropagator(space, inputs)
+    sound = propagator.condition < MAX_CONDITION and propagator.residual < MAX_RESIDUAL
+    return propagator if sound else SeriesPropagator(space, inputs)
 
 
 @dataclass(frozen=True)

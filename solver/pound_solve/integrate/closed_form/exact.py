@@ -26,7 +26,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.check import Check, Subject, at_most
 from pound_solve.integrate import costs
 from pound_solve.integrate.closed_form import recording, work_integrals
-from pound_solve.integrate.closed_form.decomposition import MAX_CONDITION
+from pound_solve.integrate.closed_form.decomposition import MAX_CONDITION, MAX_RESIDUAL
 from pound_solve.integrate.closed_form.deferred_work import DeferredWork
 from pound_solve.integrate.closed_form.dense_output import DenseOutput
 from pound_solve.integrate.closed_form.event_loop import EventDrivenRun
@@ -64,7 +64,6 @@ MAX_WINDOWS = 10000  #: windows shorter than an interval in the rest of a run, w
 FORESEEN = 16  #: of them without an event between, after which it is foreseen how many there will be
 MAX_DEFERRED = 256  #: entries of work that wait
 SAME_INSTANT = 1e-13  #: share of the time within which two events are at one instant
-MAX_RESIDUAL = 1e-10  #: of the modes, above which the check is not good
 LOST = "modes are nearly parallel: digits are lost"
 
 
