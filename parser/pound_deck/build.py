@@ -250,7 +250,7 @@ def _doubtful_gravity(
         message = (
             f"GRAVITY is {gravity:g}, that of {other.lower()}, but the unit of length is {units.length}"
         )
-        hint = f"in {units.length} it is {known:g}; or name the deck's own units in UNITS"
+        hint = f"it is {known:g} for lengths in {units.length}; or name the deck's own units in UNITS"
         items = single["GRAVITY"].items or ()
         yield Diagnostic("P342", message, items[1].span, hint, "warning")
 

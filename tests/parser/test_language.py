@@ -214,9 +214,9 @@ def test_units_are_three(catalog, units, told):
 @pytest.mark.parametrize(
     "units, gravity, told",
     [
-        ("N mm s", 9.81, "in mm it is 9810"),
-        ("N m sec", 9800, "in m it is 9.81"),
-        ("kip in s", 32.2, "in in it is 386.09"),
+        ("N mm s", 9.81, "it is 9810 for lengths in mm"),
+        ("N m sec", 9800, "it is 9.81 for lengths in m"),
+        ("kip in s", 32.2, "it is 386.09 for lengths in in"),
         ("N cm s", 9.7, ""),
         ("N mm s", 9805, ""),
         ("N mm s", 1, ""),

@@ -244,7 +244,7 @@ MISTAKES = {
     ),
     "gravity in mm": (
         [("NODES\n", "GRAVITY 9810\nNODES\n")],
-        "P342 GRAVITY is 9810, that of mm, but the unit of length is m: in m it is 9.81",
+        "P342 GRAVITY is 9810, that of mm, but the unit of length is m: it is 9.81 for lengths in m",
     ),
     "no weights": (
         [(" 12,13,15,16 240\n 22,23,25,26 300\n", "")],
@@ -768,6 +768,12 @@ def test_the_frames_in_other_units_have_no_remark(units):
 )
 def test_frames_that_can_be_meant(changes):
     assert not told(FRAMES, changes)
+
+
+def test_mistakes_are_told_where_contacts_cannot_be_built():
+    changes = [(" 12,13,15,16 240\n 22,23,25,26 300", " 12,15 480\n 22,25 600")]
+    codes = {message.split()[0] for message in told(FRAMES, changes)}
+    assert codes == {"P330", "P347"}  # E needs masses that collide; a roof has none
 
 
 def test_what_is_meant_is_not_told():

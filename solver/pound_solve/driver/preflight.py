@@ -89,15 +89,20 @@ def rounded_up(x: float) -> float:
     return ceil(x / unit * (1.0 - 1e-12)) * unit
 
 
-#: those of a structure without damping and contacts, which tell why these could not be built
-CAUSES: Final = (unsteady, massless)
-
-
-def causes(structure: Structure) -> list[Diagnostic]:
-    """What is wrong with a structure that could not be assembled as a whole."""
-    return [found for check in CAUSES for found in check(structure)]
-
-
+#: those that neither ask for contacts nor for damping: they may tell why these could not be built
+FRAME_CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
+    massless,
+    immovable,
+    roof_without_mass,
+    unloaded,
+    misloaded,
+    misshapen,
+    doubled,
+    misjudged,
+    facing,
+    unmoved_feet,
+    framing_mistakes,
+)
 CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     pressed,
     wide,
@@ -107,26 +112,21 @@ CHECKS: Final[tuple[Callable[[Structure], list[Diagnostic]], ...]] = (
     impossible_materials,
     loose_ends,
     misbuilt,
-    massless,
-    immovable,
-    roof_without_mass,
     misarmed,
     far,
-    unloaded,
-    misloaded,
-    misshapen,
-    doubled,
-    misjudged,
-    facing,
+    *FRAME_CHECKS,
     pushover.mistakes,
     pushover.distant,
     too_many,
     misnamed,
     uneven,
-    unmoved_feet,
     doubtful_drifts,
-    framing_mistakes,
 )
+
+
+def causes(structure: Structure) -> list[Diagnostic]:
+    """What is wrong with a structure that could not be assembled with its damping and contacts."""
+    return [found for check in (unsteady, *FRAME_CHECKS) for found in check(structure)]
 
 
 def preflight(structure: Structure) -> list[Diagnostic]:
