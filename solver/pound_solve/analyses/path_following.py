@@ -87,6 +87,22 @@ class PathEvent(NamedTuple):
     event: int
 
 
+class Rates(NamedTuple):
+    """Rates along the path, shape (n_free,), (), (n_laws,), (n_laws,).
+
+    Attributes
+    ----------
+    displacement, factor : ndarray, float
+    argument, noise : ndarray
+        Of what the events of each law depend on, and its rounding error.
+    """
+
+    displacement: Array
+    factor: float
+    argument: Array
+    noise: Array
+
+
 class Change(NamedTuple):
     """Transition of a law, with the names of its branches."""
 
@@ -156,6 +172,8 @@ class EquilibriumPath:
         self._lost = np.zeros(n)  # forces that laws have released, not yet redistributed
         self._most = float(np.abs(applied).max(initial=0.0))
         self._longest = self._stride = np.inf
+        self._given = np.zeros(0)  # what the last rates were found with
+        self._rates: Rates | None = None
         self.ties = self._closed()
 
     def deformations(self, u: Array, factor: float) -> Array:
@@ -177,9 +195,9 @@ class EquilibriumPath:
         """Stiffness by which the method moves every law on from deformations `d`, shape (n_laws,): the
         tangent or, where a curved contact has only just closed, the secant.
         """
-        tangents = self.forces(d)[1]
         if not self.curved:
-            return tangents
+            return np.array([b.stiffness for b in self.branches], float)
+        tangents = self.forces(d)[1]
         size = float(max(np.abs(self.load).max(initial=0.0), np.abs(self.applied).max(initial=0.0)))
         secants = [
             _secant(s.law, x, size) if s.role.collides else 0.0 for s, x in zip(self.laws, self.states)
@@ -340,11 +358,24 @@ class EquilibriumPath:
         held = np.array([i for i, b in enumerate(self.branches) if b.held], np.intp)
         return Ties(held, dense(self.rows[held]))
 
-    def rates(self, u: Array, factor: float) -> tuple[Array, float, Array, Array]:
+    def rates(self, u: Array, factor: float) -> Rates:
         """Rates of displacements, load factor and what events depend on (see `_arguments`), and the
         rounding errors of the last.
+
+        Where all is linear in pieces they are the same until a stiffness, the load or the control changes:
+        laws at rest that leave their branch one after the other for another as stiff change none.
         """
         stiffness = self._stiffnesses(self.deformations(u, factor))
+        control = np.zeros(len(u)) if self.control is None else self.control
+        given = np.concatenate(
+            [stiffness, self._lost, self.load, control, [self.sign], self.ties.laws], dtype=float
+        )
+        if self._rates is None or self.curved or not np.array_equal(given, self._given):
+            self._given, self._rates = given, self._rates_with(u, stiffness)
+        return self._rates
+
+    def _rates_with(self, u: Array, stiffness: Array) -> Rates:
+        """`rates` with the stiffnesses of the laws."""
         du, rise = self._linear(u, stiffness, self._lost, 0.0 if self._lost.any() else self.sign)
         rate = self.rows @ du - self.lead * rise
         terms = np.abs(self.rows) @ np.abs(du) + np.abs(self.lead * rise)
@@ -355,7 +386,7 @@ class EquilibriumPath:
             rate[at] = self.ties.forces(self._lost + rise * push - k @ du)
             most = np.abs(self._lost) + np.abs(rise * push) + np.abs(k) @ np.abs(du)
             noise[at] = NOISE * self.ties.magnitudes(most)
-        return du, rise, rate, noise
+        return Rates(du, rise, rate, noise)
 
     def _move(self, u: Array, factor: float) -> None:
         self.applied = self.applied + (factor - self.factor) * self.load
