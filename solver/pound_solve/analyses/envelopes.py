@@ -193,12 +193,19 @@ class Envelopes:
     def between(self, course: Course) -> None:
         """Count in the motion between samples (see `integrate.protocol.Recorder`), with its extremes."""
         own, t = self.quantities, course.motion.t
-        values = own.values(course.motion, own.inputs(t))
-        self._all.take(values, t, own.place)
-        self.extremes.take(values, t, own.place)
         self.seen += len(t)
         self.apart = max(self.apart, float(course.lengths.max(initial=0.0)))
         self.closeups.take(course)
+        proved = own.extremes(course, self._all.low[own.place], self._all.high[own.place])
+        if proved is None or self.extremes.low.size:
+            values = own.values(course.motion, own.inputs(t))
+            self.extremes.take(values, t, own.place)
+        if proved is not None:
+            self.searched = True
+            for sign, top, at in ((1.0, proved.high, proved.t_high), (-1.0, -proved.low, proved.t_low)):
+                self._count(own.place, np.full(len(top), sign), top, at)
+            return
+        self._all.take(values, t, own.place)
         if course.within is None or not len(t):
             return
         self.searched = True
@@ -241,8 +248,13 @@ class Envelopes:
         close = np.flatnonzero(near(values, self._all.best(own, sign)))
         top, at = crests(values[close])
         t = course.motion.t[cell[close]] + at * course.lengths[cell[close]]
-        self._all.take_tops(own[close], sign[close], top, t)
-        self.extremes.take_tops(own[close], sign[close], top, t)
+        self._count(own[close], sign[close], top, t)
+
+    def _count(self, which: Index, sign: Array, top: Array, t: Array) -> None:
+        """Count in extremes of some quantities, times the sign of each, and their times; NaN for none."""
+        new = ~np.isnan(t)
+        for own in (self._all, self.extremes):
+            own.take_tops(which[new], sign[new], top[new], t[new])
 
     def take(self, motion: Motion, s: Sequence[Array]) -> tuple[dict[str, Array], Array, dict[str, Array]]:
         """Count in some samples; return the motion of the nodes, shape (3 n_nodes, nt) each,

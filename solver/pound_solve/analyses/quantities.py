@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from pound_solve.integrate.protocol import Course, Motion, Rows
+from pound_solve.integrate.protocol import Course, Motion, RowPeaks, Rows
 from pound_solve.numerics.matrices import Matrix, entries, gathered, used_rows
 from pound_solve.numerics.types import Array, Flags, Index
 from pound_solve.structure.elements.base import Output
@@ -162,15 +162,24 @@ class Quantities:
         motion = course.within(cells, shares)
         return self.values(motion, self.inputs(motion.t)).reshape(-1, len(cells), len(shares))
 
+    def extremes(self, course: Course, low: Array, high: Array) -> RowPeaks | None:
+        """What a course makes of the smallest and largest values of all rows, shape (n_rows,), with times
+        of those that are new, NaN for the others; None where it takes no rows.
+        """
+        if course.extremes is None or self.system.corotational:
+            return None
+        t_high, t_low = np.full((2, len(high)), np.nan)
+        found = RowPeaks(self._rows, self._inputs, high.copy(), t_high, low.copy(), t_low)
+        course.extremes(found)
+        return found
+
     def along(self, course: Course, row: Index, cell: Index, shares: Array) -> Array:
         """Values of a row in a cell each, at shares of it, shape (n, n_shares)."""
         cells, at = np.unique(cell, return_inverse=True)
         t = (course.motion.t[cells, None] + shares * course.lengths[cells, None]).ravel()
         s = self.inputs(t)
         rows, out = self._some(row), np.zeros((len(row), len(shares)))
-        if course.along is not None and not self.system.corotational:
-            out += course.along(rows, cell, shares)
-        elif course.within is not None:
+        if course.within is not None:
             motion = course.within(cells, shares)
             if self.system.corotational:
                 return np.asarray(self.values(motion, s).reshape(-1, len(cells), len(shares))[row, at])

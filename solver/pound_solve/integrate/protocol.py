@@ -113,6 +113,27 @@ class Rows(NamedTuple):
         return self.number[starts], np.add.reduceat(self.factors[:, None] * values, starts, axis=0)
 
 
+class RowPeaks(NamedTuple):
+    """Extremes of rows on a motion and on the inputs.
+
+    Attributes
+    ----------
+    rows : Rows
+        On the motion, by rising numbers.
+    on_inputs : ndarray, shape (n_rows, 3 n_inputs + 1)
+        Factors of the inputs and of their first two derivatives, and a constant.
+    high, t_high, low, t_low : ndarray, shape (n_rows,)
+        Largest and smallest values so far, and their times [T].
+    """
+
+    rows: Rows
+    on_inputs: Array
+    high: Array
+    t_high: Array
+    low: Array
+    t_low: Array
+
+
 class Course(NamedTuple):
     """The motion between two samples: at instants that rise, and from each of them on.
 
@@ -124,15 +145,14 @@ class Course(NamedTuple):
     within : callable or None
         The motion from instants of some numbers, shape (n_cells,), on, at shares of these times between 0
         and 1, shape (n_shares,): n_cells * n_shares instants, cell by cell.  None: nothing is known of it.
-    along : callable or None
-        Rows on the motion from an instant on for each, shape (n_rows,), at such shares, shape (n_rows,
-        n_shares).  None: by `within` only.
+    extremes : callable or None
+        Counts this motion into the `RowPeaks` of some rows, with proof.  None: by `within` only.
     """
 
     motion: Motion
     lengths: Array
     within: Callable[[Index, Array], Motion] | None
-    along: Callable[[Rows, Index, Array], Array] | None = None
+    extremes: Callable[[RowPeaks], None] | None = None
 
 
 class Envelopes(Protocol):

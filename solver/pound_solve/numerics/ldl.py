@@ -12,7 +12,7 @@ Davis TA (2006), Direct Methods for Sparse Linear Systems, SIAM, chapters 4 (fac
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Sized
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +22,9 @@ from pound_solve.numerics import ordering
 from pound_solve.numerics.matrices import MOST_DENSE
 from pound_solve.numerics.types import Array, Index
 
-Place = NDArray[np.uint32]  #: positions of entries: without a sign, so that none is counted from the end
+#: positions of entries: without a sign, so that none is counted from the end, for which a kernel would look
+#: at each before it reads or writes there
+Place = NDArray[np.uint32]
 
 
 SPARE = 0.05  #: entries that the factor may gain, an unknown, for the sake of diagonals
@@ -41,11 +43,11 @@ class Pattern(NamedTuple):
         Rows of L: pointers, columns, and positions in the arrays of L.
     """
 
-    ap: Index
+    ap: Place
     ai: Place
-    lp: Index
+    lp: Place
     li: Place
-    rp: Index
+    rp: Place
     rk: Place
     rq: Index
 
@@ -144,10 +146,14 @@ def filled(own: Sequence[set[int]]) -> list[list[int]]:
     return below
 
 
-def _compressed(lists: Sequence[Sequence[int]]) -> tuple[Index, Place]:
+def pointers(lists: Sequence[Sized]) -> Place:
+    """Where each of some lists begins where they stand one after the other, and where the last ends."""
+    return np.concatenate([[0], np.cumsum([len(x) for x in lists])]).astype(np.uint32)
+
+
+def _compressed(lists: Sequence[Sequence[int]]) -> tuple[Place, Place]:
     """Pointers and entries of a list of lists in one array."""
-    pointers = np.concatenate([[0], np.cumsum([len(x) for x in lists])]).astype(np.int64)
-    return pointers, np.array([x for own in lists for x in own], np.uint32)
+    return pointers(lists), np.array([x for own in lists for x in own], np.uint32)
 
 
 def factor(s: Pattern, a: Array, l: Array, d: Array, w: Array) -> int:  # noqa: E741

@@ -43,6 +43,15 @@ def size(p: Array, row: int, terms: int) -> float:
     return total
 
 
+@loose
+def rate_size(p: Array, row: int, terms: int) -> float:
+    """How far the derivative of the polynomial in a row can come from its value at 0, up to 1."""
+    total = 0.0
+    for k in range(2, terms + 1):
+        total += k * abs(p[row, k])
+    return total
+
+
 def value(p: Array, terms: int, s: float) -> float:
     """Value of the polynomial."""
     total: float = p[POLYNOMIAL, terms]

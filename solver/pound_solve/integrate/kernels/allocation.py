@@ -64,9 +64,9 @@ def sparse_rows(a: Matrix) -> Rows:
     return Rows(*_rows(rows, np.arange(a.shape[0]), columns, values))
 
 
-def _rows(rows: Index, wanted: Index, columns: Index, values: Array) -> tuple[Index, ldl.Place, Array]:
+def _rows(rows: Index, wanted: Index, columns: Index, values: Array) -> tuple[ldl.Place, ldl.Place, Array]:
     """The entries of some rows, which come row by row, as pointers, columns and values."""
-    pointers = np.append(np.searchsorted(rows, wanted), len(rows)).astype(np.int64)
+    pointers = np.append(np.searchsorted(rows, wanted), len(rows)).astype(np.uint32)
     return pointers, columns.astype(np.uint32), np.ascontiguousarray(values)
 
 
@@ -171,7 +171,7 @@ def places(chosen: Index, count: int) -> Index:
     return out
 
 
-def places_in_pattern(rows: Rows, own: Layout) -> tuple[Index, ldl.Place, Array]:
+def places_in_pattern(rows: Rows, own: Layout) -> tuple[ldl.Place, ldl.Place, Array]:
     """Where each law's ``b b^T`` adds to A: pointers, positions in its pattern, products."""
     pairs: list[list[tuple[int, float]]] = [[] for _ in own.joins]
     for i in np.flatnonzero(own.joins).tolist():
@@ -181,7 +181,7 @@ def places_in_pattern(rows: Rows, own: Layout) -> tuple[Index, ldl.Place, Array]
             (own.position[a, b], x * y) for a, x in zip(on, values) for b, y in zip(on, values) if a >= b
         ]
     return (
-        np.concatenate([[0], np.cumsum([len(p) for p in pairs])]).astype(np.int64),
+        ldl.pointers(pairs),
         np.array([q for p in pairs for q, _ in p], np.uint32),
         np.array([x for p in pairs for _, x in p], float),
     )
@@ -293,7 +293,7 @@ def member_arrays(system: ReducedSystem, own: Layout, scheme: Scheme) -> state.C
     supports = system.structure.corotational.rows[:, system.structure.n_free :]
     found = members.on(own.order.tolist()).touched()
     touched = [x for x, _ in found]
-    first = np.concatenate([[0], np.cumsum([len(x) for x in touched])]).astype(np.int64)
+    first = ldl.pointers(touched)
     position = own.position if scheme.beta > 0.0 else {}
     pairs = [
         [
@@ -313,7 +313,7 @@ def member_arrays(system: ReducedSystem, own: Layout, scheme: Scheme) -> state.C
         pointers=first,
         unknown=np.concatenate([*touched, np.zeros(0)]).astype(np.int64),
         rows=np.concatenate([*(rows.T for _, rows in found), np.zeros((0, 6))]),
-        pair_pointers=np.concatenate([[0], np.cumsum([len(x) for x in pairs])]).astype(np.int64),
+        pair_pointers=ldl.pointers(pairs),
         pair=np.array([x for p in pairs for x in p], np.int64).reshape(-1, 3),
         inputs=np.ascontiguousarray(system.corotational_inputs),
         supports=np.ascontiguousarray(dense(supports)).reshape(count, 6, supports.shape[1]),

@@ -70,7 +70,7 @@ class Product(NamedTuple):
     offsets: Index
     diagonals: Array
     row: Place
-    pointers: Index
+    pointers: Place
     columns: Place
     values: Array
 
@@ -84,7 +84,7 @@ class Rows(NamedTuple):
     columns, values : ndarray, shape (n_entries,)
     """
 
-    pointers: Index
+    pointers: Place
     columns: Place
     values: Array
 
@@ -204,10 +204,10 @@ class Corotational(NamedTuple):
     """
 
     parameters: Array
-    pointers: Index
+    pointers: Place
     unknown: Index
     rows: Array
-    pair_pointers: Index
+    pair_pointers: Place
     pair: Index
     inputs: Array
     supports: Array
@@ -286,7 +286,7 @@ class Laws(NamedTuple):
 
     rows: Rows
     inputs: Array
-    pair_pointers: Index
+    pair_pointers: Place
     pair_places: Place
     pair_values: Array
     supports: Array

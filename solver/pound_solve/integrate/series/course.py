@@ -1,5 +1,5 @@
-r"""The motion that TAYLOR has kept for the envelopes, as a `Course`: at `LOOKS` instants of every step, at
-the ends and middles of the cells of every interval in modes, and at any instant between these.
+r"""The motion that TAYLOR has kept for the envelopes, as a `Course`: at the ends of the cells of every step
+and of every interval in modes, and at any instant between these.
 
 Over an interval in modes every quantity is a product of a row with :math:`x = (\mathrm{Re}\,c,
 \mathrm{Im}\,c, \sigma_0, \sigma_1)` of its start (see `modal_tables`).  At a place s of the interval the
@@ -15,19 +15,24 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pound_solve.integrate.protocol import Course, Motion, Rows
+from pound_solve.integrate.events.polynomial_roots import room
+from pound_solve.integrate.protocol import Course, Motion, RowPeaks
+from pound_solve.integrate.series.extremes import RowExtremes, find_extremes
 from pound_solve.integrate.series.shown import INTERVALS, STEPS
 from pound_solve.integrate.series.state import Modal, Shown
+from pound_solve.loading.excitation import Excitation
+from pound_solve.numerics.providers import provider
 from pound_solve.numerics.types import Array, Complex, Index
 
-LOOKS = 2  #: cells of a step, of some 2.5 radians each
+TERMS = 16  #: of the series of a step for each of its cells, which have some 2.5 radians each
 
 
 class ShownSteps:
     """Steps that were kept; `order` tells the unknowns from their places in the order of elimination."""
 
-    def __init__(self, shown: Shown, order: Index) -> None:
-        self.shown, self.size = shown, len(order)
+    def __init__(self, shown: Shown, order: Index, excitation: Excitation) -> None:
+        self.shown, self.size, self.excitation = shown, len(order), excitation
+        self.cells = max(shown.coefs.shape[2] // TERMS, 1)  # of a step
         self.unknowns = order[shown.which]
         self.rows = np.zeros(3 * self.size + len(shown.acting), np.int64)  # in the coefficients
         for derivative in range(3):
@@ -52,35 +57,52 @@ class ShownSteps:
 
     def _within(self, cells: Index, shares: Array) -> Motion:
         """The motion at shares of some cells (see `protocol.Course`)."""
-        steps = np.unique(cells // LOOKS)
-        places = ((np.arange(LOOKS)[:, None] + shares) / LOOKS).ravel()
+        steps = np.unique(cells // self.cells)
+        places = ((np.arange(self.cells)[:, None] + shares) / self.cells).ravel()
         whole = self._motion(steps, places)
-        chosen = np.searchsorted(steps, cells // LOOKS) * LOOKS + cells % LOOKS
-        if len(chosen) == LOOKS * len(steps) and np.all(np.diff(chosen) == 1):
+        chosen = np.searchsorted(steps, cells // self.cells) * self.cells + cells % self.cells
+        if len(chosen) == self.cells * len(steps) and np.all(np.diff(chosen) == 1):
             return whole
         return Motion(*(_of_cells(x, chosen, len(shares)) for x in whole))
 
-    def _along(self, rows: Rows, cells: Index, shares: Array) -> Array:
-        """Values of rows at shares of a cell for each (see `protocol.Course`): of their own series."""
-        x, (steps, half) = self.shown, np.divmod(cells, LOOKS)
-        derivative = np.minimum(rows.columns // self.size, 3) % 3
-        out = np.zeros((len(cells), len(shares)))
-        for k in range(3):
-            own = rows.some(derivative == k)
-            coefs = x.coefs[steps[own.number], self.rows[own.columns]]
-            which, series = own.summed(coefs)
-            series *= x.length[steps[which], None] ** -k
-            for part in range(LOOKS):
-                mine = half[which] == part
-                out[which[mine]] += series[mine] @ _powers((part + shares) / LOOKS, x.coefs.shape[2])[k].T
-        return out
+    def _extremes(self, peaks: RowPeaks) -> None:
+        """Count the steps into the extremes of rows (see `protocol.Course`)."""
+        x, count = self.shown, int(self.shown.kept[STEPS])
+        about = self.excitation.about(x.begin[:count])
+        _, top, n_inputs = about.shape
+        inputs = np.zeros((count, n_inputs, max(top, x.coefs.shape[2])))
+        inputs[:, :, :top] = (about * x.length[:count, None, None] ** np.arange(top)[:, None]).swapaxes(
+            1, 2
+        )
+        on_motion, (row, given) = peaks.rows, np.nonzero(peaks.on_inputs[:, :-1])
+        number = np.concatenate([on_motion.number, row])
+        order = np.argsort(number, kind="stable")
+        source = [self.rows[on_motion.columns], x.coefs.shape[1] + given % n_inputs]
+        derivative = [np.minimum(on_motion.columns // self.size, 3) % 3, given // n_inputs]
+        factors = [on_motion.factors, peaks.on_inputs[row, given]]
+        bounds = x.coefs.shape[1] + n_inputs, 3
+        provider().ready(find_extremes)(
+            x,
+            inputs,
+            RowExtremes(
+                np.searchsorted(number[order], np.arange(len(peaks.high) + 1)).astype(np.uint32),
+                np.concatenate(source)[order].astype(np.uint32),
+                np.concatenate(derivative)[order],
+                np.concatenate(factors)[order],
+                peaks.on_inputs[:, -1].copy(),
+                *peaks[2:],
+                np.zeros(bounds),
+                np.zeros(bounds),
+                np.zeros(room(x.coefs.shape[2] - 1)),
+            ),
+        )
 
     def course(self) -> Course:
         """The motion of all that were kept."""
-        steps, shares = np.arange(self.shown.kept[STEPS]), np.arange(LOOKS) / LOOKS
+        steps, shares = np.arange(self.shown.kept[STEPS]), np.arange(self.cells) / self.cells
         motion = self._motion(steps, shares)
-        lengths = np.repeat(self.shown.length[steps] / LOOKS, LOOKS)
-        return Course(motion, lengths, self._within, self._along)
+        lengths = np.repeat(self.shown.length[steps] / self.cells, self.cells)
+        return Course(motion, lengths, self._within, self._extremes)
 
 
 def _powers(places: Array, count: int) -> Array:

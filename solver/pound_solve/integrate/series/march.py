@@ -288,15 +288,17 @@ def settle(
     123-130.
     """
     held, now = series.massless, step.now
-    varying = series.rigid.n_held[0] + len(series.curved.laws) + len(series.friction.laws)
-    if len(held.unknown) + varying + len(series.smooth.laws) + len(series.viscous.laws) == 0:
+    in_series = series.rigid.n_held[0] + len(series.curved.laws) + len(series.friction.laws)
+    in_series += len(series.smooth.laws) + len(series.viscous.laws)
+    if len(held.unknown) + in_series == 0:
         return DONE
     for _ in range(CHANGES + CHANGES_PER_LAW * len(laws.rule)):
         change_friction(laws, buffers, rules, series, run)
         if not renew(linear, laws, rules, series, run):
             return LOOSE
         begin_series(linear, laws, step, series, coefs, begin, 1.0)
-        next_term(linear, laws, step, series, 0, 1.0, len(coefs))
+        if in_series:  # forces that are series need the accelerations
+            next_term(linear, laws, step, series, 0, 1.0, len(coefs))
         # at the start no law has lost a force: what moves there is the rounding of the state of rest
         if run.fault >= 0 and jumps(laws, series, len(coefs)):
             return FALL
@@ -479,11 +481,13 @@ def sample(
 ) -> None:  # fmt: skip
     """Keep the present motion; as the first sample, count it into the peaks."""
     now = step.now
-    settle(linear, laws, step, buffers, rules, series, coefs, run.time - begin, run)
+    why = settle(linear, laws, step, buffers, rules, series, coefs, run.time - begin, run)
     evaluate_inputs(coefs, run.time - begin, now.inputs, now.input_rates)
     form_load(linear, now.inputs, now.load)
     multiply(linear.damping, now.velocity, now.damping_force)
     make_consistent(linear, laws, step)
+    if why == DONE and len(series.massless.unknown):
+        next_term(linear, laws, step, series, 0, 1.0, len(coefs))
     for i in series.massless.unknown:
         now.acceleration[i] = 2.0 * series.motion[2, i]
     if run.started == 0:

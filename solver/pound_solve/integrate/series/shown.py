@@ -30,6 +30,7 @@ def allocate(which: Index, acting: Index, modal: Modal, terms: int) -> Shown:
         acting=acting,
         kept=np.zeros(2, np.int64),
         coefs=np.zeros((s, len(which) + len(acting), terms)),
+        terms=np.zeros(s, np.int64),
         begin=np.zeros(s),
         length=np.zeros(s),
         x=np.zeros((i, b, size)),
@@ -65,7 +66,7 @@ def keep_step(laws: Laws, series: Series, terms: int, h: float, end: float, t: f
             power *= end
             for i in range(shown.coefs.shape[1]):
                 shown.coefs[at, i, k] *= power
-    shown.begin[at], shown.length[at] = t, h * end
+    shown.terms[at], shown.begin[at], shown.length[at] = terms, t, h * end
     shown.kept[STEPS] += 1
 
 

@@ -14,6 +14,7 @@ from pound_solve.integrate.kernels.allocation import coupled_pairs, places
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Rows
 from pound_solve.integrate.series.state import Series, Springs
+from pound_solve.numerics.ldl import pointers
 from pound_solve.numerics.matrices import Matrix, entries
 from pound_solve.numerics.types import Array
 
@@ -44,9 +45,11 @@ def allocate(n: int, rows: Rows, inputs: Array, stiffness: Matrix | None) -> Spr
     return Springs(
         row=row.astype(np.uint32),
         number=places(row, n),
-        rows=Rows(np.append(first, len(keys)), (keys % n).astype(np.uint32), np.zeros(len(keys))),
+        rows=Rows(
+            np.append(first, len(keys)).astype(np.uint32), (keys % n).astype(np.uint32), np.zeros(len(keys))
+        ),
         stiffness=fixed,
-        pair_pointers=np.cumsum([0, *map(len, squares)]),
+        pair_pointers=pointers(squares),
         pair_places=place.astype(np.uint32),
         pair_values=np.concatenate([np.zeros(0), *squares]),
         constant=np.zeros(n),

@@ -50,7 +50,7 @@ class Springs(NamedTuple):
     number: Index
     rows: Rows
     stiffness: Array
-    pair_pointers: Index
+    pair_pointers: Place
     pair_places: Place
     pair_values: Array
     constant: Array
@@ -110,7 +110,7 @@ class Massless(NamedTuple):
     pattern: Pattern
     column: Index
     on_pattern: Array
-    pair_pointers: Index
+    pair_pointers: Place
     pair_places: Place
     pair_values: Array
     damped: Flags
@@ -419,6 +419,8 @@ class Shown(NamedTuple):
         Steps and intervals that were kept.
     coefs : ndarray, shape (n_steps, n_which + n_acting, TERMS + 1)
         Of the unknowns, and of the forces of the laws, all dashpots included, as far as steps were taken.
+    terms : ndarray, shape (n_steps,)
+        Their highest powers; all others are zero.
     begin, length : ndarray, shape (n_steps,)
         Time of the start, and to where the step was taken.
     x, rest : ndarray, shape (n_intervals, n_parts, n_x) and (n_intervals, n_parts, 2 n_modes)
@@ -434,6 +436,7 @@ class Shown(NamedTuple):
     acting: Index
     kept: Index
     coefs: Array
+    terms: Index
     begin: Array
     length: Array
     x: Array

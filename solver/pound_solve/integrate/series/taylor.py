@@ -265,7 +265,7 @@ class Taylor(KernelEngine):
         """Show the recorder the series and the modes that were kept."""
         own = self.series.shown
         if own.kept[shown.STEPS]:
-            self.recorder.between(ShownSteps(own, self.order).course())
+            self.recorder.between(ShownSteps(own, self.order, self.system.excitation).course())
         if own.kept[shown.INTERVALS]:
             self.recorder.between(ShownIntervals(own, self.series.modal, self.order).course())
         own.kept[:] = 0

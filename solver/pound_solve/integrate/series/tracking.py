@@ -4,7 +4,7 @@ polynomials, whose first rise and extremes are isolated with proof (`events.poly
 
 from __future__ import annotations
 
-from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise, highest, size
+from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, first_rise, highest, rate_size, size
 from pound_solve.integrate.events.protocol import LocatedEvent, earlier, none
 from pound_solve.integrate.kernels.products import along
 from pound_solve.integrate.kernels.state import Laws, LinearSystem, Step
@@ -71,19 +71,23 @@ def event_of(laws: Laws, series: Series, terms: int, h: float, end: float, i: in
     if series.friction.number[i] >= 0:
         return friction_event(laws, series, terms, h, end, i)
     first, d, p = none(end), series.deformation, series.polynomial[POLYNOMIAL]
+    far, faster = size(d, i, terms), rate_size(d, i, terms) / h
     for e in range(laws.n_events[i]):
         on_d, on_v, constant = laws.events[i, e, 0], laws.events[i, e, 1], laws.events[i, e, 2]
         if on_d == 0.0 and on_v == 0.0:
             continue
         if is_held(series.rigid, i):
             return parting(series, terms, end, i)
+        scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i] + abs(constant)
+        most = on_d * d[i, 0] + on_v * d[i, 1] / h + constant + abs(on_d) * far + abs(on_v) * faster
+        if most <= STILL * scale:  # most laws are far from all their events
+            continue
         for k in range(terms + 1):
             p[k] = on_d * d[i, k]
         p[0] += constant
         if on_v != 0.0:
             for k in range(terms):
                 p[k] += on_v * (k + 1) / h * d[i, k + 1]
-        scale = abs(on_d) * laws.largest_deformation[i] + abs(on_v) * laws.largest_rate[i] + abs(constant)
         at = first_rise(series.polynomial, terms, first.time, STILL * scale)
         first = earlier(first, i, e, at)
     if series.smooth.number[i] >= 0:

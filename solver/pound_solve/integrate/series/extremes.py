@@ -1,0 +1,145 @@
+"""Kernel: the largest and the smallest values of rows on the motion over the steps that were kept.
+
+Within a step such a row is a polynomial, whose extremes are isolated with proof
+(`events.polynomial_roots`).  First its value at the start and the sizes of all its terms tell whether it
+may exceed what is known: seldom it may.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from pound_solve.integrate.events.polynomial_roots import POLYNOMIAL, highest, size
+from pound_solve.integrate.series.shown import STEPS
+from pound_solve.integrate.series.state import Shown
+from pound_solve.numerics.ldl import Place
+from pound_solve.numerics.types import Array, Index
+
+
+class RowExtremes(NamedTuple):
+    """Rows on the series of a step, and their extremes.
+
+    Attributes
+    ----------
+    pointers : ndarray, shape (n_rows + 1,)
+        Where the entries of each row begin.
+    source, derivative, factors : ndarray, shape (n_entries,)
+        Number of the series: of an unknown or a force (see `Shown`), then of the inputs; order of its
+        derivative; what that is times by.
+    constant : ndarray, shape (n_rows,)
+    high, t_high, low, t_low : ndarray, shape (n_rows,)
+        Largest and smallest values so far, and their times.
+    first, far : ndarray, shape (n_series, 3)
+        Of the derivatives of every series in the present step: value at the start, and how far it can come
+        from it.
+    polynomial : ndarray
+        Work space, see `polynomial_roots.room`.
+    """
+
+    pointers: Place
+    source: Place
+    derivative: Index
+    factors: Array
+    constant: Array
+    high: Array
+    t_high: Array
+    low: Array
+    t_low: Array
+    first: Array
+    far: Array
+    polynomial: Array
+
+
+def falling(k: int, order: int) -> float:
+    """What a derivative makes of the power `k`."""
+    out = 1.0
+    for j in range(order):
+        out *= k - j
+    return out
+
+
+def bound_series(own: RowExtremes, i: int, c: Array, terms: int, h: float) -> None:
+    """Find the value of series `i` at the start of a step, and how far it can come from it."""
+    zeroth, first, second = abs(c[1]) + abs(c[2]), 2.0 * abs(c[2]), 0.0
+    for k in range(3, terms + 1):
+        zeroth += abs(c[k])
+        first += k * abs(c[k])
+        second += k * (k - 1) * abs(c[k])
+    own.first[i, 0], own.first[i, 1], own.first[i, 2] = c[0], c[1] / h, 2.0 * c[2] / h / h
+    own.far[i, 0], own.far[i, 1], own.far[i, 2] = zeroth, first / h, second / h / h
+
+
+def may_exceed(own: RowExtremes, r: int) -> bool:
+    """Whether row `r` may exceed its extremes in the present step."""
+    first, far = own.constant[r], 0.0
+    for q in range(own.pointers[r], own.pointers[r + 1]):
+        i, order, factor = own.source[q], own.derivative[q], own.factors[q]
+        first += factor * own.first[i, order]
+        far += abs(factor) * own.far[i, order]
+    return bool(first + far > own.high[r] or first - far < own.low[r])
+
+
+def add_derivative(c: Array, terms: int, order: int, factor: float, p: Array) -> None:
+    """Add a derivative of a series, times a factor, to a polynomial."""
+    for k in range(terms + 1 - order):
+        p[k] += factor * falling(k + order, order) * c[k + order]
+
+
+def form_row(shown: Shown, inputs: Array, own: RowExtremes, s: int, r: int) -> None:
+    """Make row `r` in step `s` the polynomial at work."""
+    p, terms, n = own.polynomial[POLYNOMIAL], shown.terms[s], shown.coefs.shape[1]
+    for k in range(terms + 1):
+        p[k] = 0.0
+    p[0] = own.constant[r]
+    for q in range(own.pointers[r], own.pointers[r + 1]):
+        i, order, factor = own.source[q], own.derivative[q], own.factors[q]
+        for _ in range(order):
+            factor /= shown.length[s]
+        if i < n:
+            add_derivative(shown.coefs[s, i], terms, order, factor, p)
+        else:
+            add_derivative(inputs[s, i - n], terms, order, factor, p)
+
+
+def count_row(shown: Shown, own: RowExtremes, s: int, r: int) -> None:
+    """Count the polynomial at work into the extremes of row `r`."""
+    p, terms, begin, h = own.polynomial, shown.terms[s], shown.begin[s], shown.length[s]
+    first, far = p[POLYNOMIAL, 0], size(p, POLYNOMIAL, terms)
+    if first + far > own.high[r]:
+        value, place = highest(p, terms, 1.0, own.high[r])
+        if place >= 0.0:
+            own.high[r], own.t_high[r] = value, begin + h * place
+    if first - far < own.low[r]:
+        for k in range(terms + 1):
+            p[POLYNOMIAL, k] = -p[POLYNOMIAL, k]
+        value, place = highest(p, terms, 1.0, -own.low[r])
+        if place >= 0.0:
+            own.low[r], own.t_low[r] = -value, begin + h * place
+
+
+def find_extremes(shown: Shown, inputs: Array, own: RowExtremes) -> int:
+    """Count the steps that were kept into the extremes of all rows.
+
+    Parameters
+    ----------
+    shown : Shown
+    inputs : ndarray, shape (n_steps, n_inputs, TERMS + 1)
+        Series of the inputs over each step.
+    own : RowExtremes
+
+    Returns
+    -------
+    int
+        0.
+    """
+    for s in range(shown.kept[STEPS]):
+        n, terms, h = shown.coefs.shape[1], shown.terms[s], shown.length[s]
+        for i in range(n):
+            bound_series(own, i, shown.coefs[s, i], terms, h)
+        for j in range(inputs.shape[1]):
+            bound_series(own, n + j, inputs[s, j], terms, h)
+        for r in range(len(own.high)):
+            if may_exceed(own, r):
+                form_row(shown, inputs, own, s, r)
+                count_row(shown, own, s, r)
+    return 0
