@@ -51,11 +51,11 @@ def lean(folder):
     return path
 
 
-def ours(deck, folder, params, method, dt=None, name=""):
-    """One run of pound-solve."""
+def ours(deck, folder, params, method, dt=None, name="", tol=None):
+    """One run of pound-solve, with a step or with a tolerance."""
     from pound_solve import run  # not before the number of threads is set
 
-    results = run(deck, params=params, out=tempfile.mkdtemp(dir=folder), method=method, dt=dt)
+    results = run(deck, params=params, out=tempfile.mkdtemp(dir=folder), method=method, dt=dt, tol=tol)
     if results.status != "done":
         sys.exit(f"pair_cole: {results.message}")
     facts = {text(row["item"]): row["value"] for row in results.table("run_figures")}
@@ -63,7 +63,7 @@ def ours(deck, folder, params, method, dt=None, name=""):
     contacts = results.table("contact_summary")
     return Answer(
         method=f"pound-solve, {method}{name}",
-        dt=dt,
+        dt=tol or dt,
         seconds=float(facts["solve seconds, CPU"]),
         drift={text(row["name"]): (float(row["max"]), float(row["min"])) for row in drifts},
         force=by_floor(contacts["peak_force"]),

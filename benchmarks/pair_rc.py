@@ -16,7 +16,18 @@ import sys
 import tempfile
 from pathlib import Path
 
-from pair_cole import HERE, PEER, answer, at_equal_error, best_of, ours, table, theirs
+from pair_cole import (
+    HERE,
+    PEER,
+    answer,
+    at_equal_error,
+    best_of,
+    errors,
+    ours,
+    seconds_for,
+    table,
+    theirs,
+)
 
 DECK = HERE / "rc_pair.inp"
 STEP, GAL = 0.01, 0.01  # of the record: interval [s], unit [m/s2]
@@ -55,6 +66,31 @@ def compare(answers, reference):
         print("\n".join(["", *at_equal_error(answers, reference, {"drift": target, "force": target})]))
 
 
+def beside_auto(answers, reference):
+    """Lines: AUTO with each target as its tolerance, and how many times as long the cheapest way of the
+    peer takes to that target, and to the errors that AUTO has.
+    """
+    row = "{:>8} {:>12} {:>10} {:>10} {:>18} {:>22}".format
+    yield row("target", "AUTO CPU s", "drifts", "force", "peer to the target", "peer to AUTO's errors")
+    peers = {a.method for a in answers if a.method.startswith("OpenSees")}
+    of_peers = [[a for a in answers if a.method == name and a.sane] for name in sorted(peers)]
+
+    def ratio(own, goals):
+        ways = [
+            max(
+                seconds_for(e, [(errors(a, reference)[kind], a.seconds) for a in runs])[0]
+                for kind, e in goals
+            )
+            for runs in of_peers
+        ]
+        return f"{min(ways) / own.seconds:.3g}"
+
+    for own in (a for a in answers if a.method.endswith("AUTO")):
+        told = errors(own, reference)
+        cells = f"{own.dt:g}", f"{own.seconds:.3f}", *(f"{e:.1e}" for e in told.values())
+        yield row(*cells, ratio(own, dict.fromkeys(told, own.dt).items()), ratio(own, told.items()))
+
+
 def main():
     """Run both sides, print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -77,8 +113,8 @@ def main():
         motion = write_motion(args.record, folder)
         params = {"record": f'"{args.record.resolve()}"'}
 
-        def own(deck, method, steps=(None,)):
-            runs = [lambda dt=dt: ours(deck, folder, params, method, dt) for dt in steps]
+        def own(deck, method, given=(None,), what="dt"):
+            runs = [lambda x=x: ours(deck, folder, params, method, **{what: x}) for x in given]
             return best_of(runs, args.rounds)
 
         def peer(rule):
@@ -87,9 +123,11 @@ def main():
             return best_of(runs, args.repeat)
 
         deck = bilinear(folder)
-        best = [*own(deck, "TAYLOR"), *own(deck, "NEWMARK", args.dt), *peer("BILINEAR")]
+        best = [*own(deck, "TAYLOR"), *own(deck, "AUTO", TARGETS, "tol"), *own(deck, "NEWMARK", args.dt)]
+        best += peer("BILINEAR")
         print("bilinear hinges; errors against TAYLOR")
         compare(best, best[0])
+        print("\n".join(["", *beside_auto(best, best[0])]))
 
         (takeda,) = own(DECK, "TAYLOR")
         near = peer("HYSTERETIC")
