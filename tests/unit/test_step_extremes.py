@@ -77,6 +77,20 @@ def test_extremes_are_those_of_dense_samples(terms: int, seed: int) -> None:
         assert np.all(np.array(near) < 1e-3 * span)
 
 
+def test_a_force_between_supports_has_extremes() -> None:
+    own = steps(6, np.random.default_rng(0))
+    held = own.shown._replace(which=np.zeros(0, int), coefs=own.shown.coefs[:, SIZE:].copy())
+    course = ShownSteps(held, np.zeros(0, int), own.excitation).course()
+    assert course.within is not None
+    assert course.extremes is not None
+    rows = Rows(np.zeros(1, int), np.ones(1, int), np.ones(1))
+    peaks = RowPeaks(rows, np.zeros((1, 3 * INPUTS + 1)), *_nothing_known(1))
+    course.extremes(peaks)
+    force = course.within(np.arange(len(course.motion.t)), SHARES).law_forces[1]
+    np.testing.assert_allclose(peaks.high, force.max(), rtol=1e-5)
+    np.testing.assert_allclose(peaks.low, force.min(), rtol=1e-5)
+
+
 def test_what_is_known_stays_where_no_step_exceeds_it() -> None:
     own = steps(6, np.random.default_rng(0))
     course = own.course()

@@ -38,6 +38,7 @@ class ShownSteps:
         for derivative in range(3):
             self.rows[derivative * self.size + self.unknowns] = np.arange(len(shown.which))
         self.rows[3 * self.size :] = len(shown.which) + np.arange(len(shown.acting))
+        self.derivatives = np.append(np.repeat(np.arange(3), self.size), 0 * shown.acting)
 
     def _motion(self, steps: Index, places: Array) -> Motion:
         """The motion at places in some steps."""
@@ -78,7 +79,7 @@ class ShownSteps:
         number = np.concatenate([on_motion.number, row])
         order = np.argsort(number, kind="stable")
         source = [self.rows[on_motion.columns], x.coefs.shape[1] + given % n_inputs]
-        derivative = [np.minimum(on_motion.columns // self.size, 3) % 3, given // n_inputs]
+        derivative = [self.derivatives[on_motion.columns], given // n_inputs]
         factors = [on_motion.factors, peaks.on_inputs[row, given]]
         bounds = x.coefs.shape[1] + n_inputs, 3
         provider().ready(find_extremes)(
