@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import pound_solve
 from pound_deck.schema import REQUIRED
 from pound_solve.catalog import members
+from pound_solve.numerics.block import Block, with_numbers
 from pound_solve.numerics.jit import Function
-from pound_solve.numerics.library import Block, with_numbers
 from pound_solve.numerics.providers import Interpreter
 
 #: a bar that falls on a stop, for all methods; with members that turn, too, which need steps
@@ -44,7 +44,7 @@ class Call(NamedTuple):
     kernel : callable
     arguments : tuple
     types : list of str
-        See `library.Block`.
+        See `block.Block`.
     """
 
     kernel: Function

@@ -10,7 +10,9 @@ from ahead_of_time import calls, dispatch
 from ahead_of_time.calls import Call
 from ahead_of_time.link import link
 from ahead_of_time.machine_code import contents, door, machine_code, unoptimised
-from pound_solve.numerics.library import CONTENTS, Block
+from pound_solve.numerics import jit
+from pound_solve.numerics.block import Block
+from pound_solve.numerics.library import CONTENTS
 
 
 def prepare() -> None:
@@ -22,8 +24,8 @@ def compiled(call: Call) -> bytes:
     """The object file of one kernel."""
     name = call.kernel.__name__
     module, kernel = unoptimised(call)
-    n_cells = len(Block(call.arguments, dispatch.numbers()).cells)
-    return machine_code(name, door(module, kernel, name, n_cells), module)
+    sizes = [len(Block([own], dispatch.numbers()).cells) for own in call.arguments]
+    return machine_code(name, door(module, kernel, name, jit.kinds_of(call.arguments), sizes), module)
 
 
 def build(path: Path) -> None:

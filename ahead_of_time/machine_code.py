@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import llvmlite.binding as llvm
-from numba import typeof
 from numba.core.codegen import AOTCPUCodegen
 from numba.core.compiler_lock import global_compiler_lock
 
 from ahead_of_time.calls import Call
 from pound_solve.numerics import jit
+from pound_solve.numerics.addressed import Addressed
 from pound_solve.numerics.library import CONTENTS
 
 WHOLE, REAL, ADDRESS = "i64", "double", "ptr"  #: LLVM's names of types of 64 bits
@@ -19,14 +19,13 @@ WHOLE, REAL, ADDRESS = "i64", "double", "ptr"  #: LLVM's names of types of 64 bi
 
 def unoptimised(call: Call) -> tuple[Any, str]:
     """A kernel with all that it calls, as a module of LLVM, and the name of its function there."""
-    types = tuple(typeof(value) for value in call.arguments)
-    made: Any = jit.compiled(call.kernel, types, inner=True)
+    made: Any = jit.compiled(call.kernel, jit.kinds_of(call.arguments), inner=True)
     (own,) = made.overloads.values()
     return own.library._final_module, own.fndesc.mangled_name
 
 
-def door(module: Any, kernel: str, name: str, n_cells: int) -> str:
-    """LLVM's text of a function that calls a kernel with the numbers of a `library.Block`.
+def door(module: Any, kernel: str, name: str, kinds: Sequence[Any], sizes: Sequence[int]) -> str:
+    """LLVM's text of a function that calls a kernel with the numbers of a `block.Block`.
 
     Parameters
     ----------
@@ -35,32 +34,50 @@ def door(module: Any, kernel: str, name: str, n_cells: int) -> str:
         Name of the kernel's function in it.
     name : str
         Of the door.
-    n_cells : int
-        Numbers in the block.
+    kinds : sequence of numba types
+        Of the arguments.
+    sizes : sequence of int
+        Numbers in the block for each.
 
     Raises
     ------
     ValueError
-        The kernel takes more or fewer.
+        The kernel takes more numbers or fewer.
     """
     result, exception, *given = [str(x.type) for x in module.get_function(kernel).arguments]
-    if len(given) != n_cells:
-        raise ValueError(f"{name} takes {len(given)} numbers, its block has {n_cells}")
+    cells = cells_handed_on(kinds, sizes)
+    if len(given) != len(cells):
+        raise ValueError(f"{name} takes {len(given)} numbers, its block has {len(cells)}")
     lines = [
         f'declare i32 @"{kernel}"({", ".join([result, exception, *given])})',
         f"define i32 @{name}(ptr %cells, ptr %result) {{",
         "%exception = alloca ptr",
     ]
-    for n, kind in enumerate(given):
+    arguments = ["ptr %result", "ptr %exception"]
+    for (n, by_address), kind in zip(cells, given):
         lines.append(f"%place{n} = getelementptr {WHOLE}, ptr %cells, {WHOLE} {n}")
+        arguments.append(f"ptr %place{n}" if by_address else f"{kind} %own{n}")
+        if by_address:
+            continue
         if kind in (WHOLE, REAL, ADDRESS):
             lines.append(f"%own{n} = load {kind}, ptr %place{n}")
         else:
             lines.append(f"%cell{n} = load {WHOLE}, ptr %place{n}")
             lines.append(f"%own{n} = trunc {WHOLE} %cell{n} to {kind}")
-    arguments = ["ptr %result", "ptr %exception", *(f"{kind} %own{n}" for n, kind in enumerate(given))]
     lines.append(f'%status = call i32 @"{kernel}"({", ".join(arguments)})')
     return "\n".join([*lines, "ret i32 %status", "}"])
+
+
+def cells_handed_on(kinds: Sequence[Any], sizes: Sequence[int]) -> list[tuple[int, bool]]:
+    """Numbers of the cells that a door hands on, and whether by their addresses: the first of a tuple that
+    is `Addressed`, else all.
+    """
+    found, first = list[tuple[int, bool]](), 0
+    for kind, size in zip(kinds, sizes):
+        by_address = isinstance(kind, Addressed)
+        found += [(first, True)] if by_address else [(first + n, False) for n in range(size)]
+        first += size
+    return found
 
 
 def contents(calls: Sequence[Call], numbers: dict[str, int]) -> str:

@@ -154,7 +154,7 @@ ONLY_IN = {
     "pandas": {"results/frames.py", "results/reader.py", "results/sweep_file.py"},
     "xarray": {"results/frames.py", "results/reader.py", "results/sweep_file.py"},
     "plotly": {"report/html/__init__.py"},
-    "numba": {"numerics/jit.py"},
+    "numba": {"numerics/jit.py", "numerics/addressed.py"},
     "platformdirs": {"numerics/kernel_cache.py"},
     "pygls": {"editor/server.py"},
     "lsprotocol": {"editor/server.py"},

@@ -53,9 +53,6 @@ class Uncompiled(NamedTuple):
 
     function: Callable[..., Any]
 
-    def typeof_pyval(self, argument: Any) -> type:
-        return type(argument)
-
     def compile(self, types: tuple[type, ...]) -> Callable[..., Any]:
         return self.function
 
@@ -67,6 +64,7 @@ def test_error_stream_and_report_say_that_nothing_is_kept(
     monkeypatch.setattr(
         jit, "compiled", lambda kernel, *signature: kernel if signature else Uncompiled(kernel)
     )
+    monkeypatch.setattr(jit, "kinds_of", lambda arguments: tuple(type(value) for value in arguments))
     numba = jit.Numba()
     for module in (engine, functions, providers):
         monkeypatch.setattr(module, "provider", lambda: numba)

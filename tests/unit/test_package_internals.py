@@ -21,7 +21,7 @@ ADVICE = {
 
 
 @NUMBA
-@pytest.mark.parametrize("flag", ["_nrt", "forceinline", "no_cfunc_wrapper", "no_cpython_wrapper"])
+@pytest.mark.parametrize("flag", ["_nrt", "no_cfunc_wrapper", "no_cpython_wrapper"])
 def test_numba_knows_the_flags_of_the_kernels(flag):
     from numba.core.cpu import CPUTargetOptions
 
@@ -66,8 +66,8 @@ def test_numba_links_inner_kernels_without_emitting_them():
 
 
 @NUMBA
-def test_numba_lays_arrays_out_as_the_library_takes_them():
-    """As `library.Block` does, and it makes code for a file."""
+def test_numba_lays_arrays_out_as_blocks_do():
+    """As `block.Block` does, and it makes code for a file."""
     from numba.core import codegen, datamodel, types
 
     model = datamodel.default_manager.lookup(types.Array(types.float64, 2, "C"))

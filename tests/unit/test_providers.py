@@ -16,8 +16,9 @@ from kernels import interpreted
 from pound_solve.laws import functions
 from pound_solve.laws.hysteresis import bilinear
 from pound_solve.numerics import jit, library, providers
+from pound_solve.numerics.block import Block
 from pound_solve.numerics.digest import KERNELS, digest
-from pound_solve.numerics.library import REFUSED, Block
+from pound_solve.numerics.library import REFUSED
 from pound_solve.numerics.providers import INTERPRETED, Interpreter, provider
 from pound_solve.numerics.record import record
 
@@ -91,7 +92,7 @@ def test_a_library_of_other_source_or_of_another_machine_is_refused(
 def test_the_digest_sees_kernels_laws_and_what_packs_their_arguments() -> None:
     program = Path(library.__file__).parents[1]
     found = {p for pattern in KERNELS for p in program.glob(pattern)}
-    for module in ("laws/hysteresis/bilinear.py", "integrate/kernels/laws.py", "numerics/library.py"):
+    for module in ("laws/hysteresis/bilinear.py", "integrate/kernels/laws.py", "numerics/block.py"):
         assert program / module in found
 
 

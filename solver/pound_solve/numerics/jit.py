@@ -12,7 +12,7 @@ import dis
 import itertools
 import types
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from typing import Any
@@ -20,12 +20,13 @@ from typing import Any
 import numpy as np
 
 from pound_solve.numerics import kernel_cache
+from pound_solve.numerics.block import Block
+from pound_solve.numerics.types import Array
 
 Function = Callable[..., Any]
 
 
 COMPILING = "compiling the kernels, once for this version: a minute or two"
-SHORT = 700  #: bytes of bytecode up to which a function is inlined
 FASTMATH = {"contract", "reassoc"}  #: reorderings of floating-point operations allowed in `loose` kernels
 
 
@@ -41,7 +42,7 @@ def numba() -> Any:
     return found
 
 
-INNER, INLINE = "_inner", "_inline"  #: ends of the names of kernels that only other kernels call
+INNER = "_inner"  #: end of the names of kernels that only other kernels call
 
 
 @cache
@@ -56,7 +57,7 @@ def lighten(found: Any) -> None:
     set_environment = engine.set_env
 
     def is_inner(own: Any) -> bool:
-        return bool(own.name.endswith((INNER, INLINE)))
+        return bool(own.name.endswith(INNER))
 
     def optimise_outermost(own: Any) -> None:
         if not is_inner(own):
@@ -84,12 +85,6 @@ def subscripts(function: Function) -> set[str]:
         for own, then in code
         if own.opname == "LOAD_GLOBAL" and (then.opname == "BINARY_SUBSCR" or then.argrepr == "[]")
     }
-
-
-def flat(function: Function) -> Function:
-    """Mark a kernel to be compiled as one function with all that it calls in every step."""
-    vars(function)["flat"] = True
-    return function
 
 
 def loose(function: Function) -> Function:
@@ -124,9 +119,7 @@ def cold(function: Function) -> bool:
 
 
 @cache
-def compiled(
-    function: Function, signature: Any = None, inner: bool = False, inline: bool = False
-) -> Function:
+def compiled(function: Function, signature: Any = None, inner: bool = False) -> Function:
     """Compile a kernel and, first, the functions of this program that it calls.
 
     Parameters
@@ -137,8 +130,6 @@ def compiled(
         Compile for these types at once, so that the function can be handed on as a value.
     inner : bool
         Only other kernels call it.
-    inline : bool
-        Put its code into that of its callers: a call that hands on many arrays counts every one of them.
 
     Returns
     -------
@@ -148,27 +139,34 @@ def compiled(
     found = numba()
     if found is None:
         return function
-    scope, flat = dict(function.__globals__), "flat" in vars(function)
-    indices = subscripts(function)
+    scope, indices = dict(function.__globals__), subscripts(function)
     for used in {i.argval for i in dis.get_instructions(function) if i.opname == "LOAD_GLOBAL"}:
         value = scope.get(used)
         if isinstance(value, types.FunctionType) and value.__module__.startswith("pound_solve"):
-            scope[used] = compiled(value, inner=True, inline=flat or len(value.__code__.co_code) < SHORT)
+            scope[used] = compiled(value, inner=True)
         elif type(value) is int and used not in indices:  # a callee would be compiled anew for every int,
             scope[used] = np.int64(value)  # while only by an int a tuple may be indexed at no cost
     twin = types.FunctionType(function.__code__, scope, function.__name__, function.__defaults__)
     twin.__qualname__, twin.__module__ = function.__qualname__, function.__module__
     # arrays belong to the caller of a kernel: they need not be counted, which would cost more than the work
     kept = kernel_cache.place().folder is not None
-    how = {"cache": kept, "error_model": "numpy", "_nrt": False, "forceinline": inline}
+    how = {"cache": kept, "error_model": "numpy", "_nrt": False}
     if inner:  # no Python calls it, so that it needs no door to it; kept by a name of its own
-        twin.__qualname__ += INLINE if inline else INNER
+        twin.__qualname__ += INNER
         how |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "cache": False}
     if "loose" in vars(function):
         how["fastmath"] = FASTMATH
     with compiling():
         out: Function = found.njit(*([] if signature is None else [signature]), **how)(twin)
     return out
+
+
+def kinds_of(arguments: Iterable[Any]) -> tuple[Any, ...]:
+    """numba's types of the arguments of a kernel, which takes named tuples by address where it can."""
+    from pound_solve.numerics.addressed import addressed  # it imports numba
+
+    typeof = numba().typeof
+    return tuple(addressed(typeof(value)) for value in arguments)
 
 
 class Numba:
@@ -188,24 +186,44 @@ class Numba:
     def ready(self, kernel: Function, signature: str = "") -> Function:
         """See `providers.Provider`."""
         self.name = "; ".join(filter(None, ["compiled by numba", kernel_cache.place().told]))
-        if signature:
-            return compiled(kernel, signature)
-        own: Any = compiled(kernel)
-        given: tuple[Any, ...] = ()
-        entry: Function = own
-
-        def call(*arguments: Any) -> Any:
-            nonlocal given, entry
-            if len(given) != len(arguments) or any(x is not y for x, y in zip(given, arguments)):
-                with compiling():  # numba takes longer to see of what types they are than many a call takes
-                    entry = own.compile(tuple(own.typeof_pyval(x) for x in arguments))
-                given = arguments
-            return entry(*arguments)
-
-        return call
+        return compiled(kernel, signature) if signature else Called(compiled(kernel))
 
     def notice(self, kernel: Function) -> str:
         """See `providers.Provider`."""
         place = kernel_cache.place()
         compiling = COMPILING if place.folder and cold(kernel) else ""
         return "; ".join(filter(None, [self._told, place.told, compiling]))
+
+
+class Called:
+    """A kernel that numba compiles at the first call and calls from then on.
+
+    Parameters
+    ----------
+    dispatcher : object of numba
+    """
+
+    def __init__(self, dispatcher: Any) -> None:
+        self._dispatcher, self._entry = dispatcher, dispatcher
+        self._given: tuple[Any, ...] = ()
+        self._taken: list[Any] = []  # the same, of some their addresses
+        self._cells: list[Array] = []  # what is there
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Call it."""
+        same = len(self._given) == len(arguments) and all(x is y for x, y in zip(self._given, arguments))
+        if not same:  # numba takes longer to see of what types they are than many a call takes
+            self._take(arguments)
+        return self._entry(*self._taken)
+
+    def _take(self, arguments: tuple[Any, ...]) -> None:
+        """Take other arguments."""
+        with compiling():
+            kinds = kinds_of(arguments)
+            self._entry = self._dispatcher.compile(kinds)
+        self._given, self._taken, self._cells = arguments, [], []
+        for value, kind in zip(arguments, kinds):
+            if hasattr(kind, "parts"):
+                self._cells.append(np.frombuffer(Block(value, {}).packed(), np.int64))
+                value = self._cells[-1].ctypes.data
+            self._taken.append(value)

@@ -26,7 +26,7 @@ from pound_solve.integrate.series.springs import add_product, deformation
 from pound_solve.integrate.series.state import Lengths, Series
 from pound_solve.integrate.series.strings import add_strings
 from pound_solve.integrate.series.viscous import add_drags, drags_right_up_to, find_drags
-from pound_solve.numerics.jit import flat, loose
+from pound_solve.numerics.jit import loose
 from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
@@ -175,7 +175,6 @@ def right_up_to(series: Series, terms: int, end: float) -> float:
     return drags_right_up_to(series.viscous, terms, end)
 
 
-@flat
 def expand(
     linear: LinearSystem, laws: Laws, step: Step, series: Series, lengths: Lengths, coefs: Array,
     begin: float, h: float,

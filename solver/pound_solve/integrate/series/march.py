@@ -59,7 +59,6 @@ from pound_solve.integrate.series.tracking import event_of, first_event, track_l
 from pound_solve.integrate.series.viscous import TURNS, settled
 from pound_solve.integrate.series.viscous import linearise as linearise_dampers
 from pound_solve.laws.functions import Tables
-from pound_solve.numerics.jit import flat
 from pound_solve.numerics.types import Array, Flags, Index
 
 SHRINK = 1.0 / 16.0  #: of the length of a step that is tried again, at least
@@ -125,7 +124,6 @@ def work_put_in(linear: LinearSystem, series: Series, terms: int, end: float, to
     return put
 
 
-@flat
 def add_works(
     linear: LinearSystem, laws: Laws, step: Step, series: Series, coefs: Array, begin: float, terms: int,
     carried: int, h: float, end: float, works: Works, rules: Tables,

@@ -43,7 +43,6 @@ from pound_solve.integrate.kernels.state import WHOLE, Laws, LinearSystem, Run, 
 from pound_solve.integrate.series.expansion import dot, expand_deformations, expand_inputs
 from pound_solve.integrate.series.springs import add_product
 from pound_solve.integrate.series.state import Lengths, Series, SinglePole
-from pound_solve.numerics.jit import flat
 from pound_solve.numerics.ldl import solve
 from pound_solve.numerics.types import Array
 
@@ -218,7 +217,6 @@ def write_in_powers(series: Series) -> None:
                 out[i] += share * own.displacement[n, i]
 
 
-@flat
 def expand_implicit(
     linear: LinearSystem, laws: Laws, step: Step, series: Series, lengths: Lengths, coefs: Array,
     begin: float, h: float, run: Run,

@@ -44,7 +44,6 @@ from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.stepping.locating import go_on, step_in_parts
 from pound_solve.integrate.stepping.step import REFRESH, accept, factorise, try_step, update_factor
 from pound_solve.laws.functions import Tables
-from pound_solve.numerics.jit import flat
 from pound_solve.numerics.types import Array, Flags, Index
 
 
@@ -155,7 +154,6 @@ def passes_event(laws: Laws, step: Step, scheme: Scheme, h: float) -> bool:
     return False
 
 
-@flat
 def plain_steps(
     linear: LinearSystem, laws: Laws, step: Step, buffers: Buffers, rules: Tables, scheme: Scheme,
     coefs: Array, piece_start: float, works: Works, run: Run, h: float, last: int,

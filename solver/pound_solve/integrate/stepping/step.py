@@ -58,7 +58,6 @@ from pound_solve.integrate.kernels.work import (
     support_power,
 )
 from pound_solve.laws.functions import Tables
-from pound_solve.numerics.jit import flat
 from pound_solve.numerics.ldl import solve as solve_factored
 from pound_solve.numerics.ldl import update
 from pound_solve.numerics.types import Array
@@ -196,7 +195,6 @@ def redraw_members(
     return True
 
 
-@flat
 def iterate(
     linear: LinearSystem, laws: Laws, step: Step, rules: Tables, scheme: Scheme, h: float, at: int,
     run: Run,
@@ -226,7 +224,6 @@ def iterate(
     return False
 
 
-@flat
 def try_step(
     linear: LinearSystem, laws: Laws, step: Step, scheme: Scheme, rules: Tables, coefs: Array, end: float,
     h: float, at: int, run: Run,
@@ -337,7 +334,6 @@ def update_residual(linear: LinearSystem, step: Step, scheme: Scheme) -> None:
         residual[i] = one * (step.right_side[i] - scheme.alpha_f * residual[i])
 
 
-@flat
 def accept(
     linear: LinearSystem, laws: Laws, step: Step, rules: Tables, scheme: Scheme, h: float, at: int,
     works: Works, run: Run,

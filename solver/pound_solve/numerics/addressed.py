@@ -1,0 +1,133 @@
+"""Tuples of arrays that compiled code is handed as one address: an extension of numba.
+
+numba hands a named tuple on as all its numbers, seven for every array in it, in each call that one kernel
+makes of another: two thousand in those of a method, which takes longer to compile than what the kernels do,
+and time in every run.  An `Addressed` tuple is the address of its cells instead (`block.Block`), and its
+parts are read where they are used.  Kernels see no difference; they cannot make such a tuple.
+
+Nothing writes to the cells while a kernel runs, as the loads state (``invariant.load``): a loop reads an
+address and a length once, however often it writes to arrays.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.core.datamodel import models, register_default
+from numba.core.typing.templates import AttributeTemplate, infer_getattr
+from numba.extending import NativeValue, lower_getattr_generic, unbox
+
+CELL = ir.IntType(64)
+OWNERS, PLACE = 2, 4  #: cells of an array: those before the number of its elements, and of its address
+
+
+class Addressed(types.Type):
+    """A named tuple, by address.
+
+    Parameters
+    ----------
+    parts : numba type of a named tuple
+    """
+
+    def __init__(self, parts: Any) -> None:
+        self.parts = parts
+        super().__init__(name=f"addressed({parts})")
+
+
+def addressed(own: Any) -> Any:
+    """The type by which a kernel takes a value of a type: a named tuple comes by address, unless it has
+    functions in it.
+    """
+    return Addressed(own) if isinstance(own, types.BaseNamedTuple) and n_cells(own) else own
+
+
+def n_cells(own: Any) -> int:
+    """Cells that a value of a type takes in a `block.Block`; 0 where it cannot stand there."""
+    if isinstance(own, types.Array):
+        return 2 * own.ndim + PLACE + 1 if own.layout == "C" else 0
+    if isinstance(own, types.BaseTuple):
+        sizes = [n_cells(part) for part in own.types]
+        return sum(sizes) if all(sizes) else 0
+    return int(isinstance(own, types.Number | types.Boolean | types.Record))
+
+
+@register_default(Addressed)
+class AddressedModel(models.OpaqueModel):
+    """An address."""
+
+
+@unbox(Addressed)
+def from_address(own: Any, number: Any, c: Any) -> Any:
+    """Take an address that Python hands to a kernel as an integer."""
+    return NativeValue(c.pyapi.long_as_voidptr(number))
+
+
+@infer_getattr
+class Parts(AttributeTemplate):
+    """Types of the parts."""
+
+    key = Addressed
+
+    def generic_resolve(self, own: Any, name: str) -> Any:
+        """Type of the part of that name; None where there is none."""
+        fields = own.parts.fields
+        return addressed(own.parts.types[fields.index(name)]) if name in fields else None
+
+
+@lower_getattr_generic(Addressed)
+def part(context: Any, builder: Any, own: Any, address: Any, name: str) -> Any:
+    """Code that reads the part of that name."""
+    number = own.parts.fields.index(name)
+    before = sum(n_cells(other) for other in own.parts.types[:number])
+    place = builder.gep(builder.bitcast(address, CELL.as_pointer()), [CELL(before)])
+    kind = own.parts.types[number]
+    if isinstance(addressed(kind), Addressed):
+        return builder.bitcast(place, cgutils.voidptr_t)
+    return read(context, builder, kind, place)
+
+
+def read(context: Any, builder: Any, kind: Any, place: Any) -> Any:
+    """Code that reads a value of a type from the cells that begin at a place."""
+    if isinstance(kind, types.Array):
+        return read_array(context, builder, kind, place)
+    if isinstance(kind, types.BaseTuple):
+        values, before = [], 0
+        for own in kind.types:
+            values.append(read(context, builder, own, builder.gep(place, [CELL(before)])))
+            before += n_cells(own)
+        return context.make_tuple(builder, kind, values)
+    if isinstance(kind, types.Boolean):
+        return builder.trunc(load(builder, place), ir.IntType(1))
+    return load(builder, builder.bitcast(place, context.get_value_type(kind).as_pointer()))
+
+
+def read_array(context: Any, builder: Any, kind: Any, place: Any) -> Any:
+    """Code that reads an array: its address and its shape, from which all else follows."""
+    layout = context.get_value_type(kind)
+    shape = [load(builder, builder.gep(place, [CELL(PLACE + 1 + n)])) for n in range(kind.ndim)]
+    size = context.get_abi_sizeof(context.get_data_type(kind.dtype))
+    strides = [CELL(size)]
+    for length in reversed(shape[1:]):
+        strides.insert(0, builder.mul(strides[0], length))
+    elements = shape[0]
+    for length in shape[1:]:
+        elements = builder.mul(elements, length)
+    address = builder.gep(place, [CELL(PLACE)])
+    address = load(builder, builder.bitcast(address, layout.elements[PLACE].as_pointer()))
+    value = ir.Constant(layout, None)  # no owners
+    for n, own in enumerate([elements, CELL(size), address], start=OWNERS):
+        value = builder.insert_value(value, own, n)
+    for n in range(kind.ndim):
+        value = builder.insert_value(value, shape[n], [PLACE + 1, n])
+        value = builder.insert_value(value, strides[n], [PLACE + 2, n])
+    return value
+
+
+def load(builder: Any, place: Any) -> Any:
+    """Code that reads a cell, which nothing changes."""
+    value = builder.load(place)
+    value.set_metadata("invariant.load", builder.module.add_metadata([]))
+    return value
