@@ -11,6 +11,7 @@ address and a length once, however often it writes to arrays.
 
 from __future__ import annotations
 
+import hashlib
 from typing import Any
 
 from llvmlite import ir
@@ -34,7 +35,8 @@ class Addressed(types.Type):
 
     def __init__(self, parts: Any) -> None:
         self.parts = parts
-        super().__init__(name=f"addressed({parts})")
+        key = hashlib.sha256(str(parts).encode()).hexdigest()[:16]  # stands in long names
+        super().__init__(name=f"{parts.instance_class.__name__}-{key}")
 
 
 def addressed(own: Any) -> Any:
