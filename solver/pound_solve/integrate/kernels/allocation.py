@@ -15,6 +15,7 @@ from pound_solve.laws.automaton import EVENTS, Rule
 from pound_solve.laws.functions import PARAMETERS, VARIABLES
 from pound_solve.numerics import ldl
 from pound_solve.numerics.matrices import Matrix, at, by_rows, dense, entries, is_diagonal
+from pound_solve.numerics.memo import by_content
 from pound_solve.numerics.modes import massless
 from pound_solve.numerics.record import record
 from pound_solve.numerics.types import Array, Flags, Index
@@ -110,10 +111,16 @@ def layout(system: ReducedSystem, scheme: Scheme) -> Layout:
         touched += [columns for columns, _ in system.corotational.touched()]
     linked.append(coupled_pairs(touched))
     one, other = (np.concatenate(part) for part in zip(*linked))
-    order = ldl.order(system.size, one, other)
+    return laid_out(system.size, one, other, joins)
+
+
+@by_content(most=8)
+def laid_out(n: int, one: Index, other: Index, joins: Flags) -> Layout:
+    """Choose the order of elimination of n unknowns by the pairs of them that are coupled."""
+    order = ldl.order(n, one, other)
     place = np.argsort(order)
-    pattern = ldl.analyse(system.size, place[one], place[other])
-    column = np.repeat(np.arange(system.size), np.diff(pattern.ap))
+    pattern = ldl.analyse(n, place[one], place[other])
+    column = np.repeat(np.arange(n), np.diff(pattern.ap))
     position = {(int(i), int(j)): q for q, (i, j) in enumerate(zip(pattern.ai, column))}
     return Layout(order, place, pattern, column, joins, position)
 

@@ -21,8 +21,8 @@ from __future__ import annotations
 import numpy as np
 
 from pound_solve.integrate.kernels.allocation import (
-    Layout,
     coupled_pairs,
+    laid_out,
     places,
     places_in_pattern,
     sparse_rows,
@@ -34,7 +34,6 @@ from pound_solve.integrate.protocol import STILL
 from pound_solve.integrate.series.smooth import Q, dashpot_rest
 from pound_solve.integrate.series.springs import deformation, load
 from pound_solve.integrate.series.state import Massless, Series
-from pound_solve.numerics import ldl
 from pound_solve.numerics.ldl import factor
 from pound_solve.numerics.matrices import (
     Matrix,
@@ -74,13 +73,9 @@ def allocate(
     among = [a[np.ix_(first, first)] for a in (damping, stiffness)]
     linked = [*(entries(a)[:2] for a in among), coupled_pairs(columns for columns, _ in by_rows(touched))]
     one, other = (np.concatenate(part) for part in zip(*linked))
-    order = ldl.order(len(first), one, other)
-    place, unknown = np.argsort(order), first[order]
-    pattern = ldl.analyse(len(first), place[one], place[other])
-    column = np.repeat(np.arange(len(first)), np.diff(pattern.ap))
-    position = {(int(i), int(j)): q for q, (i, j) in enumerate(zip(pattern.ai, column))}
+    own = laid_out(len(first), one, other, np.ones(len(laws), bool))
+    order, pattern, column, unknown = own.order, own.pattern, own.column, first[own.order]
     rows = sparse_rows(touched[:, order])
-    own = Layout(order, place, pattern, column, np.ones(len(laws), bool), position)
     pointers, pairs, values = places_in_pattern(rows, own)
     lower = pattern.ai.astype(np.int64)
     springs = weighted(touched[:, order], elastic[laws])

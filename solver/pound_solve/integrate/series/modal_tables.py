@@ -13,6 +13,7 @@ so that all at a place of the interval is a product of a table with :math:`x = (
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from pound_solve.integrate.protocol import MonitoredOutputs
 from pound_solve.integrate.series.state import Modal
 from pound_solve.numerics.graph import components
 from pound_solve.numerics.matrices import dense, used_rows
+from pound_solve.numerics.memo import by_content
 from pound_solve.numerics.types import Array, Complex, Index
 from pound_solve.structure.reduction import ReducedSystem
 
@@ -40,11 +42,12 @@ class Part:
 
     Parameters
     ----------
-    system : ReducedSystem
-    stiffness : ndarray, shape (n_laws,)
-        Of the laws [F/L].
-    monitored : Matrix, shape (n_monitored, n)
-    unknowns : ndarray of int
+    mass, damping, stiffness : ndarray, shape (n, n)
+        Of its n unknowns, laws on their branches among them.
+    inputs : ndarray, shape (n, n_inputs)
+    constant : ndarray, shape (n,)
+    rows : ndarray, shape (n_laws + n_monitored, n)
+        Deformations of the laws and monitored outputs.
     length : float
 
     Attributes
@@ -61,28 +64,24 @@ class Part:
     """
 
     def __init__(
-        self, system: ReducedSystem, stiffness: Array, monitored: Array, unknowns: Index, length: float
-    ) -> None:
+        self, mass: Array, damping: Array, stiffness: Array, inputs: Array, constant: Array, rows: Array,
+        length: float,
+    ) -> None:  # fmt: skip
         # where modes do not pay they are not loaded
         from pound_solve.integrate.propagators.modal import ModalPropagator
         from pound_solve.integrate.propagators.state_space import state_space
 
-        self.unknowns, self.length, block = unknowns, length, np.ix_(unknowns, unknowns)
-        laws, outputs = (dense(rows[:, unknowns]) for rows in (system.law_rows, monitored))
-        k = dense(system.stiffness[block]) + (laws.T * stiffness) @ laws
-        self.damping, self.inputs = (dense(a) for a in (system.damping[block], system.inputs[unknowns]))
-        self.constant = system.constant[unknowns]
-        self.modes = ModalPropagator(state_space(dense(system.mass[block]), self.damping, k), self.inputs)
+        self.damping, self.inputs, self.constant, self.length = damping, inputs, constant, length
+        self.modes = ModalPropagator(state_space(mass, damping, stiffness), inputs)
         self.rate = self.modes.eigenvalues
         size = np.abs(self.rate)
         loose = size.min() < 1e-9 * size.max() or self.rate.real.max() > 1e-12 * size.max()
         if loose or self.modes.condition > MOST_CONDITION:
             raise np.linalg.LinAlgError
-        unit, none = np.eye(self.inputs.shape[1]), np.zeros(len(unknowns))
+        unit, none = np.eye(inputs.shape[1]), np.zeros(len(mass))
         forcing = np.array([self.modes.forcing(s[None], none)[0] for s in unit]).T
         self.steady = -forcing.reshape(len(self.rate), len(unit)) / self.rate[:, None]
-        self.held = -self.modes.load_forcing(np.eye(len(unknowns))).T / self.rate[:, None]
-        rows = np.vstack([laws, outputs])
+        self.held = -self.modes.load_forcing(np.eye(len(mass))).T / self.rate[:, None]
         self.followed = np.flatnonzero(rows.any(axis=1))
         self.rows = rows[self.followed] @ self.modes.u_q
 
@@ -98,6 +97,7 @@ class Part:
         first = np.broadcast_to(start, grown.shape)
         return np.concatenate([free.real, -free.imag, first.real, grown.real], axis=2)
 
+    @cached_property
     def works(self) -> tuple[Array, Array, Array]:
         """Work lost in dashpots as ``x^T D x``, and put in as ``sigma^T P x + w x``."""
         panels = int(np.ceil(np.abs(self.rate).max() * self.length / PANEL))
@@ -115,19 +115,40 @@ class Part:
         return lost, put, end - start
 
 
-def parts_of(system: ReducedSystem, stiffness: Array, monitored: Array, length: float) -> list[Part]:
-    """The parts that only contacts join; none where modes do not serve or do not pay."""
+#: runs of one structure under several motions have the same
+shared_part = by_content(most=16)(Part)
+
+
+def parts_of(
+    system: ReducedSystem, stiffness: Array, monitored: Array, length: float
+) -> list[tuple[Index, Part]]:
+    """The parts that only contacts join, with their unknowns; none where modes do not serve or pay."""
     straight = system.excitation.coefs.shape[1] <= 2
     if not straight or length == 0.0 or costs.fastest_rate(system) * length < WORTH:
         return []
-    laws = zip(system.structure.laws, dense(system.law_rows))
-    groups = [np.flatnonzero(row) for s, row in laws if not s.role.collides]
+    laws = dense(system.law_rows)
+    groups = [np.flatnonzero(row) for s, row in zip(system.structure.laws, laws) if not s.role.collides]
     label = components(system.size, (system.mass, system.damping, system.stiffness), groups)
     members = [np.flatnonzero(label == x) for x in np.unique(label)]
     if max(map(len, members)) > MOST_UNKNOWNS:
         return []
+
+    def part(unknowns: Index) -> Part:
+        block = np.ix_(unknowns, unknowns)
+        mass, damping, k = (dense(a[block]) for a in (system.mass, system.damping, system.stiffness))
+        own, outputs = (dense(rows[:, unknowns]) for rows in (laws, monitored))
+        return shared_part(
+            mass,
+            damping,
+            k + (own.T * stiffness) @ own,
+            dense(system.inputs[unknowns]),
+            system.constant[unknowns],
+            np.vstack([own, outputs]),
+            length,
+        )
+
     try:
-        return [Part(system, stiffness, monitored, unknowns, length) for unknowns in members]
+        return [(unknowns, part(unknowns)) for unknowns in members]
     except np.linalg.LinAlgError:
         return []
 
@@ -155,14 +176,14 @@ def allocate(
     open_ = np.array([not s.role.collides for s in system.structure.laws], bool)
     stiffness = stiffness * open_  # parts have modes of their own while all contacts are open
     parts = parts_of(system, stiffness, outputs, length)
-    if any(np.abs(p.rate).max() * length > MOST_CELLS * STRIDE for p in parts):
+    if any(np.abs(p.rate).max() * length > MOST_CELLS * STRIDE for _, p in parts):
         parts = []
-    seen = [np.flatnonzero(np.isin(shown, place[p.unknowns])) for p in parts]
+    seen = [np.flatnonzero(np.isin(shown, place[unknowns])) for unknowns, _ in parts]
     n_inputs, n_followed = system.inputs.shape[1], len(stiffness) + len(outputs)
-    counts = [(len(p.unknowns), len(p.rate), len(p.followed), len(s)) for p, s in zip(parts, seen)]
+    counts = [(len(u), len(p.rate), len(p.followed), len(s)) for (u, p), s in zip(parts, seen)]
     n, q, r, w = np.max([(0, 0, 0, 0), *counts], axis=0).tolist()
     b, size = len(parts), 2 * q + 2 * n_inputs
-    fastest = max((float(np.abs(p.rate).max()) for p in parts), default=0.0)
+    fastest = max((float(np.abs(p.rate).max()) for _, p in parts), default=0.0)
     cells = max(FEWEST, int(np.ceil(fastest * length / STRIDE)))
     places = 2 * cells + 1
     out = Modal(
@@ -197,8 +218,8 @@ def allocate(
         values=np.zeros((cells + 1, n_followed)),
         apart=np.zeros(n_followed),
     )
-    for i, (p, own) in enumerate(zip(parts, seen)):
-        fill(out, i, p, own, place[p.unknowns], shown[own])
+    for i, ((unknowns, p), own) in enumerate(zip(parts, seen)):
+        fill(out, i, p, own, place[unknowns], shown[own])
     return out
 
 
@@ -227,7 +248,7 @@ def fill(out: Modal, b: int, part: Part, seen: Index, unknowns: Index, shown: In
     put(out.turn, np.array([rate.real, rate.imag]) * h / cells)
     put(out.share, np.abs(part.rows))
     put(out.rows, part.table(part.rows, START)[0])
-    for array, values in zip((out.damping_work, out.input_work, out.constant_work), part.works()):
+    for array, values in zip((out.damping_work, out.input_work, out.constant_work), part.works):
         put(array, values)
     put(out.shown, seen)
     order = np.argsort(unknowns)

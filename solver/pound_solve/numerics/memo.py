@@ -1,0 +1,68 @@
+"""Results of earlier calls with the same arguments: the runs of one structure, as those of a study or the
+two of AUTO, order its unknowns and find its modes once.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections import OrderedDict
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
+
+import numpy as np
+
+from pound_solve.numerics.matrices import entries
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def by_content(most: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Keep the results of a function for the last so many arguments, told apart by what they hold.
+
+    The results are shared: whoever is given one must not change it.
+
+    Parameters
+    ----------
+    most : int
+        Results that are kept.
+
+    Returns
+    -------
+    callable
+        Decorator of functions of numbers, texts, arrays and matrices.
+    """
+
+    def remember(function: Callable[P, R]) -> Callable[P, R]:
+        kept: OrderedDict[bytes, R] = OrderedDict()
+
+        @wraps(function)
+        def call(*args: P.args, **kwargs: P.kwargs) -> R:
+            key = digest([*args, *kwargs.items()])
+            if key not in kept:
+                kept[key] = function(*args, **kwargs)
+            kept.move_to_end(key)
+            while len(kept) > most:
+                kept.popitem(last=False)
+            return kept[key]
+
+        return call
+
+    return remember
+
+
+def digest(values: Any) -> bytes:
+    """Digest of numbers, texts, arrays and matrices, and of sequences of them."""
+    found = hashlib.sha256()
+    for value in values:
+        if isinstance(value, list | tuple):
+            found.update(b"(" + digest(value))
+        elif hasattr(value, "shape"):
+            own = [value] if isinstance(value, np.ndarray) else entries(value)
+            found.update(f"{value.shape} {[x.dtype.str for x in own]}".encode())
+            for x in own:
+                found.update(x.tobytes())
+        else:
+            found.update(f"{type(value).__name__} {value!r};".encode())
+    return found.digest()
