@@ -223,6 +223,11 @@ def run_scale(script: Any, folder: Path, patch: pytest.MonkeyPatch) -> None:
     assert "steps" in by_steps.facts and "steps" not in by_choice.facts
 
 
+def run_suite(script: Any, folder: Path, patch: pytest.MonkeyPatch) -> None:
+    whole, own = script.suite(record(folder), 1, 2, folder, duration=0.2)
+    assert len(own) == 2 and 0.0 < sum(own) < whole
+
+
 def run_scipy(script: Any, folder: Path, patch: pytest.MonkeyPatch) -> None:
     for method in ("RK45", "DOP853", "Radau"):
         called(script, patch, record(folder), "--method", method, "--duration", 0.2, "--rtol", 1e-3)
@@ -251,6 +256,7 @@ RUNS: dict[str, Callable[[Any, Path, pytest.MonkeyPatch], None]] = {
     "scale": run_scale,
     "scipy_lumped": run_scipy,
     "spectra": run_spectra,
+    "suite_cole": run_suite,
 }
 #: scripts of peers, and who starts them or holds their numbers
 OF_PEERS = {
