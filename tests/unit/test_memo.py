@@ -58,6 +58,21 @@ def test_what_holds_the_same_is_found_again() -> None:
     assert total(one) == 6.0 and len(calls) == before + 1  # two others came since
 
 
+def test_so_many_are_kept_and_no_more() -> None:
+    calls: list[float] = []
+
+    @by_content(most=4)
+    def kept(x: float) -> float:
+        calls.append(x)
+        return x
+
+    for x in (1.0, 2.0, 3.0, 4.0, 1.0, 2.0, 3.0, 4.0):
+        assert kept(x) == x
+    assert calls == [1.0, 2.0, 3.0, 4.0]
+    assert [kept(x) for x in (5.0, 4.0, 1.0)] == [5.0, 4.0, 1.0]  # the first had to go
+    assert calls == [1.0, 2.0, 3.0, 4.0, 5.0, 1.0]
+
+
 def test_a_change_of_what_is_given_is_seen() -> None:
     @by_content(most=4)
     def first(a: Any) -> float:

@@ -5,7 +5,6 @@ two of AUTO, order its unknowns and find its modes once.
 from __future__ import annotations
 
 import hashlib
-from collections import OrderedDict
 from collections.abc import Callable
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
@@ -35,17 +34,18 @@ def by_content(most: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """
 
     def remember(function: Callable[P, R]) -> Callable[P, R]:
-        kept: OrderedDict[bytes, R] = OrderedDict()
+        kept: dict[bytes, R] = {}  # the latest last
 
         @wraps(function)
         def call(*args: P.args, **kwargs: P.kwargs) -> R:
             key = digest([*args, *kwargs.items()])
-            if key not in kept:
-                kept[key] = function(*args, **kwargs)
-            kept.move_to_end(key)
-            while len(kept) > most:
-                kept.popitem(last=False)
-            return kept[key]
+            found = kept.pop(key, None)  # other threads may ask meanwhile: they compute their own
+            if found is None:
+                found = function(*args, **kwargs)
+            kept[key] = found
+            for oldest in list(kept)[: max(len(kept) - most, 0)]:
+                kept.pop(oldest, None)
+            return found
 
         return call
 
