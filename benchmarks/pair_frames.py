@@ -5,17 +5,18 @@
 
 Both sides take the same steps of the same method, so here the work per step counts, not the error (for
 that see ``pair_cole.py``).  Times are CPU seconds of the step loop alone, one thread each, the best of
-some rounds.  On our side two runs of different length are subtracted: what remains holds no compilation,
-no layout and no report.
+some rounds.  On our side two runs of different length, one after the other, are subtracted: what remains
+holds no compilation, no layout and no report.  Of some such differences the median is told, and nothing
+where they differ too much among themselves.
 """
 
 import argparse
 import math
 import os
 import re
+import statistics
 import sys
 import tempfile
-import time
 import tracemalloc
 from pathlib import Path
 from typing import NamedTuple
@@ -27,6 +28,7 @@ FRAMES = HERE.parent / "examples" / "frames"
 DT = 0.005  # of the frames [s]
 CHAIN_DT = 1e-4  # below the stability limit of the chain with 20 elements a diaphragm [s]
 SHORT = 0.05  # length of the run that is taken off [s]
+NOISY = 0.3  # share of their median that the quartiles of times may be apart
 STOREYS = 5, 10, 20, 40, 80, 160  # of the growth, three bays
 
 
@@ -50,33 +52,44 @@ GEOMETRIES = "SMALL", "PDELTA"
 
 
 def ours(deck, folder, **options):
-    """One run of a deck: CPU seconds, steps, and the results that are left open."""
+    """One run of a deck: CPU seconds of its analyses, steps, and the results that are left open."""
     from pound_solve import run  # not before the number of threads is set
 
-    start = time.process_time()
     results = run(deck, out=tempfile.mkdtemp(dir=folder), **options)
-    seconds = time.process_time() - start
     if results.status != "done":
         sys.exit(f"pair_frames: {results.message}")
-    told = {text(row["item"]): text(row["value"]) for row in results.table("run")}
-    return seconds, int(told["steps"]), results
+    told = {
+        text(row["item"]): text(row["value"])
+        for name in ("run", "run_figures")
+        for row in results.table(name)
+    }
+    return float(told["solve seconds, CPU"]), int(told["steps"]), results
 
 
 def per_step(deck, folder, params, length, rounds, **options):
-    """Microseconds for a step, the best of some rounds after one that compiles."""
-    best = []
-    for t in (SHORT, length):
-        own = {**params, "t": t}
-        if "every" in own:
-            own["every"] = t
-        tries = []
-        for _ in range(rounds + 1):
+    """Microseconds for a step, the median of some rounds after one that compiles; NaN where the rounds
+    differ too much.
+    """
+    found = []
+    for _ in range(rounds + 1):
+        taken = []
+        for t in (SHORT, length):
+            own = {**params, "t": t}
+            if "every" in own:
+                own["every"] = t
             seconds, steps, results = ours(deck, folder, params=own, **options)
             results.close()
-            tries.append(seconds)
-        best.append((min(tries[1:]), steps))
-    (short, few), (long, many) = best
-    return 1e6 * (long - short) / (many - few)
+            taken.append((seconds, steps))
+        (short, few), (long, many) = taken
+        found.append(1e6 * (long - short) / (many - few))
+    found = sorted(found[1:])
+    low, median, high = statistics.quantiles(found, method="inclusive") if rounds > 1 else 3 * found
+    return median if median > 0.0 and high - low <= NOISY * median else math.nan
+
+
+def beside(us, best):
+    """Our time for a step, and how often it goes into the peer's."""
+    return "   lost in noise" if math.isnan(us) else f"{us:9.2f} us a step, {best / us:.1f} times less"
 
 
 def variant(case, geometry, folder):
@@ -154,7 +167,7 @@ def frames(args, folder):
             for events in ("STEPPED", "LOCATED"):
                 params = {**case.params, "every": 1, "events": f'"{events}"'}
                 us = per_step(deck, folder, params, case.params.get("t", 20), args.repeat)
-                print(f"  pound-solve, {events:25}{us:9.1f} us a step, {best / us:.1f} times less")
+                print(f"  pound-solve, {events:25}{beside(us, best)}")
 
 
 def frozen(said):
@@ -191,7 +204,7 @@ def chain(args, folder):
             theirs_us.append(1e6 * best["cpu_seconds"] / best["steps"])
             print(f"  OpenSees, {form + ', ' + best['solver']:28}{theirs_us[-1]:9.2f} us a step")
         us = per_step(deck, folder, {"n": 20}, 10.0, args.repeat, method=method.upper(), dt=CHAIN_DT)
-        print(f"  pound-solve, {method:25}{us:9.2f} us a step, {min(theirs_us) / us:.1f} times less")
+        print(f"  pound-solve, {method:25}{beside(us, min(theirs_us))}")
 
 
 def growth(args, folder):
@@ -225,7 +238,7 @@ def main():
     add("--solvers", nargs="+", help="of opensees_steel_frame.py",
         default=["BandSPD", "ProfileSPD", "SparseSYM", "UmfPack", "BandSPD, Krylov", "ProfileSPD, Krylov",
                  "BandSPD, modified"])  # fmt: skip
-    add("--repeat", type=int, default=3, help="rounds; the best time of each run counts")
+    add("--repeat", type=int, default=5, help="rounds")
     add("--peaks", action="store_true", help="no times: the numbers that the verification test keeps")
     add("--peer", type=Path, default=PEER, help="interpreter of the peer's environment")
     add("--record", type=Path, help="PEER file of El Centro 270, where it is not installed")

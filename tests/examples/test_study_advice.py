@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from pound_solve.assess import study
+from pound_solve.assess.advice import TARGETS, allowed
 from pound_solve.assess.study import Plan
 from pound_solve.driver import run
 
@@ -46,11 +47,11 @@ def test_what_is_advised_under_one_motion_holds_under_the_others(deck):
     ratios = []
     for here, there in permutations(studies, 2):
         found = {(t.method, t.setting): t.error for t in there.trials if not t.stopped}
-        allowed = study.allowed(here.trials, here.reference)
-        for target in study.TARGETS:
+        sure = allowed(here.trials, here.reference)
+        for target in TARGETS:
             for method in methods:
                 named = [
-                    t.setting for t, e in zip(here.trials, allowed) if t.method == method and e <= target
+                    t.setting for t, e in zip(here.trials, sure) if t.method == method and e <= target
                 ]
                 # a ladder that time cut short may lack the step; nothing is known of it then
                 if named and (method, named[0]) in found:

@@ -242,6 +242,27 @@ def test_another_method_gives_the_reference_where_the_first_cannot_follow(tmp_pa
     ]
 
 
+def test_laguerre_gives_the_reference_without_exact(tmp_path):
+    two = write(tmp_path, OTHERS[2])
+    found, _ = study.run(two, Plan(("TAYLOR", "LAGUERRE", "NEWMARK"), (0.005, 0.0025, 0.00125), repeat=1))
+    assert found.reference.how == "LAGUERRE with TOL=1e-10"
+    taylor = found.trials[0]  # knows no tolerance, so that it tells the reference's error
+    assert taylor.method == "TAYLOR" and taylor.error <= found.reference.doubt < 1e-7
+    steps = [t for t in found.trials if t.method == "NEWMARK"]
+    assert len(steps) == 3  # none is left out for a reference
+    assert found.orders[-1] == pytest.approx(2.0, abs=0.1)
+
+
+def test_a_method_that_does_not_take_the_model_is_tried_with_one_step_only(tmp_path):
+    two = write(tmp_path, OTHERS[2])
+    deck = Path(two.deck)
+    deck.write_text(
+        deck.read_text().replace("  2,4  ", "  2    ").replace("E=0.65", "C=100")
+    )  # no mass at 4
+    found, _ = study.run(two, Plan(("LAGUERRE", "CENTRAL"), tols=(1e-6,), repeat=1))
+    assert [t.stopped[:4] for t in found.trials] == ["", "A505"]
+
+
 def test_where_exact_cannot_go_the_tolerances_of_auto_are_met(tmp_path, monkeypatch):
     steps_alone(monkeypatch)
     two = write(tmp_path, OTHERS[2])

@@ -33,6 +33,7 @@ from pound_solve.structure.reduction import ReducedSystem
 
 STEPS = 2.0  #: of a run that are expected between two samples of the excitation or instants of output
 FIRST = 0.1  #: tolerance of the first run, as a share of that of the peaks
+MOST = 1e-3  #: the same at most: a larger one makes hardly fewer steps, since intervals and events remain
 NEXT, NEXT_LEAST = 0.1, 1e-3  #: tolerance of the next run over that of the last, at most and at least
 LEAST = 1e-12  #: smallest tolerance of a run
 POWER = 0.5  #: of the tolerance that errors are assumed to fall with, at least
@@ -88,7 +89,7 @@ class ToleranceRefinement:
         self.system, self.start, self.monitored, self.recorder = system, start, monitored, recorder
         self.tolerances = tolerances(options)
         self.errors, self.error = dict.fromkeys(self.tolerances, np.inf), np.inf
-        self.tol = self.floor = max(FIRST * min(self.tolerances.values()), LEAST)
+        self.tol = self.floor = float(np.clip(FIRST * min(self.tolerances.values()), LEAST, MOST))
         self.step_cost = costs.of_series_step(system)
         self.steps = STEPS * len(goals(system, start.times)[0])
         self.most = max(self.steps, others / self.step_cost)
