@@ -11,7 +11,7 @@ from pound_solve.catalog import specs
 from pound_solve.editor import kate, notepad, textmate
 from pound_solve.report.deck_reference import deck_page
 from pound_solve.results.page import results_page
-from pound_solve.sweep import quantities
+from pound_solve.sweep.study import quantities
 from verification import cases
 
 MANUAL = Path(__file__).parents[1] / "manual"

@@ -17,7 +17,7 @@ class Standing:
     Parameters
     ----------
     place : str
-        Module, class if there is one, and function, as ``pound_solve.sweep.conduct Conductor _count``.
+        Module, class if there is one, and function, as ``pound_solve.sweep.session Session plan``.
     calls : int
         It stands after this call and after each later one.
     words : list of str

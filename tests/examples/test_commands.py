@@ -229,7 +229,7 @@ def at_the_desk(
     for place, instead in {
         "cli.main.parser": PARSER,
         "driver.run.prepare": checked,
-        "sweep.study.prepare": checked,
+        "sweep.study.study.prepare": checked,
         "driver.run.execute": runs,
         "assess.study.run": runs,
         "assess.motion_files.of_deck": moves,
@@ -239,7 +239,7 @@ def at_the_desk(
         "assess.scenes.cases": started,
         "loading.spectrum.response_spectrum": started,
         "results.whole_file.write_text": started,
-        "sweep.executors.engine": started,
+        "sweep.execution.executors.engine": started,
         "cli.verbs.example._write": started,
         "cli.verbs.format._write": started,
     }.items():

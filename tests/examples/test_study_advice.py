@@ -50,9 +50,7 @@ def test_what_is_advised_under_one_motion_holds_under_the_others(deck):
         sure = allowed(here.trials, here.reference)
         for target in TARGETS:
             for method in methods:
-                named = [
-                    t.setting for t, e in zip(here.trials, sure) if t.method == method and e <= target
-                ]
+                named = [t.setting for t, e in zip(here.trials, sure) if t.method == method and e <= target]
                 # a ladder that time cut short may lack the step; nothing is known of it then
                 if named and (method, named[0]) in found:
                     ratios.append(found[method, named[0]] / target)

@@ -26,7 +26,7 @@ from pound_solve.loading.records import formats
 from pound_solve.loading.records.base import RecordError
 from pound_solve.loading.records.known import load
 from pound_solve.results import Results, ResultsError
-from pound_solve.sweep import executors
+from pound_solve.sweep.execution import executors
 from sweep.small import Here
 
 FINE, TOLD, STOPPED = "fine", "told", "stopped"

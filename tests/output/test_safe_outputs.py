@@ -25,7 +25,7 @@ from pound_solve.interruption import Interruption
 from pound_solve.results import Results, ResultsError, Writer, place, safe_file
 from pound_solve.results.place import digest_in
 from pound_solve.results.whole_file import partial, write_text
-from pound_solve.sweep.entry import Entry, Journal
+from pound_solve.sweep.execution.journal import Entry, Journal
 from sweep.small import folder, swept
 from tiers import each_once
 

@@ -3,10 +3,10 @@
 import math
 from concurrent.futures import Executor, Future
 
-from pound_solve.sweep.document import Document
-from pound_solve.sweep.executors import Engine
+from pound_solve.sweep.execution.executors import Engine
 from pound_solve.sweep.session import Session
-from pound_solve.sweep.study import read
+from pound_solve.sweep.study.document import Document
+from pound_solve.sweep.study.study import read
 
 DECK = """TITLE  A mass between a wall and a spring
 UNITS  kN m s

@@ -9,7 +9,7 @@ import time
 import pytest
 
 from pound_solve.results.sweep_file import Sweep
-from pound_solve.sweep import executors
+from pound_solve.sweep.execution import executors
 from sweep.small import folder, swept
 from sweep.test_sweep import same
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
+from pound_solve.report.sweep.fragility import drawn, report
 from pound_solve.results.sweep_file import Sweep, Variable
-from pound_solve.sweep.curves import COLLAPSE, Asked, CurveError, curves, demand
-from pound_solve.sweep.fragilities import drawn, fit, report
+from pound_solve.statistics.curves import COLLAPSE, Asked, CurveError, curves, demand
+from pound_solve.statistics.fragility_of_sweep import fit
 
 DRIFT, FALL = Asked("peak_drift"), Asked(COLLAPSE)
 

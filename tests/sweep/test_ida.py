@@ -4,13 +4,16 @@ import numpy as np
 import pytest
 
 from pound_solve.cli.main import main
+from pound_solve.report.sweep import incremental
 from pound_solve.results.sweep_file import Sweep
-from pound_solve.sweep import fractiles, fragilities, hunt
-from pound_solve.sweep.curves import Asked, CurveError, curves
-from pound_solve.sweep.document import Document
-from pound_solve.sweep.executors import Engine
+from pound_solve.statistics import fractiles
+from pound_solve.statistics.curves import Asked, CurveError, curves
+from pound_solve.statistics.fragility_of_sweep import fit
+from pound_solve.sweep import hunt
+from pound_solve.sweep.execution.executors import Engine
 from pound_solve.sweep.session import Session
-from pound_solve.sweep.study import StudyError, read
+from pound_solve.sweep.study.document import Document
+from pound_solve.sweep.study.study import StudyError, read
 from sweep.small import DECK, Here, folder
 
 XI, OMEGA = 0.05, np.sqrt(4000 / 100.0)  # weight 981 kN
@@ -94,11 +97,11 @@ def test_an_interrupted_analysis_goes_on_and_ends_the_same(tmp_path):
 def test_limits_end_the_hunt_and_give_fragilities(tmp_path):
     sweep, aim = hunted(study(tmp_path, "limit = 0.2"))
     slope = [c.points[0].demand / c.points[0].level for c in curves(sweep, aim.asked)]
-    (found,) = fragilities.fit(sweep, aim.asked, [0.1])
+    (found,) = fit(sweep, aim.asked, [0.1])
     capacities = 0.1 / np.array(slope)
     assert found.method == "capacities" and found.fragility.count == 2
     assert found.fragility.median == pytest.approx(np.exp(np.log(capacities).mean()), rel=1e-6)
-    lines = list(fractiles.report(sweep, aim.asked, aim.rules))
+    lines = list(incremental.report(sweep, aim.asked, aim.rules))
     assert any("beyond the limit" in line for line in lines)
 
 
@@ -112,7 +115,7 @@ def test_contact_is_a_demand_like_any_other(tmp_path):
         assert curve.points[0].demand == 0.0 and curve.points[-1].demand >= 1.0
         met = next(p.level for p in curve.points if p.demand >= 1.0)
         assert met * 9.81 / OMEGA**2 > 0.02 * 0.9
-    (found,) = fragilities.fit(sweep, Asked("closures"), [1.0], "stripes")
+    (found,) = fit(sweep, Asked("closures"), [1.0], "stripes")
     assert found.observed[0][1:] == (0, 2) and found.observed[-1][1:] == (2, 2)
 
 
@@ -160,7 +163,7 @@ def test_what_a_sweep_does_not_hold_is_told(tmp_path):
         with pytest.raises(CurveError, match=why):
             curves(sweep, asked)
     with pytest.raises(CurveError, match="--limit"):
-        fragilities.fit(sweep, Asked("peak_drift"), [])
+        fit(sweep, Asked("peak_drift"), [])
 
 
 @pytest.mark.full

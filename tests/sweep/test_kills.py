@@ -21,8 +21,8 @@ MANY = STUDY.replace("[0.01, 0.02]", "[0.01, 0.012, 0.014]")
 pytest.importorskip("fcntl", reason="kills by signals")
 
 
-ENDED = "pound_solve.sweep.conduct Conductor _count"  #: called for every run that has ended
-STARTED = "pound_solve.sweep.executors process"  #: for every process that starts
+ENDED = "pound_solve.sweep.execution.conduct Conductor _count"  #: called for every run that has ended
+STARTED = "pound_solve.sweep.execution.executors process"  #: for every process that starts
 
 
 def begun(path, calls, place=ENDED, **how):

@@ -4,8 +4,8 @@ import re
 import tomllib
 from pathlib import Path
 
-from pound_solve.sweep import quantities, study
-from pound_solve.sweep.records import FILES, LEVELS, OSCILLATOR
+from pound_solve.sweep.study import quantities, study
+from pound_solve.sweep.study.records import FILES, LEVELS, OSCILLATOR
 
 PAGE = (Path(__file__).parents[2] / "manual/sweep.md").read_text("utf-8")
 

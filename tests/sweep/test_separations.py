@@ -10,14 +10,14 @@ from scipy.stats import binom
 
 from pound_solve.cli.main import main
 from pound_solve.report.plot import suites
+from pound_solve.report.sweep.separation import drawn, needs, probabilities
 from pound_solve.results.sweep_file import Sweep, Variable
-from pound_solve.sweep import fragilities
-from pound_solve.sweep.curves import Asked, CurveError, curves, demands
-from pound_solve.sweep.fragilities import STOPS
-from pound_solve.sweep.incremental import capacity
-from pound_solve.sweep.separations import Group, Options, drawn, groups, needs, probabilities
-from pound_solve.theory.fragility import from_capacities
-from pound_solve.theory.separation import RULES, Peaks, correlation, share
+from pound_solve.statistics.curves import Asked, CurveError, curves, demands
+from pound_solve.statistics.fragility import from_capacities
+from pound_solve.statistics.fragility_of_sweep import STOPS, fit
+from pound_solve.statistics.incremental import capacity
+from pound_solve.statistics.needed_gaps import Group, Options, groups
+from pound_solve.statistics.separation import RULES, Peaks, correlation, share
 from sweep.small import swept
 
 T1, T2, XI = 0.5, 0.8, 0.05
@@ -129,7 +129,7 @@ def test_motion_is_linear_in_the_level(free):
 def test_the_gap_that_is_needed_is_a_demand_like_any_other(free):
     """Fragility of contact at one gap: the motion is linear, so that each capacity is gap over need."""
     gap = 0.9 * float(next(g for g in groups(free[0], Options()) if g.level == 1.0).needed.min())
-    (found,) = fragilities.fit(free[0], Asked("needed_gap"), [gap], "capacities")
+    (found,) = fit(free[0], Asked("needed_gap"), [gap], "capacities")
     whole = next(g for g in groups(free[0], Options()) if g.level == 1.0)
     assert found.fragility.median == pytest.approx(np.exp(np.log(gap / whole.needed).mean()), rel=1e-6)
 
@@ -146,10 +146,10 @@ def test_contact_at_several_gaps_is_that_of_the_gaps_that_are_needed(free, tmp_p
         low, high = capacity(curve.points, STOPS, 1.0, in_steps=True)
         level, _ = capacity(needed.points, STOPS, gap, from_rest=True)
         assert curve.record == needed.record and low < level <= high
-    tight, wide = fragilities.fit(sweep, Asked("needed_gap"), [gap], "capacities")
+    tight, wide = fit(sweep, Asked("needed_gap"), [gap], "capacities")
     assert wide.fragility.median == pytest.approx(np.exp(np.log(gap / whole).mean()), rel=1e-6)
     assert tight.observed == wide.observed and tight.observed[1] == (1.0, COUNT, COUNT)
-    (beyond, _) = fragilities.fit(sweep, Asked("needed_gap"), [1.01 * gap])
+    (beyond, _) = fit(sweep, Asked("needed_gap"), [1.01 * gap])
     assert beyond.fragility is None
     assert beyond.remark == f"met at a gap of {gap:.6g}: wider gaps are not known"
 
@@ -157,7 +157,7 @@ def test_contact_at_several_gaps_is_that_of_the_gaps_that_are_needed(free, tmp_p
 def test_what_a_single_contact_needs_is_not_known_where_another_met():
     sweep = synthetic(np.array([[0.02, 0.03], [math.nan, math.nan]]))
     with pytest.raises(CurveError, match="leave --label out"):
-        fragilities.fit(sweep, Asked("needed_gap", "floor 1"), [0.01])
+        fit(sweep, Asked("needed_gap", "floor 1"), [0.01])
     assert demands(sweep, Asked("needed_gap")).tolist() == [0.03, math.inf]
 
 

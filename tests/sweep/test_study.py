@@ -5,9 +5,9 @@ import re
 import pytest
 
 from pound_solve.cli.main import main
-from pound_solve.sweep.document import Document, places
 from pound_solve.sweep.session import run_study
-from pound_solve.sweep.study import StudyError, read
+from pound_solve.sweep.study.document import Document, places
+from pound_solve.sweep.study.study import StudyError, read
 from sweep.small import DECK, STUDY, folder, record
 
 

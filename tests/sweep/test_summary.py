@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from pound_solve.check import COLUMNS, Subject, at_most
+from pound_solve.report.sweep import summary
 from pound_solve.results.sweep_file import Sweep, Variable
-from pound_solve.sweep import quantities, summary
+from pound_solve.sweep.study import quantities
 from sweep.small import folder, swept
 
 

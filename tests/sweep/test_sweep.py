@@ -21,12 +21,13 @@ from pound_solve.loading.motions.piecewise import Piecewise
 from pound_solve.loading.spectrum import response_spectrum
 from pound_solve.results import ResultsError
 from pound_solve.results.sweep_file import OF_THE_DAY, Sweep
-from pound_solve.sweep import executors, run_study
+from pound_solve.sweep import run_study
 from pound_solve.sweep import session as sessions
-from pound_solve.sweep.entry import Entry, Journal
-from pound_solve.sweep.executors import Engine
-from pound_solve.sweep.limits import within
-from pound_solve.sweep.work import prepared
+from pound_solve.sweep.execution import executors
+from pound_solve.sweep.execution.executors import Engine
+from pound_solve.sweep.execution.journal import Entry, Journal
+from pound_solve.sweep.execution.limits import within
+from pound_solve.sweep.execution.work import prepared
 from sweep.small import DECK, STUDY, Here, folder, record, session, swept
 
 
@@ -360,7 +361,7 @@ def test_processes_stay_between_the_rounds_of_a_study(tmp_path):
 
 def test_two_sweeps_do_not_write_one_folder(tmp_path, capsys):
     pytest.importorskip("fcntl")
-    from pound_solve.sweep.lock import BusyError, locked
+    from pound_solve.sweep.execution.lock import BusyError, locked
 
     with (
         locked(tmp_path / "out"),

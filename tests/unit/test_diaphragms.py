@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from decks import results_of, structure_of
+from pound_solve.laws.two_bars import Diaphragm
 from pound_solve.report.text import render
 from pound_solve.structure.diaphragms import diaphragm_collisions
-from pound_solve.theory.two_bars import Diaphragm
 
 ROOT = Path(__file__).parents[2]
 

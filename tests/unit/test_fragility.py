@@ -8,7 +8,7 @@ from scipy.optimize import minimize
 from scipy.stats import norm
 from scipy.stats import t as student
 
-from pound_solve.theory.fragility import FragilityError, from_capacities, from_cloud, from_stripes
+from pound_solve.statistics.fragility import FragilityError, from_capacities, from_cloud, from_stripes
 
 MEDIAN, BETA = 0.8, 0.45
 STRIPES = np.array([0.2, 0.4, 0.6, 0.8, 1.0, 1.4, 2.0])

@@ -5,9 +5,18 @@ from itertools import pairwise
 
 import pytest
 
-from pound_solve.sweep.incremental import FLAT, STANDS, STOPPED, Point, Rules, capacity, collapse, demand_at
+from pound_solve.statistics.incremental import (
+    FLAT,
+    STANDS,
+    STOPPED,
+    Point,
+    Rules,
+    capacity,
+    collapse,
+    demand_at,
+)
 
-from pound_solve.sweep.incremental import ends, next_level  # isort: skip
+from pound_solve.statistics.incremental import ends, next_level  # isort: skip
 
 
 def trace(demand, rules, first=0.1):

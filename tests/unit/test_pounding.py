@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from decks import results_of
 from pound_solve.catalog import catalog
 from pound_solve.laws.contact import restitution
-from pound_solve.theory.two_bars import Diaphragm, Pair, after, mean_speed, strain
+from pound_solve.laws.two_bars import Diaphragm, Pair, after, mean_speed, strain
 
 # Table IV of Cole et al. 2011: weights 1600 and 3000 kN
 B1, B2 = Diaphragm(1600 / 9.81, 1881300.0), Diaphragm(3000 / 9.81, 752520.0)

@@ -16,7 +16,7 @@ from decks import results_of
 from pound_solve.cli.main import main
 from pound_solve.report.separation import SeparationError, SeparationRecord, rows, text
 from pound_solve.results import Results
-from pound_solve.theory.separation import correlation, double_difference
+from pound_solve.statistics.separation import correlation, double_difference
 
 WALLS = """
 GRAVITY 1

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pound_solve.laws.contact import restitution
-from pound_solve.theory.two_bars import Diaphragm, Pair
+from pound_solve.laws.two_bars import Diaphragm, Pair
 
 HERE = Path(__file__).resolve().parent.parent
 LUMPED, EQUIVALENT, DISTRIBUTED = (HERE / f"{n}.inp" for n in ("lumped", "equivalent", "distributed"))

@@ -15,8 +15,8 @@ from runs import PLACES, Run
 from waves import INSTANTS, waves
 
 from pound_solve.assess.spectra import of_record
+from pound_solve.laws.two_bars import Diaphragm, Pair
 from pound_solve.report.plot import style
-from pound_solve.theory.two_bars import Diaphragm, Pair
 
 COLOURS = {"El Centro": "#0b4f8a", "Mexico City": "#b3541e", "Loma Prieta": "#3d7a3d"}
 MARKS = {"left": "<", "right": ">"}

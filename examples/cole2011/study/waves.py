@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from pound_solve.theory.two_bars import Pair
+from pound_solve.laws.two_bars import Pair
 
 Array = NDArray[np.float64]
 #: instants of Figure 5 as shares of T1

@@ -12,9 +12,9 @@ from pound_solve.cli import common
 from pound_solve.cli.progress import StatusLine
 
 if TYPE_CHECKING:
-    from pound_solve.sweep.conduct import State
-    from pound_solve.sweep.document import Document
+    from pound_solve.sweep.execution.conduct import State
     from pound_solve.sweep.session import Session
+    from pound_solve.sweep.study.document import Document
 
 
 def add_conduct(parser: argparse.ArgumentParser) -> None:
@@ -37,10 +37,10 @@ def give_conduct(args: argparse.Namespace, document: Document) -> None:
 def carried_out(study: str, work: Callable[[], int]) -> int:
     """Exit status of some work on a study; mistakes are told, and what else keeps it from being done."""
     from pound_solve.results import ResultsError
-    from pound_solve.sweep.curves import CurveError
-    from pound_solve.sweep.executors import ExecutorError
-    from pound_solve.sweep.lock import BusyError
-    from pound_solve.sweep.study import StudyError
+    from pound_solve.statistics.curves import CurveError
+    from pound_solve.sweep.execution.executors import ExecutorError
+    from pound_solve.sweep.execution.lock import BusyError
+    from pound_solve.sweep.study.study import StudyError
 
     try:
         return work()

@@ -4,7 +4,7 @@ r"""How far apart two buildings should stand: rules on the peak displacements of
 
 * ABS: :math:`u_1 + u_2`
 * SRSS: :math:`\sqrt{u_1^2 + u_2^2}`
-* DDC, the double difference combination, see `theory.separation`
+* DDC, the double difference combination, see `statistics.separation`
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from pound_solve.report.text import printed
 from pound_solve.results import Results
 from pound_solve.results.columns import CONTACT
 from pound_solve.results.schema import Column, Row, Table
+from pound_solve.statistics.separation import Peaks, correlation, own_mode
 from pound_solve.structure.elements.base import axes
-from pound_solve.theory.separation import Peaks, correlation, own_mode
 
 NAN: Final = math.nan
 FREE, MET = "free: nothing met", "pounding: something met"

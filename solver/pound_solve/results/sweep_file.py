@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 FILETYPE: Final = "pound-solve sweep"
 FORMAT_VERSION: Final = (1, 0)  #: major: old readers fail; minor: something was added
+#: how a run ends: with all, with what it had when it stopped, or with nothing
+DONE, STOPPED, FAILED = ENDS = ("done", "stopped", "failed")
 RUN: Final = "run"  #: the first dimension
 ROW: Final = "row"  #: that of a table that was made of a sweep
 HISTORIES: Final = "histories"

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pound_solve.laws.two_bars import Diaphragm, Pair
 from pound_solve.structure.elements.base import LawSpring, axes
 from pound_solve.structure.mass import mass_along
 from pound_solve.structure.structure import Structure
-from pound_solve.theory.two_bars import Diaphragm, Pair
 
 GOOD_ENOUGH = 0.05  #: error of the changes of velocity up to which lumped mass will do
 STRAIGHT = 1e-6  #: sine of the angle by which a member may miss the contact's direction

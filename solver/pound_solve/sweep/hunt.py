@@ -13,13 +13,13 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from pound_deck.diagnostics import suggest
-from pound_solve.sweep.conduct import State
-from pound_solve.sweep.curves import COLLAPSE, Asked, Curve, CurveError, demand
-from pound_solve.sweep.document import Document
-from pound_solve.sweep.incremental import Rules, next_level
-from pound_solve.sweep.quantities import QUANTITIES
-from pound_solve.sweep.run import Run
+from pound_solve.statistics.curves import COLLAPSE, Asked, Curve, CurveError, demand
+from pound_solve.statistics.incremental import Rules, next_level
+from pound_solve.sweep.execution.conduct import State
 from pound_solve.sweep.session import Session
+from pound_solve.sweep.study.document import Document
+from pound_solve.sweep.study.quantities import QUANTITIES
+from pound_solve.sweep.study.run import Run
 
 TABLE: Final = "ida"  #: of a study
 DEMAND: Final = "storey_drift"

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
-from pound_solve.sweep.entry import DONE, Entry
-from pound_solve.sweep.run import Run
-from pound_solve.sweep.study import Study
+from pound_solve.results.sweep_file import DONE
+from pound_solve.sweep.execution.journal import Entry
+from pound_solve.sweep.study.run import Run
+from pound_solve.sweep.study.study import Study
 
 SHOWN: Final = 20  #: runs of one kind that are listed
 LITTLE: Final = 5.0  #: CPU time of a trial after which no further run is tried [s]

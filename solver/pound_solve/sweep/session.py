@@ -8,17 +8,18 @@ from pathlib import Path
 
 from pound_solve.driver.overrides import overridden
 from pound_solve.driver.reading import read as read_deck
-from pound_solve.results.sweep_file import Sweep
-from pound_solve.sweep import plan, summary, table
-from pound_solve.sweep.conduct import Conductor, State
-from pound_solve.sweep.document import Document
-from pound_solve.sweep.entry import DONE, ENDS, FAILED, Entry, Journal
-from pound_solve.sweep.executors import Engine, engine
-from pound_solve.sweep.lock import locked
+from pound_solve.report.sweep import summary
+from pound_solve.results.sweep_file import DONE, ENDS, FAILED, Sweep
+from pound_solve.sweep import plan, table
+from pound_solve.sweep.execution.conduct import Conductor, State
+from pound_solve.sweep.execution.executors import Engine, engine
+from pound_solve.sweep.execution.journal import Entry, Journal
+from pound_solve.sweep.execution.lock import locked
+from pound_solve.sweep.execution.work import Settings, options_of_auto
 from pound_solve.sweep.plan import Trial
-from pound_solve.sweep.run import Run
-from pound_solve.sweep.study import Study, read, request_of
-from pound_solve.sweep.work import Settings, options_of_auto
+from pound_solve.sweep.study.document import Document
+from pound_solve.sweep.study.run import Run
+from pound_solve.sweep.study.study import Study, read, request_of
 
 
 class Session:

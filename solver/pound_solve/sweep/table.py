@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from pound_deck.model import Units
 from pound_solve.results import sweep_file
 from pound_solve.results.sweep_file import RUN, Sweep, Variable
-from pound_solve.sweep.entry import Entry, Journal
-from pound_solve.sweep.quantities import QUANTITIES, Values
-from pound_solve.sweep.run import Run
-from pound_solve.sweep.study import Study
+from pound_solve.sweep.execution.journal import Entry, Journal
+from pound_solve.sweep.study.quantities import QUANTITIES, Values
+from pound_solve.sweep.study.run import Run
+from pound_solve.sweep.study.study import Study
 from pound_solve.version import __version__
 
 MISSING = "missing"  #: status of a run that has not ended

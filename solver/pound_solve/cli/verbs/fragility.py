@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from pound_solve.cli import common
 
 if TYPE_CHECKING:
-    from pound_solve.sweep.curves import Asked
+    from pound_solve.statistics.curves import Asked
 
 SUMMARY = "fragilities with intervals of confidence from the runs of a sweep"
 
@@ -36,11 +36,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Fit the fragilities and print them."""
     from pound_solve.report.plot import suites
+    from pound_solve.report.sweep import fragility, summary
+    from pound_solve.report.sweep.incremental import axes_of
     from pound_solve.results import ResultsError
     from pound_solve.results.sweep_file import Sweep
-    from pound_solve.sweep import fragilities, summary
-    from pound_solve.sweep.curves import Asked, CurveError
-    from pound_solve.sweep.fractiles import axes_of
+    from pound_solve.statistics.curves import Asked, CurveError
+    from pound_solve.statistics.fragility_of_sweep import fit
 
     if not common.drawable(args.picture):
         return common.MISTAKES
@@ -53,8 +54,8 @@ def execute(args: argparse.Namespace) -> int:
         if min((*limits, *at), default=1.0) <= 0.0:
             raise CurveError("limits and levels are above zero")
         sweep, asked = Sweep.open(Path(args.sweep)), Asked(args.demand, args.label)
-        found = fragilities.fit(sweep, asked, limits, args.method, args.confidence)
-        lines = list(fragilities.report(sweep, asked, found, at))
+        found = fit(sweep, asked, limits, args.method, args.confidence)
+        lines = list(fragility.report(sweep, asked, found, at))
         told = summary.write(Path(args.sweep).with_name(_name(asked, limits)), sweep, "fragilities", lines)
     except CurveError as err:
         return common.complain(f"{args.sweep}: {err}", common.MISTAKES)
@@ -62,7 +63,7 @@ def execute(args: argparse.Namespace) -> int:
         return common.complain(str(err))
     print("\n".join([*lines, str(told)]))
     if args.picture:
-        suites.fragilities(fragilities.drawn(found), axes_of(sweep, asked)[1], args.picture)
+        suites.fragilities(fragility.drawn(found), axes_of(sweep, asked)[1], args.picture)
     return common.DONE
 
 

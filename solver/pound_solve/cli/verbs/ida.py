@@ -26,13 +26,14 @@ def execute(args: argparse.Namespace) -> int:
 def _hunted(args: argparse.Namespace) -> int:
     """Run the rounds and tell what was found."""
     from pound_solve.report.plot import suites
+    from pound_solve.report.sweep import incremental
     from pound_solve.results.sweep_file import Sweep
-    from pound_solve.sweep import fractiles, hunt
-    from pound_solve.sweep.document import Document
-    from pound_solve.sweep.executors import engine
-    from pound_solve.sweep.lock import locked
+    from pound_solve.sweep import hunt
+    from pound_solve.sweep.execution.executors import engine
+    from pound_solve.sweep.execution.lock import locked
     from pound_solve.sweep.session import Session
-    from pound_solve.sweep.study import read
+    from pound_solve.sweep.study.document import Document
+    from pound_solve.sweep.study.study import read
 
     document = Document.read(args.study)
     studies.give_conduct(args, document)
@@ -44,12 +45,12 @@ def _hunted(args: argparse.Namespace) -> int:
         hunt.Hunt(session, aim).carry_out(progress)
         progress.end()
         path = session.write(
-            "incremental dynamic analysis", lambda sweep: fractiles.report(sweep, aim.asked, aim.rules)
+            "incremental dynamic analysis", lambda sweep: incremental.report(sweep, aim.asked, aim.rules)
         )
         sweep = Sweep.open(path)
         if args.picture:
-            cases = fractiles.drawn(sweep, aim.asked, aim.rules)
-            suites.incremental(cases, *fractiles.axes_of(sweep, aim.asked), args.picture)
+            cases = incremental.drawn(sweep, aim.asked, aim.rules)
+            suites.incremental(cases, *incremental.axes_of(sweep, aim.asked), args.picture)
         if not args.quiet:
-            print("\n".join(fractiles.report(sweep, aim.asked, aim.rules)))
+            print("\n".join(incremental.report(sweep, aim.asked, aim.rules)))
         return studies.ended(args, session, path)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from pound_solve.cli import common
 
 if TYPE_CHECKING:
-    from pound_solve.sweep.separations import Options
+    from pound_solve.statistics.needed_gaps import Options
 
 SUMMARY = "separation of the buildings by ABS, SRSS, DDC and codes; of a sweep: probability of contact"
 OF_SWEEPS: Final = ("gap", "raise", "confidence", "picture")  #: options
@@ -71,10 +71,11 @@ def execute(args: argparse.Namespace) -> int:
 def _of_sweep(args: argparse.Namespace) -> int:
     """Print the probabilities, and write them beside the file of the sweep."""
     from pound_solve.report.plot import suites
+    from pound_solve.report.sweep import separation, summary
     from pound_solve.results import ResultsError
     from pound_solve.results.sweep_file import Sweep, write_table
-    from pound_solve.sweep import separations, summary
-    from pound_solve.sweep.curves import CurveError, units_of
+    from pound_solve.statistics.curves import CurveError, units_of
+    from pound_solve.statistics.needed_gaps import groups
 
     if not common.drawable(args.picture):
         return common.MISTAKES
@@ -82,9 +83,9 @@ def _of_sweep(args: argparse.Namespace) -> int:
     try:
         options = _options(args)
         sweep = Sweep.open(args.results)
-        found = separations.groups(sweep, options)
-        lines = list(separations.report(sweep, found, options))
-        write_table(path, separations.variables(sweep, found, options), sweep.about)
+        found = groups(sweep, options)
+        lines = list(separation.report(sweep, found, options))
+        write_table(path, separation.variables(sweep, found, options), sweep.about)
         told = summary.write(path, sweep, "separation of the buildings", lines)
     except CurveError as err:
         return common.complain(f"{args.results}: {err}", common.MISTAKES)
@@ -94,7 +95,7 @@ def _of_sweep(args: argparse.Namespace) -> int:
     print(f"{told}\n{path.with_suffix('.csv')}\n{path}")
     if args.picture:
         gap = f"gap [{units_of(sweep).length}]"
-        suites.separations(separations.drawn(sweep, found, options), gap, args.picture)
+        suites.separations(separation.drawn(sweep, found, options), gap, args.picture)
     return common.DONE
 
 
@@ -106,9 +107,9 @@ def _options(args: argparse.Namespace) -> Options:
     CurveError
         One of them makes no sense.
     """
-    from pound_solve.sweep.curves import CurveError
-    from pound_solve.sweep.separations import Options
-    from pound_solve.theory.separation import correlation
+    from pound_solve.statistics.curves import CurveError
+    from pound_solve.statistics.needed_gaps import Options
+    from pound_solve.statistics.separation import correlation
 
     if bool(args.periods) != bool(args.damping):
         raise CurveError("--periods and --damping stand together: the correlation needs both")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from pound_solve.cli import common, studies
 
 if TYPE_CHECKING:
-    from pound_solve.sweep.document import Document
+    from pound_solve.sweep.study.document import Document
 
 SUMMARY = "run a study: decks by values of PARAMs by records; one table of all runs"
 LISTS = ("scale", "pga", "sa")
@@ -65,7 +65,7 @@ def _piece(word: str | None) -> tuple[int, int]:
 
 def _document(args: argparse.Namespace) -> Document:
     """The study's file, or one for a deck, with what the command line gives."""
-    from pound_solve.sweep.document import Document
+    from pound_solve.sweep.study.document import Document
 
     if args.study.endswith(".toml"):
         out = Document.read(args.study)
@@ -119,10 +119,10 @@ def _give_motions(args: argparse.Namespace, out: Document) -> None:
 
 def _swept(args: argparse.Namespace) -> int:
     """Run what is ahead, and write the table; with --plan a trial only."""
-    from pound_solve.sweep.executors import engine
-    from pound_solve.sweep.lock import locked
+    from pound_solve.sweep.execution.executors import engine
+    from pound_solve.sweep.execution.lock import locked
     from pound_solve.sweep.session import Session
-    from pound_solve.sweep.study import read
+    from pound_solve.sweep.study.study import read
 
     k, count = _piece(args.task)
     study = read(_document(args))

@@ -1,7 +1,7 @@
 r"""Equivalent contact of two rigid floors: a Kelvin-Voigt contact after which their centres of mass move as
 those of two diaphragms with distributed mass.
 
-:mod:`pound_solve.theory.two_bars` gives the contact force of the diaphragms from the masses and from the
+:mod:`pound_solve.laws.two_bars` gives the contact force of the diaphragms from the masses and from the
 axial stiffnesses DIAPHRAGMS.  A contact has two constants.  MODEL=EXACT gives it the impulse
 :math:`(1+e)m\Delta v` and the centroid :math:`\bar t` of that force, both continuous in all masses and
 stiffnesses:
@@ -27,7 +27,7 @@ from pound_deck.schema import Field, Kind, Spec
 from pound_solve.laws.automaton import Law
 from pound_solve.laws.contact import restitution
 from pound_solve.laws.contact.kelvin_voigt import RULE, TENSION, Built
-from pound_solve.theory.two_bars import Diaphragm, Pair
+from pound_solve.laws.two_bars import Diaphragm, Pair
 
 
 def build(values: Mapping[str, Any], reduced_mass: float) -> Built:

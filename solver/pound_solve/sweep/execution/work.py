@@ -28,14 +28,15 @@ from pound_solve.numerics.types import Array
 from pound_solve.results.contents import HISTORIES
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Layout, Stage
+from pound_solve.results.sweep_file import DONE, FAILED, STOPPED
 from pound_solve.structure.structure import Structure
-from pound_solve.sweep import pairs
-from pound_solve.sweep.entry import DONE, FAILED, STOPPED, Entry, Journal
-from pound_solve.sweep.limits import Clock, TooLongError, within
-from pound_solve.sweep.quantities import Fields, doubts, rows_at, taken
-from pound_solve.sweep.records import UnreadableError, scaled
-from pound_solve.sweep.run import Case, RecordFile, Run, Shaking, digest_of
-from pound_solve.sweep.study import request_of
+from pound_solve.sweep.execution.journal import Entry, Journal
+from pound_solve.sweep.execution.limits import Clock, TooLongError, within
+from pound_solve.sweep.study import pairs
+from pound_solve.sweep.study.quantities import Fields, doubts, rows_at, taken
+from pound_solve.sweep.study.records import UnreadableError, scaled
+from pound_solve.sweep.study.run import Case, RecordFile, Run, Shaking, digest_of
+from pound_solve.sweep.study.study import request_of
 
 #: runs of a process from one collection of garbage to the next: the histories of a run lie in cycles of
 #: references, and Python by itself waits for hundreds of them; one collection takes some 50 ms

@@ -28,9 +28,9 @@ from pound_solve.driver.request import Request
 from pound_solve.loading.motions.base import LoadingContext
 from pound_solve.loading.records.base import RecordError
 from pound_solve.loading.records.known import find, load
-from pound_solve.sweep.document import Document, Path_
-from pound_solve.sweep.records import Suite, scaled
-from pound_solve.sweep.run import Case, Run, Shaking, digest_of
+from pound_solve.sweep.study.document import Document, Path_
+from pound_solve.sweep.study.records import Suite, scaled
+from pound_solve.sweep.study.run import Case, Run, Shaking, digest_of
 
 MOST: Final = 10**6  #: runs
 ITEMS: Final = (

@@ -19,10 +19,18 @@ from pound_solve.numerics.types import Array, Index
 from pound_solve.report.text import WIDTH, printed
 from pound_solve.results.form import ResultsError
 from pound_solve.results.schema import Column, Row, Table
-from pound_solve.results.sweep_file import RUN, Sweep
+from pound_solve.results.sweep_file import DONE, RUN, Sweep
 from pound_solve.results.whole_file import whole
-from pound_solve.sweep.curves import FRACTILES, LEVELS, PARAM, Asked, cases, demands, fractiles_of, units_of
-from pound_solve.sweep.entry import DONE
+from pound_solve.statistics.curves import (
+    FRACTILES,
+    LEVELS,
+    PARAM,
+    Asked,
+    cases,
+    demands,
+    fractiles_of,
+    units_of,
+)
 
 SHOWN: Final = (
     "drift_ratio", "peak_drift", "storey_drift", "residual_drift", "ductility", "closures", "contact_force",

@@ -11,9 +11,9 @@ from pound_solve.results.columns import CONTACT
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Column, Row, Stage, Table
 from pound_solve.results.words import contact_name
+from pound_solve.statistics.separation import correlation, own_mode
 from pound_solve.structure.elements.base import axes
 from pound_solve.structure.structure import Structure
-from pound_solve.theory.separation import correlation, own_mode
 
 
 def nodes(structure: Structure) -> set[int]:

@@ -21,11 +21,10 @@ import numpy as np
 
 from pound_deck.files import opened
 from pound_solve.numerics.types import Array
+from pound_solve.results.sweep_file import DONE
 from pound_solve.results.whole_file import write
-from pound_solve.sweep.quantities import Values
+from pound_solve.sweep.study.quantities import Values
 
-#: how a run ends: with all, with what it had when it stopped, or with nothing
-DONE, STOPPED, FAILED = ENDS = ("done", "stopped", "failed")
 ENDING: Final = ".jsonl"
 
 
@@ -37,7 +36,7 @@ class Entry:
     ----------
     identity : str
     status : str
-        One of `ENDS`.
+        One of `results.sweep_file.ENDS`.
     message : str
         Why it stopped or failed.
     doubt : str

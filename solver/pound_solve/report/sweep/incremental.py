@@ -1,11 +1,11 @@
-"""Tables of an incremental analysis: the capacity of every record, and fractiles over the level."""
+"""Report of an incremental analysis: the capacity of every record, and fractiles over the level."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from types import MappingProxyType
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -14,18 +14,18 @@ from pound_solve.report.plot import suites
 from pound_solve.report.text import printed
 from pound_solve.results.schema import Column, Row, Table
 from pound_solve.results.sweep_file import Sweep
-from pound_solve.sweep.curves import (
+from pound_solve.statistics.curves import (
     FRACTILES,
     Asked,
     Curve,
     by_case,
     curves,
-    fractiles_of,
     measure,
     unit_of,
     units_of,
 )
-from pound_solve.sweep.incremental import STANDS, Rules, collapse, demand_at, ends, standing
+from pound_solve.statistics.fractiles import Analysis, fractiles, levels
+from pound_solve.statistics.incremental import STANDS, Rules, collapse, ends, standing
 
 LEVEL_NAMES: Final = MappingProxyType(
     {
@@ -34,14 +34,6 @@ LEVEL_NAMES: Final = MappingProxyType(
         "scale": "factor on the record [-]",
     }
 )
-ROWS: Final = 12  #: levels of the table of fractiles
-
-
-class Analysis(NamedTuple):
-    """Curves of one case, and how they are judged."""
-
-    curves: Sequence[Curve]
-    rules: Rules
 
 
 def capacities(analysis: Analysis) -> Iterator[Row]:
@@ -53,23 +45,6 @@ def capacities(analysis: Analysis) -> Iterator[Row]:
         if curve.left_out:
             remark += f"; runs that failed or are missing: {curve.left_out}"
         yield curve.record, len(curve.points), stands, falls if how else math.nan, remark
-
-
-def levels(analysis: Analysis) -> Array:
-    """Levels of the table of fractiles: equal steps up to the highest that some record stands."""
-    tops = [collapse(c.points, analysis.rules)[0] for c in analysis.curves]
-    return np.linspace(0.0, max(tops, default=0.0), ROWS + 1)[1:]
-
-
-def fractiles(analysis: Analysis, at: Sequence[float] | Array) -> Array:
-    """Demand that a share `FRACTILES` of the records do not exceed, shape (n_levels, 3).
-
-    Infinite where so many have collapsed; NaN where a record was not run so far.
-    """
-    found = np.array([[demand_at(c.points, analysis.rules, x) for c in analysis.curves] for x in at])
-    with np.errstate(invalid="ignore"):  # between two that have collapsed
-        out = fractiles_of(found)
-    return np.asarray(out.T)
 
 
 def rows_of_fractiles(analysis: Analysis) -> Iterator[Row]:

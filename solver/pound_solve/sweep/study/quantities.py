@@ -12,7 +12,7 @@ from pound_solve.check import Check, Subject, looked
 from pound_solve.results.contents import TABLES
 from pound_solve.results.record import RunRecord
 from pound_solve.results.schema import Stage, Table
-from pound_solve.sweep.pairs import PAIRS
+from pound_solve.sweep.study.pairs import PAIRS
 
 Values: TypeAlias = dict[str, dict[str, float]]  #: of one run: by quantity and by label
 Fields: TypeAlias = Mapping[str, Any]  #: of one row of a table, by column

@@ -18,8 +18,8 @@ from pound_solve.loading.motions.base import LoadingContext, Motion
 from pound_solve.loading.records.base import RecordError
 from pound_solve.loading.records.known import find, known, load
 from pound_solve.loading.spectrum import pseudo_acceleration
-from pound_solve.sweep.document import Document, Path_
-from pound_solve.sweep.run import RecordFile, Shaking
+from pound_solve.sweep.study.document import Document, Path_
+from pound_solve.sweep.study.run import RecordFile, Shaking
 
 #: items of [[motions]] that are none of a RECORD line
 FILES, LEVELS, OSCILLATOR = "files", ("scale", "pga", "sa"), ("period", "damping")

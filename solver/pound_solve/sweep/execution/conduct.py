@@ -9,10 +9,11 @@ from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, 
 from dataclasses import dataclass, field
 from typing import Final, Self
 
-from pound_solve.sweep.entry import FAILED, Entry, Journal
-from pound_solve.sweep.executors import Engine
-from pound_solve.sweep.run import Case, Run
-from pound_solve.sweep.work import Settings, carry_out
+from pound_solve.results.sweep_file import FAILED
+from pound_solve.sweep.execution.executors import Engine
+from pound_solve.sweep.execution.journal import Entry, Journal
+from pound_solve.sweep.execution.work import Settings, carry_out
+from pound_solve.sweep.study.run import Case, Run
 
 INTERVAL: Final = 0.1  #: between two looks at the time [s]
 DEATHS: Final = 2  #: of processes that a run may cause when it is alone

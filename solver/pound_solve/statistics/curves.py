@@ -11,9 +11,8 @@ import numpy as np
 
 from pound_deck.model import Units
 from pound_solve.numerics.types import Array
-from pound_solve.results.sweep_file import RUN, Sweep
-from pound_solve.sweep.entry import DONE, STOPPED
-from pound_solve.sweep.incremental import Point
+from pound_solve.results.sweep_file import DONE, RUN, STOPPED, Sweep
+from pound_solve.statistics.incremental import Point
 
 LEVELS: Final = ("sa", "pga", "scale")  #: variables that tell how strong a record is, the best first
 FRACTILES: Final = (0.16, 0.5, 0.84)  #: shares of the records, or runs, in tables and pictures

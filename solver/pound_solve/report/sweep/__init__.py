@@ -1,0 +1,1 @@
+"""Reports of sweeps in words, tables and what pictures show."""

@@ -1,0 +1,127 @@
+"""Report of fragilities: the probability that a demand exceeds a limit, over the level, for every case."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+
+from pound_solve.report.plot import suites
+from pound_solve.report.text import printed
+from pound_solve.results.schema import Column, Row, Table
+from pound_solve.results.sweep_file import Sweep
+from pound_solve.statistics.curves import Asked, measure, unit_of, units_of
+from pound_solve.statistics.fragility_of_sweep import Fitted
+
+POINTS: Final = 200  #: of a curve that is drawn
+DIGITS: Final = 4  #: of probabilities that are printed
+
+
+def rows(found: Sequence[Fitted]) -> Iterator[Row]:
+    """One row for each fragility."""
+    for f in found:
+        own = f.fragility
+        if own is None:
+            yield f.case, f.limit, f.method, 0, *([math.nan] * 6), f.remark
+        else:
+            ends = own.median, *own.median_interval, own.dispersion, *own.dispersion_interval
+            yield f.case, f.limit, f.method, own.count, *map(_finite, ends), f.remark
+
+
+def _finite(x: float) -> float:
+    return x if math.isfinite(x) else math.nan
+
+
+def report(sweep: Sweep, asked: Asked, found: Sequence[Fitted], at: Sequence[float]) -> Iterator[str]:
+    """The table of fragilities, and their probabilities at some levels, as the report prints tables."""
+    units, unit = units_of(sweep), unit_of(sweep, asked)
+    sure = next((f.fragility.level for f in found if f.fragility is not None), math.nan)
+    yield f"Demand: {asked.quantity} {asked.label}".rstrip()
+    yield _base(sweep, found)
+    yield ""
+    yield from printed(units, fragility_table(unit, sure), rows(found))
+    if at:
+        yield ""
+        yield from printed(units, probability_table(unit, at), _probable(found, at))
+
+
+def _base(sweep: Sweep, found: Sequence[Fitted]) -> str:
+    """The runs that the fragilities rest on, in words."""
+    seen = {f.case: f.observed for f in found}
+    levels = sorted({x for observed in seen.values() for x, _, _ in observed})
+    runs = sum(count for observed in seen.values() for _, _, count in observed)
+    which = (
+        f"{measure(sweep)} {levels[0]:.6g} to {levels[-1]:.6g}, {len(levels)} levels" if levels else "none"
+    )
+    return f"Runs: {runs} of the {len(sweep)} in the sweep; {which}"
+
+
+def _probable(found: Sequence[Fitted], at: Sequence[float]) -> Iterator[Row]:
+    """Probabilities at some levels."""
+    for f in found:
+        values = f.fragility.probability(at) if f.fragility else np.full(len(at), math.nan)
+        yield f.case, f.limit, *np.round(values, DIGITS).tolist()
+
+
+def drawn(found: Sequence[Fitted]) -> list[suites.Fragilities]:
+    """What a picture shows of the fragilities that could be fitted."""
+    out = []
+    most = max((x for f in found for x, _, _ in f.observed), default=0.0)
+    at = np.linspace(0.0, most, POINTS)[1:]
+    for f in found:
+        if f.fragility is not None:
+            limit = "" if math.isnan(f.limit) else f"limit {f.limit:g}"
+            level, exceeded, runs = np.array(f.observed, np.float64).T
+            title = ", ".join(filter(None, [f.case, limit])) or "collapse"
+            own, seen = f.fragility, (level, exceeded / runs) if f.method == "stripes" else (at[:0], at[:0])
+            out.append(
+                suites.Fragilities(title, at, own.probability(at), seen, own.median, own.median_interval)
+            )
+    return out
+
+
+def fragility_table(unit: str, level: float) -> Table[Sequence[Fitted]]:
+    """The table of fragilities for the dimensions of the demand and a level of confidence."""
+    sure = f"{100 * level:g} %"
+    return Table(
+        name="fragility",
+        title="Fragilities",
+        place=0,
+        stages=(),  # it is printed, not stored
+        columns=(
+            Column("case", "case", doc="PARAMs that differ in the sweep"),
+            Column("limit", "limit", unit, "given", doc="of the demand"),
+            Column("method", "from", doc="capacities, stripes or cloud"),
+            Column("n", "data", fmt="int", doc="records or runs"),
+            Column("median", "median", "-", "short", doc="level of probability one half"),
+            Column("low", f"{sure}\nfrom", "-", "short", doc="interval of the median"),
+            Column("high", "to", "-", "short", doc="interval of the median"),
+            Column("beta", "dispersion", "-", "short", doc="standard deviation of the logarithm"),
+            Column("beta_low", f"{sure}\nfrom", "-", "short", doc="interval of the dispersion"),
+            Column("beta_high", "to", "-", "short", doc="interval of the dispersion"),
+            Column("remark", "remark", doc="what is missing"),
+        ),
+        rows=rows,
+        note="Lognormal, most likely parameters; intervals by profile likelihood. The dispersion is that "
+        "of the records alone: it knows no uncertainty of the model.",
+        sample=(("gap=0.02", 0.01, "capacities", 20, 0.61, 0.5, 0.74, 0.42, 0.32, 0.62, ""),),
+    )
+
+
+def probability_table(unit: str, at: Sequence[float]) -> Table[Sequence[Fitted]]:
+    """The table of probabilities at some levels."""
+    return Table(
+        name="probabilities",
+        title="Probabilities at levels",
+        place=0,
+        stages=(),
+        columns=(
+            Column("case", "case", doc="PARAMs that differ in the sweep"),
+            Column("limit", "limit", unit, "given", doc="of the demand"),
+            *(Column(f"p{n}", f"at\n{x:g}", "-", "short", doc="probability") for n, x in enumerate(at)),
+        ),
+        rows=lambda found: _probable(found, at),
+        sample=(("gap=0.02", 0.01, *(0.5 for _ in at)),),
+    )

@@ -1,0 +1,38 @@
+"""Fractiles of an incremental analysis: the demand that a share of the records do not exceed, by level."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from pound_solve.numerics.types import Array
+from pound_solve.statistics.curves import Curve, fractiles_of
+from pound_solve.statistics.incremental import Rules, collapse, demand_at
+
+ROWS: Final = 12  #: levels of the table of fractiles
+
+
+class Analysis(NamedTuple):
+    """Curves of one case, and how they are judged."""
+
+    curves: Sequence[Curve]
+    rules: Rules
+
+
+def levels(analysis: Analysis) -> Array:
+    """Levels of the table of fractiles: equal steps up to the highest that some record stands."""
+    tops = [collapse(c.points, analysis.rules)[0] for c in analysis.curves]
+    return np.linspace(0.0, max(tops, default=0.0), ROWS + 1)[1:]
+
+
+def fractiles(analysis: Analysis, at: Sequence[float] | Array) -> Array:
+    """Demand that a share `FRACTILES` of the records do not exceed, shape (n_levels, 3).
+
+    Infinite where so many have collapsed; NaN where a record was not run so far.
+    """
+    found = np.array([[demand_at(c.points, analysis.rules, x) for c in analysis.curves] for x in at])
+    with np.errstate(invalid="ignore"):  # between two that have collapsed
+        out = fractiles_of(found)
+    return np.asarray(out.T)

@@ -1,1 +1,0 @@
-"""Closed-form theory of colliding bars."""
