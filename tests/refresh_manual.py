@@ -5,10 +5,10 @@ tests check that they are fresh.
 import argparse
 from pathlib import Path
 
+from highlighters import kate, notepad, textmate
 from pound_deck.messages import messages_page
 from pound_solve.assess.law_test import AXES, has_loop, picture
 from pound_solve.catalog import specs
-from pound_solve.editor import kate, notepad, textmate
 from pound_solve.report.deck_reference import deck_page
 from pound_solve.results.page import results_page
 from pound_solve.sweep.study import quantities

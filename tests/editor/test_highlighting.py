@@ -7,13 +7,13 @@ from xml.etree import ElementTree
 
 import pytest
 
+from highlighters import kate, notepad, textmate
+from highlighters.words import words
 from pound_deck.cards import parse
 from pound_deck.expressions import Expression
 from pound_deck.sections import CARDS, NAMES
 from pound_deck.source import INCLUDE, Source, is_end, without_comment
 from pound_solve.catalog import catalog
-from pound_solve.editor import kate, notepad, textmate
-from pound_solve.editor.words import words
 from pound_solve.report.deck_reference import vocabulary
 from refresh_manual import editors
 

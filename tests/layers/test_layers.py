@@ -104,10 +104,6 @@ WITHIN = {
         "diagnose",
         "project",
         "server",
-        "words",
-        "textmate",
-        "notepad",
-        "kate",
     ),
     "statistics": (
         "fragility",

@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterable
 from typing import Any, Final
 
-from pound_solve.editor.words import EXTENSIONS, Words, words
+from highlighters.words import EXTENSIONS, Words, words
 
 SCOPE: Final = "source.pound-deck"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 from xml.etree import ElementTree as Xml
 
-from pound_solve.editor.words import EXTENSIONS, words
+from highlighters.words import EXTENSIONS, words
 
 #: style of the definition: what Kate calls it in its colour schemes
 _STYLES: Final = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 from xml.etree import ElementTree as Xml
 
-from pound_solve.editor.words import words
+from highlighters.words import words
 
 #: keyword lists in the order of Notepad++, and those that it needs although they are empty
 _OPERATORS: Final = "= , ( ) + - * / ^ &"
